@@ -1,0 +1,51 @@
+# Refuses a Kokkos that gridmorph cannot use, and says what to do about it.
+set(GRIDMORPH_KOKKOS_MINIMUM 3.4)
+
+# Sets <result> to a sentence about what is wrong with Kokkos::kokkos, or to an empty string.
+function(gridmorph_kokkos_problem result)
+  set(${result} "" PARENT_SCOPE)
+  set(remedy "Name the prefix of another one with -DKokkos_ROOT=<prefix> or in CMAKE_PREFIX_PATH, or take the one that scripts/install-dependencies provides.")
+  if(NOT TARGET Kokkos::kokkos)
+    set(${result} "gridmorph needs Kokkos ${GRIDMORPH_KOKKOS_MINIMUM} or newer and found none. ${remedy}" PARENT_SCOPE)
+    return()
+  endif()
+
+  # A parent project that found Kokkos in a scope of its own leaves only the target, which says nothing about versions.
+  if(Kokkos_VERSION AND Kokkos_VERSION VERSION_LESS GRIDMORPH_KOKKOS_MINIMUM)
+    set(${result} "gridmorph needs Kokkos ${GRIDMORPH_KOKKOS_MINIMUM} or newer; this is ${Kokkos_VERSION} (${Kokkos_DIR}). ${remedy}" PARENT_SCOPE)
+    return()
+  endif()
+
+  # Meshes are read, planned and checked on the host.
+  string(TOUPPER "${Kokkos_DEVICES}" devices)
+  set(host_devices ${devices})
+  list(FILTER host_devices INCLUDE REGEX "^(SERIAL|OPENMP|THREADS|PTHREAD|HPX)$")
+  if(devices AND NOT host_devices)
+    set(${result} "gridmorph needs a Kokkos with a host backend; this one (${Kokkos_DIR}) has only ${Kokkos_DEVICES}. Build Kokkos with Kokkos_ENABLE_SERIAL=ON, and Kokkos_ENABLE_OPENMP=ON to use all cores. ${remedy}" PARENT_SCOPE)
+    return()
+  endif()
+
+  # Debian 12's own package names include folders without headers.
+  get_target_property(imported Kokkos::kokkos IMPORTED)
+  if(imported)
+    set(targets Kokkos::kokkos)
+    set(folders "")
+    set(seen "")
+    while(targets)
+      list(POP_FRONT targets target)
+      if(NOT TARGET "${target}" OR "${target}" IN_LIST seen)
+        continue()
+      endif()
+      list(APPEND seen "${target}")
+      get_target_property(more_folders "${target}" INTERFACE_INCLUDE_DIRECTORIES)
+      get_target_property(more_targets "${target}" INTERFACE_LINK_LIBRARIES)
+      list(APPEND folders ${more_folders})
+      list(APPEND targets ${more_targets})
+    endwhile()
+    list(FILTER folders EXCLUDE REGEX "-NOTFOUND$")
+    find_file(kokkos_header Kokkos_Core.hpp PATHS ${folders} NO_CACHE NO_DEFAULT_PATH)
+    if(NOT kokkos_header)
+      set(${result} "The CMake package of Kokkos in ${Kokkos_DIR} is broken: no Kokkos_Core.hpp where it says (${folders}). ${remedy}" PARENT_SCOPE)
+    endif()
+  endif()
+endfunction()

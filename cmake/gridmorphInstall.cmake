@@ -1,0 +1,34 @@
+# Install and package files: find_package(gridmorph [COMPONENTS core io app]).
+include(CMakePackageConfigHelpers)
+
+set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/gridmorph")
+
+# One export set per component, so that a user of the core never hears of CGNS.
+function(gridmorph_install component)
+  install(
+    TARGETS ${ARGN}
+    EXPORT gridmorph_${component}
+    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+    INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(EXPORT gridmorph_${component} FILE gridmorph_${component}.cmake NAMESPACE gridmorph:: DESTINATION "${package_folder}")
+endfunction()
+
+gridmorph_install(core gridmorph_kernels gridmorph)
+if(GRIDMORPH_ENABLE_IO)
+  gridmorph_install(io gridmorph_io)
+  install(FILES "${PROJECT_SOURCE_DIR}/cmake/FindCGNS.cmake" DESTINATION "${package_folder}")
+endif()
+if(GRIDMORPH_ENABLE_CLI)
+  gridmorph_install(app gridmorph_app)
+  install(TARGETS gridmorph_cli)
+endif()
+
+configure_package_config_file(
+  "${PROJECT_SOURCE_DIR}/cmake/gridmorphConfig.cmake.in" "${PROJECT_BINARY_DIR}/gridmorphConfig.cmake"
+  INSTALL_DESTINATION "${package_folder}")
+write_basic_package_version_file(
+  "${PROJECT_BINARY_DIR}/gridmorphConfigVersion.cmake" VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
+install(
+  FILES "${PROJECT_BINARY_DIR}/gridmorphConfig.cmake" "${PROJECT_BINARY_DIR}/gridmorphConfigVersion.cmake"
+        "${PROJECT_SOURCE_DIR}/cmake/gridmorphCheckKokkos.cmake"
+  DESTINATION "${package_folder}")

@@ -1,0 +1,43 @@
+# Warnings for our own targets; never exported.
+add_library(gridmorph_warnings INTERFACE)
+target_compile_options(
+  gridmorph_warnings
+  # gcc 12 sees an overlap in every "text" + std::string (gcc bug 105651).
+  INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>:-Wall -Wextra>
+            $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>
+            $<$<AND:$<BOOL:${GRIDMORPH_WARNINGS_AS_ERRORS}>,$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>>:-Werror>)
+
+# What every compiled target of ours shares.
+function(gridmorph_target_defaults target)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:gridmorph_warnings>)
+  set_target_properties(${target} PROPERTIES CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+endfunction()
+
+# gridmorph_add_library(<target> EXPORT_NAME <name> FOLDERS <folder> ... [HEADERS <header> ...])
+#
+# Makes the library <target>, known outside as gridmorph::<name>, from folders of src/gridmorph. The sources are listed in
+# each folder's CMakeLists.txt. What is installed are the headers in these folders, not those in their `detail` folders,
+# or the HEADERS alone where they are named.
+function(gridmorph_add_library target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "EXPORT_NAME" "FOLDERS;HEADERS")
+  file(WRITE "${PROJECT_BINARY_DIR}/bringup_${target}.cpp" "")  # BRINGUP: remove when every part has sources
+  add_library(${target} "${PROJECT_BINARY_DIR}/bringup_${target}.cpp")
+  add_library(gridmorph::${arg_EXPORT_NAME} ALIAS ${target})
+  gridmorph_target_defaults(${target})
+  set_target_properties(
+    ${target} PROPERTIES EXPORT_NAME ${arg_EXPORT_NAME} VERSION ${PROJECT_VERSION}
+                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set(headers ${arg_HEADERS})
+  if(NOT headers)
+    list(TRANSFORM arg_FOLDERS PREPEND gridmorph/ OUTPUT_VARIABLE patterns)
+    list(TRANSFORM patterns APPEND /*.hpp)
+    file(GLOB headers CONFIGURE_DEPENDS ${patterns})
+  endif()
+  target_sources(${target} PUBLIC FILE_SET HEADERS TYPE HEADERS BASE_DIRS "${CMAKE_CURRENT_SOURCE_DIR}" FILES ${headers})
+  foreach(folder IN LISTS arg_FOLDERS)
+    if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/gridmorph/${folder}/CMakeLists.txt")
+      add_subdirectory(gridmorph/${folder})
+    endif()
+  endforeach()
+endfunction()

@@ -1,0 +1,64 @@
+// Grid lines as plain data: which nodes follow one another, and who writes them.
+//
+// A chain is one cuboid of nodes (s, a, b): s along the grid lines, a and b across. It is cut into tubes (one piece of a
+// zone across), a tube into segments (one piece of a zone along). A line is one (a, b) of a tube; it runs through all
+// segments of the tube. Everything is flat and trivially copyable, so that one launch can take any set of independent
+// lines from all zones of a mesh.
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include <cstdint>
+
+namespace gridmorph::kernels {
+
+using Index = std::int64_t;
+
+/// Nodes of one piece of a zone along the lines of a tube. Node (s, a, b) of the segment is
+/// first + s * stride_s + a * stride_a + b * stride_b; the last node of a segment coincides with the first of the next.
+struct Segment {
+  Index first;
+  Index stride_s, stride_a, stride_b;
+  std::int32_t count;         ///< nodes along the line, both ends included (>= 2)
+  std::int32_t begin;         ///< position of the first node on the chain's lines
+  std::uint32_t write_mask;   ///< bit cs + 3 (ca + 3 cb): whether the sweep writes the nodes at lower end (0), inside (1)
+                              ///< or upper end (2) of the segment along s, a, b
+  std::int32_t rotation;      ///< in the rotation table: chain frame -> frame of this zone; -1 where they are the same
+};
+
+struct Tube {
+  std::int32_t chain;
+  std::int32_t a_begin, b_begin;  ///< position of the tube in the chain's cross-section
+  std::int32_t n_a, n_b;          ///< nodes across, both sides included
+  std::int32_t first_segment, n_segments;
+};
+
+/// How displacement varies along a line, as a function of the fraction of its baseline arc length.
+enum class LineLaw : std::int32_t { linear, c1, c2, constant };
+
+struct Chain {
+  std::int32_t n_s, n_a, n_b;  ///< nodes
+  LineLaw law;
+  std::int32_t open_end;       ///< the last node of the lines is not known and is written too (constant law)
+  std::int32_t first_side;     ///< in the side tables, -1: no side is known, plain sweep
+  std::int32_t first_junction; ///< of the correction's block limits
+  std::int32_t n_blocks;
+  Index first_end_value;       ///< redistribution: where the chain's end values start
+  Index first_section;         ///< correction: where the chain's cross-section parameters start
+};
+
+/// Category of position p among n nodes: 0 at the lower end, 2 at the upper end, 1 inside.
+KOKKOS_INLINE_FUNCTION int end_category(int p, int n) { return p == 0 ? 0 : (p == n - 1 ? 2 : 1); }
+
+/// Weight of the far end at fraction s of the arc length; 0 at s = 0 and 1 at s = 1.
+KOKKOS_INLINE_FUNCTION double law_weight(LineLaw law, double s) {
+  switch (law) {
+    case LineLaw::linear: return s;
+    case LineLaw::c1: return s * s * (3 - 2 * s);
+    case LineLaw::c2: return s * s * s * (10 + s * (6 * s - 15));
+    case LineLaw::constant: return 0;
+  }
+  return s;
+}
+
+}  // namespace gridmorph::kernels

@@ -1,0 +1,138 @@
+// Fills the side arrays of corrected chains: residuals where the side is known, Boolean sums where it is not.
+// Three launches, each over lines of surfaces only; formulas in side_correction.hpp.
+#pragma once
+
+#include <gridmorph/kernels/line_sweep.hpp>
+
+namespace gridmorph::kernels {
+
+/// Edge along s that borders side q at its lower (upper = 0) or upper end.
+KOKKOS_INLINE_FUNCTION int edge_of_side(int q, int upper) { return q < 2 ? q + 2 * upper : upper + 2 * (q - 2); }
+
+/// What is known at one node of a corrected chain's side.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION bool side_node_is_known(SideTable<MemorySpace> const& sides, Chain const& chain, int q, int n_w,
+                                               int position, int w) {
+  if (position == 0 || (position == chain.n_s - 1 && !chain.open_end)) return true;
+  int m = 0;
+  while (sides.junctions(chain.first_junction + m + 1).position < position) ++m;
+  Junction const& next = sides.junctions(chain.first_junction + m + 1);
+  bool const at_junction = next.position == position;
+  unsigned const known = at_junction ? next.known_across : sides.junctions(chain.first_junction + m).known_along;
+  int const category = end_category(w, n_w);
+  int const bit = category == 1 ? q : 4 + edge_of_side(q, category / 2);
+  return (known >> bit) & 1u;
+}
+
+/// c = u - interpolant at the known nodes of a side line, 0 at the others.
+template <class MemorySpace>
+struct SideResidual {
+  LineTable<MemorySpace> lines;
+  SideTable<MemorySpace> sides;
+  Kokkos::View<SideLine const*, MemorySpace> side_lines;
+  Field<double const> u;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    SideLine const& on = side_lines(item);
+    LineCursor<MemorySpace> const line(lines, on.line);
+    Side const& side = sides.sides(on.side);
+    Chain const& chain = lines.chains(side.chain);
+    int const q = on.side - chain.first_side;
+    Segment const& back = line.segment(line.tube.n_segments - 1);
+    Vec3 const u0 = line.to_chain_frame(line.segment(0), u[line.first_node()]);
+    Vec3 const u1 = chain.open_end ? u0 : line.to_chain_frame(back, u[line.last_node()]);
+    Vec3 const du = u1 - u0;
+    Index const at = side.first + Index(chain.n_s) * on.w;
+    for (int m = 0; m < line.tube.n_segments; ++m) {
+      Segment const& s = line.segment(m);
+      Index n = line.start(s);
+      for (int k = 0; k < s.count; ++k, n += s.stride_s) {
+        int const position = s.begin + k;
+        bool const end = position == 0 || (position == chain.n_s - 1 && !chain.open_end);
+        Vec3 c;
+        if (!end && side_node_is_known(sides, chain, q, side.n_w, position, on.w))
+          c = line.to_chain_frame(s, u[n]) - (u0 + law_weight(chain.law, sides.t(at + position)) * du);
+        sides.c.set(at + position, c);
+      }
+    }
+  }
+};
+
+/// Unknown stretches of the four edges along s: linear in t between the nearest known nodes, constant to an open end.
+/// One item per edge; items = 4 * corrected chains, chain numbers in `chains_with_sides`.
+template <class MemorySpace>
+struct EdgeFill {
+  LineTable<MemorySpace> lines;
+  SideTable<MemorySpace> sides;
+  Kokkos::View<std::int32_t const*, MemorySpace> corrected;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    Chain const& chain = lines.chains(corrected(item / 4));
+    int const e = int(item % 4);
+    int const q = e % 2, partner = 2 + e / 2;
+    Side const& side = sides.sides(chain.first_side + q);
+    Side const& other = sides.sides(chain.first_side + partner);
+    int const w = e / 2 == 0 ? 0 : side.n_w - 1;
+    Index const at = side.first + Index(chain.n_s) * w;
+    Index const there = other.first + Index(chain.n_s) * (e % 2 == 0 ? 0 : other.n_w - 1);
+    auto fill = [&](int from, int to, bool open) {
+      Vec3 const c0 = sides.c[at + from], c1 = open ? c0 : sides.c[at + to];
+      double const t0 = sides.t(at + from), t1 = sides.t(at + to);
+      for (int p = from + 1; p < (open ? to + 1 : to); ++p) {
+        double const f = t1 > t0 ? (sides.t(at + p) - t0) / (t1 - t0) : double(p - from) / (to - from);
+        sides.c.set(at + p, (1 - f) * c0 + f * c1);
+      }
+    };
+    int last = 0;
+    for (int p = 1; p < chain.n_s; ++p)
+      if (side_node_is_known(sides, chain, q, side.n_w, p, w)) {
+        if (p > last + 1) fill(last, p, false);
+        last = p;
+      }
+    if (last < chain.n_s - 1) fill(last, chain.n_s - 1, true);
+    for (int p = 0; p < chain.n_s; ++p) sides.c.set(there + p, sides.c[at + p]);
+  }
+};
+
+/// Unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders.
+/// One item per side line that is not an edge.
+template <class MemorySpace>
+struct SideFill {
+  LineTable<MemorySpace> lines;
+  SideTable<MemorySpace> sides;
+  Kokkos::View<SideLine const*, MemorySpace> side_lines;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    SideLine const& on = side_lines(item);
+    Side const& side = sides.sides(on.side);
+    if (end_category(on.w, side.n_w) != 1) return;
+    Chain const& chain = lines.chains(side.chain);
+    int const q = on.side - chain.first_side;
+    Index const line = side.first + Index(chain.n_s) * on.w;
+    Index const lower = side.first, upper = side.first + Index(chain.n_s) * (side.n_w - 1);
+    int const a = q == 0 ? 0 : (q == 1 ? chain.n_a - 1 : on.w);
+    int const b = q == 2 ? 0 : (q == 3 ? chain.n_b - 1 : on.w);
+    auto fraction_across = [&](int p) { return sides.across(chain, q < 2 ? 1 : 0, a, b, sides.t(line + p)); };
+    auto between_edges = [&](int p, double f) { return (1 - f) * sides.c[lower + p] + f * sides.c[upper + p]; };
+    for (int m = 0; m <= chain.n_blocks; ++m) {
+      int const p = sides.junctions(chain.first_junction + m).position;
+      if (!side_node_is_known(sides, chain, q, side.n_w, p, on.w))
+        sides.c.set(line + p, between_edges(p, fraction_across(p)));
+    }
+    for (int m = 0; m < chain.n_blocks; ++m) {
+      Junction const& j = sides.junctions(chain.first_junction + m);
+      if ((j.known_along >> q) & 1u) continue;
+      int const p0 = j.position, p1 = sides.junctions(chain.first_junction + m + 1).position;
+      double const t0 = sides.t(line + p0), t1 = sides.t(line + p1);
+      // Residual of the borders along s against the borders across: added between the edges.
+      Vec3 const r0 = sides.c[line + p0] - between_edges(p0, fraction_across(p0));
+      Vec3 const r1 = sides.c[line + p1] - between_edges(p1, fraction_across(p1));
+      for (int p = p0 + 1; p < p1; ++p) {
+        double const f = t1 > t0 ? (sides.t(line + p) - t0) / (t1 - t0) : double(p - p0) / (p1 - p0);
+        sides.c.set(line + p, between_edges(p, fraction_across(p)) + (1 - f) * r0 + f * r1);
+      }
+    }
+  }
+};
+
+}  // namespace gridmorph::kernels

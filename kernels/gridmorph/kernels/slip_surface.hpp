@@ -1,0 +1,94 @@
+// Surfaces that nodes slide on, as kernels see them: project a point, or correct a displacement.
+//
+// A node that slips keeps its own distance from the surface where the baseline mesh has one (round-off, single
+// precision, chord error of the profile): the correction is the *change* of that distance. So zero displacement stays
+// exactly zero, and a displacement that already keeps the node on its surface comes back bit for bit.
+//
+// Cost: plane and axial about 10 flops; revolution one binary search in the profile plus two square roots.
+#pragma once
+
+#include <gridmorph/kernels/vec3.hpp>
+
+#include <cmath>
+
+namespace gridmorph {
+
+enum class SlipKind {
+  plane,       ///< nodes stay on a plane
+  revolution,  ///< nodes stay on a surface of revolution, moved radially at constant axial position and angle
+  axial        ///< nodes keep their axial position; not a surface
+};
+
+/// Radius as a function of axial position: cubic Hermite pieces between `size` knots. Borrows its tables.
+struct ProfileView {
+  double const* axial = nullptr;  ///< strictly increasing
+  double const* radius = nullptr;
+  double const* slope = nullptr;
+  int size = 0;
+
+  /// Written in differences, so that a constant profile comes back bit for bit; the end slopes are continued outside.
+  KOKKOS_INLINE_FUNCTION double operator()(double a) const {
+    int lo = 0, hi = size - 1;
+    if (a <= axial[lo]) return radius[lo] + slope[lo] * (a - axial[lo]);
+    if (a >= axial[hi]) return radius[hi] + slope[hi] * (a - axial[hi]);
+    while (hi - lo > 1) {
+      int const mid = (lo + hi) / 2;
+      (axial[mid] <= a ? lo : hi) = mid;
+    }
+    double const h = axial[hi] - axial[lo];
+    double const t = (a - axial[lo]) / h;
+    double const rise = radius[hi] - radius[lo];
+    return radius[lo] + (rise * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * slope[lo] - t * slope[hi]));
+  }
+};
+
+struct SlipSurfaceView {
+  SlipKind kind = SlipKind::plane;
+  Vec3 origin;                    ///< plane: a point on it; otherwise a point on the axis
+  Vec3 direction;                 ///< unit: plane normal, or axis
+  ProfileView profile;            ///< revolution only
+  double size = 0;                ///< length that "1e-14 of the size" refers to
+  double baseline_deviation = 0;  ///< offsets up to this are the baseline mesh's own and are kept
+
+  /// The point of the surface that p slides to: orthogonally (plane) or radially at constant axial position and angle
+  /// (revolution). A point on the axis has no radial direction and stays. Kind axial: p itself.
+  KOKKOS_INLINE_FUNCTION Vec3 project(Vec3 const& p) const {
+    Vec3 const d = p - origin;
+    double const a = dot(d, direction);
+    if (kind == SlipKind::plane) return p - a * direction;
+    if (kind == SlipKind::axial) return p;
+    Vec3 const radial = d - a * direction;
+    double const r = norm(radial);
+    return r > 0 ? p + ((profile(a) - r) / r) * radial : p;
+  }
+
+  /// The displacement of a baseline node, corrected so that the moved node is where the surface wants it.
+  KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, Vec3 const& u) const {
+    if (u.x == 0 && u.y == 0 && u.z == 0) return u;
+    double const tolerance = 1e-14 * size;
+    double const du = dot(u, direction);
+    if (kind == SlipKind::axial) return small(du, tolerance) ? u : u - du * direction;
+
+    Vec3 const d = baseline - origin;
+    double const a = dot(d, direction);
+    if (kind == SlipKind::plane) {
+      double const excess = du + (is_own(a) ? 0.0 : a);
+      return small(excess, tolerance) ? u : u - excess * direction;
+    }
+    Vec3 const radial = d - a * direction;
+    Vec3 const moved = radial + (u - du * direction);
+    double const r = norm(moved);
+    if (!(r > 0)) return u;
+    double const offset = norm(radial) - profile(a);
+    double const excess = r - (profile(a + du) + (is_own(offset) ? offset : 0.0));
+    return small(excess, tolerance) ? u : u - (excess / r) * moved;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION static bool small(double v, double tolerance) { return v <= tolerance && v >= -tolerance; }
+  KOKKOS_INLINE_FUNCTION bool is_own(double offset) const {
+    return small(offset, baseline_deviation * (1 + 1e-6) + 1e-14 * size);
+  }
+};
+
+}  // namespace gridmorph

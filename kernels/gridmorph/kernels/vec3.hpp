@@ -1,0 +1,65 @@
+// Three-component vectors and 3x3 matrices that work on host and device.
+//
+// Deliberately tiny: what the mesh kernels need and nothing else. All operations are plain sums in a fixed
+// order, so that every execution space rounds alike.
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include <cmath>
+
+namespace gridmorph {
+
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+
+  KOKKOS_INLINE_FUNCTION Vec3& operator+=(Vec3 const& b) {
+    x += b.x;
+    y += b.y;
+    z += b.z;
+    return *this;
+  }
+};
+
+KOKKOS_INLINE_FUNCTION Vec3 operator+(Vec3 const& a, Vec3 const& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+KOKKOS_INLINE_FUNCTION Vec3 operator-(Vec3 const& a, Vec3 const& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+KOKKOS_INLINE_FUNCTION Vec3 operator-(Vec3 const& a) { return {-a.x, -a.y, -a.z}; }
+KOKKOS_INLINE_FUNCTION Vec3 operator*(double s, Vec3 const& a) { return {s * a.x, s * a.y, s * a.z}; }
+KOKKOS_INLINE_FUNCTION Vec3 operator*(Vec3 const& a, double s) { return s * a; }
+KOKKOS_INLINE_FUNCTION bool operator==(Vec3 const& a, Vec3 const& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+KOKKOS_INLINE_FUNCTION double dot(Vec3 const& a, Vec3 const& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+KOKKOS_INLINE_FUNCTION Vec3 cross(Vec3 const& a, Vec3 const& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+KOKKOS_INLINE_FUNCTION double norm(Vec3 const& a) {
+  using std::sqrt;
+  return sqrt(dot(a, a));
+}
+KOKKOS_INLINE_FUNCTION double distance(Vec3 const& a, Vec3 const& b) { return norm(a - b); }
+
+/// Row-major 3x3 matrix.
+struct Mat3 {
+  double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+};
+
+KOKKOS_INLINE_FUNCTION Vec3 operator*(Mat3 const& a, Vec3 const& v) {
+  return {a.m[0][0] * v.x + a.m[0][1] * v.y + a.m[0][2] * v.z, a.m[1][0] * v.x + a.m[1][1] * v.y + a.m[1][2] * v.z,
+          a.m[2][0] * v.x + a.m[2][1] * v.y + a.m[2][2] * v.z};
+}
+
+KOKKOS_INLINE_FUNCTION Mat3 operator*(Mat3 const& a, Mat3 const& b) {
+  Mat3 c;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) c.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j];
+  return c;
+}
+
+KOKKOS_INLINE_FUNCTION Mat3 transpose(Mat3 const& a) {
+  Mat3 t;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) t.m[i][j] = a.m[j][i];
+  return t;
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,82 @@
+# Debian packages and Debian source packages. Source this file; it needs `say` and `fail`. No host is named here:
+# everything comes through the machine's own entries in /etc/apt.
+
+apt_updated=no
+
+have_apt() { command -v apt-get >/dev/null 2>&1; }
+
+# apt_install PACKAGE...: installs what dpkg does not know yet. Root only.
+apt_install() {
+  local missing=() package
+  [ $# -gt 0 ] || return 0
+  for package in "$@"; do
+    if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
+      missing+=("$package")
+    fi
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  have_apt || fail "these are missing and there is no apt-get here to install them; install what they stand for: ${missing[*]}"
+  [ "$(id -u)" -eq 0 ] || fail "these Debian packages are missing; run as root: apt-get install ${missing[*]}"
+  if [ $apt_updated = no ]; then
+    say "updating the list of Debian packages"
+    apt-get -q update >&2
+    apt_updated=yes
+  fi
+  say "installing Debian packages: ${missing[*]}"
+  DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install "${missing[@]}" >&2
+}
+
+# debian_source_entry SUITE: the machine's own entry for the Debian archive, rewritten to source packages of SUITE.
+# Prints deb822 or one-line format; the entry taken is the one that lists the machine's own release.
+debian_source_entry() {
+  local suite=$1 own file
+  own=$(. /etc/os-release && echo "${VERSION_CODENAME:-stable}")
+  for file in /etc/apt/sources.list.d/*.sources; do
+    [ -e "$file" ] || continue
+    sed '/^#/d' "$file" | awk -v own="$own" -v suite="$suite" '
+      BEGIN { RS = ""; FS = "\n" }
+      /(^|\n)Types:[^\n]*deb([ \n]|$)/ && !/(^|\n)Enabled: *no/ {
+        found = 0
+        for (i = 1; i <= NF; i++) if ($i ~ "^Suites:" && ($i " ") ~ "[ \t](" own "|stable)[ \t]") found = 1
+        if (!found) next
+        for (i = 1; i <= NF; i++) {
+          if ($i ~ /^Types:/) $i = "Types: deb-src"
+          if ($i ~ /^Suites:/) $i = "Suites: " suite
+          if ($i ~ /^Components:/) $i = "Components: main"
+          print $i
+        }
+        exit
+      }'
+  done >"$entry_file.sources"
+  if [ -s "$entry_file.sources" ]; then
+    echo "$entry_file.sources"
+    return 0
+  fi
+  cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list 2>/dev/null |
+    sed -nE "s/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]+)[[:space:]]+($own|stable)[[:space:]].*/deb-src \1\2 $suite main/p" |
+    head -n 1 >"$entry_file.list"
+  [ -s "$entry_file.list" ] || return 1
+  echo "$entry_file.list"
+}
+
+# fetch_debian_source PACKAGE SUITE FOLDER: puts the upstream archive of a Debian source package into FOLDER and prints
+# its path. apt checks signatures and hashes; a mirror that stands still is welcome, since any version in the suite will
+# do. Touches none of the machine's apt configuration.
+fetch_debian_source() {
+  local package=$1 suite=$2 folder=$3 log="$3/apt.log" entry_file entry options
+  have_apt || return 1
+  mkdir -p "$folder/lists/partial"
+  entry_file="$folder/$suite"
+  if ! entry=$(debian_source_entry "$suite"); then
+    say "no entry for the Debian archive in /etc/apt"
+    return 1
+  fi
+  options=(-q -o "Dir::Etc::sourcelist=$entry" -o Dir::Etc::sourceparts=- -o "Dir::State::lists=$folder/lists"
+    -o Acquire::Check-Valid-Until=false -o APT::Sandbox::User=root)
+  if ! (cd "$folder" && apt-get "${options[@]}" update &&
+    apt-get "${options[@]}" source --download-only --tar-only "$package") >"$log" 2>&1; then
+    say "no source package $package in $suite: $(sed -n '/^E: /{s///p;q}' "$log")"
+    return 1
+  fi
+  find "$folder" -maxdepth 1 -name "${package}_*.orig.tar.*" ! -name '*.asc' | grep -m 1 .
+}

@@ -1,0 +1,18 @@
+# What every script does first. Source this file; it leaves you in the project's root with the dependencies in place.
+
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+jobs=${GRIDMORPH_JOBS:-$(nproc)}
+
+# use_dependencies [install-dependencies option...]
+use_dependencies() {
+  CMAKE_PREFIX_PATH=$(scripts/install-dependencies "$@")
+  export CMAKE_PREFIX_PATH
+}
+
+# build PRESET [TARGET]: configures and builds.
+build() {
+  cmake --preset "$1"
+  cmake --build --preset "$1" --parallel "$jobs" ${2:+--target "$2"}
+}

@@ -1,0 +1,253 @@
+#include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/casefile/detail/rule_reader.hpp>
+#include <gridmorph/casefile/detail/table_reader.hpp>
+#include <gridmorph/casefile/suggest.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <fmt/format.h>
+#include <toml.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+using casefile::Context;
+using casefile::TableReader;
+
+/// A case file is written by hand; anything larger is some other file.
+constexpr std::uintmax_t largest_case_file = 4u << 20;
+/// The parser recurses into brackets; nobody nests them this deep.
+constexpr int deepest_nesting = 64;
+
+std::string read_text(std::filesystem::path const& path) {
+  std::error_code error;
+  auto const status = std::filesystem::status(path, error);
+  std::string const name = path.string();
+  if (!std::filesystem::exists(status))
+    throw ConfigError(fmt::format("case file '{}' does not exist; check the path", name));
+  if (std::filesystem::is_directory(status))
+    throw ConfigError(fmt::format("case file '{}' is a directory; give a file", name));
+  if (auto const size = std::filesystem::file_size(path, error); !error && size > largest_case_file)
+    throw ConfigError(fmt::format("case file '{}' has {} bytes, too many for a case file; is it a mesh?", name, size));
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw ConfigError(fmt::format("case file '{}' cannot be opened; check its permissions", name));
+  std::ostringstream text;
+  if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
+  if (in.bad()) throw ConfigError(fmt::format("case file '{}' cannot be read", name));
+  return std::move(text).str();
+}
+
+/// Refuses what is no text at all, and brackets nested so deep that a recursive parser would run out of stack.
+void check_text(std::string const& text, std::string const& file) {
+  if (text.find('\0') != std::string::npos)
+    throw ConfigError(fmt::format("{}: not a text file; a case file (TOML) is wanted, not a mesh", file));
+  int line = 1, depth = 0;
+  char quote = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char const c = text[i];
+    if (c == '\n') {
+      ++line;
+      quote = 0;  // one-line strings end here at the latest; longer ones only make the count of brackets less strict
+    } else if (quote != 0) {
+      if (c == '\\' && quote == '"')
+        ++i;
+      else if (c == quote)
+        quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
+    } else if (c == '[' || c == '{') {
+      if (++depth > deepest_nesting)
+        throw ConfigError(
+            fmt::format("{}:{}: not valid TOML: brackets nested more than {} deep", file, line, deepest_nesting));
+    } else if ((c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+}
+
+/// toml11 draws its messages over several lines; one line says the same.
+std::string one_line(std::string_view drawn) {
+  auto const first_line = [](std::string_view text) { return text.substr(0, text.find('\n')); };
+  std::string_view what = first_line(drawn);
+  if (what.starts_with("[error] ")) what.remove_prefix(8);
+  if (what.starts_with("toml::"))
+    if (auto const colon = what.find(": "); colon != std::string_view::npos) what.remove_prefix(colon + 2);
+  std::string out(what);
+  while (!out.empty() && out.back() == '.') out.pop_back();
+  if (auto const mark = drawn.rfind("^--- "); mark != std::string_view::npos)
+    out += fmt::format(" ({})", first_line(drawn.substr(mark + 5)));
+  return out;
+}
+
+toml::value parse_toml(std::string const& text, std::string const& file) {
+  check_text(text, file);
+  std::istringstream in(text);
+  try {
+    return toml::parse(in, file);
+  } catch (toml::exception const& e) {
+    throw ConfigError(fmt::format("{}:{}: not valid TOML: {}", file, e.location().line(), one_line(e.what())));
+  } catch (std::exception const& e) {
+    throw ConfigError(fmt::format("{}: not valid TOML: {}", file, one_line(e.what())));
+  }
+}
+
+void read_mesh(TableReader& root, CaseFile& out) {
+  root.require("mesh", "[mesh] with input = \"mesh.cgns\"");
+  auto mesh = root.table("mesh");
+  if (!mesh) return;
+  auto const& directory = mesh->context().directory;
+  if (auto const input = mesh->string("input")) out.input = (directory / *input).lexically_normal();
+  mesh->require("input", "input = \"mesh.cgns\"");
+  if (auto const output = mesh->string("output")) out.output = (directory / *output).lexically_normal();
+  if (!out.output.empty() && out.output == out.input)
+    mesh->problem("output", "is the input; give another file name, the baseline is never overwritten");
+  out.axis = casefile::read_axis(*mesh, "axis");
+  if (out.axis) out.motion.axis = *out.axis;
+  if (auto const tolerance = mesh->number("matching_tolerance")) {
+    out.plan.topology.matching_tolerance = *tolerance;
+    if (*tolerance <= 0)
+      mesh->problem("matching_tolerance",
+                    fmt::format("must be a positive length, found {}; remove it for the default", *tolerance));
+  }
+  out.plan.topology.open_faces = mesh->string("open_faces").value_or("");
+  mesh->finish();
+}
+
+void read_motion(TableReader& root, CaseFile& out) {
+  if (auto const word = root.choice("default", {"type", "error"})) out.motion.strict = *word == 1;
+  if (auto conformity = root.table("conformity")) {
+    if (auto const tolerance = conformity->number("tolerance")) {
+      out.motion.conformity_tolerance = *tolerance;
+      if (*tolerance < 0 || *tolerance >= 1)
+        conformity->problem("tolerance",
+                            fmt::format("must be a share of the mesh size between 0 and 1, found {}", *tolerance));
+    }
+    conformity->finish();
+  }
+  casefile::RuleContext shared{out.axis, {}};
+  casefile::read_constants(root, "constants", shared.constants);
+  for (auto& table : root.tables("motion")) casefile::read_motion_rule(table, shared, out);
+  if (!root.has("motion"))
+    root.context().problems.add(root.context().file +
+                                ": no [[motion]] rule; add at least one, for example [[motion]] with "
+                                "patches = [\"blade\"] and rule = \"rigid\"");
+}
+
+BoundaryLayer read_boundary_layer(TableReader& table) {
+  BoundaryLayer layer;
+  layer.walls = table.strings("walls").value_or(std::vector<std::string>{});
+  if (auto const* extent = table.find("extent")) {
+    if (extent->is_string()) {
+      table.choice("extent", {"block"});
+    } else if (auto inner = table.table("extent")) {
+      auto const layers = inner->integer("layers");
+      auto const thickness = inner->number("thickness");
+      if (layers && *layers < 1) inner->problem("layers", fmt::format("must be at least 1, found {}", *layers));
+      if (thickness && *thickness <= 0)
+        inner->problem("thickness", fmt::format("must be a positive length, found {}", *thickness));
+      if (inner->has("layers") == inner->has("thickness"))
+        table.problem("extent", "needs exactly one of { layers = 30 } and { thickness = 2e-3 }");
+      inner->finish();
+      layer.extent = layers ? BoundaryLayer::Extent::layers : BoundaryLayer::Extent::thickness;
+      layer.layers = layers.value_or(0);
+      layer.thickness = thickness.value_or(0);
+    }
+  }
+  if (auto const mode = table.choice("mode", {"translate", "rotate", "blend"})) {
+    layer.mode = BoundaryLayer::Mode(*mode);
+    if (*mode != 0) table.problem("mode", "only \"translate\" is available yet");
+  }
+  table.finish();
+  return layer;
+}
+
+std::vector<PriorityRule> read_priority(TableReader& volume) {
+  std::vector<std::string> const kinds{"wall",     "periodic",   "inflow",     "outflow", "symmetry",
+                                       "farfield", "degenerate", "connection", "other"};
+  std::vector<PriorityRule> priority;
+  for (auto& table : volume.tables("priority")) {
+    PriorityRule rule;
+    table.require("rule", "rule = \"boundary\", \"quality\" or \"aspect-ratio\"");
+    auto const kind = table.choice("rule", {"boundary", "quality", "aspect-ratio"});
+    if (kind) rule.kind = PriorityRule::Kind(*kind);
+    if (kind && *kind == 0) {
+      if (auto const order = table.strings("order")) {
+        rule.order = *order;
+        for (std::size_t i = 0; i < order->size(); ++i) {
+          std::string const& word = (*order)[i];
+          if (std::find(kinds.begin(), kinds.end(), word) == kinds.end())
+            table.problem("order", fmt::format("\"{}\" is no kind of boundary{}", word, suggestion(word, kinds)));
+          if (std::find(order->begin(), order->begin() + std::ptrdiff_t(i), word) != order->begin() + std::ptrdiff_t(i))
+            table.problem("order", fmt::format("names \"{}\" twice", word));
+        }
+      }
+    } else {
+      rule.order.clear();
+    }
+    if (kind) table.finish();
+    priority.push_back(std::move(rule));
+  }
+  return priority;
+}
+
+void read_plan(TableReader& root, CaseFile& out) {
+  for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
+  auto volume = root.table("volume");
+  if (!volume) return;
+  if (auto const law = volume->choice("law", {"linear", "c1", "c2"})) out.plan.volume.law = Law(*law);
+  if (auto priority = read_priority(*volume); !priority.empty()) out.plan.volume.priority = std::move(priority);
+  volume->finish();
+}
+
+void read_results(TableReader& root, CaseFile& out) {
+  if (auto guard = root.table("guard")) {
+    if (auto const d = guard->number("min_determinant")) {
+      out.guard.min_determinant = *d;
+      if (*d < -1 || *d >= 1)
+        guard->problem("min_determinant",
+                       fmt::format("is the smallest 3x3x3 determinant that passes, -1 <= value < 1, found {}", *d));
+    }
+    out.guard.write_inverted = guard->boolean("write_inverted").value_or(false);
+    guard->finish();
+  }
+  if (auto output = root.table("output")) {
+    out.output_options.displacement = output->boolean("displacement").value_or(false);
+    out.output_options.quality = output->boolean("quality").value_or(false);
+    if (auto const report = output->string("report"))
+      out.output_options.report = (output->context().directory / *report).lexically_normal();
+    output->finish();
+  }
+}
+
+}  // namespace
+
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path) {
+  Context context{path.string(), path.parent_path(), {}};
+  toml::value const document = parse_toml(text, context.file);
+  CaseFile out;
+  out.source = path;
+  TableReader root(context, document, "");
+  read_mesh(root, out);
+  read_motion(root, out);
+  read_plan(root, out);
+  read_results(root, out);
+  root.finish();
+  context.problems.throw_if_any<ConfigError>();
+  return out;
+}
+
+CaseFile read_case_file(std::filesystem::path const& path) { return parse_case_file(read_text(path), path); }
+
+}  // namespace gridmorph

@@ -1,0 +1,56 @@
+// A case file (TOML): what to morph, how the boundary moves, and what to write. Plain structs with their defaults.
+//
+// The keys are described in docs/case_file.md.
+#pragma once
+
+#include <gridmorph/casefile/point_field.hpp>
+#include <gridmorph/motion/motion.hpp>
+#include <gridmorph/plan/options.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+/// [guard]: when the result counts as good.
+struct GuardOptions {
+  double min_determinant = 0.05;  ///< smallest 3x3x3 determinant that passes, -1 <= value < 1; dimensionless
+  bool write_inverted = false;    ///< write a mesh with inverted cells all the same
+};
+
+/// [output]: what comes with the coordinates.
+struct OutputOptions {
+  bool displacement = false;                    ///< displacement at the nodes, as a solution of the output mesh
+  bool quality = false;                         ///< quality measures in the cells, as a solution of the output mesh
+  std::optional<std::filesystem::path> report;  ///< JSON report
+};
+
+/// One `field` rule, so that reports can say how far its nodes were from the points.
+struct FieldUse {
+  std::string where;  ///< "case.toml:14"
+  std::shared_ptr<PointField const> field;
+};
+
+struct CaseFile {
+  std::filesystem::path source;  ///< the case file itself, as given
+  std::filesystem::path input;   ///< relative paths are already joined with the directory of the case file
+  std::filesystem::path output;  ///< empty when the case file names none
+  std::optional<Axis> axis;      ///< [mesh] axis as given; Motion::axis holds it too
+  Motion motion;
+  PlanOptions plan;
+  GuardOptions guard;
+  OutputOptions output_options;
+  std::vector<FieldUse> fields;
+};
+
+/// Reads a case file and the displacement files that it names. Throws one ConfigError that lists every problem, each as
+/// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
+CaseFile read_case_file(std::filesystem::path const& path);
+
+/// The same from text; `path` names it in messages and anchors relative paths.
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path);
+
+}  // namespace gridmorph

@@ -1,0 +1,27 @@
+// Reads the [[motion]] tables of a case file. Internal to casefile.
+#pragma once
+
+#include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/casefile/detail/table_reader.hpp>
+
+#include <map>
+#include <string>
+
+namespace gridmorph::casefile {
+
+/// What rules share: the machine axis and the constants of formulas.
+struct RuleContext {
+  std::optional<Axis> axis;
+  std::map<std::string, double> constants;
+};
+
+/// { origin = [x, y, z], direction = [x, y, z] } or "x", "y", "z". Nothing when absent or unusable (problem noted).
+std::optional<Axis> read_axis(TableReader& table, std::string const& key);
+
+/// Constants of formulas: a table of names and numbers.
+void read_constants(TableReader& table, std::string const& key, std::map<std::string, double>& constants);
+
+/// Reads one [[motion]] table and appends its rule (and its point field, if any) to the case file.
+void read_motion_rule(TableReader& table, RuleContext const& shared, CaseFile& out);
+
+}  // namespace gridmorph::casefile

@@ -1,0 +1,113 @@
+#include <gridmorph/cli/inspect_text.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+
+namespace gridmorph::cli {
+
+namespace {
+
+/// A TOML basic string.
+std::string toml_string(std::string_view text) {
+  std::string out = "\"";
+  for (char const c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04X}", int(static_cast<unsigned char>(c)));
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+std::string toml_list(std::vector<std::string> const& names) {
+  std::string out = "[";
+  for (auto const& name : names) out += (out.size() > 1 ? ", " : "") + toml_string(name);
+  return out + "]";
+}
+
+/// Round-off of single-precision angles would make an odd axis: one component of 1 when it is nearly that.
+double tidy(double component) {
+  if (std::fabs(component) < 1e-6) return 0;
+  if (std::fabs(std::fabs(component) - 1) < 1e-9) return component > 0 ? 1 : -1;
+  return component;
+}
+
+std::string vector_text(Vec3 const& v) { return fmt::format("[{}, {}, {}]", tidy(v.x), tidy(v.y), tidy(v.z)); }
+
+bool looks_like(BoundarySummary const& b, std::string_view word) { return b.guess.find(word) != std::string::npos; }
+
+/// What a boundary needs in a first case file.
+enum class Role { moving, end_wall, through_flow, symmetry, still };
+
+Role role_of(BoundarySummary const& b, MeshSummary const& s) {
+  auto const is = [&](PatchKind kind) { return std::find(b.kinds.begin(), b.kinds.end(), kind) != b.kinds.end(); };
+  if (is(PatchKind::wall)) return s.axis && looks_like(b, "surface of revolution") ? Role::end_wall : Role::moving;
+  if (is(PatchKind::inflow) || is(PatchKind::outflow)) return Role::through_flow;
+  if (is(PatchKind::symmetry) && looks_like(b, "plane")) return Role::symmetry;
+  return Role::still;
+}
+
+}  // namespace
+
+std::string case_snippet(MeshSummary const& s) {
+  std::vector<std::string> groups[5];
+  for (auto const& b : s.boundaries) {
+    if (std::find(b.kinds.begin(), b.kinds.end(), PatchKind::degenerate) != b.kinds.end()) continue;
+    auto& group = groups[int(role_of(b, s))];
+    // A name that is a family and a BC means the family.
+    if (std::find(group.begin(), group.end(), b.selector) == group.end()) group.push_back(b.selector);
+  }
+  auto const& moving = groups[int(Role::moving)];
+  std::filesystem::path const input(s.source);
+  std::string text = "[mesh]\n";
+  text += "input  = " + toml_string(input.filename().string()) + "\n";
+  text += "output = " + toml_string(input.stem().string() + "_morphed.cgns") + "\n";
+  if (s.axis)
+    text += fmt::format("axis   = {{ origin = {}, direction = {} }}\n", vector_text(s.axis->origin),
+                        vector_text(s.axis->direction));
+
+  if (!s.problems.empty())
+    text +=
+        "# What stops a morph may be all there is to the mesh; if so, say it:\n"
+        "# matching_tolerance = 1e-4  # largest distance of nodes that count as coincident\n"
+        "# open_faces = \"open\"       # faces that nothing claims become a patch of this name\n";
+
+  auto const add = [&](std::vector<std::string> const& names, std::string_view comment, std::string_view rule) {
+    if (names.empty()) return;
+    text += fmt::format("\n[[motion]]{}{}\npatches = {}\n{}\n", comment.empty() ? "" : "  # ", comment,
+                        toml_list(names), rule);
+  };
+  for (auto const& wall : moving)
+    add({wall}, "put the motion here; also \"formula\", \"field\", or \"fixed\"",
+        "rule = \"rigid\"\ntranslation = [0, 0, 0]");
+  add(groups[int(Role::end_wall)], "nodes slide on the wall", "rule = \"slip\"\nsurface = \"revolution\"");
+  bool const turns = s.axis && !moving.empty();
+  add(groups[int(Role::through_flow)], "",
+      turns && moving.size() == 1 ? "rule = \"circumferential-slide\"\nof = " + toml_string(moving.front())
+                                  : std::string("rule = \"fixed\""));
+  if (!s.periodics.empty() && turns && moving.size() == 1)
+    add({"type:periodic"}, "", "rule = \"follow\"\nof = " + toml_string(moving.front()));
+  add(groups[int(Role::symmetry)], "", "rule = \"slip\"\nsurface = \"plane\"");
+  add(groups[int(Role::still)], "", "rule = \"fixed\"");
+  // A third of the way across leaves room for the volume stages whatever lies on the other side.
+  int across = 0;
+  for (auto const& b : s.boundaries)
+    if (role_of(b, s) == Role::moving && b.cells_across > 0)
+      across = across == 0 ? b.cells_across : std::min(across, b.cells_across);
+  if (across >= 3)
+    text += fmt::format(
+        "\n[boundary_layer]  # extent = \"block\" where blocks of their own surround the walls\nwalls  = {}\n"
+        "extent = {{ layers = {} }}\n",
+        toml_list(moving), across / 3);
+  return text;
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,94 @@
+#include <gridmorph/casefile/suggest.hpp>
+#include <gridmorph/cli/command_line.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::cli {
+
+namespace {
+
+std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "demo"};
+
+constexpr char const* footer =
+    "Exit status: 0 done; 1 the mesh falls short of the thresholds; 2 bad input; 3 failure of the machine.";
+
+CLI::App* add_morph(CLI::App& app, CommandLine& out) {
+  auto* morph = app.add_subcommand("morph", "Morph a mesh as a case file says");
+  morph->add_option("case", out.input, "Case file (TOML)")->required();
+  morph->add_option("-o,--output", out.output, "Morphed mesh, instead of the case file's output");
+  morph->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
+  morph->add_flag("--dry-run", out.dry_run, "Check everything and print the plan; write nothing");
+  return morph;
+}
+
+CLI::App* add_demo(CLI::App& app, CommandLine& out) {
+  auto* demo = app.add_subcommand("demo", "Write a built-in mesh and its case files, and morph it");
+  demo->add_option("name", out.demo_name, "passage: one airfoil passage of a turbomachine (O4H)")->required();
+  demo->add_option("-n,--nodes", out.demo_nodes, "Nodes of the mesh")
+      ->check(CLI::Range(Index(10'000), Index(400'000'000)));
+  demo->add_option("-m,--motion", out.demo_motion, "rotation, chord, or all");
+  demo->add_option("-d,--directory", out.demo_folder, "Folder for the files (default demo_<name>)");
+  return demo;
+}
+
+}  // namespace
+
+std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* argv) {
+  using Command = CommandLine::Command;
+  CommandLine out;
+  CLI::App app("gridmorph moves an existing CFD mesh to a new boundary shape and keeps its connectivity and quality.",
+               "gridmorph");
+  app.footer(footer);
+  app.set_version_flag("--version", "gridmorph " GRIDMORPH_VERSION);
+  app.add_flag("-q,--quiet", out.quiet, "Print errors and warnings only");
+  app.add_option("-t,--threads", out.threads, "Threads to compute with")->check(CLI::Range(1, 4096));
+  app.require_subcommand(1);
+  app.fallthrough();
+
+  std::vector<std::pair<CLI::App*, Command>> commands;
+  commands.emplace_back(add_morph(app, out), Command::morph);
+  auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
+  inspect->add_option("mesh", out.input, "Mesh (CGNS)")->required();
+  inspect->add_flag("--json", out.json, "Print JSON");
+  commands.emplace_back(inspect, Command::inspect);
+  auto* plan = app.add_subcommand("plan", "Print stages and chains in order, with the reason for each rank");
+  plan->add_option("case", out.input, "Case file (TOML)")->required();
+  commands.emplace_back(plan, Command::plan);
+  auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
+  quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS)")->required();
+  quality->add_option("morphed", out.second, "Morphed mesh (CGNS)");
+  quality->add_flag("--json", out.json, "Print JSON");
+  commands.emplace_back(quality, Command::quality);
+  commands.emplace_back(add_demo(app, out), Command::demo);
+
+  // CLI11 takes a misspelt command for a stray argument; say what it is.
+  for (int a = 1; a < argc; ++a) {
+    std::string const word = argv[a];
+    if (word.empty() || word.front() == '-') continue;
+    if (a > 1 && (std::string(argv[a - 1]) == "-t" || std::string(argv[a - 1]) == "--threads")) continue;
+    if (std::find(command_names.begin(), command_names.end(), word) == command_names.end())
+      return Stop{2, "unknown command '" + word + "'" + suggestion(word, command_names)};
+    break;
+  }
+
+  try {
+    app.parse(argc, argv);
+  } catch (CLI::ParseError const& e) {
+    if (e.get_exit_code() == 0) {
+      std::ostringstream text, errors;
+      app.exit(e, text, errors);
+      return Stop{0, text.str()};
+    }
+    return Stop{2, std::string(e.what()) + "; see gridmorph --help"};
+  }
+  for (auto const& [subcommand, command] : commands)
+    if (subcommand->parsed()) out.command = command;
+  return out;
+}
+
+}  // namespace gridmorph::cli

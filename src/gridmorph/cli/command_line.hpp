@@ -1,0 +1,41 @@
+// The command line as a value.
+#pragma once
+
+#include <gridmorph/core/index.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace gridmorph::cli {
+
+struct CommandLine {
+  enum class Command { morph, inspect, plan, quality, demo };
+  Command command = Command::morph;
+  bool quiet = false;
+  int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
+
+  std::filesystem::path input;                  ///< case file or mesh
+  std::optional<std::filesystem::path> second;  ///< quality: morphed mesh
+  std::optional<std::filesystem::path> output;  ///< morph: instead of the case file's
+  std::optional<std::filesystem::path> report;  ///< morph: instead of the case file's
+  bool dry_run = false;
+  bool json = false;
+
+  std::string demo_name;
+  std::string demo_motion = "all";
+  Index demo_nodes = 200'000;
+  std::filesystem::path demo_folder;  ///< empty: "demo_<name>"
+};
+
+/// The program should stop here: help and version texts (status 0, standard output) or a wrong command line (status 2,
+/// standard error).
+struct Stop {
+  int status = 0;
+  std::string text;
+};
+
+std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* argv);
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,22 @@
+// The five commands. Each returns the exit status 0 or 1 and throws for the others (main maps errors to 2 and 3).
+#pragma once
+
+#include <gridmorph/cli/command_line.hpp>
+#include <gridmorph/cli/terminal.hpp>
+
+namespace gridmorph::cli {
+
+enum ExitStatus : int {
+  done = 0,
+  falls_short = 1,  ///< the mesh was morphed but misses the thresholds
+  bad_input = 2,
+  machine_failure = 3
+};
+
+int run_morph_command(CommandLine const& options, Terminal& terminal);
+int run_inspect_command(CommandLine const& options, Terminal& terminal);
+int run_plan_command(CommandLine const& options, Terminal& terminal);
+int run_quality_command(CommandLine const& options, Terminal& terminal);
+int run_demo_command(CommandLine const& options, Terminal& terminal);
+
+}  // namespace gridmorph::cli

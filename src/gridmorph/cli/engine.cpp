@@ -1,0 +1,92 @@
+#include <gridmorph/cli/engine.hpp>
+#include <gridmorph/kernels/field.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/quality/quality.hpp>
+#include <gridmorph/volume/morpher.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T> const& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+struct Engine::Impl {
+  Mesh& mesh;
+  PreparedMorph prepared;
+
+  Impl(Mesh& m, CaseFile const& c) : mesh(m), prepared(prepare(m, c.motion, c.plan)) {}
+  [[nodiscard]] Plan const& plan() const { return prepared.plan(); }
+};
+
+Engine::Engine(Mesh& mesh, CaseFile const& case_file, Terminal& terminal) {
+  terminal.progress("connecting zones, applying rules, planning");
+  impl_ = std::make_unique<Impl>(mesh, case_file);
+}
+Engine::~Engine() = default;
+Engine::Engine(Engine&&) noexcept = default;
+
+std::string Engine::plan_text() const { return describe(impl_->plan()); }
+
+std::vector<std::string> Engine::notes() const {
+  std::vector<std::string> out = impl_->mesh.notes;
+  append(out, impl_->prepared.motion.notes);
+  append(out, impl_->prepared.surface.notes());
+  append(out, impl_->plan().notes);
+  return out;
+}
+
+std::vector<unsigned char> Engine::near_field() const {
+  Mesh const& mesh = impl_->mesh;
+  std::vector<unsigned char> mask(std::size_t(mesh.n_cells()), 0);
+  std::vector<Index> first{0};
+  for (auto const& z : mesh.zones)
+    first.push_back(first.back() + Index(z.extent[0] - 1) * (z.extent[1] - 1) * (z.extent[2] - 1));
+  for (auto const& box : impl_->plan().near_field) {
+    Index const ni = mesh.zones[box.zone].extent[0] - 1, nj = mesh.zones[box.zone].extent[1] - 1;
+    for (int k = box.cells.begin[2]; k < box.cells.end[2]; ++k)
+      for (int j = box.cells.begin[1]; j < box.cells.end[1]; ++j)
+        for (int i = box.cells.begin[0]; i < box.cells.end[0]; ++i)
+          mask[std::size_t(first[box.zone] + i + ni * (j + nj * k))] = 1;
+  }
+  return mask;
+}
+
+std::vector<StageResult> Engine::stage_results(Coordinates const& morphed) const {
+  Exec const exec;
+  auto const handedness = zone_handedness(exec, impl_->mesh, views(impl_->mesh.coordinates));
+  std::vector<StageResult> out;
+  for (auto const& stage : impl_->plan().stages)
+    out.push_back({stage.name, min_determinant(exec, impl_->mesh, views(morphed), handedness, stage.cells)});
+  return out;
+}
+
+Coordinates Engine::morph(Terminal& terminal) const {
+  terminal.progress("moving the boundary");
+  auto const boundary = impl_->prepared.boundary_displacement(impl_->mesh);
+  terminal.progress("morphing the volume");
+  Exec const exec;
+  Coordinates const& x = impl_->mesh.coordinates;
+  Coordinates morphed(x.size());
+  kernels::Field<double const> const from{x.x.data(), x.y.data(), x.z.data()};
+  kernels::Field<double> const to{morphed.x.data(), morphed.y.data(), morphed.z.data()};
+  Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
+                                                                                                     boundary.size());
+  Morpher<Exec> const morpher(exec, impl_->plan());
+  morpher.displace(exec, given, from, to);
+  morpher.move(exec, from, to);
+  exec.fence();
+  return morphed;
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,84 @@
+// gridmorph: morph, inspect, plan, quality, demo.
+//
+//   gridmorph inspect passage.cgns
+//   gridmorph plan case.toml
+//   gridmorph morph case.toml --report report.json
+//   gridmorph quality passage.cgns passage_morphed.cgns
+//   gridmorph demo passage --nodes 1000000
+//
+// Parses the command line, runs one command, and turns errors into messages and exit statuses.
+#include <gridmorph/cli/command_line.hpp>
+#include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/kokkos_session.hpp>
+#include <gridmorph/cli/terminal.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <csignal>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <string>
+#include <variant>
+
+namespace {
+
+using namespace gridmorph::cli;
+
+int run(CommandLine const& options, Terminal& terminal) {
+  using Command = CommandLine::Command;
+  switch (options.command) {
+    case Command::morph: return run_morph_command(options, terminal);
+    case Command::inspect: return run_inspect_command(options, terminal);
+    case Command::plan: return run_plan_command(options, terminal);
+    case Command::quality: return run_quality_command(options, terminal);
+    case Command::demo: return run_demo_command(options, terminal);
+  }
+  return bad_input;
+}
+
+int run_and_report(CommandLine const& options, Terminal& terminal) {
+  try {
+    KokkosSession const session(options.threads);
+    int const status = run(options, terminal);
+    terminal.finish();
+    return status;
+  } catch (gridmorph::MachineError const& e) {
+    terminal.error(e.what());
+    return machine_failure;
+  } catch (gridmorph::Error const& e) {
+    terminal.error(e.what());
+    return bad_input;
+  } catch (std::bad_alloc const&) {
+    terminal.error("out of memory; use a machine with more memory, or a smaller mesh");
+    return machine_failure;
+  } catch (std::filesystem::filesystem_error const& e) {
+    terminal.error(e.what());
+    return machine_failure;
+  } catch (std::exception const& e) {
+    std::string const what = e.what();
+    bool const memory =
+        what.find("allocat") != std::string::npos;  // Kokkos reports failed allocations as runtime errors
+    terminal.error((memory ? "out of memory: " : "internal failure: ") + what);
+    return machine_failure;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A reader that goes away, or a file that may not grow, is an error to report, not a reason to die.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  auto const parsed = parse_command_line(argc, argv);
+  if (auto const* stop = std::get_if<Stop>(&parsed)) {
+    Terminal terminal(false);
+    if (stop->status == 0)
+      terminal.result(stop->text);
+    else
+      terminal.error(stop->text);
+    return stop->status;
+  }
+  auto const& options = std::get<CommandLine>(parsed);
+  Terminal terminal(options.quiet);
+  return run_and_report(options, terminal);
+}

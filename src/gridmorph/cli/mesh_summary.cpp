@@ -1,0 +1,214 @@
+#include <gridmorph/cli/boundary_guess.hpp>
+#include <gridmorph/cli/mesh_summary.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/topology/coverage.hpp>
+#include <gridmorph/topology/links.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <sstream>
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+template <class T>
+void add_once(std::vector<T>& list, T const& value) {
+  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
+
+using Source = BoundarySummary::Source;
+
+BoundarySummary& entry(std::vector<BoundarySummary>& list, std::string const& selector, Source source) {
+  auto const found = std::find_if(
+      list.begin(), list.end(), [&](BoundarySummary const& b) { return b.selector == selector && b.source == source; });
+  if (found != list.end()) return *found;
+  list.push_back({});
+  list.back().selector = selector;
+  list.back().source = source;
+  return list.back();
+}
+
+std::vector<BoundarySummary> group_patches(Mesh const& mesh) {
+  std::vector<BoundarySummary> out;
+  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+    Patch const& patch = mesh.patches[p];
+    auto const add = [&](std::string const& selector, Source source) {
+      auto& b = entry(out, selector, source);
+      b.patches.push_back(p);
+      add_once(b.kinds, patch.kind);
+      add_once(b.names, patch.name);
+      if (!patch.bc_type.empty()) add_once(b.bc_types, patch.bc_type);
+      b.nodes += patch.range.size();
+    };
+    for (auto const& family : patch.families) add(family, Source::family);
+    if (patch.families.empty())
+      add(patch.name, patch.kind == PatchKind::connection ? Source::connection : Source::boundary_condition);
+  }
+  return out;
+}
+
+/// Extents and the distance to the next node off the face.
+void measure(Mesh const& mesh, BoundarySummary& b) {
+  double sum = 0, smallest = Box::inf;
+  Index count = 0;
+  for (int const p : b.patches) {
+    Patch const& patch = mesh.patches[p];
+    Zone const& zone = mesh.zones[patch.zone];
+    int axis = -1;
+    for (int a = 0; a < 3; ++a)
+      if (patch.range.extent(a) == 1) axis = a;
+    bool inside = true;  // what is not is among the problems
+    for (int a = 0; a < 3; ++a)
+      inside = inside && patch.range.begin[a] >= 0 && patch.range.begin[a] < patch.range.end[a] &&
+               patch.range.end[a] <= zone.extent[a];
+    if (!inside) continue;
+    Index step = 0;
+    if (axis >= 0) {
+      int const across = zone.extent[axis] - 1;
+      b.cells_across = b.cells_across == 0 ? across : std::min(b.cells_across, across);
+    }
+    if (axis >= 0 && zone.extent[axis] > 1) step = (patch.range.begin[axis] == 0 ? 1 : -1) * zone.strides()[axis];
+    for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
+      for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
+        for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
+          Index const node = zone.node({i, j, k});
+          Vec3 const x = mesh.coordinates[node];
+          b.box.add(x);
+          if (step == 0) continue;
+          double const height = distance(x, mesh.coordinates[node + step]);
+          sum += height;
+          smallest = std::min(smallest, height);
+          ++count;
+        }
+  }
+  if (count == 0) return;
+  b.first_height_min = smallest;
+  b.first_height_mean = sum / double(count);
+}
+
+PeriodicSummary describe_periodic(Interface1to1 const& interface) {
+  PeriodicSummary out;
+  Periodic const& periodic = *interface.periodic;
+  Vec3 const w = periodic.rotation_angle_rad;
+  double const angle = norm(w);
+  out.angle_deg = angle * 180 / std::numbers::pi;
+  if (angle > 0) {
+    // One axis for both directions of the pair: the dominant component counts positive.
+    double const parts[3] = {w.x, w.y, w.z};
+    double const dominant =
+        *std::max_element(parts, parts + 3, [](double a, double b) { return std::fabs(a) < std::fabs(b); });
+    Vec3 const d = ((dominant > 0 ? 1.0 : -1.0) / angle) * w;
+    out.axis = {periodic.rotation_center, {d.x + 0.0, d.y + 0.0, d.z + 0.0}};  // no negative zeros
+    double const sectors = 2 * std::numbers::pi / angle;
+    if (std::fabs(sectors - std::round(sectors)) < 1e-3 * sectors) out.sectors = int(std::lround(sectors));
+  } else {
+    Vec3 const t = periodic.translation;
+    out.translation = {t.x + 0.0, t.y + 0.0, t.z + 0.0};
+  }
+  return out;
+}
+
+bool same_transform(PeriodicSummary const& a, PeriodicSummary const& b, double size) {
+  // File angles are in single precision; the two directions of a translation are one and the same pair.
+  return std::fabs(a.angle_deg - b.angle_deg) < 1e-4 && distance(a.axis.direction, b.axis.direction) < 1e-5 &&
+         distance(a.axis.origin, b.axis.origin) < 1e-6 * size &&
+         std::min(distance(a.translation, b.translation), norm(a.translation + b.translation)) < 1e-6 * size;
+}
+
+void collect_interfaces(Mesh const& mesh, double size, MeshSummary& out) {
+  out.interfaces = int(mesh.interfaces.size());
+  for (auto const& interface : mesh.interfaces) {
+    if (!interface.periodic) {
+      if (interface.zone == interface.donor_zone) ++out.self_interfaces;
+      continue;
+    }
+    auto described = describe_periodic(interface);
+    auto found = std::find_if(out.periodics.begin(), out.periodics.end(),
+                              [&](PeriodicSummary const& p) { return same_transform(p, described, size); });
+    if (found == out.periodics.end()) found = out.periodics.insert(out.periodics.end(), std::move(described));
+    ++found->interfaces;
+    add_once(found->names, interface.families.empty() ? interface.name : interface.families.front());
+    std::string const a = mesh.zones[interface.zone].name, b = mesh.zones[interface.donor_zone].name;
+    add_once(found->zones, std::min(a, b) + " - " + std::max(a, b));
+  }
+  for (auto const& p : out.periodics) {
+    if (p.angle_deg == 0) continue;
+    if (!out.axis)
+      out.axis = p.axis;
+    else if (norm(cross(out.axis->direction, p.axis.direction)) > 1e-5 ||
+             norm(cross(p.axis.origin - out.axis->origin, p.axis.direction)) > 1e-6 * size) {
+      out.axis.reset();
+      return;
+    }
+  }
+}
+
+/// What the topology will say to this mesh, without doing more of it than checks.
+std::vector<std::string> find_problems(Mesh const& mesh) {
+  std::vector<std::string> out;
+  auto const add_lines = [&](std::string const& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+      if (!line.empty()) out.push_back(line);
+  };
+  Mesh completed = mesh;  // shares the coordinates
+  try {
+    Links const links = connect(completed, {});
+    complete_patches(completed, links, {});
+    check_coverage(completed, links);
+  } catch (MeshError const& e) {
+    add_lines(e.what());
+  }
+  return out;
+}
+
+}  // namespace
+
+void Box::add(Vec3 const& p) {
+  low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+  high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+}
+
+void Box::add(Box const& other) {
+  add(other.low);
+  add(other.high);
+}
+
+MeshSummary summarize(Mesh const& mesh) {
+  MeshSummary out;
+  out.source = mesh.source;
+  out.families = mesh.families;
+  out.nodes = mesh.n_nodes();
+  out.cells = mesh.n_cells();
+  out.two_dimensional = mesh.two_dimensional;
+  out.notes = mesh.notes;
+  for (auto const& zone : mesh.zones) {
+    ZoneSummary z{zone.name, zone.extent, zone.size(), {}};
+    for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) z.box.add(mesh.coordinates[n]);
+    out.box.add(z.box);
+    out.zones.push_back(std::move(z));
+  }
+  double const size = distance(out.box.low, out.box.high);
+  collect_interfaces(mesh, size, out);
+  out.boundaries = group_patches(mesh);
+  for (auto& b : out.boundaries) measure(mesh, b);
+  guess_roles(mesh, out);
+  for (auto const& family : mesh.families) {
+    bool const used = std::any_of(mesh.patches.begin(), mesh.patches.end(),
+                                  [&](Patch const& p) {
+                                    return std::find(p.families.begin(), p.families.end(), family) != p.families.end();
+                                  }) ||
+                      std::any_of(mesh.interfaces.begin(), mesh.interfaces.end(), [&](Interface1to1 const& i) {
+                        return std::find(i.families.begin(), i.families.end(), family) != i.families.end();
+                      });
+    if (!used) out.unused_families.push_back(family);
+  }
+  out.problems = find_problems(mesh);
+  return out;
+}
+
+}  // namespace gridmorph::cli

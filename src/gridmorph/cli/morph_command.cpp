@@ -1,0 +1,163 @@
+#include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/morph_command.hpp>
+#include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/report/quality_json.hpp>
+#include <gridmorph/report/quality_table.hpp>
+
+#include <fmt/format.h>
+#include <Kokkos_Core.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::cli {
+
+namespace {
+
+/// The cell fields of the output mesh.
+constexpr std::array field_measures{Measure::aspect_ratio,       Measure::determinant_2x2x2,
+                                    Measure::determinant_3x3x3,  Measure::minimum_angle_deg,
+                                    Measure::equiangle_skewness, Measure::relative_displacement};
+
+/// "determinant_2x2x2" -> "Determinant2x2x2", as solution fields of CGNS files are called.
+std::string field_name(Measure measure) {
+  std::string out;
+  bool upper = true;
+  for (char const c : to_string(measure)) {
+    if (c == '_') {
+      upper = true;
+      continue;
+    }
+    out += upper && c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
+    upper = false;
+  }
+  return out;
+}
+
+OutputFields output_fields(CaseFile const& case_file, MorphResult const& result) {
+  OutputFields fields;
+  fields.displacement = case_file.output_options.displacement;
+  if (!case_file.output_options.quality) return fields;
+  QualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(result.morphed);
+  input.baseline = views(result.mesh.coordinates);
+  auto const values = cell_fields(Kokkos::DefaultHostExecutionSpace(), result.mesh, input, field_measures);
+  for (std::size_t m = 0; m < field_measures.size(); ++m)
+    fields.cells.push_back(
+        {field_name(field_measures[m]), std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0))});
+  return fields;
+}
+
+nlohmann::json stages_json(MorphResult const& result) {
+  nlohmann::json stages = nlohmann::json::array();
+  for (auto const& stage : result.stages) {
+    nlohmann::json json{{"name", stage.name}, {"min_determinant", nullptr}};
+    auto const& worst = stage.min_determinant;
+    if (worst.zone >= 0)
+      json["min_determinant"] = {{"value", worst.value},
+                                 {"zone", result.mesh.zones[worst.zone].name},
+                                 {"cell", {worst.cell[0] + 1, worst.cell[1] + 1, worst.cell[2] + 1}}};
+    stages.push_back(std::move(json));
+  }
+  return stages;
+}
+
+std::string stages_text(MorphResult const& result) {
+  std::string text;
+  for (auto const& stage : result.stages) {
+    auto const& worst = stage.min_determinant;
+    if (worst.zone >= 0)
+      text += fmt::format("stage {}: smallest determinant {:.4g}, {}\n", stage.name, worst.value,
+                          describe_cell(result.mesh.zones[worst.zone].name, worst.cell));
+  }
+  return text;
+}
+
+std::string report_text(CaseFile const& case_file, MorphResult const& result, bool written) {
+  nlohmann::json json = quality_json(result.before, result.after, thresholds_of(case_file));
+  json["gridmorph"] = GRIDMORPH_VERSION;
+  json["case_file"] = case_file.source.string();
+  json["input"] = case_file.input.string();
+  json["output"] = written ? nlohmann::json(case_file.output.string()) : nlohmann::json(nullptr);
+  json["nodes"] = result.mesh.n_nodes();
+  json["notes"] = result.notes;
+  json["stages"] = stages_json(result);
+  json["fields"] = nlohmann::json::array();
+  for (auto const& use : case_file.fields) {
+    auto const m = use.field->mapping();
+    json["fields"].push_back({{"rule", use.where},
+                              {"file", use.field->source()},
+                              {"evaluated", m.evaluated},
+                              {"coincident", m.coincident},
+                              {"mapping_distance", {{"mean", m.mean}, {"max", m.max}}}});
+  }
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+/// The mesh that comes out has cells turned inside out that were sound in the baseline.
+bool newly_inverted(MorphResult const& result) {
+  return result.after.near_field.newly_inverted + result.after.far_field.newly_inverted > 0;
+}
+
+}  // namespace
+
+int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
+  check_output(case_file.output, "output", case_file.input);
+  auto const& report = case_file.output_options.report;
+  if (report) {
+    check_output(*report, "report", case_file.input);
+    if (*report == case_file.output)
+      throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
+  }
+
+  MorphResult const result = run_morph(case_file, terminal);
+  bool const written = !newly_inverted(result) || case_file.guard.write_inverted;
+  // The report waits beside its place until the mesh is there: both appear, or none.
+  std::optional<PendingFile> pending;
+  if (report) pending.emplace(*report, report_text(case_file, result, written));
+  if (written) {
+    terminal.progress("writing " + case_file.output.string());
+    write_morphed(case_file.input.string(), case_file.output.string(), result.mesh, result.morphed,
+                  output_fields(case_file, result));
+  }
+  if (pending) pending->commit();
+
+  std::string text;
+  for (auto const& note : result.notes) text += "note: " + note + "\n";
+  text += stages_text(result);
+  text += (text.empty() ? "" : "\n") + format_table(result.before, result.after, thresholds_of(case_file));
+  if (written) text += fmt::format("\nwrote {}\n", case_file.output.string());
+  if (report) text += fmt::format("wrote {}\n", report->string());
+  terminal.say(text);
+  if (terminal.quiet())  // otherwise the table has said it
+    for (auto const& s : result.shortfalls) terminal.warn(s.message);
+  if (!written)
+    terminal.error(
+        fmt::format("'{}' is not written, because cells are inverted that were not in the baseline; move the "
+                    "boundary less, change [volume] or [boundary_layer], or set write_inverted = true in [guard]",
+                    case_file.output.string()));
+  return any_failure(result.shortfalls) || !written ? falls_short : done;
+}
+
+int run_morph_command(CommandLine const& options, Terminal& terminal) {
+  CaseFile case_file = read_case_file(options.input);
+  if (options.output) case_file.output = *options.output;
+  if (options.report) case_file.output_options.report = *options.report;
+  if (options.dry_run) {
+    terminal.result(run_plan(case_file, terminal));
+    return done;
+  }
+  if (case_file.output.empty())
+    throw ConfigError(fmt::format("{}: no output; add output = \"morphed.cgns\" to [mesh] or give --output FILE",
+                                  options.input.string()));
+  return morph_and_write(case_file, terminal);
+}
+
+}  // namespace gridmorph::cli

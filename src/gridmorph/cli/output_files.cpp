@@ -1,0 +1,59 @@
+#include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+namespace gridmorph::cli {
+
+void check_output(std::filesystem::path const& path, std::string const& what, std::filesystem::path const& input) {
+  std::error_code error;
+  auto const folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(folder, error))
+    throw ConfigError(
+        fmt::format("{} '{}': the folder '{}' does not exist; make it first", what, path.string(), folder.string()));
+  if (std::filesystem::is_directory(path, error))
+    throw ConfigError(fmt::format("{} '{}' is a folder; give a file name", what, path.string()));
+  if (std::filesystem::exists(path, error) && std::filesystem::equivalent(path, input, error))
+    throw ConfigError(fmt::format("{} '{}' is the input '{}'; give another file name, inputs are never overwritten",
+                                  what, path.string(), input.string()));
+}
+
+PendingFile::PendingFile(std::filesystem::path path, std::string const& text)
+    : path_(std::move(path)), beside_(path_.string() + "." + std::to_string(getpid()) + ".part") {
+  errno = 0;
+  std::FILE* file = std::fopen(beside_.c_str(), "wb");
+  bool good =
+      file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  int reason = errno;
+  if (file != nullptr && std::fclose(file) != 0) {
+    if (good) reason = errno;
+    good = false;
+  }
+  if (!good) {
+    std::remove(beside_.c_str());
+    throw MachineError(fmt::format("'{}' cannot be written: {}", path_.string(), std::strerror(reason)));
+  }
+}
+
+PendingFile::PendingFile(PendingFile&& other) noexcept
+    : path_(std::move(other.path_)), beside_(std::exchange(other.beside_, {})) {}
+
+PendingFile::~PendingFile() {
+  if (!beside_.empty()) std::remove(beside_.c_str());
+}
+
+void PendingFile::commit() {
+  if (std::rename(beside_.c_str(), path_.c_str()) != 0)
+    throw MachineError(fmt::format("'{}' cannot be written: {}", path_.string(), std::strerror(errno)));
+  beside_.clear();
+}
+
+}  // namespace gridmorph::cli

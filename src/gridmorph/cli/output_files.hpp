@@ -1,0 +1,28 @@
+// Output files of the command line: checked before work begins, whole or not there at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace gridmorph::cli {
+
+/// Throws ConfigError when `path` cannot be an output: its folder does not exist, it is a folder itself, or it is one of
+/// the inputs. `what` names it in messages ("output", "report").
+void check_output(std::filesystem::path const& path, std::string const& what, std::filesystem::path const& input);
+
+/// A text file written beside its place; it appears there on commit() and leaves nothing behind without it.
+class PendingFile {
+ public:
+  /// Writes the text. Throws MachineError when that fails (disk full, no permission).
+  PendingFile(std::filesystem::path path, std::string const& text);
+  ~PendingFile();
+  PendingFile(PendingFile&&) noexcept;
+  PendingFile& operator=(PendingFile&&) = delete;
+
+  void commit();
+
+ private:
+  std::filesystem::path path_, beside_;
+};
+
+}  // namespace gridmorph::cli

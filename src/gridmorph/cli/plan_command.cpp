@@ -1,0 +1,11 @@
+#include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/workflow.hpp>
+
+namespace gridmorph::cli {
+
+int run_plan_command(CommandLine const& options, Terminal& terminal) {
+  terminal.result(run_plan(read_case_file(options.input), terminal));
+  return done;
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,75 @@
+#include <gridmorph/cli/commands.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/quality/quality.hpp>
+#include <gridmorph/report/quality_json.hpp>
+#include <gridmorph/report/quality_table.hpp>
+
+#include <fmt/format.h>
+#include <Kokkos_Core.hpp>
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+namespace {
+
+std::string extent_text(Index3 const& e) { return fmt::format("{} x {} x {}", e[0], e[1], e[2]); }
+
+void check_same_zones(Mesh const& a, Mesh const& b) {
+  Problems problems;
+  if (a.zones.size() != b.zones.size())
+    problems.add(fmt::format("'{}' has {} zones and '{}' has {}; compare a mesh with its own baseline", a.source,
+                             a.zones.size(), b.source, b.zones.size()));
+  else
+    for (std::size_t z = 0; z < a.zones.size(); ++z)
+      if (a.zones[z].extent != b.zones[z].extent)
+        problems.add(
+            fmt::format("zone '{}' of '{}' has {} nodes, zone '{}' of '{}' has {}; compare a mesh with its own "
+                        "baseline",
+                        a.zones[z].name, a.source, extent_text(a.zones[z].extent), b.zones[z].name, b.source,
+                        extent_text(b.zones[z].extent)));
+  problems.throw_if_any<MeshError>();
+}
+
+}  // namespace
+
+int run_quality_command(CommandLine const& options, Terminal& terminal) {
+  terminal.progress("reading " + options.input.string());
+  Mesh const mesh = read_mesh(options.input.string());
+  std::optional<Mesh> morphed;
+  if (options.second) {
+    terminal.progress("reading " + options.second->string());
+    morphed = read_mesh(options.second->string());
+    check_same_zones(mesh, *morphed);
+  }
+
+  terminal.progress("measuring quality");
+  std::vector<int> walls;
+  for (int p = 0; p < int(mesh.patches.size()); ++p)
+    if (mesh.patches[p].kind == PatchKind::wall) walls.push_back(p);
+  Kokkos::DefaultHostExecutionSpace const exec;
+  QualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(mesh.coordinates);
+  input.walls = wall_faces(mesh, walls);
+  QualityReport const before = measure_quality(exec, mesh, input);
+  std::optional<QualityReport> after;
+  if (morphed) {
+    input.baseline = input.coordinates;
+    input.coordinates = views(morphed->coordinates);
+    after = measure_quality(exec, mesh, input);
+  }
+
+  QualityThresholds const thresholds;
+  terminal.result(
+      options.json
+          ? quality_json(before, after, thresholds).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+          : format_table(before, after, thresholds));
+  // A single mesh cannot have been morphed badly; a morphed one can.
+  return after && any_failure(shortfalls(before, after, thresholds)) ? falls_short : done;
+}
+
+}  // namespace gridmorph::cli

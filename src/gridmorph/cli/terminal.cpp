@@ -1,0 +1,79 @@
+#include <gridmorph/cli/terminal.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace gridmorph::cli {
+
+namespace {
+
+void prefixed(std::string_view kind, std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    std::size_t const end = text.find('\n');
+    std::string_view const line = text.substr(0, end);
+    if (!line.empty() && line.front() != ' ') out.append("gridmorph: ").append(kind).append(": ");
+    out.append(line).push_back('\n');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  std::fwrite(out.data(), 1, out.size(), stderr);
+}
+
+}  // namespace
+
+Terminal::Terminal(bool quiet) : quiet_(quiet), interactive_(!quiet && isatty(STDERR_FILENO) != 0) {}
+Terminal::~Terminal() { clear_progress(); }
+
+void Terminal::to_standard_output(std::string_view text) {
+  clear_progress();
+  if (error_ != 0 || text.empty()) return;
+  errno = 0;
+  bool const ended = text.back() == '\n';
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || (!ended && std::fputc('\n', stdout) == EOF) ||
+      std::fflush(stdout) != 0)
+    error_ = errno != 0 ? errno : EIO;
+}
+
+void Terminal::result(std::string_view text) { to_standard_output(text); }
+
+void Terminal::say(std::string_view text) {
+  if (!quiet_) to_standard_output(text);
+}
+
+void Terminal::warn(std::string_view text) {
+  clear_progress();
+  prefixed("warning", text);
+}
+
+void Terminal::error(std::string_view text) {
+  clear_progress();
+  prefixed("error", text);
+}
+
+void Terminal::progress(std::string_view text) {
+  if (!interactive_) return;
+  clear_progress();
+  std::fprintf(stderr, "%.*s ...", int(text.size()), text.data());
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void Terminal::clear_progress() {
+  if (!shown_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+  shown_ = false;
+}
+
+void Terminal::finish() {
+  clear_progress();
+  if (error_ == 0 && std::fflush(stdout) != 0) error_ = errno;
+  if (error_ != 0 && error_ != EPIPE)
+    throw MachineError(std::string("standard output cannot be written: ") + std::strerror(error_));
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,77 @@
+#include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/motion/motion.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+/// The walls whose cells the near field protects: those the case file names, or else all walls.
+std::vector<int> wall_patches(Mesh const& mesh, CaseFile const& case_file) {
+  std::vector<std::string> selectors;
+  for (auto const& layer : case_file.plan.boundary_layers)
+    selectors.insert(selectors.end(), layer.walls.begin(), layer.walls.end());
+  if (!selectors.empty()) return select_patches(mesh, selectors);
+  std::vector<int> out;
+  for (int p = 0; p < int(mesh.patches.size()); ++p)
+    if (mesh.patches[p].kind == PatchKind::wall) out.push_back(p);
+  return out;
+}
+
+Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> mask_view(std::vector<unsigned char> const& mask) {
+  Kokkos::View<std::uint8_t*, Kokkos::HostSpace> view("gridmorph::cli::near_field", mask.size());
+  std::copy(mask.begin(), mask.end(), view.data());
+  return view;
+}
+
+}  // namespace
+
+QualityThresholds thresholds_of(CaseFile const& case_file) {
+  QualityThresholds out;
+  out.min_determinant = case_file.guard.min_determinant;
+  return out;
+}
+
+MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
+  MorphResult out;
+  terminal.progress("reading " + case_file.input.string());
+  out.mesh = read_mesh(case_file.input.string());
+  Engine const engine(out.mesh, case_file, terminal);
+  out.morphed = engine.morph(terminal);
+  out.notes = engine.notes();
+  for (auto const& use : case_file.fields) out.notes.push_back(use.where + ": " + describe_mapping(*use.field));
+
+  terminal.progress("measuring quality");
+  out.stages = engine.stage_results(out.morphed);
+  Exec const exec;
+  QualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(out.mesh.coordinates);
+  input.near_field = mask_view(engine.near_field());
+  input.walls = wall_faces(out.mesh, wall_patches(out.mesh, case_file));
+  out.before = measure_quality(exec, out.mesh, input);
+  input.baseline = input.coordinates;
+  input.coordinates = views(out.morphed);
+  out.after = measure_quality(exec, out.mesh, input);
+  out.shortfalls = shortfalls(out.before, out.after, thresholds_of(case_file));
+  return out;
+}
+
+std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
+  terminal.progress("reading " + case_file.input.string());
+  Mesh mesh = read_mesh(case_file.input.string());
+  Engine const engine(mesh, case_file, terminal);
+  std::string text;
+  for (auto const& note : engine.notes()) text += "note: " + note + "\n";
+  if (!text.empty()) text += "\n";
+  return text + engine.plan_text();
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,34 @@
+// One case file from mesh file to morphed mesh and quality.
+#pragma once
+
+#include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/cli/engine.hpp>
+#include <gridmorph/cli/terminal.hpp>
+#include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/quality/quality.hpp>
+#include <gridmorph/report/shortfalls.hpp>
+
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+struct MorphResult {
+  Mesh mesh;  ///< baseline
+  Coordinates morphed;
+  QualityReport before, after;
+  std::vector<Shortfall> shortfalls;  ///< against [guard]
+  std::vector<StageResult> stages;    ///< smallest determinant of each
+  std::vector<std::string> notes;     ///< defaults taken, mapping distances, facts found on the way
+};
+
+/// Reads the mesh, plans, morphs and measures. Throws the errors of all of these; writes nothing.
+MorphResult run_morph(CaseFile const& case_file, Terminal& terminal);
+
+/// The plan of a case file as text, notes first.
+std::string run_plan(CaseFile const& case_file, Terminal& terminal);
+
+/// [guard] as thresholds of the quality report.
+QualityThresholds thresholds_of(CaseFile const& case_file);
+
+}  // namespace gridmorph::cli

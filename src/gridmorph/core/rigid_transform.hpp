@@ -1,0 +1,30 @@
+// Rotations and translations: periodic copies and rigid motions.
+#pragma once
+
+#include <gridmorph/kernels/vec3.hpp>
+
+namespace gridmorph {
+
+/// x' = rotation * x + translation.
+struct RigidTransform {
+  Mat3 rotation;
+  Vec3 translation;
+
+  [[nodiscard]] Vec3 operator()(Vec3 const& x) const { return rotation * x + translation; }
+  [[nodiscard]] RigidTransform inverse() const {
+    Mat3 const rt = transpose(rotation);
+    return {rt, -(rt * translation)};
+  }
+  /// First this, then next.
+  [[nodiscard]] RigidTransform then(RigidTransform const& next) const {
+    return {next.rotation * rotation, next.rotation * translation + next.translation};
+  }
+};
+
+/// Rotation by angle_rad about the unit vector direction (Rodrigues), right-handed.
+Mat3 rotation_matrix(Vec3 const& direction, double angle_rad);
+
+/// Rotation about the line through origin along direction (need not be normalised).
+RigidTransform rotation_about(Vec3 const& origin, Vec3 const& direction, double angle_rad);
+
+}  // namespace gridmorph

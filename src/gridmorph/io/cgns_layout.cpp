@@ -1,0 +1,225 @@
+#include <gridmorph/io/cgns_layout.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace gridmorph::cgns {
+
+namespace {
+
+constexpr std::array<char const*, 3> coordinate_names{"CoordinateX", "CoordinateY", "CoordinateZ"};
+
+std::string list_names(std::vector<Node> const& nodes, std::string_view label) {
+  std::string out;
+  for (auto const& n : nodes)
+    if (n.label == label) out += (out.empty() ? "'" : ", '") + n.name + "'";
+  return out.empty() ? "none" : out;
+}
+
+/// Reads Zone_t: vertex sizes, and whether it is structured at all.
+bool read_extent(File const& file, ZoneLayout& zone, std::string const& where, Problems& problems) {
+  auto const* type = zone.node->labelled("ZoneType_t");
+  std::string const zone_type = type ? file.text(*type) : "Structured";
+  if (zone_type != "Structured") {
+    problems.add(where + ": is of type " + (zone_type.empty() ? "(none)" : zone_type) +
+                 "; unstructured meshes are not supported yet by this reader, only structured zones are");
+    return false;
+  }
+  auto const dimensions = file.dimensions(*zone.node);
+  auto const sizes = file.integers(*zone.node);
+  int const n = dimensions.empty() ? 0 : int(std::min<Index>(dimensions[0], 4));
+  if (n == 1) {
+    problems.add(where + ": has one index dimension; only surfaces (2) and volumes (3) of structured nodes can be morphed");
+    return false;
+  }
+  if ((n != 2 && n != 3) || Index(sizes.size()) < n) {
+    problems.add(where + ": its size is not that of a structured zone (" + std::to_string(sizes.size()) +
+                 " numbers found, 6 or 9 expected)");
+    return false;
+  }
+  zone.index_dimension = n;
+  for (int a = 0; a < n; ++a) {
+    if (sizes[a] < 1 || sizes[a] >= std::numeric_limits<int>::max()) {
+      problems.add(where + ": has " + std::to_string(sizes[a]) + " nodes along " + "ijk"[a] + "; at least 2 are needed");
+      return false;
+    }
+    zone.extent[a] = int(sizes[a]);
+  }
+  int flat = 0;
+  for (int a = 0; a < 3; ++a)
+    if (zone.extent[a] == 1) {
+      zone.flat_axis = a;
+      ++flat;
+    }
+  if (flat > 1) {
+    problems.add(where + ": has one node along two or three directions; only surfaces and volumes can be morphed");
+    return false;
+  }
+  return true;
+}
+
+bool read_rind(File const& file, ZoneLayout& zone, std::string const& where, Problems& problems) {
+  auto const* rind = zone.grid->labelled("Rind_t");
+  if (!rind) return true;
+  auto const planes = file.integers(*rind);
+  bool good = Index(planes.size()) == 2 * zone.index_dimension;
+  for (auto const p : planes) good = good && p >= 0 && p < 1000;
+  if (!good) {
+    problems.add(where + ": Rind of '" + zone.grid->name + "' is not one pair of plane counts per direction");
+    return false;
+  }
+  for (int a = 0; a < zone.index_dimension; ++a) {
+    zone.rind_low[a] = int(planes[2 * a]);
+    zone.rind_high[a] = int(planes[2 * a + 1]);
+  }
+  return true;
+}
+
+void find_coordinates(File const& file, ZoneLayout& zone, std::string const& where, Problems& problems,
+                      std::vector<std::string>& notes) {
+  auto const grids = zone.node->all("GridCoordinates_t");
+  if (grids.empty()) return problems.add(where + ": has no GridCoordinates_t node, so no coordinates");
+  auto const original = std::find_if(grids.begin(), grids.end(), [](Node const* g) { return g->name == "GridCoordinates"; });
+  zone.grid = original == grids.end() ? grids.front() : *original;
+  for (auto const* g : grids)
+    if (g != zone.grid) notes.push_back(where + ": grid '" + g->name + "' left alone; '" + zone.grid->name + "' is used");
+  if (!read_rind(file, zone, where, problems)) return;
+
+  for (int c = 0; c < 3; ++c) {
+    zone.array[c] = zone.grid->child(coordinate_names[c]);
+    if (!zone.array[c]) {
+      if (zone.flat_axis >= 0) continue;
+      bool const cylindrical = zone.grid->child("CoordinateR") || zone.grid->child("CoordinateTheta");
+      return problems.add(where + ": " + coordinate_names[c] + " is missing (found " +
+                          list_names(zone.grid->children, "DataArray_t") + "); " +
+                          (cylindrical ? "cylindrical coordinates are not supported, convert the file to Cartesian ones"
+                                       : "three Cartesian coordinates are needed"));
+    }
+    std::string const type = file.type(*zone.array[c]);
+    if (type != "R4" && type != "R8")
+      return problems.add(where + ": " + coordinate_names[c] + " has type " + type + "; R4 or R8 is needed");
+    zone.single_precision[c] = type == "R4";
+    auto const sizes = file.dimensions(*zone.array[c]);
+    bool fits = Index(sizes.size()) >= zone.index_dimension;
+    std::string found, expected;
+    for (std::size_t a = 0; a < sizes.size(); ++a) {
+      Index const wanted = a < 3 ? zone.extent[a] + zone.rind_low[a] + zone.rind_high[a] : 1;
+      fits = fits && sizes[a] == wanted;
+      found += (a ? " x " : "") + std::to_string(sizes[a]);
+    }
+    for (int a = 0; a < zone.index_dimension; ++a)
+      expected += (a ? " x " : "") + std::to_string(zone.extent[a] + zone.rind_low[a] + zone.rind_high[a]);
+    if (!fits)
+      return problems.add(where + ": " + coordinate_names[c] + " has " + found + " values, but zone size and rind planes ask for " +
+                          expected);
+  }
+  for (auto const* a : zone.array)
+    if (a) static_cast<void>(file.count(*a));  // throws before memory is asked for on the word of a damaged file
+  int present = 0;
+  for (auto const* a : zone.array) present += a != nullptr;
+  if (present < 2)
+    problems.add(where + ": has fewer than two of CoordinateX, CoordinateY, CoordinateZ (found " +
+                 list_names(zone.grid->children, "DataArray_t") + ")");
+}
+
+}  // namespace
+
+Index ZoneLayout::stored_size() const {
+  Index n = 1;
+  for (int a = 0; a < 3; ++a) n *= extent[a] + rind_low[a] + rind_high[a];
+  return n;
+}
+
+Index ZoneLayout::stored_line(int j, int k) const {
+  Index const ni = extent[0] + rind_low[0] + rind_high[0];
+  Index const nj = extent[1] + rind_low[1] + rind_high[1];
+  return rind_low[0] + ni * (j + rind_low[1] + nj * Index(k + rind_low[2]));
+}
+
+Layout find_zones(File const& file, Node const& tree, Problems& problems) {
+  Layout layout;
+  auto const bases = tree.all("CGNSBase_t");
+  if (bases.empty()) {
+    problems.add(file.path() + ": holds no CGNSBase_t node; it is not a CGNS mesh");
+    return layout;
+  }
+  auto const with_zones = std::count_if(bases.begin(), bases.end(), [](Node const* b) { return b->labelled("Zone_t") != nullptr; });
+  if (with_zones == 0) problems.add(file.path() + ": holds no Zone_t node; there is no mesh in it");
+  int flat = 0;
+  for (auto const* base : bases)
+    for (auto const* node : base->all("Zone_t")) {
+      ZoneLayout zone;
+      zone.base = base;
+      zone.node = node;
+      zone.name = with_zones > 1 ? base->name + "/" + node->name : node->name;
+      std::string const where = file.path() + ": zone '" + zone.name + "'";
+      if (!read_extent(file, zone, where, problems)) continue;
+      find_coordinates(file, zone, where, problems, layout.notes);
+      flat += zone.flat_axis >= 0;
+      layout.zones.push_back(std::move(zone));
+    }
+  if (flat > 0 && flat < int(layout.zones.size())) {
+    std::string names;
+    for (auto const& z : layout.zones)
+      if (z.flat_axis >= 0) names += " '" + z.name + "'";
+    problems.add(file.path() + ": mixes 2-D zones (one node plane:" + names + ") with 3-D zones; they cannot be one mesh");
+  }
+  return layout;
+}
+
+void read_component(File const& file, ZoneLayout const& zone, int component, double* dest) {
+  Node const* array = zone.array[component];
+  if (!array) {
+    std::fill(dest, dest + zone.nodes_in_file(), 0.0);
+    return;
+  }
+  bool const rind = zone.stored_size() != zone.nodes_in_file();
+  if (!zone.single_precision[component] && !rind) {
+    file.read(*array, "R8", dest);
+    return;
+  }
+  auto const copy_nodes = [&](auto const& stored) {
+    for (int k = 0; k < zone.extent[2]; ++k)
+      for (int j = 0; j < zone.extent[1]; ++j) {
+        auto const* line = stored.data() + zone.stored_line(j, k);
+        dest = std::copy(line, line + zone.extent[0], dest);
+      }
+  };
+  auto const n = static_cast<std::size_t>(zone.stored_size());
+  if (zone.single_precision[component]) {
+    std::vector<float> stored(n);
+    file.read(*array, "R4", stored.data());
+    copy_nodes(stored);
+  } else {
+    std::vector<double> stored(n);
+    file.read(*array, "R8", stored.data());
+    copy_nodes(stored);
+  }
+}
+
+void write_component(File& file, ZoneLayout const& zone, int component, double const* source) {
+  Node const* array = zone.array[component];
+  if (!array) return;
+  bool const rind = zone.stored_size() != zone.nodes_in_file();
+  if (!zone.single_precision[component] && !rind) {
+    file.write(*array, source);
+    return;
+  }
+  auto const replace = [&](auto stored, char const* type) {
+    if (rind) file.read(*array, type, stored.data());
+    using Stored = typename decltype(stored)::value_type;
+    for (int k = 0; k < zone.extent[2]; ++k)
+      for (int j = 0; j < zone.extent[1]; ++j) {
+        auto* line = stored.data() + zone.stored_line(j, k);
+        for (int i = 0; i < zone.extent[0]; ++i) line[i] = Stored(*source++);
+      }
+    file.write(*array, stored.data());
+  };
+  auto const n = static_cast<std::size_t>(zone.stored_size());
+  if (zone.single_precision[component])
+    replace(std::vector<float>(n), "R4");
+  else
+    replace(std::vector<double>(n), "R8");
+}
+
+}  // namespace gridmorph::cgns

@@ -1,0 +1,72 @@
+// Meshes in and out of files. One small interface; today it speaks CGNS, other formats come behind it.
+//
+// What is read, what is refused and what is kept: docs/formats.md. The functions throw IoError (the file cannot be
+// opened, is damaged, or holds something else), MeshError (ranges, donors or coordinates that cannot be used) or
+// MachineError (disk full, no permission to write). They are not safe to call from several threads at once, because
+// the CGNS library is not.
+#pragma once
+
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridmorph {
+
+/// How a file is stored on disk.
+enum class FileFormat { cgns_hdf5, cgns_adf };
+
+std::string_view to_string(FileFormat format);
+
+struct ReadOptions {
+  /// false: topology only, Mesh::coordinates stays empty (2-D zones are still made two planes thick in their index
+  /// ranges). For listings of large files.
+  bool coordinates = true;
+};
+
+/// Reads a multi-block structured mesh. All problems of the mesh are reported in one error; what was skipped or assumed
+/// is in Mesh::notes. Cost: one pass over the file's coordinates, read straight into the flat arrays where they are
+/// stored in double precision.
+Mesh read_mesh(std::string const& path, ReadOptions const& options = {});
+
+struct WriteOptions {
+  FileFormat format = FileFormat::cgns_hdf5;
+  /// Mesh::two_dimensional is written as index dimension 2; 2 drops CoordinateZ, 3 keeps it.
+  int physical_dimension = 3;
+};
+
+/// Writes a mesh as a new file: zones, coordinates (single precision where the zone says so), families, boundary
+/// conditions, 1-to-1 interfaces with Transform and Periodic_t; no units. A family whose patches share one BC type gets
+/// that type, and its patches become FamilySpecified. Patches of kind `connection` have no donor in a Mesh and become
+/// UserDefined boundary conditions of the same name. The file appears whole or not at all.
+void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options = {});
+
+/// One value per node, numbered as Mesh::coordinates.
+struct NodeField {
+  std::string name;
+  std::vector<double> values;  ///< (n_nodes)
+};
+
+/// One value per cell: zones one after another, i fastest.
+struct CellField {
+  std::string name;
+  std::vector<double> values;  ///< (n_cells)
+};
+
+/// What write_morphed adds to the file, each set as one FlowSolution_t per zone.
+struct OutputFields {
+  bool displacement = false;     ///< DisplacementX, Y, Z at the nodes: morphed minus Mesh::coordinates
+  std::vector<NodeField> nodes;  ///< with the displacement, in "MorphNodes"
+  std::vector<CellField> cells;  ///< in "MorphCells"
+
+  [[nodiscard]] bool empty() const { return !displacement && nodes.empty() && cells.empty(); }
+};
+
+/// Copies the file that `mesh` was read from and replaces its node coordinates, in the precision they are stored in;
+/// everything else comes through unchanged. Of a 2-D mesh plane 0 is written. output may be input. The copy is made
+/// beside the output and renamed when complete: on any failure the output is as it was before.
+void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
+                   OutputFields const& fields = {});
+
+}  // namespace gridmorph

@@ -1,0 +1,38 @@
+// Output files that appear whole or not at all.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace gridmorph::io {
+
+/// A temporary file beside the output, renamed onto it by commit() and removed otherwise.
+///
+/// The temporary file is in the same folder, so that the rename is one step of the file system. An output that is a
+/// symbolic link is followed. Nothing is forced to the disk's surface: after a power failure either file may be there.
+class OutputFile {
+ public:
+  /// Creates the temporary file, empty. Throws IoError when there is no such folder, MachineError when it cannot be written.
+  explicit OutputFile(std::string const& output);
+  ~OutputFile();
+  OutputFile(OutputFile const&) = delete;
+  OutputFile& operator=(OutputFile const&) = delete;
+
+  [[nodiscard]] std::string const& path() const { return temporary_; }
+
+  /// Fills the temporary file with the bytes of another. Throws IoError (input) or MachineError (disk full, ...).
+  void copy_from(std::string const& input) const;
+  /// Makes sure that the temporary file can grow by that many bytes, and leaves it as long as it was. Throws MachineError.
+  ///
+  /// Called before a library writes: HDF5 cannot close a file that it failed to write, and the CGNS library then mistakes
+  /// it for every file opened later. Only another program that fills the disk in between can still bring that about.
+  void reserve(std::uint64_t bytes) const;
+  void commit();
+
+ private:
+  std::string output_;
+  std::string temporary_;
+  bool committed_ = false;
+};
+
+}  // namespace gridmorph::io

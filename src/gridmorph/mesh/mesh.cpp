@@ -1,0 +1,111 @@
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <gridmorph/core/index.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace gridmorph {
+
+std::string to_string(IndexRange const& range) {
+  std::string text = "[";
+  for (int a = 0; a < 3; ++a) {
+    if (a > 0) text += ", ";
+    text += std::to_string(range.begin[a] + 1) + ":" + std::to_string(range.end[a]);
+  }
+  return text + "]";
+}
+
+Mat3 rotation_matrix(Vec3 const& direction, double angle_rad) {
+  double const s = std::sin(angle_rad), c = std::cos(angle_rad), v = 1 - c;
+  auto const [x, y, z] = direction;
+  return {{{c + x * x * v, x * y * v - z * s, x * z * v + y * s},
+           {y * x * v + z * s, c + y * y * v, y * z * v - x * s},
+           {z * x * v - y * s, z * y * v + x * s, c + z * z * v}}};
+}
+
+RigidTransform rotation_about(Vec3 const& origin, Vec3 const& direction, double angle_rad) {
+  Mat3 const r = rotation_matrix((1 / norm(direction)) * direction, angle_rad);
+  return {r, origin - r * origin};
+}
+
+std::string_view to_string(PatchKind kind) {
+  switch (kind) {
+    case PatchKind::wall: return "wall";
+    case PatchKind::inflow: return "inflow";
+    case PatchKind::outflow: return "outflow";
+    case PatchKind::symmetry: return "symmetry";
+    case PatchKind::farfield: return "farfield";
+    case PatchKind::degenerate: return "degenerate";
+    case PatchKind::connection: return "connection";
+    case PatchKind::other: return "other";
+  }
+  return "other";
+}
+
+Coordinates::Coordinates(Index n_nodes)
+    : x(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::x"), n_nodes),
+      y(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::y"), n_nodes),
+      z(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::z"), n_nodes) {}
+
+Index Mesh::n_cells() const {
+  Index n = 0;
+  for (auto const& z : zones) n += Index(z.extent[0] - 1) * (z.extent[1] - 1) * (z.extent[2] - 1);
+  return n;
+}
+
+int Mesh::add_zone(std::string name, Index3 extent) {
+  Index const first = n_nodes();
+  zones.push_back({std::move(name), extent, first});
+  return int(zones.size()) - 1;
+}
+
+int Mesh::zone_of(Index node) const {
+  auto const after = std::upper_bound(zones.begin(), zones.end(), node,
+                                      [](Index n, Zone const& z) { return n < z.first_node; });
+  return int(after - zones.begin()) - 1;
+}
+
+double Mesh::size() const {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Vec3 lo{inf, inf, inf}, hi{-inf, -inf, -inf};
+  for (Index n = 0; n < coordinates.size(); ++n) {
+    Vec3 const p = coordinates[n];
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+  }
+  return coordinates.size() > 0 ? distance(lo, hi) : 0.0;
+}
+
+std::string describe_node(Mesh const& mesh, Index node) {
+  int const z = mesh.zone_of(node);
+  Index3 const p = mesh.zones[z].index(node);
+  return "zone '" + mesh.zones[z].name + "' node (i " + std::to_string(p[0] + 1) + ", j " + std::to_string(p[1] + 1) +
+         ", k " + std::to_string(p[2] + 1) + ")";
+}
+
+std::string_view face_name(int axis, int side) {
+  static constexpr std::array<std::string_view, 6> names{"i_min", "i_max", "j_min", "j_max", "k_min", "k_max"};
+  return names[2 * axis + side];
+}
+
+std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range) {
+  Zone const& z = mesh.zones[zone];
+  std::string text = "zone '" + z.name + "' ";
+  for (int a = 0; a < 3; ++a)
+    if (range.extent(a) == 1 && (range.begin[a] == 0 || range.begin[a] == z.extent[a] - 1)) {
+      text += std::string(face_name(a, range.begin[a] == 0 ? 0 : 1)) + " ";
+      break;
+    }
+  return text + to_string(range);
+}
+
+std::string describe_patch(Mesh const& mesh, Patch const& patch) {
+  std::string text = "'" + (patch.families.empty() ? patch.name : patch.families.front()) + "'";
+  return text + " (BC '" + patch.name + "', zone '" + mesh.zones[patch.zone].name + "')";
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,289 @@
+#include <gridmorph/motion/detail/slip_surfaces.hpp>
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/detail/cylindrical.hpp>
+#include <gridmorph/motion/detail/patch_points.hpp>
+#include <gridmorph/motion/detail/plane_fit.hpp>
+#include <gridmorph/motion/selectors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numeric>
+
+namespace gridmorph {
+
+namespace {
+
+using Patches = std::vector<int>;
+
+std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", v);
+  return text;
+}
+
+std::string describe(Mesh const& mesh, Patches const& patches) {
+  std::vector<std::string> names;
+  for (int p : patches) names.push_back(describe_patch(mesh, mesh.patches[p]));
+  std::string text = names.front();
+  if (names.size() > 1) text += " and " + std::to_string(names.size() - 1) + " more on the same surface";
+  return text;
+}
+
+double largest_coordinate(std::vector<Vec3> const& points) {
+  double most = 0;
+  for (Vec3 const& p : points) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return most;
+}
+
+/// Patches that meet in the meridional plane, directly or through others: a hub split over several zones, also where
+/// only periodic copies meet. Compares the nodes on the outlines.
+std::vector<Patches> meridionally_connected(Mesh const& mesh, CylindricalFrame const& frame, Patches const& patches) {
+  double const tolerance = 1e-6 * mesh.size();
+  struct Mark {
+    MeridionalPoint at;
+    int member;
+  };
+  std::vector<Mark> marks;
+  for (std::size_t m = 0; m < patches.size(); ++m) {
+    Patch const& patch = mesh.patches[patches[m]];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (patch.range.extent(axis) == 1) continue;
+      for (int side = 0; side < 2; ++side) {
+        IndexRange edge = patch.range;
+        (side == 0 ? edge.end[axis] : edge.begin[axis]) = side == 0 ? edge.begin[axis] + 1 : edge.end[axis] - 1;
+        for_each_node(mesh.zones[patch.zone], edge, [&](Index n) {
+          marks.push_back({frame.meridional(mesh.coordinates[n]), int(m)});
+        });
+      }
+    }
+  }
+  std::sort(marks.begin(), marks.end(), [](Mark const& a, Mark const& b) { return a.at.axial < b.at.axial; });
+
+  Patches root(patches.size());
+  std::iota(root.begin(), root.end(), 0);
+  auto const find = [&](int m) {
+    while (root[m] != m) m = root[m] = root[root[m]];
+    return m;
+  };
+  // Along one circumferential line marks repeat; looking back as far as the tolerance reaches would be quadratic, so
+  // the latest mark of each member is kept per radius cell of the current axial window.
+  std::map<long long, std::map<int, Mark>> window;
+  double window_start = 0;
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    Mark const& mark = marks[i];
+    if (i == 0 || mark.at.axial - window_start > 64 * tolerance) {
+      std::map<long long, std::map<int, Mark>> recent;
+      for (auto const& [cell, members] : window)
+        for (auto const& [member, m] : members)
+          if (mark.at.axial - m.at.axial <= tolerance) recent[cell][member] = m;
+      window = std::move(recent);
+      window_start = mark.at.axial;
+    }
+    auto const cell = (long long)(std::floor(mark.at.radius / tolerance));
+    for (long long c = cell - 1; c <= cell + 1; ++c)
+      if (auto const near = window.find(c); near != window.end())
+        for (auto const& [member, m] : near->second)
+          if (member != mark.member && mark.at.axial - m.at.axial <= tolerance &&
+              std::abs(mark.at.radius - m.at.radius) <= tolerance)
+            root[find(member)] = find(mark.member);
+    window[cell].insert_or_assign(mark.member, mark);
+  }
+  std::map<int, Patches> groups;
+  for (std::size_t m = 0; m < patches.size(); ++m) groups[find(int(m))].push_back(patches[m]);
+  std::vector<Patches> out;
+  for (auto& [r, members] : groups) out.push_back(std::move(members));
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+class Finder {
+ public:
+  Finder(Mesh const& mesh, ResolvedMotion const& motion, SlipSurfaces& out, std::vector<std::string>& notes)
+      : mesh_(mesh), motion_(motion), frame_(motion.axis), out_(out), notes_(notes) {}
+
+  void run() {
+    std::map<int, Patches> by_rule;
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) by_rule[motion_.patch[p].rule].push_back(int(p));
+    for (auto const& [r, patches] : by_rule) {
+      if (r < 0) continue;
+      MotionRule const& rule = motion_.rules[r];
+      where_ = rule.where.empty() ? "rule " + std::to_string(r + 1) : rule.where;
+      if (auto const* slip = std::get_if<SlipRule>(&rule.rule)) {
+        if (slip->surface == SlipRule::Surface::revolution)
+          revolutions(patches, *slip);
+        else
+          planes(patches, slip->plane);
+      } else if (auto const* free = std::get_if<FreeRule>(&rule.rule)) {
+        if (free->constraint == FreeRule::Constraint::plane) planes(patches, std::nullopt);
+        if (free->constraint == FreeRule::Constraint::axial) axial(patches);
+      }
+    }
+    problems_.throw_if_any<MotionError>();
+  }
+
+ private:
+  void store(SlipSurface surface, Patches const& patches, std::vector<Vec3> const& points) {
+    for (Vec3 const& p : points) surface.size = std::max(surface.size, distance(p, surface.origin));
+    for (int p : patches) out_.of_patch[p] = int(out_.surfaces.size());
+    out_.surfaces.push_back(std::move(surface));
+  }
+
+  void axial(Patches const& patches) {
+    SlipSurface surface;
+    surface.kind = SlipSurface::Kind::axial;
+    surface.origin = frame_.origin();
+    surface.direction = frame_.direction();
+    store(std::move(surface), patches, patch_points(mesh_, patches));
+  }
+
+  /// Patches on one plane share it: largest first, each takes those that lie on its plane.
+  void planes(Patches patches, std::optional<std::pair<Vec3, Vec3>> const& given) {
+    std::map<int, PlaneFit> fits;
+    for (int p : patches) fits[p] = fit_plane(patch_points(mesh_, {p}));
+    std::stable_sort(patches.begin(), patches.end(), [&](int a, int b) { return fits[a].extent > fits[b].extent; });
+    while (!patches.empty()) {
+      PlaneFit const seed = fits[patches.front()];
+      Patches members, rest;
+      for (int p : patches) {
+        auto const points = patch_points(mesh_, {p});
+        bool const same =
+            p == patches.front() || given ||
+            (seed.determined && deviation_from_plane(points, seed.origin, seed.normal) <= flat(seed.extent, points));
+        (same ? members : rest).push_back(p);
+      }
+      plane(members, given);
+      patches = rest;
+    }
+  }
+
+  /// 1e-6 of the patch's size, and the rounding of single-precision coordinates wherever they are.
+  static double flat(double extent, std::vector<Vec3> const& points) {
+    return 1e-6 * extent + 2e-7 * largest_coordinate(points);
+  }
+
+  void plane(Patches members, std::optional<std::pair<Vec3, Vec3>> const& given) {
+    std::sort(members.begin(), members.end());
+    auto const points = patch_points(mesh_, members);
+    PlaneFit const fit = fit_plane(points);
+    SlipSurface surface;
+    surface.kind = SlipSurface::Kind::plane;
+    surface.origin = given ? given->first : fit.origin;
+    surface.direction = given ? (1 / norm(given->second)) * given->second : fit.normal;
+    surface.baseline_deviation = deviation_from_plane(points, surface.origin, surface.direction);
+    std::string const who = where_ + ": patch " + describe(mesh_, members);
+    if (!given && !fit.determined) {
+      problems_.add(who +
+                    " is collapsed to a line, which lies on many planes; "
+                    "give the plane, or another rule");
+      return;
+    }
+    if (double const limit = flat(fit.extent, points); surface.baseline_deviation > limit) {
+      problems_.add(who + " is up to " + number(surface.baseline_deviation) + " off " +
+                    (given ? "the given plane" : "the nearest plane") + " (allowed: " + number(limit) +
+                    "); give it another rule, such as fixed" + (given ? ", or another plane" : ""));
+      return;
+    }
+    store(std::move(surface), members, points);
+  }
+
+  void revolutions(Patches const& patches, SlipRule const& slip) {
+    if (!slip.profile.empty()) return given_profile(patches, slip);
+    std::map<std::string, Patches> families;
+    Patches nameless;
+    for (int p : patches) {
+      auto const& own = mesh_.patches[p].families;
+      (own.empty() ? nameless : families[own.front()]).push_back(p);
+    }
+    for (auto const& [family, members] : families) {
+      try {
+        revolution(members);
+      } catch (MotionError const&) {
+        // One family may hold several surfaces, such as hub and case: tell them apart by what meets.
+        connected(members);
+      }
+    }
+    connected(nameless);
+  }
+
+  void connected(Patches const& patches) {
+    for (Patches const& members : meridionally_connected(mesh_, frame_, patches)) {
+      try {
+        revolution(members);
+      } catch (MotionError const& e) {
+        problems_.add(where_ + ": patch " + describe(mesh_, members) + ": " + e.what());
+      }
+    }
+  }
+
+  SlipSurface on_axis() const {
+    SlipSurface surface;
+    surface.kind = SlipSurface::Kind::revolution;
+    surface.origin = frame_.origin();
+    surface.direction = frame_.direction();
+    return surface;
+  }
+
+  void revolution(Patches const& members) {
+    auto const points = patch_points(mesh_, members);
+    std::vector<std::pair<double, double>> meridional;
+    double size = 0;
+    for (Vec3 const& p : points) {
+      auto const [a, r] = frame_.meridional(p);
+      meridional.emplace_back(a, r);
+      size = std::max(size, r);
+    }
+    SlipSurface surface = on_axis();
+    surface.profile = RevolutionProfile::from_points(std::move(meridional));
+    surface.baseline_deviation = surface.profile.deviation;
+    size = std::max(size, surface.profile.axial.back() - surface.profile.axial.front());
+    if (surface.baseline_deviation > 1e-3 * size)
+      throw MotionError("its nodes are up to " + number(surface.baseline_deviation) +
+                        " off the nearest surface of revolution about the "
+                        "axis; check the axis, or give another rule");
+    note(members, surface, "profile of revolution through");
+    store(std::move(surface), members, points);
+  }
+
+  void given_profile(Patches const& patches, SlipRule const& slip) {
+    SlipSurface surface = on_axis();
+    try {
+      surface.profile = RevolutionProfile::from_points(slip.profile);
+    } catch (MotionError const& e) {
+      problems_.add(where_ + ": profile: " + e.what());
+      return;
+    }
+    auto const points = patch_points(mesh_, patches);
+    for (Vec3 const& p : points) {
+      auto const [a, r] = frame_.meridional(p);
+      surface.baseline_deviation = std::max(surface.baseline_deviation, std::abs(r - surface.profile(a)));
+    }
+    note(patches, surface, "given profile of");
+    store(std::move(surface), patches, points);
+  }
+
+  void note(Patches const& patches, SlipSurface const& s, char const* what) {
+    notes_.push_back("slip " + describe(mesh_, patches) + ": " + what + " " + std::to_string(s.profile.axial.size()) +
+                     " points, axial " + number(s.profile.axial.front()) + " to " + number(s.profile.axial.back()) +
+                     "; nodes are within " + number(s.baseline_deviation) + " of it");
+  }
+
+  Mesh const& mesh_;
+  ResolvedMotion const& motion_;
+  CylindricalFrame frame_;
+  SlipSurfaces& out_;
+  std::vector<std::string>& notes_;
+  std::string where_;
+  Problems problems_;
+};
+
+}  // namespace
+
+SlipSurfaces::SlipSurfaces(Mesh const& mesh, ResolvedMotion const& motion, std::vector<std::string>& notes)
+    : of_patch(mesh.patches.size(), -1) {
+  Finder(mesh, motion, *this, notes).run();
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,125 @@
+// Motion rules: how the boundary of the domain moves. Plain values; case files and solvers fill them alike.
+//
+// A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
+// `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, circumferential slide,
+// follow: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// carries the nodes and the finalize step puts them back on their surface).
+#pragma once
+
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace gridmorph {
+
+/// Axis of the machine (or any axis of rotation); direction need not be normalised.
+struct Axis {
+  Vec3 origin{0, 0, 0};
+  Vec3 direction{1, 0, 0};
+};
+
+/// Displacement zero.
+struct FixedRule {};
+
+/// x' = matrix * x + translation for every node: rotation, scaling, translation or a composition of them.
+struct RigidRule {
+  Mat3 matrix;
+  Vec3 translation;
+};
+
+/// Displacement as a function of the baseline position: formulas, point clouds, tables, a solver's own code. The
+/// function fills displacement[n] for points[n]; it must give equal results for equal points.
+struct FunctionRule {
+  std::string description;  ///< for reports: "formula dx = ...", "field blade.csv (nearest, 2112 points)"
+  std::function<void(std::span<Vec3 const> points, std::span<Vec3> displacement)> function;
+};
+
+/// Inlet and exit: turn about the axis by the angle that the leading edge (upstream patches) or trailing edge
+/// (downstream patches) of the `of` patches turns by at the same span fraction; axial position and radius kept.
+struct CircumferentialSlideRule {
+  std::vector<std::string> of;
+};
+
+/// Periodics: replicate the mid-camber motion of `of` between its leading and trailing edge at the same span and chord
+/// fraction, taper linearly in axial distance to the motion of inlet and exit; copies stay 1-to-1.
+struct FollowRule {
+  std::vector<std::string> of;
+};
+
+/// No deformation of the surface: nodes slide on it.
+struct SlipRule {
+  enum class Surface { plane, revolution };
+  Surface surface = Surface::plane;
+  /// Plane: a point and a normal; fitted to the baseline patch when absent.
+  std::optional<std::pair<Vec3, Vec3>> plane{};
+  /// Revolution: (axial, radius) points along the profile; read off the baseline patch when empty.
+  std::vector<std::pair<double, double>> profile{};
+};
+
+/// Left to the volume stage, with an optional constraint.
+struct FreeRule {
+  enum class Constraint { none, axial, plane };
+  Constraint constraint = Constraint::none;  ///< axial: axial position kept; plane: nodes stay on the patch's plane
+};
+
+using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule>;
+
+/// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
+/// "function").
+std::string_view rule_name(Rule const& rule);
+
+struct MotionRule {
+  std::vector<std::string> patches;  ///< selectors
+  Rule rule;
+  /// Where two patches that meet disagree, the lower rank wins; equal ranks that disagree are an error.
+  int rank = 0;
+  std::string where;  ///< "case.toml:14" or whatever names the rule in messages
+};
+
+struct Motion {
+  Axis axis;
+  std::vector<MotionRule> rules;
+  /// A patch that no rule matches: its CGNS type's default (symmetry slips on its plane, periodic pairs move freely as
+  /// one, everything else stays fixed), or an error when strict.
+  bool strict = false;
+  /// Displacements that differ by less than this times the mesh size on a shared edge are one and the same.
+  double conformity_tolerance = 1e-9;
+};
+
+/// What resolve() decided for one patch or one periodic interface.
+struct Resolution {
+  int rule = -1;  ///< number in rules
+  bool by_default = false;
+};
+
+/// Every patch (and every periodic interface, which `type:periodic` or its name may address) with its one rule. `rules`
+/// are Motion::rules followed by the default rules that were needed.
+struct ResolvedMotion {
+  Axis axis;
+  double conformity_tolerance = 1e-9;
+  std::vector<MotionRule> rules;
+  std::vector<Resolution> patch;      ///< per Mesh::patches
+  std::vector<Resolution> interface;  ///< per Mesh::interfaces; rule -1 for plain interfaces and for free periodics
+  std::vector<std::string> notes;     ///< defaults taken, for the output
+
+  [[nodiscard]] Rule const& patch_rule(int p) const { return rules[patch[p].rule].rule; }
+};
+
+/// Numbers of the patches a list of selectors names, ascending. Case-sensitive; family first, then BC name, then
+/// connection name: a selector that matches a family takes that family's patches only. "zone/name" addresses a BC or
+/// connection of one zone. Throws one MotionError for all selectors that name no patch; it lists what there is.
+std::vector<int> select_patches(Mesh const& mesh, std::vector<std::string> const& selectors);
+
+/// Gives each patch and periodic interface its rule. A later rule does not override an earlier one: two rules that name
+/// the same patch are an error, and so is a selector that matches nothing (the message lists what there is). A rule on
+/// one side of a periodic interface holds for its other side, which files store as an interface of its own. All
+/// problems are reported in one MotionError. Cost O(patches + interfaces^2), nothing per node.
+ResolvedMotion resolve(Mesh const& mesh, Motion const& motion);
+
+}  // namespace gridmorph

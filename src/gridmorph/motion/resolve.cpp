@@ -1,0 +1,257 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/motion.hpp>
+#include <gridmorph/motion/selectors.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr int unclaimed = -1;
+
+bool finite(Vec3 const& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+template <class T>
+bool is(Rule const& rule) {
+  return std::holds_alternative<T>(rule);
+}
+
+/// Displacements that need no other patch: what a blade must have for others to follow it.
+bool is_direct(Rule const& rule) { return is<FixedRule>(rule) || is<RigidRule>(rule) || is<FunctionRule>(rule); }
+
+/// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
+/// only if there is no other.
+int find_partner(Mesh const& mesh, int interface) {
+  Interface1to1 const& own = mesh.interfaces[interface];
+  IndexRange const donor = own.to_donor(own.range);
+  for (std::size_t j = 0; j < mesh.interfaces.size(); ++j) {
+    Interface1to1 const& other = mesh.interfaces[j];
+    if (int(j) != interface && other.zone == own.donor_zone && other.donor_zone == own.zone && other.range == donor &&
+        other.to_donor(other.range) == own.range)
+      return int(j);
+  }
+  return -1;
+}
+
+std::vector<std::string> names_of(Mesh const& mesh, std::vector<int> const& patches) {
+  std::set<std::string> names;
+  for (int p : patches)
+    names.insert(mesh.patches[p].families.empty() ? mesh.patches[p].name : mesh.patches[p].families.front());
+  return {names.begin(), names.end()};
+}
+
+class Resolver {
+ public:
+  Resolver(Mesh const& mesh, Motion const& motion)
+      : mesh_(mesh),
+        motion_(motion),
+        patch_claim_(mesh.patches.size(), unclaimed),
+        interface_claim_(mesh.interfaces.size(), unclaimed) {}
+
+  ResolvedMotion run() {
+    result_.axis = motion_.axis;
+    result_.conformity_tolerance = motion_.conformity_tolerance;
+    result_.rules = motion_.rules;
+    result_.patch.resize(mesh_.patches.size());
+    result_.interface.resize(mesh_.interfaces.size());
+
+    check_motion();
+    for (std::size_t r = 0; r < motion_.rules.size(); ++r) {
+      check_rule(int(r));
+      claim(int(r));
+    }
+    report_conflicts();
+    settle_interfaces();
+    settle_patches();
+    for (std::size_t r = 0; r < motion_.rules.size(); ++r) check_blades(int(r));
+    problems_.throw_if_any<MotionError>();
+    return std::move(result_);
+  }
+
+ private:
+  std::string label(int r) const {
+    MotionRule const& rule = motion_.rules[r];
+    return "rule " + std::to_string(r + 1) + " (" + std::string(rule_name(rule.rule)) +
+           (rule.where.empty() ? "" : ", " + rule.where) + ")";
+  }
+
+  void check_motion() {
+    if (!finite(motion_.axis.origin) || !finite(motion_.axis.direction) || !(norm(motion_.axis.direction) > 0))
+      problems_.add(
+          "the axis must have a finite origin and a direction that "
+          "is not (0, 0, 0)");
+    if (!(motion_.conformity_tolerance >= 0) || !std::isfinite(motion_.conformity_tolerance))
+      problems_.add("the conformity tolerance is " + std::to_string(motion_.conformity_tolerance) +
+                    "; give a fraction of the mesh size, such as 1e-9");
+  }
+
+  void check_rule(int r) {
+    Rule const& rule = motion_.rules[r].rule;
+    if (motion_.rules[r].patches.empty()) problems_.add(label(r) + " names no patches");
+    if (auto const* rigid = std::get_if<RigidRule>(&rule)) {
+      bool ok = finite(rigid->translation);
+      for (auto const& row : rigid->matrix.m)
+        for (double m : row) ok = ok && std::isfinite(m);
+      if (!ok) problems_.add(label(r) + ": its matrix or translation is not finite");
+    } else if (auto const* function = std::get_if<FunctionRule>(&rule)) {
+      if (!function->function) problems_.add(label(r) + ": it has no function");
+    } else if (auto const* slip = std::get_if<SlipRule>(&rule)) {
+      if (slip->plane &&
+          (!finite(slip->plane->first) || !finite(slip->plane->second) || !(norm(slip->plane->second) > 0)))
+        problems_.add(label(r) +
+                      ": the plane needs a finite point and a "
+                      "normal that is not (0, 0, 0)");
+    }
+  }
+
+  void claim(int r) {
+    for (std::string const& selector : motion_.rules[r].patches) {
+      Selection s;
+      try {
+        s = select(mesh_, selector);
+      } catch (MotionError const& e) {
+        problems_.add(label(r) + ": " + e.what());
+        continue;
+      }
+      if (s.empty())
+        problems_.add(label(r) + ": selector '" + selector + "' matches nothing; " + describe_selectable(mesh_));
+      for (int p : s.patches) claim_one(patch_claim_[p], r, describe_patch(mesh_, mesh_.patches[p]));
+      for (int i : s.interfaces) claim_interface(i, r);
+    }
+  }
+
+  void claim_interface(int i, int r) {
+    std::string const name = "interface " + describe_interface(mesh_, i);
+    if (!mesh_.interfaces[i].periodic) {
+      problems_.add(label(r) + " names the plain " + name +
+                    ", which is inside the domain and moves with the volume; "
+                    "name patches or periodic interfaces");
+      return;
+    }
+    Rule const& rule = motion_.rules[r].rule;
+    auto const* free = std::get_if<FreeRule>(&rule);
+    if (is<SlipRule>(rule) || (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
+      problems_.add(label(r) + " names the periodic " + name +
+                    "; periodic interfaces take free without constraint, "
+                    "follow, circumferential-slide, fixed, rigid or "
+                    "function");
+      return;
+    }
+    claim_one(interface_claim_[i], r, "periodic " + name);
+    // The file stores the connection once per side: both sides are one interface to the user.
+    if (int const partner = find_partner(mesh_, i); partner >= 0)
+      claim_one(interface_claim_[partner], r, "periodic interface " + describe_interface(mesh_, partner));
+  }
+
+  void claim_one(int& claim, int r, std::string name) {
+    if (claim == unclaimed) claim = r;
+    if (claim != r) conflicts_[{claim, r}].insert(std::move(name));
+  }
+
+  void report_conflicts() {
+    for (auto const& [pair, names] : conflicts_) {
+      std::string list;
+      for (auto const& name : names) list += (list.empty() ? "" : ", ") + name;
+      problems_.add(label(pair.first) + " and " + label(pair.second) + " both name " + list +
+                    "; a patch has one rule: narrow the selectors of one of them");
+    }
+  }
+
+  void settle_interfaces() {
+    std::set<std::string> defaulted;
+    for (std::size_t i = 0; i < mesh_.interfaces.size(); ++i) {
+      Interface1to1 const& interface = mesh_.interfaces[i];
+      int const r = interface_claim_[i];
+      if (r != unclaimed) {
+        result_.interface[i].rule = is<FreeRule>(motion_.rules[r].rule) ? -1 : r;
+      } else if (interface.periodic) {
+        result_.interface[i].by_default = true;
+        defaulted.insert(interface.families.empty() ? interface.name : interface.families.front());
+      }
+    }
+    if (!defaulted.empty())
+      took_default("periodic interfaces", {defaulted.begin(), defaulted.end()}, "both copies move freely as one");
+  }
+
+  void settle_patches() {
+    std::vector<int> symmetry, poles, fixed;
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+      result_.patch[p].rule = patch_claim_[p];
+      if (patch_claim_[p] != unclaimed) continue;
+      result_.patch[p].by_default = true;
+      // A polar line is no plane to slide on.
+      bool const plane = mesh_.patches[p].kind == PatchKind::symmetry && mesh_.patches[p].bc_type != "BCSymmetryPolar";
+      bool const pole = mesh_.patches[p].kind == PatchKind::degenerate;
+      (plane ? symmetry : pole ? poles : fixed).push_back(int(p));
+    }
+    add_default(symmetry, SlipRule{}, "symmetry patches", "slip on their own plane");
+    add_default(poles, FreeRule{}, "poles", "move as one with what they end on");
+    add_default(fixed, FixedRule{}, "patches", "fixed");
+  }
+
+  void add_default(std::vector<int> const& patches, Rule rule, char const* what, char const* decision) {
+    if (patches.empty()) return;
+    std::vector<std::string> const names = names_of(mesh_, patches);
+    for (int p : patches) result_.patch[p].rule = int(result_.rules.size());
+    result_.rules.push_back({names, std::move(rule), 0, std::string("default of ") + what});
+    took_default(what, names, decision);
+  }
+
+  void took_default(std::string const& what, std::vector<std::string> const& names, std::string const& decision) {
+    std::string const list = what + " " + quote_list(names);
+    if (motion_.strict)
+      problems_.add("no rule names the " + list +
+                    ", and the motion is strict; give each a rule (the default "
+                    "would be: " +
+                    decision + ")");
+    else
+      result_.notes.push_back(list + ": no rule names them; default: " + decision);
+  }
+
+  void check_blades(int r) {
+    Rule const& rule = motion_.rules[r].rule;
+    std::vector<std::string> const* of = nullptr;
+    if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule)) of = &slide->of;
+    if (auto const* follow = std::get_if<FollowRule>(&rule)) of = &follow->of;
+    if (of == nullptr) return;
+    if (of->empty()) problems_.add(label(r) + ": `of` is empty; name the blade whose motion it takes up");
+    std::vector<int> blades;
+    try {
+      blades = select_patches(mesh_, *of);
+    } catch (MotionError const& e) {
+      problems_.add(label(r) + ": of: " + e.what());
+    }
+    std::map<int, std::vector<int>> unfit;
+    for (int p : blades)
+      if (int const own = result_.patch[p].rule; !is_direct(result_.rules[own].rule)) unfit[own].push_back(p);
+    for (auto const& [own, patches] : unfit)
+      problems_.add(label(r) + ": of: " + quote_list(names_of(mesh_, patches)) + " has the rule '" +
+                    std::string(rule_name(result_.rules[own].rule)) +
+                    "', whose displacement is not known beforehand; give it "
+                    "fixed, rigid, formula or field");
+  }
+
+  Mesh const& mesh_;
+  Motion const& motion_;
+  std::vector<int> patch_claim_, interface_claim_;
+  std::map<std::pair<int, int>, std::set<std::string>> conflicts_;
+  Problems problems_;
+  ResolvedMotion result_;
+};
+
+}  // namespace
+
+std::string_view rule_name(Rule const& rule) {
+  static constexpr std::array<std::string_view, std::variant_size_v<Rule>> names{
+      "fixed", "rigid", "function", "circumferential-slide", "follow", "slip", "free"};
+  return names[rule.index()];
+}
+
+ResolvedMotion resolve(Mesh const& mesh, Motion const& motion) { return Resolver(mesh, motion).run(); }
+
+}  // namespace gridmorph

@@ -1,0 +1,95 @@
+// Surfaces that nodes slide on: planes, surfaces of revolution, and the constraint "axial position kept".
+#pragma once
+
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/kernels/slip_surface.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <utility>
+#include <vector>
+
+namespace gridmorph {
+
+/// Radius of a surface of revolution as a function of axial position: a C1 piecewise cubic through points of the
+/// profile (Hermite form, slopes from local polynomials: explicit, no system of equations).
+///
+/// Built on the host from any set of (axial, radius) points; evaluated on host and device alike.
+struct RevolutionProfile {
+  std::vector<double> axial;  ///< strictly increasing
+  std::vector<double> radius;
+  std::vector<double> slope;  ///< d radius / d axial at each point
+  double deviation = 0;       ///< largest |radius - profile(axial)| over the points it was built from
+
+  /// Sorts, merges near-duplicates, estimates slopes. Between kinks a slope is the derivative of the polynomial through
+  /// up to seven neighbouring points (error of the profile h^4 f''''/384 at spacing h); stencils never cross a kink,
+  /// and at one the smaller of the two one-sided slopes is taken, so that the profile does not overshoot there. A
+  /// constant radius comes back bit for bit.
+  ///
+  /// Throws MotionError, naming the place, when the points are not a function of the axial position: walls at constant
+  /// axial position, two surfaces at once, or a surface that is not one of revolution. Cost O(n log n).
+  static RevolutionProfile from_points(std::vector<std::pair<double, double>> axial_radius);
+
+  /// Outside [axial.front(), axial.back()] the end slope is continued.
+  [[nodiscard]] double operator()(double axial_position) const { return view()(axial_position); }
+
+  /// Borrows the tables: valid on the host while this profile lives unchanged.
+  [[nodiscard]] ProfileView view() const { return {axial.data(), radius.data(), slope.data(), int(axial.size())}; }
+};
+
+struct SlipSurface {
+  using Kind = SlipKind;
+  Kind kind = Kind::plane;
+  Vec3 origin;     ///< plane: a point on it; revolution and axial: a point on the axis
+  Vec3 direction;  ///< unit: plane normal, or axis
+  RevolutionProfile profile;
+  /// Largest distance of the baseline patch's nodes from the surface.
+  double baseline_deviation = 0;
+  /// Largest distance of the baseline patch's nodes from `origin`: what round-off and relative tolerances refer to.
+  double size = 0;
+
+  /// For host code; borrows the profile: valid while this surface lives unchanged.
+  [[nodiscard]] SlipSurfaceView view() const {
+    return {kind, origin, direction, profile.view(), size, baseline_deviation};
+  }
+};
+
+/// Slip surfaces in one memory space, for kernels: `surfaces(s)` is a SlipSurfaceView usable where MemorySpace is.
+template <class MemorySpace>
+struct SlipSurfaceTable {
+  Kokkos::View<SlipSurfaceView*, MemorySpace> surfaces;
+  Kokkos::View<double*, MemorySpace> tables;  ///< axial, radius, slope of each profile one after another
+
+  SlipSurfaceTable() = default;
+
+  /// Copies on `exec`; fences it, because the host buffers end with the call.
+  template <class ExecutionSpace>
+  SlipSurfaceTable(ExecutionSpace const& exec, std::vector<SlipSurface> const& host)
+      : surfaces(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::surfaces"),
+                 host.size()) {
+    std::size_t n = 0;
+    for (auto const& s : host) n += 3 * s.profile.axial.size();
+    tables = Kokkos::View<double*, MemorySpace>(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::tables"), n);
+    auto surfaces_h = Kokkos::create_mirror_view(surfaces);
+    auto tables_h = Kokkos::create_mirror_view(tables);
+    std::size_t at = 0;
+    auto const store = [&](std::vector<double> const& values) {
+      double const* const there = tables.data() + at;
+      for (double v : values) tables_h(at++) = v;
+      return there;
+    };
+    for (std::size_t s = 0; s < host.size(); ++s) {
+      SlipSurfaceView view = host[s].view();
+      view.profile.axial = store(host[s].profile.axial);
+      view.profile.radius = store(host[s].profile.radius);
+      view.profile.slope = store(host[s].profile.slope);
+      surfaces_h(s) = view;
+    }
+    Kokkos::deep_copy(exec, surfaces, surfaces_h);
+    Kokkos::deep_copy(exec, tables, tables_h);
+    compat::fence(exec, "gridmorph::SlipSurfaceTable (host buffers end here)");
+  }
+};
+
+}  // namespace gridmorph

@@ -1,0 +1,133 @@
+#include <gridmorph/motion/surface_motion.hpp>
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/detail/row_motion.hpp>
+#include <gridmorph/motion/detail/slip_surfaces.hpp>
+#include <gridmorph/motion/rigid_motion.hpp>
+#include <gridmorph/motion/selectors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+namespace gridmorph {
+
+namespace {
+
+std::string to_text(Vec3 const& v) {
+  char text[120];
+  std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", v.x, v.y, v.z);
+  return text;
+}
+
+std::vector<std::string> const* blades_of(Rule const& rule) {
+  if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule)) return &slide->of;
+  if (auto const* follow = std::get_if<FollowRule>(&rule)) return &follow->of;
+  return nullptr;
+}
+
+}  // namespace
+
+struct SurfaceMotion::Impl {
+  std::vector<MotionRule> rules;
+  std::vector<std::string> notes;
+  SlipSurfaces surfaces;
+  std::map<std::vector<int>, RowMotion> rows;  ///< by the patches of the blade; map, so that rows stay where they
+                                               ///< are
+  std::vector<RowMotion const*> row_of_rule;   ///< per rule, null for rules without a blade
+
+  Impl(Mesh const& mesh, ResolvedMotion const& motion)
+      : rules(motion.rules), surfaces(mesh, motion, notes), row_of_rule(rules.size(), nullptr) {
+    Problems problems;
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      if (blades_of(rules[r].rule) == nullptr) continue;
+      try {
+        row_of_rule[r] = &row(mesh, motion, select_patches(mesh, *blades_of(rules[r].rule)));
+      } catch (MotionError const& e) {
+        problems.add(label(int(r)) + ": " + e.what());
+      }
+    }
+    problems.throw_if_any<MotionError>();
+  }
+
+  RowMotion const& row(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades) {
+    if (auto const known = rows.find(blades); known != rows.end()) return known->second;
+    for (int p : blades)
+      if (Rule const& rule = motion.patch_rule(p); !is_direct(rule))
+        throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
+                          std::string(rule_name(rule)) +
+                          "', whose displacement is not known beforehand; give "
+                          "it fixed, rigid, formula or field");
+    if (blades.empty()) throw MotionError("of: names no patch");
+    auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
+      evaluate(motion.patch[p].rule, points, out);
+    };
+    return rows.try_emplace(blades, mesh, motion, blades, surfaces, displacement, notes).first->second;
+  }
+
+  static bool is_direct(Rule const& rule) {
+    return std::holds_alternative<FixedRule>(rule) || std::holds_alternative<RigidRule>(rule) ||
+           std::holds_alternative<FunctionRule>(rule);
+  }
+
+  std::string label(int r) const {
+    MotionRule const& rule = rules[r];
+    std::string text = "rule " + std::to_string(r + 1) + " (" + std::string(rule_name(rule.rule));
+    if (auto const* function = std::get_if<FunctionRule>(&rule.rule);
+        function != nullptr && !function->description.empty())
+      text += ": " + function->description;
+    return text + (rule.where.empty() ? "" : ", " + rule.where) + ")";
+  }
+
+  void evaluate(int r, std::span<Vec3 const> points, std::span<Vec3> out) const {
+    Rule const& rule = rules[r].rule;
+    if (std::holds_alternative<FixedRule>(rule)) {
+      std::fill(out.begin(), out.end(), Vec3{});
+    } else if (auto const* rigid = std::get_if<RigidRule>(&rule)) {
+      std::transform(points.begin(), points.end(), out.begin(),
+                     [rigid](Vec3 const& p) { return gridmorph::displacement(*rigid, p); });
+    } else if (auto const* function = std::get_if<FunctionRule>(&rule)) {
+      function->function(points, out);
+    } else {
+      RowMotion const& row = *row_of_rule[r];
+      bool const slides = std::holds_alternative<CircumferentialSlideRule>(rule);
+      std::transform(points.begin(), points.end(), out.begin(),
+                     [&](Vec3 const& p) { return slides ? row.slide(p) : row.follow(p); });
+    }
+    for (std::size_t n = 0; n < points.size(); ++n)
+      if (!std::isfinite(out[n].x) || !std::isfinite(out[n].y) || !std::isfinite(out[n].z))
+        throw MotionError(label(r) + " gives the point " + to_text(points[n]) + " the displacement " + to_text(out[n]) +
+                          ", which is not finite; correct the rule, or narrow "
+                          "the patches it names");
+  }
+};
+
+SurfaceMotion::SurfaceMotion(Mesh const& mesh, ResolvedMotion const& motion)
+    : impl_(std::make_unique<Impl>(mesh, motion)) {}
+SurfaceMotion::~SurfaceMotion() = default;
+SurfaceMotion::SurfaceMotion(SurfaceMotion&&) noexcept = default;
+SurfaceMotion& SurfaceMotion::operator=(SurfaceMotion&&) noexcept = default;
+
+bool SurfaceMotion::is_explicit(int rule) const {
+  return Impl::is_direct(impl_->rules[rule].rule) || impl_->row_of_rule[rule] != nullptr;
+}
+
+void SurfaceMotion::displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const {
+  if (!is_explicit(rule))
+    throw MotionError(impl_->label(rule) + " is left to the volume stage and has no displacement of its own");
+  if (points.size() != out.size())
+    throw MotionError(impl_->label(rule) + ": " + std::to_string(points.size()) + " points but room for " +
+                      std::to_string(out.size()) + " displacements");
+  impl_->evaluate(rule, points, out);
+}
+
+std::optional<SlipSurface> SurfaceMotion::slip_surface(int patch) const {
+  int const s = impl_->surfaces.of_patch[patch];
+  if (s < 0) return std::nullopt;
+  return impl_->surfaces.surfaces[s];
+}
+
+std::vector<std::string> const& SurfaceMotion::notes() const { return impl_->notes; }
+
+}  // namespace gridmorph

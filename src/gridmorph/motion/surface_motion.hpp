@@ -1,0 +1,43 @@
+// Evaluates motion rules on the surface: the displacement of boundary nodes from rules, before the volume stage.
+#pragma once
+
+#include <gridmorph/motion/motion.hpp>
+#include <gridmorph/motion/slip_surface.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace gridmorph {
+
+/// Turns resolved rules into numbers. Construction does what is shared between nodes (blade sections and mid-camber
+/// motion for slide and follow, profiles for slip); evaluation is then independent per point.
+///
+/// Cost: O(nodes of the patches involved) to construct, O(log n) per point to evaluate.
+class SurfaceMotion {
+ public:
+  SurfaceMotion(Mesh const& mesh, ResolvedMotion const& motion);
+  ~SurfaceMotion();
+  SurfaceMotion(SurfaceMotion&&) noexcept;
+  SurfaceMotion& operator=(SurfaceMotion&&) noexcept;
+
+  /// Whether rule number r (in ResolvedMotion::rules) fixes displacements before the volume stage (fixed, rigid,
+  /// function, circumferential-slide, follow).
+  [[nodiscard]] bool is_explicit(int rule) const;
+
+  /// Displacement that rule number r gives to baseline points. Throws MotionError (rule, point and value) when a
+  /// displacement is not finite. Precondition: is_explicit(r).
+  void displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const;
+
+  /// The surface a slip (or constrained free) rule keeps the nodes of patch p on; nothing for other rules.
+  [[nodiscard]] std::optional<SlipSurface> slip_surface(int patch) const;
+
+  /// Human-readable facts found on the way: blade sections, span range, profile deviation, mapping distances.
+  [[nodiscard]] std::vector<std::string> const& notes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gridmorph

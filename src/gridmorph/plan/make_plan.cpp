@@ -1,0 +1,238 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/plan/conflict.hpp>
+#include <gridmorph/plan/make_plan.hpp>
+#include <gridmorph/plan/near_field.hpp>
+#include <gridmorph/plan/poles.hpp>
+#include <gridmorph/plan/priority.hpp>
+#include <gridmorph/plan/spread_plan.hpp>
+#include <gridmorph/plan/stage_builder.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace gridmorph {
+namespace {
+
+/// Patches that must not share a block face: other rules, other kinds, other near fields.
+MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::vector<NearField> const& fields,
+                         std::vector<CutPlane> planes) {
+  MergeLimits limits;
+  std::map<std::tuple<int, int, int>, int> labels;
+  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+    int field = -1;
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      if (std::count(fields[f].walls.begin(), fields[f].walls.end(), p) > 0) field = int(f);
+    limits.patch_label.push_back(
+        labels.try_emplace({motion.patch[p].rule, int(mesh.patches[p].kind), field}, int(labels.size())).first->second);
+  }
+  for (Resolution const& r : motion.interface) limits.interface_label.push_back(1 + r.rule);
+  limits.kept_planes = std::move(planes);
+  return limits;
+}
+
+std::string block_name(Mesh const& mesh, Topology const& topology, int block) {
+  Piece const& piece = topology.lattice.pieces()[topology.blocks[block].pieces.front().piece];
+  return "zone '" + mesh.zones[piece.zone].name + "' " + to_string(piece.nodes);
+}
+
+std::string chain_name(Mesh const& mesh, Topology const& topology, Chain const& chain) {
+  std::string text;
+  for (ChainStep const& step : chain.steps) {
+    if (!text.empty()) text += " - ";
+    text += block_name(mesh, topology, step.block);
+  }
+  return text;
+}
+
+kernels::LineLaw line_law(Law law) {
+  switch (law) {
+    case Law::linear: return kernels::LineLaw::linear;
+    case Law::c1: return kernels::LineLaw::c1;
+    case Law::c2: return kernels::LineLaw::c2;
+  }
+  return kernels::LineLaw::linear;
+}
+
+class Scheduler {
+ public:
+  Scheduler(Mesh const& mesh, Topology const& topology, PlanOptions const& options, Plan& plan, Known& known)
+      : mesh_(mesh),
+        topology_(topology),
+        options_(options),
+        plan_(plan),
+        known_(known),
+        rotations_(plan.rotations),
+        priority_(mesh, topology, options.volume, plan.mesh_size) {}
+
+  /// Stage 0. Near fields that get in each other's way (walls that meet at a concave edge) follow one another.
+  void near_field(std::vector<StageChain> chains) {
+    for (int turn = 0; !chains.empty(); ++turn) {
+      Claims claims(topology_, known_);
+      std::vector<StageChain> now, later;
+      std::vector<std::string> description;
+      for (StageChain& chain : chains) {
+        if (claims.add(chain.chain)) {
+          description.push_back(chain_name(mesh_, topology_, chain.chain) + ": constant off the wall");
+          now.push_back(std::move(chain));
+        } else {
+          later.push_back(std::move(chain));
+        }
+      }
+      Stage stage = build_stage(mesh_, topology_, now, known_, rotations_, priority_.kind_order());
+      stage.name = turn == 0 ? "near field" : "near field " + std::to_string(turn + 1);
+      stage.description = std::move(description);
+      plan_.near_field.insert(plan_.near_field.end(), stage.cells.begin(), stage.cells.end());
+      plan_.stages.push_back(std::move(stage));
+      chains = std::move(later);
+    }
+  }
+
+  void volume() {
+    for (int number = 1; has_active_blocks(); ++number) {
+      bool open = false;
+      std::vector<RankedChain> chains = collect(open);
+      if (chains.empty()) {
+        open = true;
+        chains = collect(open);
+      }
+      if (chains.empty()) throw PlanError(unreachable());
+      priority_.sort(chains);
+      chains.erase(std::find_if(chains.begin(), chains.end(),
+                                [&](RankedChain const& c) { return !priority_.same_rank(c, chains.front()); }),
+                   chains.end());
+      // Chains that do not get in each other's way need no order among them.
+      if (!independent(chains)) {
+        for (RankedChain& chain : chains) priority_.add_quality(chain);
+        priority_.sort(chains);
+      }
+      Claims claims(topology_, known_);
+      std::vector<StageChain> now;
+      std::vector<std::string> description;
+      for (RankedChain& ranked : chains) {
+        if (!claims.add(ranked.chain)) continue;
+        description.push_back(chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked));
+        now.push_back({open ? known_end_first(ranked.chain) : ranked.chain,
+                       open ? kernels::LineLaw::constant : line_law(options_.volume.law), open});
+      }
+      Stage stage = build_stage(mesh_, topology_, now, known_, rotations_, priority_.kind_order());
+      stage.name = std::to_string(number);
+      stage.description = std::move(description);
+      plan_.stages.push_back(std::move(stage));
+    }
+  }
+
+  RotationTable& rotations() { return rotations_; }
+
+ private:
+  [[nodiscard]] bool is_active(int block) const {
+    int const piece = topology_.blocks[block].pieces.front().piece;
+    return !known_(topology_.lattice.class_of(topology_.lattice.entity_of_piece(piece, {1, 1, 1})));
+  }
+  [[nodiscard]] bool has_active_blocks() const {
+    for (int b = 0; b < topology_.blocks.size(); ++b)
+      if (is_active(b)) return true;
+    return false;
+  }
+  [[nodiscard]] bool independent(std::vector<RankedChain> const& chains) const {
+    Claims claims(topology_, known_);
+    return std::all_of(chains.begin(), chains.end(), [&](RankedChain const& c) { return claims.add(c.chain); });
+  }
+  static Chain known_end_first(Chain const& chain) { return chain.first.known ? chain : reversed(chain); }
+
+  /// Every chain through active blocks with two known ends (open: one known, the other on the boundary).
+  std::vector<RankedChain> collect(bool open) {
+    std::vector<RankedChain> chains;
+    std::set<std::pair<int, int>> seen;
+    for (int block = 0; block < topology_.blocks.size(); ++block) {
+      if (!is_active(block)) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (seen.contains({block, axis})) continue;
+        std::optional<Chain> chain = find_chain(mesh_, topology_, known_, block, axis);
+        if (!chain) continue;
+        for (ChainStep const& step : chain->steps) seen.insert({step.block, step.to_chain.inverse().axis[0]});
+        int const known_ends = int(chain->first.known) + int(chain->last.known);
+        if (known_ends == (open ? 1 : 2)) chains.push_back(priority_.rank(std::move(*chain)));
+      }
+    }
+    return chains;
+  }
+
+  [[nodiscard]] std::string unreachable() const {
+    std::string text = "no chain of blocks connects known faces through";
+    int listed = 0;
+    for (int b = 0; b < topology_.blocks.size(); ++b) {
+      if (!is_active(b)) continue;
+      if (++listed <= 8) text += (listed > 1 ? ", " : " ") + block_name(mesh_, topology_, b);
+    }
+    if (listed > 8) text += " and " + std::to_string(listed - 8) + " more blocks";
+    return text + "; prescribe the motion of more of their boundary (rule \"fixed\" is enough)";
+  }
+
+  Mesh const& mesh_;
+  Topology const& topology_;
+  PlanOptions const& options_;
+  Plan& plan_;
+  Known& known_;
+  RotationTable rotations_;
+  Priority priority_;
+};
+
+}  // namespace
+
+PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion const& motion, SurfaceMotion const& surface,
+                       PlanOptions const& options) {
+  std::vector<NearField> const fields = near_fields(mesh, links, motion, surface, options.boundary_layers);
+  MergeLimits const limits = merge_limits(mesh, motion, fields, near_field_limits(mesh, links, fields));
+  Topology const topology = build_topology(mesh, links, limits);
+
+  PlannedMorph planned;
+  Plan& plan = planned.plan;
+  plan.n_nodes = mesh.n_nodes();
+  plan.mesh_size = links.mesh_size;
+  plan.notes.push_back(std::to_string(mesh.zones.size()) + " zones, " +
+                       std::to_string(topology.lattice.pieces().size()) + " pieces with whole faces, " +
+                       std::to_string(topology.blocks.size()) + " blocks");
+
+  Known known(topology.lattice.n_classes());
+  Scheduler scheduler(mesh, topology, options, plan, known);
+  std::vector<std::string> kind_order = PriorityRule{}.order;
+  for (PriorityRule const& rule : options.volume.priority)
+    if (rule.kind == PriorityRule::Kind::boundary) kind_order = rule.order;
+  planned.boundary = collect_boundary(mesh, topology, motion, surface, kind_order, scheduler.rotations(), known,
+                                      plan.boundary_copies);
+  Known const given = known;
+  if (auto poles =
+          pole_stage(mesh, topology, motion, kind_order, scheduler.rotations(), known, planned.boundary, plan))
+    plan.stages.push_back(std::move(*poles));
+  plan.boundary_nodes = planned.boundary.nodes;
+  scheduler.near_field(near_field_chains(mesh, topology, known, fields));
+  scheduler.volume();
+  plan_spreads(mesh, topology, motion, surface, given, scheduler.rotations(), plan);
+  return planned;
+}
+
+std::string describe(Plan const& plan) {
+  std::string text;
+  for (std::string const& note : plan.notes) text += note + "\n";
+  text += std::to_string(plan.boundary_nodes.size()) + " boundary nodes with given displacement\n";
+  for (Stage const& stage : plan.stages) {
+    text += "stage " + stage.name + ": " + std::to_string(stage.lines.chains.size()) + " chains, " +
+            std::to_string(stage.lines.first_line.back()) + " grid lines" +
+            (stage.sides.corrected.empty()
+                 ? ""
+                 : ", " + std::to_string(stage.sides.corrected.size()) + " with transfinite correction") +
+            "\n";
+    for (std::string const& line : stage.description) text += "  " + line + "\n";
+  }
+  for (std::size_t n = 0; n < plan.spreads.size(); ++n) {
+    text += "finalize " + std::to_string(n + 1) + ": " + std::to_string(plan.spreads[n].ends.size()) +
+            " nodes on slip surfaces, spread along " + std::to_string(plan.spreads[n].lines.first_line.back()) +
+            " grid lines\n";
+    for (std::string const& line : plan.spreads[n].description) text += "  " + line + "\n";
+  }
+  return text;
+}
+
+}  // namespace gridmorph

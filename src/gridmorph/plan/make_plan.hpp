@@ -1,0 +1,21 @@
+// From topology and motion to a plan.
+#pragma once
+
+#include <gridmorph/plan/boundary.hpp>
+#include <gridmorph/plan/plan.hpp>
+
+namespace gridmorph {
+
+/// A plan together with what is needed to evaluate the motion on its boundary nodes.
+struct PlannedMorph {
+  Plan plan;
+  BoundaryRequests boundary;
+};
+
+/// Plans the morph of a mesh whose links are connected and whose coverage is checked. Host only; coordinates are read
+/// on surfaces, and in whole blocks only where the quality rule has to break a tie.
+/// Throws PlanError naming blocks that no chain reaches and near fields that cannot be.
+PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion const& motion, SurfaceMotion const& surface,
+                       PlanOptions const& options);
+
+}  // namespace gridmorph

@@ -1,0 +1,57 @@
+// What a user can choose about topology, plan and volume morph. Plain values with their defaults.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+struct TopologyOptions {
+  /// Largest distance, in length units of the mesh, between nodes that a 1-to-1 interface declares coincident.
+  /// 0: the default, 1e-8 of the mesh size (1e-6 where a zone's coordinates are single precision).
+  double matching_tolerance = 0;
+  /// Name of the patch that faces claimed by nothing are given (kind `other`); empty: they are an error.
+  std::string open_faces;
+};
+
+/// Near field of moving walls (design: stage 0). Several may be given, for different walls.
+struct BoundaryLayer {
+  enum class Extent { block, layers, thickness };
+  enum class Mode { translate, rotate, blend };
+
+  std::vector<std::string> walls;   ///< selectors; empty: every wall patch whose rule moves it
+  Extent extent = Extent::block;    ///< block: up to the first opposite block face
+  int layers = 0;                   ///< cells, for Extent::layers; runs through block and zone limits
+  double thickness = 0;             ///< length, for Extent::thickness
+  Mode mode = Mode::translate;
+};
+
+/// How a displacement varies along a grid line, as a function of the fraction s of its baseline arc length.
+enum class Law {
+  linear,  ///< s
+  c1,      ///< 3 s^2 - 2 s^3: zero slope at both ends
+  c2       ///< 10 s^3 - 15 s^4 + 6 s^5: zero slope and curvature at both ends
+};
+
+/// One group of the chain priority; a later group breaks the ties of the one before.
+struct PriorityRule {
+  enum class Kind { boundary, quality, aspect_ratio };
+  Kind kind = Kind::boundary;
+  /// boundary: kinds from first to last; a chain ranks by its better end, then by its other end.
+  std::vector<std::string> order{"wall", "periodic", "inflow", "outflow"};
+};
+
+struct VolumeOptions {
+  Law law = Law::linear;
+  std::vector<PriorityRule> priority{{PriorityRule::Kind::boundary, {"wall", "periodic", "inflow", "outflow"}},
+                                     {PriorityRule::Kind::quality, {}},
+                                     {PriorityRule::Kind::aspect_ratio, {}}};
+};
+
+struct PlanOptions {
+  TopologyOptions topology;
+  std::vector<BoundaryLayer> boundary_layers;
+  VolumeOptions volume;
+};
+
+}  // namespace gridmorph

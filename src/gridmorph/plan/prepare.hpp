@@ -1,0 +1,27 @@
+// From a mesh and rules to a plan in one call: what the command line and most embedders use.
+#pragma once
+
+#include <gridmorph/plan/make_plan.hpp>
+#include <gridmorph/topology/topology.hpp>
+
+namespace gridmorph {
+
+/// Everything that is known before a displacement is evaluated.
+struct PreparedMorph {
+  Links links;
+  ResolvedMotion motion;
+  SurfaceMotion surface;
+  PlannedMorph planned;
+
+  [[nodiscard]] Plan const& plan() const { return planned.plan; }
+  /// Displacements of Plan::boundary_nodes by the rules. Throws MotionError (see evaluate_boundary).
+  [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& mesh) const {
+    return evaluate_boundary(mesh, planned.boundary, planned.plan.rotations, motion, surface, links.mesh_size);
+  }
+};
+
+/// Connects the zones, completes and checks the boundary, resolves the rules and plans. Adds patches to the mesh for
+/// poles and, where asked for, open faces. Throws MeshError, MotionError or PlanError.
+PreparedMorph prepare(Mesh& mesh, Motion const& motion, PlanOptions const& options);
+
+}  // namespace gridmorph

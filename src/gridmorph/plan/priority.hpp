@@ -1,0 +1,49 @@
+// Which chain comes first, and why.
+#pragma once
+
+#include <gridmorph/plan/chain.hpp>
+#include <gridmorph/plan/options.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+/// A chain with what it is ranked by. Values are quantised, so that round-off of a reoriented mesh decides nothing.
+struct RankedChain {
+  Chain chain;
+  std::array<int, 2> boundary{};     ///< kind ranks of the better and the worse end
+  long long quality = 0;             ///< smallest angle of its cells, 1e-6 degree
+  long long aspect_ratio = 0;        ///< length / width, 1e-6
+  std::array<long long, 3> centre{}; ///< last resort: place of the chain, 1e-9 of the mesh size
+};
+
+/// Computes ranks; the quality of a block (smallest angle between cell edges on the baseline) is computed when first
+/// needed and kept. Cost of a block's quality: one pass over its cells.
+class Priority {
+ public:
+  Priority(Mesh const& mesh, Topology const& topology, VolumeOptions const& options, double mesh_size);
+
+  /// Boundary rank and geometry; the quality only once it has to break a tie.
+  [[nodiscard]] RankedChain rank(Chain chain) const;
+  void add_quality(RankedChain& chain);
+  /// Best first, by the rule groups in the user's order, then by place.
+  void sort(std::vector<RankedChain>& chains) const;
+  /// Equal in the boundary group (chains of one stage).
+  [[nodiscard]] bool same_rank(RankedChain const& a, RankedChain const& b) const { return a.boundary == b.boundary; }
+  [[nodiscard]] std::string reason(RankedChain const& chain) const;
+  [[nodiscard]] std::vector<std::string> const& kind_order() const { return kind_order_; }
+
+ private:
+  double minimum_angle_deg(int block);
+
+  Mesh const& mesh_;
+  Topology const& topology_;
+  VolumeOptions const& options_;
+  double mesh_size_;
+  std::vector<std::string> kind_order_;
+  std::vector<double> angle_of_block_;
+};
+
+}  // namespace gridmorph

@@ -1,0 +1,173 @@
+// Cell quality of structured meshes, baseline against morphed, near and far field apart.
+//
+// Formulas are written beside the device functions in gridmorph/kernels/cell_quality.hpp, and what the statistics mean
+// in docs/quality.md. Results are bit-identical for Serial and for OpenMP with any number of threads: extremes take the
+// first cell in mesh order, sums are made in chunks of fixed size and added in mesh order.
+#pragma once
+
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridmorph {
+
+/// Which measures are reported; the order is that of QualityRegion::measure.
+enum class Measure {
+  aspect_ratio,        ///< longest edge / shortest edge of the cell
+  determinant_2x2x2,   ///< smallest / largest Jacobian determinant over the 8 corners
+  determinant_3x3x3,   ///< the same over 27 points
+  minimum_angle_deg,   ///< smallest angle between adjacent edges of the six faces
+  equiangle_skewness,  ///< max((amax - 90)/90, (90 - amin)/90)
+  volume,
+  volume_ratio,           ///< largest volume ratio (>= 1) to a face neighbour, across 1-to-1 interfaces too
+  relative_displacement,  ///< paper, section 3.2: largest relative displacement / mean edge length, worst direction
+  count
+};
+
+inline constexpr std::size_t n_measures = std::size_t(Measure::count);
+
+/// "aspect_ratio", ...: names in JSON files.
+std::string_view to_string(Measure measure);
+
+/// Whether the worst cell is the one with the largest value (aspect ratio, skewness, ratios) or with the smallest one.
+KOKKOS_INLINE_FUNCTION constexpr bool larger_is_worse(Measure m) {
+  return m == Measure::aspect_ratio || m == Measure::equiangle_skewness || m == Measure::volume_ratio ||
+         m == Measure::relative_displacement;
+}
+
+/// Statistics of one measure over one region.
+struct MeasureStatistics {
+  double min = 0, mean = 0, max = 0;
+  /// The cell with the worst value (largest aspect ratio, smallest determinant, ...): zone and 0-based i, j, k.
+  int worst_zone = -1;
+  Index3 worst_cell{0, 0, 0};
+  double worst = 0;
+};
+
+struct QualityRegion {
+  Index cells = 0;
+  Index inverted = 0;        ///< smallest of the 8 corner determinants (with the zone's handedness) not positive
+  Index newly_inverted = 0;  ///< those of them that are not inverted in the baseline (0 for the baseline itself)
+  Index collapsed = 0;       ///< cells with an edge of length zero (poles, wedges)
+  std::array<MeasureStatistics, n_measures> measure{};
+
+  [[nodiscard]] MeasureStatistics const& operator[](Measure m) const { return measure[std::size_t(m)]; }
+};
+
+/// A node of the mesh for messages: zone and 0-based i, j, k.
+struct NodeLocation {
+  int zone = -1;
+  Index3 node{0, 0, 0};
+};
+
+/// First cell height and angle between wall-leaving grid line and wall normal, over the nodes of the walls.
+struct WallQuality {
+  Index nodes = 0;
+  double first_height_min = 0, first_height_mean = 0, first_height_max = 0;
+  double orthogonality_deg_mean = 0, orthogonality_deg_max = 0;
+  NodeLocation orthogonality_worst;
+  /// Against the baseline (zero for the baseline itself).
+  double height_change_max = 0;  ///< largest |h / h_baseline - 1|
+  NodeLocation height_change_worst;
+  double orthogonality_change_deg_max = 0;
+  NodeLocation orthogonality_change_worst;
+};
+
+struct QualityReport {
+  QualityRegion near_field, far_field;
+  WallQuality wall;
+  std::vector<std::string> zone_names;  ///< for messages: MeasureStatistics::worst_zone is a number in it
+  int left_handed_zones = 0;
+  bool against_baseline = false;  ///< relative displacement and changes at walls were measured
+
+  [[nodiscard]] Index cells() const { return near_field.cells + far_field.cells; }
+};
+
+/// Node coordinates to read, one View per component, numbered as in Mesh (Zone::first_node). Converts from
+/// Coordinates on the host and from any three Views in MemorySpace.
+template <class MemorySpace>
+struct CoordinateViews {
+  Kokkos::View<double const*, MemorySpace> x, y, z;  ///< (n_nodes) [length]
+};
+
+/// Coordinates of the mesh itself.
+inline CoordinateViews<Kokkos::HostSpace> views(Coordinates const& c) { return {c.x, c.y, c.z}; }
+
+/// One wall for WallQuality: a patch range on one face of a zone; the wall is at node index 0 (side 0) or at the last
+/// one (side 1) along axis.
+struct WallFace {
+  int zone = -1;
+  IndexRange range;
+  int axis = 0;
+  int side = 0;
+};
+
+/// Faces of the given patches (numbers in Mesh::patches). Patches that lie on no zone face or are no wider than one node
+/// have no surface normal and are left out.
+std::vector<WallFace> wall_faces(Mesh const& mesh, std::span<int const> patches);
+
+/// Number of the first cell of each zone, and of all cells at the end: cells are numbered zone after zone, i fastest.
+/// Masks and fields per cell are numbered this way.
+std::vector<Index> first_cells(Mesh const& mesh);
+
+/// What is measured.
+template <class MemorySpace>
+struct QualityInput {
+  CoordinateViews<MemorySpace> coordinates;
+  /// The mesh before morphing; left empty, `coordinates` are the baseline.
+  CoordinateViews<MemorySpace> baseline;
+  /// (n_cells), nonzero: near field. Left empty, every cell is in the far field.
+  Kokkos::View<std::uint8_t const*, MemorySpace> near_field;
+  std::vector<WallFace> walls;
+};
+
+/// +1 or -1 per zone: the sign that makes most corner Jacobians of a zone positive. Left-handed zones are valid CGNS;
+/// decide from the baseline, so that a zone that morphing turned inside out does not pass as left-handed.
+/// Returns numbers, so it fences.
+template <class Exec>
+std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
+                                 CoordinateViews<typename Exec::memory_space> const& baseline);
+
+/// Measures every cell and the walls. Returns numbers, so it fences.
+///
+/// Throws MeshError when Views are shorter than the mesh, or a wall or interface lies outside its zone.
+/// Memory: 8 bytes per cell for volumes, below 1 byte per cell (5 on GPUs) for partial sums, 48 bytes per
+/// node of the largest wall face.
+/// Cost: one pass over the cells (about 1000 flops each), one over the volumes.
+template <class Exec>
+QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
+                              QualityInput<typename Exec::memory_space> const& input);
+
+/// Values of the given measures in every cell, (n_cells) each, in the order asked for: for output and plots.
+/// `volume_ratio` makes a temporary field of volumes. `near_field` and `walls` of the input are not used.
+template <class Exec>
+std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
+    Exec const& exec, Mesh const& mesh, QualityInput<typename Exec::memory_space> const& input,
+    std::span<Measure const> measures);
+
+/// A value and the cell it was found in; zone -1 when there was no cell to look at.
+struct CellValue {
+  double value = 1;
+  int zone = -1;
+  Index3 cell{0, 0, 0};
+};
+
+/// The smallest 3x3x3 determinant over the boxes (the first one in the order of the boxes if several are equal), as the
+/// report after each stage needs it. `handedness`: zone_handedness of the baseline. Fences. Throws MeshError for boxes
+/// outside their zone.
+template <class Exec>
+CellValue min_determinant(Exec const& exec, Mesh const& mesh,
+                          CoordinateViews<typename Exec::memory_space> const& coordinates,
+                          std::span<int const> handedness, std::span<CellBox const> boxes);
+
+/// "zone 'Zone 1' cell (i 3, j 1, k 7)", 1-based as users count.
+std::string describe_cell(std::string_view zone_name, Index3 const& cell);
+
+}  // namespace gridmorph

@@ -1,0 +1,63 @@
+#include <gridmorph/report/measure_text.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace gridmorph {
+
+MeasureText text_of(Measure measure) {
+  switch (measure) {
+    case Measure::aspect_ratio:
+      return {"aspect ratio", "longest / shortest of the 12 edges of a cell (collapsed edges left out); best 1"};
+    case Measure::determinant_2x2x2:
+      return {
+          "determinant 2x2x2",
+          "smallest / largest Jacobian determinant of the trilinear cell over its 8 corners; best 1, negative when any "
+          "is negative, never below -1; -1 when none is positive"};
+    case Measure::determinant_3x3x3:
+      return {
+          "determinant 3x3x3",
+          "smallest / largest Jacobian determinant of the trilinear cell over the 27 points with parameters 0, 1/2, 1; "
+          "best 1, negative when any is negative, never below -1; -1 when none is positive"};
+    case Measure::minimum_angle_deg:
+      return {"minimum angle [deg]",
+              "smallest angle between the two edges in the corners of the 6 faces, in degrees; best 90"};
+    case Measure::equiangle_skewness:
+      return {"equiangle skewness",
+              "max((amax - 90) / 90, (90 - amin) / 90) over the face angles in degrees; best 0, worst 1"};
+    case Measure::volume:
+      return {"volume",
+              "integral of the Jacobian determinant (Simpson's rule over 27 points, exact), in length units cubed"};
+    case Measure::volume_ratio:
+      return {
+          "volume ratio",
+          "largest of larger / smaller volume of a cell and each face neighbour, across 1-to-1 interfaces too; best 1, "
+          "unbounded (null) unless both volumes are positive"};
+    case Measure::relative_displacement:
+      return {
+          "relative displacement",
+          "per grid direction the largest |u_p - u_q| over the 4 edges pq of a cell along it, divided by their mean "
+          "baseline length (u: displacement of a node); the largest of the three directions"};
+    case Measure::count: break;
+  }
+  return {"unknown", ""};
+}
+
+std::string format_value(double value) {
+  if (std::isinf(value)) return value > 0 ? "unbounded" : "-unbounded";
+  return fmt::format("{:.4g}", value);
+}
+
+std::string worst_place(QualityReport const& report, MeasureStatistics const& statistics) {
+  if (statistics.worst_zone < 0) return "-";
+  return describe_cell(report.zone_names.at(std::size_t(statistics.worst_zone)), statistics.worst_cell);
+}
+
+std::string node_place(QualityReport const& report, NodeLocation const& location) {
+  if (location.zone < 0) return "-";
+  return fmt::format("zone '{}' node (i {}, j {}, k {})", report.zone_names.at(std::size_t(location.zone)),
+                     location.node[0] + 1, location.node[1] + 1, location.node[2] + 1);
+}
+
+}  // namespace gridmorph

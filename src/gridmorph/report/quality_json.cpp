@@ -1,0 +1,113 @@
+#include <gridmorph/report/measure_text.hpp>
+#include <gridmorph/report/quality_json.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace gridmorph {
+
+namespace {
+
+using nlohmann::json;
+
+/// JSON has no infinity.
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json one_based(Index3 const& p) { return {p[0] + 1, p[1] + 1, p[2] + 1}; }
+
+json statistics_json(QualityReport const& report, MeasureStatistics const& s) {
+  return {{"min", number(s.min)},
+          {"mean", number(s.mean)},
+          {"max", number(s.max)},
+          {"worst",
+           {{"value", number(s.worst)},
+            {"zone", report.zone_names.at(std::size_t(s.worst_zone))},
+            {"cell", one_based(s.worst_cell)}}}};
+}
+
+json region_json(QualityReport const& report, QualityRegion const& region) {
+  json measures = json::object();
+  for (std::size_t m = 0; m < n_measures; ++m)
+    if (region.measure[m].worst_zone >= 0)
+      measures[std::string(to_string(Measure(m)))] = statistics_json(report, region.measure[m]);
+  return {{"cells", region.cells},
+          {"inverted", region.inverted},
+          {"newly_inverted", region.newly_inverted},
+          {"collapsed", region.collapsed},
+          {"measures", std::move(measures)}};
+}
+
+json place_json(QualityReport const& report, NodeLocation const& location) {
+  if (location.zone < 0) return nullptr;
+  return {{"zone", report.zone_names.at(std::size_t(location.zone))}, {"node", one_based(location.node)}};
+}
+
+json wall_json(QualityReport const& report) {
+  WallQuality const& w = report.wall;
+  json walls = {{"nodes", w.nodes},
+                {"first_height",
+                 {{"min", number(w.first_height_min)},
+                  {"mean", number(w.first_height_mean)},
+                  {"max", number(w.first_height_max)}}},
+                {"orthogonality_deg",
+                 {{"mean", number(w.orthogonality_deg_mean)},
+                  {"max", number(w.orthogonality_deg_max)},
+                  {"worst", place_json(report, w.orthogonality_worst)}}}};
+  if (report.against_baseline) {
+    walls["first_height_change"] = {{"max", number(w.height_change_max)},
+                                    {"worst", place_json(report, w.height_change_worst)}};
+    walls["orthogonality_change_deg"] = {{"max", number(w.orthogonality_change_deg_max)},
+                                         {"worst", place_json(report, w.orthogonality_change_worst)}};
+  }
+  return walls;
+}
+
+json definitions() {
+  json list = json::object();
+  for (std::size_t m = 0; m < n_measures; ++m)
+    list[std::string(to_string(Measure(m)))] = {{"formula", text_of(Measure(m)).formula},
+                                                {"worse", larger_is_worse(Measure(m)) ? "larger" : "smaller"}};
+  list["inverted"] = {{"formula",
+                       "number of cells whose smallest corner Jacobian, times the handedness of the zone, is not "
+                       "positive; newly_inverted: those that were not inverted in the baseline"}};
+  list["collapsed"] = {{"formula",
+                        "number of cells with an edge shorter than 1e-12 of the longest edge of the cell; "
+                        "points where a collapsed edge makes the Jacobian vanish do not count"}};
+  list["first_height"] = {{"formula",
+                           "|v . n|, v from a wall node to the first node on the grid line that leaves the wall, "
+                           "n the wall normal by differences of wall nodes"}};
+  list["orthogonality_deg"] = {{"formula", "angle between v and n in degrees; best 0"}};
+  list["first_height_change"] = {{"formula", "|h / h_baseline - 1|"}};
+  list["near_field"] = {{"formula", "the boundary-layer region of the moving walls; far_field: everything else"}};
+  list["indices"] = {{"formula", "1-based, as in the mesh file; cell i lies between nodes i and i + 1"}};
+  return list;
+}
+
+}  // namespace
+
+void to_json(nlohmann::json& json, QualityReport const& report) {
+  json = {{"near_field", region_json(report, report.near_field)},
+          {"far_field", region_json(report, report.far_field)},
+          {"left_handed_zones", report.left_handed_zones},
+          {"walls", wall_json(report)}};
+}
+
+nlohmann::json quality_json(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
+                            QualityThresholds const& thresholds) {
+  json result = {{"definitions", definitions()},
+                 {"baseline", baseline},
+                 {"thresholds",
+                  {{"min_determinant", thresholds.min_determinant},
+                   {"max_relative_displacement", thresholds.max_relative_displacement}}}};
+  if (morphed) result["morphed"] = *morphed;
+  json list = json::array();
+  for (Shortfall const& s : shortfalls(baseline, morphed, thresholds))
+    list.push_back(
+        {{"severity", s.severity == Shortfall::Severity::failure ? "failure" : "warning"}, {"message", s.message}});
+  result["shortfalls"] = std::move(list);
+  return result;
+}
+
+}  // namespace gridmorph

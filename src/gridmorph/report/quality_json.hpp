@@ -1,0 +1,22 @@
+// The quality report as JSON, with the formulas of what it reports.
+#pragma once
+
+#include <gridmorph/quality/quality.hpp>
+#include <gridmorph/report/shortfalls.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+
+namespace gridmorph {
+
+/// One report: {"near_field": {"cells", "inverted", ..., "measures": {"aspect_ratio": {"min", "mean", "max", "worst":
+/// {"value", "zone", "cell": [i, j, k]}}, ...}}, "far_field": ..., "walls": ...}. Indices are 1-based; values without
+/// bound are null.
+void to_json(nlohmann::json& json, QualityReport const& report);
+
+/// The whole: "definitions" (formula of each measure), "baseline", "morphed" (if given), "thresholds", "shortfalls".
+nlohmann::json quality_json(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
+                            QualityThresholds const& thresholds);
+
+}  // namespace gridmorph

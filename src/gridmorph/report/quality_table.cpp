@@ -1,0 +1,146 @@
+#include <gridmorph/report/measure_text.hpp>
+#include <gridmorph/report/quality_table.hpp>
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+namespace gridmorph {
+
+namespace {
+
+/// One column: a region of one of the two reports.
+struct Column {
+  std::string_view region, state;
+  QualityRegion const* values;
+};
+
+std::vector<Column> columns(QualityReport const& baseline, std::optional<QualityReport> const& morphed) {
+  std::vector<Column> list;
+  auto const add = [&](std::string_view name, QualityRegion QualityReport::*region) {
+    if ((baseline.*region).cells == 0) return;
+    list.push_back({name, "baseline", &(baseline.*region)});
+    if (morphed) list.push_back({name, "morphed", &((*morphed).*region)});
+  };
+  add("near field", &QualityReport::near_field);
+  add("far field", &QualityReport::far_field);
+  return list;
+}
+
+constexpr std::string_view row_start = "{:<30}";
+constexpr std::string_view cell = "{:>14}";
+
+void row(std::string& out, std::string_view title, std::vector<Column> const& list,
+         std::function<std::string(QualityRegion const&)> const& value) {
+  out += fmt::format(fmt::runtime(row_start), title);
+  for (Column const& c : list) out += fmt::format(fmt::runtime(cell), value(*c.values));
+  out += '\n';
+}
+
+void measure_row(std::string& out, std::vector<Column> const& list, Measure measure, std::string_view statistic,
+                 double MeasureStatistics::*member) {
+  row(out, fmt::format("{}, {}", text_of(measure).title, statistic), list, [&](QualityRegion const& r) {
+    MeasureStatistics const& s = r[measure];
+    return s.worst_zone < 0 ? std::string("-") : format_value(s.*member);
+  });
+}
+
+void heading(std::string& out, std::string_view title, std::vector<Column> const& list) {
+  out += fmt::format(fmt::runtime(row_start), title);
+  for (Column const& c : list) out += fmt::format(fmt::runtime(cell), c.region);
+  out += '\n' + fmt::format(fmt::runtime(row_start), "");
+  for (Column const& c : list) out += fmt::format(fmt::runtime(cell), c.state);
+  out += '\n';
+}
+
+void walls(std::string& out, QualityReport const& baseline, std::optional<QualityReport> const& morphed) {
+  if (baseline.wall.nodes == 0) return;
+  out += fmt::format("\n{:<30}{:>14}", fmt::format("Walls ({} nodes)", baseline.wall.nodes), "baseline");
+  if (morphed) out += fmt::format("{:>14}", "morphed");
+  out += '\n';
+  auto const wall_row = [&](std::string_view title, double WallQuality::*member) {
+    out += fmt::format("{:<30}{:>14}", title, format_value(baseline.wall.*member));
+    if (morphed) out += fmt::format("{:>14}", format_value(morphed->wall.*member));
+    out += '\n';
+  };
+  wall_row("first cell height, min", &WallQuality::first_height_min);
+  wall_row("first cell height, mean", &WallQuality::first_height_mean);
+  wall_row("first cell height, max", &WallQuality::first_height_max);
+  wall_row("line to normal [deg], mean", &WallQuality::orthogonality_deg_mean);
+  wall_row("line to normal [deg], max", &WallQuality::orthogonality_deg_max);
+  if (!morphed) return;
+  out += fmt::format("largest change of a first cell height {:.3g} % at {}\n", 100 * morphed->wall.height_change_max,
+                     node_place(*morphed, morphed->wall.height_change_worst));
+  out += fmt::format("largest change of a line's angle to the normal {:.3g} deg at {}\n",
+                     morphed->wall.orthogonality_change_deg_max,
+                     node_place(*morphed, morphed->wall.orthogonality_change_worst));
+}
+
+void worst_cells(std::string& out, QualityReport const& report, std::string_view state) {
+  out += fmt::format("\nWorst cells, {}\n", state);
+  auto const region = [&](std::string_view name, QualityRegion const& r) {
+    for (Measure const m : {Measure::determinant_3x3x3, Measure::minimum_angle_deg, Measure::aspect_ratio,
+                            Measure::volume_ratio, Measure::relative_displacement}) {
+      MeasureStatistics const& s = r[m];
+      if (s.worst_zone < 0) continue;
+      out += fmt::format("{:<11}{:<24}{:>10}  {}\n", name, text_of(m).title, format_value(s.worst),
+                         worst_place(report, s));
+    }
+  };
+  region("near field", report.near_field);
+  region("far field", report.far_field);
+}
+
+}  // namespace
+
+std::string format_table(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
+                         QualityThresholds const& thresholds) {
+  std::vector<Column> const list = columns(baseline, morphed);
+  std::string out;
+  heading(out, "Quality", list);
+  row(out, "cells", list, [](QualityRegion const& r) { return std::to_string(r.cells); });
+  row(out, "inverted cells", list, [](QualityRegion const& r) { return std::to_string(r.inverted); });
+  if (baseline.near_field.collapsed + baseline.far_field.collapsed > 0 ||
+      (morphed && morphed->near_field.collapsed + morphed->far_field.collapsed > 0))
+    row(out, "cells with collapsed edges", list, [](QualityRegion const& r) { return std::to_string(r.collapsed); });
+  measure_row(out, list, Measure::aspect_ratio, "max", &MeasureStatistics::max);
+  measure_row(out, list, Measure::aspect_ratio, "mean", &MeasureStatistics::mean);
+  measure_row(out, list, Measure::determinant_3x3x3, "min", &MeasureStatistics::min);
+  measure_row(out, list, Measure::determinant_2x2x2, "min", &MeasureStatistics::min);
+  measure_row(out, list, Measure::minimum_angle_deg, "min", &MeasureStatistics::min);
+  measure_row(out, list, Measure::equiangle_skewness, "max", &MeasureStatistics::max);
+  measure_row(out, list, Measure::volume, "min", &MeasureStatistics::min);
+  measure_row(out, list, Measure::volume_ratio, "max", &MeasureStatistics::max);
+  if (morphed && morphed->against_baseline)
+    measure_row(out, list, Measure::relative_displacement, "max", &MeasureStatistics::max);
+  walls(out, baseline, morphed);
+  worst_cells(out, morphed ? *morphed : baseline, morphed ? "morphed" : "baseline");
+
+  auto const list_short = shortfalls(baseline, morphed, thresholds);
+  if (!list_short.empty()) out += '\n';
+  for (Shortfall const& s : list_short)
+    out += fmt::format("{}: {}\n", s.severity == Shortfall::Severity::failure ? "falls short" : "warning", s.message);
+  return out;
+}
+
+std::string format_short_table(QualityReport const& baseline, std::optional<QualityReport> const& morphed) {
+  auto const value = [](QualityRegion const& r, Measure m, double MeasureStatistics::*member) {
+    return r.cells == 0 ? std::string("-") : fmt::format("{:.{}f}", r[m].*member, m == Measure::aspect_ratio ? 1 : 3);
+  };
+  std::string out = fmt::format("{:<10}{:^24}{:^24}\n", "", "Aspect ratio (max)", "Determinant 3x3x3 (min)");
+  out += fmt::format("{:<10}{:>12}{:>12}{:>12}{:>12}\n", "Mesh", "near field", "far field", "near field", "far field");
+  auto const line = [&](std::string_view name, QualityReport const& r) {
+    out += fmt::format("{:<10}{:>12}{:>12}{:>12}{:>12}\n", name,
+                       value(r.near_field, Measure::aspect_ratio, &MeasureStatistics::max),
+                       value(r.far_field, Measure::aspect_ratio, &MeasureStatistics::max),
+                       value(r.near_field, Measure::determinant_3x3x3, &MeasureStatistics::min),
+                       value(r.far_field, Measure::determinant_3x3x3, &MeasureStatistics::min));
+  };
+  line("baseline", baseline);
+  if (morphed) line("morphed", *morphed);
+  return out;
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,20 @@
+// The quality report as text for terminals; plain ASCII, no colours, at most 100 columns but for zone names.
+#pragma once
+
+#include <gridmorph/quality/quality.hpp>
+#include <gridmorph/report/shortfalls.hpp>
+
+#include <optional>
+#include <string>
+
+namespace gridmorph {
+
+/// Near and far field, baseline and (if given) morphed side by side; walls; worst cells; what falls short of the
+/// thresholds. A near field without cells gets no columns.
+std::string format_table(QualityReport const& baseline, std::optional<QualityReport> const& morphed = {},
+                         QualityThresholds const& thresholds = {});
+
+/// The short table of the paper's Figure 14: largest aspect ratio and smallest 3x3x3 determinant.
+std::string format_short_table(QualityReport const& baseline, std::optional<QualityReport> const& morphed = {});
+
+}  // namespace gridmorph

@@ -1,0 +1,111 @@
+#!/usr/bin/python3
+"""Tests of scripts/picture on a small annulus with a wavy wall, written here straight through HDF5."""
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+PICTURE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts", "picture")
+
+
+def node(parent, name, label, data=None):
+    group = parent.create_group(name)
+    group.attrs["label"] = np.bytes_(label)
+    group.attrs["name"] = np.bytes_(name)
+    if data is not None:
+        group[" data"] = np.frombuffer(data.encode(), np.int8) if isinstance(data, str) else data
+    return group
+
+
+def write_annulus(path, shift=0.0, n=(17, 9, 13)):
+    """One zone: i axial, j radial from 1 to 2, k around over 0.5 rad; the wall on k = 1 waves by `shift`."""
+    ni, nj, nk = n
+    x, r, t = np.meshgrid(np.linspace(0, 1, ni), np.linspace(1, 2, nj), np.linspace(0, 1, nk), indexing="ij")
+    theta = 0.5 * t + shift * (1 - t) * np.sin(np.pi * x)
+    with h5py.File(path, "w") as file:
+        base = node(file, "Base", "CGNSBase_t")
+        for family in ("blade", "hub", "case"):
+            node(node(base, family, "Family_t"), "FamBC", "FamilyBC_t", "BCWall")
+        zone = node(base, "Zone 1", "Zone_t", np.array([[ni, nj, nk]]))
+        node(zone, "ZoneType", "ZoneType_t", "Structured")
+        grid = node(zone, "GridCoordinates", "GridCoordinates_t")
+        for letter, values in zip("XYZ", (x, r * np.cos(theta), r * np.sin(theta))):
+            node(grid, "Coordinate" + letter, "DataArray_t", values.T)
+        boundary = node(zone, "ZoneBC", "ZoneBC_t")
+        for family, begin, end in (("blade", [1, 1, 1], [ni, nj, 1]), ("hub", [1, 1, 1], [ni, 1, nk]), ("case", [1, nj, 1], [ni, nj, nk])):
+            bc = node(boundary, family, "BC_t", "FamilySpecified")
+            node(bc, "FamilyName", "FamilyName_t", family)
+            node(bc, "PointRange", "IndexRange_t", np.array([begin, end]))
+
+
+def image_size(path):
+    with open(path, "rb") as file:
+        head = file.read(24)
+    assert head[:8] == b"\x89PNG\r\n\x1a\n", path
+    return struct.unpack(">II", head[16:24])
+
+
+class Picture(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.base, self.morphed = self.path("base.cgns"), self.path("morphed.cgns")
+        write_annulus(self.base)
+        write_annulus(self.morphed, 0.1)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def run_picture(self, *arguments):
+        return subprocess.run([sys.executable, PICTURE, *arguments, "--out", self.path("out"), "--dpi", "50"],
+                              capture_output=True, text=True, check=False)
+
+    def expect_pictures(self, run, names):
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(sorted(os.listdir(self.path("out"))), sorted(n + ".png" for n in names))
+        for name in names:
+            width, height = image_size(self.path(f"out/{name}.png"))
+            self.assertGreater(width, 300)
+            self.assertGreater(height, 100)
+
+    walls = ("section", "leading_edge", "trailing_edge", "boundary_layer")
+
+    def test_span_sections_show_the_wall_in_large_scale(self):
+        self.expect_pictures(self.run_picture(self.base, self.morphed, "--span", "0.4"), self.walls)
+
+    def test_sections_at_the_end_walls_are_whole(self):
+        for span in ("0", "1"):
+            self.expect_pictures(self.run_picture(self.base, self.morphed, "--span", span), self.walls)
+
+    def test_planes_and_index_planes_work_for_one_mesh_or_two(self):
+        self.expect_pictures(self.run_picture(self.base, "--k", "3", "--color", "none", "--box", "0", "1", "0", "1"),
+                             (*self.walls, "box"))
+        self.expect_pictures(self.run_picture(self.base, self.morphed, "--plane", "x=0.5", "--color", "displacement"),
+                             (*self.walls, "box"))
+
+    def test_a_plane_across_the_grid_lines_is_drawn(self):
+        self.expect_pictures(self.run_picture(self.base, self.morphed, "--plane", "z=0.1"), ("section",))
+
+    def test_bad_input_is_one_line_and_exit_status_two(self):
+        write_annulus(self.path("other.cgns"), n=(5, 5, 5))
+        with open(self.path("noise.cgns"), "wb") as file:
+            file.write(b"no mesh at all")
+        for arguments, words in (((self.path("gone.cgns"),), "no such file"), ((self.path("noise.cgns"),), "neither an HDF5 nor an ADF"),
+                                 ((self.base, self.path("other.cgns")), "differs in size"), ((self.base, "--plane", "q=1"), "x=0.5"),
+                                 ((self.base, "--plane", "x=7"), "meets no zone"), ((self.base, "--span", "2"), "within 0 and 1"),
+                                 ((self.base, "--wall", "wing"), "blade")):
+            run = self.run_picture(*arguments)
+            self.assertEqual(run.returncode, 2, arguments)
+            self.assertIn(words, run.stderr)
+            self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,103 @@
+#include "invariants/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gridmorph::test {
+namespace {
+
+template <class Visit>
+void each_node(Zone const& zone, IndexRange const& r, Visit&& visit) {
+  for (int k = r.begin[2]; k < r.end[2]; ++k)
+    for (int j = r.begin[1]; j < r.end[1]; ++j)
+      for (int i = r.begin[0]; i < r.end[0]; ++i) visit(Index3{i, j, k}, zone.node({i, j, k}));
+}
+
+}  // namespace
+
+Index interface_nodes_that_differ(Outcome const& run) {
+  Index count = 0;
+  for (Interface1to1 const& face : run.mesh.interfaces) {
+    if (face.periodic) continue;
+    each_node(run.mesh.zones[face.zone], face.range, [&](Index3 const& p, Index n) {
+      count += same_bits(run.u(n), run.u(run.mesh.zones[face.donor_zone].node(face.to_donor(p)))) ? 0 : 1;
+    });
+  }
+  return count;
+}
+
+double periodic_mismatch(Outcome const& run) {
+  double worst = 0;
+  for (Interface1to1 const& face : run.mesh.interfaces) {
+    if (!face.periodic) continue;
+    std::vector<Vec3> own, donor;
+    std::vector<std::pair<Index, Index>> nodes;
+    each_node(run.mesh.zones[face.zone], face.range, [&](Index3 const& p, Index n) {
+      Index const d = run.mesh.zones[face.donor_zone].node(face.to_donor(p));
+      nodes.emplace_back(n, d);
+      own.push_back(run.mesh.coordinates[n]);
+      donor.push_back(run.mesh.coordinates[d]);
+    });
+    bool const turns = norm(face.periodic->rotation_angle_rad) > 0;
+    RigidTransform const t = turns ? fit_rigid_transform(own, donor) : face.periodic->declared;
+    for (auto const& [n, d] : nodes) {
+      worst = std::max(worst, distance(t.rotation * run.u(n), run.u(d)));
+      double const before = distance(t(run.mesh.coordinates[n]), run.mesh.coordinates[d]);
+      double const after = distance(t(run.morphed.position[n]), run.morphed.position[d]);
+      worst = std::max(worst, after - before);
+    }
+  }
+  return worst;
+}
+
+double off_slip_surface(Outcome const& run) {
+  double worst = 0;
+  for (int p = 0; p < int(run.mesh.patches.size()); ++p) {
+    auto const surface = run.prepared.surface.slip_surface(p);
+    if (!surface) continue;
+    Patch const& patch = run.mesh.patches[p];
+    auto const offset = [&](Vec3 const& x) {
+      if (surface->kind == SlipSurface::Kind::axial) return dot(x - surface->origin, surface->direction);
+      Vec3 const d = x - surface->origin;
+      double const a = dot(d, surface->direction);
+      if (surface->kind == SlipSurface::Kind::plane) return a;
+      return norm(d - a * surface->direction) - surface->profile(a);
+    };
+    each_node(run.mesh.zones[patch.zone], patch.range, [&](Index3 const&, Index n) {
+      double const change = offset(run.morphed.position[n]) - offset(run.mesh.coordinates[n]);
+      worst = std::max(worst, std::abs(change) / surface->size);
+    });
+  }
+  return worst;
+}
+
+double known_displacement_error(Outcome const& run) {
+  double worst = 0;
+  for (int p = 0; p < int(run.mesh.patches.size()); ++p) {
+    int const rule = run.prepared.motion.patch[p].rule;
+    if (!run.prepared.surface.is_explicit(rule)) continue;
+    Patch const& patch = run.mesh.patches[p];
+    each_node(run.mesh.zones[patch.zone], patch.range, [&](Index3 const&, Index n) {
+      Vec3 const x = run.mesh.coordinates[n];
+      Vec3 wanted;
+      run.prepared.surface.displacement(rule, {&x, 1}, {&wanted, 1});
+      worst = std::max(worst, distance(wanted, run.u(n)));
+    });
+  }
+  return worst;
+}
+
+Index boundary_values_changed(Outcome const& run) {
+  Index count = 0;
+  for (std::size_t n = 0; n < run.boundary.size(); ++n)
+    count += run.u(run.plan().boundary_nodes[n]) == run.boundary[n] ? 0 : 1;
+  return count;
+}
+
+Index not_finite(Outcome const& run) {
+  Index count = 0;
+  for (Index n = 0; n < run.mesh.n_nodes(); ++n) count += std::isfinite(norm(run.u(n))) ? 0 : 1;
+  return count;
+}
+
+}  // namespace gridmorph::test

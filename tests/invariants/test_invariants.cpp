@@ -1,0 +1,128 @@
+// What every morph must hold, whatever the mesh (design: invariants of the volume morph).
+#include "invariants/cases.hpp"
+#include "invariants/checks.hpp"
+
+#include <gridmorph/core/instantiate.hpp>
+
+#include "support/random.hpp"
+#include "support/scramble.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gridmorph::test {
+namespace {
+
+class Invariants : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Invariants, EveryNodeGetsAFiniteDisplacementAndSomeMove) {
+  Outcome const r = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  EXPECT_EQ(not_finite(r), 0);
+  double largest = 0;
+  for (Index n = 0; n < r.mesh.n_nodes(); ++n) largest = std::max(largest, norm(r.u(n)));
+  EXPECT_GT(largest, 1e-4 * r.plan().mesh_size);
+}
+
+TEST_P(Invariants, ZeroMotionLeavesEveryCoordinateBitIdentical) {
+  Mesh mesh = GetParam().mesh();
+  // Zeros of either sign, as files hold them.
+  Random random(3);
+  for (auto const& c : {mesh.coordinates.x, mesh.coordinates.y, mesh.coordinates.z})
+    for (Index n = 0; n < mesh.n_nodes(); ++n)
+      if (c(n) == 0 && random.coin()) c(n) = -0.0;
+  Outcome const r = morph(std::move(mesh), GetParam().motion(0), GetParam().options);
+  EXPECT_EQ(different_bits(r.morphed.position, r.mesh.coordinates), 0);
+}
+
+TEST_P(Invariants, CommonTranslationTranslatesEveryNode) {
+  Vec3 const t = GetParam().translation;
+  Outcome const r = morph(GetParam().mesh(),
+                    motion({rule(GetParam().all_patches, function_rule([t](Vec3 const&) { return t; }))}));
+  double worst = 0;
+  for (Index n = 0; n < r.mesh.n_nodes(); ++n) worst = std::max(worst, distance(r.u(n), t));
+  EXPECT_LE(worst, 1e-15 * 16 * norm(t));
+}
+
+TEST_P(Invariants, TwoRunsAreBitIdentical) {
+  Outcome const a = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  Outcome const b = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  EXPECT_EQ(different_bits(a.morphed.position, b.morphed.position), 0);
+}
+
+/// Morphs on Exec and counts the nodes that differ from the default host space's.
+template <class Exec>
+void compare_with(Outcome const& reference, char const* name) {
+  Morphed const other = run_plan(Exec(), reference.mesh, reference.plan(), reference.boundary);
+  EXPECT_EQ(different_bits(other.displacement, reference.morphed.displacement), 0) << name;
+  EXPECT_EQ(different_bits(other.position, reference.morphed.position), 0) << name;
+}
+
+TEST_P(Invariants, AllHostExecutionSpacesAreBitIdentical) {
+  Outcome const reference = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+#define GRIDMORPH_COMPARE(Exec) \
+  if constexpr (Kokkos::SpaceAccessibility<Kokkos::HostSpace, Exec::memory_space>::accessible) \
+    compare_with<Exec>(reference, #Exec);
+  GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_COMPARE)
+#undef GRIDMORPH_COMPARE
+}
+
+TEST_P(Invariants, CoincidentNodesMoveBitIdentically) {
+  Outcome const r = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  EXPECT_EQ(interface_nodes_that_differ(r), 0);
+}
+
+TEST_P(Invariants, PeriodicCopiesMatch) {
+  Outcome const r = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  EXPECT_LE(periodic_mismatch(r), 1e-12 * r.plan().mesh_size);
+}
+
+TEST_P(Invariants, SlipNodesStayOnTheirSurface) {
+  Outcome const r = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  EXPECT_LE(off_slip_surface(r), 1e-10);
+}
+
+TEST_P(Invariants, KnownDisplacementsAreHonoured) {
+  Outcome const r = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  EXPECT_EQ(boundary_values_changed(r), 0);
+  // Coincident nodes of different zones differ by round-off, and so does what the rule asks of them.
+  EXPECT_LE(known_displacement_error(r), 1e-14 * r.plan().mesh_size);
+}
+
+/// The displacement of no node changes by more than 1e-12 of the mesh size when the mesh is stored otherwise.
+void expect_same_when_scrambled(Case const& c, Scramble const& what) {
+  Outcome const plain = morph(c.mesh(), c.motion(1), c.options);
+  ScrambledMesh scrambled = scramble(plain.mesh, what);
+  SCOPED_TRACE("seed " + std::to_string(what.seed));
+  Outcome const other = morph(std::move(scrambled.mesh), c.motion(1), c.options);
+  double worst = 0;
+  Index at = 0;
+  for (Index n = 0; n < other.mesh.n_nodes(); ++n) {
+    double const d = distance(other.u(n), plain.u(scrambled.old_node[n]));
+    if (!(d <= worst)) {
+      worst = d;
+      at = n;
+    }
+  }
+  EXPECT_LE(worst, 1e-12 * plain.plan().mesh_size)
+      << describe_node(other.mesh, at) << ", before " << describe_node(plain.mesh, scrambled.old_node[at]) << '\n'
+      << describe(plain.plan()) << describe(other.plan());
+  EXPECT_EQ(interface_nodes_that_differ(other), 0);
+  EXPECT_LE(periodic_mismatch(other), 1e-12 * plain.plan().mesh_size);
+}
+
+TEST_P(Invariants, TurningMirroringAndRenumberingZonesChangesNothing) {
+  for (unsigned seed = 1; seed <= (reduced() ? 1u : 4u); ++seed)
+    expect_same_when_scrambled(GetParam(), {seed, 0, true, true, true});
+}
+
+TEST_P(Invariants, CuttingZonesAtRandomChangesNothing) {
+  for (unsigned seed = 1; seed <= (reduced() ? 1u : 4u); ++seed)
+    expect_same_when_scrambled(GetParam(), {seed, int(seed), true, true, true});
+}
+
+INSTANTIATE_TEST_SUITE_P(Built, Invariants, ::testing::ValuesIn(cases()),
+                         [](auto const& info) { return case_name(info.param); });
+
+}  // namespace
+}  // namespace gridmorph::test

@@ -1,0 +1,102 @@
+// Shared by the tests of files: a folder of their own, and a way to look at a file without the code under test.
+#pragma once
+
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gridmorph::test {
+
+/// An empty folder, removed at the end of the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "gridmorph_io_XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(TemporaryFolder const&) = delete;
+  TemporaryFolder& operator=(TemporaryFolder const&) = delete;
+  [[nodiscard]] std::string file(std::string const& name) const { return (path_ / name).string(); }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> out;
+    for (auto const& entry : std::filesystem::directory_iterator(path_)) out.push_back(entry.path().filename().string());
+    return out;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Path of a mesh from outside, or "" when the folder is not there.
+inline std::string shared_mesh(std::string const& name) {
+  char const* folder = std::getenv("GRIDMORPH_MESHES");
+  auto const path = std::filesystem::path(folder ? folder : GRIDMORPH_MESHES_DIR) / name;
+  return std::filesystem::exists(path) ? path.string() : "";
+}
+
+inline std::string bytes_of(std::string const& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline void write_bytes(std::string const& path, std::string const& bytes) {
+  std::ofstream(path, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+}
+
+/// Every node of a file: path -> "label|type|dimensions|bytes".
+std::map<std::string, std::string> dump_tree(std::string const& path);
+/// The bytes at the end of a dump.
+inline std::string payload(std::string const& dumped) { return dumped.substr(dumped.find('\n') + 1); }
+
+/// Bit-identical coordinates.
+inline void expect_same_coordinates(Coordinates const& a, Coordinates const& b) {
+  ASSERT_EQ(a.size(), b.size());
+  auto const bytes = std::size_t(a.size()) * sizeof(double);
+  EXPECT_EQ(std::memcmp(a.x.data(), b.x.data(), bytes), 0);
+  EXPECT_EQ(std::memcmp(a.y.data(), b.y.data(), bytes), 0);
+  EXPECT_EQ(std::memcmp(a.z.data(), b.z.data(), bytes), 0);
+}
+
+/// Largest distance between nodes that the interfaces of a mesh declare coincident (periodic ones after `declared`).
+inline double largest_mismatch(Mesh const& mesh, bool periodic) {
+  double worst = 0;
+  for (auto const& face : mesh.interfaces) {
+    if (face.periodic.has_value() != periodic) continue;
+    for (int k = face.range.begin[2]; k < face.range.end[2]; ++k)
+      for (int j = face.range.begin[1]; j < face.range.end[1]; ++j)
+        for (int i = face.range.begin[0]; i < face.range.end[0]; ++i) {
+          Index3 const own{i, j, k};
+          Vec3 p = mesh.coordinates[mesh.zones[face.zone].node(own)];
+          if (face.periodic) p = face.periodic->declared(p);
+          worst = std::max(worst, distance(p, mesh.coordinates[mesh.zones[face.donor_zone].node(face.to_donor(own))]));
+        }
+  }
+  return worst;
+}
+
+/// The message of the exception of type E that f throws; a failure if it throws none.
+template <class E, class F>
+std::string message_of(F f) {
+  try {
+    f();
+  } catch (E const& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return "";
+}
+
+}  // namespace gridmorph::test

@@ -1,0 +1,282 @@
+// Writing coordinates back: everything else in the file stays what it was, and failures leave nothing behind.
+#include "block_lattice.hpp"
+#include "io_support.hpp"
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+
+namespace gridmorph::test {
+namespace {
+
+Coordinates copy_of(Coordinates const& c) {
+  Coordinates out(c.size());
+  Kokkos::deep_copy(out.x, c.x);
+  Kokkos::deep_copy(out.y, c.y);
+  Kokkos::deep_copy(out.z, c.z);
+  return out;
+}
+
+Coordinates moved(Coordinates const& c) {
+  Coordinates out(c.size());
+  for (Index n = 0; n < c.size(); ++n) {
+    Vec3 const p = c[n];
+    out.set(n, {p.x + 0.01 * std::sin(p.y), p.y - 0.02 * p.x, p.z});
+  }
+  return out;
+}
+
+bool is_coordinate(std::string const& path) {
+  return path.find("/GridCoordinates/Coordinate") != std::string::npos;
+}
+
+/// The trees of two files without their coordinates.
+void expect_same_but_coordinates(std::string const& a, std::string const& b) {
+  auto const before = dump_tree(a), after = dump_tree(b);
+  for (auto const& [path, content] : before) {
+    ASSERT_TRUE(after.contains(path)) << path;
+    auto const& found = after.at(path);
+    if (is_coordinate(path)) {
+      EXPECT_EQ(found.substr(0, found.find('\n')), content.substr(0, content.find('\n'))) << path;
+      EXPECT_EQ(found.size(), content.size()) << path;
+    } else {
+      EXPECT_EQ(found, content) << path;
+    }
+  }
+}
+
+char const* const shared[] = {"axial_turbine_stage_H.cgns", "axialTurbine_7blk.cgns", "rotorstator.cgns",
+                              "mdo_tutorial_000_vol.cgns", "multi.cgns", "717_wl_L2.cgns"};
+
+TEST(WriteMorphed, ZeroDisplacementLeavesEveryNodeOfRealFilesBitIdentical) {
+  TemporaryFolder const folder;
+  int tried = 0;
+  for (auto const* name : shared) {
+    auto const path = shared_mesh(name);
+    if (path.empty()) continue;
+    ++tried;
+    Mesh const mesh = read_mesh(path);
+    auto const out = folder.file(name);
+    write_morphed(path, out, mesh, mesh.coordinates);
+    EXPECT_EQ(dump_tree(path), dump_tree(out)) << name;
+  }
+  if (tried == 0) GTEST_SKIP() << "the shared meshes are not there (set GRIDMORPH_MESHES to their folder)";
+}
+
+TEST(WriteMorphed, RealFilesChangeInTheirCoordinatesAlone) {
+  TemporaryFolder const folder;
+  int tried = 0;
+  for (auto const* name : shared) {
+    auto const path = shared_mesh(name);
+    if (path.empty()) continue;
+    ++tried;
+    Mesh const mesh = read_mesh(path);
+    Coordinates const morphed = moved(mesh.coordinates);
+    auto const out = folder.file(name);
+    write_morphed(path, out, mesh, morphed);
+    expect_same_but_coordinates(path, out);
+    expect_same_coordinates(read_mesh(out).coordinates, morphed);
+  }
+  if (tried == 0) GTEST_SKIP() << "the shared meshes are not there (set GRIDMORPH_MESHES to their folder)";
+}
+
+class Formats : public testing::TestWithParam<FileFormat> {
+ protected:
+  Mesh write_lattice(Lattice const& lattice, WriteOptions options = {}) {
+    options.format = GetParam();
+    write_mesh(input_, LatticeBuilder(lattice, 4).build(), options);
+    return read_mesh(input_);
+  }
+  TemporaryFolder folder_;
+  std::string const input_ = folder_.file("in.cgns");
+  std::string const output_ = folder_.file("out.cgns");
+  Lattice const brick_{{{{0, 3, 7}, {0, 4}, {0, 2, 5}}}};
+};
+INSTANTIATE_TEST_SUITE_P(WriteMorphed, Formats, testing::Values(FileFormat::cgns_hdf5, FileFormat::cgns_adf),
+                         [](auto const& info) { return std::string(info.param == FileFormat::cgns_hdf5 ? "hdf5" : "adf"); });
+
+TEST_P(Formats, SinglePrecisionArraysAreRoundedOnceAndStaySingle) {
+  Lattice lattice = brick_;
+  lattice.single_precision = true;
+  Mesh const mesh = write_lattice(lattice);
+  write_morphed(input_, output_, mesh, mesh.coordinates);
+  EXPECT_EQ(dump_tree(input_), dump_tree(output_));
+  Coordinates const morphed = moved(mesh.coordinates);
+  write_morphed(input_, output_, mesh, morphed);
+  expect_same_but_coordinates(input_, output_);
+  Mesh const back = read_mesh(output_);
+  for (Index n = 0; n < morphed.size(); ++n) {
+    EXPECT_EQ(back.coordinates.x(n), double(float(morphed.x(n))));
+    EXPECT_EQ(back.coordinates.y(n), double(float(morphed.y(n))));
+  }
+}
+
+TEST_P(Formats, TwoDimensionalFilesGetPlaneZeroBack) {
+  Lattice lattice{{{{0, 3, 7}, {0, 4, 6}, {0, 1}}}};
+  lattice.two_dimensional = true;
+  for (int physical : {2, 3}) {
+    Mesh const mesh = write_lattice(lattice, {.physical_dimension = physical});
+    Coordinates const morphed = moved(mesh.coordinates);
+    OutputFields fields;
+    fields.displacement = true;
+    fields.cells.push_back({"Number", {}});
+    for (Index c = 0; c < mesh.n_cells(); ++c) fields.cells[0].values.push_back(double(c));
+    write_morphed(input_, output_, mesh, morphed, fields);
+    expect_same_but_coordinates(input_, output_);
+    Mesh const back = read_mesh(output_);
+    for (auto const& zone : back.zones)
+      for (int j = 0; j < zone.extent[1]; ++j)
+        for (int i = 0; i < zone.extent[0]; ++i) EXPECT_EQ(back.coordinates[zone.node({i, j, 0})], morphed[zone.node({i, j, 0})]);
+    auto const tree = dump_tree(output_);
+    auto const& number = tree.at("/Base/Zone 1/MorphCells/Number");
+    Index const cells = Index(mesh.zones[0].extent[0] - 1) * (mesh.zones[0].extent[1] - 1);
+    EXPECT_EQ(payload(number).size(), std::size_t(cells) * sizeof(double));
+    EXPECT_EQ(tree.contains("/Base/Zone 1/MorphNodes/DisplacementZ"), physical == 3);
+  }
+}
+
+TEST_P(Formats, FieldsAreAddedForEveryZone) {
+  Mesh const mesh = write_lattice(brick_);
+  Coordinates const morphed = moved(mesh.coordinates);
+  OutputFields fields;
+  fields.displacement = true;
+  fields.nodes.push_back({"NodeNumber", {}});
+  for (Index n = 0; n < mesh.n_nodes(); ++n) fields.nodes[0].values.push_back(double(n));
+  fields.cells.push_back({"CellNumber", {}});
+  for (Index c = 0; c < mesh.n_cells(); ++c) fields.cells[0].values.push_back(double(c));
+  write_morphed(input_, output_, mesh, morphed, fields);
+  expect_same_but_coordinates(input_, output_);
+  auto const tree = dump_tree(output_);
+  Index first_cell = 0;
+  for (auto const& zone : mesh.zones) {
+    auto const nodes = "/Base/" + zone.name + "/MorphNodes", cells = "/Base/" + zone.name + "/MorphCells";
+    EXPECT_EQ(payload(tree.at(nodes + "/GridLocation")), "Vertex");
+    EXPECT_EQ(payload(tree.at(cells + "/GridLocation")), "CellCenter");
+    auto const values = [&](std::string const& path) {
+      auto const raw = payload(tree.at(path));
+      std::vector<double> out(raw.size() / sizeof(double));
+      std::memcpy(out.data(), raw.data(), raw.size());
+      return out;
+    };
+    auto const dx = values(nodes + "/DisplacementX"), numbers = values(nodes + "/NodeNumber"), cell_numbers = values(cells + "/CellNumber");
+    ASSERT_EQ(Index(dx.size()), zone.size());
+    for (Index n = 0; n < zone.size(); ++n) {
+      EXPECT_EQ(dx[n], morphed.x(zone.first_node + n) - mesh.coordinates.x(zone.first_node + n));
+      EXPECT_EQ(numbers[n], double(zone.first_node + n));
+    }
+    ASSERT_EQ(Index(cell_numbers.size()), Index(zone.extent[0] - 1) * (zone.extent[1] - 1) * (zone.extent[2] - 1));
+    EXPECT_EQ(cell_numbers.front(), double(first_cell));
+    first_cell += Index(cell_numbers.size());
+  }
+  // Once more onto its own output: the solutions that are there stay.
+  write_morphed(output_, output_, mesh, mesh.coordinates, fields);
+  auto const twice = dump_tree(output_);
+  EXPECT_EQ(twice.at("/Base/Zone 1/MorphNodes/DisplacementX"), tree.at("/Base/Zone 1/MorphNodes/DisplacementX"));
+  EXPECT_TRUE(twice.contains("/Base/Zone 1/MorphNodes2/DisplacementX"));
+}
+
+TEST_P(Formats, OutputMayBeTheInput) {
+  Mesh const mesh = write_lattice(brick_);
+  Coordinates const morphed = moved(mesh.coordinates);
+  write_morphed(input_, input_, mesh, morphed);
+  expect_same_coordinates(read_mesh(input_).coordinates, morphed);
+  EXPECT_EQ(folder_.names().size(), 1U);
+}
+
+TEST_P(Formats, ReadOnlyInputsGiveWritableOutputs) {
+  Mesh const mesh = write_lattice(brick_);
+  ASSERT_EQ(chmod(input_.c_str(), 0444), 0);
+  write_morphed(input_, output_, mesh, mesh.coordinates);
+  struct stat status {};
+  ASSERT_EQ(stat(output_.c_str(), &status), 0);
+  EXPECT_NE(status.st_mode & S_IWUSR, 0U);
+}
+
+TEST_P(Formats, AnotherFileThanTheMeshCameFromIsRefused) {
+  Mesh mesh = write_lattice(brick_);
+  mesh.zones[1].name = "Other";
+  auto const message = message_of<IoError>([&] { write_morphed(input_, output_, mesh, mesh.coordinates); });
+  EXPECT_NE(message.find("Other"), std::string::npos) << message;
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{"in.cgns"});
+}
+
+TEST_P(Formats, NonFiniteCoordinatesAreNotWritten) {
+  Mesh const mesh = write_lattice(brick_);
+  Coordinates const morphed = copy_of(mesh.coordinates);
+  morphed.y(7) = std::nan("");
+  auto const message = message_of<MeshError>([&] { write_morphed(input_, output_, mesh, morphed); });
+  EXPECT_NE(message.find("1 node of zone 'Zone 1'"), std::string::npos) << message;
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{"in.cgns"});
+}
+
+/// While it lives no file may grow beyond `bytes`: what a full disk looks like to a program.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit const limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(FileSizeLimit const&) = delete;
+  FileSizeLimit& operator=(FileSizeLimit const&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = nullptr;
+};
+
+TEST_P(Formats, AFullDiskIsNoticedAndLeavesNothingBehind) {
+  Mesh const mesh = write_lattice(brick_);
+  auto const size = rlim_t(std::filesystem::file_size(input_));
+  write_bytes(output_, "precious");
+  OutputFields fields;
+  fields.displacement = true;
+  fields.nodes.push_back({"Large", std::vector<double>(std::size_t(mesh.n_nodes()), 1.0)});
+  // At the first limits the copy fails, at the later ones the fields that are added to it.
+  for (rlim_t const limit : {rlim_t(1), size / 2, size - 1, size, size + 512, size + 4096, size + 8192}) {
+    SCOPED_TRACE(limit);
+    std::string message;
+    {
+      FileSizeLimit const full(limit);
+      message = message_of<MachineError>([&] { write_morphed(input_, output_, mesh, mesh.coordinates, fields); });
+    }
+    EXPECT_NE(message.find("cannot be"), std::string::npos) << message;
+    EXPECT_EQ(bytes_of(output_), "precious");
+    EXPECT_EQ(folder_.names().size(), 2U);
+  }
+  // And the library is still in order afterwards.
+  write_morphed(input_, output_, mesh, mesh.coordinates, fields);
+  expect_same_coordinates(read_mesh(output_).coordinates, mesh.coordinates);
+}
+
+TEST_P(Formats, AFullDiskStopsNewFilesToo) {
+  Mesh const mesh = LatticeBuilder(brick_, 4).build();
+  write_mesh(input_, mesh, {.format = GetParam()});
+  auto const size = rlim_t(std::filesystem::file_size(input_));
+  for (rlim_t limit = 0; limit < size; limit += std::max<rlim_t>(1, size / 17)) {
+    SCOPED_TRACE(limit);
+    {
+      FileSizeLimit const full(limit);
+      EXPECT_THROW(write_mesh(output_, mesh, {.format = GetParam()}), MachineError);
+    }
+    EXPECT_EQ(folder_.names().size(), 1U);
+  }
+}
+
+TEST_P(Formats, MissingFoldersAreNamed) {
+  Mesh const mesh = write_lattice(brick_);
+  auto const message = message_of<IoError>([&] { write_morphed(input_, folder_.file("no/such/out.cgns"), mesh, mesh.coordinates); });
+  EXPECT_NE(message.find("there is no folder"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace gridmorph::test

@@ -1,0 +1,193 @@
+// Quality reports as text and JSON.
+#include <gridmorph/report/measure_text.hpp>
+#include <gridmorph/report/quality_json.hpp>
+#include <gridmorph/report/quality_table.hpp>
+#include <gridmorph/report/shortfalls.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <string>
+
+namespace gridmorph {
+namespace {
+
+MeasureStatistics statistics(double min, double mean, double max, bool larger, Index3 const& cell) {
+  return {min, mean, max, 0, cell, larger ? max : min};
+}
+
+QualityRegion region(double aspect_ratio, double determinant, Index3 const& cell) {
+  QualityRegion r;
+  r.cells = 1000;
+  r.measure[int(Measure::aspect_ratio)] = statistics(1, aspect_ratio / 2, aspect_ratio, true, cell);
+  r.measure[int(Measure::determinant_2x2x2)] = statistics(determinant + 0.01, 0.9, 1, false, cell);
+  r.measure[int(Measure::determinant_3x3x3)] = statistics(determinant, 0.9, 1, false, cell);
+  r.measure[int(Measure::minimum_angle_deg)] = statistics(21, 60, 90, false, cell);
+  r.measure[int(Measure::equiangle_skewness)] = statistics(0, 0.2, 0.75, true, cell);
+  r.measure[int(Measure::volume)] = statistics(1e-9, 1e-6, 1e-5, false, cell);
+  r.measure[int(Measure::volume_ratio)] = statistics(1, 1.2, HUGE_VAL, true, cell);
+  return r;
+}
+
+/// The numbers of the paper's Figure 14.
+QualityReport baseline() {
+  QualityReport report;
+  report.zone_names = {"Zone A"};
+  report.near_field = region(688.4, 0.734, {4, 0, 11});
+  report.far_field = region(7.5, 0.593, {1, 2, 3});
+  return report;
+}
+QualityReport morphed() {
+  QualityReport report = baseline();
+  report.against_baseline = true;
+  report.near_field = region(688.6, 0.731, {4, 0, 11});
+  report.far_field = region(7.9, 0.577, {1, 2, 3});
+  report.near_field.measure[int(Measure::relative_displacement)] = statistics(0, 0.01, 0.02, true, {4, 0, 11});
+  report.far_field.measure[int(Measure::relative_displacement)] = statistics(0, 0.1, 0.21, true, {1, 2, 3});
+  return report;
+}
+
+bool has_line_with(std::string const& text, std::initializer_list<std::string_view> words) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    bool all = true;
+    for (auto const& w : words) all = all && line.find(w) != std::string::npos;
+    if (all) return true;
+  }
+  return false;
+}
+
+TEST(QualityTable, ShowsNearAndFarFieldBaselineAndMorphedSideBySide) {
+  std::string const table = format_table(baseline(), morphed());
+  EXPECT_TRUE(has_line_with(table, {"aspect ratio, max", "688.4", "688.6", "7.5", "7.9"}));
+  EXPECT_TRUE(has_line_with(table, {"determinant 3x3x3, min", "0.734", "0.731", "0.593", "0.577"}));
+  EXPECT_TRUE(has_line_with(table, {"relative displacement, max", "0.02", "0.21"}));
+  EXPECT_TRUE(has_line_with(table, {"volume ratio, max", "unbounded"}));
+  EXPECT_TRUE(has_line_with(table, {"far field", "determinant 3x3x3", "zone 'Zone A' cell (i 2, j 3, k 4)"}));
+  EXPECT_EQ(table.find("falls short"), std::string::npos);
+  EXPECT_EQ(table.find('\x1b'), std::string::npos);
+}
+
+TEST(QualityTable, LeavesOutWhatWasNotMeasured) {
+  QualityReport only = baseline();
+  only.near_field = {};
+  std::string const table = format_table(only);
+  EXPECT_EQ(table.find("near field"), std::string::npos);
+  EXPECT_EQ(table.find("morphed"), std::string::npos);
+  EXPECT_EQ(table.find("Walls"), std::string::npos);
+  EXPECT_EQ(table.find("relative displacement"), std::string::npos);
+  EXPECT_EQ(table.find("collapsed"), std::string::npos);
+}
+
+TEST(QualityTable, ShowsWallsWithTheirLargestChanges) {
+  QualityReport before = baseline(), after = morphed();
+  before.wall.nodes = after.wall.nodes = 77;
+  before.wall.first_height_min = 1.25e-5;
+  after.wall.first_height_min = 1.5e-5;
+  after.wall.height_change_max = 0.2;
+  after.wall.height_change_worst = {0, {6, 7, 0}};
+  std::string const table = format_table(before, after);
+  EXPECT_TRUE(has_line_with(table, {"Walls (77 nodes)"}));
+  EXPECT_TRUE(has_line_with(table, {"first cell height, min", "1.25e-05", "1.5e-05"}));
+  EXPECT_TRUE(has_line_with(table, {"20 %", "zone 'Zone A' node (i 7, j 8, k 1)"}));
+}
+
+TEST(QualityTable, ShortTableIsThatOfFigure14) {
+  std::string const table = format_short_table(baseline(), morphed());
+  EXPECT_TRUE(has_line_with(table, {"baseline", "688.4", "7.5", "0.734", "0.593"}));
+  EXPECT_TRUE(has_line_with(table, {"morphed", "688.6", "7.9", "0.731", "0.577"}));
+  QualityReport only = baseline();
+  only.near_field = {};
+  EXPECT_TRUE(has_line_with(format_short_table(only), {"baseline", "-", "7.5", "0.593"}));
+}
+
+TEST(Shortfalls, AreNoneForAGoodMesh) {
+  EXPECT_TRUE(shortfalls(baseline(), morphed(), {}).empty());
+  EXPECT_TRUE(shortfalls(baseline(), {}, {}).empty());
+}
+
+TEST(Shortfalls, NameThresholdValueAndCell) {
+  auto const list = shortfalls(baseline(), morphed(), {0.6, 0.25});
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].severity, Shortfall::Severity::failure);
+  for (char const* words : {"far field", "0.577", "0.6", "zone 'Zone A' cell (i 2, j 3, k 4)", "0.593"})
+    EXPECT_NE(list[0].message.find(words), std::string::npos) << words;
+  EXPECT_TRUE(any_failure(list));
+}
+
+TEST(Shortfalls, ForgiveWhatTheBaselineAlreadyHadButSaySo) {
+  QualityReport const before = baseline();
+  QualityReport after = morphed();
+  after.far_field.measure[int(Measure::determinant_3x3x3)].min = 0.593;
+  auto list = shortfalls(before, after, {0.6, 0.25});
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_FALSE(any_failure(list));
+  after.far_field.inverted = 3;
+  list = shortfalls(before, after, {0.1, 0.25});
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_FALSE(any_failure(list));
+  EXPECT_NE(list[0].message.find("in the baseline already"), std::string::npos);
+  after.far_field.newly_inverted = 1;
+  EXPECT_TRUE(any_failure(shortfalls(before, after, {0.1, 0.25})));
+}
+
+TEST(Shortfalls, WarnOfLargeRelativeDisplacementsWithoutFailing) {
+  auto const list = shortfalls(baseline(), morphed(), {0.05, 0.2});
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].severity, Shortfall::Severity::warning);
+  EXPECT_NE(list[0].message.find("0.21"), std::string::npos);
+}
+
+TEST(Shortfalls, OfABaselineAloneAreJudgedByTheThresholds) {
+  QualityReport alone = baseline();
+  EXPECT_TRUE(any_failure(shortfalls(alone, {}, {0.6, 0.25})));
+  alone.near_field.inverted = 1;
+  EXPECT_TRUE(any_failure(shortfalls(alone, {}, {0.05, 0.25})));
+}
+
+TEST(Shortfalls, CollapsedEdgesThatMorphingMadeAreAFailure) {
+  QualityReport before = baseline(), after = morphed();
+  before.far_field.collapsed = after.far_field.collapsed = 12;
+  EXPECT_TRUE(shortfalls(before, after, {}).empty());
+  after.far_field.collapsed = 13;
+  EXPECT_TRUE(any_failure(shortfalls(before, after, {})));
+}
+
+TEST(QualityJson, CarriesValuesPlacesAndFormulas) {
+  nlohmann::json const written = quality_json(baseline(), morphed(), {0.6, 0.25});
+  nlohmann::json const json = nlohmann::json::parse(written.dump());
+  EXPECT_EQ(json.at("/baseline/near_field/measures/aspect_ratio/max"_json_pointer), 688.4);
+  EXPECT_EQ(json.at("/morphed/far_field/measures/determinant_3x3x3/min"_json_pointer), 0.577);
+  EXPECT_EQ(json.at("/morphed/far_field/measures/determinant_3x3x3/worst/zone"_json_pointer), "Zone A");
+  EXPECT_EQ(json.at("/morphed/far_field/measures/determinant_3x3x3/worst/cell"_json_pointer),
+            (std::vector<int>{2, 3, 4}));
+  EXPECT_TRUE(json.at("/baseline/far_field/measures/volume_ratio/max"_json_pointer).is_null());
+  EXPECT_FALSE(json.at("baseline").at("far_field").at("measures").contains("relative_displacement"));
+  for (std::size_t m = 0; m < n_measures; ++m) {
+    auto const& definition = json.at("definitions").at(std::string(to_string(Measure(m))));
+    EXPECT_FALSE(definition.at("formula").get<std::string>().empty());
+    EXPECT_EQ(definition.at("worse"), larger_is_worse(Measure(m)) ? "larger" : "smaller");
+  }
+  ASSERT_EQ(json.at("shortfalls").size(), 1u);
+  EXPECT_EQ(json.at("/shortfalls/0/severity"_json_pointer), "failure");
+  EXPECT_EQ(json.at("/thresholds/min_determinant"_json_pointer), 0.6);
+  EXPECT_FALSE(quality_json(baseline(), {}, {}).contains("morphed"));
+}
+
+TEST(QualityJson, WallChangesAppearOnlyAgainstABaseline) {
+  QualityReport after = morphed();
+  after.wall.height_change_max = 0.5;
+  after.wall.height_change_worst = {0, {0, 1, 2}};
+  nlohmann::json const json = quality_json(baseline(), after, {});
+  EXPECT_FALSE(json.at("baseline").at("walls").contains("first_height_change"));
+  EXPECT_EQ(json.at("/morphed/walls/first_height_change/max"_json_pointer), 0.5);
+  EXPECT_EQ(json.at("/morphed/walls/first_height_change/worst/node"_json_pointer), (std::vector<int>{1, 2, 3}));
+  EXPECT_TRUE(json.at("/morphed/walls/orthogonality_deg/worst"_json_pointer).is_null());
+}
+
+}  // namespace
+}  // namespace gridmorph

@@ -1,0 +1,98 @@
+// Bad input gets status 2 and one clear message, and leaves nothing behind.
+#include "run_command.hpp"
+
+namespace gridmorph::testing {
+namespace {
+
+using BadInputTest = CommandTest;
+
+std::string const still = "[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n";
+
+TEST_F(BadInputTest, MissingFiles) {
+  expect_bad_input(gridmorph("morph nowhere.toml"), {"nowhere.toml", "does not exist"});
+  expect_bad_input(gridmorph("inspect nowhere.cgns"), {"nowhere.cgns"});
+  expect_bad_input(gridmorph("quality nowhere.cgns"), {"nowhere.cgns"});
+  expect_bad_input(gridmorph("plan ."), {"directory"});
+  write("case.toml", "[mesh]\ninput = \"gone.cgns\"\noutput = \"out.cgns\"\n" + still);
+  expect_bad_input(gridmorph("morph case.toml"), {"gone.cgns"});
+}
+
+TEST_F(BadInputTest, FilesThatAreNoMesh) {
+  write("text.cgns", "this is not a mesh\n");
+  write("empty.cgns", "");
+  expect_bad_input(gridmorph("inspect text.cgns"), {"text.cgns", "not a CGNS file"});
+  expect_bad_input(gridmorph("inspect empty.cgns"), {"empty.cgns"});
+  expect_bad_input(gridmorph("morph passage.cgns"), {"passage.cgns", "not a text file"});
+}
+
+TEST_F(BadInputTest, TruncatedMesh) {
+  std::string const whole = contents(path("passage.cgns"));
+  for (double const share : {0.02, 0.3, 0.9}) {
+    write("cut.cgns", whole.substr(0, std::size_t(share * double(whole.size()))));
+    expect_bad_input(gridmorph("inspect cut.cgns"), {"cut.cgns"});
+  }
+}
+
+TEST_F(BadInputTest, UnknownKeysWithLineAndNearestKey) {
+  write_case("case.toml", still + "[volum]\nlaw = \"linear\"\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"case.toml:8: ", "'volum'", "'volume'"});
+}
+
+TEST_F(BadInputTest, EveryProblemOfACaseFileAtOnce) {
+  write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"rigit\"\n[volume]\nlaw = 3\n");
+  Outcome const run = gridmorph("morph case.toml");
+  expect_bad_input(run, {"case.toml:7: ", "case.toml:9: "});
+  EXPECT_EQ(run.error_lines().size(), 2u);
+}
+
+TEST_F(BadInputTest, PatchesThatAreNotThere) {
+  write_case("case.toml", "[[motion]]\npatches = [\"balde\"]\nrule = \"fixed\"\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"case.toml:5", "balde", "blade", "hub"});
+}
+
+TEST_F(BadInputTest, PatchWithoutARuleInAStrictCaseFile) {
+  write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"fixed\"\n", "default = \"error\"\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"hub"});
+}
+
+TEST_F(BadInputTest, TwoRulesForOnePatch) {
+  write_case("case.toml",
+             "[[motion]]\npatches = [\"blade\"]\nrule = \"fixed\"\n[[motion]]\npatches = [\"bl*\"]\nrule = \"free\"\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"case.toml:5", "case.toml:8", "blade"});
+}
+
+TEST_F(BadInputTest, RulesThatDisagreeWherePatchesMeet) {
+  write_case("case.toml",
+             "[[motion]]\npatches = [\"inlet\"]\nrule = \"rigid\"\ntranslation = [-0.01, 0, 0]\n"
+             "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"fixed\"\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"inlet", "hub"});
+}
+
+TEST_F(BadInputTest, DisplacementFilesThatCannotBeUsed) {
+  std::string const field = "[[motion]]\npatches = [\"blade\"]\nrule = \"field\"\nfile = \"d.csv\"\n";
+  write_case("case.toml", field);
+  expect_bad_input(gridmorph("morph case.toml"), {"case.toml:8: ", "d.csv", "does not exist"});
+  write("d.csv", "x,y,z,dx,dy,dz\n0,0,0,0,nan,0\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"d.csv:2", "nan", "not finite"});
+  write("d.csv", "0,0,0,0,0,0\n0,0,0,0,1,0\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"d.csv:2", "line 1"});
+}
+
+TEST_F(BadInputTest, FormulasThatAreNotFiniteOnTheSurface) {
+  write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndx = \"sqrt(-1 - x*x)\"\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"case.toml:8: ", "nan", "x = "});
+}
+
+TEST_F(BadInputTest, OutputsThatCannotBe) {
+  write_case("case.toml", still);
+  expect_bad_input(gridmorph("morph case.toml -o passage.cgns"), {"is the input"});
+  expect_bad_input(gridmorph("morph case.toml -o no/such/folder/m.cgns"), {"no/such/folder", "does not exist"});
+  expect_bad_input(gridmorph("morph case.toml -o ."), {"folder"});
+  expect_bad_input(gridmorph("morph case.toml -r no/such/folder/r.json"), {"report", "does not exist"});
+  expect_bad_input(gridmorph("morph case.toml -o out.cgns -r out.cgns"), {"same file"});
+  write("none.toml", "[mesh]\ninput = \"passage.cgns\"\n" + still);
+  expect_bad_input(gridmorph("morph none.toml"), {"no output", "--output"});
+}
+
+}  // namespace
+}  // namespace gridmorph::testing
