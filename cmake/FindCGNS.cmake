@@ -24,6 +24,11 @@ elseif(_cgns_target)
     set(CGNS_VERSION 4)  # only CGNS 4 and newer make these targets
   endif()
 else()
+  foreach(_cgns_path IN ITEMS CGNS_INCLUDE_DIR CGNS_LIBRARY)
+    if(DEFINED CACHE{${_cgns_path}} AND NOT EXISTS "${${_cgns_path}}")
+      unset(${_cgns_path} CACHE)  # it was there when the build folder was made
+    endif()
+  endforeach()
   find_path(CGNS_INCLUDE_DIR cgnslib.h)
   find_library(CGNS_LIBRARY NAMES cgns cgnsdll)
   mark_as_advanced(CGNS_INCLUDE_DIR CGNS_LIBRARY)

@@ -82,7 +82,11 @@ std::vector<Case> make_cases() {
       {"box_on_planes", [=] { return box(n, Shape::straight, 3); },
        [=](double f) {
          VectorField const field = scaled(f, waves(0.1));
-         return motion({rule({"u_min"}, function_rule([=](Vec3 const& p) { Vec3 u = field(p); u.y = 0; return u; })),
+         // Tangential where the moved face meets the planes.
+         return motion({rule({"u_min"}, function_rule([=](Vec3 const& p) {
+                               Vec3 const u = field(p);
+                               return Vec3{u.x, p.y * (1 - p.y) * u.y, p.z * (1.2 - p.z) * u.z};
+                             })),
                         rule({"u_max"}, FixedRule{}), rule({"v_min", "v_max"}, SlipRule{}),
                         rule({"w_min", "w_max"}, SlipRule{})});
        }, {}},
@@ -100,8 +104,8 @@ std::vector<Case> make_cases() {
       {"star5", [] { return star(5, 10); }, moves(waves(0.05), {"rim"}, {}, {"front", "back"}), {}},
       {"star5_all_faces", [] { return star(5, 11); }, moves(waves(0.05), {"*"}), {}},
       {"o_grid", [] { return o_grid(0.8, 12); }, moves(turn_about_z({0.1, 0, 0}, 0.2), {"body"}, {"far"}), layers(2)},
-      {"o_grid_all_faces", [] { return o_grid(0.8, 13); }, moves(waves(0.1), {"*"}), {}},
-      {"pole", [] { return o_grid(0, 14); }, moves(waves(0.1), {"pole"}, {"far"}), {}},
+      {"o_grid_all_faces", [] { return o_grid(0.8, 13); }, moves(waves(0.1), {"*"}), {}, {0.3, -0.7, 0.2}, {"*"}, true},
+      {"pole", [] { return o_grid(0, 14); }, moves([](Vec3 const& p) { return Vec3{0.1 + 0.1 * p.z, -0.05 * p.z * p.z, 0}; }, {"pole"}, {"far"}), {}},
       {"c_grid", [] { return c_grid(15); }, moves(turn_about_z({0.3, 0, 0}, 0.1), {"body"}, {"far"}, {"exit"}), layers(2)},
       {"c_grid_all_faces", [] { return c_grid(16); }, moves(waves(0.05), {"*"}), {}},
       {"sector", [=] { return annulus_sector(sector, 17); },
@@ -115,7 +119,7 @@ std::vector<Case> make_cases() {
       {"wedge", [=] { return annulus_sector(wedge, 20); },
        moves(turning_waves(wedge, 0.1), {"case", "inlet", "outlet", "pole"}), {}, axial,
        {"case", "inlet", "outlet", "pole"}},
-      {"star_sector", [] { return star_sector(5, 23); }, moves(turning_waves(about_z, 0.1), {"rim"}, {}, {"front", "back"}),
+      {"star_sector", [] { return star_sector(5, 23); }, moves(turning_waves(about_z, 0.1), {"rim", "front", "back"}),
        {}, {0, 0, 0.4}, {"rim", "front", "back"}},
       {"translational", [] { return translational(1, 21); }, moves(layered_waves(0.1), {"bottom"}, {"top"}, {"side"}),
        layers(2, {"bottom"}), {0.3, -0.7, 0.2}, {"bottom", "top", "side"}},

@@ -22,6 +22,8 @@ struct Case {
   Vec3 translation{0.3, -0.7, 0.2};
   /// Patches that must follow a translation (the periodic ones and free ones follow by themselves).
   std::vector<std::string> all_patches{"*"};
+  /// A ring that closes on itself and has known faces beside its seam: blending across it starts at the seam.
+  bool seam_matters = false;
 
   friend std::ostream& operator<<(std::ostream& out, Case const& c) { return out << c.name; }
 };

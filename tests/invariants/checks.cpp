@@ -15,15 +15,20 @@ void each_node(Zone const& zone, IndexRange const& r, Visit&& visit) {
 
 }  // namespace
 
-Index interface_nodes_that_differ(Outcome const& run) {
+std::string interface_nodes_that_differ(Outcome const& run) {
   Index count = 0;
+  std::string first;
   for (Interface1to1 const& face : run.mesh.interfaces) {
     if (face.periodic) continue;
     each_node(run.mesh.zones[face.zone], face.range, [&](Index3 const& p, Index n) {
-      count += same_bits(run.u(n), run.u(run.mesh.zones[face.donor_zone].node(face.to_donor(p)))) ? 0 : 1;
+      Index const donor = run.mesh.zones[face.donor_zone].node(face.to_donor(p));
+      if (same_bits(run.u(n), run.u(donor))) return;
+      if (count++ == 0)
+        first = describe_node(run.mesh, n) + " and " + describe_node(run.mesh, donor) + " of interface " + face.name;
     });
   }
-  return count;
+  if (count > 0) first += ", " + std::to_string(count) + " nodes in all";
+  return first;
 }
 
 double periodic_mismatch(Outcome const& run) {

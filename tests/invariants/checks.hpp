@@ -3,10 +3,13 @@
 
 #include "support/morph_run.hpp"
 
+#include <string>
+
 namespace gridmorph::test {
 
-/// Largest difference of displacements at coincident nodes of plain interfaces whose bits differ (0: all bits agree).
-Index interface_nodes_that_differ(Outcome const& run);
+/// The first nodes that a plain interface joins and whose displacements differ in any bit, and how many there are; empty
+/// when there are none.
+std::string interface_nodes_that_differ(Outcome const& run);
 /// Largest |R u_own - u_donor| over periodic interfaces, R from the nodes; and the largest gap of the moved copies.
 double periodic_mismatch(Outcome const& run);
 /// Largest distance of moved nodes on slip patches from where the baseline mesh has them relative to their surface,

@@ -110,7 +110,9 @@ Mesh annulus_sector(Sector const& sector, unsigned seed) {
   b.extent = {7, 6, 5};
   double const pitch = two_pi / sector.copies;
   b.position = [=, d = Distortion(seed)](Vec3 const& uvw) {
-    Vec3 const q = d(uvw);
+    Vec3 q = d(uvw);
+    // Nodes that meet on the axis have one axial position.
+    if (sector.inner_radius == 0) q.x = uvw.x + q.y * (q.x - uvw.x);
     double const inner = sector.inner_radius * (1 + 0.05 * q.x);
     double const radius = inner + (2 + 0.1 * q.x * q.x - inner) * q.y;
     return sector_position(sector, 1.5 * q.x, radius, pitch * q.z + 0.2 * q.x);
@@ -129,7 +131,8 @@ Mesh o_grid(double inner_radius, unsigned seed) {
   b.name = "O";
   b.extent = {13, 6, 4};
   b.position = [=, d = Distortion(seed)](Vec3 const& uvw) {
-    Vec3 const q = d(uvw);
+    Vec3 q = d(uvw);
+    if (inner_radius == 0) q.z = uvw.z + q.y * (q.z - uvw.z);  // nodes that meet on the pole have one position
     double const r = inner_radius + (2 - inner_radius) * q.y;
     return Vec3{r * std::cos(two_pi * q.x) + 0.2 * q.z, 0.8 * r * std::sin(two_pi * q.x), q.z};
   };

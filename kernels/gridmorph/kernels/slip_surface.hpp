@@ -19,11 +19,14 @@ enum class SlipKind {
   axial        ///< nodes keep their axial position; not a surface
 };
 
-/// Radius as a function of axial position: cubic Hermite pieces between `size` knots. Borrows its tables.
+/// Radius as a function of axial position: quintic Hermite pieces between `size` knots. Borrows its tables.
 struct ProfileView {
-  double const* axial = nullptr;  ///< strictly increasing
+  double const* axial = nullptr;  ///< (size), strictly increasing
   double const* radius = nullptr;
   double const* slope = nullptr;
+  /// (2 * (size - 1)): second derivative at the lower and upper end of each piece; they differ across a knot where the
+  /// profile has a kink.
+  double const* curvature = nullptr;
   int size = 0;
 
   /// Written in differences, so that a constant profile comes back bit for bit; the end slopes are continued outside.
@@ -36,9 +39,12 @@ struct ProfileView {
       (axial[mid] <= a ? lo : hi) = mid;
     }
     double const h = axial[hi] - axial[lo];
-    double const t = (a - axial[lo]) / h;
-    double const rise = radius[hi] - radius[lo];
-    return radius[lo] + (rise * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * slope[lo] - t * slope[hi]));
+    double const t = (a - axial[lo]) / h, t2 = t * t, t3 = t2 * t;
+    double const rise = (radius[hi] - radius[lo]) * t3 * (10 + t * (6 * t - 15));
+    double const slopes = slope[lo] * (t + t3 * (-6 + t * (8 - 3 * t))) + slope[hi] * t3 * (-4 + t * (7 - 3 * t));
+    double const bends = curvature[2 * lo] * t2 * (0.5 + t * (-1.5 + t * (1.5 - 0.5 * t))) +
+                         curvature[2 * lo + 1] * t3 * (0.5 + t * (-1 + 0.5 * t));
+    return radius[lo] + (rise + h * (slopes + h * bends));
   }
 };
 

@@ -1,4 +1,4 @@
-// Profiles of revolution from scattered nodes: sort, merge what is one point up to noise, thin, then slopes.
+// Profiles of revolution from scattered nodes: sort, merge what is one point up to noise, thin, then slopes and curvatures.
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/slip_surface.hpp>
 
@@ -96,10 +96,12 @@ Points thin(Points const& p, double least) {
   return out;
 }
 
-/// Slopes at the points of a profile.
+/// Slopes and second derivatives at the points of a profile.
 class Slopes {
  public:
-  Slopes(Points const& p, double noise) : p_(p), n_(int(p.size())) { find_kinks(noise); }
+  Slopes(Points const& p, double noise, double size) : p_(p), n_(int(p.size())), noisy_(noise > 1e-13 * size) {
+    find_kinks(noise);
+  }
 
   std::vector<double> all() const {
     std::vector<double> s(p_.size());
@@ -110,7 +112,32 @@ class Slopes {
     return s;
   }
 
+  /// Second derivative at the lower and upper end of each piece: that of the local polynomial where the piece is smooth at
+  /// both ends, otherwise that of the cubic with the same slopes, which the quintic then is.
+  std::vector<double> curvatures(std::vector<double> const& slope) const {
+    std::vector<double> c;
+    bool const table = p_.size() < least_for_statistics;
+    for (int i = 0; i + 1 < n_; ++i) {
+      double const h = p_[i + 1].first - p_[i].first, m = secant(i);
+      bool const smooth_piece = !table && !kink_[i] && !kink_[i + 1] && !(noisy_ && uneven(i));
+      c.push_back(smooth_piece ? second_derivative(i) : (6 * m - 4 * slope[i] - 2 * slope[i + 1]) / h);
+      c.push_back(smooth_piece ? second_derivative(i + 1) : (2 * slope[i] + 4 * slope[i + 1] - 6 * m) / h);
+    }
+    return c;
+  }
+
  private:
+  /// Points near piece i lie so much closer together than its ends that their noise, divided by their distance twice,
+  /// would outweigh what a second derivative gains.
+  bool uneven(int i) const {
+    constexpr int reach = 2;
+    double closest = p_[i + 1].first - p_[i].first;
+    double const h = closest;
+    for (int j = std::max(0, i - reach); j < std::min(n_ - 1, i + 1 + reach); ++j)
+      closest = std::min(closest, p_[j + 1].first - p_[j].first);
+    return closest < 0.4 * h;
+  }
+
   double secant(int i) const { return (p_[i + 1].second - p_[i].second) / (p_[i + 1].first - p_[i].first); }
 
   /// A kink is a second difference that stands out from those beside it, alone (kink at a point) or with its neighbour
@@ -160,12 +187,39 @@ class Slopes {
     return sum;
   }
 
-  double smooth(int i) const {
-    constexpr int each_side = 3, least = 4;  // seven points in the middle; five
-                                             // in all where a side is short
+  /// Second derivative at point i of the same polynomial. With divided differences q_j = (r_j - r_i) / (x_j - x_i), which
+  /// are r' at x_i plus (x - x_i) / 2 times r'' and so on, it is twice the derivative there of the polynomial through q.
+  double second_derivative(int i) const {
+    auto const [left, right] = stencil(i);
+    double sum = 0;
+    for (int j = i - left; j <= i + right; ++j) {
+      if (j == i) continue;
+      double const q = (p_[j].second - p_[i].second) / (p_[j].first - p_[i].first);
+      // Derivative at x_i of the Lagrange factor of node j among the nodes other than i.
+      double slope = 0;
+      for (int m = i - left; m <= i + right; ++m) {
+        if (m == i || m == j) continue;
+        double w = 1 / (p_[j].first - p_[m].first);
+        for (int k = i - left; k <= i + right; ++k)
+          if (k != i && k != j && k != m) w *= (p_[i].first - p_[k].first) / (p_[j].first - p_[k].first);
+        slope += w;
+      }
+      sum += slope * q;
+    }
+    return 2 * sum;
+  }
+
+  /// Points on both sides: seven in the middle; five in all where a side is short.
+  std::pair<int, int> stencil(int i) const {
+    constexpr int each_side = 3, least = 4;
     int left = reach(i, -1, each_side), right = reach(i, +1, each_side);
     if (left < each_side) right = reach(i, +1, std::max(each_side, least - left));
     if (right < each_side) left = reach(i, -1, std::max(each_side, least - right));
+    return {left, right};
+  }
+
+  double smooth(int i) const {
+    auto const [left, right] = stencil(i);
     return derivative(i, left, right);
   }
 
@@ -187,6 +241,7 @@ class Slopes {
 
   Points const& p_;
   int n_;
+  bool noisy_;
   std::vector<bool> kink_;
 };
 
@@ -230,7 +285,9 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
   }
 
   RevolutionProfile profile;
-  profile.slope = Slopes(points, std::max(noise, 4e-16 * size)).all();
+  Slopes const slopes(points, std::max(noise, 4e-16 * size), size);
+  profile.slope = slopes.all();
+  profile.curvature = slopes.curvatures(profile.slope);
   for (auto const& [a, r] : points) {
     profile.axial.push_back(a);
     profile.radius.push_back(r);

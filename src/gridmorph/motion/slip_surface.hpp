@@ -11,18 +11,19 @@
 
 namespace gridmorph {
 
-/// Radius of a surface of revolution as a function of axial position: a C1 piecewise cubic through points of the
-/// profile (Hermite form, slopes from local polynomials: explicit, no system of equations).
+/// Radius of a surface of revolution as a function of axial position: a piecewise quintic through points of the
+/// profile (Hermite form, slopes and second derivatives from local polynomials: explicit, no system of equations).
 ///
 /// Built on the host from any set of (axial, radius) points; evaluated on host and device alike.
 struct RevolutionProfile {
   std::vector<double> axial;  ///< strictly increasing
   std::vector<double> radius;
-  std::vector<double> slope;  ///< d radius / d axial at each point
-  double deviation = 0;       ///< largest |radius - profile(axial)| over the points it was built from
+  std::vector<double> slope;      ///< d radius / d axial at each point
+  std::vector<double> curvature;  ///< second derivative at the lower and upper end of each piece
+  double deviation = 0;           ///< largest |radius - profile(axial)| over the points it was built from
 
   /// Sorts, merges near-duplicates, estimates slopes. Between kinks a slope is the derivative of the polynomial through
-  /// up to seven neighbouring points (error of the profile h^4 f''''/384 at spacing h); stencils never cross a kink,
+  /// up to seven neighbouring points (error of the profile of order h^6 at spacing h); stencils never cross a kink,
   /// and at one the smaller of the two one-sided slopes is taken, so that the profile does not overshoot there. A
   /// constant radius comes back bit for bit.
   ///
@@ -34,7 +35,9 @@ struct RevolutionProfile {
   [[nodiscard]] double operator()(double axial_position) const { return view()(axial_position); }
 
   /// Borrows the tables: valid on the host while this profile lives unchanged.
-  [[nodiscard]] ProfileView view() const { return {axial.data(), radius.data(), slope.data(), int(axial.size())}; }
+  [[nodiscard]] ProfileView view() const {
+    return {axial.data(), radius.data(), slope.data(), curvature.data(), int(axial.size())};
+  }
 };
 
 struct SlipSurface {
@@ -58,7 +61,7 @@ struct SlipSurface {
 template <class MemorySpace>
 struct SlipSurfaceTable {
   Kokkos::View<SlipSurfaceView*, MemorySpace> surfaces;
-  Kokkos::View<double*, MemorySpace> tables;  ///< axial, radius, slope of each profile one after another
+  Kokkos::View<double*, MemorySpace> tables;  ///< axial, radius, slope, curvature of each profile one after another
 
   SlipSurfaceTable() = default;
 
@@ -68,7 +71,7 @@ struct SlipSurfaceTable {
       : surfaces(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::surfaces"),
                  host.size()) {
     std::size_t n = 0;
-    for (auto const& s : host) n += 3 * s.profile.axial.size();
+    for (auto const& s : host) n += 3 * s.profile.axial.size() + s.profile.curvature.size();
     tables = Kokkos::View<double*, MemorySpace>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::tables"), n);
     auto surfaces_h = Kokkos::create_mirror_view(surfaces);
@@ -84,6 +87,7 @@ struct SlipSurfaceTable {
       view.profile.axial = store(host[s].profile.axial);
       view.profile.radius = store(host[s].profile.radius);
       view.profile.slope = store(host[s].profile.slope);
+      view.profile.curvature = store(host[s].profile.curvature);
       surfaces_h(s) = view;
     }
     Kokkos::deep_copy(exec, surfaces, surfaces_h);

@@ -6,13 +6,20 @@
 
 namespace gridmorph {
 
+namespace {
+
+bool same_rotation(Mat3 const& a, Mat3 const& b) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (a.m[i][j] != b.m[i][j]) return false;
+  return true;
+}
+
+}  // namespace
+
 std::int32_t RotationTable::number(Mat3 const& m) {
-  for (std::size_t n = 0; n < table_.size(); ++n) {
-    bool same = true;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) same = same && table_[n].m[i][j] == m.m[i][j];
-    if (same) return std::int32_t(n);
-  }
+  for (std::size_t n = 0; n < table_.size(); ++n)
+    if (same_rotation(table_[n], m)) return std::int32_t(n);
   table_.push_back(m);
   return std::int32_t(table_.size()) - 1;
 }
@@ -73,7 +80,8 @@ void add_copies(Mesh const& mesh, Lattice const& lattice, int source_entity, Rot
   for (EntityCopy const& copy : copies) {
     if (copy.entity == source_entity) continue;
     std::int32_t matrix = -1;
-    if (copy.moved || source.moved)
+    // Copies in the same frame are bit-identical: R R^T is the identity to round-off only.
+    if (!same_rotation(copy.transform.rotation, source.transform.rotation))
       matrix = rotations.number(copy.transform.rotation * transpose(source.transform.rotation));
     table.copies.push_back(copy_to(entity_nodes(mesh, lattice, copy, owner), matrix));
   }

@@ -157,10 +157,9 @@ Links connect(Mesh const& mesh, TopologyOptions const& options) {
   Links links;
   links.of_zone.resize(mesh.zones.size());
   links.mesh_size = mesh.size();
-  if (!std::isfinite(links.mesh_size))
-    for (Index n = 0; n < mesh.coordinates.size(); ++n)
-      if (!std::isfinite(norm(mesh.coordinates[n])))
-        throw MeshError(mesh.source + ": " + describe_node(mesh, n) + " is not finite; repair the mesh first");
+  for (Index n = 0; n < mesh.coordinates.size(); ++n)
+    if (!std::isfinite(norm(mesh.coordinates[n])))
+      throw MeshError(mesh.source + ": " + describe_node(mesh, n) + " is not finite; repair the mesh first");
 
   Problems problems;
   std::vector<Link> refused;  // the reverse of what was reported

@@ -1,0 +1,165 @@
+// Poles, lines of no length, near fields, and the uses of a Morpher.
+#include "support/morph_run.hpp"
+#include "support/motions.hpp"
+#include "support/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gridmorph::test {
+namespace {
+
+std::vector<std::string> const sides{"v_min", "v_max", "w_min", "w_max"};
+
+PlanOptions near_field(BoundaryLayer::Extent extent, int layers, double thickness = 0) {
+  PlanOptions options;
+  options.boundary_layers = {{{"u_min"}, extent, layers, thickness, BoundaryLayer::Mode::translate}};
+  return options;
+}
+
+/// All u lines shrink to a point where v = 0.
+Mesh wedge_with_a_collapsed_face() {
+  Bricks b;
+  b.name = "wedge";
+  b.extent = {6, 5, 4};
+  b.position = [](Vec3 const& q) { return Vec3{2 * q.x * q.y, q.y, q.z + 0.1 * q.x * q.y}; };
+  return make(b);
+}
+
+TEST(Lines, OfNoLengthAreDividedByNodeCount) {
+  Mesh mesh = wedge_with_a_collapsed_face();
+  PreparedMorph const prepared =
+      prepare(mesh, motion({rule({"u_min", "u_max"}, function_rule(waves(0.1))), rule(sides, FreeRule{})}), {});
+  // The two ends of a collapsed line are asked for different displacements.
+  Random random(2);
+  std::vector<Vec3> boundary(prepared.plan().boundary_nodes.size());
+  for (Vec3& v : boundary) v = random.vector(1);
+  Morphed const out = run_plan(Kokkos::DefaultHostExecutionSpace(), mesh, prepared.plan(), boundary);
+  Zone const& zone = mesh.zones[0];
+  for (int k = 0; k < 4; ++k) {
+    Vec3 const u0 = out.displacement[zone.node({0, 0, k})], u1 = out.displacement[zone.node({5, 0, k})];
+    for (int i = 0; i < 6; ++i)
+      EXPECT_LT(distance(out.displacement[zone.node({i, 0, k})], u0 + (i / 5.0) * (u1 - u0)), 1e-15);
+  }
+}
+
+TEST(Lines, NodesThatMeetOnAPoleMoveAsOne) {
+  for (bool free : {false, true}) {
+    Mesh mesh = o_grid(0, 1);
+    std::vector<MotionRule> rules{rule({"far", "w_min", "w_max"}, function_rule(waves(0.1)))};
+    rules.push_back(free ? rule({"pole"}, FreeRule{}) : rule({"pole"}, function_rule(waves(0.1))));
+    Outcome const r = morph(std::move(mesh), motion(rules));
+    Zone const& zone = r.mesh.zones[0];
+    for (int k = 0; k < zone.extent[2]; ++k)
+      for (int i = 1; i < zone.extent[0]; ++i)
+        EXPECT_LT(distance(r.u(zone.node({i, 0, k})), r.u(zone.node({0, 0, k}))), 1e-15) << "free pole: " << free;
+  }
+}
+
+TEST(NearField, IsConstantOffTheWallForTheLayersAskedFor) {
+  Outcome const r =
+      morph(box({9, 7, 6}, Shape::curved, 1),
+            motion({rule({"u_min"}, function_rule(waves(0.1))), rule({"u_max"}, FixedRule{}), rule(sides, FreeRule{})}),
+            near_field(BoundaryLayer::Extent::layers, 3));
+  Zone const& zone = r.mesh.zones[0];
+  for (int k = 0; k < 6; ++k)
+    for (int j = 0; j < 7; ++j) {
+      for (int i = 1; i <= 3; ++i) EXPECT_TRUE(same_bits(r.u(zone.node({i, j, k})), r.u(zone.node({0, j, k}))));
+      // Beyond it the displacement falls linearly by the arc length of the rest of the line.
+      double length = 0, done = 0;
+      auto const edge = [&](int i) {
+        return distance(r.mesh.coordinates[zone.node({i, j, k})], r.mesh.coordinates[zone.node({i - 1, j, k})]);
+      };
+      for (int i = 4; i < 9; ++i) length += edge(i);
+      for (int i = 4; i < 9; ++i) {
+        done += edge(i);
+        EXPECT_LT(distance(r.u(zone.node({i, j, k})), (1 - done / length) * r.u(zone.node({0, j, k}))), 1e-14);
+      }
+    }
+  Index cells = 0;
+  for (CellBox const& box : r.plan().near_field) cells += box.cells.size();
+  EXPECT_EQ(cells, 3 * 6 * 5);
+}
+
+TEST(NearField, OfAThicknessHasTheLayersThatReachIt) {
+  // The straight box is 2 long in 8 cells of 0.25: 0.6 is reached by the third one.
+  Outcome const r = morph(
+      box({9, 7, 6}, Shape::straight, 1),
+      motion({rule({"u_min"}, function_rule(waves(0.1))), rule({"u_max"}, FixedRule{}), rule(sides, FreeRule{})}),
+      near_field(BoundaryLayer::Extent::thickness, 0, 0.6));
+  Zone const& zone = r.mesh.zones[0];
+  EXPECT_TRUE(same_bits(r.u(zone.node({3, 3, 3})), r.u(zone.node({0, 3, 3}))));
+  EXPECT_FALSE(r.u(zone.node({4, 3, 3})) == r.u(zone.node({0, 3, 3})));
+}
+
+TEST(NearField, OfABlockEndsAtTheFirstBlockLimit) {
+  PlanOptions options;
+  options.boundary_layers = {{{"step"}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::translate}};
+  Motion const m = motion({rule({"step"}, function_rule(turn_about_z({1.2, 0.6, 0}, 0.1))),
+                           rule({"u_min", "u_max", "v_min", "v_max"}, FixedRule{}), rule({"w_min", "w_max"}, FreeRule{})});
+  // The four blocks beside the box reach from the wall to the fixed outer boundary.
+  EXPECT_THROW(morph(around_a_box(1), m, options), PlanError);
+}
+
+TEST(NearField, RunsThroughZoneLimits) {
+  PlanOptions const options = near_field(BoundaryLayer::Extent::layers, 5);
+  Outcome const r = morph(
+      bricks_with_t_junctions(1),
+      motion({rule({"u_min"}, function_rule(waves(0.1))), rule({"u_max"}, FixedRule{}), rule(sides, FreeRule{})}), options);
+  // Brick 1 has 3 cells off the wall; the near field reaches 2 cells into bricks 2 and 3.
+  Zone const& first = r.mesh.zones[0];
+  for (int zone : {1, 2})
+    for (int k = 0; k < 6; ++k)
+      for (int j = 0; j < r.mesh.zones[zone].extent[1]; ++j) {
+        Vec3 const wall = r.u(first.node({0, zone == 1 ? j : j + 2, k}));
+        EXPECT_TRUE(same_bits(r.u(r.mesh.zones[zone].node({2, j, k})), wall));
+        EXPECT_FALSE(r.u(r.mesh.zones[zone].node({3, j, k})) == wall);
+      }
+}
+
+TEST(Morpher, ServesManyDisplacementsOneAfterAnother) {
+  Mesh mesh = star(5, 1);
+  PreparedMorph const prepared = prepare(mesh, motion({rule({"*"}, function_rule(waves(0.1)))}), {});
+  Random random(4);
+  std::vector<Vec3> one(prepared.plan().boundary_nodes.size()), two(one.size());
+  for (std::size_t n = 0; n < one.size(); ++n) {
+    one[n] = random.vector(1);
+    two[n] = random.vector(1);
+  }
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Exec const exec;
+  Morphed const fresh = run_plan(exec, mesh, prepared.plan(), two);
+  Morpher<Exec> const morpher(exec, prepared.plan());
+  Coordinates u(mesh.n_nodes());
+  DeviceField<Exec::memory_space> const x(mesh.coordinates), out(u);
+  for (auto const* boundary : {&two, &one, &two}) {
+    morpher.displace(exec, upload<Exec::memory_space>(*boundary), x.read(), out.write());
+    exec.fence();
+  }
+  EXPECT_EQ(different_bits(out.host(), fresh.displacement), 0);
+}
+
+TEST(Morpher, ReadsAndWritesInterleavedArrays) {
+  Mesh mesh = bricks_with_t_junctions(1);
+  Outcome const r = morph(mesh, motion({rule({"*"}, function_rule(waves(0.1)))}));
+  std::vector<double> x(3 * mesh.n_nodes()), u(3 * mesh.n_nodes(), -1);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const p = mesh.coordinates[n];
+    x[3 * n] = p.x;
+    x[3 * n + 1] = p.y;
+    x[3 * n + 2] = p.z;
+  }
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Exec const exec;
+  Morpher<Exec> const morpher(exec, r.plan());
+  kernels::Field<double const> const in{x.data(), x.data() + 1, x.data() + 2, 3};
+  kernels::Field<double> const out{u.data(), u.data() + 1, u.data() + 2, 3};
+  morpher.displace(exec, upload<Exec::memory_space>(r.boundary), in, out);
+  morpher.move(exec, in, out);
+  exec.fence();
+  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_TRUE(same_bits(out[n], r.morphed.position[n]));
+}
+
+}  // namespace
+}  // namespace gridmorph::test
