@@ -19,11 +19,12 @@ using Index = std::int64_t;
 struct Segment {
   Index first;
   Index stride_s, stride_a, stride_b;
-  std::int32_t count;         ///< nodes along the line, both ends included (>= 2)
-  std::int32_t begin;         ///< position of the first node on the chain's lines
-  std::uint32_t write_mask;   ///< bit cs + 3 (ca + 3 cb): whether the sweep writes the nodes at lower end (0), inside (1)
-                              ///< or upper end (2) of the segment along s, a, b
-  std::int32_t rotation;      ///< in the rotation table: chain frame -> frame of this zone; -1 where they are the same
+  std::int32_t count;  ///< nodes along the line, both ends included (>= 2)
+  std::int32_t begin;  ///< position of the first node on the chain's lines
+  std::uint32_t
+      write_mask;         ///< bit cs + 3 (ca + 3 cb): whether the sweep writes the nodes at lower end (0), inside (1)
+                          ///< or upper end (2) of the segment along s, a, b
+  std::int32_t rotation;  ///< in the rotation table: chain frame -> frame of this zone; -1 where they are the same
 };
 
 struct Tube {
@@ -39,12 +40,12 @@ enum class LineLaw : std::int32_t { linear, c1, c2, constant };
 struct Chain {
   std::int32_t n_s, n_a, n_b;  ///< nodes
   LineLaw law;
-  std::int32_t open_end;       ///< the last node of the lines is not known and is written too (constant law)
-  std::int32_t first_side;     ///< in the side tables, -1: no side is known, plain sweep
-  std::int32_t first_junction; ///< of the correction's block limits
+  std::int32_t open_end;        ///< the last node of the lines is not known and is written too (constant law)
+  std::int32_t first_side;      ///< in the side tables, -1: no side is known, plain sweep
+  std::int32_t first_junction;  ///< of the correction's block limits
   std::int32_t n_blocks;
-  Index first_end_value;       ///< redistribution: where the chain's end values start
-  Index first_section;         ///< correction: where the chain's cross-section parameters start
+  Index first_end_value;  ///< redistribution: where the chain's end values start
+  Index first_section;    ///< correction: where the chain's cross-section parameters start
 };
 
 /// Category of position p among n nodes: 0 at the lower end, 2 at the upper end, 1 inside.

@@ -155,8 +155,8 @@ struct LineSpread {
     LineCursor<MemorySpace> const line(lines, item);
     Chain const& chain = lines.chains(line.tube.chain);
     Index const section = Index(chain.n_a) * chain.n_b;
-    Index const at = chain.first_end_value + (line.tube.a_begin + line.a) +
-                     Index(chain.n_a) * (line.tube.b_begin + line.b);
+    Index const at =
+        chain.first_end_value + (line.tube.a_begin + line.a) + Index(chain.n_a) * (line.tube.b_begin + line.b);
     Vec3 const d0 = end_values[at], d1 = end_values[at + section];
     if (d0 == Vec3{} && d1 == Vec3{}) return;
     walk_line(line, x, chain.n_s, [&](Index n, Segment const& s, int, double t, int category) {

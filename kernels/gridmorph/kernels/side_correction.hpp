@@ -21,25 +21,25 @@ namespace gridmorph::kernels {
 /// One side of a corrected chain. Line w of a side starts at first + n_s * w in the side arrays.
 struct Side {
   std::int32_t chain;
-  std::int32_t n_w;    ///< lines on it: n_b for sides 0 and 1, n_a for sides 2 and 3
+  std::int32_t n_w;  ///< lines on it: n_b for sides 0 and 1, n_a for sides 2 and 3
   Index first;
 };
 
 /// Limits of a chain's blocks and what is known there. Block m lies between junctions m and m + 1.
 struct Junction {
-  std::int32_t position;             ///< on the lines
-  std::uint32_t known_across;        ///< bit q: the edge across side q at this junction; bit 4 + e: corner e
-  std::uint32_t known_along;         ///< block after this junction: bit q: face of side q; bit 4 + e: edge e along s
+  std::int32_t position;       ///< on the lines
+  std::uint32_t known_across;  ///< bit q: the edge across side q at this junction; bit 4 + e: corner e
+  std::uint32_t known_along;   ///< block after this junction: bit q: face of side q; bit 4 + e: edge e along s
 };
 
 /// Edge e = (a at upper end ? 1 : 0) + (b at upper end ? 2 : 0). Each edge belongs to side 0/1 and side 2/3.
 template <class MemorySpace>
 struct SideTable {
-  Kokkos::View<Side const*, MemorySpace> sides;           ///< four per corrected chain
-  Kokkos::View<Junction const*, MemorySpace> junctions;   ///< n_blocks + 1 per corrected chain
-  Kokkos::View<double const*, MemorySpace> t;             ///< arc-length fraction along s, per side node
-  Kokkos::View<double const*, MemorySpace> section;       ///< per chain (4, n_b, n_a): A at s = 0, A at s = 1, B, B
-  Field<double> c;                                        ///< residual per side node, chain frame
+  Kokkos::View<Side const*, MemorySpace> sides;          ///< four per corrected chain
+  Kokkos::View<Junction const*, MemorySpace> junctions;  ///< n_blocks + 1 per corrected chain
+  Kokkos::View<double const*, MemorySpace> t;            ///< arc-length fraction along s, per side node
+  Kokkos::View<double const*, MemorySpace> section;      ///< per chain (4, n_b, n_a): A at s = 0, A at s = 1, B, B
+  Field<double> c;                                       ///< residual per side node, chain frame
 
   KOKKOS_INLINE_FUNCTION Vec3 at(Chain const& chain, int side, int s, int w) const {
     return c[sides(chain.first_side + side).first + s + Index(chain.n_s) * w];
@@ -53,8 +53,8 @@ struct SideTable {
   KOKKOS_INLINE_FUNCTION Vec3 correction(Chain const& chain, int s, int a, int b, double t_line) const {
     double const A = across(chain, 0, a, b, t_line), B = across(chain, 1, a, b, t_line);
     int const last_b = chain.n_b - 1;
-    Vec3 const sum = (1 - A) * at(chain, 0, s, b) + A * at(chain, 1, s, b) + (1 - B) * at(chain, 2, s, a) +
-                     B * at(chain, 3, s, a);
+    Vec3 const sum =
+        (1 - A) * at(chain, 0, s, b) + A * at(chain, 1, s, b) + (1 - B) * at(chain, 2, s, a) + B * at(chain, 3, s, a);
     Vec3 const edges = (1 - B) * ((1 - A) * at(chain, 0, s, 0) + A * at(chain, 1, s, 0)) +
                        B * ((1 - A) * at(chain, 0, s, last_b) + A * at(chain, 1, s, last_b));
     return sum - edges;
@@ -64,8 +64,8 @@ struct SideTable {
 /// A line on the border of a tube that lies on a side of its chain.
 struct SideLine {
   std::int32_t side;
-  std::int32_t w;      ///< position of the line on the side
-  Index line;          ///< number in the line table
+  std::int32_t w;  ///< position of the line on the side
+  Index line;      ///< number in the line table
 };
 
 }  // namespace gridmorph::kernels

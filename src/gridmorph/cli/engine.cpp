@@ -1,6 +1,7 @@
 #include <gridmorph/cli/engine.hpp>
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/volume/morpher.hpp>
 
@@ -24,6 +25,7 @@ void append(std::vector<T>& to, std::vector<T> const& from) {
 struct Engine::Impl {
   Mesh& mesh;
   PreparedMorph prepared;
+  std::vector<std::string> morph_notes;  ///< of the last morph()
 
   Impl(Mesh& m, CaseFile const& c) : mesh(m), prepared(prepare(m, c.motion, c.plan)) {}
   [[nodiscard]] Plan const& plan() const { return prepared.plan(); }
@@ -43,6 +45,7 @@ std::vector<std::string> Engine::notes() const {
   append(out, impl_->prepared.motion.notes);
   append(out, impl_->prepared.surface.notes());
   append(out, impl_->plan().notes);
+  append(out, impl_->morph_notes);
   return out;
 }
 
@@ -74,6 +77,8 @@ std::vector<StageResult> Engine::stage_results(Coordinates const& morphed) const
 Coordinates Engine::morph(Terminal& terminal) const {
   terminal.progress("moving the boundary");
   auto const boundary = impl_->prepared.boundary_displacement(impl_->mesh);
+  impl_->morph_notes.clear();
+  if (auto const note = trim_note(impl_->mesh, impl_->plan(), boundary)) impl_->morph_notes.push_back(*note);
   terminal.progress("morphing the volume");
   Exec const exec;
   Coordinates const& x = impl_->mesh.coordinates;

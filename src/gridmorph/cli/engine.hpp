@@ -30,7 +30,7 @@ class Engine {
 
   /// The stages and chains in order, with the reason for each rank.
   [[nodiscard]] std::string plan_text() const;
-  /// Defaults taken, facts found on the way.
+  /// Defaults taken, facts found on the way (those of morph() once it has run).
   [[nodiscard]] std::vector<std::string> notes() const;
   /// One number per cell, nonzero in the near field of moving walls; cells as in quality (zone after zone, i fastest).
   [[nodiscard]] std::vector<unsigned char> near_field() const;

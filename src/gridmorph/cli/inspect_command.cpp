@@ -1,6 +1,9 @@
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/inspect_text.hpp>
+#include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/report/quality_json.hpp>
+#include <gridmorph/report/quality_table.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -11,8 +14,15 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   Mesh const mesh = read_mesh(options.input.string());
   terminal.progress("looking at boundaries and connections");
   MeshSummary const summary = summarize(mesh);
-  terminal.result(options.json ? inspect_json(summary).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                               : inspect_text(summary));
+  terminal.progress("measuring quality");
+  QualityReport const quality = measure_mesh(mesh);
+  if (options.json) {
+    nlohmann::json json = inspect_json(summary);
+    json["quality"] = quality_json(quality, {}, {});
+    terminal.result(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    terminal.result(inspect_text(summary, format_table(quality)));
+  }
   return done;
 }
 

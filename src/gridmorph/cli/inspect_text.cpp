@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t most_zones = 60;
 constexpr std::size_t most_problems = 12;
+constexpr std::size_t most_blocks = 40;
 
 using Row = std::vector<std::string>;
 
@@ -55,6 +56,21 @@ std::string count_text(Index n) {
 
 std::string plural(Index n, std::string_view word) {
   return fmt::format("{} {}{}", count_text(n), word, n == 1 ? "" : "s");
+}
+
+std::string blocks_text(BlocksSummary const& s) {
+  std::string text = fmt::format("  {} after cutting at every patch and interface limit, {} after merging\n",
+                                 plural(s.pieces, "piece"), plural(Index(s.blocks.size()), "block"));
+  for (std::size_t b = 0; b < std::min(s.blocks.size(), most_blocks); ++b) {
+    auto const& block = s.blocks[b];
+    text += fmt::format("  {:3}  {} x {} x {} nodes, {}{}: {} - {}, {} - {}, {} - {}\n", b + 1, block.extent[0],
+                        block.extent[1], block.extent[2], block.where,
+                        block.pieces > 1 ? " and " + plural(block.pieces - 1, "more piece") : "", block.faces[0],
+                        block.faces[1], block.faces[2], block.faces[3], block.faces[4], block.faces[5]);
+  }
+  if (s.blocks.size() > most_blocks)
+    text += fmt::format("  ... and {} more (--json lists all)\n", s.blocks.size() - most_blocks);
+  return text;
 }
 
 std::string kinds_text(BoundarySummary const& b) {
@@ -131,7 +147,7 @@ std::string connections_text(MeshSummary const& s) {
 
 }  // namespace
 
-std::string inspect_text(MeshSummary const& s) {
+std::string inspect_text(MeshSummary const& s, std::string const& quality) {
   std::string text =
       fmt::format("{}: {}, {}, {}{}\n", s.source, plural(Index(s.zones.size()), "zone"), plural(s.nodes, "node"),
                   plural(s.cells, "cell"), s.two_dimensional ? ", 2-D (one cell thick)" : "");
@@ -146,6 +162,8 @@ std::string inspect_text(MeshSummary const& s) {
   for (std::size_t p = 0; p < std::min(s.problems.size(), most_problems); ++p) text += "  " + s.problems[p] + "\n";
   if (s.problems.size() > most_problems)
     text += fmt::format("  ... and {} more (--json lists all)\n", s.problems.size() - most_problems);
+  if (s.blocks) text += "\nBlocks that plans are made on\n" + blocks_text(*s.blocks);
+  if (!quality.empty()) text += "\n" + quality;
   text += "\nA case file to start from\n\n" + case_snippet(s);
   return text;
 }
@@ -198,6 +216,13 @@ nlohmann::json inspect_json(MeshSummary const& s) {
   json["zones"] = nlohmann::json::array();
   for (auto const& z : s.zones)
     json["zones"].push_back({{"name", z.name}, {"extent", z.extent}, {"nodes", z.nodes}, {"box", json_of(z.box)}});
+  if (s.blocks) {
+    json["pieces"] = s.blocks->pieces;
+    json["blocks"] = nlohmann::json::array();
+    for (auto const& b : s.blocks->blocks)
+      json["blocks"].push_back(
+          {{"extent", b.extent}, {"first_piece", b.where}, {"pieces", b.pieces}, {"faces", b.faces}});
+  }
   json["boundaries"] = nlohmann::json::array();
   for (auto const& b : s.boundaries) json["boundaries"].push_back(json_of(b));
   json["periodic"] = nlohmann::json::array();

@@ -9,7 +9,8 @@
 
 namespace gridmorph::cli {
 
-std::string inspect_text(MeshSummary const& summary);
+/// `quality`: the quality table of the mesh, printed before the case file; may be empty.
+std::string inspect_text(MeshSummary const& summary, std::string const& quality = {});
 
 /// A case file to start from: it names every boundary, moves nothing, and runs as it stands on meshes without problems.
 std::string case_snippet(MeshSummary const& summary);

@@ -147,9 +147,9 @@ void collect_interfaces(Mesh const& mesh, double size, MeshSummary& out) {
   }
 }
 
-/// What the topology will say to this mesh, without doing more of it than checks.
-std::vector<std::string> find_problems(Mesh const& mesh) {
-  std::vector<std::string> out;
+/// What the topology says to this mesh: its problems, or its blocks.
+void look_at_topology(Mesh const& mesh, MeshSummary& summary) {
+  std::vector<std::string>& out = summary.problems;
   auto const add_lines = [&](std::string const& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);)
@@ -160,10 +160,16 @@ std::vector<std::string> find_problems(Mesh const& mesh) {
     Links const links = connect(completed, {});
     complete_patches(completed, links, {});
     check_coverage(completed, links);
+    // Patches that one selector names stay together; patches that completion added have labels of their own.
+    std::vector<int> label(completed.patches.size(), -1);
+    for (std::size_t b = 0; b < summary.boundaries.size(); ++b)
+      for (int const p : summary.boundaries[b].patches) label[p] = int(b);
+    for (std::size_t p = mesh.patches.size(); p < completed.patches.size(); ++p)
+      label[p] = int(summary.boundaries.size());
+    summary.blocks = summarize_blocks(completed, links, label);
   } catch (MeshError const& e) {
     add_lines(e.what());
   }
-  return out;
 }
 
 }  // namespace
@@ -207,7 +213,7 @@ MeshSummary summarize(Mesh const& mesh) {
                       });
     if (!used) out.unused_families.push_back(family);
   }
-  out.problems = find_problems(mesh);
+  look_at_topology(mesh, out);
   return out;
 }
 

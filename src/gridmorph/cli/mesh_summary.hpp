@@ -1,6 +1,7 @@
 // What a mesh consists of, in the terms that a case file can use.
 #pragma once
 
+#include <gridmorph/cli/block_summary.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/motion.hpp>
 
@@ -66,8 +67,9 @@ struct MeshSummary {
   Box box;
   Index nodes = 0, cells = 0;
   bool two_dimensional = false;
-  std::vector<std::string> notes;     ///< of the reader
-  std::vector<std::string> problems;  ///< what a morph would refuse
+  std::vector<std::string> notes;       ///< of the reader
+  std::vector<std::string> problems;    ///< what a morph would refuse
+  std::optional<BlocksSummary> blocks;  ///< only without problems
 };
 
 /// Cost: O(nodes) for extents, O(boundary nodes) for the rest.

@@ -137,7 +137,9 @@ int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
   if (report) text += fmt::format("wrote {}\n", report->string());
   terminal.say(text);
   if (terminal.quiet())  // otherwise the table has said it
-    for (auto const& s : result.shortfalls) terminal.warn(s.message);
+      // The table ends with them; nobody should miss them when it is not shown.
+    if (terminal.quiet())
+      for (auto const& s : result.shortfalls) terminal.warn(s.message);
   if (!written)
     terminal.error(
         fmt::format("'{}' is not written, because cells are inverted that were not in the baseline; move the "

@@ -34,6 +34,13 @@ Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> mask_view(std::vector<unsig
 
 }  // namespace
 
+QualityReport measure_mesh(Mesh const& mesh) {
+  QualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(mesh.coordinates);
+  input.walls = wall_faces(mesh, wall_patches(mesh, {}));
+  return measure_quality(Exec(), mesh, input);
+}
+
 QualityThresholds thresholds_of(CaseFile const& case_file) {
   QualityThresholds out;
   out.min_determinant = case_file.guard.min_determinant;

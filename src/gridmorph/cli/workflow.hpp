@@ -28,6 +28,9 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal);
 /// The plan of a case file as text, notes first.
 std::string run_plan(CaseFile const& case_file, Terminal& terminal);
 
+/// Quality of a mesh as it is, without a near field, at all its wall patches.
+QualityReport measure_mesh(Mesh const& mesh);
+
 /// [guard] as thresholds of the quality report.
 QualityThresholds thresholds_of(CaseFile const& case_file);
 

@@ -10,8 +10,8 @@
 
 namespace gridmorph {
 
-using Index = std::int64_t;           ///< node number in the flat arrays of a mesh
-using Index3 = std::array<int, 3>;    ///< (i, j, k)
+using Index = std::int64_t;         ///< node number in the flat arrays of a mesh
+using Index3 = std::array<int, 3>;  ///< (i, j, k)
 
 /// Half-open box of node indices: begin <= (i, j, k) < end.
 struct IndexRange {
@@ -76,8 +76,7 @@ struct IndexMap {
   Index3 donor_origin{0, 0, 0};
 
   [[nodiscard]] Index3 operator()(Index3 const& own) const {
-    Index3 const step =
-        orientation.apply({own[0] - own_origin[0], own[1] - own_origin[1], own[2] - own_origin[2]});
+    Index3 const step = orientation.apply({own[0] - own_origin[0], own[1] - own_origin[1], own[2] - own_origin[2]});
     return {donor_origin[0] + step[0], donor_origin[1] + step[1], donor_origin[2] + step[2]};
   }
   [[nodiscard]] IndexMap inverse() const { return {orientation.inverse(), donor_origin, own_origin}; }

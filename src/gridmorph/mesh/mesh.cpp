@@ -64,8 +64,8 @@ int Mesh::add_zone(std::string name, Index3 extent) {
 }
 
 int Mesh::zone_of(Index node) const {
-  auto const after = std::upper_bound(zones.begin(), zones.end(), node,
-                                      [](Index n, Zone const& z) { return n < z.first_node; });
+  auto const after =
+      std::upper_bound(zones.begin(), zones.end(), node, [](Index n, Zone const& z) { return n < z.first_node; });
   return int(after - zones.begin()) - 1;
 }
 

@@ -18,14 +18,14 @@ namespace gridmorph {
 
 /// What a boundary is, as far as morphing cares. One per CGNS BCType_t group.
 enum class PatchKind {
-  wall,         ///< BCWall, BCWallViscous, BCWallInviscid, BCWallViscousHeatFlux, BCWallViscousIsothermal
-  inflow,       ///< BCInflow*, BCTunnelInflow
-  outflow,      ///< BCOutflow*, BCTunnelOutflow
-  symmetry,     ///< BCSymmetryPlane, BCSymmetryPolar (the planes of a 2-D mesh too)
-  farfield,     ///< BCFarfield
-  degenerate,   ///< BCDegenerateLine, BCDegeneratePoint, BCAxisymmetricWedge: a face collapsed to a line or point
-  connection,   ///< a connection that does not match node to node: abutting, overset, mixing plane
-  other         ///< BCGeneral, BCDirichlet, BCNeumann, BCExtrapolate, UserDefined, Null, none at all
+  wall,        ///< BCWall, BCWallViscous, BCWallInviscid, BCWallViscousHeatFlux, BCWallViscousIsothermal
+  inflow,      ///< BCInflow*, BCTunnelInflow
+  outflow,     ///< BCOutflow*, BCTunnelOutflow
+  symmetry,    ///< BCSymmetryPlane, BCSymmetryPolar (the planes of a 2-D mesh too)
+  farfield,    ///< BCFarfield
+  degenerate,  ///< BCDegenerateLine, BCDegeneratePoint, BCAxisymmetricWedge: a face collapsed to a line or point
+  connection,  ///< a connection that does not match node to node: abutting, overset, mixing plane
+  other        ///< BCGeneral, BCDirichlet, BCNeumann, BCExtrapolate, UserDefined, Null, none at all
 };
 
 /// "wall", "inflow", ... as used by `type:` selectors and in messages. Periodic interfaces are "periodic".
@@ -33,8 +33,8 @@ std::string_view to_string(PatchKind kind);
 
 /// One boundary range on one face of one zone.
 struct Patch {
-  std::string name;                   ///< BC_t or GridConnectivity_t node name
-  std::string bc_type;                ///< CGNS BCType_t name as in the file, resolved through the family if FamilySpecified
+  std::string name;     ///< BC_t or GridConnectivity_t node name
+  std::string bc_type;  ///< CGNS BCType_t name as in the file, resolved through the family if FamilySpecified
   PatchKind kind = PatchKind::other;
   std::vector<std::string> families;  ///< FamilyName_t first, then AdditionalFamilyName_t; may be empty
   int zone = -1;                      ///< number in Mesh::zones
@@ -56,25 +56,23 @@ struct Interface1to1 {
   std::vector<std::string> families;
   int zone = -1;
   int donor_zone = -1;
-  IndexRange range;        ///< own nodes, ascending
-  IndexMap to_donor;       ///< own node index -> donor node index; also continues through the face into the donor
+  IndexRange range;   ///< own nodes, ascending
+  IndexMap to_donor;  ///< own node index -> donor node index; also continues through the face into the donor
   std::optional<Periodic> periodic;
 };
 
 /// A CGNS Zone_t.
 struct Zone {
-  std::string name;          ///< unique in the mesh; "Base/Zone" when the file has several bases
-  Index3 extent{0, 0, 0};    ///< nodes along i, j, k; each at least 2 (2-D zones are extruded to two planes by readers)
-  Index first_node = 0;      ///< number of node (0, 0, 0) in the flat coordinate arrays
+  std::string name;        ///< unique in the mesh; "Base/Zone" when the file has several bases
+  Index3 extent{0, 0, 0};  ///< nodes along i, j, k; each at least 2 (2-D zones are extruded to two planes by readers)
+  Index first_node = 0;    ///< number of node (0, 0, 0) in the flat coordinate arrays
   bool single_precision = false;  ///< the file keeps this zone's coordinates in single precision
 
   [[nodiscard]] Index size() const { return Index(extent[0]) * extent[1] * extent[2]; }
   [[nodiscard]] Index node(Index3 const& p) const {
     return first_node + p[0] + Index(extent[0]) * (p[1] + Index(extent[1]) * p[2]);
   }
-  [[nodiscard]] std::array<Index, 3> strides() const {
-    return {1, Index(extent[0]), Index(extent[0]) * extent[1]};
-  }
+  [[nodiscard]] std::array<Index, 3> strides() const { return {1, Index(extent[0]), Index(extent[0]) * extent[1]}; }
   [[nodiscard]] Index3 index(Index node) const {
     Index const local = node - first_node;
     return {int(local % extent[0]), int((local / extent[0]) % extent[1]), int(local / (Index(extent[0]) * extent[1]))};
@@ -105,12 +103,12 @@ struct Coordinates {
 
 struct Mesh {
   std::vector<Zone> zones;
-  std::vector<Patch> patches;            ///< of all zones, in file order
-  std::vector<Interface1to1> interfaces; ///< of all zones, in file order
-  std::vector<std::string> families;     ///< Family_t names
+  std::vector<Patch> patches;             ///< of all zones, in file order
+  std::vector<Interface1to1> interfaces;  ///< of all zones, in file order
+  std::vector<std::string> families;      ///< Family_t names
   Coordinates coordinates;
-  std::string source;                    ///< file name or what made it, for messages
-  std::vector<std::string> notes;        ///< what the reader skipped or assumed, for `inspect` and logs
+  std::string source;              ///< file name or what made it, for messages
+  std::vector<std::string> notes;  ///< what the reader skipped or assumed, for `inspect` and logs
   /// A 2-D mesh that the reader extruded by one cell; writers put back plane k = 0 only.
   bool two_dimensional = false;
 

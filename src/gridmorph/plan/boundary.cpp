@@ -105,8 +105,9 @@ BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, Re
   return boundary;
 }
 
-std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary, std::vector<Mat3> const& rotations,
-                                    ResolvedMotion const& motion, SurfaceMotion const& surface, double mesh_size) {
+std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary,
+                                    std::vector<Mat3> const& rotations, ResolvedMotion const& motion,
+                                    SurfaceMotion const& surface, double mesh_size) {
   using Request = BoundaryRequests::Request;
   auto const& requests = boundary.requests;
   std::vector<Vec3> values(boundary.nodes.size());

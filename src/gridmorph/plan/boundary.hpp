@@ -13,14 +13,15 @@ namespace gridmorph {
 struct BoundaryRequests {
   struct Request {
     Index slot = 0;
-    Index node = 0;             ///< the node in the requesting patch's zone: its position is what the rule sees
-    std::int32_t rotation = -1; ///< owner frame -> frame of that node
+    Index node = 0;              ///< the node in the requesting patch's zone: its position is what the rule sees
+    std::int32_t rotation = -1;  ///< owner frame -> frame of that node
     int rule = 0;
-    int patch = -1;             ///< or
+    int patch = -1;  ///< or
     int interface = -1;
   };
-  std::vector<Index> nodes;      ///< owner node per slot
-  std::vector<Request> requests; ///< by (rank, rule): the first request of a slot gives its value, the others must agree
+  std::vector<Index> nodes;  ///< owner node per slot
+  std::vector<Request>
+      requests;  ///< by (rank, rule): the first request of a slot gives its value, the others must agree
 };
 
 /// Marks every entity on the closure of explicitly moved faces known and lists its nodes. The order of slots and
@@ -31,7 +32,8 @@ BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, Re
 
 /// Displacement of every boundary node (slot), in the owner's frame. Throws MotionError that lists every pair of patches
 /// whose displacements disagree on their common edge by more than the conformity tolerance (place, size).
-std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary, std::vector<Mat3> const& rotations,
-                                    ResolvedMotion const& motion, SurfaceMotion const& surface, double mesh_size);
+std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary,
+                                    std::vector<Mat3> const& rotations, ResolvedMotion const& motion,
+                                    SurfaceMotion const& surface, double mesh_size);
 
 }  // namespace gridmorph

@@ -44,13 +44,13 @@ Crossing cross(Mesh const& mesh, Topology const& topology, Known const& known, C
   }
   crossing.kind = Crossing::Kind::through;
   // A block that touches itself has both sides; ours is the one with this face entity on this side of the piece.
-  bool const first_is_ours = sides[0].entity == entities.front() && blocks.block_of(sides[0].piece) == step.block &&
-                             [&] {
-                               Orientation const& placed = blocks.to_block(sides[0].piece);
-                               int const a = placed.axis[sides[0].axis];
-                               int const s = placed.sign[sides[0].axis] > 0 ? sides[0].side : 1 - sides[0].side;
-                               return a == axis && s == block_side;
-                             }();
+  bool const first_is_ours =
+      sides[0].entity == entities.front() && blocks.block_of(sides[0].piece) == step.block && [&] {
+        Orientation const& placed = blocks.to_block(sides[0].piece);
+        int const a = placed.axis[sides[0].axis];
+        int const s = placed.sign[sides[0].axis] > 0 ? sides[0].side : 1 - sides[0].side;
+        return a == axis && s == block_side;
+      }();
   FaceSide const& ours = first_is_ours ? sides[0] : sides[1];
   FaceSide const& theirs = first_is_ours ? sides[1] : sides[0];
   ChainStep& next = crossing.next;
@@ -155,8 +155,7 @@ ChainLayout lay_out(Topology const& topology, Chain const& chain) {
           Index3 const in_block{i, j, k};
           Index3 at{};
           for (int d = 0; d < 3; ++d)
-            at[step.to_chain.axis[d]] =
-                step.to_chain.sign[d] > 0 ? in_block[d] : block.n_pieces[d] - 1 - in_block[d];
+            at[step.to_chain.axis[d]] = step.to_chain.sign[d] > 0 ? in_block[d] : block.n_pieces[d] - 1 - in_block[d];
           PlacedPiece const& placed = block.at(i, j, k);
           layout.pieces[std::size_t(layout.first_piece[m] + at[0]) +
                         std::size_t(layout.n[0]) * (at[1] + std::size_t(layout.n[1]) * at[2])] = {

@@ -11,8 +11,8 @@ namespace gridmorph {
 
 struct ChainStep {
   int block = -1;
-  Orientation to_chain;    ///< block axes -> chain axes (0: s, 1: a, 2: b)
-  Mat3 rotation;           ///< chain frame -> frame of this block (not the identity behind a periodic interface)
+  Orientation to_chain;  ///< block axes -> chain axes (0: s, 1: a, 2: b)
+  Mat3 rotation;         ///< chain frame -> frame of this block (not the identity behind a periodic interface)
   bool rotated = false;
 };
 
@@ -20,7 +20,7 @@ struct ChainStep {
 struct ChainEnd {
   bool known = false;
   EndKind kind = unknown_end;
-  int patch = -1;          ///< boundary patch under the end, -1 when it is an inner face
+  int patch = -1;  ///< boundary patch under the end, -1 when it is an inner face
 };
 
 struct Chain {
@@ -50,10 +50,10 @@ struct ChainPiece {
 /// A chain laid out piece by piece: n[0] along s, n[1] x n[2] across.
 struct ChainLayout {
   Index3 n{0, 0, 0};
-  std::vector<ChainPiece> pieces;       ///< s fastest, then a, then b
-  std::vector<int> first_piece;         ///< along s, per step and one past the last
+  std::vector<ChainPiece> pieces;              ///< s fastest, then a, then b
+  std::vector<int> first_piece;                ///< along s, per step and one past the last
   std::vector<int> s_begin, a_begin, b_begin;  ///< node position of each piece's lower end, per piece along the axis
-  Index3 n_nodes{0, 0, 0};              ///< nodes along s, a, b
+  Index3 n_nodes{0, 0, 0};                     ///< nodes along s, a, b
 
   [[nodiscard]] ChainPiece const& at(int s, int a, int b) const {
     return pieces[std::size_t(s) + std::size_t(n[0]) * (a + std::size_t(n[1]) * b)];

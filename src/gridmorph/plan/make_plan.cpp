@@ -200,11 +200,10 @@ PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion cons
   std::vector<std::string> kind_order = PriorityRule{}.order;
   for (PriorityRule const& rule : options.volume.priority)
     if (rule.kind == PriorityRule::Kind::boundary) kind_order = rule.order;
-  planned.boundary = collect_boundary(mesh, topology, motion, surface, kind_order, scheduler.rotations(), known,
-                                      plan.boundary_copies);
+  planned.boundary =
+      collect_boundary(mesh, topology, motion, surface, kind_order, scheduler.rotations(), known, plan.boundary_copies);
   Known const given = known;
-  if (auto poles =
-          pole_stage(mesh, topology, motion, kind_order, scheduler.rotations(), known, planned.boundary, plan))
+  if (auto poles = pole_stage(mesh, topology, motion, kind_order, scheduler.rotations(), known, planned.boundary, plan))
     plan.stages.push_back(std::move(*poles));
   plan.boundary_nodes = planned.boundary.nodes;
   scheduler.near_field(near_field_chains(mesh, topology, known, fields));
@@ -215,7 +214,6 @@ PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion cons
 
 std::string describe(Plan const& plan) {
   std::string text;
-  for (std::string const& note : plan.notes) text += note + "\n";
   text += std::to_string(plan.boundary_nodes.size()) + " boundary nodes with given displacement\n";
   for (Stage const& stage : plan.stages) {
     text += "stage " + stage.name + ": " + std::to_string(stage.lines.chains.size()) + " chains, " +

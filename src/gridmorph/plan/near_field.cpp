@@ -148,8 +148,7 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
       if (chain) {
         ChainStep const& end = chain->steps.back();
         Orientation const to_block_end = end.to_chain.inverse();
-        outer = blocks.face_entities(lattice,
-                                     {end.block, to_block_end.axis[0], to_block_end.sign[0] > 0 ? 1 : 0});
+        outer = blocks.face_entities(lattice, {end.block, to_block_end.axis[0], to_block_end.sign[0] > 0 ? 1 : 0});
       }
       int const beyond = outer.empty() ? -1 : blocks.patch_of_face()[lattice.class_of(outer.front())];
       if (!chain || beyond >= 0)

@@ -19,10 +19,10 @@ struct BoundaryLayer {
   enum class Extent { block, layers, thickness };
   enum class Mode { translate, rotate, blend };
 
-  std::vector<std::string> walls;   ///< selectors; empty: every wall patch whose rule moves it
-  Extent extent = Extent::block;    ///< block: up to the first opposite block face
-  int layers = 0;                   ///< cells, for Extent::layers; runs through block and zone limits
-  double thickness = 0;             ///< length, for Extent::thickness
+  std::vector<std::string> walls;  ///< selectors; empty: every wall patch whose rule moves it
+  Extent extent = Extent::block;   ///< block: up to the first opposite block face
+  int layers = 0;                  ///< cells, for Extent::layers; runs through block and zone limits
+  double thickness = 0;            ///< length, for Extent::thickness
   Mode mode = Mode::translate;
 };
 

@@ -40,18 +40,18 @@ struct Stage {
   LineTables lines;
   SideTables sides;
   CopyTable copies;
-  std::vector<CellBox> cells;             ///< of the blocks this stage morphs
-  std::string name;                       ///< "near field", "1", "2", ...
-  std::vector<std::string> description;   ///< one line per chain: blocks, ends, reasons of its rank
+  std::vector<CellBox> cells;            ///< of the blocks this stage morphs
+  std::string name;                      ///< "near field", "1", "2", ...
+  std::vector<std::string> description;  ///< one line per chain: blocks, ends, reasons of its rank
 };
 
 /// One end of a line of a redistribution chain that slides on surfaces.
 struct SlipEnd {
   Index node = 0;
-  Index value = 0;              ///< where its end value goes
-  std::int32_t rotation = -1;   ///< chain frame -> frame of the node's zone
+  Index value = 0;             ///< where its end value goes
+  std::int32_t rotation = -1;  ///< chain frame -> frame of the node's zone
   std::int32_t surface[3] = {-1, -1, -1};
-  double tolerance = 0;         ///< nodes with a given displacement are left alone this near to their surfaces
+  double tolerance = 0;  ///< nodes with a given displacement are left alone this near to their surfaces
 };
 
 /// Projection of slip surfaces and the spread of the correction along the lines between them.
@@ -71,7 +71,7 @@ struct Plan {
   std::vector<SpreadPass> spreads;
   std::vector<SlipSurface> surfaces;
   std::vector<Mat3> rotations;
-  std::vector<CellBox> near_field;        ///< cells of the near field of moving walls
+  std::vector<CellBox> near_field;  ///< cells of the near field of moving walls
   std::vector<std::string> notes;
   Index n_nodes = 0;
   double mesh_size = 0;

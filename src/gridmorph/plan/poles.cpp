@@ -107,8 +107,8 @@ std::vector<PoleRow> pole_rows(std::vector<PoleFace> const& faces, Known const& 
 }
 
 /// Makes the unknown entities of a pole face boundary nodes that no rule asks for: their displacement is zero.
-void keep_in_place(Mesh const& mesh, Lattice const& lattice, PoleFace const& face, RotationTable& rotations, Known& known,
-                   BoundaryRequests& boundary, Plan& plan) {
+void keep_in_place(Mesh const& mesh, Lattice const& lattice, PoleFace const& face, RotationTable& rotations,
+                   Known& known, BoundaryRequests& boundary, Plan& plan) {
   Index3 const p = lattice.position(face.entity);
   for (int da = -1; da <= 1; ++da)
     for (int ds = -1; ds <= 1; ++ds) {
@@ -145,9 +145,8 @@ std::optional<Stage> pole_stage(Mesh const& mesh, Topology const& topology, Reso
   for (PoleRow row : pole_rows(faces, known)) {
     int first = faces[row.front().first].end_edge[row.front().second];
     int last = faces[row.back().first].end_edge[1 - row.back().second];
-    std::string const where =
-        describe_range(mesh, lattice.zone_of(faces[row.front().first].entity),
-                       closed_nodes(lattice, faces[row.front().first].entity));
+    std::string const where = describe_range(mesh, lattice.zone_of(faces[row.front().first].entity),
+                                             closed_nodes(lattice, faces[row.front().first].entity));
     if (!known(first) && !known(last)) {
       plan.notes.push_back("pole at " + where + " has no end with a known displacement; it stays where it is");
       for (auto const& step : row) keep_in_place(mesh, lattice, faces[step.first], rotations, known, boundary, plan);
@@ -159,9 +158,9 @@ std::optional<Stage> pole_stage(Mesh const& mesh, Topology const& topology, Reso
       std::swap(first, last);
     }
     bool const open = !known(last);
-    EndKind const kind =
-        open || kind_rank(known.kind[first], kind_order) <= kind_rank(known.kind[last], kind_order) ? known.kind[first]
-                                                                                                     : known.kind[last];
+    EndKind const kind = open || kind_rank(known.kind[first], kind_order) <= kind_rank(known.kind[last], kind_order)
+                             ? known.kind[first]
+                             : known.kind[last];
     kernels::Chain chain{};
     chain.law = open ? kernels::LineLaw::constant : kernels::LineLaw::linear;
     chain.open_end = open ? 1 : 0;

@@ -128,8 +128,7 @@ void add_side_tables(Mesh const& mesh, Topology const& topology, Chain const& ch
     tables.sides.push_back({number, n_w, Index(tables.t.size())});
     tables.t.resize(tables.t.size() + std::size_t(n_w) * device.n_s);
   }
-  kernels::Field<double const> const x{mesh.coordinates.x.data(), mesh.coordinates.y.data(),
-                                       mesh.coordinates.z.data()};
+  kernels::Field<double const> const x{mesh.coordinates.x.data(), mesh.coordinates.y.data(), mesh.coordinates.z.data()};
   // The same walk as the kernels', on borrowed host tables, so that t is the same number.
   using Host = Kokkos::HostSpace;
   kernels::LineTable<Host> table;

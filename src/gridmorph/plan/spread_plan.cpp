@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 #include <set>
-#include <tuple>
 #include <utility>
 
 namespace gridmorph {
@@ -30,62 +28,186 @@ std::vector<int> surface_numbers(Mesh const& mesh, SurfaceMotion const& surface,
   return number;
 }
 
-}  // namespace
+/// A chain off a slip block face, slip end first, and how many of its steps are used.
+struct Candidate {
+  int rule = -1;
+  bool revolution = false;
+  Chain chain;
+  int steps = 0;
+  [[nodiscard]] bool whole() const { return steps == int(chain.steps.size()); }
+};
 
-void plan_spreads(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
-                  SurfaceMotion const& surface, Known const& given, RotationTable& rotations, Plan& plan) {
+std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
+                                       std::vector<int> const& surface_of_patch,
+                                       std::vector<SlipSurface> const& surfaces) {
   Lattice const& lattice = topology.lattice;
   Blocks const& blocks = topology.blocks;
-  std::vector<int> const surface_of_patch = surface_numbers(mesh, surface, plan.surfaces);
-  if (plan.surfaces.empty()) return;
-
-  // One chain per slip block face, the first found wins when both ends slip.
   Known const nothing(lattice.n_classes());
-  std::vector<std::pair<std::array<int, 2>, Chain>> chains;  // (rules of the ends, chain)
-  std::set<std::pair<int, int>> seen;
+  std::vector<Candidate> candidates;
+  std::set<std::array<int, 3>> seen;  // (block, axis, side)
   for (int c = 0; c < lattice.n_classes(); ++c) {
     int const patch = blocks.patch_of_face()[c];
     if (patch < 0 || surface_of_patch[patch] < 0) continue;
     FaceSide const side = lattice.face_sides(c).front();
-    int const block = blocks.block_of(side.piece);
-    int const axis = blocks.to_block(side.piece).axis[side.axis];
-    if (seen.contains({block, axis})) continue;
-    std::optional<Chain> chain = find_chain(mesh, topology, nothing, block, axis);
-    if (!chain) continue;
-    for (ChainStep const& step : chain->steps) seen.insert({step.block, step.to_chain.inverse().axis[0]});
-    auto rule_of = [&](ChainEnd const& end) {
-      return end.patch >= 0 && surface_of_patch[end.patch] >= 0 ? motion.patch[end.patch].rule
-                                                               : std::numeric_limits<int>::max();
-    };
-    int const first = rule_of(chain->first), last = rule_of(chain->last);
-    chains.push_back({{std::min(first, last), std::max(first, last)}, std::move(*chain)});
-  }
-  std::stable_sort(chains.begin(), chains.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
-
-  while (!chains.empty()) {
-    Claims claims(topology, nothing);
-    std::vector<Chain> now;
-    std::vector<std::pair<std::array<int, 2>, Chain>> later;
-    for (auto& entry : chains)
-      if (claims.add(entry.second)) {
-        now.push_back(std::move(entry.second));
-      } else {
-        later.push_back(std::move(entry));
-      }
-    SpreadPass pass = build_spread(mesh, topology, now, surface_of_patch, given, plan.mesh_size, rotations);
-    std::map<std::pair<std::string, std::string>, int> ends;
-    for (Chain const& chain : now) {
-      auto name = [&](ChainEnd const& end) {
-        if (end.patch < 0) return std::string("inner face");
-        Patch const& p = mesh.patches[end.patch];
-        return p.families.empty() ? p.name : p.families.front();
-      };
-      ++ends[{name(chain.first), name(chain.last)}];
+    Orientation const& to_block = blocks.to_block(side.piece);
+    BlockFace const face{blocks.block_of(side.piece), to_block.axis[side.axis],
+                         to_block.sign[side.axis] > 0 ? side.side : 1 - side.side};
+    if (!seen.insert({face.block, face.axis, face.side}).second) continue;
+    // To the opposite boundary, or as far as the walk goes before it would come back to one of its blocks.
+    Chain chain;
+    if (auto whole = find_chain(mesh, topology, nothing, face.block, face.axis)) {
+      ChainStep const& front = whole->steps.front();
+      Orientation const to_front = front.to_chain.inverse();
+      bool const slip_first =
+          front.block == face.block && to_front.axis[0] == face.axis && (to_front.sign[0] > 0 ? 0 : 1) == face.side;
+      chain = slip_first ? std::move(*whole) : reversed(std::move(*whole));
+    } else {
+      auto one = walk_from(mesh, topology, nothing, face, [](Chain const&) { return true; });
+      if (!one) continue;
+      chain = std::move(*one);
     }
-    for (auto const& [who, count] : ends)
-      pass.description.push_back(std::to_string(count) + " chains from " + who.first + " to " + who.second);
-    plan.spreads.push_back(std::move(pass));
-    chains = std::move(later);
+    int const steps = int(chain.steps.size());
+    bool const revolution = surfaces[surface_of_patch[patch]].kind == SlipKind::revolution;
+    candidates.push_back({motion.patch[patch].rule, revolution, std::move(chain), steps});
+  }
+  return candidates;
+}
+
+/// Shortens the chains of one rule until their common region has no inner side: a node on a side that another block
+/// shares would move with the chain and the block's own nodes would not. Chains side by side get equal length.
+void close_sides(Topology const& topology, std::vector<Candidate*> const& group) {
+  Lattice const& lattice = topology.lattice;
+  Blocks const& blocks = topology.blocks;
+  using Place = std::pair<Candidate*, int>;  // chain, step
+  std::map<int, std::vector<Place>> beside;  // inner side face -> who has it
+  for (Candidate* c : group)
+    for (int m = 0; m < int(c->chain.steps.size()); ++m) {
+      ChainStep const& step = c->chain.steps[m];
+      for (int axis = 0; axis < 3; ++axis) {
+        if (step.to_chain.axis[axis] == 0) continue;
+        for (int side = 0; side < 2; ++side)
+          for (int const entity : blocks.face_entities(lattice, {step.block, axis, side})) {
+            int const face = lattice.class_of(entity);
+            if (blocks.patch_of_face()[face] < 0) beside[face].emplace_back(c, m);
+          }
+      }
+    }
+  for (bool changed = true; changed;) {
+    changed = false;
+    auto shorten = [&](Candidate* c, int steps) {
+      if (c->steps <= std::max(1, steps)) return;
+      c->steps = std::max(1, steps);
+      changed = true;
+    };
+    for (auto const& [face, places] : beside)
+      for (Place const& place : places) {
+        auto const [c, m] = place;
+        if (m >= c->steps) continue;
+        auto const other = std::find_if(places.begin(), places.end(),
+                                        [&](Place const& p) { return &p != &place && p.second < p.first->steps; });
+        if (other == places.end() || other->second != m)
+          shorten(c, m);
+        else
+          shorten(c, other->first->steps);
+      }
+  }
+}
+
+Chain used_part(Candidate const& c) {
+  Chain chain = c.chain;
+  if (!c.whole()) {
+    chain.steps.resize(c.steps);
+    chain.last = {};
+  }
+  return chain;
+}
+
+/// The chains of one rule, or of two rules whose chains are the same from end to end (hub and case).
+struct RuleChains {
+  std::set<int> rules;
+  std::vector<Chain> chains;
+};
+
+/// In the order they are to be spread. Planes and axial constraints come first: their corrections leave other planes
+/// alone, but not curved surfaces, which are put right last and by lines that lie in those planes.
+std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion const& motion,
+                                       std::vector<int> const& surface_of_patch, std::vector<Candidate>& candidates) {
+  using Key = std::pair<bool, int>;  // (revolution, rule)
+  std::map<Key, std::vector<Candidate*>> groups;
+  for (Candidate& c : candidates) groups[{c.revolution, c.rule}].push_back(&c);
+  std::map<Key, std::set<std::pair<int, int>>> whole_blocks;  // (block, axis), if all chains of the rule are whole
+  for (auto& [key, group] : groups) {
+    close_sides(topology, group);
+    auto& blocks = whole_blocks[key];
+    for (Candidate const* c : group)
+      for (ChainStep const& step : c->chain.steps)
+        if (c->whole()) blocks.insert({step.block, step.to_chain.inverse().axis[0]});
+    if (!std::all_of(group.begin(), group.end(), [](Candidate const* c) { return c->whole(); })) blocks.clear();
+  }
+  std::vector<RuleChains> lists;
+  std::map<Key, std::size_t> list_of;
+  for (auto const& [key, group] : groups) {
+    // Done with an earlier rule at the other end of the same chains?
+    auto const same = std::find_if(list_of.begin(), list_of.end(), [&, k = key](auto const& other) {
+      return !whole_blocks.at(k).empty() && whole_blocks.at(other.first) == whole_blocks.at(k);
+    });
+    if (same != list_of.end()) {
+      lists[same->second].rules.insert(key.second);
+      continue;
+    }
+    list_of[key] = lists.size();
+    RuleChains list;
+    list.rules.insert(key.second);
+    std::set<std::pair<int, int>> taken;  // a chain with both ends on this rule's patches is found twice
+    for (Candidate const* c : group) {
+      Chain chain = used_part(*c);
+      ChainStep const& first = chain.steps.front();
+      if (taken.contains({first.block, first.to_chain.inverse().axis[0]}) && c->whole()) continue;
+      for (ChainStep const& step : chain.steps) taken.insert({step.block, step.to_chain.inverse().axis[0]});
+      // The far end is put back too only where all chains are whole; otherwise its own rule does it.
+      bool const same_rule = chain.last.patch >= 0 && surface_of_patch[chain.last.patch] >= 0 &&
+                             motion.patch[chain.last.patch].rule == key.second;
+      if (whole_blocks.at(key).empty() && !same_rule) chain.last = {};
+      list.chains.push_back(std::move(chain));
+    }
+    lists.push_back(std::move(list));
+  }
+  return lists;
+}
+
+}  // namespace
+
+void plan_spreads(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
+                  SurfaceMotion const& surface, Known const& given, RotationTable& rotations, Plan& plan) {
+  std::vector<int> const surface_of_patch = surface_numbers(mesh, surface, plan.surfaces);
+  if (plan.surfaces.empty()) return;
+  Known const nothing(topology.lattice.n_classes());
+  std::vector<Candidate> candidates = find_candidates(mesh, topology, motion, surface_of_patch, plan.surfaces);
+  // A node on several surfaces is put on those of earlier passes and its own: each correction is spread along the lines
+  // of its own rule.
+  std::vector<int> surface_so_far(mesh.patches.size(), -1);
+  for (RuleChains& list : chains_by_rule(topology, motion, surface_of_patch, candidates)) {
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+      if (list.rules.contains(motion.patch[p].rule)) surface_so_far[p] = surface_of_patch[p];
+    while (!list.chains.empty()) {
+      Claims claims(topology, nothing);
+      std::vector<Chain> now, later;
+      for (Chain& chain : list.chains) (claims.add(chain) ? now : later).push_back(std::move(chain));
+      SpreadPass pass = build_spread(mesh, topology, now, surface_so_far, given, plan.mesh_size, rotations);
+      std::map<std::pair<std::string, std::string>, int> ends;
+      for (Chain const& chain : now) {
+        auto name = [&](ChainEnd const& end) {
+          if (end.patch < 0) return std::string("an inner face");
+          Patch const& p = mesh.patches[end.patch];
+          return p.families.empty() ? p.name : p.families.front();
+        };
+        ++ends[{name(chain.first), name(chain.last)}];
+      }
+      for (auto const& [who, count] : ends)
+        pass.description.push_back(std::to_string(count) + " chains from " + who.first + " to " + who.second);
+      plan.spreads.push_back(std::move(pass));
+      list.chains = std::move(later);
+    }
   }
 }
 

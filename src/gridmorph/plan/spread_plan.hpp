@@ -5,9 +5,10 @@
 
 namespace gridmorph {
 
-/// Fills plan.surfaces and plan.spreads. Every block face on a slip patch starts (or ends) a chain that runs through all
-/// blocks to the opposite boundary; chains that cross one another go into different passes. `given`: entities whose
-/// displacement the motion rules give.
+/// Fills plan.surfaces and plan.spreads. Every block face on a slip patch starts a chain that runs through all blocks to
+/// the opposite boundary, or as far as the chains of its rule stay side by side: what leaves the chains sideways into
+/// other blocks must not move. Rules whose chains are the same from end to end (hub and case) share one pass; other rules
+/// have passes of their own, in their order. `given`: entities whose displacement the motion rules give.
 void plan_spreads(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
                   SurfaceMotion const& surface, Known const& given, RotationTable& rotations, Plan& plan);
 

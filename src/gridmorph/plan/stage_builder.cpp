@@ -69,19 +69,20 @@ void add_copies(Mesh const& mesh, Lattice const& lattice, int source_entity, Rot
   EntityNodes const from = entity_nodes(mesh, lattice, source, owner);
   if (from.empty) return;
   auto copy_to = [&](EntityNodes const& to, std::int32_t matrix) {
-    return kernels::NodeCopy{from.first, from.stride[0], from.stride[1], to.first, to.stride[0], to.stride[1],
-                             from.n[0],  from.n[1],      matrix};
+    return kernels::NodeCopy{from.first,   from.stride[0], from.stride[1], to.first, to.stride[0],
+                             to.stride[1], from.n[0],      from.n[1],      matrix};
   };
   if (auto const axis = lattice.axis_of(c)) {
     Vec3 const a = source.transform.rotation * *axis;
-    Mat3 const onto{{{a.x * a.x, a.x * a.y, a.x * a.z}, {a.y * a.x, a.y * a.y, a.y * a.z}, {a.z * a.x, a.z * a.y, a.z * a.z}}};
+    Mat3 const onto{
+        {{a.x * a.x, a.x * a.y, a.x * a.z}, {a.y * a.x, a.y * a.y, a.y * a.z}, {a.z * a.x, a.z * a.y, a.z * a.z}}};
     table.projections.push_back(copy_to(from, rotations.number(onto)));
   }
   for (EntityCopy const& copy : copies) {
     if (copy.entity == source_entity) continue;
     std::int32_t matrix = -1;
-    // Copies in the same frame are bit-identical: R R^T is the identity to round-off only.
-    if (!same_rotation(copy.transform.rotation, source.transform.rotation))
+    // Copies in the same frame are bit-identical (R R^T is the identity to round-off only), and so are those on the axis.
+    if (!lattice.axis_of(c) && !same_rotation(copy.transform.rotation, source.transform.rotation))
       matrix = rotations.number(copy.transform.rotation * transpose(source.transform.rotation));
     table.copies.push_back(copy_to(entity_nodes(mesh, lattice, copy, owner), matrix));
   }
@@ -154,14 +155,15 @@ Stage build_stage(Mesh const& mesh, Topology const& topology, std::vector<StageC
                   RotationTable& rotations, std::vector<std::string> const& kind_order) {
   Stage stage;
   Lattice const& lattice = topology.lattice;
-  std::map<int, int> writer;      // entity class -> entity that is written
-  std::map<int, EndKind> becomes; // entity class -> kind
+  std::map<int, int> writer;       // entity class -> entity that is written
+  std::map<int, EndKind> becomes;  // entity class -> kind
   for (StageChain const& entry : chains) {
     Chain const chain = with_contiguous_a(mesh, topology, entry.chain);
     ChainLayout const layout = lay_out(topology, chain);
-    EndKind const kind = entry.open_end || kind_rank(chain.first.kind, kind_order) <= kind_rank(chain.last.kind, kind_order)
-                             ? chain.first.kind
-                             : chain.last.kind;
+    EndKind const kind =
+        entry.open_end || kind_rank(chain.first.kind, kind_order) <= kind_rank(chain.last.kind, kind_order)
+            ? chain.first.kind
+            : chain.last.kind;
     int const number = int(stage.lines.chains.size());
     stage.lines.chains.push_back(device_chain(layout, entry.law, entry.open_end));
     append_lines(mesh, topology, chain, layout, number, rotations, stage.lines, [&](int entity) {
@@ -246,9 +248,9 @@ SpreadPass build_spread(Mesh const& mesh, Topology const& topology, std::vector<
               end.value = device.first_end_value + side * section + (layout.a_begin[pa] + a) +
                           Index(device.n_a) * (layout.b_begin[pb] + b);
               end.rotation = rotation;
-              int const c = lattice.class_of(
-                  chain_entity(lattice, piece, {2 * side, kernels::end_category(a, nodes.count[1]),
-                                                kernels::end_category(b, nodes.count[2])}));
+              int const c = lattice.class_of(chain_entity(
+                  lattice, piece,
+                  {2 * side, kernels::end_category(a, nodes.count[1]), kernels::end_category(b, nodes.count[2])}));
               if (given(c)) end.tolerance = 1e-10 * mesh_size;
               auto const& on = surfaces_of.at(c);
               for (std::size_t m = 0; m < on.size() && m < 3; ++m) end.surface[m] = on[m];

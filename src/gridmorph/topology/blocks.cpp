@@ -24,8 +24,8 @@ class UnionFind {
 
 /// The face entities of a zone around one of its edge entities (up to four), and the pieces (up to four).
 struct EdgeStar {
-  std::vector<int> faces;   ///< face classes
-  std::vector<int> pieces;  ///< one entry per corner of a piece at this edge
+  std::vector<int> faces;                         ///< face classes
+  std::vector<int> pieces;                        ///< one entry per corner of a piece at this edge
   std::vector<std::pair<int, int>> corner_faces;  ///< per piece corner: its two face classes
 };
 
@@ -65,8 +65,9 @@ EdgeStar star_of(Lattice const& lattice, int edge_class) {
 }  // namespace
 
 Orientation across(Lattice const& lattice, FaceSide const& from, FaceSide const& to) {
-  return lattice.copy_of(from.entity).from_owner.orientation.inverse().then(
-      lattice.copy_of(to.entity).from_owner.orientation);
+  return lattice.copy_of(from.entity)
+      .from_owner.orientation.inverse()
+      .then(lattice.copy_of(to.entity).from_owner.orientation);
 }
 
 Blocks::Blocks(Mesh const& mesh, Links const& links, Lattice const& lattice, MergeLimits const& limits) {
@@ -123,8 +124,8 @@ std::vector<char> Blocks::removable_faces(Mesh const& mesh, Links const& links, 
   }
   for (CutPlane const& plane : limits.kept_planes) {
     ZoneCuts const& cuts = lattice.cuts()[plane.zone];
-    int const c = int(std::lower_bound(cuts[plane.axis].begin(), cuts[plane.axis].end(), plane.index) -
-                      cuts[plane.axis].begin());
+    int const c =
+        int(std::lower_bound(cuts[plane.axis].begin(), cuts[plane.axis].end(), plane.index) - cuts[plane.axis].begin());
     int const u = plane.axis == 0 ? 1 : 0, v = plane.axis == 2 ? 1 : 2;
     for (int q = 1; q < 2 * int(cuts[v].size()) - 1; q += 2)
       for (int p = 1; p < 2 * int(cuts[u].size()) - 1; p += 2) {
@@ -250,8 +251,8 @@ bool Blocks::assemble(Lattice const& lattice, std::vector<char>& removable) {
     block.pieces.resize(volume);
     for (int p : members) {
       Index3 const at{place[p][0] - lo[0], place[p][1] - lo[1], place[p][2] - lo[2]};
-      block.pieces[std::size_t(at[0]) + std::size_t(block.n_pieces[0]) * (at[1] + std::size_t(block.n_pieces[1]) * at[2])] =
-          {p, to_block_[p]};
+      block.pieces[std::size_t(at[0]) + std::size_t(block.n_pieces[0]) *
+                                            (at[1] + std::size_t(block.n_pieces[1]) * at[2])] = {p, to_block_[p]};
     }
     blocks_.push_back(std::move(block));
   }

@@ -14,8 +14,8 @@ constexpr int uncovered = -1;
 /// Who covers each cell of one zone face. Owners: patch p >= 0, interface link -2 - l, or uncovered.
 struct FaceCells {
   int zone, axis, side;
-  int u, v;      ///< tangential axes
-  int nu, nv;    ///< cells along them
+  int u, v;    ///< tangential axes
+  int nu, nv;  ///< cells along them
   std::vector<int> owner;
 
   FaceCells(Mesh const& mesh, int zone_, int axis_, int side_)
@@ -53,14 +53,16 @@ FaceCells mark(Mesh const& mesh, Links const& links, int zone, int axis, int sid
       for (int a = r.begin[face.u]; a < r.end[face.u] - 1; ++a) {
         int& owner = face.at(a, b);
         if (owner != uncovered && overlaps && (owner >= 0 || who >= 0))
-          overlaps->try_emplace({std::max(owner, who), std::min(owner, who)}, face.node_range(mesh, a, a + 1, b, b + 1));
+          overlaps->try_emplace({std::max(owner, who), std::min(owner, who)},
+                                face.node_range(mesh, a, a + 1, b, b + 1));
         owner = who;
       }
   };
   for (int l : links.of_zone[zone])
     if (lies_on(mesh, face, links.all[l].range)) cover(links.all[l].range, -2 - l);
   for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-    if (mesh.patches[p].zone == zone && lies_on(mesh, face, mesh.patches[p].range)) cover(mesh.patches[p].range, int(p));
+    if (mesh.patches[p].zone == zone && lies_on(mesh, face, mesh.patches[p].range))
+      cover(mesh.patches[p].range, int(p));
   return face;
 }
 
@@ -120,7 +122,8 @@ void for_each_face(Mesh const& mesh, Visit&& visit) {
 void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& options) {
   int poles = 0, open = 0;
   for (Patch& patch : mesh.patches) {
-    bool const solid = patch.kind == PatchKind::wall || patch.kind == PatchKind::inflow || patch.kind == PatchKind::outflow;
+    bool const solid =
+        patch.kind == PatchKind::wall || patch.kind == PatchKind::inflow || patch.kind == PatchKind::outflow;
     if (solid || patch.kind == PatchKind::degenerate || !is_collapsed(mesh, patch.zone, patch.range, links.mesh_size))
       continue;
     mesh.notes.push_back("patch " + describe_patch(mesh, patch) + " is collapsed to a line; taken as a pole");
@@ -140,8 +143,8 @@ void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& opt
   mesh.patches.insert(mesh.patches.end(), added.begin(), added.end());
   if (poles > 0) mesh.notes.push_back(std::to_string(poles) + " undeclared collapsed faces taken as patch 'pole'");
   if (open > 0)
-    mesh.notes.push_back(std::to_string(open) + " face ranges claimed by nothing taken as patch '" + options.open_faces +
-                         "'");
+    mesh.notes.push_back(std::to_string(open) + " face ranges claimed by nothing taken as patch '" +
+                         options.open_faces + "'");
 }
 
 void check_coverage(Mesh const& mesh, Links const& links) {
@@ -168,16 +171,17 @@ void check_coverage(Mesh const& mesh, Links const& links) {
     Overlaps overlaps;
     FaceCells face = mark(mesh, links, z, axis, side, &overlaps);
     for (auto const& [who, where] : overlaps) {
-      std::string const other =
-          who.second >= 0 ? "patch " + describe_patch(mesh, mesh.patches[who.second])
-                          : "interface '" + mesh.interfaces[links.all[-2 - who.second].interface].name + "'";
+      std::string const other = who.second >= 0
+                                    ? "patch " + describe_patch(mesh, mesh.patches[who.second])
+                                    : "interface '" + mesh.interfaces[links.all[-2 - who.second].interface].name + "'";
       problems.add("patch " + describe_patch(mesh, mesh.patches[who.first]) + " overlaps " + other + ", first at " +
                    describe_range(mesh, z, where) + "; a face cell can belong to one of them only");
     }
     for (IndexRange const& r : open_rectangles(mesh, face))
-      problems.add(describe_range(mesh, z, r) +
-                   " has neither a boundary condition nor a 1-to-1 interface; add one, or declare open faces as a patch "
-                   "(open_faces = \"open\")");
+      problems.add(
+          describe_range(mesh, z, r) +
+          " has neither a boundary condition nor a 1-to-1 interface; add one, or declare open faces as a patch "
+          "(open_faces = \"open\")");
   });
   problems.throw_if_any<MeshError>();
 }

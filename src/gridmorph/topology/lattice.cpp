@@ -153,6 +153,8 @@ void Lattice::identify(Mesh const& mesh, Links const& links) {
       copies_.push_back(copy);
     };
     reach({seed, {}, {}, false});
+    // Returns true when it came through a periodic interface to a copy not seen before: the plain neighbours of that copy
+    // come next, so that they share its transform to the bit.
     auto expand = [&](EntityCopy const from, bool through_periodic) {
       auto it = std::lower_bound(on_link.begin(), on_link.end(), std::pair<int, int>{from.entity, -1});
       for (; it != on_link.end() && it->first == from.entity; ++it) {
@@ -165,6 +167,7 @@ void Lattice::identify(Mesh const& mesh, Links const& links) {
         to.transform = link.periodic ? from.transform.then(link.transform) : from.transform;
         if (class_of_[to.entity] < 0) {
           reach(to);
+          if (through_periodic) return true;
           continue;
         }
         // Reached twice: both ways round must agree, up to a rotation about an axis the nodes lie on.
@@ -179,14 +182,15 @@ void Lattice::identify(Mesh const& mesh, Links const& links) {
         Mat3 const loop = transpose(known.transform.rotation) * to.transform.rotation;
         if (deviation_from_identity(loop) > 1e-6) axis = rotation_axis(loop);
       }
+      return false;
     };
     // Plain interfaces first, so that a copy that has a way round without rotation is never rotated forth and back.
     std::size_t plain = class_begin_.back(), periodic = plain;
     while (periodic < copies_.size())
       if (plain < copies_.size())
         expand(copies_[plain++], false);
-      else
-        expand(copies_[periodic++], true);
+      else if (!expand(copies_[periodic], true))
+        ++periodic;
     class_begin_.push_back(int(copies_.size()));
     axis_.push_back(axis);
   }

@@ -16,9 +16,9 @@ namespace gridmorph {
 /// One occurrence of an entity class in a zone.
 struct EntityCopy {
   int entity = -1;
-  IndexMap from_owner;        ///< node index in the owner's zone -> node index in this zone
-  RigidTransform transform;   ///< owner position -> this position
-  bool moved = false;         ///< transform is not the identity (reached through a periodic interface)
+  IndexMap from_owner;       ///< node index in the owner's zone -> node index in this zone
+  RigidTransform transform;  ///< owner position -> this position
+  bool moved = false;        ///< transform is not the identity (reached through a periodic interface)
 };
 
 /// One side of a face: the piece it bounds and where.

@@ -97,11 +97,11 @@ RigidTransform fit_rigid_transform(std::vector<Vec3> const& from, std::vector<Ve
       for (int b = 0; b < 3; ++b) s[a][b] += fv[a] * tv[b];
   }
   // Horn, "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4 (1987).
-  auto const q = dominant_eigenvector(
-      {{{s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]},
-        {s[1][2] - s[2][1], s[0][0] - s[1][1] - s[2][2], s[0][1] + s[1][0], s[2][0] + s[0][2]},
-        {s[2][0] - s[0][2], s[0][1] + s[1][0], -s[0][0] + s[1][1] - s[2][2], s[1][2] + s[2][1]},
-        {s[0][1] - s[1][0], s[2][0] + s[0][2], s[1][2] + s[2][1], -s[0][0] - s[1][1] + s[2][2]}}});
+  auto const q =
+      dominant_eigenvector({{{s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]},
+                             {s[1][2] - s[2][1], s[0][0] - s[1][1] - s[2][2], s[0][1] + s[1][0], s[2][0] + s[0][2]},
+                             {s[2][0] - s[0][2], s[0][1] + s[1][0], -s[0][0] + s[1][1] - s[2][2], s[1][2] + s[2][1]},
+                             {s[0][1] - s[1][0], s[2][0] + s[0][2], s[1][2] + s[2][1], -s[0][0] - s[1][1] + s[2][2]}}});
   double const w = q[0], x = q[1], y = q[2], z = q[3];
   double const l = w * w + x * x + y * y + z * z;
   Mat3 const r{{{(w * w + x * x - y * y - z * z) / l, 2 * (x * y - w * z) / l, 2 * (x * z + w * y) / l},

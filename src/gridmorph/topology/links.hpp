@@ -10,10 +10,10 @@ namespace gridmorph {
 
 /// One direction of a 1-to-1 interface. Every Link has its reverse in the same list, stored in the file or not.
 struct Link {
-  int interface = -1;        ///< number in Mesh::interfaces (of the stored side when only one side is stored)
+  int interface = -1;  ///< number in Mesh::interfaces (of the stored side when only one side is stored)
   int zone = -1;
   int donor_zone = -1;
-  IndexRange range;          ///< own nodes
+  IndexRange range;  ///< own nodes
   IndexMap to_donor;
   bool periodic = false;
   RigidTransform transform;  ///< own position -> donor position; exactly the identity unless periodic

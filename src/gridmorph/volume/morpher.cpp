@@ -18,7 +18,7 @@ Kokkos::View<T*, typename Exec::memory_space> upload(Exec const& exec, std::vect
   Kokkos::View<T*, typename Exec::memory_space> device(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, std::string("gridmorph::Morpher::") + what), host.size());
   Kokkos::View<T const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const source(host.data(),
-                                                                                                host.size());
+                                                                                                  host.size());
   if (!host.empty()) Kokkos::deep_copy(exec, device, source);
   return device;
 }
@@ -46,14 +46,15 @@ struct DeviceCopies {
   void run(Exec const& exec, Kokkos::View<Mat3*, Memory> const& matrices, kernels::Field<double> u) const {
     for (Table const* t : {&projections, &copies})
       if (t->n_items > 0)
-        Kokkos::parallel_for("gridmorph::node_copy", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, t->n_items),
+        Kokkos::parallel_for("gridmorph::node_copy",
+                             Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, t->n_items),
                              kernels::CopyNodes<Memory>{t->copies, t->first_item, matrices, u});
   }
 };
 
 template <class Exec>
-kernels::LineTable<typename Exec::memory_space> upload_lines(Exec const& exec, LineTables const& lines,
-                                                             Kokkos::View<Mat3*, typename Exec::memory_space> rotations) {
+kernels::LineTable<typename Exec::memory_space> upload_lines(
+    Exec const& exec, LineTables const& lines, Kokkos::View<Mat3*, typename Exec::memory_space> rotations) {
   kernels::LineTable<typename Exec::memory_space> table;
   table.chains = upload(exec, lines.chains, "chains");
   table.tubes = upload(exec, lines.tubes, "tubes");
@@ -218,8 +219,9 @@ void Morpher<Exec>::displace(Exec const& exec, Kokkos::View<Vec3 const*, MemoryS
   for (auto const& pass : s.spreads) {
     kernels::Field<double> const values = State::three(s.spread_workspace);
     Kokkos::parallel_for("gridmorph::line_spread::clear", Range(exec, 0, pass.n_values), detail::ZeroField{values});
-    Kokkos::parallel_for("gridmorph::line_spread::ends", Range(exec, 0, Index(pass.ends.extent(0))),
-                         detail::SlipEndValues<MemorySpace>{pass.ends, s.surfaces.surfaces, s.rotations, x, read_u, values});
+    Kokkos::parallel_for(
+        "gridmorph::line_spread::ends", Range(exec, 0, Index(pass.ends.extent(0))),
+        detail::SlipEndValues<MemorySpace>{pass.ends, s.surfaces.surfaces, s.rotations, x, read_u, values});
     Kokkos::parallel_for(
         "gridmorph::line_spread", Range(exec, 0, pass.lines.n_lines),
         kernels::LineSpread<MemorySpace>{pass.lines, {values.x, values.y, values.z, values.stride}, x, u});
@@ -229,7 +231,8 @@ void Morpher<Exec>::displace(Exec const& exec, Kokkos::View<Vec3 const*, MemoryS
 
 template <class Exec>
 void Morpher<Exec>::move(Exec const& exec, kernels::Field<double const> x, kernels::Field<double> u) const {
-  Kokkos::parallel_for("gridmorph::move_nodes", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, state_->n_nodes),
+  Kokkos::parallel_for("gridmorph::move_nodes",
+                       Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, state_->n_nodes),
                        detail::MoveNodes{x, u});
 }
 
