@@ -24,17 +24,12 @@ struct Case {
   std::vector<std::string> all_patches{"*"};
   /// A ring that closes on itself and has known faces beside its seam: blending across it starts at the seam.
   bool seam_matters = false;
+  std::string file = {};  ///< what mesh() reads, where it reads a file
 
   friend std::ostream& operator<<(std::ostream& out, Case const& c) { return out << c.name; }
 };
 
+/// The cases of this test program.
 std::vector<Case> const& cases();
-/// Meshes from outside with a motion each; empty when they are not there.
-std::vector<Case> shared_cases();
-
-/// "box_all_faces" for names of parameterised tests.
-std::string case_name(Case const& c);
-
-bool reduced();  ///< GRIDMORPH_TEST_REDUCED is set: fewer seeds
 
 }  // namespace gridmorph::test

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 namespace gridmorph::test {
 namespace {
@@ -93,9 +95,17 @@ double known_displacement_error(Outcome const& run) {
 }
 
 Index boundary_values_changed(Outcome const& run) {
+  std::set<Index> on_axis;
+  for (auto const& copy : run.plan().boundary_copies.projections)
+    for (Index q = 0; q < copy.n_q; ++q)
+      for (Index p = 0; p < copy.n_p; ++p)
+        on_axis.insert(copy.source + p * copy.source_stride_p + q * copy.source_stride_q);
   Index count = 0;
-  for (std::size_t n = 0; n < run.boundary.size(); ++n)
-    count += run.u(run.plan().boundary_nodes[n]) == run.boundary[n] ? 0 : 1;
+  for (std::size_t n = 0; n < run.boundary.size(); ++n) {
+    Index const node = run.plan().boundary_nodes[n];
+    double const allowed = on_axis.contains(node) ? 1e-15 * norm(run.boundary[n]) : 0;
+    count += distance(run.u(node), run.boundary[n]) <= allowed ? 0 : 1;
+  }
   return count;
 }
 

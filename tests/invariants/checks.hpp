@@ -17,7 +17,8 @@ double periodic_mismatch(Outcome const& run);
 double off_slip_surface(Outcome const& run);
 /// Largest difference between what the explicit rules ask of a patch node and what it gets.
 double known_displacement_error(Outcome const& run);
-/// Owner nodes of the plan's boundary whose displacement is not the given one bit for bit.
+/// Owner nodes of the plan's boundary whose displacement is not the given one bit for bit (to round-off on the axis of a
+/// sector, where only the part along the axis counts).
 Index boundary_values_changed(Outcome const& run);
 /// Nodes whose displacement is not a finite number.
 Index not_finite(Outcome const& run);

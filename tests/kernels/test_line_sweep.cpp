@@ -10,6 +10,7 @@ namespace gridmorph::test {
 namespace {
 
 using Host = Kokkos::HostSpace;
+using kernels::Index;
 
 template <class T>
 Kokkos::View<T*, Host> view(std::vector<T> const& values) {
@@ -47,7 +48,8 @@ TEST(LineLaw, SlopesAndCurvaturesVanishWhereTheySay) {
     return (kernels::law_weight(law, s + h) - kernels::law_weight(law, s - h)) / (2 * h);
   };
   auto const curvature = [&](LineLaw law, double s) {
-    return (kernels::law_weight(law, s + h) - 2 * kernels::law_weight(law, s) + kernels::law_weight(law, s - h)) / (h * h);
+    return (kernels::law_weight(law, s + h) - 2 * kernels::law_weight(law, s) + kernels::law_weight(law, s - h)) /
+           (h * h);
   };
   for (double end : {0.0, 1.0}) {
     EXPECT_NEAR(slope(LineLaw::c1, end), 0, 1e-6);
@@ -67,8 +69,7 @@ struct TwoSegments {
   explicit TwoSegments(kernels::LineLaw law, std::uint32_t mask, std::int32_t open = 0, std::int32_t rotation = -1) {
     table.chains = view<kernels::Chain>({{5, 1, 1, law, open, -1, 0, 1, 0, 0}});
     table.tubes = view<kernels::Tube>({{0, 0, 0, 1, 1, 0, 2}});
-    table.segments =
-        view<kernels::Segment>({{0, 1, 0, 0, 3, 0, mask, -1}, {5, -1, 0, 0, 3, 2, mask, rotation}});
+    table.segments = view<kernels::Segment>({{0, 1, 0, 0, 3, 0, mask, -1}, {5, -1, 0, 0, 3, 2, mask, rotation}});
     table.first_line = view<Index>({0, 1});
     // A quarter turn about z.
     table.rotations = view<Mat3>({Mat3{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}});
@@ -134,9 +135,9 @@ TEST(NodeCopy, CopiesRangesWithStridesAndTurns) {
   Arrays u(20);
   for (int n = 0; n < 6; ++n) u.x[n] = n + 1;
   // A 3 x 2 face to nodes that run backwards, and a turned one.
-  kernels::CopyNodes<Host> const kernel{view<kernels::NodeCopy>({{0, 1, 3, 15, -1, -3, 3, 2, -1}, {0, 1, 3, 16, 1, 2, 2, 2, 0}}),
-                                        view<Index>({0, 6, 10}), view<Mat3>({Mat3{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}}),
-                                        u.field()};
+  kernels::CopyNodes<Host> const kernel{
+      view<kernels::NodeCopy>({{0, 1, 3, 15, -1, -3, 3, 2, -1}, {0, 1, 3, 16, 1, 2, 2, 2, 0}}), view<Index>({0, 6, 10}),
+      view<Mat3>({Mat3{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}}), u.field()};
   for (Index item = 0; item < 10; ++item) kernel(item);
   for (int q = 0; q < 2; ++q)
     for (int p = 0; p < 3; ++p) EXPECT_EQ(u.x[15 - p - 3 * q], p + 3 * q + 1);

@@ -63,8 +63,8 @@ Mesh bricks_with_t_junctions(unsigned seed) {
   Bricks b;
   b.name = "bricks";
   b.extent = {9, 10, 6};
-  b.zones = {planes(0, 3, 0, 5, 0, 5), planes(3, 8, 0, 2, 0, 5), planes(3, 8, 2, 5, 0, 5),
-             planes(0, 5, 5, 9, 0, 5), planes(5, 8, 5, 9, 0, 5)};
+  b.zones = {planes(0, 3, 0, 5, 0, 5), planes(3, 8, 0, 2, 0, 5), planes(3, 8, 2, 5, 0, 5), planes(0, 5, 5, 9, 0, 5),
+             planes(5, 8, 5, 9, 0, 5)};
   b.position = [d = Distortion(seed)](Vec3 const& q) { return curved(d(q)); };
   return make(b);
 }
@@ -87,7 +87,7 @@ Mesh around_a_box(unsigned seed) {
     for (int p = 0; p < 3; ++p)
       if (p != 1 || q != 1) b.zones.push_back(planes(i[p], i[p + 1], j[q], j[q + 1], 0, 3));
   b.position = [d = Distortion(seed)](Vec3 const& q) { return curved(d(q)); };
-  b.kind = {PatchKind::inflow,  PatchKind::outflow,  PatchKind::farfield,
+  b.kind = {PatchKind::inflow,   PatchKind::outflow,  PatchKind::farfield,
             PatchKind::farfield, PatchKind::symmetry, PatchKind::symmetry};
   return make(b);
 }

@@ -60,8 +60,8 @@ struct Wrap {
 
 struct Bricks {
   std::string name;
-  Index3 extent{};                  ///< nodes of the big box
-  std::vector<IndexRange> zones;    ///< boxes of nodes, bounding planes included; all of it when empty
+  Index3 extent{};                ///< nodes of the big box
+  std::vector<IndexRange> zones;  ///< boxes of nodes, bounding planes included; all of it when empty
   std::function<Vec3(Vec3 const&)> position;
   std::array<Wrap, 3> wrap{};
   /// Family and kind of the six outer faces u_min, u_max, v_min, ...; faces inside the big box with no brick beyond them

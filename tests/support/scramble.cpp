@@ -190,9 +190,8 @@ std::vector<std::string> flaws(Mesh const& mesh, double tolerance) {
     int const side = range.begin[axis] == 0 ? 0 : 1;
     for (int a = 0; a < 3; ++a)
       if (a != axis) --range.end[a];
-    each(zone, range, [&](Index3 const&, Index n) {
-      covered[6 * zone + 2 * axis + side][n - mesh.zones[zone].first_node] += add;
-    });
+    each(zone, range,
+         [&](Index3 const&, Index n) { covered[6 * zone + 2 * axis + side][n - mesh.zones[zone].first_node] += add; });
   };
   for (Patch const& p : mesh.patches) cover(p.zone, p.range, 1);
   for (Interface1to1 const& face : one_sided(mesh.interfaces)) {
@@ -205,7 +204,8 @@ std::vector<std::string> flaws(Mesh const& mesh, double tolerance) {
       for (int a = 0; a < 3; ++a)
         if (a != f / 2) --cells.end[a];
       int wrong = 0;
-      each(int(z), cells, [&](Index3 const&, Index n) { wrong += covered[6 * z + f][n - mesh.zones[z].first_node] != 1; });
+      each(int(z), cells,
+           [&](Index3 const&, Index n) { wrong += covered[6 * z + f][n - mesh.zones[z].first_node] != 1; });
       if (wrong > 0)
         found.push_back(std::to_string(wrong) + " cells of " + mesh.zones[z].name + " " +
                         std::string(face_name(f / 2, f % 2)) + " are not covered once");

@@ -72,7 +72,15 @@ TEST(Coverage, RefusesPatchesOutOfBoundsOrInsideTheZone) {
 TEST(Coverage, RefusesPatchesOfZonesThatDoNotExist) {
   Mesh mesh = box({6, 5, 6}, Shape::curved, 1);
   mesh.patches[0].zone = 5;
+  expect_all_in(message_of<MeshError>([&] { check(mesh); }), {mesh.patches[0].name, "zone number 5"});
+  mesh.patches[0].zone = -1;
   EXPECT_THROW(check(mesh), MeshError);
+}
+
+TEST(Coverage, PatchesAreCheckedBeforeTheyAreCompleted) {
+  Mesh mesh = box({6, 5, 6}, Shape::curved, 1);
+  mesh.patches[0].range.end[1] = 4000;
+  EXPECT_THROW(complete_patches(mesh, connect(mesh, {}), {0, "open"}), MeshError);
 }
 
 TEST(Coverage, OpenFacesBecomeAPatchWhereTheUserSaysSo) {
@@ -82,7 +90,8 @@ TEST(Coverage, OpenFacesBecomeAPatchWhereTheUserSaysSo) {
   TopologyOptions const options{0, "open"};
   complete_patches(mesh, connect(mesh, options), options);
   EXPECT_NO_THROW(check(mesh));
-  EXPECT_EQ(std::count_if(mesh.patches.begin(), mesh.patches.end(), [](Patch const& p) { return p.name == "open"; }), 2);
+  EXPECT_EQ(std::count_if(mesh.patches.begin(), mesh.patches.end(), [](Patch const& p) { return p.name == "open"; }),
+            2);
   EXPECT_FALSE(mesh.notes.empty());
 }
 

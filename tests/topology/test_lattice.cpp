@@ -93,7 +93,8 @@ TEST(Lattice, IdentifiesExactlyTheNodesThatCoincide) {
       places.insert({std::llround(1e9 * x.x), std::llround(1e9 * x.y), std::llround(1e9 * x.z)});
     }
     Index distinct = 0;
-    for (int c = 0; c < t.lattice.n_classes(); ++c) distinct += t.lattice.nodes(t.lattice.copies(c).front().entity).size();
+    for (int c = 0; c < t.lattice.n_classes(); ++c)
+      distinct += t.lattice.nodes(t.lattice.copies(c).front().entity).size();
     EXPECT_EQ(distinct, Index(places.size())) << mesh.source;
   }
 }
@@ -142,7 +143,7 @@ TEST(Lattice, NodesOnTheAxisOfASectorKnowIt) {
     bool const on_axis = p.x == 0 && p.y == 0;
     auto const axis = t.lattice.axis_of(c);
     ASSERT_EQ(axis.has_value(), on_axis);
-    if (axis) EXPECT_NEAR(std::abs(axis->z), 1, 1e-12);
+    EXPECT_NEAR(std::abs(axis.value_or(Vec3{0, 0, 1}).z), 1, 1e-12);
   }
 }
 
@@ -158,7 +159,8 @@ TEST(Lattice, AClosedRingAndAWakeTouchThemselves) {
   EXPECT_EQ(c.lattice.cuts()[0][0], (Cuts{0, 4, 12, 16}));
   EXPECT_EQ(c.lattice.pieces().size(), 3u);
   EXPECT_EQ(euler(c.lattice), 0);
-  EXPECT_EQ(count_classes(c.lattice, 2), 2 /* i ends */ + 2 /* i cuts */ + 3 /* far */ + 1 /* wall */ + 1 /* wake */ + 6);
+  EXPECT_EQ(count_classes(c.lattice, 2),
+            2 /* i ends */ + 2 /* i cuts */ + 3 /* far */ + 1 /* wall */ + 1 /* wake */ + 6);
   int twice = 0;
   for (int f = 0; f < c.lattice.n_classes(); ++f)
     twice += c.lattice.dimension(c.lattice.copies(f).front().entity) == 2 && c.lattice.copies(f).size() == 2;
@@ -187,14 +189,21 @@ TEST(Blocks, CutsThatNothingNeedsAreMergedAgain) {
     Mesh mesh;
     int blocks;
   } const cases[] = {
-      {box({8, 7, 6}, Shape::curved, 1), 1},  {bricks_with_t_junctions(1), 1}, {l_shape(1), 3},
-      {around_a_box(1), 8},                   {star(3, 1), 3},                 {star(5, 1), 5},
-      {annulus_sector({}, 1), 1},             {translational(1, 1), 1},        {translational(2, 1), 1},
+      {box({8, 7, 6}, Shape::curved, 1), 1},
+      {bricks_with_t_junctions(1), 1},
+      {l_shape(1), 3},
+      {around_a_box(1), 8},
+      {star(3, 1), 3},
+      {star(5, 1), 5},
+      {annulus_sector({}, 1), 1},
+      {translational(1, 1), 1},
+      {translational(2, 1), 1},
   };
   for (auto const& c : cases) {
     EXPECT_EQ(topology_of(c.mesh).blocks.size(), c.blocks) << c.mesh.source;
     for (unsigned seed = 1; seed < 5; ++seed)
-      EXPECT_EQ(topology_of(scramble(c.mesh, {seed, 6}).mesh).blocks.size(), c.blocks) << c.mesh.source << ", seed " << seed;
+      EXPECT_EQ(topology_of(scramble(c.mesh, {seed, 6}).mesh).blocks.size(), c.blocks)
+          << c.mesh.source << ", seed " << seed;
   }
 }
 

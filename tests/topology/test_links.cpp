@@ -20,8 +20,8 @@ TEST(Links, ComeInPairsThatUndoEachOther) {
   ASSERT_EQ(links.all.size() % 2, 0u);
   for (Link const& link : links.all) {
     auto const back = std::find_if(links.all.begin(), links.all.end(), [&](Link const& other) {
-      return other.zone == link.donor_zone && other.donor_zone == link.zone && other.range == link.to_donor(link.range) &&
-             other.to_donor(other.range) == link.range;
+      return other.zone == link.donor_zone && other.donor_zone == link.zone &&
+             other.range == link.to_donor(link.range) && other.to_donor(other.range) == link.range;
     });
     ASSERT_NE(back, links.all.end());
     Index3 const p = link.range.begin;
@@ -122,8 +122,7 @@ TEST(Links, AllBadInterfacesAreReportedAtOnce) {
   Mesh mesh = l_shape(1);
   ASSERT_GE(mesh.interfaces.size(), 2u);
   for (auto& face : mesh.interfaces) face.donor_zone = 99;
-  expect_all_in(message_of<MeshError>([&] { connect(mesh, {}); }),
-                {mesh.interfaces[0].name, mesh.interfaces[1].name});
+  expect_all_in(message_of<MeshError>([&] { connect(mesh, {}); }), {mesh.interfaces[0].name, mesh.interfaces[1].name});
 }
 
 TEST(Links, NonFiniteCoordinatesAreNamed) {

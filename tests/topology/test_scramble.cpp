@@ -13,8 +13,18 @@ namespace gridmorph::test {
 namespace {
 
 std::vector<Mesh> meshes() {
-  return {box({4, 5, 6}, Shape::curved, 1), bricks_with_t_junctions(2), l_shape(3), around_a_box(4), annulus_sector({}, 5),
-          o_grid(1, 6), o_grid(0, 7), c_grid(8), star(3, 9), star(5, 10), translational(1, 11), translational(2, 12)};
+  return {box({4, 5, 6}, Shape::curved, 1),
+          bricks_with_t_junctions(2),
+          l_shape(3),
+          around_a_box(4),
+          annulus_sector({}, 5),
+          o_grid(1, 6),
+          o_grid(0, 7),
+          c_grid(8),
+          star(3, 9),
+          star(5, 10),
+          translational(1, 11),
+          translational(2, 12)};
 }
 
 TEST(Scramble, BuiltMeshesHaveNoFlaws) {

@@ -1,4 +1,6 @@
 // Poles, lines of no length, near fields, and the uses of a Morpher.
+#include <gridmorph/core/error.hpp>
+
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
 #include "support/random.hpp"
@@ -84,10 +86,10 @@ TEST(NearField, IsConstantOffTheWallForTheLayersAskedFor) {
 
 TEST(NearField, OfAThicknessHasTheLayersThatReachIt) {
   // The straight box is 2 long in 8 cells of 0.25: 0.6 is reached by the third one.
-  Outcome const r = morph(
-      box({9, 7, 6}, Shape::straight, 1),
-      motion({rule({"u_min"}, function_rule(waves(0.1))), rule({"u_max"}, FixedRule{}), rule(sides, FreeRule{})}),
-      near_field(BoundaryLayer::Extent::thickness, 0, 0.6));
+  Outcome const r =
+      morph(box({9, 7, 6}, Shape::straight, 1),
+            motion({rule({"u_min"}, function_rule(waves(0.1))), rule({"u_max"}, FixedRule{}), rule(sides, FreeRule{})}),
+            near_field(BoundaryLayer::Extent::thickness, 0, 0.6));
   Zone const& zone = r.mesh.zones[0];
   EXPECT_TRUE(same_bits(r.u(zone.node({3, 3, 3})), r.u(zone.node({0, 3, 3}))));
   EXPECT_FALSE(r.u(zone.node({4, 3, 3})) == r.u(zone.node({0, 3, 3})));
@@ -96,17 +98,19 @@ TEST(NearField, OfAThicknessHasTheLayersThatReachIt) {
 TEST(NearField, OfABlockEndsAtTheFirstBlockLimit) {
   PlanOptions options;
   options.boundary_layers = {{{"step"}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::translate}};
-  Motion const m = motion({rule({"step"}, function_rule(turn_about_z({1.2, 0.6, 0}, 0.1))),
-                           rule({"u_min", "u_max", "v_min", "v_max"}, FixedRule{}), rule({"w_min", "w_max"}, FreeRule{})});
+  Motion const m =
+      motion({rule({"step"}, function_rule(turn_about_z({1.2, 0.6, 0}, 0.1))),
+              rule({"u_min", "u_max", "v_min", "v_max"}, FixedRule{}), rule({"w_min", "w_max"}, FreeRule{})});
   // The four blocks beside the box reach from the wall to the fixed outer boundary.
   EXPECT_THROW(morph(around_a_box(1), m, options), PlanError);
 }
 
 TEST(NearField, RunsThroughZoneLimits) {
   PlanOptions const options = near_field(BoundaryLayer::Extent::layers, 5);
-  Outcome const r = morph(
-      bricks_with_t_junctions(1),
-      motion({rule({"u_min"}, function_rule(waves(0.1))), rule({"u_max"}, FixedRule{}), rule(sides, FreeRule{})}), options);
+  Outcome const r =
+      morph(bricks_with_t_junctions(1),
+            motion({rule({"u_min"}, function_rule(waves(0.1))), rule({"u_max"}, FixedRule{}), rule(sides, FreeRule{})}),
+            options);
   // Brick 1 has 3 cells off the wall; the near field reaches 2 cells into bricks 2 and 3.
   Zone const& first = r.mesh.zones[0];
   for (int zone : {1, 2})

@@ -46,10 +46,10 @@ TEST_P(BoxLaw, SweepBetweenTwoKnownFacesIsThePapersFormula) {
   PlanOptions options;
   options.volume.law = GetParam();
   Outcome const r = morph(box({9, 7, 6}, Shape::curved, 1),
-                      motion({rule({"u_min", "u_max"}, function_rule(f)), rule(sides, FreeRule{})}), options);
+                          motion({rule({"u_min", "u_max"}, function_rule(f)), rule(sides, FreeRule{})}), options);
   BoxField const expected = reference_sweep(field(r.mesh, r.mesh.coordinates), field(r.mesh, f),
                                             [&](double t) { return weight(GetParam(), t); });
-  EXPECT_LT(largest_difference(field(r.mesh, r.morphed.displacement), expected), 1e-15);
+  EXPECT_LT(largest_difference(field(r.mesh, r.morphed.displacement), expected), 1e-14);
 }
 
 TEST_P(BoxLaw, SixKnownFacesGiveTheBooleanSum) {
@@ -95,16 +95,16 @@ TEST(Box, TrilinearFieldsAreExactOnAStraightUniformGrid) {
 TEST(Box, LinearFieldsOnTwoFacesAreExactBetweenThem) {
   VectorField const f = [](Vec3 const& p) { return Vec3{0.1 * p.x - 0.3 * p.y, 0.2 * p.z, p.x + p.y}; };
   Outcome const r = morph(box({9, 7, 6}, Shape::straight, 1),
-                      motion({rule({"u_min", "u_max"}, function_rule(f)), rule(sides, FreeRule{})}));
+                          motion({rule({"u_min", "u_max"}, function_rule(f)), rule(sides, FreeRule{})}));
   EXPECT_LT(largest_difference(field(r.mesh, r.morphed.displacement), field(r.mesh, f)), 1e-14);
 }
 
 TEST(Box, AKnownSideFadesOutLinearlyTowardsTheUnknownOne) {
   // On a straight uniform grid with u_min, u_max and v_min known: u = L + (1 - v) (known - L on v_min).
   VectorField const f = waves(0.2);
-  Outcome const r =
-      morph(box({9, 7, 6}, Shape::straight, 1), motion({rule({"u_min", "u_max", "v_min"}, function_rule(f)),
-                                                        rule({"v_max", "w_min", "w_max"}, FreeRule{})}));
+  Outcome const r = morph(
+      box({9, 7, 6}, Shape::straight, 1),
+      motion({rule({"u_min", "u_max", "v_min"}, function_rule(f)), rule({"v_max", "w_min", "w_max"}, FreeRule{})}));
   BoxField const known = field(r.mesh, f);
   BoxField expected = reference_sweep(field(r.mesh, r.mesh.coordinates), known, [](double t) { return t; });
   BoxField const line = expected;
@@ -118,8 +118,8 @@ TEST(Box, OneKnownFaceIsCarriedThroughUnchanged) {
   VectorField const f = waves(0.2);
   std::vector<std::string> rest = sides;
   rest.push_back("u_max");
-  Outcome const r = morph(box({9, 7, 6}, Shape::curved, 1),
-                      motion({rule({"u_min"}, function_rule(f)), rule(rest, FreeRule{})}));
+  Outcome const r =
+      morph(box({9, 7, 6}, Shape::curved, 1), motion({rule({"u_min"}, function_rule(f)), rule(rest, FreeRule{})}));
   BoxField const u = field(r.mesh, r.morphed.displacement);
   for (int k = 0; k < 6; ++k)
     for (int j = 0; j < 7; ++j)
@@ -130,8 +130,8 @@ TEST(Box, ChainsOfTwoNodesHaveNothingToDo) {
   VectorField const f = waves(0.2);
   for (Index3 const& n : {Index3{2, 2, 2}, Index3{2, 6, 5}, Index3{7, 2, 5}, Index3{7, 6, 2}})
     for (bool all : {true, false}) {
-      std::vector<MotionRule> rules{rule(all ? std::vector<std::string>{"*"} : std::vector<std::string>{"u_min", "u_max"},
-                                         function_rule(f))};
+      std::vector<MotionRule> rules{
+          rule(all ? std::vector<std::string>{"*"} : std::vector<std::string>{"u_min", "u_max"}, function_rule(f))};
       if (!all) rules.push_back(rule(sides, FreeRule{}));
       Outcome const r = morph(box(n, Shape::curved, 3), motion(rules));
       BoxField const expected =

@@ -117,9 +117,37 @@ void for_each_face(Mesh const& mesh, Visit&& visit) {
       for (int side = 0; side < 2; ++side) visit(z, axis, side);
 }
 
+/// Throws MeshError naming every patch that is not a part of one face of an existing zone.
+void check_patch_ranges(Mesh const& mesh) {
+  Problems problems;
+  for (Patch const& patch : mesh.patches) {
+    if (patch.zone < 0 || patch.zone >= int(mesh.zones.size())) {
+      problems.add("patch '" + patch.name + "' is on zone number " + std::to_string(patch.zone) +
+                   ", and the mesh has " + std::to_string(mesh.zones.size()) + "; correct the boundary condition");
+      continue;
+    }
+    int flat = 0;
+    bool inside = true, on_face = false;
+    for (int a = 0; a < 3; ++a) {
+      int const n = mesh.zones[patch.zone].extent[a];
+      inside = inside && patch.range.begin[a] >= 0 && patch.range.end[a] <= n && patch.range.extent(a) > 0;
+      if (patch.range.extent(a) == 1) {
+        ++flat;
+        on_face = on_face || patch.range.begin[a] == 0 || patch.range.begin[a] == n - 1;
+      }
+    }
+    if (!inside || flat != 1 || !on_face)
+      problems.add("patch " + describe_patch(mesh, patch) + ": range " + to_string(patch.range) +
+                   " is not a part of one face of its zone (" + to_string({{0, 0, 0}, mesh.zones[patch.zone].extent}) +
+                   "); correct the boundary condition");
+  }
+  problems.throw_if_any<MeshError>();
+}
+
 }  // namespace
 
 void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& options) {
+  check_patch_ranges(mesh);
   int poles = 0, open = 0;
   for (Patch& patch : mesh.patches) {
     bool const solid =
@@ -148,25 +176,8 @@ void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& opt
 }
 
 void check_coverage(Mesh const& mesh, Links const& links) {
+  check_patch_ranges(mesh);
   Problems problems;
-  for (Patch const& patch : mesh.patches) {
-    int flat = 0;
-    bool inside = true, on_face = false;
-    for (int a = 0; a < 3; ++a) {
-      int const n = mesh.zones[patch.zone].extent[a];
-      inside = inside && patch.range.begin[a] >= 0 && patch.range.end[a] <= n && patch.range.extent(a) > 0;
-      if (patch.range.extent(a) == 1) {
-        ++flat;
-        on_face = on_face || patch.range.begin[a] == 0 || patch.range.begin[a] == n - 1;
-      }
-    }
-    if (!inside || flat != 1 || !on_face)
-      problems.add("patch " + describe_patch(mesh, patch) + ": range " + to_string(patch.range) +
-                   " is not a part of one face of its zone (" + to_string({{0, 0, 0}, mesh.zones[patch.zone].extent}) +
-                   "); correct the boundary condition");
-  }
-  problems.throw_if_any<MeshError>();
-
   for_each_face(mesh, [&](int z, int axis, int side) {
     Overlaps overlaps;
     FaceCells face = mark(mesh, links, z, axis, side, &overlaps);

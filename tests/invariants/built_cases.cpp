@@ -1,8 +1,5 @@
+// Meshes made in memory, one of each kind of topology.
 #include "invariants/cases.hpp"
-
-#include <gridmorph/demo/passage_motion.hpp>
-
-#include <cstdlib>
 
 namespace gridmorph::test {
 namespace {
@@ -37,37 +34,7 @@ std::function<Motion(double)> moves(VectorField field, std::vector<std::string> 
   };
 }
 
-PassageOptions passage_options(PassageOptions::Layout layout, bool left_handed) {
-  PassageOptions o;
-  o.nodes = 10'000;
-  o.layout = layout;
-  o.left_handed = left_handed;
-  o.placement = rotation_about({0.1, 0.2, -0.3}, {1, -2, 0.5}, 0.8);
-  return o;
-}
-
-Case passage(std::string name, PassageOptions const& options, PassageMotion const& move) {
-  Case c;
-  c.name = std::move(name);
-  c.mesh = [=] { return make_passage(options); };
-  c.motion = [=](double factor) {
-    Motion m = motion({rule({"blade"}, function_rule(scaled(factor, [=](Vec3 const& p) {
-                              return passage_displacement(options, move, p);
-                            }))),
-                       rule({"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}),
-                       rule({"type:periodic"}, FollowRule{{"blade"}}),
-                       rule({"hub", "case"}, SlipRule{SlipRule::Surface::revolution, {}, {}})});
-    m.axis = {options.placement.translation, options.placement.rotation * Vec3{1, 0, 0}};
-    return m;
-  };
-  c.options.boundary_layers = {{{"blade"}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::translate}};
-  c.translation = 0.37 * (options.placement.rotation * Vec3{1, 0, 0});
-  c.all_patches = {"blade", "inlet", "outlet", "hub", "case"};
-  return c;
-}
-
 std::vector<Case> make_cases() {
-  using Layout = PassageOptions::Layout;
   Index3 const n{8, 7, 6};
   Sector const sector;
   Sector wedge;
@@ -79,7 +46,8 @@ std::vector<Case> make_cases() {
       {"box_all_faces", [=] { return box(n, Shape::curved, 1); }, moves(waves(0.1), {"*"}), {}},
       {"box_one_face", [=] { return box(n, Shape::curved, 2); }, moves(waves(0.1), {"u_min"}, {"u_max"}, sides),
        law(Law::c1, layers(2))},
-      {"box_on_planes", [=] { return box(n, Shape::straight, 3); },
+      {"box_on_planes",
+       [=] { return box(n, Shape::straight, 3); },
        [=](double f) {
          VectorField const field = scaled(f, waves(0.1));
          // Tangential where the moved face meets the planes.
@@ -89,44 +57,77 @@ std::vector<Case> make_cases() {
                              })),
                         rule({"u_max"}, FixedRule{}), rule({"v_min", "v_max"}, SlipRule{}),
                         rule({"w_min", "w_max"}, SlipRule{})});
-       }, {}},
+       },
+       {}},
       {"bricks_all_faces", [] { return bricks_with_t_junctions(4); }, moves(waves(0.1), {"*"}), {}},
-      {"bricks_one_face", [] { return bricks_with_t_junctions(5); },
-       moves(waves(0.1), {"u_min"}, {"u_max"}, sides), layers(4, {"u_min"})},
+      {"bricks_one_face", [] { return bricks_with_t_junctions(5); }, moves(waves(0.1), {"u_min"}, {"u_max"}, sides),
+       layers(4, {"u_min"})},
       {"l_shape", [] { return l_shape(6); },
        moves(waves(0.05), {"step"}, {"u_min", "v_min"}, {"u_max", "v_max", "w_min", "w_max"}), law(Law::c2)},
       {"around_a_box", [] { return around_a_box(7); },
        moves(turn_about_z({1.2, 0.6, 0}, 0.1), {"step"}, {"u_min", "u_max", "v_min", "v_max"}, {"w_min", "w_max"}),
        layers(1)},
-      {"around_a_box_plain", [] { return around_a_box(8); },
-       moves(turn_about_z({1.2, 0.6, 0}, 0.1), {"step"}, {"u_min", "u_max", "v_min", "v_max"}, {"w_min", "w_max"}), {}},
+      {"around_a_box_plain",
+       [] { return around_a_box(8); },
+       moves(turn_about_z({1.2, 0.6, 0}, 0.1), {"step"}, {"u_min", "u_max", "v_min", "v_max"}, {"w_min", "w_max"}),
+       {}},
       {"star3", [] { return star(3, 9); }, moves(waves(0.05), {"rim"}, {}, {"front", "back"}), {}},
       {"star5", [] { return star(5, 10); }, moves(waves(0.05), {"rim"}, {}, {"front", "back"}), {}},
       {"star5_all_faces", [] { return star(5, 11); }, moves(waves(0.05), {"*"}), {}},
       {"o_grid", [] { return o_grid(0.8, 12); }, moves(turn_about_z({0.1, 0, 0}, 0.2), {"body"}, {"far"}), layers(2)},
       {"o_grid_all_faces", [] { return o_grid(0.8, 13); }, moves(waves(0.1), {"*"}), {}, {0.3, -0.7, 0.2}, {"*"}, true},
-      {"pole", [] { return o_grid(0, 14); }, moves([](Vec3 const& p) { return Vec3{0.1 + 0.1 * p.z, -0.05 * p.z * p.z, 0}; }, {"pole"}, {"far"}), {}},
-      {"c_grid", [] { return c_grid(15); }, moves(turn_about_z({0.3, 0, 0}, 0.1), {"body"}, {"far"}, {"exit"}), layers(2)},
+      {"pole",
+       [] { return o_grid(0, 14); },
+       moves(
+           [](Vec3 const& p) {
+             return Vec3{0.1 + 0.1 * p.z, -0.05 * p.z * p.z, 0};
+           },
+           {"pole"}, {"far"}),
+       {}},
+      {"c_grid", [] { return c_grid(15); }, moves(turn_about_z({0.3, 0, 0}, 0.1), {"body"}, {"far"}, {"exit"}),
+       layers(2)},
       {"c_grid_all_faces", [] { return c_grid(16); }, moves(waves(0.05), {"*"}), {}},
-      {"sector", [=] { return annulus_sector(sector, 17); },
-       moves(turning_waves(sector, 0.1), {"hub"}, {"case"}, {"inlet", "outlet"}), layers(2), axial,
+      {"sector",
+       [=] { return annulus_sector(sector, 17); },
+       moves(turning_waves(sector, 0.1), {"hub"}, {"case"}, {"inlet", "outlet"}),
+       layers(2),
+       axial,
        {"hub", "case", "inlet", "outlet"}},
-      {"sector_all_faces", [=] { return annulus_sector(sector, 18); },
-       moves(turning_waves(sector, 0.1), {"hub", "case", "inlet", "outlet"}), {}, axial,
+      {"sector_all_faces",
+       [=] { return annulus_sector(sector, 18); },
+       moves(turning_waves(sector, 0.1), {"hub", "case", "inlet", "outlet"}),
+       {},
+       axial,
        {"hub", "case", "inlet", "outlet"}},
-      {"sector_known_periodic", [=] { return annulus_sector(sector, 19); },
-       moves(turning_waves(sector, 0.1), {"*", "type:periodic"}), {}, axial},
-      {"wedge", [=] { return annulus_sector(wedge, 20); },
-       moves(turning_waves(wedge, 0.1), {"case", "inlet", "outlet", "pole"}), {}, axial,
+      {"sector_known_periodic",
+       [=] { return annulus_sector(sector, 19); },
+       moves(turning_waves(sector, 0.1), {"*", "type:periodic"}),
+       {},
+       axial},
+      {"wedge",
+       [=] { return annulus_sector(wedge, 20); },
+       moves(turning_waves(wedge, 0.1), {"case", "inlet", "outlet", "pole"}),
+       {},
+       axial,
        {"case", "inlet", "outlet", "pole"}},
-      {"star_sector", [] { return star_sector(5, 23); }, moves(turning_waves(about_z, 0.1), {"rim", "front", "back"}),
-       {}, {0, 0, 0.4}, {"rim", "front", "back"}},
-      {"translational", [] { return translational(1, 21); }, moves(layered_waves(0.1), {"bottom"}, {"top"}, {"side"}),
-       layers(2, {"bottom"}), {0.3, -0.7, 0.2}, {"bottom", "top", "side"}},
-      {"translational_twice", [] { return translational(2, 22); }, moves(layered_waves(0.1), {"bottom"}, {"top"}), {},
-       {0.3, -0.7, 0.2}, {"bottom", "top"}},
-      passage("passage", passage_options(Layout::whole_faces, false), rotated_sections()),
-      passage("passage_left_handed", passage_options(Layout::five_zones, true), chord_redesign()),
+      {"star_sector",
+       [] { return star_sector(5, 23); },
+       moves(turning_waves(about_z, 0.1), {"rim", "front", "back"}),
+       {},
+       {0, 0, 0.4},
+       {"rim", "front", "back"}},
+      {"translational",
+       [] { return translational(1, 21); },
+       moves(layered_waves(0.1), {"bottom"}, {"top"}, {"side"}),
+       layers(2, {"bottom"}),
+       {0.3, -0.7, 0.2},
+       {"bottom", "top", "side"}},
+      {"translational_twice",
+       [] { return translational(2, 22); },
+       moves(layered_waves(0.1), {"bottom"}, {"top"}),
+       {},
+       {0.3, -0.7, 0.2},
+       {"bottom", "top"}},
   };
   return list;
 }
@@ -137,9 +138,5 @@ std::vector<Case> const& cases() {
   static std::vector<Case> const list = make_cases();
   return list;
 }
-
-std::string case_name(Case const& c) { return c.name; }
-
-bool reduced() { return std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr; }
 
 }  // namespace gridmorph::test

@@ -1,0 +1,125 @@
+// Meshes of real size and shape: the demo passage, and meshes from outside with a motion each.
+#include "invariants/cases.hpp"
+#include "support/shared_mesh.hpp"
+
+#include <gridmorph/demo/passage_motion.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+
+namespace gridmorph::test {
+namespace {
+
+VectorField scaled(double factor, VectorField const& field) {
+  return [=](Vec3 const& p) { return factor * field(p); };
+}
+
+PassageOptions passage_options(PassageOptions::Layout layout, bool left_handed) {
+  PassageOptions o;
+  o.nodes = 10'000;
+  o.layout = layout;
+  o.left_handed = left_handed;
+  o.placement = rotation_about({0.1, 0.2, -0.3}, {1, -2, 0.5}, 0.8);
+  return o;
+}
+
+Case passage(std::string name, PassageOptions const& options, PassageMotion const& move) {
+  Case c;
+  c.name = std::move(name);
+  c.mesh = [=] { return make_passage(options); };
+  c.motion = [=](double factor) {
+    Motion m = motion(
+        {rule({"blade"},
+              function_rule(scaled(factor, [=](Vec3 const& p) { return passage_displacement(options, move, p); }))),
+         rule({"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}), rule({"type:periodic"}, FollowRule{{"blade"}}),
+         rule({"hub", "case"}, SlipRule{SlipRule::Surface::revolution, {}, {}})});
+    m.axis = {options.placement.translation, options.placement.rotation * Vec3{1, 0, 0}};
+    return m;
+  };
+  c.options.boundary_layers = {{{"blade"}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::translate}};
+  c.translation = 0.37 * (options.placement.rotation * Vec3{1, 0, 0});
+  c.all_patches = {"blade", "inlet", "outlet", "hub", "case"};
+  return c;
+}
+
+/// Motion about an axis of rotation, the same in every passage: radius kept.
+VectorField twist(Vec3 const& axis, double angle_rad) {
+  return [=](Vec3 const& p) {
+    double const along = dot(p, axis), radius = norm(p - along * axis);
+    return rotation_about({}, axis, angle_rad * (1 + std::sin(20 * along) * std::cos(10 * radius)))(p) - p;
+  };
+}
+
+Case from_file(std::string name, std::string file, std::vector<std::string> families,
+               std::function<Motion(double)> motion) {
+  Case c;
+  c.name = std::move(name);
+  c.file = shared_mesh(file);
+  c.mesh = [path = c.file] {
+    Mesh mesh = read_mesh(path);
+    // Where BC names repeat, the zone tells them apart.
+    for (Patch& p : mesh.patches)
+      if (p.families.empty()) p.families = {mesh.zones[p.zone].name + "/" + p.name};
+    return mesh;
+  };
+  c.motion = std::move(motion);
+  c.all_patches = std::move(families);
+  return c;
+}
+
+BoundaryLayer layers(std::vector<std::string> walls, int n) {
+  return {std::move(walls), BoundaryLayer::Extent::layers, n, 0, BoundaryLayer::Mode::translate};
+}
+
+Case machine(std::string name, std::string const& file, Vec3 const& axis, std::vector<std::string> blades,
+             Rule const& planes) {
+  std::vector<std::string> all{"HUB", "SHROUD", "INLET", "OUTLET", "MIXING"};
+  all.insert(all.end(), blades.begin(), blades.end());
+  Case c = from_file(std::move(name), file, all, [=](double factor) {
+    Motion m = motion({rule(blades, function_rule(scaled(factor, twist(axis, 0.01)))),
+                       rule({"INLET", "OUTLET", "MIXING"}, planes),
+                       rule({"HUB", "SHROUD"}, SlipRule{SlipRule::Surface::revolution, {}, {}})});
+    m.axis.direction = axis;
+    return m;
+  });
+  c.translation = 0.3 * axis;
+  return c;
+}
+
+std::vector<Case> make_cases() {
+  using Layout = PassageOptions::Layout;
+  std::vector<Case> list{
+      passage("passage", passage_options(Layout::whole_faces, false), rotated_sections()),
+      passage("passage_left_handed", passage_options(Layout::five_zones, true), chord_redesign()),
+      machine("turbine_stage", "axial_turbine_stage_H.cgns", {1, 0, 0}, {"BLADE1", "BLADE2"}, FixedRule{}),
+      machine("turbine_stage_free_planes", "axial_turbine_stage_H.cgns", {1, 0, 0}, {"BLADE1", "BLADE2"},
+              FreeRule{FreeRule::Constraint::axial}),
+      machine("water_turbine", "axialTurbine_7blk.cgns", {0, 0, 1}, {"BLADE_GV", "BLADE_RU"}, FixedRule{}),
+  };
+
+  std::string const slat = "Zone   3/Klo*";
+  list.push_back(from_file("airfoil_with_slat", "multi.cgns", {"*"}, [=](double factor) {
+    VectorField const turn = [](Vec3 const& p) { return rotation_about({}, {0, 1, 0}, -0.1)(p) - p; };
+    return motion({rule({slat}, function_rule(scaled(factor, turn))), rule({"*/Ilo*", "*/Ihi*"}, SlipRule{})});
+  }));
+  list.back().options.boundary_layers = {{{slat}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::translate},
+                                         layers({"Zone   1/Klo*", "Zone   2/Klo*"}, 16)};
+  auto const bent = [](std::string const& wall) {
+    return [=](double factor) {
+      return motion({rule({wall}, function_rule(scaled(factor, [](Vec3 const& p) {
+                            return Vec3{0, 0.004 * p.z * p.z, -0.0005 * p.y * p.z};
+                          })))});
+    };
+  };
+  list.push_back(from_file("wing", "mdo_tutorial_000_vol.cgns", {"*"}, bent("wall")));
+  list.push_back(from_file("winglet", "717_wl_L2.cgns", {"*"}, bent("wall")));
+  list.back().options.boundary_layers = {layers({"wall"}, 4)};
+  return list;
+}
+
+}  // namespace
+
+std::vector<Case> const& cases() {
+  static std::vector<Case> const list = make_cases();
+  return list;
+}
+
+}  // namespace gridmorph::test

@@ -1,0 +1,138 @@
+// How the library behaves inside a program that profiles it: labels, allocations, fences, instances.
+#include "support/morph_run.hpp"
+#include "support/motions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace gridmorph::test {
+namespace {
+
+namespace hooks = Kokkos::Tools::Experimental;
+
+/// What Kokkos reported while a Listener was alive.
+struct Record {
+  std::vector<std::string> kernels, allocations, fences, copies;
+};
+Record record;
+
+void on_kernel(char const* name, uint32_t, uint64_t*) { record.kernels.emplace_back(name); }
+void on_allocation(Kokkos_Profiling_SpaceHandle const, char const* name, void const*, uint64_t const) {
+  record.allocations.emplace_back(name);
+}
+void on_fence(char const* name, uint32_t const, uint64_t*) { record.fences.emplace_back(name); }
+void on_copy(Kokkos_Profiling_SpaceHandle, char const* to, void const*, Kokkos_Profiling_SpaceHandle, char const* from,
+             void const*, uint64_t) {
+  record.copies.push_back(std::string(to) + " <- " + from);
+}
+
+class Listener {
+ public:
+  Listener() {
+    record = {};
+    hooks::set_begin_parallel_for_callback(on_kernel);
+    hooks::set_begin_parallel_reduce_callback(on_kernel);
+    hooks::set_begin_parallel_scan_callback(on_kernel);
+    hooks::set_allocate_data_callback(on_allocation);
+    hooks::set_begin_fence_callback(on_fence);
+    hooks::set_begin_deep_copy_callback(on_copy);
+  }
+  ~Listener() {
+    hooks::set_begin_parallel_for_callback(nullptr);
+    hooks::set_begin_parallel_reduce_callback(nullptr);
+    hooks::set_begin_parallel_scan_callback(nullptr);
+    hooks::set_allocate_data_callback(nullptr);
+    hooks::set_begin_fence_callback(nullptr);
+    hooks::set_begin_deep_copy_callback(nullptr);
+  }
+  Listener(Listener const&) = delete;
+  Listener& operator=(Listener const&) = delete;
+};
+
+/// Kokkos itself fences around kernels while a tool listens.
+bool is_profiling_fence(std::string const& name) { return name.find("Profile") != std::string::npos; }
+
+void expect_labels(std::vector<std::string> const& names) {
+  std::regex const pattern("^(gridmorph::|Kokkos::).+");
+  for (auto const& name : names) EXPECT_TRUE(std::regex_match(name, pattern)) << "'" << name << "'";
+}
+
+using Exec = Kokkos::DefaultExecutionSpace;
+using Memory = Exec::memory_space;
+
+/// A morph with every kind of kernel: near field, sweeps, corrections, copies, periodic turns, slip surfaces.
+class Manners : public ::testing::Test {
+ protected:
+  static Sector sector() { return {}; }
+  Mesh mesh = annulus_sector(sector(), 1);
+  PreparedMorph prepared = [this] {
+    PlanOptions options;
+    options.boundary_layers = {{{"hub"}, BoundaryLayer::Extent::layers, 1, 0, BoundaryLayer::Mode::translate}};
+    Motion m = motion({rule({"hub", "case", "inlet"}, function_rule(turning_waves(sector(), 0.05))),
+                       rule({"outlet"}, FreeRule{FreeRule::Constraint::axial})});
+    m.axis = {sector().origin, sector().axis};
+    return prepare(mesh, m, options);
+  }();
+  Exec exec;
+  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
+  DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
+};
+
+TEST_F(Manners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
+  Listener const listener;
+  Morpher<Exec> const morpher(exec, prepared.plan());
+  morpher.displace(exec, boundary, x.read(), u.write());
+  morpher.move(exec, x.read(), u.write());
+  exec.fence();
+  EXPECT_GE(record.kernels.size(), 8u);
+  EXPECT_GE(record.allocations.size(), 8u);
+  expect_labels(record.kernels);
+  expect_labels(record.allocations);
+  for (char const* kernel : {"gridmorph::boundary", "gridmorph::line_sweep", "gridmorph::side_residual",
+                             "gridmorph::node_copy", "gridmorph::line_spread", "gridmorph::move_nodes"})
+    EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
+}
+
+TEST_F(Manners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
+  Morpher<Exec> const morpher(exec, prepared.plan());
+  exec.fence();
+  {
+    Listener const listener;
+    morpher.displace(exec, boundary, x.read(), u.write());
+    morpher.move(exec, x.read(), u.write());
+  }
+  EXPECT_EQ(record.allocations, std::vector<std::string>());
+  EXPECT_EQ(record.copies, std::vector<std::string>());
+  for (auto const& fence : record.fences) EXPECT_TRUE(is_profiling_fence(fence)) << fence;
+  EXPECT_FALSE(record.kernels.empty());
+}
+
+TEST_F(Manners, EveryMorphRunsTheSameKernels) {
+  Morpher<Exec> const morpher(exec, prepared.plan());
+  std::vector<std::string> first;
+  for (int n = 0; n < 3; ++n) {
+    Listener const listener;
+    morpher.displace(exec, boundary, x.read(), u.write());
+    if (n == 0) first = record.kernels;
+    EXPECT_EQ(record.kernels, first);
+    Kokkos::deep_copy(boundary, Vec3{});
+  }
+}
+
+TEST_F(Manners, PlanningLaunchesNothing) {
+  Listener const listener;
+  Mesh again = annulus_sector(sector(), 1);
+  record = {};
+  Motion const m =
+      motion({rule({"hub"}, FixedRule{}), rule({"case"}, FixedRule{}), rule({"inlet", "outlet"}, FreeRule{})});
+  PreparedMorph const p = prepare(again, m, {});
+  EXPECT_FALSE(p.boundary_displacement(again).empty());
+  EXPECT_EQ(record.kernels, std::vector<std::string>());
+}
+
+}  // namespace
+}  // namespace gridmorph::test

@@ -1,0 +1,163 @@
+// Which chains a plan has, in which order, and why.
+#include "support/morph_run.hpp"
+#include "support/motions.hpp"
+#include "support/scramble.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gridmorph::test {
+namespace {
+
+std::string first_description(Plan const& plan) { return plan.stages.at(0).description.at(0); }
+
+/// A straight box whose six faces are all known, of the given kinds.
+Plan plan_of_box(std::array<PatchKind, 6> const& kinds, VolumeOptions const& volume = {}) {
+  Bricks b;
+  b.name = "box";
+  b.extent = {9, 7, 5};
+  b.position = [](Vec3 const& q) { return Vec3{2 * q.x, q.y, 1.2 * q.z}; };
+  b.kind = kinds;
+  Mesh mesh = make(b);
+  PlanOptions options;
+  options.volume = volume;
+  return prepare(mesh, motion({rule({"*"}, FixedRule{})}), options).plan();
+}
+
+int nodes_along(Plan const& plan) { return plan.stages.at(0).lines.chains.at(0).n_s; }
+
+constexpr auto wall = PatchKind::wall;
+constexpr auto inflow = PatchKind::inflow;
+constexpr auto outflow = PatchKind::outflow;
+constexpr auto far = PatchKind::farfield;
+
+TEST(Priority, TheBetterEndDecidesThenTheOtherOne) {
+  EXPECT_EQ(nodes_along(plan_of_box({inflow, inflow, wall, far, outflow, outflow})), 7) << "the only wall";
+  EXPECT_EQ(nodes_along(plan_of_box({wall, far, outflow, wall, wall, inflow})), 5) << "wall to inflow";
+  EXPECT_EQ(nodes_along(plan_of_box({wall, wall, inflow, wall, wall, inflow})), 9) << "wall to wall";
+  EXPECT_EQ(nodes_along(plan_of_box({far, far, far, far, far, outflow})), 5) << "kinds not listed come last";
+}
+
+TEST(Priority, TheOrderOfKindsIsTheUsers) {
+  VolumeOptions volume;
+  volume.priority = {{PriorityRule::Kind::boundary, {"outflow", "inflow", "wall"}}};
+  EXPECT_EQ(nodes_along(plan_of_box({wall, wall, inflow, inflow, far, outflow}, volume)), 5);
+  EXPECT_EQ(nodes_along(plan_of_box({wall, wall, inflow, inflow, far, far}, volume)), 7);
+}
+
+TEST(Priority, TheShortestChainBreaksATie) {
+  // 2 x 1 x 1.2: the lowest ratio of length to width is along v.
+  EXPECT_EQ(nodes_along(plan_of_box({wall, wall, wall, wall, wall, wall})), 7);
+  VolumeOptions volume;
+  volume.priority = {{PriorityRule::Kind::aspect_ratio, {}}, {PriorityRule::Kind::boundary, {"wall"}}};
+  EXPECT_EQ(nodes_along(plan_of_box({wall, wall, wall, wall, wall, wall}, volume)), 7);
+}
+
+TEST(Priority, TheChainWithTheWorstCellsComesFirst) {
+  for (int skewed : {1, 2}) {
+    Bricks b;
+    b.name = "L";
+    b.extent = {8, 7, 5};
+    b.zones = {{{0, 0, 0}, {4, 4, 5}}, {{3, 0, 0}, {8, 4, 5}}, {{0, 3, 0}, {4, 7, 5}}};
+    b.position = [skewed](Vec3 const& q) {
+      Vec3 p{q.x, q.y, q.z};
+      if (skewed == 1 && q.x > 0.5) p.z += 0.8 * (q.x - 0.5);
+      if (skewed == 2 && q.y > 0.5) p.z += 0.8 * (q.y - 0.5);
+      return p;
+    };
+    b.kind = {wall, wall, wall, wall, wall, wall};
+    Mesh mesh = make(b);
+    Plan const plan = prepare(mesh, motion({rule({"*"}, FixedRule{})}), {}).plan();
+    std::string const first = first_description(plan);
+    EXPECT_NE(first.find(skewed == 1 ? "'L2'" : "'L3'"), std::string::npos) << first;
+    EXPECT_NE(first.find("smallest angle"), std::string::npos) << first;
+    EXPECT_NE(first.find("wall to wall"), std::string::npos) << first;
+  }
+}
+
+TEST(Chains, RunThroughBlocksFromKnownFaceToKnownFace) {
+  Mesh mesh = bricks_with_t_junctions(1);
+  Plan const plan =
+      prepare(mesh,
+              motion({rule({"u_min", "u_max"}, FixedRule{}), rule({"v_min", "v_max", "w_min", "w_max"}, FreeRule{})}),
+              {})
+          .plan();
+  ASSERT_EQ(plan.stages.size(), 1u);
+  ASSERT_EQ(plan.stages[0].lines.chains.size(), 1u) << "one block after merging, one chain";
+  auto const& chain = plan.stages[0].lines.chains[0];
+  EXPECT_EQ(chain.n_s, 9);
+  EXPECT_EQ(chain.n_a * chain.n_b, 10 * 6);
+  EXPECT_EQ(chain.first_side, -1) << "no side is known: a plain sweep";
+}
+
+TEST(Chains, CellsOfTheStagesCoverTheMeshOnce) {
+  for (Mesh mesh : {bricks_with_t_junctions(1), around_a_box(1), star(5, 1), c_grid(1), l_shape(1)}) {
+    Plan const plan = prepare(mesh, motion({rule({"*"}, FixedRule{})}), {}).plan();
+    Index cells = 0;
+    for (Stage const& stage : plan.stages)
+      for (CellBox const& box : stage.cells) cells += box.cells.size();
+    EXPECT_EQ(cells, mesh.n_cells()) << mesh.source;
+  }
+}
+
+TEST(Chains, IndependentOnesShareAStage) {
+  // Four corner blocks and four side blocks round a box: the sides first, wall to far field, all at once.
+  Mesh mesh = around_a_box(1);
+  for (Patch& p : mesh.patches)
+    if (p.kind == inflow || p.kind == outflow) p.kind = far;
+  Plan const plan = prepare(mesh,
+                            motion({rule({"step", "u_min", "u_max", "v_min", "v_max"}, FixedRule{}),
+                                    rule({"w_min", "w_max"}, FreeRule{})}),
+                            {})
+                        .plan();
+  ASSERT_GE(plan.stages.size(), 2u);
+  EXPECT_EQ(plan.stages[0].lines.chains.size(), 4u) << describe(plan);
+  EXPECT_NE(plan.stages[0].description[0].find("wall"), std::string::npos);
+}
+
+TEST(Plan, DependsOnWhichFacesMoveNotOnHowFar) {
+  Mesh mesh = star(5, 1);
+  auto const plan = [&](double amplitude) {
+    return prepare(mesh, motion({rule({"*"}, function_rule(waves(amplitude)))}), {}).plan();
+  };
+  Plan const still = plan(0), moving = plan(0.1);
+  EXPECT_EQ(describe(still), describe(moving));
+  EXPECT_EQ(still.boundary_nodes, moving.boundary_nodes);
+}
+
+TEST(Plan, OrderOfStagesDoesNotDependOnNumbering) {
+  for (Mesh const& plain : {bricks_with_t_junctions(1), around_a_box(1), l_shape(1), c_grid(1)}) {
+    Motion const m = motion({rule({"*"}, FixedRule{})});
+    auto const shape = [&](Mesh mesh) {
+      std::vector<std::vector<std::array<int, 3>>> stages;
+      Plan const plan = prepare(mesh, m, {}).plan();
+      for (Stage const& stage : plan.stages) {
+        stages.emplace_back();
+        for (auto const& c : stage.lines.chains)
+          stages.back().push_back({c.n_s, std::min(c.n_a, c.n_b), std::max(c.n_a, c.n_b)});
+        std::sort(stages.back().begin(), stages.back().end());
+      }
+      return stages;
+    };
+    for (unsigned seed = 1; seed <= 6; ++seed)
+      EXPECT_EQ(shape(plain), shape(scramble(plain, {seed, 3}).mesh)) << plain.source << ", seed " << seed;
+  }
+}
+
+TEST(Plan, DescribesStagesChainsAndReasons) {
+  Mesh mesh = around_a_box(1);
+  PlanOptions options;
+  options.boundary_layers = {{{"step"}, BoundaryLayer::Extent::layers, 1, 0, BoundaryLayer::Mode::translate}};
+  std::string const text = describe(
+      prepare(mesh,
+              motion({rule({"step"}, function_rule(waves(0.01))),
+                      rule({"u_min", "u_max", "v_min", "v_max"}, FixedRule{}), rule({"w_min", "w_max"}, FreeRule{})}),
+              options)
+          .plan());
+  for (char const* part : {"near field", "stage 1", "zone 'around1'", "wall to farfield", "aspect ratio"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+}
+
+}  // namespace
+}  // namespace gridmorph::test
