@@ -135,8 +135,9 @@ class LatticeBuilder {
         mesh_.patches.push_back({"2-D plane", "BCSymmetryPlane", PatchKind::symmetry, {}, z, range});
       } else {
         bool const wall = axis == 1;
-        mesh_.patches.push_back({name, wall ? "BCWallViscous" : "BCFarfield", wall ? PatchKind::wall : PatchKind::farfield,
-                                 wall ? std::vector<std::string>{"Walls", name + " wall"} : std::vector<std::string>{}, z, range});
+        mesh_.patches.push_back(
+            {name, wall ? "BCWallViscous" : "BCFarfield", wall ? PatchKind::wall : PatchKind::farfield,
+             wall ? std::vector<std::string>{"Walls", name + " wall"} : std::vector<std::string>{}, z, range});
       }
       return;
     }

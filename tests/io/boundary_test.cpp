@@ -14,7 +14,8 @@ namespace gridmorph::test {
 namespace {
 
 Patch const* find_patch(Mesh const& mesh, std::string const& name) {
-  auto const found = std::find_if(mesh.patches.begin(), mesh.patches.end(), [&](auto const& p) { return p.name == name; });
+  auto const found =
+      std::find_if(mesh.patches.begin(), mesh.patches.end(), [&](auto const& p) { return p.name == name; });
   return found == mesh.patches.end() ? nullptr : &*found;
 }
 
@@ -108,7 +109,8 @@ TEST_F(Boundary, ElementRangesOfOldFilesAreFacesUnlessTheyReachTheLastNode) {
     auto const tree = file.tree();
     double const zone_bc = file.create(tree.child("Base")->child("Zone")->id, "ZoneBC", "ZoneBC_t");
     auto const add = [&](char const* name, std::array<std::int32_t, 6> const& range) {
-      file.create(file.create_text(zone_bc, name, "BC_t", "BCWall"), "ElementRange", "IndexRange_t", "I4", {3, 2}, range.data());
+      file.create(file.create_text(zone_bc, name, "BC_t", "BCWall"), "ElementRange", "IndexRange_t", "I4", {3, 2},
+                  range.data());
     };
     add("faces", {1, 1, 1, 1, 3, 2});
     add("part", {1, 1, 1, 1, 2, 2});
@@ -185,7 +187,8 @@ TEST_F(Boundary, RangesOutOfBoundsAreAllReportedAtOnce) {
   file.bc(zone, "list", CGNS_ENUMV(BCWall), CGNS_ENUMV(PointList), {1, 1, 1, 1, 1, 99});
   file.close();
   auto const message = message_of<MeshError>([&] { read_mesh(path_); });
-  for (auto const* part : {"m.cgns", "zone 'Zone'", "BC 'too long'", "[1:1, 1:5, 1:3]", "[1:5, 1:4, 1:3]", "BC 'zero'", "BC 'list'"})
+  for (auto const* part :
+       {"m.cgns", "zone 'Zone'", "BC 'too long'", "[1:1, 1:5, 1:3]", "[1:5, 1:4, 1:3]", "BC 'zero'", "BC 'list'"})
     EXPECT_NE(message.find(part), std::string::npos) << part << "\n" << message;
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 2);
 }

@@ -33,7 +33,8 @@ class Connections : public testing::Test {
   }
 
   static bool noted(Mesh const& mesh, std::string const& what) {
-    return std::any_of(mesh.notes.begin(), mesh.notes.end(), [&](auto const& n) { return n.find(what) != std::string::npos; });
+    return std::any_of(mesh.notes.begin(), mesh.notes.end(),
+                       [&](auto const& n) { return n.find(what) != std::string::npos; });
   }
 
   static void expect_same_interfaces(Mesh const& a, Mesh const& b) {
@@ -157,9 +158,9 @@ TEST_F(Connections, EverythingWrongIsReportedAtOnceWithItsPlace) {
   for (auto const* part :
        {"interface 'unknown donor': range [4:4, 1:3, 1:5] names donor zone 'Nobody'", "(zones: 'A', 'B')",
         "interface 'too far': range [4:4, 1:3, 1:9] is outside zone 'A', which is [1:4, 1:3, 1:5]",
-        "interface 'donor too far': donor range [1:1, 1:9, 1:5] is outside zone 'B'", "'twice the same axis'", "[1, 2, 2]",
-        "not a signed permutation", "'other shape'", "'turned'", "another shape", "'normal to side'", "carries the face normal i to j",
-        "'inside'", "not on a face"})
+        "interface 'donor too far': donor range [1:1, 1:9, 1:5] is outside zone 'B'", "'twice the same axis'",
+        "[1, 2, 2]", "not a signed permutation", "'other shape'", "'turned'", "another shape", "'normal to side'",
+        "carries the face normal i to j", "'inside'", "not on a face"})
     EXPECT_NE(message.find(part), std::string::npos) << part << "\n" << message;
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 7) << message;
 }
@@ -171,7 +172,8 @@ TEST_F(Connections, AnglesFollowTheUnitsOfTheFile) {
     if (declared) {
       MllFile::check(cg_goto(file.file(), file.base(), "end"));
       MllFile::check(cg_dataclass_write(CGNS_ENUMV(Dimensional)));
-      MllFile::check(cg_units_write(CGNS_ENUMV(Kilogram), CGNS_ENUMV(Meter), CGNS_ENUMV(Second), CGNS_ENUMV(Kelvin), CGNS_ENUMV(Degree)));
+      MllFile::check(cg_units_write(CGNS_ENUMV(Kilogram), CGNS_ENUMV(Meter), CGNS_ENUMV(Second), CGNS_ENUMV(Kelvin),
+                                    CGNS_ENUMV(Degree)));
     }
     int const number = file.one_to_one(zone, "per", "A", {1, 1, 1, 1, 3, 3}, {3, 1, 1, 3, 3, 3}, {1, 2, 3});
     float const center[3] = {1, 2, 3}, angle[3] = {0, 0, 36}, translation[3] = {0, 0, 5};
@@ -192,7 +194,8 @@ TEST_F(Connections, AnglesTurnAboutXThenYThenZ) {
   MllFile file(path_);
   int const zone = file.box("A", {3, 3, 3});
   int const number = file.one_to_one(zone, "per", "A", {1, 1, 1, 1, 3, 3}, {3, 1, 1, 3, 3, 3}, {1, 2, 3});
-  float const quarter = float(std::numbers::pi / 2), center[3] = {0, 0, 0}, angle[3] = {quarter, quarter, 0}, translation[3] = {0, 0, 0};
+  float const quarter = float(std::numbers::pi / 2), center[3] = {0, 0, 0}, angle[3] = {quarter, quarter, 0},
+              translation[3] = {0, 0, 0};
   MllFile::check(cg_1to1_periodic_write(file.file(), file.base(), zone, number, center, angle, translation));
   file.close();
   Mesh const mesh = read_mesh(path_);
@@ -203,12 +206,14 @@ TEST_F(Connections, AnglesTurnAboutXThenYThenZ) {
 
 class GeneralConnections : public Connections {
  protected:
-  int connect(MllFile& file, int zone, char const* name, CGNS_ENUMT(GridConnectivityType_t) type, CGNS_ENUMT(GridLocation_t) location,
-              CGNS_ENUMT(PointSetType_t) set, std::vector<cgsize_t> const& points, std::vector<cgsize_t> const& donor_points) {
+  int connect(MllFile& file, int zone, char const* name, CGNS_ENUMT(GridConnectivityType_t) type,
+              CGNS_ENUMT(GridLocation_t) location, CGNS_ENUMT(PointSetType_t) set, std::vector<cgsize_t> const& points,
+              std::vector<cgsize_t> const& donor_points) {
     int number = 0;
-    MllFile::check(cg_conn_write(file.file(), file.base(), zone, name, location, type, set, cgsize_t(points.size()) / 3, points.data(), "B",
-                                 CGNS_ENUMV(Structured), CGNS_ENUMV(PointListDonor), CGNS_ENUMV(DataTypeNull),
-                                 cgsize_t(donor_points.size()) / 3, donor_points.data(), &number));
+    MllFile::check(cg_conn_write(file.file(), file.base(), zone, name, location, type, set, cgsize_t(points.size()) / 3,
+                                 points.data(), "B", CGNS_ENUMV(Structured), CGNS_ENUMV(PointListDonor),
+                                 CGNS_ENUMV(DataTypeNull), cgsize_t(donor_points.size()) / 3, donor_points.data(),
+                                 &number));
     return number;
   }
 };
@@ -228,8 +233,10 @@ TEST_F(GeneralConnections, MatchingListsBecomeInterfaces) {
       donor_faces.insert(donor_faces.end(), {1, 5 - k, j});
     }
   connect(file, a, "nodes", CGNS_ENUMV(Abutting1to1), CGNS_ENUMV(Vertex), CGNS_ENUMV(PointList), nodes, donors);
-  connect(file, a, "faces", CGNS_ENUMV(Abutting1to1), CGNS_ENUMV(FaceCenter), CGNS_ENUMV(PointList), faces, donor_faces);
-  connect(file, a, "range", CGNS_ENUMV(Abutting1to1), CGNS_ENUMV(Vertex), CGNS_ENUMV(PointRange), {4, 1, 1, 4, 3, 5}, donors);
+  connect(file, a, "faces", CGNS_ENUMV(Abutting1to1), CGNS_ENUMV(FaceCenter), CGNS_ENUMV(PointList), faces,
+          donor_faces);
+  connect(file, a, "range", CGNS_ENUMV(Abutting1to1), CGNS_ENUMV(Vertex), CGNS_ENUMV(PointRange), {4, 1, 1, 4, 3, 5},
+          donors);
   file.close();
   Mesh const mesh = read_mesh(path_);
   EXPECT_TRUE(mesh.patches.empty());
@@ -250,8 +257,10 @@ TEST_F(GeneralConnections, OthersBecomePatchesOfTheirOwnNames) {
   std::vector<cgsize_t> const face{4, 1, 1, 4, 3, 5}, some{1, 1, 1, 1, 2, 1};
   connect(file, a, "sliding", CGNS_ENUMV(Abutting), CGNS_ENUMV(Vertex), CGNS_ENUMV(PointRange), face, some);
   connect(file, a, "plane overset", CGNS_ENUMV(Overset), CGNS_ENUMV(Vertex), CGNS_ENUMV(PointRange), face, some);
-  connect(file, a, "overlap", CGNS_ENUMV(Abutting), CGNS_ENUMV(FaceCenter), CGNS_ENUMV(PointRange), {1, 1, 1, 1, 2, 4}, some);
-  connect(file, a, "fringe", CGNS_ENUMV(Overset), CGNS_ENUMV(CellCenter), CGNS_ENUMV(PointList), {1, 1, 1, 2, 2, 2, 3, 1, 4}, some);
+  connect(file, a, "overlap", CGNS_ENUMV(Abutting), CGNS_ENUMV(FaceCenter), CGNS_ENUMV(PointRange), {1, 1, 1, 1, 2, 4},
+          some);
+  connect(file, a, "fringe", CGNS_ENUMV(Overset), CGNS_ENUMV(CellCenter), CGNS_ENUMV(PointList),
+          {1, 1, 1, 2, 2, 2, 3, 1, 4}, some);
   std::vector<cgsize_t> scrambled;
   for (int n = 0; n < 15; ++n) scrambled.insert(scrambled.end(), {1, 1 + (7 * n % 15) % 5, 1 + (7 * n % 15) / 5});
   connect(file, a, "scrambled", CGNS_ENUMV(Abutting1to1), CGNS_ENUMV(Vertex), CGNS_ENUMV(PointRange), face, scrambled);

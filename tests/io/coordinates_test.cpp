@@ -68,7 +68,8 @@ TEST_F(CoordinatesInFiles, RindPlanesAreLeftOutOnReadingAndLeftAloneOnWriting) {
     auto const raw = payload(dump_tree(out).at("/Base/Zone/GridCoordinates/CoordinateX"));
     int zeros = 0;
     for (std::size_t at = 0; at < raw.size(); at += std::size_t(type[1] - '0'))
-      zeros += std::all_of(raw.begin() + long(at), raw.begin() + long(at) + (type[1] - '0'), [](char c) { return c == 0; });
+      zeros +=
+          std::all_of(raw.begin() + long(at), raw.begin() + long(at) + (type[1] - '0'), [](char c) { return c == 0; });
     EXPECT_EQ(zeros, 24);
   }
 }
@@ -212,7 +213,8 @@ TEST_F(CoordinatesInFiles, CoordinatesInAnotherFileAreReadButNotChanged) {
   Mesh const mesh = read_mesh(path_);
   EXPECT_EQ(mesh.coordinates[26], (Vec3{2, 2, 2}));
   auto const before = bytes_of(folder_.file("grid.cgns"));
-  auto const message = message_of<IoError>([&] { write_morphed(path_, folder_.file("out.cgns"), mesh, mesh.coordinates); });
+  auto const message =
+      message_of<IoError>([&] { write_morphed(path_, folder_.file("out.cgns"), mesh, mesh.coordinates); });
   EXPECT_NE(message.find("is a link"), std::string::npos) << message;
   EXPECT_EQ(bytes_of(folder_.file("grid.cgns")), before);
   EXPECT_FALSE(std::filesystem::exists(folder_.file("out.cgns")));

@@ -22,7 +22,9 @@ class DamagedFiles : public testing::TestWithParam<FileFormat> {
   Mesh mesh_;
 };
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles, testing::Values(FileFormat::cgns_hdf5, FileFormat::cgns_adf),
-                         [](auto const& info) { return std::string(info.param == FileFormat::cgns_hdf5 ? "hdf5" : "adf"); });
+                         [](auto const& info) {
+                           return std::string(info.param == FileFormat::cgns_hdf5 ? "hdf5" : "adf");
+                         });
 
 TEST_P(DamagedFiles, CutAnywhereTheyAreRefused) {
   auto const bytes = bytes_of(good_);

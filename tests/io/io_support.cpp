@@ -29,7 +29,8 @@ void dump(int file, double id, std::string const& path, std::map<std::string, st
     text += "\n";
     if (rank > 0 && std::string(type) != "MT") {
       std::string data(bytes, '\0');
-      if (cgio_read_all_data_type(file, ids[c], type, data.data()) != 0) throw std::runtime_error("cannot read " + path + "/" + name);
+      if (cgio_read_all_data_type(file, ids[c], type, data.data()) != 0)
+        throw std::runtime_error("cannot read " + path + "/" + name);
       text += data;
     }
     std::string const child = path + "/" + name;
@@ -42,7 +43,8 @@ void dump(int file, double id, std::string const& path, std::map<std::string, st
 
 std::map<std::string, std::string> dump_tree(std::string const& path) {
   int file = 0;
-  if (cgio_open_file(path.c_str(), CGIO_MODE_READ, CGIO_FILE_NONE, &file) != 0) throw std::runtime_error("cannot open " + path);
+  if (cgio_open_file(path.c_str(), CGIO_MODE_READ, CGIO_FILE_NONE, &file) != 0)
+    throw std::runtime_error("cannot open " + path);
   double root = 0;
   cgio_get_root_id(file, &root);
   std::map<std::string, std::string> out;

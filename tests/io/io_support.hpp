@@ -32,7 +32,8 @@ class TemporaryFolder {
   [[nodiscard]] std::string file(std::string const& name) const { return (path_ / name).string(); }
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> out;
-    for (auto const& entry : std::filesystem::directory_iterator(path_)) out.push_back(entry.path().filename().string());
+    for (auto const& entry : std::filesystem::directory_iterator(path_))
+      out.push_back(entry.path().filename().string());
     return out;
   }
 

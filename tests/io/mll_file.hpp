@@ -52,10 +52,12 @@ class MllFile {
     return zone;
   }
 
-  int bc(int zone, std::string const& name, CGNS_ENUMT(BCType_t) type, CGNS_ENUMT(PointSetType_t) set, std::vector<cgsize_t> const& points,
-         CGNS_ENUMT(GridLocation_t) location = CGNS_ENUMV(Vertex), int dimension = 3) {
+  int bc(int zone, std::string const& name, CGNS_ENUMT(BCType_t) type, CGNS_ENUMT(PointSetType_t) set,
+         std::vector<cgsize_t> const& points, CGNS_ENUMT(GridLocation_t) location = CGNS_ENUMV(Vertex),
+         int dimension = 3) {
     int number = 0;
-    check(cg_boco_write(file_, base_, zone, name.c_str(), type, set, cgsize_t(points.size()) / dimension, points.data(), &number));
+    check(cg_boco_write(file_, base_, zone, name.c_str(), type, set, cgsize_t(points.size()) / dimension, points.data(),
+                        &number));
     if (location != CGNS_ENUMV(Vertex)) check(cg_boco_gridlocation_write(file_, base_, zone, number, location));
     return number;
   }
@@ -63,7 +65,8 @@ class MllFile {
   int one_to_one(int zone, std::string const& name, std::string const& donor, std::array<cgsize_t, 6> range,
                  std::array<cgsize_t, 6> donor_range, std::array<int, 3> transform) {
     int number = 0;
-    check(cg_1to1_write(file_, base_, zone, name.c_str(), donor.c_str(), range.data(), donor_range.data(), transform.data(), &number));
+    check(cg_1to1_write(file_, base_, zone, name.c_str(), donor.c_str(), range.data(), donor_range.data(),
+                        transform.data(), &number));
     return number;
   }
 

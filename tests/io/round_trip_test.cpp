@@ -45,7 +45,8 @@ void expect_same_mesh(Mesh const& a, Mesh const& b) {
 using PatchKey = std::tuple<int, std::string, std::string, PatchKind, std::vector<std::string>, Index3, Index3>;
 std::multiset<PatchKey> keys(Mesh const& mesh) {
   std::multiset<PatchKey> out;
-  for (auto const& p : mesh.patches) out.insert({p.zone, p.name, p.bc_type, p.kind, p.families, p.range.begin, p.range.end});
+  for (auto const& p : mesh.patches)
+    out.insert({p.zone, p.name, p.bc_type, p.kind, p.families, p.range.begin, p.range.end});
   return out;
 }
 
@@ -128,14 +129,21 @@ TEST_P(RoundTrip, SeveralBasesKeepTheirZonesApart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, testing::Values(FileFormat::cgns_hdf5, FileFormat::cgns_adf),
-                         [](auto const& info) { return std::string(info.param == FileFormat::cgns_hdf5 ? "hdf5" : "adf"); });
+                         [](auto const& info) {
+                           return std::string(info.param == FileFormat::cgns_hdf5 ? "hdf5" : "adf");
+                         });
 
 TEST(WriteMesh, PatchesOnPartsOfFacesAndSharedNamesComeBack) {
   Mesh mesh = LatticeBuilder({{{{0, 6}, {0, 4}, {0, 3}}}}, 1).build();
   mesh.patches.clear();
   mesh.patches.push_back({"part", "BCWall", PatchKind::wall, {"Group/Part", "More"}, 0, {{0, 0, 0}, {1, 3, 2}}});
   mesh.patches.push_back({"part", "BCInflow", PatchKind::inflow, {}, 0, {{0, 2, 0}, {1, 5, 4}}});
-  mesh.patches.push_back({"sliding", "Abutting", PatchKind::connection, {}, 0, {{mesh.zones[0].extent[0] - 1, 0, 0}, mesh.zones[0].extent}});
+  mesh.patches.push_back({"sliding",
+                          "Abutting",
+                          PatchKind::connection,
+                          {},
+                          0,
+                          {{mesh.zones[0].extent[0] - 1, 0, 0}, mesh.zones[0].extent}});
   for (auto& p : mesh.patches)
     for (int a = 0; a < 3; ++a) p.range.end[a] = std::min(p.range.end[a], mesh.zones[0].extent[a]);
   TemporaryFolder const folder;
@@ -173,7 +181,8 @@ TEST(WriteMesh, TheMidLevelLibraryReadsTheSameFile) {
     std::vector<double> y(std::size_t(mesh.zones[z - 1].size()));
     cgsize_t const one[3] = {1, 1, 1};
     ASSERT_EQ(cg_coord_read(file, 1, z, "CoordinateY", CGNS_ENUMV(RealDouble), one, size, y.data()), CG_OK);
-    EXPECT_EQ(std::memcmp(y.data(), mesh.coordinates.y.data() + mesh.zones[z - 1].first_node, y.size() * sizeof(double)), 0);
+    EXPECT_EQ(
+        std::memcmp(y.data(), mesh.coordinates.y.data() + mesh.zones[z - 1].first_node, y.size() * sizeof(double)), 0);
     int count = 0;
     cg_nbocos(file, 1, z, &count);
     patches += std::size_t(count);

@@ -42,7 +42,8 @@ class SharedMesh : public testing::TestWithParam<Expected> {
 TEST_P(SharedMesh, HasTheZonesAndInterfacesItIsKnownFor) {
   Mesh const mesh = read_mesh(path_);
   EXPECT_EQ(int(mesh.zones.size()), GetParam().zones);
-  auto const periodic = std::count_if(mesh.interfaces.begin(), mesh.interfaces.end(), [](auto const& i) { return i.periodic.has_value(); });
+  auto const periodic = std::count_if(mesh.interfaces.begin(), mesh.interfaces.end(),
+                                      [](auto const& i) { return i.periodic.has_value(); });
   EXPECT_EQ(periodic, GetParam().periodic);
   EXPECT_EQ(int(mesh.interfaces.size()) - periodic, GetParam().interfaces);
   EXPECT_EQ(mesh.n_nodes(), GetParam().nodes);
@@ -60,7 +61,8 @@ TEST_P(SharedMesh, EveryInterfaceIsStoredFromBothSides) {
   Mesh const mesh = read_mesh(path_);
   for (auto const& face : mesh.interfaces) {
     bool const there = std::any_of(mesh.interfaces.begin(), mesh.interfaces.end(), [&](auto const& other) {
-      return other.zone == face.donor_zone && other.donor_zone == face.zone && other.range == face.to_donor(face.range) &&
+      return other.zone == face.donor_zone && other.donor_zone == face.zone &&
+             other.range == face.to_donor(face.range) &&
              other.to_donor.orientation == face.to_donor.orientation.inverse();
     });
     EXPECT_TRUE(there) << face.name;
@@ -84,7 +86,8 @@ TEST_P(SharedMesh, InterfaceMapsContinueIntoTheDonor) {
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SharedMesh, testing::ValuesIn(expected), [](auto const& info) {
   std::string name = info.param.file;
-  std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   return name;
 });
 
@@ -94,7 +97,8 @@ TEST(SharedMeshes, FamiliesAndSubRangesOfTheTurbineStage) {
   Mesh const mesh = read_mesh(path);
   ASSERT_EQ(mesh.patches.size(), 12U);
   EXPECT_EQ(mesh.families.size(), 7U);
-  auto const& blade = *std::find_if(mesh.patches.begin(), mesh.patches.end(), [](auto const& p) { return p.name == "blade_ss"; });
+  auto const& blade =
+      *std::find_if(mesh.patches.begin(), mesh.patches.end(), [](auto const& p) { return p.name == "blade_ss"; });
   EXPECT_EQ(blade.range, (IndexRange{{28, 0, 32}, {65, 37, 33}}));
   EXPECT_EQ(blade.kind, PatchKind::wall);
   EXPECT_EQ(blade.bc_type, "BCWallViscous");

@@ -30,9 +30,7 @@ Coordinates moved(Coordinates const& c) {
   return out;
 }
 
-bool is_coordinate(std::string const& path) {
-  return path.find("/GridCoordinates/Coordinate") != std::string::npos;
-}
+bool is_coordinate(std::string const& path) { return path.find("/GridCoordinates/Coordinate") != std::string::npos; }
 
 /// The trees of two files without their coordinates.
 void expect_same_but_coordinates(std::string const& a, std::string const& b) {
@@ -49,8 +47,12 @@ void expect_same_but_coordinates(std::string const& a, std::string const& b) {
   }
 }
 
-char const* const shared[] = {"axial_turbine_stage_H.cgns", "axialTurbine_7blk.cgns", "rotorstator.cgns",
-                              "mdo_tutorial_000_vol.cgns", "multi.cgns", "717_wl_L2.cgns"};
+char const* const shared[] = {"axial_turbine_stage_H.cgns",
+                              "axialTurbine_7blk.cgns",
+                              "rotorstator.cgns",
+                              "mdo_tutorial_000_vol.cgns",
+                              "multi.cgns",
+                              "717_wl_L2.cgns"};
 
 TEST(WriteMorphed, ZeroDisplacementLeavesEveryNodeOfRealFilesBitIdentical) {
   TemporaryFolder const folder;
@@ -97,7 +99,9 @@ class Formats : public testing::TestWithParam<FileFormat> {
   Lattice const brick_{{{{0, 3, 7}, {0, 4}, {0, 2, 5}}}};
 };
 INSTANTIATE_TEST_SUITE_P(WriteMorphed, Formats, testing::Values(FileFormat::cgns_hdf5, FileFormat::cgns_adf),
-                         [](auto const& info) { return std::string(info.param == FileFormat::cgns_hdf5 ? "hdf5" : "adf"); });
+                         [](auto const& info) {
+                           return std::string(info.param == FileFormat::cgns_hdf5 ? "hdf5" : "adf");
+                         });
 
 TEST_P(Formats, SinglePrecisionArraysAreRoundedOnceAndStaySingle) {
   Lattice lattice = brick_;
@@ -130,7 +134,8 @@ TEST_P(Formats, TwoDimensionalFilesGetPlaneZeroBack) {
     Mesh const back = read_mesh(output_);
     for (auto const& zone : back.zones)
       for (int j = 0; j < zone.extent[1]; ++j)
-        for (int i = 0; i < zone.extent[0]; ++i) EXPECT_EQ(back.coordinates[zone.node({i, j, 0})], morphed[zone.node({i, j, 0})]);
+        for (int i = 0; i < zone.extent[0]; ++i)
+          EXPECT_EQ(back.coordinates[zone.node({i, j, 0})], morphed[zone.node({i, j, 0})]);
     auto const tree = dump_tree(output_);
     auto const& number = tree.at("/Base/Zone 1/MorphCells/Number");
     Index const cells = Index(mesh.zones[0].extent[0] - 1) * (mesh.zones[0].extent[1] - 1);
@@ -162,7 +167,8 @@ TEST_P(Formats, FieldsAreAddedForEveryZone) {
       std::memcpy(out.data(), raw.data(), raw.size());
       return out;
     };
-    auto const dx = values(nodes + "/DisplacementX"), numbers = values(nodes + "/NodeNumber"), cell_numbers = values(cells + "/CellNumber");
+    auto const dx = values(nodes + "/DisplacementX"), numbers = values(nodes + "/NodeNumber"),
+               cell_numbers = values(cells + "/CellNumber");
     ASSERT_EQ(Index(dx.size()), zone.size());
     for (Index n = 0; n < zone.size(); ++n) {
       EXPECT_EQ(dx[n], morphed.x(zone.first_node + n) - mesh.coordinates.x(zone.first_node + n));
@@ -274,7 +280,8 @@ TEST_P(Formats, AFullDiskStopsNewFilesToo) {
 
 TEST_P(Formats, MissingFoldersAreNamed) {
   Mesh const mesh = write_lattice(brick_);
-  auto const message = message_of<IoError>([&] { write_morphed(input_, folder_.file("no/such/out.cgns"), mesh, mesh.coordinates); });
+  auto const message =
+      message_of<IoError>([&] { write_morphed(input_, folder_.file("no/such/out.cgns"), mesh, mesh.coordinates); });
   EXPECT_NE(message.find("there is no folder"), std::string::npos) << message;
 }
 

@@ -51,7 +51,7 @@ Role role_of(BoundarySummary const& b, MeshSummary const& s) {
   auto const is = [&](PatchKind kind) { return std::find(b.kinds.begin(), b.kinds.end(), kind) != b.kinds.end(); };
   if (is(PatchKind::wall)) return s.axis && looks_like(b, "surface of revolution") ? Role::end_wall : Role::moving;
   if (is(PatchKind::inflow) || is(PatchKind::outflow)) return Role::through_flow;
-  if (is(PatchKind::symmetry) && looks_like(b, "plane")) return Role::symmetry;
+  if ((is(PatchKind::symmetry) && looks_like(b, "plane")) || looks_like(b, "side of a 2-D mesh")) return Role::symmetry;
   return Role::still;
 }
 

@@ -157,9 +157,7 @@ void look_at_topology(Mesh const& mesh, MeshSummary& summary) {
   };
   Mesh completed = mesh;  // shares the coordinates
   try {
-    Links const links = connect(completed, {});
-    complete_patches(completed, links, {});
-    check_coverage(completed, links);
+    Links const links = connect_and_check(completed, {});
     // Patches that one selector names stay together; patches that completion added have labels of their own.
     std::vector<int> label(completed.patches.size(), -1);
     for (std::size_t b = 0; b < summary.boundaries.size(); ++b)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -14,16 +15,15 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-/// The walls whose cells the near field protects: those the case file names, or else all walls.
+/// All walls: a wall that stays while its neighbours move can lose its first cells too.
 std::vector<int> wall_patches(Mesh const& mesh, CaseFile const& case_file) {
-  std::vector<std::string> selectors;
-  for (auto const& layer : case_file.plan.boundary_layers)
-    selectors.insert(selectors.end(), layer.walls.begin(), layer.walls.end());
-  if (!selectors.empty()) return select_patches(mesh, selectors);
-  std::vector<int> out;
+  std::set<int> out;
   for (int p = 0; p < int(mesh.patches.size()); ++p)
-    if (mesh.patches[p].kind == PatchKind::wall) out.push_back(p);
-  return out;
+    if (mesh.patches[p].kind == PatchKind::wall) out.insert(p);
+  for (auto const& layer : case_file.plan.boundary_layers)
+    if (!layer.walls.empty())
+      for (int const p : select_patches(mesh, layer.walls)) out.insert(p);
+  return {out.begin(), out.end()};
 }
 
 Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> mask_view(std::vector<unsigned char> const& mask) {

@@ -35,16 +35,21 @@ class AdfWalk {
   void run() {
     if (size_ < file_header_size) damaged("it ends inside the file header", 0);
     std::string const header = bytes(0, file_header_size);
-    for (auto const& [tag, at] : {std::pair{"AdF0", 32}, {"AdF1", 64}, {"AdF2", 96}, {"AdF3", 102}, {"AdF4", 130}, {"AdF5", 182}})
-      if (header.compare(std::size_t(at), tag_size, tag) != 0) damaged(std::string("the header lacks its tag ") + tag, Offset(at));
+    for (auto const& [tag, at] :
+         {std::pair{"AdF0", 32}, {"AdF1", 64}, {"AdF2", 96}, {"AdF3", 102}, {"AdF4", 130}, {"AdF5", 182}})
+      if (header.compare(std::size_t(at), tag_size, tag) != 0)
+        damaged(std::string("the header lacks its tag ") + tag, Offset(at));
     // "A02011" and before keep pointers as text, "B02012" and later as binary integers in the byte order of the file.
     text_pointers_ = header[25] != 'B';
     big_endian_ = header[100] == 'B';
-    if (std::string_view("BLCN").find(header[100]) == std::string_view::npos) damaged("its number format is unknown", 100);
+    if (std::string_view("BLCN").find(header[100]) == std::string_view::npos)
+      damaged("its number format is unknown", 100);
 
     Offset const end = pointer(header, 146);
     if (end >= size_)
-      damaged("it is cut short: " + std::to_string(size_) + " bytes are there, its header promises " + std::to_string(end + 1), 146);
+      damaged("it is cut short: " + std::to_string(size_) + " bytes are there, its header promises " +
+                  std::to_string(end + 1),
+              146);
     std::vector<Offset> to_visit{pointer(header, 134)};
     while (!to_visit.empty()) {
       Offset const node = to_visit.back();
@@ -74,7 +79,10 @@ class AdfWalk {
     Offset value = 0;
     for (std::size_t d = at; d < at + digits; ++d) {
       char const c = record[d];
-      int const digit = c >= '0' && c <= '9' ? c - '0' : c >= 'A' && c <= 'F' ? c - 'A' + 10 : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+      int const digit = c >= '0' && c <= '9'   ? c - '0'
+                        : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                        : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                                               : -1;
       if (digit < 0) damaged("a number in a header is not one", d);
       value = 16 * value + Offset(digit);
     }

@@ -32,8 +32,9 @@ void read_boundary(File const& file, Node const& tree, Layout const& layout, Mes
             patch.bc_type = *type;
           else
             mesh.notes.push_back(where + ": is FamilySpecified, but " +
-                                 (patch.families.empty() ? "names no family"
-                                                         : "family '" + patch.families.front() + "' has no FamilyBC_t") +
+                                 (patch.families.empty()
+                                      ? "names no family"
+                                      : "family '" + patch.families.front() + "' has no FamilyBC_t") +
                                  "; its kind is not known");
         }
         patch.kind = patch_kind(patch.bc_type);

@@ -115,7 +115,8 @@ class ConnectionReader {
     auto const& zone = layout_.zones[z];
     int const donor_number = find_donor(zone, file_.text(node));
     if (donor_number < 0 || face_found.misfit != Misfit::none) {
-      note("is Abutting1to1, but " + (donor_number < 0 ? "donor zone '" + file_.text(node) + "' is not in the file" : face_found.why) +
+      note("is Abutting1to1, but " +
+           (donor_number < 0 ? "donor zone '" + file_.text(node) + "' is not in the file" : face_found.why) +
            "; kept as a patch");
       return false;
     }

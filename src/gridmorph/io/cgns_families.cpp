@@ -26,7 +26,8 @@ std::vector<std::string> split(std::string const& path) {
 }
 
 /// The type at the end of a path of families below `top`; false in `.first` when there is no such path.
-std::pair<bool, std::optional<std::string>> follow(File const& file, Node const& top, std::vector<std::string> const& path) {
+std::pair<bool, std::optional<std::string>> follow(File const& file, Node const& top,
+                                                   std::vector<std::string> const& path) {
   Node const* at = &top;
   std::optional<std::string> type;
   for (auto const& name : path) {
@@ -55,7 +56,8 @@ std::vector<std::string> families_of(File const& file, Node const& owner) {
   return names;
 }
 
-std::optional<std::string> family_bc_type(File const& file, Node const& tree, Node const& base, std::string const& name) {
+std::optional<std::string> family_bc_type(File const& file, Node const& tree, Node const& base,
+                                          std::string const& name) {
   auto path = split(name);
   if (auto const [found, type] = follow(file, base, path); found) return type;
   if (path.size() < 2) return std::nullopt;

@@ -19,7 +19,8 @@ std::vector<std::string> families_of(File const& file, Node const& owner);
 
 /// The BCType_t that a family stands for through its FamilyBC_t, or that of the nearest family above it in its tree.
 /// Names may be paths, with or without the base in front.
-std::optional<std::string> family_bc_type(File const& file, Node const& tree, Node const& base, std::string const& name);
+std::optional<std::string> family_bc_type(File const& file, Node const& tree, Node const& base,
+                                          std::string const& name);
 
 /// The group a CGNS BCType_t name belongs to.
 PatchKind patch_kind(std::string_view bc_type);

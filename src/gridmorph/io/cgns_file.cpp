@@ -16,9 +16,17 @@ namespace {
 
 /// Node labels whose children matter to a mesh. Everything else (solutions, data sets, sections) is not entered.
 bool holds_mesh(std::string const& label) {
-  static constexpr std::string_view entered[] = {
-      "CGNSBase_t", "Zone_t", "GridCoordinates_t", "Family_t", "ZoneBC_t", "BC_t", "ZoneGridConnectivity_t",
-      "GridConnectivity1to1_t", "GridConnectivity_t", "GridConnectivityProperty_t", "Periodic_t"};
+  static constexpr std::string_view entered[] = {"CGNSBase_t",
+                                                 "Zone_t",
+                                                 "GridCoordinates_t",
+                                                 "Family_t",
+                                                 "ZoneBC_t",
+                                                 "BC_t",
+                                                 "ZoneGridConnectivity_t",
+                                                 "GridConnectivity1to1_t",
+                                                 "GridConnectivity_t",
+                                                 "GridConnectivityProperty_t",
+                                                 "Periodic_t"};
   return std::find(std::begin(entered), std::end(entered), label) != std::end(entered);
 }
 
@@ -83,9 +91,11 @@ void File::check(int status, std::string const& doing, std::string const& node_p
   int const system_error = errno;
   char reason[CGIO_MAX_ERROR_LENGTH + 1] = "";
   cgio_error_message(reason);
-  std::string const what = path_ + (node_path.empty() ? "" : ", node " + node_path) + ": cannot be " + doing + ": " + reason;
+  std::string const what =
+      path_ + (node_path.empty() ? "" : ", node " + node_path) + ": cannot be " + doing + ": " + reason;
   if (mode_ == Mode::read) throw IoError(what + "; the file is damaged or not CGNS: get a fresh copy of it");
-  throw MachineError(what + (system_error != 0 ? std::string(" (") + std::strerror(system_error) + ")" : std::string()) +
+  throw MachineError(what +
+                     (system_error != 0 ? std::string(" (") + std::strerror(system_error) + ")" : std::string()) +
                      "; check space and permissions");
 }
 
@@ -212,7 +222,8 @@ void File::write(Node const& node, void const* data) {
 double File::create(double parent, std::string const& name, std::string const& label, std::string const& type,
                     std::vector<Index> const& dimensions, void const* data) {
   if (name.empty() || name.size() > CGIO_MAX_NAME_LENGTH || name.find('/') != std::string::npos)
-    throw IoError(path_ + ": '" + name + "' cannot name a " + label + " node: CGNS names have 1 to 32 characters without '/'");
+    throw IoError(path_ + ": '" + name + "' cannot name a " + label +
+                  " node: CGNS names have 1 to 32 characters without '/'");
   std::vector<cgsize_t> sizes;
   for (Index const size : dimensions) {
     if (size > std::numeric_limits<cgsize_t>::max())
@@ -221,7 +232,8 @@ double File::create(double parent, std::string const& name, std::string const& l
   }
   double id = 0;
   errno = 0;
-  check(cgio_new_node(handle_, parent, name.c_str(), label.c_str(), type.c_str(), int(sizes.size()), sizes.data(), data, &id),
+  check(cgio_new_node(handle_, parent, name.c_str(), label.c_str(), type.c_str(), int(sizes.size()), sizes.data(), data,
+                      &id),
         "written", name);
   return id;
 }

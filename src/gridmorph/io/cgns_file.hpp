@@ -20,8 +20,8 @@ struct Node {
   bool linked = false;  ///< this node or one above it lives in another place than it is listed
   std::vector<Node> children;
 
-  [[nodiscard]] Node const* child(std::string_view name) const;     ///< nullptr if there is none
-  [[nodiscard]] Node const* labelled(std::string_view label) const; ///< the first; nullptr if there is none
+  [[nodiscard]] Node const* child(std::string_view name) const;      ///< nullptr if there is none
+  [[nodiscard]] Node const* labelled(std::string_view label) const;  ///< the first; nullptr if there is none
   [[nodiscard]] std::vector<Node const*> all(std::string_view label) const;
 };
 
@@ -48,10 +48,10 @@ class File {
   [[nodiscard]] std::vector<Index> dimensions(Node const& node) const;  ///< first one fastest
   /// Number of values; throws IoError where a damaged file declares more than it can hold.
   [[nodiscard]] Index count(Node const& node) const;
-  [[nodiscard]] std::string characters(Node const& node) const;         ///< as they are
-  [[nodiscard]] std::string text(Node const& node) const;               ///< up to the first NUL, without blanks at its end
+  [[nodiscard]] std::string characters(Node const& node) const;  ///< as they are
+  [[nodiscard]] std::string text(Node const& node) const;        ///< up to the first NUL, without blanks at its end
   [[nodiscard]] std::vector<std::int64_t> integers(Node const& node) const;
-  [[nodiscard]] std::vector<double> reals(Node const& node) const;      ///< single precision is widened
+  [[nodiscard]] std::vector<double> reals(Node const& node) const;  ///< single precision is widened
   /// The whole array as it is stored ("R8" into doubles, "R4" into floats, ...); the caller has checked type and size.
   void read(Node const& node, std::string const& type, void* data) const;
 

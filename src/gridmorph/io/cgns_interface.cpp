@@ -55,8 +55,9 @@ bool rebuild_zero(std::array<int, 3>& t, Corners const& own, Corners const& othe
   if (zero < 0) return true;
   if (left < 1 || left > 3) return false;
   int const axis = left - 1;
-  int const sign = zero == normal ? sign_of_normal
-                                  : direction(own.begin[zero], own.end[zero]) * direction(other.begin[axis], other.end[axis]);
+  int const sign = zero == normal
+                       ? sign_of_normal
+                       : direction(own.begin[zero], own.end[zero]) * direction(other.begin[axis], other.end[axis]);
   t[zero] = sign * left;
   return true;
 }
@@ -67,7 +68,8 @@ Joined join(ZoneLayout const& zone, Corners const& own, ZoneLayout const& donor,
             std::vector<std::int64_t> const& transform) {
   using enum Joined::Outcome;
   std::string const own_text = to_string(own, zone.index_dimension);
-  std::string const both = "range " + own_text + " with donor zone '" + donor.name + "' range " + to_string(other, donor.index_dimension);
+  std::string const both =
+      "range " + own_text + " with donor zone '" + donor.name + "' range " + to_string(other, donor.index_dimension);
   std::string const with_transform = both + " and Transform " + text(transform);
   if (zone.index_dimension != donor.index_dimension)
     return refuse(wrong, both + ": the zones have different numbers of index directions");
@@ -78,7 +80,9 @@ Joined join(ZoneLayout const& zone, Corners const& own, ZoneLayout const& donor,
   IndexRange const donor_range = node_range(donor, other);
   int thick = 0;
   for (int a = 0; a < 3; ++a) thick += range.extent(a) > 1;
-  if (thick < 2) return refuse(skipped, "range " + own_text + " is a line or point: it joins nothing that the faces around it do not");
+  if (thick < 2)
+    return refuse(skipped,
+                  "range " + own_text + " is a line or point: it joins nothing that the faces around it do not");
   auto const normal = face_normal(zone, range);
   auto const donor_normal = face_normal(donor, donor_range);
   if (!normal) return refuse(wrong, both + ": the range is not on a face of its zone");
@@ -98,11 +102,13 @@ Joined join(ZoneLayout const& zone, Corners const& own, ZoneLayout const& donor,
     return refuse(wrong, with_transform + ": the Transform is not a signed permutation of the axes");
   if (orientation.axis[*normal] != *donor_normal)
     return refuse(wrong, with_transform + ": the Transform carries the face normal " + "ijk"[*normal] + " to " +
-                             "ijk"[orientation.axis[*normal]] + ", but the donor range is on a face normal to " + "ijk"[*donor_normal]);
+                             "ijk"[orientation.axis[*normal]] + ", but the donor range is on a face normal to " +
+                             "ijk"[*donor_normal]);
   for (int a = 0; a < 3; ++a)
     if (range.extent(a) != donor_range.extent(orientation.axis[a]))
-      return refuse(wrong, with_transform + ": the donor range has another shape (" + std::to_string(range.extent(a)) + " nodes along " +
-                               "ijk"[a] + ", " + std::to_string(donor_range.extent(orientation.axis[a])) + " along donor " +
+      return refuse(wrong, with_transform + ": the donor range has another shape (" + std::to_string(range.extent(a)) +
+                               " nodes along " + "ijk"[a] + ", " +
+                               std::to_string(donor_range.extent(orientation.axis[a])) + " along donor " +
                                "ijk"[orientation.axis[a]] + ")");
   Joined out;
   out.range = range;
@@ -131,7 +137,8 @@ namespace {
 /// All index tuples of a range from begin to end, first index fastest.
 std::vector<Index3> expand(Corners const& c) {
   std::vector<Index3> out;
-  int const si = direction(c.begin[0], c.end[0]), sj = direction(c.begin[1], c.end[1]), sk = direction(c.begin[2], c.end[2]);
+  int const si = direction(c.begin[0], c.end[0]), sj = direction(c.begin[1], c.end[1]),
+            sk = direction(c.begin[2], c.end[2]);
   for (int k = c.begin[2]; k != c.end[2] + sk; k += sk)
     for (int j = c.begin[1]; j != c.end[1] + sj; j += sj)
       for (int i = c.begin[0]; i != c.end[0] + si; i += si) out.push_back({i, j, k});
@@ -170,7 +177,8 @@ Joined join_lists(ZoneLayout const& zone, PointSet const& own, IndexRange const&
   auto const own_points = own.points.empty() ? expand(own.corners) : own.points;
   auto const images = donor_is_range ? expand(other.corners) : donor_points;
   if (own_points.size() != images.size())
-    return refuse(skipped, "its lists have " + std::to_string(own_points.size()) + " and " + std::to_string(images.size()) + " points");
+    return refuse(skipped, "its lists have " + std::to_string(own_points.size()) + " and " +
+                               std::to_string(images.size()) + " points");
   std::map<Index3, Index3> image;
   for (std::size_t n = 0; n < own_points.size(); ++n) image.emplace(own_points[n], images[n]);
 
@@ -215,7 +223,8 @@ Joined join_lists(ZoneLayout const& zone, PointSet const& own, IndexRange const&
     int const d = o.axis[a];
     bool const low = a == normal || o.sign[a] > 0;
     out.to_donor.donor_origin[d] = low ? donor_face.range.begin[d] : donor_face.range.end[d] - 1;
-    if (out.range.extent(a) != donor_face.range.extent(d)) return refuse(skipped, "its two sides have different shapes");
+    if (out.range.extent(a) != donor_face.range.extent(d))
+      return refuse(skipped, "its two sides have different shapes");
   }
   return out;
 }

@@ -12,8 +12,8 @@ namespace gridmorph::cgns {
 struct Joined {
   enum class Outcome { joined, skipped, wrong };
   Outcome outcome = Outcome::joined;
-  std::string why;    ///< the reason unless joined; where joined, what was assumed (may be empty)
-  IndexRange range;   ///< own nodes, ascending
+  std::string why;   ///< the reason unless joined; where joined, what was assumed (may be empty)
+  IndexRange range;  ///< own nodes, ascending
   IndexMap to_donor;
 };
 

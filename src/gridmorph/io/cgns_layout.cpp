@@ -29,7 +29,8 @@ bool read_extent(File const& file, ZoneLayout& zone, std::string const& where, P
   auto const sizes = file.integers(*zone.node);
   int const n = dimensions.empty() ? 0 : int(std::min<Index>(dimensions[0], 4));
   if (n == 1) {
-    problems.add(where + ": has one index dimension; only surfaces (2) and volumes (3) of structured nodes can be morphed");
+    problems.add(where +
+                 ": has one index dimension; only surfaces (2) and volumes (3) of structured nodes can be morphed");
     return false;
   }
   if ((n != 2 && n != 3) || Index(sizes.size()) < n) {
@@ -40,7 +41,8 @@ bool read_extent(File const& file, ZoneLayout& zone, std::string const& where, P
   zone.index_dimension = n;
   for (int a = 0; a < n; ++a) {
     if (sizes[a] < 1 || sizes[a] >= std::numeric_limits<int>::max()) {
-      problems.add(where + ": has " + std::to_string(sizes[a]) + " nodes along " + "ijk"[a] + "; at least 2 are needed");
+      problems.add(where + ": has " + std::to_string(sizes[a]) + " nodes along " + "ijk"[a] +
+                   "; at least 2 are needed");
       return false;
     }
     zone.extent[a] = int(sizes[a]);
@@ -79,10 +81,12 @@ void find_coordinates(File const& file, ZoneLayout& zone, std::string const& whe
                       std::vector<std::string>& notes) {
   auto const grids = zone.node->all("GridCoordinates_t");
   if (grids.empty()) return problems.add(where + ": has no GridCoordinates_t node, so no coordinates");
-  auto const original = std::find_if(grids.begin(), grids.end(), [](Node const* g) { return g->name == "GridCoordinates"; });
+  auto const original =
+      std::find_if(grids.begin(), grids.end(), [](Node const* g) { return g->name == "GridCoordinates"; });
   zone.grid = original == grids.end() ? grids.front() : *original;
   for (auto const* g : grids)
-    if (g != zone.grid) notes.push_back(where + ": grid '" + g->name + "' left alone; '" + zone.grid->name + "' is used");
+    if (g != zone.grid)
+      notes.push_back(where + ": grid '" + g->name + "' left alone; '" + zone.grid->name + "' is used");
   if (!read_rind(file, zone, where, problems)) return;
 
   for (int c = 0; c < 3; ++c) {
@@ -110,8 +114,8 @@ void find_coordinates(File const& file, ZoneLayout& zone, std::string const& whe
     for (int a = 0; a < zone.index_dimension; ++a)
       expected += (a ? " x " : "") + std::to_string(zone.extent[a] + zone.rind_low[a] + zone.rind_high[a]);
     if (!fits)
-      return problems.add(where + ": " + coordinate_names[c] + " has " + found + " values, but zone size and rind planes ask for " +
-                          expected);
+      return problems.add(where + ": " + coordinate_names[c] + " has " + found +
+                          " values, but zone size and rind planes ask for " + expected);
   }
   for (auto const* a : zone.array)
     if (a) static_cast<void>(file.count(*a));  // throws before memory is asked for on the word of a damaged file
@@ -143,7 +147,8 @@ Layout find_zones(File const& file, Node const& tree, Problems& problems) {
     problems.add(file.path() + ": holds no CGNSBase_t node; it is not a CGNS mesh");
     return layout;
   }
-  auto const with_zones = std::count_if(bases.begin(), bases.end(), [](Node const* b) { return b->labelled("Zone_t") != nullptr; });
+  auto const with_zones =
+      std::count_if(bases.begin(), bases.end(), [](Node const* b) { return b->labelled("Zone_t") != nullptr; });
   if (with_zones == 0) problems.add(file.path() + ": holds no Zone_t node; there is no mesh in it");
   int flat = 0;
   for (auto const* base : bases)
@@ -162,7 +167,8 @@ Layout find_zones(File const& file, Node const& tree, Problems& problems) {
     std::string names;
     for (auto const& z : layout.zones)
       if (z.flat_axis >= 0) names += " '" + z.name + "'";
-    problems.add(file.path() + ": mixes 2-D zones (one node plane:" + names + ") with 3-D zones; they cannot be one mesh");
+    problems.add(file.path() + ": mixes 2-D zones (one node plane:" + names +
+                 ") with 3-D zones; they cannot be one mesh");
   }
   return layout;
 }

@@ -16,13 +16,13 @@ namespace gridmorph::cgns {
 struct ZoneLayout {
   Node const* base = nullptr;
   Node const* node = nullptr;
-  std::string name;          ///< as in Mesh::zones: "Zone", or "Base/Zone" where several bases have zones
-  int index_dimension = 3;   ///< 2 or 3, the length of index tuples in the file
-  Index3 extent{1, 1, 1};    ///< nodes in the file
-  int flat_axis = -1;        ///< 0..2, or -1 for a 3-D zone
+  std::string name;         ///< as in Mesh::zones: "Zone", or "Base/Zone" where several bases have zones
+  int index_dimension = 3;  ///< 2 or 3, the length of index tuples in the file
+  Index3 extent{1, 1, 1};   ///< nodes in the file
+  int flat_axis = -1;       ///< 0..2, or -1 for a 3-D zone
 
-  Node const* grid = nullptr;                 ///< the GridCoordinates_t that is used
-  std::array<Node const*, 3> array{};         ///< CoordinateX, Y, Z; absent ones only where flat
+  Node const* grid = nullptr;          ///< the GridCoordinates_t that is used
+  std::array<Node const*, 3> array{};  ///< CoordinateX, Y, Z; absent ones only where flat
   std::array<bool, 3> single_precision{};
   Index3 rind_low{0, 0, 0}, rind_high{0, 0, 0};  ///< rind planes stored before and after the nodes
 

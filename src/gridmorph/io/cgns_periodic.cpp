@@ -23,7 +23,8 @@ std::optional<bool> in_degrees(File const& file, std::initializer_list<Node cons
     if (!node) continue;
     if (auto const* data_class = node->labelled("DataClass_t")) {
       auto const name = file.text(*data_class);
-      if (name.starts_with("Nondimensional") || name.starts_with("Dimensionless") || name == "NormalizedByUnknownDimensional")
+      if (name.starts_with("Nondimensional") || name.starts_with("Dimensionless") ||
+          name == "NormalizedByUnknownDimensional")
         return false;
     }
     if (auto const* units = node->labelled("DimensionalUnits_t")) {

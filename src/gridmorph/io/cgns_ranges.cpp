@@ -94,7 +94,8 @@ std::optional<std::vector<Index3>> read_tuples(File const& file, Node const& nod
   std::vector<Index3> points(values.size() / std::size_t(index_dimension), Index3{1, 1, 1});
   for (std::size_t v = 0; v < values.size(); ++v) {
     // Numbers that fit no zone stay what they are for the message, as far as an int can hold them.
-    auto const clamped = std::clamp<std::int64_t>(values[v], std::numeric_limits<int>::min() / 4, std::numeric_limits<int>::max() / 4);
+    auto const clamped =
+        std::clamp<std::int64_t>(values[v], std::numeric_limits<int>::min() / 4, std::numeric_limits<int>::max() / 4);
     points[v / std::size_t(index_dimension)][v % std::size_t(index_dimension)] = int(clamped);
   }
   return points;
@@ -132,7 +133,8 @@ std::optional<PointSet> read_point_set(File const& file, ZoneLayout const& zone,
 
 bool inside(ZoneLayout const& zone, Corners const& corners) {
   for (int a = 0; a < 3; ++a)
-    if (std::min(corners.begin[a], corners.end[a]) < 1 || std::max(corners.begin[a], corners.end[a]) > zone.extent[a]) return false;
+    if (std::min(corners.begin[a], corners.end[a]) < 1 || std::max(corners.begin[a], corners.end[a]) > zone.extent[a])
+      return false;
   return true;
 }
 
@@ -197,10 +199,11 @@ FaceRange face_range(ZoneLayout const& zone, PointSet const& set) {
     out.misfit = Misfit::not_a_face;
     int thick = 0;
     for (int a = 0; a < 3; ++a) thick += out.range.extent(a) > 1;
-    out.why = "range " + shown + (thick == 3   ? zone.flat_axis >= 0 ? " is the whole plane of a 2-D zone" : " is a volume"
-                                  : thick == 2 ? " is inside the zone, not on a face of it"
-                                  : thick == 1 ? " is a line"
-                                               : " is a point");
+    out.why = "range " + shown +
+              (thick == 3   ? zone.flat_axis >= 0 ? " is the whole plane of a 2-D zone" : " is a volume"
+               : thick == 2 ? " is inside the zone, not on a face of it"
+               : thick == 1 ? " is a line"
+                            : " is a point");
   }
   return out;
 }

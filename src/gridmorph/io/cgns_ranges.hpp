@@ -23,10 +23,10 @@ std::string to_string(Corners const& corners, int index_dimension);
 enum class Location { vertex, face, i_face, j_face, k_face, cell };
 
 struct PointSet {
-  std::vector<Index3> points;    ///< of a PointList, in file order; empty for a range
-  Corners corners;               ///< of the PointRange, or of the box around the list
+  std::vector<Index3> points;  ///< of a PointList, in file order; empty for a range
+  Corners corners;             ///< of the PointRange, or of the box around the list
   Location location = Location::vertex;
-  bool elements = false;         ///< ElementRange or ElementList of old files: faces by default
+  bool elements = false;  ///< ElementRange or ElementList of old files: faces by default
 };
 
 /// The point set of a BC_t or GridConnectivity_t node; on failure nothing, and `why` says what is wrong with it.
@@ -41,7 +41,7 @@ enum class Misfit { none, out_of_bounds, not_a_face };
 struct FaceRange {
   IndexRange range;  ///< nodes in the mesh, 0-based; a flat axis counts its two planes
   Misfit misfit = Misfit::none;
-  std::string why;   ///< for messages, where misfit is not none
+  std::string why;  ///< for messages, where misfit is not none
 };
 
 /// Node range of a point set that covers a rectangle of one face of its zone. Face-centred ranges [b:e] become node ranges

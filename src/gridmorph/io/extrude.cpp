@@ -83,7 +83,9 @@ void add_second_planes(Layout const& layout, Mesh& mesh, Problems& problems) {
   else if (norm(s.normal_sum) > closed_surface * s.area)
     direction = (1 / norm(s.normal_sum)) * s.normal_sum;
   else
-    return problems.add(mesh.source + ": the 2-D mesh is a surface that closes on itself; no direction is left to give it a second plane");
+    return problems.add(
+        mesh.source +
+        ": the 2-D mesh is a surface that closes on itself; no direction is left to give it a second plane");
   double const thickness = std::sqrt(s.area / double(s.cells));
   Vec3 const shift = thickness * direction;
   for (std::size_t z = 0; z < layout.zones.size(); ++z) {
@@ -95,7 +97,8 @@ void add_second_planes(Layout const& layout, Mesh& mesh, Problems& problems) {
         mesh.coordinates.set(n + p.across, mesh.coordinates[n] + shift);
       }
   }
-  mesh.notes.push_back(mesh.source + ": 2-D mesh given a second node plane at a distance of " + std::to_string(thickness));
+  mesh.notes.push_back(mesh.source + ": 2-D mesh given a second node plane at a distance of " +
+                       std::to_string(thickness));
 }
 
 }  // namespace gridmorph::cgns

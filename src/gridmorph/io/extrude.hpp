@@ -14,7 +14,7 @@ void add_second_planes(Layout const& layout, Mesh& mesh, Problems& problems);
 
 /// Node steps of the two axes of a flat zone's planes and of the step between the planes, in the flat arrays of a mesh.
 struct PlaneSteps {
-  std::array<int, 2> axis;    ///< in-plane axes, ascending
+  std::array<int, 2> axis;  ///< in-plane axes, ascending
   std::array<Index, 2> step;
   Index across;
 };

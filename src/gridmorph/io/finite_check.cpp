@@ -16,8 +16,8 @@ void check_finite(Mesh const& mesh, Coordinates const& coordinates, std::string 
     if (bad == 0) continue;
     Vec3 const p = coordinates[first];
     problems.add(where + ": " + std::to_string(bad) + (bad == 1 ? " node" : " nodes") + " of zone '" + zone.name +
-                 "' have coordinates that are not finite numbers, the first is " + describe_node(mesh, first) + " at (" +
-                 std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
+                 "' have coordinates that are not finite numbers, the first is " + describe_node(mesh, first) +
+                 " at (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
                  "); repair the mesh where it was made");
   }
 }

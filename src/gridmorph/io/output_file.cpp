@@ -67,7 +67,8 @@ OutputFile::OutputFile(std::string const& output) : output_(output) {
     if (file.get() >= 0) return;
     if (errno != EEXIST) break;
   }
-  throw MachineError(output + ": cannot be written: " + system_reason() + "; check space and permissions of the folder");
+  throw MachineError(output + ": cannot be written: " + system_reason() +
+                     "; check space and permissions of the folder");
 }
 
 OutputFile::~OutputFile() {
@@ -100,7 +101,8 @@ void OutputFile::reserve(std::uint64_t bytes) const {
   if (errno != 0)
     throw MachineError(output_ + ": cannot be written: " + system_reason() + "; up to " +
                        std::to_string((size + bytes) / 1000000 + 1) + " MB are needed");
-  if (::ftruncate(file.get(), off_t(size)) != 0) throw MachineError(output_ + ": cannot be written: " + system_reason());
+  if (::ftruncate(file.get(), off_t(size)) != 0)
+    throw MachineError(output_ + ": cannot be written: " + system_reason());
 }
 
 void OutputFile::commit() {

@@ -92,7 +92,8 @@ class MeshWriter {
       throw IoError(mesh_.source + ": zone '" + zone.name + "' of a 2-D mesh has " + std::to_string(zone.extent[2]) +
                     " planes along k; 2-D meshes are written from two planes along k");
     auto const [base_name, zone_name] = split(zone.name);
-    std::vector<std::int32_t> sizes(3 * std::size_t(dimension_), 0);  // nodes, cells, boundary nodes (none when structured)
+    std::vector<std::int32_t> sizes(3 * std::size_t(dimension_),
+                                    0);  // nodes, cells, boundary nodes (none when structured)
     for (int a = 0; a < dimension_; ++a) {
       sizes[a] = zone.extent[a];
       sizes[dimension_ + a] = zone.extent[a] - 1;
@@ -108,7 +109,8 @@ class MeshWriter {
     double const grid = file_.create(zone_id, "GridCoordinates", "GridCoordinates_t");
     std::vector<Index> dimensions(zone.extent.begin(), zone.extent.begin() + dimension_);
     Index const n = dimension_ == 2 ? zone.size() / 2 : zone.size();
-    std::array<double const*, 3> const arrays{mesh_.coordinates.x.data(), mesh_.coordinates.y.data(), mesh_.coordinates.z.data()};
+    std::array<double const*, 3> const arrays{mesh_.coordinates.x.data(), mesh_.coordinates.y.data(),
+                                              mesh_.coordinates.z.data()};
     static constexpr std::array names{"CoordinateX", "CoordinateY", "CoordinateZ"};
     for (int c = 0; c < physical_dimension_; ++c) {
       double const* source = arrays[c] + zone.first_node;
@@ -146,7 +148,8 @@ class MeshWriter {
       if (patch.zone != z || (dimension_ == 2 && patch.range.extent(2) == 1)) continue;
       if (taken.empty()) zone_bc = file_.create(zone_id, "ZoneBC", "ZoneBC_t");
       bool const by_family = !patch.families.empty() && family_types_.at(patch.families.front()).size() == 1;
-      double const id = file_.create_text(zone_bc, unique_name(taken, patch.name), "BC_t", by_family ? "FamilySpecified" : bc_type_of(patch));
+      double const id = file_.create_text(zone_bc, unique_name(taken, patch.name), "BC_t",
+                                          by_family ? "FamilySpecified" : bc_type_of(patch));
       range(id, "PointRange", patch.range.begin, last_of(patch.range));
       family_names(id, patch.families);
     }
@@ -207,7 +210,8 @@ std::uint64_t bytes_needed(Mesh const& mesh) {
 
 void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options) {
   if (options.physical_dimension != 2 && options.physical_dimension != 3)
-    throw IoError(path + ": physical dimension " + std::to_string(options.physical_dimension) + " cannot be written; choose 2 or 3");
+    throw IoError(path + ": physical dimension " + std::to_string(options.physical_dimension) +
+                  " cannot be written; choose 2 or 3");
   if (mesh.coordinates.size() != mesh.n_nodes())
     throw MeshError(path + ": the mesh has " + std::to_string(mesh.n_nodes()) + " nodes, but coordinates of " +
                     std::to_string(mesh.coordinates.size()));

@@ -29,7 +29,8 @@ void check_same_mesh(cgns::File const& file, cgns::Layout const& layout, Mesh co
       for (auto const* array : found.array)
         if (array && array->linked)
           problems.add(file.path() + ", node " + array->path +
-                       ": is a link to another place, which must not be changed; write the mesh into one file without links first");
+                       ": is a link to another place, which must not be changed; write the mesh into one file without "
+                       "links first");
     }
   problems.throw_if_any<IoError>();
 }
@@ -37,7 +38,8 @@ void check_same_mesh(cgns::File const& file, cgns::Layout const& layout, Mesh co
 void check_sizes(Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields) {
   auto const expect = [](std::string const& what, Index found, Index expected) {
     if (found != expected)
-      throw MeshError(what + " has " + std::to_string(found) + " values, but the mesh asks for " + std::to_string(expected));
+      throw MeshError(what + " has " + std::to_string(found) + " values, but the mesh asks for " +
+                      std::to_string(expected));
   };
   expect("the array of morphed coordinates", morphed.size(), mesh.n_nodes());
   if (fields.displacement) expect("the array of baseline coordinates", mesh.coordinates.size(), mesh.n_nodes());
@@ -47,7 +49,8 @@ void check_sizes(Mesh const& mesh, Coordinates const& morphed, OutputFields cons
 
 /// Calls put(values) with those of a zone's node values that the file has: all of them, or plane 0 of a 2-D zone.
 template <class Put>
-void with_file_nodes(cgns::ZoneLayout const& layout, Zone const& zone, double const* source, std::vector<double>& plane, Put put) {
+void with_file_nodes(cgns::ZoneLayout const& layout, Zone const& zone, double const* source, std::vector<double>& plane,
+                     Put put) {
   if (layout.flat_axis < 0) return put(source);
   plane.clear();
   auto const p = cgns::plane_steps(zone, layout.flat_axis);
@@ -58,7 +61,8 @@ void with_file_nodes(cgns::ZoneLayout const& layout, Zone const& zone, double co
 
 class SolutionWriter {
  public:
-  SolutionWriter(cgns::File& file, cgns::ZoneLayout const& layout, char const* wanted_name, char const* location, bool cells)
+  SolutionWriter(cgns::File& file, cgns::ZoneLayout const& layout, char const* wanted_name, char const* location,
+                 bool cells)
       : file_(file) {
     std::string name = wanted_name;
     // A solution of that name may be in the input, which comes through unchanged.
@@ -67,7 +71,9 @@ class SolutionWriter {
     id_ = file.create(layout.node->id, name, "FlowSolution_t");
     file.create_text(id_, "GridLocation", "GridLocation_t", location);
   }
-  void add(std::string const& name, double const* values) const { file_.create(id_, name, "DataArray_t", "R8", dimensions_, values); }
+  void add(std::string const& name, double const* values) const {
+    file_.create(id_, name, "DataArray_t", "R8", dimensions_, values);
+  }
 
  private:
   cgns::File& file_;
@@ -75,8 +81,8 @@ class SolutionWriter {
   std::vector<Index> dimensions_;
 };
 
-void write_node_fields(cgns::File& file, cgns::ZoneLayout const& layout, Mesh const& mesh, Zone const& zone, Coordinates const& morphed,
-                       OutputFields const& fields) {
+void write_node_fields(cgns::File& file, cgns::ZoneLayout const& layout, Mesh const& mesh, Zone const& zone,
+                       Coordinates const& morphed, OutputFields const& fields) {
   if (!fields.displacement && fields.nodes.empty()) return;
   SolutionWriter const solution(file, layout, "MorphNodes", "Vertex", false);
   std::vector<double> plane;
@@ -86,12 +92,14 @@ void write_node_fields(cgns::File& file, cgns::ZoneLayout const& layout, Mesh co
     std::vector<double> difference(std::size_t(zone.size()));
     for (int c = 0; c < 3; ++c) {
       if (!layout.array[c]) continue;
-      for (Index n = 0; n < zone.size(); ++n) difference[n] = after[c][zone.first_node + n] - before[c][zone.first_node + n];
+      for (Index n = 0; n < zone.size(); ++n)
+        difference[n] = after[c][zone.first_node + n] - before[c][zone.first_node + n];
       with_file_nodes(layout, zone, difference.data(), plane, [&](double const* v) { solution.add(names[c], v); });
     }
   }
   for (auto const& field : fields.nodes)
-    with_file_nodes(layout, zone, field.values.data() + zone.first_node, plane, [&](double const* v) { solution.add(field.name, v); });
+    with_file_nodes(layout, zone, field.values.data() + zone.first_node, plane,
+                    [&](double const* v) { solution.add(field.name, v); });
 }
 
 void write_cell_fields(cgns::File& file, cgns::ZoneLayout const& layout, Index first_cell, OutputFields const& fields) {
@@ -106,7 +114,8 @@ std::uint64_t bytes_needed(Mesh const& mesh, OutputFields const& fields) {
   std::uint64_t const node_fields = fields.nodes.size() + (fields.displacement ? 3 : 0);
   std::uint64_t const nodes_per_zone = node_fields + fields.cells.size() + 4;
   return cgns::File::bytes_per_node * nodes_per_zone * mesh.zones.size() +
-         sizeof(double) * (node_fields * std::uint64_t(mesh.n_nodes()) + fields.cells.size() * std::uint64_t(mesh.n_cells()));
+         sizeof(double) *
+             (node_fields * std::uint64_t(mesh.n_nodes()) + fields.cells.size() * std::uint64_t(mesh.n_cells()));
 }
 
 cgns::Layout zones_of(cgns::File const& file, cgns::Node const& tree) {
@@ -143,7 +152,8 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
       auto const& zone = mesh.zones[z];
       auto const arrays = components(morphed);
       for (int c = 0; c < 3; ++c)
-        with_file_nodes(layout.zones[z], zone, arrays[c] + zone.first_node, plane, [&](double const* v) { write_component(file, layout.zones[z], c, v); });
+        with_file_nodes(layout.zones[z], zone, arrays[c] + zone.first_node, plane,
+                        [&](double const* v) { write_component(file, layout.zones[z], c, v); });
       write_node_fields(file, layout.zones[z], mesh, zone, morphed, fields);
       write_cell_fields(file, layout.zones[z], first_cell, fields);
       first_cell += Index(zone.extent[0] - 1) * (zone.extent[1] - 1) * (zone.extent[2] - 1);

@@ -32,9 +32,20 @@ MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::ve
   return limits;
 }
 
+/// "zone 'a' [1:13, 1:48, 1:20]", and in which other zones the block has pieces.
 std::string block_name(Mesh const& mesh, Topology const& topology, int block) {
-  Piece const& piece = topology.lattice.pieces()[topology.blocks[block].pieces.front().piece];
-  return "zone '" + mesh.zones[piece.zone].name + "' " + to_string(piece.nodes);
+  auto const& pieces = topology.blocks[block].pieces;
+  Piece const& first = topology.lattice.pieces()[pieces.front().piece];
+  std::string text = "zone '" + mesh.zones[first.zone].name + "' " + to_string(first.nodes);
+  std::set<int> others;
+  for (PlacedPiece const& placed : pieces) others.insert(topology.lattice.pieces()[placed.piece].zone);
+  others.erase(first.zone);
+  constexpr int most = 4;
+  int listed = 0;
+  for (int const zone : others)
+    if (++listed <= most) text += (listed == 1 ? " with '" : ", '") + mesh.zones[zone].name + "'";
+  if (listed > most) text += " and " + std::to_string(listed - most) + " more zones";
+  return text;
 }
 
 std::string chain_name(Mesh const& mesh, Topology const& topology, Chain const& chain) {

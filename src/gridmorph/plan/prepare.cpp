@@ -5,9 +5,7 @@
 namespace gridmorph {
 
 PreparedMorph prepare(Mesh& mesh, Motion const& motion, PlanOptions const& options) {
-  Links links = connect(mesh, options.topology);
-  complete_patches(mesh, links, options.topology);
-  check_coverage(mesh, links);
+  Links links = connect_and_check(mesh, options.topology);
   ResolvedMotion resolved = resolve(mesh, motion);
   SurfaceMotion surface(mesh, resolved);
   PlannedMorph planned = make_plan(mesh, links, resolved, surface, options);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <tuple>
 
 #include <gridmorph/plan/stage_builder.hpp>
 
@@ -108,7 +109,13 @@ RankedChain Priority::rank(Chain chain) const {
     }
   ranked.aspect_ratio = std::llround(1e6 * std::min(1e9, width > 0 ? 2 * length / width : 1e9));
   double const unit = 1e-9 * mesh_size_ * 8;
-  ranked.centre = {std::llround(centre.x / unit), std::llround(centre.y / unit), std::llround(centre.z / unit)};
+  auto const place = [unit](Vec3 const& p) {
+    return std::array<long long, 3>{std::llround(p.x / unit), std::llround(p.y / unit), std::llround(p.z / unit)};
+  };
+  ranked.centre = place(centre);
+  for (int s = 0; s < 2; ++s)
+    ranked.ends[s] = place(2 * ((c.p[s][0][0] + c.p[s][1][1]) + (c.p[s][0][1] + c.p[s][1][0])));
+  std::sort(ranked.ends.begin(), ranked.ends.end());
   ranked.chain = std::move(chain);
   return ranked;
 }
@@ -127,7 +134,8 @@ void Priority::sort(std::vector<RankedChain>& chains) const {
           break;
       }
     if (a.aspect_ratio != b.aspect_ratio) return a.aspect_ratio < b.aspect_ratio;
-    return a.centre < b.centre;
+    // Two directions through one block have the same centre.
+    return std::tie(a.centre, a.ends) < std::tie(b.centre, b.ends);
   });
 }
 

@@ -13,10 +13,11 @@ namespace gridmorph {
 /// A chain with what it is ranked by. Values are quantised, so that round-off of a reoriented mesh decides nothing.
 struct RankedChain {
   Chain chain;
-  std::array<int, 2> boundary{};      ///< kind ranks of the better and the worse end
-  long long quality = 0;              ///< smallest angle of its cells, 1e-6 degree
-  long long aspect_ratio = 0;         ///< length / width, 1e-6
-  std::array<long long, 3> centre{};  ///< last resort: place of the chain, 1e-9 of the mesh size
+  std::array<int, 2> boundary{};                   ///< kind ranks of the better and the worse end
+  long long quality = 0;                           ///< smallest angle of its cells, 1e-6 degree
+  long long aspect_ratio = 0;                      ///< length / width, 1e-6
+  std::array<long long, 3> centre{};               ///< last resort: place of the chain, 1e-9 of the mesh size
+  std::array<std::array<long long, 3>, 2> ends{};  ///< and of its two ends
 };
 
 /// Computes ranks; the quality of a block (smallest angle between cell edges on the baseline) is computed when first

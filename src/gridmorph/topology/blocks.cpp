@@ -144,27 +144,33 @@ std::vector<char> Blocks::removable_faces(Mesh const& mesh, Links const& links, 
     EdgeStar const star = star_of(lattice, e);
     std::vector<int> interior, boundary;
     for (int f : star.faces) (is_interior[f] ? interior : boundary).push_back(f);
-    bool const regular_inside = star.pieces.size() == 4 && interior.size() == 4 && boundary.empty();
+    // Four corners meet at a regular inner edge. A face that lies on two sides of it (a ring or a period of one piece)
+    // touches all four and is its own opposite.
+    bool const regular_inside = star.pieces.size() == 4 && boundary.empty() && interior.size() >= 2;
     bool const regular_boundary = star.pieces.size() == 2 && interior.size() == 1 && boundary.size() == 2;
     if (regular_inside) {
-      // Opposite faces around the edge are the two that share no piece corner.
-      auto share_corner = [&](int f, int g) {
-        return std::any_of(star.corner_faces.begin(), star.corner_faces.end(), [&](auto const& c) {
-          return (c.first == f && c.second == g) || (c.first == g && c.second == f);
-        });
-      };
-      int const f = interior[0];
-      int opposite = -1;
-      for (int m = 1; m < 4; ++m)
-        if (!share_corner(f, interior[m])) opposite = interior[m];
-      if (opposite >= 0) {
-        std::vector<int> crossing;
+      auto opposite_of = [&](int f) {
+        std::vector<int> apart;  // faces that share no piece corner with f
+        int corners = 0;
+        for (auto const& c : star.corner_faces) corners += c.first == f || c.second == f;
+        if (corners == 4) return f;
         for (int g : interior)
-          if (g != f && g != opposite) crossing.push_back(g);
-        sheets.unite(f, opposite);
-        sheets.unite(crossing[0], crossing[1]);
-        if (label[f] != label[opposite]) to_keep.insert(to_keep.end(), crossing.begin(), crossing.end());
-        if (label[crossing[0]] != label[crossing[1]]) to_keep.insert(to_keep.end(), {f, opposite});
+          if (g != f && std::none_of(star.corner_faces.begin(), star.corner_faces.end(), [&](auto const& c) {
+                return (c.first == f && c.second == g) || (c.first == g && c.second == f);
+              }))
+            apart.push_back(g);
+        return apart.size() == 1 && corners == 2 ? apart.front() : -1;
+      };
+      bool regular = true;
+      for (int f : interior) regular = regular && opposite_of(f) >= 0 && opposite_of(opposite_of(f)) == f;
+      if (regular) {
+        for (int f : interior) {
+          int const opposite = opposite_of(f);
+          sheets.unite(f, opposite);
+          if (label[f] == label[opposite]) continue;
+          for (int g : interior)
+            if (g != f && g != opposite) to_keep.push_back(g);
+        }
         continue;
       }
     }

@@ -197,4 +197,17 @@ void check_coverage(Mesh const& mesh, Links const& links) {
   problems.throw_if_any<MeshError>();
 }
 
+Links connect_and_check(Mesh& mesh, TopologyOptions const& options) {
+  Problems problems;
+  Links links = connect(mesh, options, problems);
+  try {
+    complete_patches(mesh, links, options);
+    check_coverage(mesh, links);
+  } catch (MeshError const& e) {
+    problems.add(e.what());
+  }
+  problems.throw_if_any<MeshError>();
+  return links;
+}
+
 }  // namespace gridmorph

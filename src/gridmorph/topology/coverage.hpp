@@ -18,4 +18,7 @@ void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& opt
 /// that overlaps an interface, and every face range covered by nothing.
 void check_coverage(Mesh const& mesh, Links const& links);
 
+/// connect(), complete_patches() and check_coverage() in one: reports unmatched interfaces and uncovered faces together.
+Links connect_and_check(Mesh& mesh, TopologyOptions const& options);
+
 }  // namespace gridmorph

@@ -154,6 +154,13 @@ std::string describe_interface(Mesh const& mesh, Interface1to1 const& face) {
 }  // namespace
 
 Links connect(Mesh const& mesh, TopologyOptions const& options) {
+  Problems problems;
+  Links links = connect(mesh, options, problems);
+  problems.throw_if_any<MeshError>();
+  return links;
+}
+
+Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& problems) {
   Links links;
   links.of_zone.resize(mesh.zones.size());
   links.mesh_size = mesh.size();
@@ -161,8 +168,6 @@ Links connect(Mesh const& mesh, TopologyOptions const& options) {
     if (!std::isfinite(norm(mesh.coordinates[n])))
       throw MeshError(mesh.source + ": " + describe_node(mesh, n) + " is not finite; repair the mesh first");
 
-  Problems problems;
-  std::vector<Link> refused;  // the reverse of what was reported
   for (std::size_t f = 0; f < mesh.interfaces.size(); ++f) {
     Interface1to1 const& face = mesh.interfaces[f];
     std::string const name = describe_interface(mesh, face);
@@ -192,7 +197,6 @@ Links connect(Mesh const& mesh, TopologyOptions const& options) {
       links.all[*stored].interface = int(f);
       continue;
     }
-    if (std::any_of(refused.begin(), refused.end(), same)) continue;
     Link link{int(f), face.zone, face.donor_zone, face.range, face.to_donor, face.periodic.has_value(), {}, 0};
     if (link.periodic) link.transform = fitted_periodic(mesh, face, links.mesh_size);
     WorstPair const worst = worst_pair(mesh, face, link.transform, link.periodic);
@@ -200,13 +204,10 @@ Links connect(Mesh const& mesh, TopologyOptions const& options) {
     bool const single = mesh.zones[face.zone].single_precision || mesh.zones[face.donor_zone].single_precision;
     double const tolerance =
         options.matching_tolerance > 0 ? options.matching_tolerance : (single ? 1e-6 : 1e-8) * links.mesh_size;
-    if (!(worst.distance <= tolerance)) {
+    if (!(worst.distance <= tolerance))
       problems.add(name + ": its points do not coincide with the donor's: " + describe_node(mesh, worst.own) + " and " +
                    describe_node(mesh, worst.donor) + " are " + format_length(worst.distance) + " apart (tolerance " +
                    format_length(tolerance) + "); raise matching_tolerance if that is how the mesh was made");
-      refused.push_back({int(f), link.donor_zone, link.zone, image, link.to_donor.inverse(), link.periodic, {}, 0});
-      continue;
-    }
     int const forward = int(links.all.size());
     links.all.push_back(link);
     links.of_zone[link.zone].push_back(forward);
@@ -219,7 +220,6 @@ Links connect(Mesh const& mesh, TopologyOptions const& options) {
     links.of_zone[back.zone].push_back(forward + 1);
     links.all.push_back(back);
   }
-  problems.throw_if_any<MeshError>();
   return links;
 }
 

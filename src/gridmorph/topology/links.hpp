@@ -1,6 +1,7 @@
 // Links: the 1-to-1 interfaces of a mesh, both directions of each, checked node by node, periodic transforms fitted.
 #pragma once
 
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/plan/options.hpp>
 
@@ -32,6 +33,10 @@ struct Links {
 /// Throws MeshError naming every interface that does not match, the place and distance of its worst node.
 /// Cost: O(interface nodes).
 Links connect(Mesh const& mesh, TopologyOptions const& options);
+
+/// The same, for callers that go on looking: adds to `problems` instead of throwing. Interfaces whose points do not
+/// coincide are in the result all the same (their faces are claimed), those with ranges that cannot be are not.
+Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& problems);
 
 /// The rigid transform that maps from[n] onto to[n] best in the least-squares sense.
 RigidTransform fit_rigid_transform(std::vector<Vec3> const& from, std::vector<Vec3> const& to);
