@@ -40,6 +40,23 @@ Case passage(std::string name, PassageOptions const& options, PassageMotion cons
   return c;
 }
 
+/// Blade given, inlet free to slide and to deform in its plane, periodics free as one: the implicit surface morph.
+Case passage_with_free_surfaces() {
+  PassageOptions const options = passage_options(PassageOptions::Layout::whole_faces, false);
+  PassageMotion const move = rotated_sections();
+  Case c = passage("passage_free_surfaces", options, move);
+  c.motion = [=](double factor) {
+    Motion m = motion(
+        {rule({"blade"},
+              function_rule(scaled(factor, [=](Vec3 const& p) { return passage_displacement(options, move, p); }))),
+         rule({"inlet"}, FreeRule{FreeRule::Constraint::axial}),
+         rule({"hub", "case"}, SlipRule{SlipRule::Surface::revolution, {}, {}})});
+    m.axis = {options.placement.translation, options.placement.rotation * Vec3{1, 0, 0}};
+    return m;
+  };
+  return c;
+}
+
 /// Motion about an axis of rotation, the same in every passage: radius kept.
 VectorField twist(Vec3 const& axis, double angle_rad) {
   return [=](Vec3 const& p) {
@@ -89,6 +106,7 @@ std::vector<Case> make_cases() {
   std::vector<Case> list{
       passage("passage", passage_options(Layout::whole_faces, false), rotated_sections()),
       passage("passage_left_handed", passage_options(Layout::five_zones, true), chord_redesign()),
+      passage_with_free_surfaces(),
       machine("turbine_stage", "axial_turbine_stage_H.cgns", {1, 0, 0}, {"BLADE1", "BLADE2"}, FixedRule{}),
       machine("turbine_stage_free_planes", "axial_turbine_stage_H.cgns", {1, 0, 0}, {"BLADE1", "BLADE2"},
               FreeRule{FreeRule::Constraint::axial}),

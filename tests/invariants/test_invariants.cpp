@@ -3,6 +3,7 @@
 #include "invariants/checks.hpp"
 
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/quality/quality.hpp>
 
 #include "support/random.hpp"
 #include "support/scramble.hpp"
@@ -53,6 +54,20 @@ TEST_P(Invariants, CommonTranslationTranslatesEveryNode) {
   double worst = 0;
   for (Index n = 0; n < r.mesh.n_nodes(); ++n) worst = std::max(worst, distance(r.u(n), t));
   EXPECT_LE(worst, 1e-15 * 16 * norm(t));
+}
+
+TEST_P(Invariants, NoCellIsTurnedInsideOut) {
+  Outcome const r = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  Kokkos::DefaultHostExecutionSpace const exec;
+  auto const baseline = views(r.mesh.coordinates);
+  auto const handedness = zone_handedness(exec, r.mesh, baseline);
+  std::vector<CellBox> all;
+  for (int z = 0; z < int(r.mesh.zones.size()); ++z) {
+    Index3 const n = r.mesh.zones[z].extent;
+    all.push_back({z, {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}});
+  }
+  ASSERT_GT(min_determinant(exec, r.mesh, baseline, handedness, all).value, 0);
+  EXPECT_GT(min_determinant(exec, r.mesh, views(r.morphed.position), handedness, all).value, 0);
 }
 
 TEST_P(Invariants, TwoRunsAreBitIdentical) {
