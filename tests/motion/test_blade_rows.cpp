@@ -1,6 +1,8 @@
 // Circumferential slide and follow on analytic blade rows. The oracle is the formula of the blade's motion.
 #include "annulus.hpp"
-#include "expect_error.hpp"
+#include "support/expect_error.hpp"
+
+#include <gridmorph/core/error.hpp>
 
 #include <gridmorph/motion/surface_motion.hpp>
 

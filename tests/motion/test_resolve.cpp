@@ -1,5 +1,7 @@
 // Selectors and the one rule per patch, on meshes that are only names and ranges.
-#include "expect_error.hpp"
+#include "support/expect_error.hpp"
+
+#include <gridmorph/core/error.hpp>
 
 #include <gridmorph/motion/motion.hpp>
 
@@ -8,8 +10,8 @@
 namespace gridmorph {
 namespace {
 
-using testing::expect_all_in;
-using testing::message_of;
+using test::expect_all_in;
+using test::message_of;
 
 Patch make_patch(std::string name, PatchKind kind, std::vector<std::string> families, int axis, int side,
                  int zone = 0) {

@@ -1,5 +1,7 @@
 // RevolutionProfile against the analytic curves its points were taken from.
-#include "expect_error.hpp"
+#include "support/expect_error.hpp"
+
+#include <gridmorph/core/error.hpp>
 
 #include <gridmorph/motion/slip_surface.hpp>
 
@@ -12,8 +14,8 @@
 namespace gridmorph {
 namespace {
 
-using testing::expect_all_in;
-using testing::message_of;
+using test::expect_all_in;
+using test::message_of;
 using Points = std::vector<std::pair<double, double>>;
 
 Points sample(std::function<double(double)> const& f, double lo, double hi, int n) {

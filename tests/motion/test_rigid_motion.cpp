@@ -1,5 +1,7 @@
 // Rigid motions: composition against steps done by hand, and exactness.
-#include "expect_error.hpp"
+#include "support/expect_error.hpp"
+
+#include <gridmorph/core/error.hpp>
 
 #include <gridmorph/motion/rigid_motion.hpp>
 

@@ -1,6 +1,8 @@
 // Which surface a patch slips on, and the projection and constraint that kernels apply.
 #include "annulus.hpp"
-#include "expect_error.hpp"
+#include "support/expect_error.hpp"
+
+#include <gridmorph/core/error.hpp>
 
 #include <gridmorph/motion/slip_surface.hpp>
 #include <gridmorph/motion/surface_motion.hpp>

@@ -53,6 +53,19 @@ std::string format(double v) {
 
 }  // namespace
 
+Index add_slots(Mesh const& mesh, Lattice const& lattice, int entity_class, RotationTable& rotations,
+                BoundaryRequests& boundary, CopyTable& copies) {
+  Index const first = Index(boundary.nodes.size());
+  int const owner = lattice.copies(entity_class).front().entity;
+  IndexRange const r = lattice.nodes(owner);
+  Zone const& zone = mesh.zones[lattice.zone_of(owner)];
+  for (int k = r.begin[2]; k < r.end[2]; ++k)
+    for (int j = r.begin[1]; j < r.end[1]; ++j)
+      for (int i = r.begin[0]; i < r.end[0]; ++i) boundary.nodes.push_back(zone.node({i, j, k}));
+  add_copies(mesh, lattice, owner, rotations, copies);
+  return first;
+}
+
 BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
                                   SurfaceMotion const& surface, std::vector<std::string> const& kind_order,
                                   RotationTable& rotations, Known& known, CopyTable& copies) {
@@ -72,14 +85,7 @@ BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, Re
   std::vector<Index> first_slot(lattice.n_classes(), -1);
   for (int c = 0; c < lattice.n_classes(); ++c) {
     if (!known(c)) continue;
-    first_slot[c] = Index(boundary.nodes.size());
-    int const owner = lattice.copies(c).front().entity;
-    IndexRange const r = lattice.nodes(owner);
-    Zone const& zone = mesh.zones[lattice.zone_of(owner)];
-    for (int k = r.begin[2]; k < r.end[2]; ++k)
-      for (int j = r.begin[1]; j < r.end[1]; ++j)
-        for (int i = r.begin[0]; i < r.end[0]; ++i) boundary.nodes.push_back(zone.node({i, j, k}));
-    add_copies(mesh, lattice, owner, rotations, copies);
+    first_slot[c] = add_slots(mesh, lattice, c, rotations, boundary, copies);
   }
 
   // The rule that outranks the others gives the value of a shared node, the earlier rule where ranks are equal.

@@ -24,6 +24,11 @@ struct BoundaryRequests {
       requests;  ///< by (rank, rule): the first request of a slot gives its value, the others must agree
 };
 
+/// Makes the nodes of an entity class (of its owner) boundary nodes and adds the copies to their other occurrences.
+/// Returns the slot of the first.
+Index add_slots(Mesh const& mesh, Lattice const& lattice, int entity_class, RotationTable& rotations,
+                BoundaryRequests& boundary, CopyTable& copies);
+
 /// Marks every entity on the closure of explicitly moved faces known and lists its nodes. The order of slots and
 /// requests follows the lattice. Cost: O(boundary nodes).
 BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,

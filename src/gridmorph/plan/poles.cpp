@@ -119,13 +119,7 @@ void keep_in_place(Mesh const& mesh, Lattice const& lattice, PoleFace const& fac
       if (known(c)) continue;
       known.known[c] = 1;
       known.kind[c] = end_kind(PatchKind::degenerate);
-      int const owner = lattice.copies(c).front().entity;
-      IndexRange const r = lattice.nodes(owner);
-      Zone const& zone = mesh.zones[lattice.zone_of(owner)];
-      for (int k = r.begin[2]; k < r.end[2]; ++k)
-        for (int j = r.begin[1]; j < r.end[1]; ++j)
-          for (int i = r.begin[0]; i < r.end[0]; ++i) boundary.nodes.push_back(zone.node({i, j, k}));
-      add_copies(mesh, lattice, owner, rotations, plan.boundary_copies);
+      add_slots(mesh, lattice, c, rotations, boundary, plan.boundary_copies);
     }
 }
 
