@@ -82,7 +82,8 @@ TEST_P(Passage, CoversEveryBoundaryCellFaceOnce) {
     for (int axis = 0; axis < 3; ++axis)
       for (int side = 0; side < 2; ++side) {
         int const plane = side == 0 ? 0 : n[axis] - 1, u = (axis + 1) % 3, v = (axis + 2) % 3;
-        std::vector<int> claims(std::size_t(n[u]) * n[v]);
+        std::vector<int> claims;
+        claims.resize(std::size_t(n[u]) * n[v]);
         auto const claim = [&](int zone, IndexRange const& r) {
           if (zone != z || r.extent(axis) != 1 || r.begin[axis] != plane) return;
           for (int a = r.begin[u]; a < r.end[u] - 1; ++a)

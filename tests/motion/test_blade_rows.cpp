@@ -11,6 +11,9 @@
 namespace gridmorph {
 namespace {
 
+using test::expect_all_in;
+using test::message_of;
+
 using namespace testing;  // the annulus and its formulas
 
 enum RuleNumber { blade_rule_number, slide_number, follow_number, slip_number };

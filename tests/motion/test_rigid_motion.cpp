@@ -1,9 +1,8 @@
 // Rigid motions: composition against steps done by hand, and exactness.
-#include "support/expect_error.hpp"
-
 #include <gridmorph/core/error.hpp>
-
 #include <gridmorph/motion/rigid_motion.hpp>
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>

@@ -12,6 +12,9 @@
 namespace gridmorph {
 namespace {
 
+using test::expect_all_in;
+using test::message_of;
+
 using namespace testing;  // the annulus and its formulas
 
 SlipRule revolution() { return {.surface = SlipRule::Surface::revolution}; }

@@ -64,6 +64,8 @@ void add_copies(Mesh const& mesh, Lattice const& lattice, int source_entity, Rot
                 CopyTable& table) {
   int const c = lattice.class_of(source_entity);
   auto const copies = lattice.copies(c);
+  // Volumes always end here: only corners, edges and faces coincide with others.
+  if (copies.size() == 1 && !lattice.axis_of(c)) return;
   int const owner = copies.front().entity;
   EntityCopy const& source = lattice.copy_of(source_entity);
   EntityNodes const from = entity_nodes(mesh, lattice, source, owner);
