@@ -133,6 +133,7 @@ int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
   for (auto const& note : result.notes) text += "note: " + note + "\n";
   text += stages_text(result);
   text += (text.empty() ? "" : "\n") + format_table(result.before, result.after, thresholds_of(case_file));
+  text += "\n" + format_short_table(result.before, result.after);
   if (written) text += fmt::format("\nwrote {}\n", case_file.output.string());
   if (report) text += fmt::format("wrote {}\n", report->string());
   terminal.say(text);

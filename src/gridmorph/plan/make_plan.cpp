@@ -77,15 +77,29 @@ class Scheduler {
         rotations_(plan.rotations),
         priority_(mesh, topology, options.volume, plan.mesh_size) {}
 
-  /// Stage 0. Near fields that get in each other's way (walls that meet at a concave edge) follow one another.
+  /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of walls
+  /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
+  /// its wall and the face that the earlier one moves.
   void near_field(std::vector<StageChain> chains) {
     for (int turn = 0; !chains.empty(); ++turn) {
+      for (StageChain& chain : chains)
+        if (outer_face_is_known(chain.chain)) {
+          chain.law = line_law(options_.volume.law);
+          chain.open_end = false;
+          chain.chain.last = {true, chain.chain.first.kind, -1};
+          if (is_active(chain.chain.steps.back().block))
+            plan_.notes.push_back(
+                "the near field at " + chain_name(mesh_, topology_, chain.chain) +
+                " touches that of another wall and is interpolated between the two; fewer layers keep "
+                "both rigid");
+        }
       Claims claims(topology_, known_);
       std::vector<StageChain> now, later;
       std::vector<std::string> description;
       for (StageChain& chain : chains) {
         if (claims.add(chain.chain)) {
-          description.push_back(chain_name(mesh_, topology_, chain.chain) + ": constant off the wall");
+          description.push_back(chain_name(mesh_, topology_, chain.chain) +
+                                (chain.open_end ? ": constant off the wall" : ": between touching near fields"));
           now.push_back(std::move(chain));
         } else {
           later.push_back(std::move(chain));
@@ -140,6 +154,13 @@ class Scheduler {
   [[nodiscard]] bool is_active(int block) const {
     int const piece = topology_.blocks[block].pieces.front().piece;
     return !known_(topology_.lattice.class_of(topology_.lattice.entity_of_piece(piece, {1, 1, 1})));
+  }
+  [[nodiscard]] bool outer_face_is_known(Chain const& chain) const {
+    ChainStep const& end = chain.steps.back();
+    Orientation const to_block = end.to_chain.inverse();
+    auto const faces =
+        topology_.blocks.face_entities(topology_.lattice, {end.block, to_block.axis[0], to_block.sign[0] > 0 ? 1 : 0});
+    return std::all_of(faces.begin(), faces.end(), [&](int e) { return known_(topology_.lattice.class_of(e)); });
   }
   [[nodiscard]] bool has_active_blocks() const {
     for (int b = 0; b < topology_.blocks.size(); ++b)

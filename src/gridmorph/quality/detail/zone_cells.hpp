@@ -105,7 +105,7 @@ Kokkos::View<T*, typename Exec::memory_space> upload(Exec const& exec, std::stri
 
 /// A device table on the host, where it can be read at once.
 template <class Exec, class View>
-typename View::HostMirror download(Exec const& exec, View const& device) {
+auto download(Exec const& exec, View const& device) {
   auto host = Kokkos::create_mirror_view(device);
   Kokkos::deep_copy(exec, host, device);
   compat::fence(exec, "gridmorph::quality::download (the host reads it)");
