@@ -52,9 +52,7 @@ std::vector<std::string> Engine::notes() const {
 std::vector<unsigned char> Engine::near_field() const {
   Mesh const& mesh = impl_->mesh;
   std::vector<unsigned char> mask(std::size_t(mesh.n_cells()), 0);
-  std::vector<Index> first{0};
-  for (auto const& z : mesh.zones)
-    first.push_back(first.back() + Index(z.extent[0] - 1) * (z.extent[1] - 1) * (z.extent[2] - 1));
+  std::vector<Index> const first = first_cells(mesh);
   for (auto const& box : impl_->plan().near_field) {
     Index const ni = mesh.zones[box.zone].extent[0] - 1, nj = mesh.zones[box.zone].extent[1] - 1;
     for (int k = box.cells.begin[2]; k < box.cells.end[2]; ++k)

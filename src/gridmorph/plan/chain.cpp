@@ -25,10 +25,8 @@ struct Crossing {
 Crossing cross(Mesh const& mesh, Topology const& topology, Known const& known, ChainStep const& step, int side) {
   Lattice const& lattice = topology.lattice;
   Blocks const& blocks = topology.blocks;
-  Orientation const to_block = step.to_chain.inverse();
-  int const axis = to_block.axis[0];
-  int const block_side = to_block.sign[0] > 0 ? side : 1 - side;
-  std::vector<int> const entities = blocks.face_entities(lattice, {step.block, axis, block_side});
+  BlockFace const own_face = end_face(step, side);
+  std::vector<int> const entities = blocks.face_entities(lattice, own_face);
 
   Crossing crossing;
   bool all_known = true;
@@ -44,13 +42,7 @@ Crossing cross(Mesh const& mesh, Topology const& topology, Known const& known, C
   }
   crossing.kind = Crossing::Kind::through;
   // A block that touches itself has both sides; ours is the one with this face entity on this side of the piece.
-  bool const first_is_ours =
-      sides[0].entity == entities.front() && blocks.block_of(sides[0].piece) == step.block && [&] {
-        Orientation const& placed = blocks.to_block(sides[0].piece);
-        int const a = placed.axis[sides[0].axis];
-        int const s = placed.sign[sides[0].axis] > 0 ? sides[0].side : 1 - sides[0].side;
-        return a == axis && s == block_side;
-      }();
+  bool const first_is_ours = sides[0].entity == entities.front() && blocks.face_of(sides[0]) == own_face;
   FaceSide const& ours = first_is_ours ? sides[0] : sides[1];
   FaceSide const& theirs = first_is_ours ? sides[1] : sides[0];
   ChainStep& next = crossing.next;
@@ -72,6 +64,11 @@ Crossing cross(Mesh const& mesh, Topology const& topology, Known const& known, C
 }
 
 }  // namespace
+
+BlockFace end_face(ChainStep const& step, int side) {
+  Orientation const to_block = step.to_chain.inverse();
+  return {step.block, to_block.axis[0], to_block.sign[0] > 0 ? side : 1 - side};
+}
 
 std::optional<Chain> find_chain(Mesh const& mesh, Topology const& topology, Known const& known, int block, int axis) {
   ChainStep step{block, along(axis), {}, false};

@@ -16,6 +16,9 @@ struct ChainStep {
   bool rotated = false;
 };
 
+/// The block face at the lower (side 0) or upper (side 1) s end of a step.
+BlockFace end_face(ChainStep const& step, int side);
+
 /// How a chain ends: on a known face, or on a boundary face that nothing fixes yet (slip, free).
 struct ChainEnd {
   bool known = false;

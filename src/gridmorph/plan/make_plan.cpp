@@ -149,6 +149,7 @@ class Scheduler {
   }
 
   RotationTable& rotations() { return rotations_; }
+  [[nodiscard]] std::vector<std::string> const& kind_order() const { return priority_.kind_order(); }
 
  private:
   [[nodiscard]] bool is_active(int block) const {
@@ -156,10 +157,7 @@ class Scheduler {
     return !known_(topology_.lattice.class_of(topology_.lattice.entity_of_piece(piece, {1, 1, 1})));
   }
   [[nodiscard]] bool outer_face_is_known(Chain const& chain) const {
-    ChainStep const& end = chain.steps.back();
-    Orientation const to_block = end.to_chain.inverse();
-    auto const faces =
-        topology_.blocks.face_entities(topology_.lattice, {end.block, to_block.axis[0], to_block.sign[0] > 0 ? 1 : 0});
+    auto const faces = topology_.blocks.face_entities(topology_.lattice, end_face(chain.steps.back(), 1));
     return std::all_of(faces.begin(), faces.end(), [&](int e) { return known_(topology_.lattice.class_of(e)); });
   }
   [[nodiscard]] bool has_active_blocks() const {
@@ -229,9 +227,7 @@ PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion cons
 
   Known known(topology.lattice.n_classes());
   Scheduler scheduler(mesh, topology, options, plan, known);
-  std::vector<std::string> kind_order = PriorityRule{}.order;
-  for (PriorityRule const& rule : options.volume.priority)
-    if (rule.kind == PriorityRule::Kind::boundary) kind_order = rule.order;
+  std::vector<std::string> const& kind_order = scheduler.kind_order();
   planned.boundary =
       collect_boundary(mesh, topology, motion, surface, kind_order, scheduler.rotations(), known, plan.boundary_copies);
   Known const given = known;

@@ -119,7 +119,7 @@ std::vector<CutPlane> near_field_limits(Mesh const& mesh, Links const& links, st
 std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topology, Known const& known,
                                           std::vector<NearField> const& fields) {
   std::vector<StageChain> chains;
-  std::set<std::pair<int, int>> done;  // (block, axis and side) of walls
+  std::set<BlockFace> done;
   Blocks const& blocks = topology.blocks;
   Lattice const& lattice = topology.lattice;
   // Nothing stops a walk off the wall but the domain's boundary.
@@ -129,27 +129,18 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
     for (int c = 0; c < lattice.n_classes(); ++c) {
       int const patch = blocks.patch_of_face()[c];
       if (patch < 0 || !walls.contains(patch)) continue;
-      FaceSide const side = lattice.face_sides(c).front();
-      int const block = blocks.block_of(side.piece);
-      Orientation const& to_block = blocks.to_block(side.piece);
-      int const axis = to_block.axis[side.axis];
-      int const block_side = to_block.sign[side.axis] > 0 ? side.side : 1 - side.side;
-      if (!done.insert({block, 2 * axis + block_side}).second) continue;
+      BlockFace const wall = blocks.face_of(lattice.face_sides(c).front());
+      if (!done.insert(wall).second) continue;
 
       int cells = 0;
-      std::optional<Chain> chain =
-          walk_from(mesh, topology, nothing, {block, axis, block_side}, [&](Chain const& so_far) {
-            Chain one;
-            one.steps = {so_far.steps.back()};
-            cells += lay_out(topology, one).n_nodes[0] - 1;
-            return cells >= field.layers;
-          });
+      std::optional<Chain> chain = walk_from(mesh, topology, nothing, wall, [&](Chain const& so_far) {
+        Chain one;
+        one.steps = {so_far.steps.back()};
+        cells += lay_out(topology, one).n_nodes[0] - 1;
+        return cells >= field.layers;
+      });
       std::vector<int> outer;
-      if (chain) {
-        ChainStep const& end = chain->steps.back();
-        Orientation const to_block_end = end.to_chain.inverse();
-        outer = blocks.face_entities(lattice, {end.block, to_block_end.axis[0], to_block_end.sign[0] > 0 ? 1 : 0});
-      }
+      if (chain) outer = blocks.face_entities(lattice, end_face(chain->steps.back(), 1));
       int const beyond = outer.empty() ? -1 : blocks.patch_of_face()[lattice.class_of(outer.front())];
       if (!chain || beyond >= 0)
         throw PlanError("the near field of wall " + describe_patch(mesh, mesh.patches[patch]) +

@@ -44,22 +44,16 @@ std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topolog
   Blocks const& blocks = topology.blocks;
   Known const nothing(lattice.n_classes());
   std::vector<Candidate> candidates;
-  std::set<std::array<int, 3>> seen;  // (block, axis, side)
+  std::set<BlockFace> seen;
   for (int c = 0; c < lattice.n_classes(); ++c) {
     int const patch = blocks.patch_of_face()[c];
     if (patch < 0 || surface_of_patch[patch] < 0) continue;
-    FaceSide const side = lattice.face_sides(c).front();
-    Orientation const& to_block = blocks.to_block(side.piece);
-    BlockFace const face{blocks.block_of(side.piece), to_block.axis[side.axis],
-                         to_block.sign[side.axis] > 0 ? side.side : 1 - side.side};
-    if (!seen.insert({face.block, face.axis, face.side}).second) continue;
-    // To the opposite boundary, or as far as the walk goes before it would come back to one of its blocks.
+    BlockFace const face = blocks.face_of(lattice.face_sides(c).front());
+    if (!seen.insert(face).second) continue;
+    // To the opposite boundary, or through one block where the way there would come back to one of its blocks.
     Chain chain;
     if (auto whole = find_chain(mesh, topology, nothing, face.block, face.axis)) {
-      ChainStep const& front = whole->steps.front();
-      Orientation const to_front = front.to_chain.inverse();
-      bool const slip_first =
-          front.block == face.block && to_front.axis[0] == face.axis && (to_front.sign[0] > 0 ? 0 : 1) == face.side;
+      bool const slip_first = end_face(whole->steps.front(), 0) == face;
       chain = slip_first ? std::move(*whole) : reversed(std::move(*whole));
     } else {
       auto one = walk_from(mesh, topology, nothing, face, [](Chain const&) { return true; });

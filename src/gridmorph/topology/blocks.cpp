@@ -265,6 +265,11 @@ bool Blocks::assemble(Lattice const& lattice, std::vector<char>& removable) {
   return true;
 }
 
+BlockFace Blocks::face_of(FaceSide const& side) const {
+  Orientation const& placed = to_block_[side.piece];
+  return {block_of_[side.piece], placed.axis[side.axis], placed.sign[side.axis] > 0 ? side.side : 1 - side.side};
+}
+
 std::vector<int> Blocks::face_entities(Lattice const& lattice, BlockFace const& face) const {
   Block const& block = blocks_[face.block];
   std::vector<int> entities;

@@ -39,6 +39,7 @@ struct MergeLimits {
 struct BlockFace {
   int block = -1;
   int axis = 0, side = 0;
+  friend auto operator<=>(BlockFace const&, BlockFace const&) = default;
 };
 
 class Blocks {
@@ -51,6 +52,8 @@ class Blocks {
   [[nodiscard]] int block_of(int piece) const { return block_of_[piece]; }
   [[nodiscard]] Orientation const& to_block(int piece) const { return to_block_[piece]; }
 
+  /// The block face that a side of a face entity is part of.
+  [[nodiscard]] BlockFace face_of(FaceSide const& side) const;
   /// The face entities (in their pieces' zones) of a block face.
   [[nodiscard]] std::vector<int> face_entities(Lattice const& lattice, BlockFace const& face) const;
   /// Patch number of each face class that lies on the boundary, -1 inside.
