@@ -51,8 +51,18 @@ BoxField reference_sweep(BoxField const& x, BoxField const& known, Weight const&
   return u;
 }
 
+/// c along the line (a, b) of a box at fraction t of the line's length, linear between its nodes.
+inline Vec3 at_fraction(BoxField const& x, BoxField const& c, int a, int b, double t) {
+  std::vector<double> const here = fractions_along(x, 0, {0, a, b});
+  std::size_t p = 1;
+  while (p + 1 < here.size() && here[p] < t) ++p;
+  double const f = (t - here[p - 1]) / (here[p] - here[p - 1]);
+  return (1 - f) * c(int(p) - 1, a, b) + f * c(int(p), a, b);
+}
+
 /// All six faces known: the sweep plus the residuals on the four sides, blended by the Boolean sum of Gordon and Hall with
-/// the arc-length fractions A and B across, taken on the two end faces and varied linearly along each line.
+/// the arc-length fractions A and B across, taken on the two end faces and varied linearly along each line. A side gives
+/// its residual at the fraction of its line that the node has of its own.
 template <class Weight>
 BoxField reference_transfinite(BoxField const& x, BoxField const& known, Weight const& weight) {
   BoxField u = reference_sweep(x, known, weight);
@@ -67,10 +77,11 @@ BoxField reference_transfinite(BoxField const& x, BoxField const& known, Weight 
       double const B0 = fractions_along(x, 2, {0, a, 0})[b], B1 = fractions_along(x, 2, {ns - 1, a, 0})[b];
       for (int s = 0; s < ns; ++s) {
         double const A = (1 - t[s]) * A0 + t[s] * A1, B = (1 - t[s]) * B0 + t[s] * B1;
-        Vec3 const along_a = (1 - A) * c(s, 0, b) + A * c(s, na - 1, b);
-        Vec3 const along_b = (1 - B) * c(s, a, 0) + B * c(s, a, nb - 1);
-        Vec3 const both = (1 - A) * (1 - B) * c(s, 0, 0) + A * (1 - B) * c(s, na - 1, 0) +
-                          (1 - A) * B * c(s, 0, nb - 1) + A * B * c(s, na - 1, nb - 1);
+        auto side = [&](int at_a, int at_b) { return at_fraction(x, c, at_a, at_b, t[s]); };
+        Vec3 const along_a = (1 - A) * side(0, b) + A * side(na - 1, b);
+        Vec3 const along_b = (1 - B) * side(a, 0) + B * side(a, nb - 1);
+        Vec3 const both = (1 - A) * (1 - B) * side(0, 0) + A * (1 - B) * side(na - 1, 0) +
+                          (1 - A) * B * side(0, nb - 1) + A * B * side(na - 1, nb - 1);
         out(s, a, b) = u(s, a, b) + along_a + along_b - both;
       }
     }

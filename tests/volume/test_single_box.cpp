@@ -114,6 +114,27 @@ TEST(Box, AKnownSideFadesOutLinearlyTowardsTheUnknownOne) {
   EXPECT_LT(largest_difference(field(r.mesh, r.morphed.displacement), expected), 1e-14);
 }
 
+TEST(Box, ASideGivesItsResidualAtTheSameFractionOfTheLinesBesideIt) {
+  // Lines along x are spaced evenly on v_min and ever more closely at both ends away from it. What v_min does must not
+  // reach the first nodes of the crowded lines before it reaches its own nodes at that distance.
+  VectorField const tent = [](Vec3 const& p) { return Vec3{0, 0, 0.2 * std::min(p.x, 2 - p.x)}; };
+  for (int const thickness : {2, 6}) {
+    Mesh mesh = box({9, 7, thickness}, Shape::straight, 1);
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      Vec3 p = mesh.coordinates[n];
+      double const crowded = std::pow(std::min(p.x, 2 - p.x), 1 + 8 * p.y);
+      p.x = p.x < 1 ? crowded : 2 - crowded;
+      mesh.coordinates.set(n, p);
+    }
+    Outcome const r = morph(std::move(mesh), motion({rule({"u_min", "u_max", "v_min"}, function_rule(tent)),
+                                                     rule({"v_max", "w_min", "w_max"}, FreeRule{})}));
+    for (Index n = 0; n < r.mesh.n_nodes(); ++n) {
+      Vec3 const p = r.mesh.coordinates[n];
+      ASSERT_LT(distance(r.u(n), (1 - p.y) * tent(p)), 1e-14) << describe_node(r.mesh, n);
+    }
+  }
+}
+
 TEST(Box, OneKnownFaceIsCarriedThroughUnchanged) {
   VectorField const f = waves(0.2);
   std::vector<std::string> rest = sides;

@@ -9,7 +9,10 @@
 //
 //   c(s,a,b) = (1-A) c0 + A c1 + (1-B) c2 + B c3 - [(1-A)(1-B) e00 + A(1-B) e10 + (1-A)B e01 + AB e11]
 //
-// with A, B the arc-length fractions across the chain, interpolated linearly along the line between its two ends. What
+// with A, B the arc-length fractions across the chain, interpolated linearly along the line between its two ends, and the
+// c on the right taken where the side lines and edges have the same fraction of *their* length as node (s, a, b) has of
+// its line (not the same index: where a side is spaced evenly and the lines beside it are clustered at a wall, its residual
+// would be pushed between the wall's first nodes). What
 // is unknown on an edge is filled linearly between the nearest known nodes (zero at the ends of the chain), what is
 // unknown on a side by the same Boolean sum from its borders. With all residuals zero this is the plain sweep.
 #pragma once
@@ -41,8 +44,19 @@ struct SideTable {
   Kokkos::View<double const*, MemorySpace> section;      ///< per chain (4, n_b, n_a): A at s = 0, A at s = 1, B, B
   Field<double> c;                                       ///< residual per side node, chain frame
 
-  KOKKOS_INLINE_FUNCTION Vec3 at(Chain const& chain, int side, int s, int w) const {
-    return c[sides(chain.first_side + side).first + s + Index(chain.n_s) * w];
+  /// Residual of line w of a side at fraction `t_line` of its length, linear between nodes. `guess`: the node of the
+  /// side line that is tried first. Cost: bisection where the guess is wrong.
+  KOKKOS_INLINE_FUNCTION Vec3 at(Chain const& chain, int side, int w, double t_line, int guess) const {
+    Index const line = sides(chain.first_side + side).first + Index(chain.n_s) * w;
+    if (t(line + guess) == t_line) return c[line + guess];
+    int lo = 0, hi = chain.n_s - 1;
+    while (hi - lo > 1) {
+      int const mid = (lo + hi) / 2;
+      (t(line + mid) <= t_line ? lo : hi) = mid;
+    }
+    double const t0 = t(line + lo), t1 = t(line + hi);
+    double const f = t1 > t0 ? (t_line - t0) / (t1 - t0) : 0;
+    return (1 - f) * c[line + lo] + f * c[line + hi];
   }
   /// Arc-length fraction across the chain: direction 0 along a, 1 along b.
   KOKKOS_INLINE_FUNCTION double across(Chain const& chain, int direction, int a, int b, double t_line) const {
@@ -52,11 +66,11 @@ struct SideTable {
   }
   KOKKOS_INLINE_FUNCTION Vec3 correction(Chain const& chain, int s, int a, int b, double t_line) const {
     double const A = across(chain, 0, a, b, t_line), B = across(chain, 1, a, b, t_line);
+    auto side = [&](int q, int w) { return at(chain, q, w, t_line, s); };
     int const last_b = chain.n_b - 1;
-    Vec3 const sum =
-        (1 - A) * at(chain, 0, s, b) + A * at(chain, 1, s, b) + (1 - B) * at(chain, 2, s, a) + B * at(chain, 3, s, a);
-    Vec3 const edges = (1 - B) * ((1 - A) * at(chain, 0, s, 0) + A * at(chain, 1, s, 0)) +
-                       B * ((1 - A) * at(chain, 0, s, last_b) + A * at(chain, 1, s, last_b));
+    Vec3 const sum = (1 - A) * side(0, b) + A * side(1, b) + (1 - B) * side(2, a) + B * side(3, a);
+    Vec3 const edges =
+        (1 - B) * ((1 - A) * side(0, 0) + A * side(1, 0)) + B * ((1 - A) * side(0, last_b) + A * side(1, last_b));
     return sum - edges;
   }
 };

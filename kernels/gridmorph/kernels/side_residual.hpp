@@ -109,11 +109,13 @@ struct SideFill {
     Chain const& chain = lines.chains(side.chain);
     int const q = on.side - chain.first_side;
     Index const line = side.first + Index(chain.n_s) * on.w;
-    Index const lower = side.first, upper = side.first + Index(chain.n_s) * (side.n_w - 1);
     int const a = q == 0 ? 0 : (q == 1 ? chain.n_a - 1 : on.w);
     int const b = q == 2 ? 0 : (q == 3 ? chain.n_b - 1 : on.w);
     auto fraction_across = [&](int p) { return sides.across(chain, q < 2 ? 1 : 0, a, b, sides.t(line + p)); };
-    auto between_edges = [&](int p, double f) { return (1 - f) * sides.c[lower + p] + f * sides.c[upper + p]; };
+    auto between_edges = [&](int p, double f) {
+      double const t = sides.t(line + p);
+      return (1 - f) * sides.at(chain, q, 0, t, p) + f * sides.at(chain, q, side.n_w - 1, t, p);
+    };
     for (int m = 0; m <= chain.n_blocks; ++m) {
       int const p = sides.junctions(chain.first_junction + m).position;
       if (!side_node_is_known(sides, chain, q, side.n_w, p, on.w))
