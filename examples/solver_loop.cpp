@@ -85,7 +85,6 @@ int main(int argc, char** argv) {
   near.layers = 4;
   options.boundary_layers = {near};
   gridmorph::PreparedMorph const prepared = gridmorph::prepare(mesh, motion, options);
-  gridmorph::Morpher<Exec> const morpher(exec, prepared.plan());
 
   // Every step: displacement of the boundary nodes in, positions of all nodes out, always from the reference mesh.
   auto const& nodes = prepared.plan().boundary_nodes;
@@ -94,13 +93,13 @@ int main(int argc, char** argv) {
   gridmorph::Coordinates const now(mesh.n_nodes());
   gridmorph::kernels::Field<double const> const reference{x.x.data(), x.y.data(), x.z.data()};
   gridmorph::kernels::Field<double> const current{now.x.data(), now.y.data(), now.z.data()};
+  gridmorph::Morpher<Exec> const morpher(exec, prepared.plan(), reference);
   std::vector<Vec3> const mode = prepared.boundary_displacement(mesh);
   double worst = 0;
   for (int step = 0; step <= 8; ++step) {
     double const amplitude = 0.2 * std::sin(2 * std::numbers::pi * step / 8);
     for (std::size_t n = 0; n < nodes.size(); ++n) boundary(n) = amplitude * mode[n];
-    morpher.displace(exec, boundary, reference, current);
-    morpher.move(exec, reference, current);
+    morpher.apply(exec, boundary, reference, current);
     exec.fence();  // the solver would go on with its own kernels instead
 
     Index const middle = mesh.zones[0].node({extent[0] / 2, extent[1] / 2, 0});

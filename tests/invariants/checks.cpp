@@ -96,14 +96,14 @@ double known_displacement_error(Outcome const& run) {
 
 Index boundary_values_changed(Outcome const& run) {
   std::set<Index> on_axis;
-  for (auto const& copy : run.plan().boundary_copies.projections)
+  for (auto const& copy : run.plan().boundary_projections)
     for (Index q = 0; q < copy.n_q; ++q)
       for (Index p = 0; p < copy.n_p; ++p)
         on_axis.insert(copy.source + p * copy.source_stride_p + q * copy.source_stride_q);
   Index count = 0;
   for (std::size_t n = 0; n < run.boundary.size(); ++n) {
     Index const node = run.plan().boundary_nodes[n];
-    double const allowed = on_axis.contains(node) ? 1e-15 * norm(run.boundary[n]) : 0;
+    double const allowed = on_axis.contains(run.plan().boundary_slots[n]) ? 1e-15 * norm(run.boundary[n]) : 0;
     count += distance(run.u(node), run.boundary[n]) <= allowed ? 0 : 1;
   }
   return count;

@@ -79,31 +79,35 @@ class Manners : public ::testing::Test {
   }();
   Exec exec;
   Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
+  Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> batch{"gridmorph::test::batch", 1, boundary.extent(0)};
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
 };
 
 TEST_F(Manners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
   Listener const listener;
-  Morpher<Exec> const morpher(exec, prepared.plan());
-  morpher.displace(exec, boundary, x.read(), u.write());
-  morpher.move(exec, x.read(), u.write());
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  morpher.displace(exec, boundary, u.write());
+  morpher.apply(exec, boundary, x.read(), u.write());
   exec.fence();
   EXPECT_GE(record.kernels.size(), 8u);
   EXPECT_GE(record.allocations.size(), 8u);
   expect_labels(record.kernels);
   expect_labels(record.allocations);
-  for (char const* kernel : {"gridmorph::boundary", "gridmorph::line_sweep", "gridmorph::side_residual",
-                             "gridmorph::node_copy", "gridmorph::line_spread", "gridmorph::move_nodes"})
+  for (char const* kernel : {"gridmorph::boundary", "gridmorph::chain_ends", "gridmorph::side_residual",
+                             "gridmorph::skeleton_sweep", "gridmorph::skeleton_spread", "gridmorph::slip_ends",
+                             "gridmorph::skeleton_nodes", "gridmorph::volume", "gridmorph::line_parameters"})
     EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
 }
 
 TEST_F(Manners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
-  Morpher<Exec> const morpher(exec, prepared.plan());
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
   exec.fence();
   {
     Listener const listener;
-    morpher.displace(exec, boundary, x.read(), u.write());
-    morpher.move(exec, x.read(), u.write());
+    morpher.displace(exec, boundary, u.write());
+    morpher.apply(exec, boundary, x.read(), u.write());
+    morpher.velocity(exec, boundary, boundary, u.write());
+    morpher.displace(exec, batch, {u.write()});
   }
   EXPECT_EQ(record.allocations, std::vector<std::string>());
   EXPECT_EQ(record.copies, std::vector<std::string>());
@@ -112,11 +116,11 @@ TEST_F(Manners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
 }
 
 TEST_F(Manners, EveryMorphRunsTheSameKernels) {
-  Morpher<Exec> const morpher(exec, prepared.plan());
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
   std::vector<std::string> first;
   for (int n = 0; n < 3; ++n) {
     Listener const listener;
-    morpher.displace(exec, boundary, x.read(), u.write());
+    morpher.displace(exec, boundary, u.write());
     if (n == 0) first = record.kernels;
     EXPECT_EQ(record.kernels, first);
     Kokkos::deep_copy(boundary, Vec3{});

@@ -20,7 +20,7 @@ struct DeviceField {
         z(Kokkos::create_mirror_view_and_copy(Memory(), c.z)) {}
   [[nodiscard]] kernels::Field<double const> read() const { return {x.data(), y.data(), z.data()}; }
   [[nodiscard]] kernels::Field<double> write() const { return {x.data(), y.data(), z.data()}; }
-  [[nodiscard]] Coordinates host() const {
+  [[nodiscard]] Coordinates host_copy() const {
     Coordinates c(Index(x.extent(0)));
     Kokkos::deep_copy(c.x, x);
     Kokkos::deep_copy(c.y, y);
@@ -53,14 +53,16 @@ Morphed run_plan(Exec const& exec, Mesh const& mesh, Plan const& plan, std::vect
   }
   // On the host these are the arrays themselves, not copies.
   DeviceField<Memory> const x(mesh.coordinates), u(nothing);
-  Morpher<Exec> const morpher(exec, plan);
-  morpher.displace(exec, upload<Memory>(boundary), x.read(), u.write());
-  exec.fence();
+  Morpher<Exec> const morpher(exec, plan, x.read());
   Morphed out;
-  out.displacement = u.host();
-  morpher.move(exec, x.read(), u.write());
+  morpher.displace(exec, upload<Memory>(boundary), u.write());
   exec.fence();
-  out.position = u.host();
+  out.displacement = u.host_copy();
+  Coordinates nothing_yet(mesh.n_nodes());
+  DeviceField<Memory> const moved(nothing_yet);
+  morpher.apply(exec, upload<Memory>(boundary), x.read(), moved.write());
+  exec.fence();
+  out.position = moved.host_copy();
   return out;
 }
 

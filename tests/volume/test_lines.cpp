@@ -134,14 +134,14 @@ TEST(Morpher, ServesManyDisplacementsOneAfterAnother) {
   using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;
   Morphed const fresh = run_plan(exec, mesh, prepared.plan(), two);
-  Morpher<Exec> const morpher(exec, prepared.plan());
   Coordinates u(mesh.n_nodes());
   DeviceField<Exec::memory_space> const x(mesh.coordinates), out(u);
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read());
   for (auto const* boundary : {&two, &one, &two}) {
-    morpher.displace(exec, upload<Exec::memory_space>(*boundary), x.read(), out.write());
+    morpher.displace(exec, upload<Exec::memory_space>(*boundary), out.write());
     exec.fence();
   }
-  EXPECT_EQ(different_bits(out.host(), fresh.displacement), 0);
+  EXPECT_EQ(different_bits(out.host_copy(), fresh.displacement), 0);
 }
 
 TEST(Morpher, ReadsAndWritesInterleavedArrays) {
@@ -156,13 +156,100 @@ TEST(Morpher, ReadsAndWritesInterleavedArrays) {
   }
   using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;
-  Morpher<Exec> const morpher(exec, r.plan());
   kernels::Field<double const> const in{x.data(), x.data() + 1, x.data() + 2, 3};
   kernels::Field<double> const out{u.data(), u.data() + 1, u.data() + 2, 3};
-  morpher.displace(exec, upload<Exec::memory_space>(r.boundary), in, out);
-  morpher.move(exec, in, out);
+  Morpher<Exec> const morpher(exec, r.plan(), in);
+  morpher.apply(exec, upload<Exec::memory_space>(r.boundary), in, out);
   exec.fence();
   for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_TRUE(same_bits(out[n], r.morphed.position[n]));
+}
+
+TEST(Morpher, MovesAMeshInPlace) {
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Exec const exec;
+  Mesh mesh = star(5, 1);
+  Outcome const r = morph(mesh, motion({rule({"*"}, function_rule(waves(0.1)))}));
+  DeviceField<Exec::memory_space> const x(mesh.coordinates);
+  Morpher<Exec> const morpher(exec, r.plan(), x.read());
+  morpher.apply(exec, upload<Exec::memory_space>(r.boundary), x.read(), x.write());
+  exec.fence();
+  EXPECT_EQ(different_bits(x.host_copy(), r.morphed.position), 0);
+}
+
+/// An annulus sector between curved end walls that the flow slides on: everything a plan can hold.
+struct SlidingSector {
+  Mesh mesh = annulus_sector({}, 1);
+  PreparedMorph prepared = [this] {
+    Sector const shape;
+    Motion m = motion({rule({"inlet", "outlet"}, function_rule(turning_waves(shape, 0.05))),
+                       rule({"hub", "case"}, SlipRule{SlipRule::Surface::revolution})});
+    m.axis = {shape.origin, shape.axis};
+    return prepare(mesh, m, {});
+  }();
+};
+
+TEST(Morpher, TakesSeveralFieldsAtOnceAndGivesEachWhatItGetsAlone) {
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  using Memory = Exec::memory_space;
+  Exec const exec;
+  SlidingSector s;
+  constexpr int n_fields = 3;
+  std::vector<Vec3> const given = s.prepared.boundary_displacement(s.mesh);
+  Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> const batch("test::batch", n_fields, given.size());
+  std::vector<std::vector<Vec3>> alone(n_fields, given);
+  for (int f = 0; f < n_fields; ++f)
+    for (std::size_t n = 0; n < given.size(); ++n) batch(f, n) = alone[f][n] = (1 - 0.4 * f) * given[n];
+  DeviceField<Memory> const x(s.mesh.coordinates);
+  Morpher<Exec> const morpher(exec, s.prepared.plan(), x.read(), {n_fields});
+  Index const n_nodes = s.mesh.n_nodes();
+  std::vector<double> u(std::size_t(3 * n_fields * n_nodes));
+  kernels::FieldBatch<double> const out{{u.data(), u.data() + n_nodes, u.data() + 2 * n_nodes}, 3 * n_nodes};
+  morpher.displace(exec, batch, out);
+  exec.fence();
+  for (int f = 0; f < n_fields; ++f) {
+    Morphed const expected = run_plan(exec, s.mesh, s.prepared.plan(), alone[f]);
+    Index different = 0;
+    for (Index n = 0; n < n_nodes; ++n) different += same_bits(out[f][n], expected.displacement[n]) ? 0 : 1;
+    EXPECT_EQ(different, 0) << "field " << f;
+  }
+  Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> const more("test::batch", n_fields + 1, given.size());
+  EXPECT_THROW(morpher.displace(exec, more, out), ConfigError);
+}
+
+TEST(Morpher, GridVelocityIsTheDerivativeOfTheDisplacement) {
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Exec const exec;
+  SlidingSector s;
+  std::vector<Vec3> const given = s.prepared.boundary_displacement(s.mesh);
+  std::vector<Vec3> rate(given.size());
+  for (std::size_t n = 0; n < given.size(); ++n) {
+    Vec3 const p = s.mesh.coordinates[s.prepared.plan().boundary_nodes[n]];
+    rate[n] = {0.3 * p.y, -0.2 * p.z, 0.5 * p.x * p.y};
+  }
+  DeviceField<Exec::memory_space> const x(s.mesh.coordinates);
+  Coordinates v(s.mesh.n_nodes());
+  DeviceField<Exec::memory_space> const out(v);
+  Morpher<Exec> const morpher(exec, s.prepared.plan(), x.read(), {1, true});
+  morpher.velocity(exec, upload<Exec::memory_space>(given), upload<Exec::memory_space>(rate), out.write());
+  exec.fence();
+  Coordinates const velocity = out.host_copy();
+  double const dt = 1e-5;
+  auto const at = [&](double time) {
+    std::vector<Vec3> boundary = given;
+    for (std::size_t n = 0; n < given.size(); ++n) boundary[n] += time * rate[n];
+    return run_plan(exec, s.mesh, s.prepared.plan(), boundary).displacement;
+  };
+  Coordinates const before = at(-dt), after = at(dt);
+  double worst = 0, largest = 0;
+  for (Index n = 0; n < s.mesh.n_nodes(); ++n) {
+    worst = std::max(worst, distance(velocity[n], (0.5 / dt) * (after[n] - before[n])));
+    largest = std::max(largest, norm(velocity[n]));
+  }
+  EXPECT_GT(largest, 0.1);
+  EXPECT_LT(worst, 1e-7 * largest);
+  Morpher<Exec> const without(exec, s.prepared.plan(), x.read());
+  EXPECT_THROW(without.velocity(exec, upload<Exec::memory_space>(given), upload<Exec::memory_space>(rate), out.write()),
+               ConfigError);
 }
 
 }  // namespace

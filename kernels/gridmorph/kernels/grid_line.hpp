@@ -19,12 +19,16 @@ using Index = std::int64_t;
 struct Segment {
   Index first;
   Index stride_s, stride_a, stride_b;
-  std::int32_t count;  ///< nodes along the line, both ends included (>= 2)
-  std::int32_t begin;  ///< position of the first node on the chain's lines
-  std::uint32_t
-      write_mask;         ///< bit cs + 3 (ca + 3 cb): whether the sweep writes the nodes at lower end (0), inside (1)
-                          ///< or upper end (2) of the segment along s, a, b
-  std::int32_t rotation;  ///< in the rotation table: chain frame -> frame of this zone; -1 where they are the same
+  std::int32_t count;       ///< nodes along the line, both ends included (>= 2)
+  std::int32_t begin;       ///< position of the first node on the chain's lines
+  std::int32_t target[27];  ///< cs + 3 (ca + 3 cb): where the line parameters of the nodes at the lower end (0), inside
+                            ///< (1) or at the upper end (2) of the segment along s, a, b go; -1: not needed
+};
+
+/// Where line parameters are kept: node (s, a, b) of a segment at first + s * stride_s + a * stride_a + b * stride_b.
+struct ParameterTarget {
+  Index first;
+  Index stride_s, stride_a, stride_b;
 };
 
 struct Tube {
@@ -44,8 +48,14 @@ struct Chain {
   std::int32_t first_side;      ///< in the side tables, -1: no side is known, plain sweep
   std::int32_t first_junction;  ///< of the correction's block limits
   std::int32_t n_blocks;
-  Index first_end_value;  ///< redistribution: where the chain's end values start
+  Index first_end_value;  ///< where the displacements of the chain's two ends start: (2, n_b, n_a), chain frame
   Index first_section;    ///< correction: where the chain's cross-section parameters start
+
+  /// Whether anything asks for the arc lengths of its lines.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_parameters() const {
+    return law != LineLaw::constant || first_side >= 0;
+  }
+  KOKKOS_INLINE_FUNCTION Index section_size() const { return Index(n_a) * n_b; }
 };
 
 /// Category of position p among n nodes: 0 at the lower end, 2 at the upper end, 1 inside.

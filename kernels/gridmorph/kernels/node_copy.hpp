@@ -1,7 +1,9 @@
-// Displacements between coincident nodes: from the one that was computed to all its copies, turned into their frames.
+// Displacements carried over between arrays, turned into the frame of the destination: ends of chains, known sides, and
+// all copies of a node of the skeleton.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/tile.hpp>
 
 namespace gridmorph::kernels {
 
@@ -13,29 +15,37 @@ struct NodeCopy {
   std::int32_t matrix;  ///< in the rotation table, -1 for the identity
 };
 
-template <class MemorySpace>
+/// x + u; a node that stays keeps its sign bits too (-0.0 + 0.0 is +0.0).
+KOKKOS_INLINE_FUNCTION double moved(double x, double u) { return u == 0 ? x : x + u; }
+KOKKOS_INLINE_FUNCTION Vec3 moved(Vec3 const& x, Vec3 const& u) {
+  return {moved(x.x, u.x), moved(x.y, u.y), moved(x.z, u.z)};
+}
+
+/// One item per row of at most `Width` nodes of a copy. With `Move`, the destination gets baseline + matrix * source.
+template <class MemorySpace, int Width, bool Move = false>
 struct CopyNodes {
   Kokkos::View<NodeCopy const*, MemorySpace> copies;
   Kokkos::View<Index const*, MemorySpace> first_item;  ///< per copy, and one past the last
   Kokkos::View<Mat3 const*, MemorySpace> matrices;
-  Field<double> u;
+  Field<double const> source;
+  Field<double> destination;
+  Field<double const> baseline = {};
+
+  static Index items(NodeCopy const& c) { return tiles(c.n_p, Width) * c.n_q; }
 
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
-    int lo = 0, hi = int(copies.extent(0));
-    while (hi - lo > 1) {
-      int const mid = (lo + hi) / 2;
-      if (first_item(mid) <= item) {
-        lo = mid;
-      } else {
-        hi = mid;
-      }
+    int const entry = entry_of(first_item, item);
+    NodeCopy const& copy = copies(entry);
+    Index const local = item - first_item(entry), per_row = tiles(copy.n_p, Width);
+    Index const q = local / per_row, begin = (local % per_row) * Width;
+    Index const end = begin + Width < copy.n_p ? begin + Width : copy.n_p;
+    for (Index p = begin; p < end; ++p) {
+      Vec3 v = source[copy.source + p * copy.source_stride_p + q * copy.source_stride_q];
+      if (copy.matrix >= 0) v = matrices(copy.matrix) * v;
+      Index const to = copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q;
+      if constexpr (Move) v = moved(baseline[to], v);
+      destination.set(to, v);
     }
-    NodeCopy const& copy = copies(lo);
-    Index const local = item - first_item(lo);
-    Index const p = local % copy.n_p, q = local / copy.n_p;
-    Vec3 const v = u[copy.source + p * copy.source_stride_p + q * copy.source_stride_q];
-    u.set(copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q,
-          copy.matrix < 0 ? v : matrices(copy.matrix) * v);
   }
 };
 

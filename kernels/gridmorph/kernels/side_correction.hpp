@@ -42,21 +42,40 @@ struct SideTable {
   Kokkos::View<Junction const*, MemorySpace> junctions;  ///< n_blocks + 1 per corrected chain
   Kokkos::View<double const*, MemorySpace> t;            ///< arc-length fraction along s, per side node
   Kokkos::View<double const*, MemorySpace> section;      ///< per chain (4, n_b, n_a): A at s = 0, A at s = 1, B, B
-  Field<double> c;                                       ///< residual per side node, chain frame
+  Field<double const> c;                                 ///< residual per side node, chain frame
 
   /// Residual of line w of a side at fraction `t_line` of its length, linear between nodes. `guess`: the node of the
-  /// side line that is tried first. Cost: bisection where the guess is wrong.
+  /// side line that is tried first. Cost: two comparisons where it is right, a search away from it otherwise.
   KOKKOS_INLINE_FUNCTION Vec3 at(Chain const& chain, int side, int w, double t_line, int guess) const {
     Index const line = sides(chain.first_side + side).first + Index(chain.n_s) * w;
     if (t(line + guess) == t_line) return c[line + guess];
-    int lo = 0, hi = chain.n_s - 1;
+    int const lo = interval(line, chain.n_s - 1, t_line, guess);
+    double const t0 = t(line + lo), t1 = t(line + lo + 1);
+    double const f = t1 > t0 ? (t_line - t0) / (t1 - t0) : 0;
+    return (1 - f) * c[line + lo] + f * c[line + lo + 1];
+  }
+  /// The largest p < last with t(line + p) <= t_line, found by steps that double away from the guess.
+  KOKKOS_INLINE_FUNCTION int interval(Index line, int last, double t_line, int guess) const {
+    int lo = guess < last ? guess : last - 1, hi = lo + 1;
+    int step = 1;
+    if (t(line + lo) <= t_line) {
+      while (hi < last && t(line + hi) <= t_line) {
+        lo = hi;
+        hi = hi + step < last ? hi + step : last;
+        step *= 2;
+      }
+    } else {
+      while (lo > 0 && t(line + lo) > t_line) {
+        hi = lo;
+        lo = lo - step > 0 ? lo - step : 0;
+        step *= 2;
+      }
+    }
     while (hi - lo > 1) {
       int const mid = (lo + hi) / 2;
       (t(line + mid) <= t_line ? lo : hi) = mid;
     }
-    double const t0 = t(line + lo), t1 = t(line + hi);
-    double const f = t1 > t0 ? (t_line - t0) / (t1 - t0) : 0;
-    return (1 - f) * c[line + lo] + f * c[line + hi];
+    return lo;
   }
   /// Arc-length fraction across the chain: direction 0 along a, 1 along b.
   KOKKOS_INLINE_FUNCTION double across(Chain const& chain, int direction, int a, int b, double t_line) const {
@@ -75,11 +94,10 @@ struct SideTable {
   }
 };
 
-/// A line on the border of a tube that lies on a side of its chain.
+/// A line on a side of its chain.
 struct SideLine {
   std::int32_t side;
   std::int32_t w;  ///< position of the line on the side
-  Index line;      ///< number in the line table
 };
 
 }  // namespace gridmorph::kernels

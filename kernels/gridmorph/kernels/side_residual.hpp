@@ -2,7 +2,7 @@
 // Three launches, each over lines of surfaces only; formulas in side_correction.hpp.
 #pragma once
 
-#include <gridmorph/kernels/line_sweep.hpp>
+#include <gridmorph/kernels/skeleton_sweep.hpp>
 
 namespace gridmorph::kernels {
 
@@ -24,50 +24,44 @@ KOKKOS_INLINE_FUNCTION bool side_node_is_known(SideTable<MemorySpace> const& sid
   return (known >> bit) & 1u;
 }
 
-/// c = u - interpolant at the known nodes of a side line, 0 at the others.
+/// c = u - interpolant at the known nodes of a side line, 0 at the others. c comes in as the displacements of the known
+/// nodes, in the chain's frame.
 template <class MemorySpace>
 struct SideResidual {
-  LineTable<MemorySpace> lines;
+  Kokkos::View<Chain const*, MemorySpace> chains;
   SideTable<MemorySpace> sides;
   Kokkos::View<SideLine const*, MemorySpace> side_lines;
-  Field<double const> u;
+  Field<double const> ends;
+  Field<double> c;
 
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     SideLine const& on = side_lines(item);
-    LineCursor<MemorySpace> const line(lines, on.line);
     Side const& side = sides.sides(on.side);
-    Chain const& chain = lines.chains(side.chain);
+    Chain const& chain = chains(side.chain);
     int const q = on.side - chain.first_side;
-    Segment const& back = line.segment(line.tube.n_segments - 1);
-    Vec3 const u0 = line.to_chain_frame(line.segment(0), u[line.first_node()]);
-    Vec3 const u1 = chain.open_end ? u0 : line.to_chain_frame(back, u[line.last_node()]);
-    Vec3 const du = u1 - u0;
+    int const a = q < 2 ? (q == 0 ? 0 : chain.n_a - 1) : on.w, b = q < 2 ? on.w : (q == 2 ? 0 : chain.n_b - 1);
     Index const at = side.first + Index(chain.n_s) * on.w;
-    for (int m = 0; m < line.tube.n_segments; ++m) {
-      Segment const& s = line.segment(m);
-      Index n = line.start(s);
-      for (int k = 0; k < s.count; ++k, n += s.stride_s) {
-        int const position = s.begin + k;
-        bool const end = position == 0 || (position == chain.n_s - 1 && !chain.open_end);
-        Vec3 c;
-        if (!end && side_node_is_known(sides, chain, q, side.n_w, position, on.w))
-          c = line.to_chain_frame(s, u[n]) - (u0 + law_weight(chain.law, sides.t(at + position)) * du);
-        sides.c.set(at + position, c);
-      }
+    for (int position = 0; position < chain.n_s; ++position) {
+      bool const end = position == 0 || (position == chain.n_s - 1 && !chain.open_end);
+      Vec3 residual;
+      if (!end && side_node_is_known(sides, chain, q, side.n_w, position, on.w))
+        residual = c[at + position] - between_ends(ends, chain, a, b, sides.t(at + position));
+      c.set(at + position, residual);
     }
   }
 };
 
 /// Unknown stretches of the four edges along s: linear in t between the nearest known nodes, constant to an open end.
-/// One item per edge; items = 4 * corrected chains, chain numbers in `chains_with_sides`.
+/// One item per edge; items = 4 * corrected chains, chain numbers in `corrected`.
 template <class MemorySpace>
 struct EdgeFill {
-  LineTable<MemorySpace> lines;
+  Kokkos::View<Chain const*, MemorySpace> chains;
   SideTable<MemorySpace> sides;
   Kokkos::View<std::int32_t const*, MemorySpace> corrected;
+  Field<double> c;
 
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
-    Chain const& chain = lines.chains(corrected(item / 4));
+    Chain const& chain = chains(corrected(item / 4));
     int const e = int(item % 4);
     int const q = e % 2, partner = 2 + e / 2;
     Side const& side = sides.sides(chain.first_side + q);
@@ -76,11 +70,11 @@ struct EdgeFill {
     Index const at = side.first + Index(chain.n_s) * w;
     Index const there = other.first + Index(chain.n_s) * (e % 2 == 0 ? 0 : other.n_w - 1);
     auto fill = [&](int from, int to, bool open) {
-      Vec3 const c0 = sides.c[at + from], c1 = open ? c0 : sides.c[at + to];
+      Vec3 const c0 = c[at + from], c1 = open ? c0 : c[at + to];
       double const t0 = sides.t(at + from), t1 = sides.t(at + to);
       for (int p = from + 1; p < (open ? to + 1 : to); ++p) {
         double const f = t1 > t0 ? (sides.t(at + p) - t0) / (t1 - t0) : double(p - from) / (to - from);
-        sides.c.set(at + p, (1 - f) * c0 + f * c1);
+        c.set(at + p, (1 - f) * c0 + f * c1);
       }
     };
     int last = 0;
@@ -90,7 +84,7 @@ struct EdgeFill {
         last = p;
       }
     if (last < chain.n_s - 1) fill(last, chain.n_s - 1, true);
-    for (int p = 0; p < chain.n_s; ++p) sides.c.set(there + p, sides.c[at + p]);
+    for (int p = 0; p < chain.n_s; ++p) c.set(there + p, c[at + p]);
   }
 };
 
@@ -98,15 +92,16 @@ struct EdgeFill {
 /// One item per side line that is not an edge.
 template <class MemorySpace>
 struct SideFill {
-  LineTable<MemorySpace> lines;
+  Kokkos::View<Chain const*, MemorySpace> chains;
   SideTable<MemorySpace> sides;
   Kokkos::View<SideLine const*, MemorySpace> side_lines;
+  Field<double> c;
 
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     SideLine const& on = side_lines(item);
     Side const& side = sides.sides(on.side);
     if (end_category(on.w, side.n_w) != 1) return;
-    Chain const& chain = lines.chains(side.chain);
+    Chain const& chain = chains(side.chain);
     int const q = on.side - chain.first_side;
     Index const line = side.first + Index(chain.n_s) * on.w;
     int const a = q == 0 ? 0 : (q == 1 ? chain.n_a - 1 : on.w);
@@ -119,7 +114,7 @@ struct SideFill {
     for (int m = 0; m <= chain.n_blocks; ++m) {
       int const p = sides.junctions(chain.first_junction + m).position;
       if (!side_node_is_known(sides, chain, q, side.n_w, p, on.w))
-        sides.c.set(line + p, between_edges(p, fraction_across(p)));
+        c.set(line + p, between_edges(p, fraction_across(p)));
     }
     for (int m = 0; m < chain.n_blocks; ++m) {
       Junction const& j = sides.junctions(chain.first_junction + m);
@@ -127,11 +122,11 @@ struct SideFill {
       int const p0 = j.position, p1 = sides.junctions(chain.first_junction + m + 1).position;
       double const t0 = sides.t(line + p0), t1 = sides.t(line + p1);
       // Residual of the borders along s against the borders across: added between the edges.
-      Vec3 const r0 = sides.c[line + p0] - between_edges(p0, fraction_across(p0));
-      Vec3 const r1 = sides.c[line + p1] - between_edges(p1, fraction_across(p1));
+      Vec3 const r0 = c[line + p0] - between_edges(p0, fraction_across(p0));
+      Vec3 const r1 = c[line + p1] - between_edges(p1, fraction_across(p1));
       for (int p = p0 + 1; p < p1; ++p) {
         double const f = t1 > t0 ? (sides.t(line + p) - t0) / (t1 - t0) : double(p - p0) / (p1 - p0);
-        sides.c.set(line + p, between_edges(p, fraction_across(p)) + (1 - f) * r0 + f * r1);
+        c.set(line + p, between_edges(p, fraction_across(p)) + (1 - f) * r0 + f * r1);
       }
     }
   }

@@ -46,6 +46,24 @@ struct ProfileView {
                          curvature[2 * lo + 1] * t3 * (0.5 + t * (-1 + 0.5 * t));
     return radius[lo] + (rise + h * (slopes + h * bends));
   }
+
+  /// Its derivative with respect to the axial position.
+  KOKKOS_INLINE_FUNCTION double derivative(double a) const {
+    int lo = 0, hi = size - 1;
+    if (a <= axial[lo]) return slope[lo];
+    if (a >= axial[hi]) return slope[hi];
+    while (hi - lo > 1) {
+      int const mid = (lo + hi) / 2;
+      (axial[mid] <= a ? lo : hi) = mid;
+    }
+    double const h = axial[hi] - axial[lo];
+    double const t = (a - axial[lo]) / h, t2 = t * t;
+    double const rise = (radius[hi] - radius[lo]) * 30 * t2 * (1 - t) * (1 - t);
+    double const slopes = slope[lo] * (1 + t2 * (-18 + t * (32 - 15 * t))) + slope[hi] * t2 * (-12 + t * (28 - 15 * t));
+    double const bends = curvature[2 * lo] * t * (1 + t * (-4.5 + t * (6 - 2.5 * t))) +
+                         curvature[2 * lo + 1] * t2 * (1.5 + t * (-4 + 2.5 * t));
+    return rise / h + slopes + h * bends;
+  }
 };
 
 struct SlipSurfaceView {
@@ -88,6 +106,23 @@ struct SlipSurfaceView {
     double const offset = norm(radial) - profile(a);
     double const excess = r - (profile(a + du) + (is_own(offset) ? offset : 0.0));
     return small(excess, tolerance) ? u : u - (excess / r) * moved;
+  }
+
+  /// How constrain(baseline, u) changes where u changes by `rate` per unit of time.
+  KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, Vec3 const& u, Vec3 const& rate) const {
+    double const axial_rate = dot(rate, direction);
+    if (kind != SlipKind::revolution) return rate - axial_rate * direction;
+    Vec3 const d = baseline - origin;
+    double const a = dot(d, direction), du = dot(u, direction);
+    Vec3 const radial = d - a * direction;
+    Vec3 const moved = radial + (u - du * direction), moved_rate = rate - axial_rate * direction;
+    double const r = norm(moved);
+    if (!(r > 0)) return rate;
+    double const offset = norm(radial) - profile(a);
+    double const excess = r - (profile(a + du) + (is_own(offset) ? offset : 0.0));
+    double const r_rate = dot(moved, moved_rate) / r;
+    double const excess_rate = r_rate - profile.derivative(a + du) * axial_rate;
+    return rate - ((excess_rate - excess * r_rate / r) / r) * moved - (excess / r) * moved_rate;
   }
 
  private:

@@ -85,9 +85,8 @@ Coordinates Engine::morph(Terminal& terminal) const {
   kernels::Field<double> const to{morphed.x.data(), morphed.y.data(), morphed.z.data()};
   Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
                                                                                                      boundary.size());
-  Morpher<Exec> const morpher(exec, impl_->plan());
-  morpher.displace(exec, given, from, to);
-  morpher.move(exec, from, to);
+  Morpher<Exec> const morpher(exec, impl_->plan(), from);
+  morpher.apply(exec, given, from, to);
   exec.fence();
   return morphed;
 }

@@ -53,22 +53,32 @@ std::string format(double v) {
 
 }  // namespace
 
-Index add_slots(Mesh const& mesh, Lattice const& lattice, int entity_class, RotationTable& rotations,
-                BoundaryRequests& boundary, CopyTable& copies) {
-  Index const first = Index(boundary.nodes.size());
+Index add_boundary_nodes(PlanContext const& context, int entity_class, Plan& plan) {
+  Lattice const& lattice = context.topology.lattice;
+  Index const first = Index(plan.boundary_nodes.size());
   int const owner = lattice.copies(entity_class).front().entity;
+  auto const rows = context.skeleton.rows(owner);
+  if (!rows) return first;
   IndexRange const r = lattice.nodes(owner);
-  Zone const& zone = mesh.zones[lattice.zone_of(owner)];
+  Zone const& zone = context.mesh.zones[lattice.zone_of(owner)];
+  Index slot = rows->slot;
   for (int k = r.begin[2]; k < r.end[2]; ++k)
     for (int j = r.begin[1]; j < r.end[1]; ++j)
-      for (int i = r.begin[0]; i < r.end[0]; ++i) boundary.nodes.push_back(zone.node({i, j, k}));
-  add_copies(mesh, lattice, owner, rotations, copies);
+      for (int i = r.begin[0]; i < r.end[0]; ++i) {
+        plan.boundary_nodes.push_back(zone.node({i, j, k}));
+        plan.boundary_slots.push_back(slot++);
+      }
+  if (auto const axis = lattice.axis_of(entity_class))
+    plan.boundary_projections.push_back({rows->slot, 1, rows->slot_q, rows->slot, 1, rows->slot_q, rows->n_p, rows->n_q,
+                                         context.rotations.number(onto(*axis))});
   return first;
 }
 
-BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
+BoundaryRequests collect_boundary(PlanContext const& context, ResolvedMotion const& motion,
                                   SurfaceMotion const& surface, std::vector<std::string> const& kind_order,
-                                  RotationTable& rotations, Known& known, CopyTable& copies) {
+                                  Known& known, Plan& plan) {
+  Mesh const& mesh = context.mesh;
+  Topology const& topology = context.topology;
   Lattice const& lattice = topology.lattice;
   std::vector<ExplicitFace> faces = explicit_faces(topology, motion, surface);
   for (ExplicitFace const& face : faces) {
@@ -82,10 +92,10 @@ BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, Re
   }
 
   BoundaryRequests boundary;
-  std::vector<Index> first_slot(lattice.n_classes(), -1);
+  std::vector<Index> first_node(lattice.n_classes(), -1);
   for (int c = 0; c < lattice.n_classes(); ++c) {
     if (!known(c)) continue;
-    first_slot[c] = add_slots(mesh, lattice, c, rotations, boundary, copies);
+    first_node[c] = add_boundary_nodes(context, c, plan);
   }
 
   // The rule that outranks the others gives the value of a shared node, the earlier rule where ranks are equal.
@@ -99,25 +109,24 @@ BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, Re
       int const c = lattice.class_of(part);
       EntityCopy const& copy = lattice.copy_of(part);
       IndexRange const own = lattice.nodes(lattice.copies(c).front().entity);
-      std::int32_t const rotation = copy.moved ? rotations.number(copy.transform.rotation) : -1;
-      Index slot = first_slot[c];
+      std::int32_t const rotation = copy.moved ? context.rotations.number(copy.transform.rotation) : -1;
+      Index boundary_node = first_node[c];
       for (int k = own.begin[2]; k < own.end[2]; ++k)
         for (int j = own.begin[1]; j < own.end[1]; ++j)
           for (int i = own.begin[0]; i < own.end[0]; ++i)
-            boundary.requests.push_back(
-                {slot++, zone.node(copy.from_owner(Index3{i, j, k})), rotation, face.rule, face.patch, face.interface});
+            boundary.requests.push_back({boundary_node++, zone.node(copy.from_owner(Index3{i, j, k})), rotation,
+                                         face.rule, face.patch, face.interface});
     });
   }
   return boundary;
 }
 
-std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary,
-                                    std::vector<Mat3> const& rotations, ResolvedMotion const& motion,
-                                    SurfaceMotion const& surface, double mesh_size) {
+std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary, Plan const& plan,
+                                    ResolvedMotion const& motion, SurfaceMotion const& surface, double mesh_size) {
   using Request = BoundaryRequests::Request;
   auto const& requests = boundary.requests;
-  std::vector<Vec3> values(boundary.nodes.size());
-  std::vector<int> given_by(boundary.nodes.size(), -1);
+  std::vector<Vec3> values(plan.boundary_nodes.size());
+  std::vector<int> given_by(plan.boundary_nodes.size(), -1);
 
   struct Conflict {
     double size = 0;
@@ -136,23 +145,23 @@ std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& bo
     surface.displacement(requests[begin].rule, points, u);
     for (std::size_t n = begin; n < end; ++n) {
       Request const& r = requests[n];
-      Vec3 const v = r.rotation < 0 ? u[n - begin] : transpose(rotations[r.rotation]) * u[n - begin];
-      if (given_by[r.slot] < 0) {
-        given_by[r.slot] = int(n);
-        values[r.slot] = v;
+      Vec3 const v = r.rotation < 0 ? u[n - begin] : transpose(plan.rotations[r.rotation]) * u[n - begin];
+      if (given_by[r.boundary_node] < 0) {
+        given_by[r.boundary_node] = int(n);
+        values[r.boundary_node] = v;
         continue;
       }
-      Request const& first = requests[given_by[r.slot]];
+      Request const& first = requests[given_by[r.boundary_node]];
       if (motion.rules[first.rule].rank < motion.rules[r.rule].rank) continue;
-      double const gap = distance(values[r.slot], v);
+      double const gap = distance(values[r.boundary_node], v);
       if (gap <= tolerance) continue;
       Conflict& c = conflicts[{requester(mesh, first), requester(mesh, r)}];
       ++c.count;
       if (gap > c.size) {
         c.size = gap;
-        c.first = given_by[r.slot];
+        c.first = given_by[r.boundary_node];
         c.second = int(n);
-        c.a = values[r.slot];
+        c.a = values[r.boundary_node];
         c.b = v;
       }
     }

@@ -8,37 +8,33 @@
 
 namespace gridmorph {
 
-/// Which explicit rule asks for which node, before any displacement is evaluated. One slot per owner node of a known
-/// entity; several requests may ask for the same slot where patches meet.
+/// Which explicit rule asks for which boundary node, before any displacement is evaluated. Several requests may ask for
+/// the same boundary node where patches meet.
 struct BoundaryRequests {
   struct Request {
-    Index slot = 0;
+    Index boundary_node = 0;     ///< in Plan::boundary_nodes
     Index node = 0;              ///< the node in the requesting patch's zone: its position is what the rule sees
     std::int32_t rotation = -1;  ///< owner frame -> frame of that node
     int rule = 0;
     int patch = -1;  ///< or
     int interface = -1;
   };
-  std::vector<Index> nodes;  ///< owner node per slot
   std::vector<Request>
-      requests;  ///< by (rank, rule): the first request of a slot gives its value, the others must agree
+      requests;  ///< by (rank, rule): the first request of a node gives its value, the others must agree
 };
 
-/// Makes the nodes of an entity class (of its owner) boundary nodes and adds the copies to their other occurrences.
-/// Returns the slot of the first.
-Index add_slots(Mesh const& mesh, Lattice const& lattice, int entity_class, RotationTable& rotations,
-                BoundaryRequests& boundary, CopyTable& copies);
+/// Makes the nodes of an entity class (of its owner) boundary nodes of the plan. Returns the number of the first.
+Index add_boundary_nodes(PlanContext const& context, int entity_class, Plan& plan);
 
 /// Marks every entity on the closure of explicitly moved faces known and lists its nodes. The order of slots and
 /// requests follows the lattice. Cost: O(boundary nodes).
-BoundaryRequests collect_boundary(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
+BoundaryRequests collect_boundary(PlanContext const& context, ResolvedMotion const& motion,
                                   SurfaceMotion const& surface, std::vector<std::string> const& kind_order,
-                                  RotationTable& rotations, Known& known, CopyTable& copies);
+                                  Known& known, Plan& plan);
 
-/// Displacement of every boundary node (slot), in the owner's frame. Throws MotionError that lists every pair of patches
+/// Displacement of every boundary node of the plan, in its frame. Throws MotionError that lists every pair of patches
 /// whose displacements disagree on their common edge by more than the conformity tolerance (place, size).
-std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary,
-                                    std::vector<Mat3> const& rotations, ResolvedMotion const& motion,
-                                    SurfaceMotion const& surface, double mesh_size);
+std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary, Plan const& plan,
+                                    ResolvedMotion const& motion, SurfaceMotion const& surface, double mesh_size);
 
 }  // namespace gridmorph

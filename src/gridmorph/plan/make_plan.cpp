@@ -68,14 +68,14 @@ kernels::LineLaw line_law(Law law) {
 
 class Scheduler {
  public:
-  Scheduler(Mesh const& mesh, Topology const& topology, PlanOptions const& options, Plan& plan, Known& known)
-      : mesh_(mesh),
-        topology_(topology),
+  Scheduler(PlanContext const& context, PlanOptions const& options, Plan& plan, Known& known)
+      : context_(context),
+        mesh_(context.mesh),
+        topology_(context.topology),
         options_(options),
         plan_(plan),
         known_(known),
-        rotations_(plan.rotations),
-        priority_(mesh, topology, options.volume, plan.mesh_size) {}
+        priority_(context.mesh, context.topology, options.volume, plan.mesh_size) {}
 
   /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of walls
   /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
@@ -105,7 +105,7 @@ class Scheduler {
           later.push_back(std::move(chain));
         }
       }
-      Stage stage = build_stage(mesh_, topology_, now, known_, rotations_, priority_.kind_order());
+      Stage stage = build_stage(context_, now, known_, priority_.kind_order());
       stage.name = turn == 0 ? "near field" : "near field " + std::to_string(turn + 1);
       stage.description = std::move(description);
       plan_.near_field.insert(plan_.near_field.end(), stage.cells.begin(), stage.cells.end());
@@ -141,14 +141,13 @@ class Scheduler {
         now.push_back({open ? known_end_first(ranked.chain) : ranked.chain,
                        open ? kernels::LineLaw::constant : line_law(options_.volume.law), open});
       }
-      Stage stage = build_stage(mesh_, topology_, now, known_, rotations_, priority_.kind_order());
+      Stage stage = build_stage(context_, now, known_, priority_.kind_order());
       stage.name = std::to_string(number);
       stage.description = std::move(description);
       plan_.stages.push_back(std::move(stage));
     }
   }
 
-  RotationTable& rotations() { return rotations_; }
   [[nodiscard]] std::vector<std::string> const& kind_order() const { return priority_.kind_order(); }
 
  private:
@@ -200,16 +199,44 @@ class Scheduler {
     return text + "; prescribe the motion of more of their boundary (rule \"fixed\" is enough)";
   }
 
+  PlanContext const& context_;
   Mesh const& mesh_;
   Topology const& topology_;
   PlanOptions const& options_;
   Plan& plan_;
   Known& known_;
-  RotationTable rotations_;
   Priority priority_;
 };
 
+/// The nodes inside every piece that has any. Returns the box of each piece, -1 for the others.
+std::vector<int> inner_boxes(Mesh const& mesh, Lattice const& lattice, std::vector<kernels::VolumeBox>& boxes) {
+  std::vector<int> box_of_piece;
+  for (Piece const& piece : lattice.pieces()) {
+    Zone const& zone = mesh.zones[piece.zone];
+    kernels::VolumeBox box{};
+    Index3 first{};
+    for (int d = 0; d < 3; ++d) {
+      first[d] = piece.nodes.begin[d] + 1;
+      box.n[d] = piece.nodes.extent(d) - 2;
+    }
+    bool const empty = box.n[0] <= 0 || box.n[1] <= 0 || box.n[2] <= 0;
+    box_of_piece.push_back(empty ? -1 : int(boxes.size()));
+    if (empty) continue;
+    box.first = zone.node(first);
+    box.stride_j = zone.strides()[1];
+    box.stride_k = zone.strides()[2];
+    boxes.push_back(box);
+  }
+  return box_of_piece;
+}
+
 }  // namespace
+
+Index LineTables::n_lines() const {
+  Index n = 0;
+  for (kernels::Tube const& tube : tubes) n += Index(tube.n_a) * tube.n_b;
+  return n;
+}
 
 PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion const& motion, SurfaceMotion const& surface,
                        PlanOptions const& options) {
@@ -225,18 +252,22 @@ PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion cons
                        std::to_string(topology.lattice.pieces().size()) + " pieces with whole faces, " +
                        std::to_string(topology.blocks.size()) + " blocks");
 
+  Skeleton const skeleton(mesh, topology.lattice);
+  plan.n_slots = skeleton.size();
+  RotationTable rotations(plan.rotations);
+  std::vector<int> const box_of_piece = inner_boxes(mesh, topology.lattice, plan.boxes);
+  PlanContext const context{mesh, topology, skeleton, rotations, box_of_piece};
+
   Known known(topology.lattice.n_classes());
-  Scheduler scheduler(mesh, topology, options, plan, known);
+  Scheduler scheduler(context, options, plan, known);
   std::vector<std::string> const& kind_order = scheduler.kind_order();
-  planned.boundary =
-      collect_boundary(mesh, topology, motion, surface, kind_order, scheduler.rotations(), known, plan.boundary_copies);
+  planned.boundary = collect_boundary(context, motion, surface, kind_order, known, plan);
   Known const given = known;
-  if (auto poles = pole_stage(mesh, topology, motion, kind_order, scheduler.rotations(), known, planned.boundary, plan))
-    plan.stages.push_back(std::move(*poles));
-  plan.boundary_nodes = planned.boundary.nodes;
+  if (auto poles = pole_stage(context, motion, kind_order, known, plan)) plan.stages.push_back(std::move(*poles));
   scheduler.near_field(near_field_chains(mesh, topology, known, fields));
   scheduler.volume();
-  plan_spreads(mesh, topology, motion, surface, given, scheduler.rotations(), plan);
+  plan_spreads(context, motion, surface, given, plan);
+  plan.skeleton_nodes = skeleton.to_nodes(rotations);
   return planned;
 }
 
@@ -245,7 +276,7 @@ std::string describe(Plan const& plan) {
   text += std::to_string(plan.boundary_nodes.size()) + " boundary nodes with given displacement\n";
   for (Stage const& stage : plan.stages) {
     text += "stage " + stage.name + ": " + std::to_string(stage.lines.chains.size()) + " chains, " +
-            std::to_string(stage.lines.first_line.back()) + " grid lines" +
+            std::to_string(stage.lines.n_lines()) + " grid lines" +
             (stage.sides.corrected.empty()
                  ? ""
                  : ", " + std::to_string(stage.sides.corrected.size()) + " with transfinite correction") +
@@ -254,7 +285,7 @@ std::string describe(Plan const& plan) {
   }
   for (std::size_t n = 0; n < plan.spreads.size(); ++n) {
     text += "finalize " + std::to_string(n + 1) + ": " + std::to_string(plan.spreads[n].ends.size()) +
-            " nodes on slip surfaces, spread along " + std::to_string(plan.spreads[n].lines.first_line.back()) +
+            " nodes on slip surfaces, spread along " + std::to_string(plan.spreads[n].lines.n_lines()) +
             " grid lines\n";
     for (std::string const& line : plan.spreads[n].description) text += "  " + line + "\n";
   }

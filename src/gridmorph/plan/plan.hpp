@@ -2,8 +2,11 @@
 // how far they move; made once on the host, applied any number of times.
 #pragma once
 
-#include <gridmorph/kernels/line_sweep.hpp>
+#include <gridmorph/kernels/line_parameter.hpp>
 #include <gridmorph/kernels/node_copy.hpp>
+#include <gridmorph/kernels/skeleton_sweep.hpp>
+#include <gridmorph/kernels/slip_end.hpp>
+#include <gridmorph/kernels/volume_pass.hpp>
 #include <gridmorph/motion/surface_motion.hpp>
 #include <gridmorph/plan/chain.hpp>
 #include <gridmorph/plan/options.hpp>
@@ -13,17 +16,22 @@
 
 namespace gridmorph {
 
-/// Copies of displacements between coincident nodes; `projections` (onto the axis of a sector) run first.
-struct CopyTable {
-  std::vector<kernels::NodeCopy> projections, copies;
-};
-
-/// One launch over the lines of independent chains, and what it needs.
+/// The lines of a set of chains.
 struct LineTables {
   std::vector<kernels::Chain> chains;
   std::vector<kernels::Tube> tubes;
   std::vector<kernels::Segment> segments;
-  std::vector<Index> first_line{0};
+  std::vector<kernels::ParameterTarget> targets;
+  Index n_parameters = 0;  ///< line parameters that are kept
+  Index n_end_values = 0;  ///< displacements at the ends of all chains
+
+  [[nodiscard]] Index n_lines() const;
+};
+
+/// What a chain adds to the nodes inside a piece.
+struct VolumePart {
+  int box = -1;  ///< in Plan::boxes
+  kernels::VolumeTerm term{};
 };
 
 /// Tables of the transfinite correction of a stage (kernels/side_correction.hpp).
@@ -31,7 +39,8 @@ struct SideTables {
   std::vector<kernels::Side> sides;
   std::vector<kernels::Junction> junctions;
   std::vector<kernels::SideLine> lines;
-  std::vector<std::int32_t> corrected;  ///< chain numbers
+  std::vector<std::int32_t> corrected;     ///< chain numbers
+  std::vector<kernels::NodeCopy> gathers;  ///< slots of known side nodes -> side arrays, chain frame
   std::vector<double> t, section;
 };
 
@@ -39,41 +48,38 @@ struct SideTables {
 struct Stage {
   LineTables lines;
   SideTables sides;
-  CopyTable copies;
+  std::vector<kernels::NodeCopy> ends;         ///< slots -> displacements at the ends of the chains
+  std::vector<kernels::SkeletonSweep> sweeps;  ///< faces, edges and corners that this stage makes known
+  std::vector<VolumePart> volume;
   std::vector<CellBox> cells;            ///< of the blocks this stage morphs
   std::string name;                      ///< "near field", "1", "2", ...
   std::vector<std::string> description;  ///< one line per chain: blocks, ends, reasons of its rank
 };
 
-/// One end of a line of a redistribution chain that slides on surfaces.
-struct SlipEnd {
-  Index node = 0;
-  Index value = 0;             ///< where its end value goes
-  std::int32_t rotation = -1;  ///< chain frame -> frame of the node's zone
-  std::int32_t surface[3] = {-1, -1, -1};
-  double tolerance = 0;  ///< nodes with a given displacement are left alone this near to their surfaces
-};
-
 /// Projection of slip surfaces and the spread of the correction along the lines between them.
 struct SpreadPass {
   LineTables lines;
-  std::vector<SlipEnd> ends;
-  Index n_values = 0;
-  CopyTable copies;
+  std::vector<kernels::SlipEnd> ends;
+  std::vector<kernels::SkeletonSweep> sweeps;
+  std::vector<VolumePart> volume;
   std::vector<std::string> description;
 };
 
 struct Plan {
   /// Owner nodes whose displacement the motion gives, in the order that morph() expects their values.
   std::vector<Index> boundary_nodes;
-  CopyTable boundary_copies;
+  std::vector<Index> boundary_slots;                    ///< where their displacement goes on the skeleton
+  std::vector<kernels::NodeCopy> boundary_projections;  ///< of nodes on the axis of a sector, in place
   std::vector<Stage> stages;
   std::vector<SpreadPass> spreads;
+  std::vector<kernels::NodeCopy> skeleton_nodes;  ///< from slots to all nodes of the skeleton
+  std::vector<kernels::VolumeBox> boxes;          ///< the nodes inside pieces; terms come from stages and spreads
   std::vector<SlipSurface> surfaces;
   std::vector<Mat3> rotations;
   std::vector<CellBox> near_field;  ///< cells of the near field of moving walls
   std::vector<std::string> notes;
   Index n_nodes = 0;
+  Index n_slots = 0;  ///< of the skeleton
   double mesh_size = 0;
 };
 

@@ -106,9 +106,31 @@ std::vector<PoleRow> pole_rows(std::vector<PoleFace> const& faces, Known const& 
   return rows;
 }
 
+Index3 last_node(IndexRange const& r) { return {r.end[0] - 1, r.end[1] - 1, r.end[2] - 1}; }
+
+/// The faces of a row as boxes of a chain: s along the pole, a around it.
+std::vector<PlacedBox> placed_row(Lattice const& lattice, std::vector<PoleFace> const& faces, PoleRow const& row) {
+  std::vector<PlacedBox> boxes;
+  int position = 0;
+  for (auto const& [f, enter] : row) {
+    PoleFace const& face = faces[f];
+    PlacedBox box;
+    box.zone = lattice.zone_of(face.entity);
+    box.nodes = closed_nodes(lattice, face.entity);
+    box.to_chain.axis[face.along] = 0;
+    box.to_chain.sign[face.along] = enter == 0 ? 1 : -1;
+    box.to_chain.axis[face.around] = 1;
+    box.to_chain.axis[3 - face.along - face.around] = 2;
+    box.begin = {position, 0, 0};
+    position += box.nodes.extent(face.along) - 1;
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
 /// Makes the unknown entities of a pole face boundary nodes that no rule asks for: their displacement is zero.
-void keep_in_place(Mesh const& mesh, Lattice const& lattice, PoleFace const& face, RotationTable& rotations,
-                   Known& known, BoundaryRequests& boundary, Plan& plan) {
+void keep_in_place(PlanContext const& context, PoleFace const& face, Known& known, Plan& plan) {
+  Lattice const& lattice = context.topology.lattice;
   Index3 const p = lattice.position(face.entity);
   for (int da = -1; da <= 1; ++da)
     for (int ds = -1; ds <= 1; ++ds) {
@@ -119,15 +141,16 @@ void keep_in_place(Mesh const& mesh, Lattice const& lattice, PoleFace const& fac
       if (known(c)) continue;
       known.known[c] = 1;
       known.kind[c] = end_kind(PatchKind::degenerate);
-      add_slots(mesh, lattice, c, rotations, boundary, plan.boundary_copies);
+      add_boundary_nodes(context, c, plan);
     }
 }
 
 }  // namespace
 
-std::optional<Stage> pole_stage(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
-                                std::vector<std::string> const& kind_order, RotationTable& rotations, Known& known,
-                                BoundaryRequests& boundary, Plan& plan) {
+std::optional<Stage> pole_stage(PlanContext const& context, ResolvedMotion const& motion,
+                                std::vector<std::string> const& kind_order, Known& known, Plan& plan) {
+  Mesh const& mesh = context.mesh;
+  Topology const& topology = context.topology;
   Lattice const& lattice = topology.lattice;
   std::vector<PoleFace> const faces = pole_faces(mesh, topology, motion, known, plan.mesh_size);
   if (faces.empty()) return std::nullopt;
@@ -143,7 +166,7 @@ std::optional<Stage> pole_stage(Mesh const& mesh, Topology const& topology, Reso
                                              closed_nodes(lattice, faces[row.front().first].entity));
     if (!known(first) && !known(last)) {
       plan.notes.push_back("pole at " + where + " has no end with a known displacement; it stays where it is");
-      for (auto const& step : row) keep_in_place(mesh, lattice, faces[step.first], rotations, known, boundary, plan);
+      for (auto const& step : row) keep_in_place(context, faces[step.first], known, plan);
       continue;
     }
     if (!known(first)) {
@@ -155,57 +178,55 @@ std::optional<Stage> pole_stage(Mesh const& mesh, Topology const& topology, Reso
     EndKind const kind = open || kind_rank(known.kind[first], kind_order) <= kind_rank(known.kind[last], kind_order)
                              ? known.kind[first]
                              : known.kind[last];
+    std::vector<PlacedBox> const boxes = placed_row(lattice, faces, row);
     kernels::Chain chain{};
     chain.law = open ? kernels::LineLaw::constant : kernels::LineLaw::linear;
     chain.open_end = open ? 1 : 0;
     chain.first_side = -1;
+    for (PlacedBox const& box : boxes)
+      for (Index3 const& corner : {box.nodes.begin, last_node(box.nodes)}) {
+        Index3 const at = box.position(corner);
+        chain.n_s = std::max(chain.n_s, at[0] + 1);
+        chain.n_a = std::max(chain.n_a, at[1] + 1);
+      }
     chain.n_b = 1;
+    chain.first_end_value = stage.lines.n_end_values;
+    stage.lines.n_end_values += 2 * chain.section_size();
+    int const number = int(stage.lines.chains.size());
+    stage.lines.chains.push_back(chain);
     kernels::Tube tube{};
-    tube.chain = std::int32_t(stage.lines.chains.size());
+    tube.chain = number;
+    tube.n_a = chain.n_a;
     tube.n_b = 1;
     tube.first_segment = std::int32_t(stage.lines.segments.size());
-    int position = 0;
-    for (auto const& [f, enter] : row) {
-      PoleFace const& face = faces[f];
-      int const z = lattice.zone_of(face.entity);
-      Zone const& zone = mesh.zones[z];
-      IndexRange const r = closed_nodes(lattice, face.entity);
-      Index3 corner = r.begin;
-      if (enter == 1) corner[face.along] = r.end[face.along] - 1;
-      kernels::Segment segment{};
-      segment.first = zone.node(corner);
-      segment.stride_s = enter == 0 ? zone.strides()[face.along] : -zone.strides()[face.along];
-      segment.stride_a = zone.strides()[face.around];
-      segment.count = r.extent(face.along);
-      segment.begin = position;
-      segment.rotation = -1;
-      position += segment.count - 1;
-      Index3 const p = lattice.position(face.entity);
-      for (int ca = 0; ca < 3; ++ca)
-        for (int cs = 0; cs < 3; ++cs) {
-          Index3 q = p;
-          q[face.around] += ca - 1;
-          q[face.along] += enter == 0 ? cs - 1 : 1 - cs;
-          int const entity = lattice.entity(z, q);
-          int const c = lattice.class_of(entity);
-          if (known(c)) continue;
-          becomes.try_emplace(c, kind);
-          if (writer.try_emplace(c, entity).second) segment.write_mask |= 1u << (cs + 3 * ca);
-        }
-      stage.lines.segments.push_back(segment);
-      tube.n_a = r.extent(face.around);
-      ++tube.n_segments;
-    }
-    chain.n_s = position + 1;
-    chain.n_a = tube.n_a;
-    stage.lines.chains.push_back(chain);
+    tube.n_segments = int(boxes.size());
     stage.lines.tubes.push_back(tube);
-    stage.lines.first_line.push_back(stage.lines.first_line.back() + tube.n_a);
+    for (std::size_t m = 0; m < boxes.size(); ++m) {
+      kernels::Segment segment = make_segment(mesh, boxes[m]);
+      for (int category = 0; category < 9; ++category) {
+        int const cs = category % 3, ca = category / 3;
+        PoleFace const& face = faces[row[m].first];
+        Index3 q = lattice.position(face.entity);
+        q[face.around] += ca - 1;
+        q[face.along] += row[m].second == 0 ? cs - 1 : 1 - cs;
+        int const entity = lattice.entity(boxes[m].zone, q);
+        int const c = lattice.class_of(entity);
+        bool const lower_end = m == 0 && cs == 0, upper_end = m + 1 == boxes.size() && cs == 2 && !open;
+        if (lower_end || upper_end)
+          add_gather(
+              context, boxes[m], entity, chain.first_end_value + (lower_end ? 0 : chain.section_size()),
+              [](Index3 const& at) { return Index(at[1]); }, stage.ends);
+        if (known(c)) continue;
+        becomes.try_emplace(c, kind);
+        if (writer.try_emplace(c, entity).second)
+          add_writer(context, stage.lines, stage.sweeps, stage.volume, number, boxes[m], -1, entity, category, segment);
+      }
+      stage.lines.segments.push_back(segment);
+    }
     stage.description.push_back(where + ": " + std::string(end_kind_name(known.kind[first])) + " to " +
                                 (open ? "open" : std::string(end_kind_name(known.kind[last]))));
   }
   for (auto const& [c, entity] : writer) {
-    add_copies(mesh, lattice, entity, rotations, stage.copies);
     known.known[c] = 1;
     known.kind[c] = becomes.at(c);
   }

@@ -11,8 +11,7 @@ namespace gridmorph {
 /// pole between its known ends, constant from the only known end. Poles without a known end stay where they are
 /// (boundary nodes that no rule asks for: displacement zero) and are listed in plan.notes. Nothing when the mesh has no
 /// such faces.
-std::optional<Stage> pole_stage(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
-                                std::vector<std::string> const& kind_order, RotationTable& rotations, Known& known,
-                                BoundaryRequests& boundary, Plan& plan);
+std::optional<Stage> pole_stage(PlanContext const& context, ResolvedMotion const& motion,
+                                std::vector<std::string> const& kind_order, Known& known, Plan& plan);
 
 }  // namespace gridmorph

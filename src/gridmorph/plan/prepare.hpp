@@ -16,7 +16,7 @@ struct PreparedMorph {
   [[nodiscard]] Plan const& plan() const { return planned.plan; }
   /// Displacements of Plan::boundary_nodes by the rules. Throws MotionError (see evaluate_boundary).
   [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& mesh) const {
-    return evaluate_boundary(mesh, planned.boundary, planned.plan.rotations, motion, surface, links.mesh_size);
+    return evaluate_boundary(mesh, planned.boundary, planned.plan, motion, surface, links.mesh_size);
   }
 };
 

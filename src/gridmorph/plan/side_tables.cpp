@@ -94,10 +94,38 @@ void append_fractions(std::vector<Vec3> const& points, int n_a, int n_b, int dir
   }
 }
 
+/// Slots of the known entities on the four sides -> the side arrays, each entity once per side it lies on.
+void add_side_gathers(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
+                      kernels::Chain const& device, SideTables& tables) {
+  Lattice const& lattice = context.topology.lattice;
+  for (int q = 0; q < 4; ++q) {
+    int const across = q < 2 ? 2 : 1;  // chain axis along which the lines of the side follow one another
+    int const edge = q % 2 == 0 ? 0 : layout.n[1 + q / 2] - 1;
+    Index const first = tables.sides[device.first_side + q].first;
+    for (int pw = 0; pw < layout.n[across]; ++pw)
+      for (int ps = 0; ps < layout.n[0]; ++ps) {
+        int const pa = q < 2 ? edge : pw, pb = q < 2 ? pw : edge;
+        PlacedBox const box = placed_box(context, chain, layout, ps, pa, pb);
+        for (int cw = pw == 0 ? 0 : 1; cw < 3; ++cw)
+          for (int cs = ps == 0 ? 0 : 1; cs < 3; ++cs) {
+            Index3 which = side_which(q, cs);
+            which[across] = cw;
+            int const entity = chain_entity(lattice, layout.at(ps, pa, pb), which);
+            if (!known(lattice.class_of(entity))) continue;
+            add_gather(
+                context, box, entity, first, [&](Index3 const& at) { return at[0] + Index(device.n_s) * at[across]; },
+                tables.gathers);
+          }
+      }
+  }
+}
+
 }  // namespace
 
-void add_side_tables(Mesh const& mesh, Topology const& topology, Chain const& chain, ChainLayout const& layout,
-                     Known const& known, int number, Stage& stage) {
+void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
+                     int number, Stage& stage) {
+  Mesh const& mesh = context.mesh;
+  Topology const& topology = context.topology;
   std::vector<kernels::Junction> const junctions = known_around(topology, layout, known);
   kernels::Chain& device = stage.lines.chains[number];
   int const n_blocks = int(chain.steps.size());
@@ -133,25 +161,19 @@ void add_side_tables(Mesh const& mesh, Topology const& topology, Chain const& ch
   using Host = Kokkos::HostSpace;
   kernels::LineTable<Host> table;
   table.chains = Kokkos::View<kernels::Chain const*, Host>(stage.lines.chains.data(), stage.lines.chains.size());
-  table.tubes = Kokkos::View<kernels::Tube const*, Host>(stage.lines.tubes.data(), stage.lines.tubes.size());
   table.segments =
       Kokkos::View<kernels::Segment const*, Host>(stage.lines.segments.data(), stage.lines.segments.size());
-  table.first_line = Kokkos::View<Index const*, Host>(stage.lines.first_line.data(), stage.lines.first_line.size());
-  for (int n = 0; n < int(stage.lines.tubes.size()); ++n) {
-    kernels::Tube const& tube = stage.lines.tubes[n];
+  for (kernels::Tube const& tube : stage.lines.tubes) {
     if (tube.chain != number) continue;
     auto add_line = [&](int q, int a, int b) {
       int const w = q < 2 ? tube.b_begin + b : tube.a_begin + a;
       int const side = device.first_side + q;
-      Index const line = stage.lines.first_line[n] + a + Index(tube.n_a) * b;
       // The line between two tubes of a side is listed once.
       bool const repeated = q < 2 ? (b == 0 && tube.b_begin > 0) : (a == 0 && tube.a_begin > 0);
       if (repeated) return;
-      tables.lines.push_back({side, w, line});
+      tables.lines.push_back({side, w});
       Index const at = tables.sides[side].first + Index(device.n_s) * w;
-      kernels::LineCursor<Host> const cursor(table, line);
-      kernels::walk_line(cursor, x, device.n_s,
-                         [&](Index, kernels::Segment const&, int p, double t, int) { tables.t[at + p] = t; });
+      kernels::walk_line(table, tube, a, b, x, [&](int position, double t) { tables.t[at + position] = t; });
     };
     for (int b = 0; b < tube.n_b; ++b) {
       if (tube.a_begin == 0) add_line(0, 0, b);
@@ -162,6 +184,7 @@ void add_side_tables(Mesh const& mesh, Topology const& topology, Chain const& ch
       if (tube.b_begin + tube.n_b == device.n_b) add_line(3, a, tube.n_b - 1);
     }
   }
+  add_side_gathers(context, chain, layout, known, device, tables);
 }
 
 }  // namespace gridmorph

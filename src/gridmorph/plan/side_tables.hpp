@@ -1,13 +1,13 @@
 // Host tables of the transfinite correction of one chain.
 #pragma once
 
-#include <gridmorph/plan/plan.hpp>
+#include <gridmorph/plan/chain_tables.hpp>
 
 namespace gridmorph {
 
 /// Appends the side tables of chain number `number` (the last in stage.lines) when any of its sides, or an edge or
 /// corner on them, is known; leaves the chain a plain sweep otherwise. Cost: O(nodes on the chain's surface).
-void add_side_tables(Mesh const& mesh, Topology const& topology, Chain const& chain, ChainLayout const& layout,
-                     Known const& known, int number, Stage& stage);
+void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
+                     int number, Stage& stage);
 
 }  // namespace gridmorph

@@ -171,8 +171,10 @@ std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion 
 
 }  // namespace
 
-void plan_spreads(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
-                  SurfaceMotion const& surface, Known const& given, RotationTable& rotations, Plan& plan) {
+void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, SurfaceMotion const& surface,
+                  Known const& given, Plan& plan) {
+  Mesh const& mesh = context.mesh;
+  Topology const& topology = context.topology;
   std::vector<int> const surface_of_patch = surface_numbers(mesh, surface, plan.surfaces);
   if (plan.surfaces.empty()) return;
   Known const nothing(topology.lattice.n_classes());
@@ -187,7 +189,7 @@ void plan_spreads(Mesh const& mesh, Topology const& topology, ResolvedMotion con
       Claims claims(topology, nothing);
       std::vector<Chain> now, later;
       for (Chain& chain : list.chains) (claims.add(chain) ? now : later).push_back(std::move(chain));
-      SpreadPass pass = build_spread(mesh, topology, now, surface_so_far, given, plan.mesh_size, rotations);
+      SpreadPass pass = build_spread(context, now, surface_so_far, given, plan.mesh_size);
       std::map<std::pair<std::string, std::string>, int> ends;
       for (Chain const& chain : now) {
         auto name = [&](ChainEnd const& end) {

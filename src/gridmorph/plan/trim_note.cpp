@@ -13,7 +13,7 @@ std::optional<std::string> trim_note(Mesh const& mesh, Plan const& plan, std::ve
   double worst = 0;
   Index where = 0;
   for (SpreadPass const& pass : plan.spreads)
-    for (SlipEnd const& end : pass.ends) {
+    for (kernels::SlipEnd const& end : pass.ends) {
       auto const slot = slot_of.find(end.node);
       if (end.tolerance == 0 || slot == slot_of.end()) continue;
       Vec3 const given = boundary[slot->second];

@@ -1,7 +1,8 @@
-// Applies a plan: boundary displacements in, displacement of every node out.
+// Applies a plan: boundary displacements in, new positions or displacements of every node out.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/volume_pass.hpp>
 #include <gridmorph/plan/plan.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -10,25 +11,45 @@
 
 namespace gridmorph {
 
-/// A plan on an execution space. Construction uploads the plan's tables and allocates the workspace (fences once);
-/// displace() and move() only enqueue kernels on the instance they are given: no allocation, no fence, no host decision.
-/// A Morpher's workspace serves one displace() at a time; copies of a Morpher share it.
+struct MorpherOptions {
+  int fields = 1;         ///< displacement fields that one call may take
+  bool velocity = false;  ///< room for velocity()
+};
+
+/// A plan on an execution space. Construction uploads the plan's tables, allocates the workspace and computes the line
+/// parameters from the baseline mesh (fences once, 24 bytes read and 8 written per node and line parameter); everything
+/// else only enqueues kernels on the instance it is given: no allocation, no fence, no copy, no host decision.
+///
+/// Memory: 8 bytes per node of the far field and 8 per node and finalize pass, plus about 50 bytes per node on the faces of
+/// pieces. A Morpher's workspace serves one call at a time; copies of a Morpher share it.
 template <class ExecutionSpace>
 class Morpher {
  public:
   using MemorySpace = typename ExecutionSpace::memory_space;
+  using Boundary = Kokkos::View<Vec3 const*, MemorySpace>;
+  /// Several boundary displacements: (field, boundary node).
+  using BoundaryBatch = Kokkos::View<Vec3 const**, Kokkos::LayoutRight, MemorySpace>;
 
-  Morpher(ExecutionSpace const& exec, Plan const& plan);
+  /// x: baseline coordinates (n_nodes), any stride.
+  Morpher(ExecutionSpace const& exec, Plan const& plan, kernels::Field<double const> x,
+          MorpherOptions const& options = {});
 
-  /// u(n) for every node n from the displacement of the plan's boundary nodes.
-  /// boundary (n_boundary_nodes): in the order of Plan::boundary_nodes, each in the frame of that node.
-  /// x: baseline coordinates, u: displacement, both (n_nodes) in MemorySpace; every element of u is written.
-  /// Cost: per node 24 bytes read and 24 written by the stages, 48 read and 24 written more where slip surfaces are.
-  void displace(ExecutionSpace const& exec, Kokkos::View<Vec3 const*, MemorySpace> boundary,
-                kernels::Field<double const> x, kernels::Field<double> u) const;
+  /// moved(n) = x(n) + u(n) for every node, bit for bit x(n) where it does not move. `moved` may be x itself.
+  /// boundary (n_boundary_nodes): in the order of Plan::boundary_nodes, each in the frame of that node. x: the baseline the
+  /// Morpher was made for. Cost per node: 24 bytes read, 24 written, 8 read per line parameter.
+  void apply(ExecutionSpace const& exec, Boundary boundary, kernels::Field<double const> x,
+             kernels::Field<double> moved) const;
 
-  /// Turns displacements into positions in place: u(n) += x(n); nodes that do not move keep x bit for bit.
-  void move(ExecutionSpace const& exec, kernels::Field<double const> x, kernels::Field<double> u) const;
+  /// u(n) of every node. Cost per node: 24 bytes written, 8 read per line parameter.
+  void displace(ExecutionSpace const& exec, Boundary boundary, kernels::Field<double> u) const;
+
+  /// u(n) of every node for several boundary displacements at once: the line parameters are read once for all of them.
+  /// At most MorpherOptions::fields; u[f] is the displacement field of boundary row f.
+  void displace(ExecutionSpace const& exec, BoundaryBatch boundary, kernels::FieldBatch<double> u) const;
+
+  /// Grid velocity v(n) = du(n)/dt where the boundary displacement changes by `rate` per unit of time: the derivative of
+  /// displace() at `boundary` in the direction `rate`, slip surfaces included. Needs MorpherOptions::velocity.
+  void velocity(ExecutionSpace const& exec, Boundary boundary, Boundary rate, kernels::Field<double> v) const;
 
  private:
   struct State;

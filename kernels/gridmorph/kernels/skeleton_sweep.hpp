@@ -1,0 +1,71 @@
+// Displacement along grid lines from the values at their ends, on the skeleton: the faces, edges and corners of all pieces.
+//
+//   u(s) = u0 + w(t) (u1 - u0) + c(s, a, b)
+//
+// (paper, section 3: "one simply interpolates along the grid line using a chosen distribution law, the simplest one being
+// linear interpolation by grid line length"), t from line_parameter.hpp, c the transfinite correction of
+// side_correction.hpp; it is absent where no side of the chain is known. Stages depend on one another through the skeleton
+// alone, so it goes through the stages first and the volume follows in one pass (volume_pass.hpp).
+//
+// The skeleton keeps one displacement per slot; nodes that coincide, also through a periodic interface, share a slot.
+#pragma once
+
+#include <gridmorph/kernels/side_correction.hpp>
+#include <gridmorph/kernels/tile.hpp>
+
+namespace gridmorph::kernels {
+
+/// Nodes (p, q) of one face, edge or corner: where they lie on their chain, where their displacement goes.
+struct SkeletonSweep {
+  std::int32_t chain;
+  std::int32_t matrix;  ///< chain frame -> frame of the slots (onto the axis where they lie on it), -1: the same
+  std::int32_t n_p, n_q;
+  Index slot, slot_q;             ///< slots of a row follow one another
+  Index t, t_p, t_q;              ///< line parameters; t < 0: none needed
+  std::int32_t s[3], a[3], b[3];  ///< position on the chain of node (0, 0), and what a step along p and q adds
+};
+
+/// u0 + w (u1 - u0): exactly u0 where both ends move alike.
+KOKKOS_INLINE_FUNCTION Vec3 between_ends(Field<double const> const& ends, Chain const& chain, Index a, Index b,
+                                         double t) {
+  Index const at = chain.first_end_value + a + chain.n_a * b;
+  Vec3 const u0 = ends[at];
+  if (chain.law == LineLaw::constant) return u0;
+  return u0 + law_weight(chain.law, t) * (ends[at + chain.section_size()] - u0);
+}
+
+/// One item per row of at most `Width` nodes. With `Add` the value is added to what is there.
+template <class MemorySpace, int Width, bool Add>
+struct SweepSkeleton {
+  Kokkos::View<SkeletonSweep const*, MemorySpace> sweeps;
+  Kokkos::View<Index const*, MemorySpace> first_item;  ///< per sweep, and one past the last
+  Kokkos::View<Chain const*, MemorySpace> chains;
+  Kokkos::View<Mat3 const*, MemorySpace> matrices;
+  SideTable<MemorySpace> sides;
+  double const* t;
+  Field<double const> ends;
+  Field<double> u;
+
+  static Index items(SkeletonSweep const& s) { return tiles(s.n_p, Width) * s.n_q; }
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    int const entry = entry_of(first_item, item);
+    SkeletonSweep const& sweep = sweeps(entry);
+    Chain const& chain = chains(sweep.chain);
+    Index const local = item - first_item(entry), per_row = tiles(sweep.n_p, Width);
+    int const q = int(local / per_row), begin = int(local % per_row) * Width;
+    int const end = begin + Width < sweep.n_p ? begin + Width : sweep.n_p;
+    for (int p = begin; p < end; ++p) {
+      int const a = sweep.a[0] + p * sweep.a[1] + q * sweep.a[2], b = sweep.b[0] + p * sweep.b[1] + q * sweep.b[2];
+      double const f = sweep.t < 0 ? 0 : t[sweep.t + p * sweep.t_p + q * sweep.t_q];
+      Vec3 v = between_ends(ends, chain, a, b, f);
+      if (chain.first_side >= 0) v += sides.correction(chain, sweep.s[0] + p * sweep.s[1] + q * sweep.s[2], a, b, f);
+      if (sweep.matrix >= 0) v = matrices(sweep.matrix) * v;
+      Index const slot = sweep.slot + p + q * sweep.slot_q;
+      if constexpr (Add) v = u[slot] + v;
+      u.set(slot, v);
+    }
+  }
+};
+
+}  // namespace gridmorph::kernels

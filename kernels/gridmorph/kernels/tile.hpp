@@ -1,0 +1,38 @@
+// How much one work item does: the only place where kernels for CPUs and for GPUs differ.
+//
+// On a CPU an item is a run or a tile of neighbouring nodes, long enough for vector instructions and small enough for the
+// second-level cache; on a GPU it is one node (or one grid line), and neighbouring items touch neighbouring memory.
+#pragma once
+
+#include <gridmorph/kernels/grid_line.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <type_traits>
+
+namespace gridmorph::kernels {
+
+template <class ExecutionSpace>
+struct TileShape {
+  static constexpr bool host = std::is_same_v<typename ExecutionSpace::memory_space, Kokkos::HostSpace>;
+  static constexpr int row = host ? 128 : 1;       ///< nodes of a surface row
+  static constexpr int lines = host ? 64 : 1;      ///< neighbouring grid lines walked together
+  static constexpr int volume_i = host ? 256 : 1;  ///< nodes of a volume tile along i, j, k
+  static constexpr int volume_j = host ? 16 : 1;
+  static constexpr int volume_k = host ? 32 : 1;
+};
+
+KOKKOS_INLINE_FUNCTION constexpr Index tiles(Index n, Index width) { return (n + width - 1) / width; }
+
+/// The entry that holds an item, by bisection in the running totals `first` (one past the last included).
+template <class View>
+KOKKOS_INLINE_FUNCTION int entry_of(View const& first, Index item) {
+  int lo = 0, hi = int(first.extent(0)) - 1;
+  while (hi - lo > 1) {
+    int const mid = (lo + hi) / 2;
+    (first(mid) <= item ? lo : hi) = mid;
+  }
+  return lo;
+}
+
+}  // namespace gridmorph::kernels

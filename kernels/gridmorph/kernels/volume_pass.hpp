@@ -1,0 +1,209 @@
+// The one pass over the volume: every node inside a piece gets its displacement from the ends of the lines through it.
+//
+//   u = (sweep along its chain) + (spread of the slip correction along the chains of every finalize pass)
+//   each of the form  u0 + w(t) (u1 - u0) [+ c],   out = x + u, or u itself
+//
+// End values are two-dimensional tables that stay in cache; no neighbour of a node is read.
+// Cost per node: 24 bytes of coordinates read and 24 written (none read where the displacement itself is asked for), 8 read
+// per line parameter: 0 in a near field, 8 in the far field, 8 more under a slip surface.
+#pragma once
+
+#include <gridmorph/kernels/node_copy.hpp>
+#include <gridmorph/kernels/side_correction.hpp>
+#include <gridmorph/kernels/tile.hpp>
+
+namespace gridmorph::kernels {
+
+/// The nodes inside one piece of a zone.
+struct VolumeBox {
+  Index first;
+  Index stride_j, stride_k;  ///< along i nodes follow one another
+  std::int32_t n[3];
+  std::int32_t first_term, n_terms;
+};
+
+/// What one chain adds to the nodes of a box.
+struct VolumeTerm {
+  std::int32_t chain;
+  std::int32_t matrix;            ///< chain frame -> frame of the zone, -1: the same
+  Index t;                        ///< line parameters of the box, i fastest; < 0: none needed
+  Index end_value;                ///< of node (0, 0, 0) at the lower end of the chain
+  Index end_stride[3];            ///< along i, j, k
+  std::int32_t s[4], a[4], b[4];  ///< position of node (0, 0, 0) on the chain, and what a step along i, j, k adds
+};
+
+/// Several displacement fields over one plan, each in arrays of its own layout.
+template <class T>
+struct FieldBatch {
+  Field<T> first;
+  Index stride = 0;  ///< elements from one field to the next
+  KOKKOS_INLINE_FUNCTION Field<T> operator[](int f) const {
+    return {first.x + f * stride, first.y + f * stride, first.z + f * stride, first.stride};
+  }
+};
+
+/// One item per tile of a box. With `Move`, out = baseline + u; `baseline` and `out` may be the same arrays.
+template <class MemorySpace, class Shape, bool Move>
+struct VolumePass {
+  Kokkos::View<VolumeBox const*, MemorySpace> boxes;
+  Kokkos::View<VolumeTerm const*, MemorySpace> terms;
+  Kokkos::View<Index const*, MemorySpace> first_item;  ///< per box, and one past the last
+  Kokkos::View<Chain const*, MemorySpace> chains;
+  Kokkos::View<Mat3 const*, MemorySpace> matrices;
+  SideTable<MemorySpace> sides;
+  double const* t;
+  FieldBatch<double const> ends, residuals;
+  Field<double const> baseline;
+  FieldBatch<double> out;
+  int n_fields = 1;
+
+  static constexpr int width = Shape::volume_i;
+  struct Row {
+    double x[width], y[width], z[width];
+  };
+
+  static Index items(VolumeBox const& box) {
+    return tiles(box.n[0], Shape::volume_i) * tiles(box.n[1], Shape::volume_j) * tiles(box.n[2], Shape::volume_k);
+  }
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    int const entry = entry_of(first_item, item);
+    VolumeBox const& box = boxes(entry);
+    Index local = item - first_item(entry);
+    Index const tiles_i = tiles(box.n[0], Shape::volume_i), tiles_j = tiles(box.n[1], Shape::volume_j);
+    int const i = int(local % tiles_i) * Shape::volume_i;
+    local /= tiles_i;
+    int const j0 = int(local % tiles_j) * Shape::volume_j, k0 = int(local / tiles_j) * Shape::volume_k;
+    int const n = smaller(width, box.n[0] - i);
+    int const j1 = smaller(j0 + Shape::volume_j, box.n[1]), k1 = smaller(k0 + Shape::volume_k, box.n[2]);
+    for (int k = k0; k < k1; ++k)
+      for (int j = j0; j < j1; ++j)
+        for (int f = 0; f < n_fields; ++f) {
+          Row u;
+          for (int m = 0; m < box.n_terms; ++m) add_term(box, terms(box.first_term + m), m == 0, f, i, j, k, n, u);
+          write(box.first + i + j * box.stride_j + k * box.stride_k, n, u, out[f]);
+        }
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION static int smaller(int a, int b) { return a < b ? a : b; }
+
+  KOKKOS_INLINE_FUNCTION void add_term(VolumeBox const& box, VolumeTerm const& term, bool first, int f, int i, int j,
+                                       int k, int n, Row& u) const {
+    Chain const& chain = chains(term.chain);
+    Field<double const> const e = ends[f];
+    Index const lower = term.end_value + i * term.end_stride[0] + j * term.end_stride[1] + k * term.end_stride[2];
+    double const* const here = term.t < 0 ? nullptr : t + term.t + i + box.n[0] * (j + Index(box.n[1]) * k);
+    Row v;
+    if (chain.law == LineLaw::constant) {
+      with_step(term.end_stride[0], [&](auto step) {
+        for (int w = 0; w < n; ++w) {
+          v.x[w] = e.x[lower + w * step];
+          v.y[w] = e.y[lower + w * step];
+          v.z[w] = e.z[lower + w * step];
+        }
+      });
+    } else {
+      double weight[width];
+      weights(chain.law, n, here, weight);
+      Index const upper = lower + chain.section_size();
+      with_step(term.end_stride[0], [&](auto step) {
+        for (int w = 0; w < n; ++w) {
+          double const x0 = e.x[lower + w * step], y0 = e.y[lower + w * step], z0 = e.z[lower + w * step];
+          v.x[w] = x0 + weight[w] * (e.x[upper + w * step] - x0);
+          v.y[w] = y0 + weight[w] * (e.y[upper + w * step] - y0);
+          v.z[w] = z0 + weight[w] * (e.z[upper + w * step] - z0);
+        }
+      });
+    }
+    if (chain.first_side >= 0) add_correction(chain, term, f, i, j, k, n, here, v);
+    if (term.matrix >= 0) turn(matrices(term.matrix), n, v);
+    if (first) {
+      copy(n, v, u);
+    } else {
+      for (int w = 0; w < n; ++w) {
+        u.x[w] += v.x[w];
+        u.y[w] += v.y[w];
+        u.z[w] += v.z[w];
+      }
+    }
+  }
+
+  /// Calls body(step) with the steps that occur most as constants, so that the compiler sees unit stride.
+  template <class Body>
+  KOKKOS_INLINE_FUNCTION static void with_step(Index step, Body const& body) {
+    if (width == 1 || step == 0)
+      body(std::integral_constant<int, 0>());
+    else if (step == 1)
+      body(std::integral_constant<int, 1>());
+    else
+      body(step);
+  }
+
+  KOKKOS_INLINE_FUNCTION static void weights(LineLaw law, int n, double const* here, double* weight) {
+    switch (law) {
+      case LineLaw::linear:
+        for (int w = 0; w < n; ++w) weight[w] = law_weight(LineLaw::linear, here[w]);
+        break;
+      case LineLaw::c1:
+        for (int w = 0; w < n; ++w) weight[w] = law_weight(LineLaw::c1, here[w]);
+        break;
+      default:
+        for (int w = 0; w < n; ++w) weight[w] = law_weight(law, here[w]);
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void add_correction(Chain const& chain, VolumeTerm const& term, int f, int i, int j, int k,
+                                             int n, double const* here, Row& v) const {
+    SideTable<MemorySpace> table = sides;
+    table.c = residuals[f];
+    auto at = [&](std::int32_t const* p, int w) { return p[0] + (i + w) * p[1] + j * p[2] + k * p[3]; };
+    for (int w = 0; w < n; ++w) {
+      Vec3 const c = table.correction(chain, at(term.s, w), at(term.a, w), at(term.b, w), here[w]);
+      v.x[w] += c.x;
+      v.y[w] += c.y;
+      v.z[w] += c.z;
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION static void turn(Mat3 const& r, int n, Row& v) {
+    for (int w = 0; w < n; ++w) {
+      Vec3 const turned = r * Vec3{v.x[w], v.y[w], v.z[w]};
+      v.x[w] = turned.x;
+      v.y[w] = turned.y;
+      v.z[w] = turned.z;
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION static void copy(int n, Row const& from, Row& to) {
+    for (int w = 0; w < n; ++w) {
+      to.x[w] = from.x[w];
+      to.y[w] = from.y[w];
+      to.z[w] = from.z[w];
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void write(Index node, int n, Row const& u, Field<double> const& to) const {
+    if (baseline.stride == 1 && to.stride == 1) {
+      write_component(n, u.x, baseline.x + node, to.x + node);
+      write_component(n, u.y, baseline.y + node, to.y + node);
+      write_component(n, u.z, baseline.z + node, to.z + node);
+    } else {
+      for (int w = 0; w < n; ++w) {
+        Vec3 v{u.x[w], u.y[w], u.z[w]};
+        if constexpr (Move) v = moved(baseline[node + w], v);
+        to.set(node + w, v);
+      }
+    }
+  }
+  KOKKOS_INLINE_FUNCTION static void write_component(int n, double const* u, double const* x, double* to) {
+    for (int w = 0; w < n; ++w) {
+      if constexpr (Move)
+        to[w] = moved(x[w], u[w]);
+      else
+        to[w] = u[w];
+    }
+  }
+};
+
+}  // namespace gridmorph::kernels
