@@ -1,32 +1,49 @@
-// Cost of measuring quality, per node of a box of one zone.
+// Cost of measuring quality, on one block and on blocks of 9 x 9 x 9 nodes.
 //
 //   measure_quality   all measures of a morphed mesh against its baseline    56 bytes per node: both meshes read,
 //                                                                            volumes written
 //   min_determinant   the smallest 3x3x3 determinant alone                   24 bytes per node
 //
-// About 1000 and 800 flops per cell: both are bound by arithmetic, not by memory.
+// About 960 and 530 flops per cell (kernels/gridmorph/kernels/regular_cell.hpp), 20 per byte: arithmetic sets the time, not
+// memory. "read share": bytes per second over those of reading three arrays of this size, measured in the same run.
 #include "bench.hpp"
 
 #include <gridmorph/quality/quality.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gridmorph::bench {
 
-/// A box of at least n nodes, disturbed by waves of the given amplitude, on the host.
-Coordinates wavy_box(Mesh& mesh, std::int64_t n, double amplitude) {
-  int const m = std::max(2, int(std::cbrt(double(n))));
-  if (mesh.zones.empty()) mesh.add_zone("box", {m, m, int((n + m * m - 1) / (m * m))});
-  Zone const& zone = mesh.zones[0];
+/// One box of at least n nodes, or as many cubes of `block` nodes a side as make n nodes.
+Mesh boxes(std::int64_t n, int block) {
+  Mesh mesh;
+  if (block == 0) {
+    int const m = std::max(2, int(std::cbrt(double(n))));
+    mesh.add_zone("box", {m, m, int((n + m * m - 1) / (m * m))});
+  } else {
+    for (std::int64_t nodes = 0; nodes < n; nodes += block * block * block)
+      mesh.add_zone("box " + std::to_string(mesh.zones.size()), {block, block, block});
+  }
+  return mesh;
+}
+
+/// Unit boxes disturbed by waves of the given amplitude, on the host.
+Coordinates wavy(Mesh const& mesh, double amplitude) {
   Coordinates c(mesh.n_nodes());
-  for (Index node = 0; node < mesh.n_nodes(); ++node) {
-    auto const p = zone.index(node);
-    double const x = double(p[0]) / m, y = double(p[1]) / m, z = double(p[2]) / m;
-    c.set(node,
-          {x + amplitude * std::sin(5 * y), y + amplitude * std::sin(4 * x + z), z + amplitude * std::cos(3 * x)});
+  for (Zone const& zone : mesh.zones) {
+    double const m = zone.extent[0];
+    for (int k = 0; k < zone.extent[2]; ++k)
+      for (int j = 0; j < zone.extent[1]; ++j)
+        for (int i = 0; i < zone.extent[0]; ++i) {
+          double const x = i / m, y = j / m, z = k / m;
+          c.set(zone.node({i, j, k}), {x + amplitude * std::sin(5 * y), y + amplitude * std::sin(4 * x + z),
+                                       z + amplitude * std::cos(3 * x)});
+        }
   }
   return c;
 }
@@ -38,42 +55,95 @@ CoordinateViews<typename ExecutionSpace::memory_space> on_device(Coordinates con
           Kokkos::create_mirror_view_and_copy(space, c.z)};
 }
 
+/// Seconds to read three arrays of n nodes (24 bytes per node). Integers, because compilers may add them in any order and
+/// so with all lanes. Median of seven, once per size and execution space.
+template <class ExecutionSpace>
+double read_seconds(ExecutionSpace const& exec, std::int64_t n) {
+  static std::map<std::int64_t, double> known;
+  if (auto const it = known.find(n); it != known.end()) return it->second;
+  using View = Kokkos::View<std::int64_t*, typename ExecutionSpace::memory_space>;
+  View const x(Kokkos::view_alloc(exec, "gridmorph::bench::roof_x"), n),
+      y(Kokkos::view_alloc(exec, "gridmorph::bench::roof_y"), n),
+      z(Kokkos::view_alloc(exec, "gridmorph::bench::roof_z"), n);
+  // Small arrays are read several times per reading of the clock, so that the clock does not count.
+  int const repeats = int(std::clamp<std::int64_t>(2'000'000 / n, 1, 1000));
+  std::vector<double> readings;
+  readings.reserve(7);
+  for (int reading = 0; reading < 7; ++reading)
+    readings.push_back(seconds(exec,
+                               [&] {
+                                 for (int r = 0; r < repeats; ++r) {
+                                   std::int64_t sum = 0;
+                                   Kokkos::parallel_reduce(
+                                       "gridmorph::bench::read",
+                                       Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<std::int64_t>>(exec, 0, n),
+                                       KOKKOS_LAMBDA(std::int64_t i, std::int64_t & s) { s += x(i) + y(i) + z(i); },
+                                       sum);
+                                   benchmark::DoNotOptimize(sum);
+                                 }
+                               }) /
+                       repeats);
+  std::sort(readings.begin(), readings.end());
+  return known[n] = readings[readings.size() / 2];
+}
+
+/// set_rates() and "cells/s", "bytes/cell" and, as a share of 1, "read share".
+template <class ExecutionSpace>
+void set_cell_rates(benchmark::State& state, ExecutionSpace const& exec, Mesh const& mesh, double bytes_per_node) {
+  auto const rate = benchmark::Counter::kIsIterationInvariantRate;
+  auto const nodes = std::int64_t(mesh.n_nodes());
+  auto const cells = double(first_cells(mesh).back());
+  set_rates(state, nodes, bytes_per_node);
+  state.counters["cells/s"] = benchmark::Counter(cells, rate);
+  state.counters["bytes/cell"] = double(nodes) * bytes_per_node / cells;
+  state.counters["read share"] = benchmark::Counter(read_seconds(exec, nodes) * bytes_per_node / 24, rate);
+}
+
 struct MeasureQuality {
+  int block = 0;
+
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
-    Mesh mesh;
-    mesh.coordinates = wavy_box(mesh, state.range(0), 0.05);
-    Coordinates const morphed = wavy_box(mesh, state.range(0), 0.06);
+    Mesh mesh = boxes(state.range(0), block);
+    mesh.coordinates = wavy(mesh, 0.05);
+    Coordinates const morphed = wavy(mesh, 0.06);
     QualityInput<typename ExecutionSpace::memory_space> input;
     input.coordinates = on_device<ExecutionSpace>(morphed);
     input.baseline = on_device<ExecutionSpace>(mesh.coordinates);
     for (auto _ : state)
       state.SetIterationTime(seconds(exec, [&] { benchmark::DoNotOptimize(measure_quality(exec, mesh, input)); }));
-    set_rates(state, mesh.n_nodes(), 56);
+    set_cell_rates(state, exec, mesh, 56);
   }
 };
 
 struct MinDeterminant {
+  int block = 0;
+
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
-    Mesh mesh;
-    mesh.coordinates = wavy_box(mesh, state.range(0), 0.05);
+    Mesh mesh = boxes(state.range(0), block);
+    mesh.coordinates = wavy(mesh, 0.05);
     auto const coordinates = on_device<ExecutionSpace>(mesh.coordinates);
     std::vector<int> const handedness = zone_handedness(exec, mesh, coordinates);
-    auto const& n = mesh.zones[0].extent;
-    std::vector<CellBox> const all{{0, {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}}};
+    std::vector<CellBox> all;
+    for (int z = 0; z < int(mesh.zones.size()); ++z) {
+      auto const& n = mesh.zones[z].extent;
+      all.push_back({z, {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}});
+    }
     for (auto _ : state)
       state.SetIterationTime(seconds(exec, [&] {
         benchmark::DoNotOptimize(
             min_determinant(exec, mesh, coordinates, std::span<int const>(handedness), std::span<CellBox const>(all)));
       }));
-    set_rates(state, mesh.n_nodes(), 24);
+    set_cell_rates(state, exec, mesh, 24);
   }
 };
 
 void register_all() {
   register_benchmark("measure_quality", MeasureQuality());
+  register_benchmark("measure_quality_small_blocks", MeasureQuality{9});
   register_benchmark("min_determinant", MinDeterminant());
+  register_benchmark("min_determinant_small_blocks", MinDeterminant{9});
 }
 
 }  // namespace gridmorph::bench

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace gridmorph::bench {
 
@@ -36,20 +37,24 @@ inline void set_rates(benchmark::State& state, std::int64_t nodes, double bytes_
   state.counters["bytes/s"] = benchmark::Counter(double(nodes) * bytes_per_node, per_iteration);
 }
 
+/// From cache to memory: a million nodes and more take the same time per node, or something is wrong.
+inline std::vector<std::int64_t> const passage_sizes{smoke_nodes, cache_nodes, 400'000,      1'000'000,
+                                                     4'000'000,   10'000'000,  memory_nodes, 40'000'000};
+
 /// Registers run(exec, state) as "<name>/<execution space>/nodes:<n>" for Serial, where it is enabled, and the default
 /// spaces of host and device. `run` takes any execution space; times are the ones it sets.
 template <class Run>
-void register_benchmark(std::string const& name, Run const& run) {
+void register_benchmark(std::string const& name, Run const& run,
+                        std::vector<std::int64_t> const& sizes = {smoke_nodes, cache_nodes, memory_nodes}) {
   auto const add = [&](auto exec) {
     using ExecutionSpace = decltype(exec);
-    benchmark::RegisterBenchmark((name + "/" + ExecutionSpace::name()).c_str(),
-                                 [run](benchmark::State& state) { run(ExecutionSpace(), state); })
-        ->ArgName("nodes")
-        ->Arg(smoke_nodes)
-        ->Arg(cache_nodes)
-        ->Arg(memory_nodes)
-        ->UseManualTime()
-        ->Unit(benchmark::kMillisecond);
+    auto* const registered =
+        benchmark::RegisterBenchmark((name + "/" + ExecutionSpace::name()).c_str(),
+                                     [run](benchmark::State& state) { run(ExecutionSpace(), state); })
+            ->ArgName("nodes")
+            ->UseManualTime()
+            ->Unit(benchmark::kMillisecond);
+    for (std::int64_t const n : sizes) registered->Arg(n);
   };
 #ifdef KOKKOS_ENABLE_SERIAL
   add(Kokkos::Serial());

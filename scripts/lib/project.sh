@@ -5,6 +5,12 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 jobs=${GRIDMORPH_JOBS:-$(nproc)}
 
+# Compiling again what was compiled before, in this folder or in another one, takes no time where ccache is installed.
+if command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
+  export CCACHE_BASEDIR=${CCACHE_BASEDIR-$PWD} CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR-true}
+fi
+
 # use_dependencies [install-dependencies option...]
 use_dependencies() {
   CMAKE_PREFIX_PATH=$(scripts/install-dependencies "$@")

@@ -36,6 +36,20 @@ TEST(CaseFileErrors, SyntaxErrorsComeInOneLineWithTheirPlace) {
   }
 }
 
+TEST(CaseFileErrors, ValuesThatCannotBeReadAreShown) {
+  for (std::string const& value : std::vector<std::string>{"-.01", "5.", "+.5", "x.cgns"})
+    for (std::string const& text :
+         std::vector<std::string>{"a = [" + value + ", 0, 0]\n", "a = [0, 0, " + value + "]\n", "a = " + value + "\n"})
+      EXPECT_TRUE(reported(problems_of("\n" + text), "case.toml:2: not valid TOML: ", {"found " + value})) << text;
+  EXPECT_TRUE(reported(problems_of("a = [-.01, 0, 0]"), "case.toml:1: ", {"found -.01, write a digit on both sides"}));
+}
+
+TEST(CaseFileErrors, OfAnEmptyFileNameWhatIsMissing) {
+  auto const lines = problems_of("");
+  EXPECT_TRUE(reported(lines, "case.toml:1: key 'mesh' is missing", {"[mesh]"}));
+  EXPECT_TRUE(reported(lines, "case.toml: no [[motion]] rule", {}));
+}
+
 TEST(CaseFileErrors, BracketsNestedWithoutEndAreRefused) {
   EXPECT_TRUE(reported(problems_of("a = " + std::string(300'000, '[')), "case.toml:1: not valid TOML", {"nested"}));
   EXPECT_TRUE(reported(problems_of("\n\na = " + std::string(300'000, '{')), "case.toml:3: not valid TOML", {"nested"}));

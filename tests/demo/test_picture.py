@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Tests of scripts/picture on a small annulus with a wavy wall, written here straight through HDF5."""
 import os
+import runpy
 import struct
 import subprocess
 import sys
@@ -13,12 +14,20 @@ import numpy as np
 PICTURE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts", "picture")
 
 
+def describe(group, name, label, kind):
+    """What every node of a CGNS file carries, in the lengths that the CGNS library asks for."""
+    for key, text, length in (("name", name, 33), ("label", label, 33), ("type", kind, 3)):
+        group.attrs[key] = np.array(text.encode(), f"S{length}")
+    group.attrs["flags"] = np.array([1], np.int32)
+
+
 def node(parent, name, label, data=None):
     group = parent.create_group(name)
-    group.attrs["label"] = np.bytes_(label)
-    group.attrs["name"] = np.bytes_(name)
+    if isinstance(data, str):
+        data = np.frombuffer(data.encode(), np.int8)
     if data is not None:
-        group[" data"] = np.frombuffer(data.encode(), np.int8) if isinstance(data, str) else data
+        group[" data"] = data
+    describe(group, name, label, "MT" if data is None else {"int8": "C1", "int64": "I8", "float64": "R8"}[data.dtype.name])
     return group
 
 
@@ -28,6 +37,7 @@ def write_annulus(path, shift=0.0, n=(17, 9, 13)):
     x, r, t = np.meshgrid(np.linspace(0, 1, ni), np.linspace(1, 2, nj), np.linspace(0, 1, nk), indexing="ij")
     theta = 0.5 * t + shift * (1 - t) * np.sin(np.pi * x)
     with h5py.File(path, "w") as file:
+        describe(file, "HDF5 MotherNode", "Root Node of HDF5 File", "MT")
         base = node(file, "Base", "CGNSBase_t")
         for family in ("blade", "hub", "case"):
             node(node(base, family, "Family_t"), "FamBC", "FamilyBC_t", "BCWall")
@@ -92,6 +102,15 @@ class Picture(unittest.TestCase):
 
     def test_a_plane_across_the_grid_lines_is_drawn(self):
         self.expect_pictures(self.run_picture(self.base, self.morphed, "--plane", "z=0.1"), ("section",))
+
+    def test_walls_of_adf_files_are_drawn(self):
+        program = runpy.run_path(PICTURE)["cgnsconvert"]()
+        if program is None:
+            self.skipTest("cgnsconvert is not installed")
+        for path in (self.base, self.morphed):
+            os.rename(path, path + ".hdf5")
+            subprocess.run([program, "-a", "-f", path + ".hdf5", path], check=True, stdout=subprocess.DEVNULL)
+        self.expect_pictures(self.run_picture(self.base, self.morphed, "--span", "0.4"), self.walls)
 
     def test_bad_input_is_one_line_and_exit_status_two(self):
         write_annulus(self.path("other.cgns"), n=(5, 5, 5))

@@ -19,10 +19,6 @@ PlanOptions law(Law l, PlanOptions options = {}) {
   return options;
 }
 
-VectorField scaled(double factor, VectorField const& field) {
-  return [=](Vec3 const& p) { return factor * field(p); };
-}
-
 /// Rules with a field on some families, fixed on others, free on the rest.
 std::function<Motion(double)> moves(VectorField field, std::vector<std::string> moving,
                                     std::vector<std::string> fixed = {}, std::vector<std::string> free = {}) {
@@ -33,6 +29,8 @@ std::function<Motion(double)> moves(VectorField field, std::vector<std::string> 
     return motion(std::move(rules));
   };
 }
+
+}  // namespace
 
 std::vector<Case> make_cases() {
   Index3 const n{8, 7, 6};
@@ -129,13 +127,6 @@ std::vector<Case> make_cases() {
        {0.3, -0.7, 0.2},
        {"bottom", "top"}},
   };
-  return list;
-}
-
-}  // namespace
-
-std::vector<Case> const& cases() {
-  static std::vector<Case> const list = make_cases();
   return list;
 }
 

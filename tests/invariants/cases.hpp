@@ -30,6 +30,6 @@ struct Case {
 };
 
 /// The cases of this test program.
-std::vector<Case> const& cases();
+std::vector<Case> make_cases();
 
 }  // namespace gridmorph::test

@@ -8,10 +8,6 @@
 namespace gridmorph::test {
 namespace {
 
-VectorField scaled(double factor, VectorField const& field) {
-  return [=](Vec3 const& p) { return factor * field(p); };
-}
-
 PassageOptions passage_options(PassageOptions::Layout layout, bool left_handed) {
   PassageOptions o;
   o.nodes = 10'000;
@@ -101,6 +97,8 @@ Case machine(std::string name, std::string const& file, Vec3 const& axis, std::v
   return c;
 }
 
+}  // namespace
+
 std::vector<Case> make_cases() {
   using Layout = PassageOptions::Layout;
   std::vector<Case> list{
@@ -130,13 +128,6 @@ std::vector<Case> make_cases() {
   list.push_back(from_file("wing", "mdo_tutorial_000_vol.cgns", {"*"}, bent("wall")));
   list.push_back(from_file("winglet", "717_wl_L2.cgns", {"*"}, bent("wall")));
   list.back().options.boundary_layers = {layers({"wall"}, 4)};
-  return list;
-}
-
-}  // namespace
-
-std::vector<Case> const& cases() {
-  static std::vector<Case> const list = make_cases();
   return list;
 }
 

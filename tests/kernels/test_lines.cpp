@@ -71,7 +71,7 @@ struct TwoSegments {
   Arrays x{6};
 
   TwoSegments() {
-    table.chains = view<kernels::Chain>({{5, 1, 1, kernels::LineLaw::linear, 0, -1, 0, 1, 0, 0}});
+    table.chains = view<kernels::Chain>({{5, 1, 1, kernels::LineLaw::linear, 0, -1, 0, 1, 0, 0, 0}});
     table.tubes = view<kernels::Tube>({{0, 0, 0, 1, 1, 0, 2}});
     segments = {{0, 1, 0, 0, 3, 0, {}}, {5, -1, 0, 0, 3, 2, {}}};
     for (int m = 0; m < 2; ++m)
@@ -126,7 +126,7 @@ struct OneBox {
     int const a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
     Index const stride[3] = {1, n[0], Index(n[0]) * n[1]};
     kernels::LineTable<Host> table;
-    table.chains = view<kernels::Chain>({{n[axis], n[a], n[b], kernels::LineLaw::linear, 0, -1, 0, 1, 0, 0}});
+    table.chains = view<kernels::Chain>({{n[axis], n[a], n[b], kernels::LineLaw::linear, 0, -1, 0, 1, 0, 0, 0}});
     table.tubes = view<kernels::Tube>({{0, 0, 0, n[a], n[b], 0, 1}});
     Index const first = backward ? (n[axis] - 1) * stride[axis] : 0, along = backward ? -stride[axis] : stride[axis];
     kernels::Segment segment{first, along, stride[a], stride[b], n[axis], 0, {}};
@@ -189,7 +189,7 @@ TEST(SkeletonSweep, InterpolatesTurnsAndAdds) {
   sweep.t_p = 1;
   sweep.a[1] = 1;
   sweep.s[0] = 1;
-  auto const chains = view<kernels::Chain>({{3, 2, 1, kernels::LineLaw::linear, 0, -1, 0, 1, 0, 0}});
+  auto const chains = view<kernels::Chain>({{3, 2, 1, kernels::LineLaw::linear, 0, -1, 0, 1, 0, 0, 0}});
   Arrays ends(4), u(6, 1);
   ends.x = {1, 2, 3, 6};
   std::vector<double> const t{0.5, 0.25};

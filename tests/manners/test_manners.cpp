@@ -127,7 +127,7 @@ TEST_F(Manners, EveryMorphRunsTheSameKernels) {
   }
 }
 
-TEST_F(Manners, PlanningLaunchesNothing) {
+TEST_F(Manners, PlanningLaunchesOnTheHostOnlyWhatReadsTheWholeMesh) {
   Listener const listener;
   Mesh again = annulus_sector(sector(), 1);
   record = {};
@@ -135,7 +135,8 @@ TEST_F(Manners, PlanningLaunchesNothing) {
       motion({rule({"hub"}, FixedRule{}), rule({"case"}, FixedRule{}), rule({"inlet", "outlet"}, FreeRule{})});
   PreparedMorph const p = prepare(again, m, {});
   EXPECT_FALSE(p.boundary_displacement(again).empty());
-  EXPECT_EQ(record.kernels, std::vector<std::string>());
+  for (auto const& kernel : record.kernels)
+    EXPECT_TRUE(kernel == "gridmorph::extent_of" || kernel == "gridmorph::smallest_angle") << kernel;
 }
 
 }  // namespace

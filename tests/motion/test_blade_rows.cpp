@@ -207,18 +207,19 @@ TEST_P(EveryBladeMesh, FollowKeepsEndWallEdgesOnHubAndCase) {
 class HMesh : public ::testing::TestWithParam<Blade> {};
 INSTANTIATE_TEST_SUITE_P(Meshes, HMesh, ::testing::Values(Blade::h_mesh, Blade::h_cut));
 
-TEST_P(HMesh, FollowAgreesWithTheBladeInTheLinesWherePeriodicsMeetIt) {
-  // Also for a blade that does not keep its span fractions, as long as it keeps to the end walls.
+/// Follow against the blade on its leading and trailing edges, for a blade that scales its radius by 1 + grow(h) beyond
+/// keeping its span fraction.
+void expect_follow_agrees_with_the_blade(Blade blade, std::function<double(double h)> const& grow) {
   FunctionRule rule = blade_rule(redesign());
-  rule.function = [inner = rule.function](std::span<Vec3 const> points, std::span<Vec3> out) {
+  rule.function = [grow, inner = rule.function](std::span<Vec3 const> points, std::span<Vec3> out) {
     inner(points, out);
     for (std::size_t n = 0; n < points.size(); ++n) {
       Vec3 const p = points[n], q = p + out[n];
-      double const h = span_of(p.x, radius_of(p)), grow = 1 + 0.03 * std::sin(std::numbers::pi * h);
-      if (h > 1e-12 && h < 1 - 1e-12) out[n] = Vec3{q.x, grow * q.y, grow * q.z} - p;
+      double const more = grow(span_of(p.x, radius_of(p)));
+      if (more != 0) out[n] = Vec3{q.x, (1 + more) * q.y, (1 + more) * q.z} - p;
     }
   };
-  Mesh const mesh = row_mesh(GetParam());
+  Mesh const mesh = row_mesh(blade);
   SurfaceMotion const motion = make(mesh, row_rules(rule));
   auto const points = points_of(mesh, "blade");
   int checked = 0;
@@ -232,6 +233,16 @@ TEST_P(HMesh, FollowAgreesWithTheBladeInTheLinesWherePeriodicsMeetIt) {
   }
   EXPECT_GE(checked, 4 * 41);
   EXPECT_LT(worst, 1e-11);  // the profiles of hub and case are that near to the formulas
+}
+
+TEST_P(HMesh, FollowAgreesWithTheBladeInTheLinesWherePeriodicsMeetIt) {
+  expect_follow_agrees_with_the_blade(
+      GetParam(), [](double h) { return h > 1e-12 && h < 1 - 1e-12 ? 0.03 * std::sin(std::numbers::pi * h) : 0; });
+}
+
+// As blades do whose displacement is given at constant radius between conical walls.
+TEST_P(HMesh, FollowAgreesWithABladeThatLeavesItsEndWalls) {
+  expect_follow_agrees_with_the_blade(GetParam(), [](double h) { return 0.002 + 0.01 * h; });
 }
 
 TEST(BladeRow, DisplacementsTurnWithThePoint) {

@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace gridmorph {
 namespace {
@@ -124,6 +127,42 @@ TEST(WallQuality, LeavesOutNodesWithoutANormalOrALine) {
   add_faces(mesh);
   EXPECT_EQ(measure(mesh, mesh.coordinates, false, {0}).nodes, 0);   // the axis itself
   EXPECT_EQ(measure(mesh, mesh.coordinates, false, {4}).nodes, 15);  // a plane across it, without its 5 pole nodes
+}
+
+TEST(WallQuality, IsGivenByFamilyAndByBcNameWithoutOne) {
+  Mesh mesh = test::one_zone({5, 4, 6}, [](Index3 const& p) {
+    return Vec3{double(p[0]), 0.5 * p[1], 0.1 * p[2] + 0.01 * p[2] * p[2]};
+  });
+  add_faces(mesh);  // i_min, i_max: "blade"; j_min, j_max: BC "side"; k_min: BC "floor", in two families
+  for (int const p : {0, 1}) mesh.patches[p].families = {"blade"};
+  for (int const p : {2, 3}) mesh.patches[p].name = "side";
+  mesh.patches[4].name = "floor";
+  mesh.patches[4].families = {"hub", "all walls"};
+  QualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(mesh.coordinates);
+  input.baseline = views(mesh.coordinates);
+  std::vector<int> const patches{4, 0, 2, 1, 3};
+  input.walls = wall_faces(mesh, std::span<int const>(patches));
+  QualityReport const report = measure_quality(Exec(), mesh, input);
+  std::vector<std::string> names;
+  Index nodes = 0;
+  for (WallGroup const& group : report.wall_groups) {
+    names.push_back(group.name);
+    nodes += group.quality.nodes;
+  }
+  ASSERT_EQ(names, (std::vector<std::string>{"hub", "blade", "side"}));
+  EXPECT_EQ(nodes, report.wall.nodes);
+  for (auto const& [group, alone] : {std::pair{0, std::vector<int>{4}}, {1, {0, 1}}, {2, {2, 3}}}) {
+    WallQuality const expected = measure(mesh, mesh.coordinates, true, alone),
+                      &found = report.wall_groups[group].quality;
+    EXPECT_EQ(found.nodes, expected.nodes);
+    EXPECT_EQ(found.first_height_min, expected.first_height_min);
+    EXPECT_EQ(found.first_height_mean, expected.first_height_mean);
+    EXPECT_EQ(found.orthogonality_deg_max, expected.orthogonality_deg_max);
+  }
+  EXPECT_NEAR(report.wall_groups[0].quality.first_height_max, 0.11, 1e-14);
+  EXPECT_NEAR(report.wall_groups[1].quality.first_height_max, 1, 1e-14);
+  EXPECT_NEAR(report.wall_groups[2].quality.first_height_max, 0.5, 1e-14);
 }
 
 TEST(WallFaces, LeaveOutRangesThatAreNoFaces) {

@@ -96,6 +96,44 @@ TEST(QualityTable, ShowsWallsWithTheirLargestChanges) {
   EXPECT_TRUE(has_line_with(table, {"20 %", "zone 'Zone A' node (i 7, j 8, k 1)"}));
 }
 
+WallGroup group(std::string name, double height, double change) {
+  WallGroup g{std::move(name), {}};
+  g.quality.nodes = 5;
+  g.quality.first_height_min = height;
+  g.quality.orthogonality_deg_max = 33.5;
+  g.quality.height_change_max = change;
+  return g;
+}
+
+TEST(QualityTable, ShowsEachWallBaselineAndMorphed) {
+  QualityReport before = baseline(), after = morphed();
+  before.wall.nodes = after.wall.nodes = 10;
+  before.wall_groups = {group("blade", 1.25e-5, 0), group("hub", 3e-4, 0)};
+  after.wall_groups = {group("blade", 1.5e-5, 0.2), group("hub", 3.5e-4, 0.07)};
+  after.wall_groups[1].quality.orthogonality_change_deg_max = 4.25;
+  std::string const table = format_table(before, after);
+  EXPECT_TRUE(has_line_with(table, {"blade", "5", "1.25e-05", "1.5e-05", "33.5 deg", "20 %"}));
+  EXPECT_TRUE(has_line_with(table, {"hub", "0.0003", "0.00035", "7 %", "4.25 deg"}));
+  EXPECT_TRUE(has_line_with(format_table(before), {"hub", "0.0003", "33.5 deg"}));
+}
+
+TEST(QualityTable, ShowsTheWorstWallsWhereThereAreMany) {
+  QualityReport before = baseline(), after = morphed();
+  before.wall.nodes = after.wall.nodes = 100;
+  for (int n = 0; n < 20; ++n) {
+    before.wall_groups.push_back(group("wall" + std::to_string(n) + " of a very long name", 1, 0));
+    after.wall_groups.push_back(group("wall" + std::to_string(n) + " of a very long name", 1, 0.01 * n));
+  }
+  std::string const table = format_table(before, after);
+  EXPECT_TRUE(has_line_with(table, {"wall19", "19 %"}));
+  EXPECT_TRUE(has_line_with(table, {"wall8", "8 %"}));
+  EXPECT_FALSE(has_line_with(table, {"wall7"}));
+  EXPECT_LT(table.find("wall19"), table.find("wall18"));
+  EXPECT_TRUE(has_line_with(table, {"8 more", "JSON"}));
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+}
+
 TEST(QualityTable, ShortTableIsThatOfFigure14) {
   std::string const table = format_short_table(baseline(), morphed());
   EXPECT_TRUE(has_line_with(table, {"baseline", "688.4", "7.5", "0.734", "0.593"}));
@@ -176,6 +214,20 @@ TEST(QualityJson, CarriesValuesPlacesAndFormulas) {
   EXPECT_EQ(json.at("/shortfalls/0/severity"_json_pointer), "failure");
   EXPECT_EQ(json.at("/thresholds/min_determinant"_json_pointer), 0.6);
   EXPECT_FALSE(quality_json(baseline(), {}, {}).contains("morphed"));
+}
+
+TEST(QualityJson, HoldsEveryWallGroup) {
+  QualityReport before = baseline(), after = morphed();
+  for (int n = 0; n < 20; ++n) {
+    before.wall_groups.push_back(group("wall" + std::to_string(n), 1, 0));
+    after.wall_groups.push_back(group("wall" + std::to_string(n), 2, 0.01 * n));
+  }
+  nlohmann::json const json = quality_json(before, after, {});
+  EXPECT_EQ(json.at("/baseline/walls/groups"_json_pointer).size(), 20u);
+  EXPECT_EQ(json.at("/baseline/walls/groups/wall7/first_height/min"_json_pointer), 1);
+  EXPECT_EQ(json.at("/morphed/walls/groups/wall7/first_height/min"_json_pointer), 2);
+  EXPECT_EQ(json.at("/morphed/walls/groups/wall7/first_height_change/max"_json_pointer), 0.07);
+  EXPECT_FALSE(json.at("/baseline/walls/groups/wall7"_json_pointer).contains("first_height_change"));
 }
 
 TEST(QualityJson, WallChangesAppearOnlyAgainstABaseline) {

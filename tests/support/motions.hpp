@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::test {
@@ -27,6 +28,10 @@ inline Motion motion(std::vector<MotionRule> rules) {
   Motion m;
   m.rules = std::move(rules);
   return m;
+}
+
+inline VectorField scaled(double factor, VectorField field) {
+  return [factor, field = std::move(field)](Vec3 const& p) { return factor * field(p); };
 }
 
 /// A wavy field without any symmetry; amplitude is a length.

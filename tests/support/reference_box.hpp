@@ -60,29 +60,50 @@ inline Vec3 at_fraction(BoxField const& x, BoxField const& c, int a, int b, doub
   return (1 - f) * c(int(p) - 1, a, b) + f * c(int(p), a, b);
 }
 
-/// All six faces known: the sweep plus the residuals on the four sides, blended by the Boolean sum of Gordon and Hall with
-/// the arc-length fractions A and B across, taken on the two end faces and varied linearly along each line. A side gives
-/// its residual at the fraction of its line that the node has of its own.
+/// All six faces known: the sweep plus the residuals on the four sides, blended by the Boolean sum of Gordon and Hall,
+/// dimension by dimension: edges, then what the sides have beyond their edges. Fractions A and B across are taken on the
+/// two end faces and varied linearly along each line. A side gives its residual at the fraction of its line that the
+/// node has of its own.
 template <class Weight>
 BoxField reference_transfinite(BoxField const& x, BoxField const& known, Weight const& weight) {
-  BoxField u = reference_sweep(x, known, weight);
+  BoxField const u = reference_sweep(x, known, weight);
   BoxField c(x.n);
   for (std::size_t m = 0; m < c.v.size(); ++m) c.v[m] = known.v[m] - u.v[m];
   int const ns = x.n[0], na = x.n[1], nb = x.n[2];
+  auto fraction_a = [&](int a, int b, double t) {
+    return (1 - t) * fractions_along(x, 1, {0, 0, b})[a] + t * fractions_along(x, 1, {ns - 1, 0, b})[a];
+  };
+  auto fraction_b = [&](int a, int b, double t) {
+    return (1 - t) * fractions_along(x, 2, {0, a, 0})[b] + t * fractions_along(x, 2, {ns - 1, a, 0})[b];
+  };
+  // Edges: c itself on the four lines along s.
+  auto edge = [&](bool upper_a, bool upper_b, double t) {
+    return at_fraction(x, c, upper_a ? na - 1 : 0, upper_b ? nb - 1 : 0, t);
+  };
+  BoxField beyond(x.n);  // on the sides: c less what the side's two edges give
+  for (int b = 0; b < nb; ++b)
+    for (int a = 0; a < na; ++a) {
+      bool const on_a = a == 0 || a == na - 1, on_b = b == 0 || b == nb - 1;
+      if (on_a == on_b) continue;
+      std::vector<double> const t = fractions_along(x, 0, {0, a, b});
+      for (int s = 0; s < ns; ++s) {
+        double const f = on_a ? fraction_b(a, b, t[s]) : fraction_a(a, b, t[s]);
+        Vec3 const lower = on_a ? edge(a > 0, false, t[s]) : edge(false, b > 0, t[s]);
+        Vec3 const upper = on_a ? edge(a > 0, true, t[s]) : edge(true, b > 0, t[s]);
+        beyond(s, a, b) = c(s, a, b) - (1 - f) * lower - f * upper;
+      }
+    }
   BoxField out = u;
   for (int b = 0; b < nb; ++b)
     for (int a = 0; a < na; ++a) {
       std::vector<double> const t = fractions_along(x, 0, {0, a, b});
-      double const A0 = fractions_along(x, 1, {0, 0, b})[a], A1 = fractions_along(x, 1, {ns - 1, 0, b})[a];
-      double const B0 = fractions_along(x, 2, {0, a, 0})[b], B1 = fractions_along(x, 2, {ns - 1, a, 0})[b];
       for (int s = 0; s < ns; ++s) {
-        double const A = (1 - t[s]) * A0 + t[s] * A1, B = (1 - t[s]) * B0 + t[s] * B1;
-        auto side = [&](int at_a, int at_b) { return at_fraction(x, c, at_a, at_b, t[s]); };
-        Vec3 const along_a = (1 - A) * side(0, b) + A * side(na - 1, b);
-        Vec3 const along_b = (1 - B) * side(a, 0) + B * side(a, nb - 1);
-        Vec3 const both = (1 - A) * (1 - B) * side(0, 0) + A * (1 - B) * side(na - 1, 0) +
-                          (1 - A) * B * side(0, nb - 1) + A * B * side(na - 1, nb - 1);
-        out(s, a, b) = u(s, a, b) + along_a + along_b - both;
+        double const A = fraction_a(a, b, t[s]), B = fraction_b(a, b, t[s]);
+        auto side = [&](int at_a, int at_b) { return at_fraction(x, beyond, at_a, at_b, t[s]); };
+        out(s, a, b) = u(s, a, b) + (1 - A) * side(0, b) + A * side(na - 1, b) + (1 - B) * side(a, 0) +
+                       B * side(a, nb - 1) + (1 - A) * (1 - B) * edge(false, false, t[s]) +
+                       A * (1 - B) * edge(true, false, t[s]) + (1 - A) * B * edge(false, true, t[s]) +
+                       A * B * edge(true, true, t[s]);
       }
     }
   return out;

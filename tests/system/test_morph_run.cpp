@@ -87,6 +87,26 @@ TEST_F(MorphRunTest, SuggestedCaseFilesLeaveRealMeshesBitIdentical) {
   }
 }
 
+TEST_F(MorphRunTest, EveryStepIsTimedInTheOutputAndInTheReport) {
+  Outcome const run = gridmorph("morph rotation.toml --report r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  auto const text = contents(path("r.json"));
+  EXPECT_EQ(text.back(), '\n');
+  EXPECT_NE(text.substr(text.size() - 2), "\n\n") << "room left for the time of writing is still there";
+  auto const times = nlohmann::json::parse(text)["times"];
+  std::vector<std::string> steps;
+  double sum = 0;
+  for (auto const& t : times["steps"]) {
+    steps.push_back(t["step"]);
+    EXPECT_GT(t["seconds"].get<double>(), 0) << steps.back();
+    EXPECT_NE(run.out.find("\n" + steps.back() + " "), std::string::npos) << steps.back();
+    sum += t["seconds"].get<double>();
+  }
+  EXPECT_EQ(steps,
+            (std::vector<std::string>{"read", "topology", "rules", "plan", "boundary", "morph", "quality", "write"}));
+  EXPECT_NEAR(times["total_seconds"].get<double>(), sum, 1e-12);
+}
+
 TEST_F(MorphRunTest, QuietPrintsNothing) {
   Outcome const run = gridmorph("--quiet morph rotation.toml");
   EXPECT_EQ(run.status, 0);

@@ -20,7 +20,8 @@
 // Cost of cell_measures: about 1000 flops, 12 square roots, 24 divisions, 2 arc cosines; 24 coordinates are read.
 #pragma once
 
-#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/kernels/arc_cosine.hpp>
+#include <gridmorph/kernels/lanes.hpp>
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -40,8 +41,6 @@ inline constexpr double collapsed_fraction = 1e-12;
 /// Stands for an unbounded ratio; plain arithmetic so that it is the same on host and device.
 inline constexpr double unbounded = HUGE_VAL;
 
-KOKKOS_INLINE_FUNCTION double smaller(double a, double b) { return b < a ? b : a; }
-KOKKOS_INLINE_FUNCTION double larger(double a, double b) { return a < b ? b : a; }
 KOKKOS_INLINE_FUNCTION bool is_finite(double a) { return a - a == 0; }
 
 /// The 12 edge vectors: of[d][e] runs along direction d (0 = i, 1 = j, 2 = k); e = p + 2 q, where p and q are the sides
@@ -190,7 +189,6 @@ KOKKOS_INLINE_FUNCTION CellMeasures invalid_cell() { return {}; }
 
 /// All measures of one cell; handedness: +1 or -1, that of the cell's zone.
 KOKKOS_INLINE_FUNCTION CellMeasures cell_measures(HexCell const& cell, double handedness) {
-  using compat::math::acos;
   HexEdges const edges = hex_edges(cell);
   unsigned const collapsed = collapsed_edges(edges);
   JacobianRange const j = jacobian_range(edges, collapsed, handedness);
@@ -216,8 +214,8 @@ KOKKOS_INLINE_FUNCTION CellMeasures cell_measures(HexCell const& cell, double ha
   FaceAngles const angles = face_angles(edges, length, collapsed);
   if (angles.cos_max >= angles.cos_min) {
     constexpr double degrees = 57.295779513082320877;
-    double const amin = degrees * acos(larger(-1.0, smaller(1.0, angles.cos_max)));
-    double const amax = degrees * acos(larger(-1.0, smaller(1.0, angles.cos_min)));
+    double const amin = degrees * arc_cosine(angles.cos_max);
+    double const amax = degrees * arc_cosine(angles.cos_min);
     m.minimum_angle_deg = amin;
     m.equiangle_skewness = larger((amax - 90) / 90, (90 - amin) / 90);
   }

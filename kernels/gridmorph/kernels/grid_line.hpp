@@ -48,12 +48,23 @@ struct Chain {
   std::int32_t first_side;      ///< in the side tables, -1: no side is known, plain sweep
   std::int32_t first_junction;  ///< of the correction's block limits
   std::int32_t n_blocks;
-  Index first_end_value;  ///< where the displacements of the chain's two ends start: (2, n_b, n_a), chain frame
-  Index first_section;    ///< correction: where the chain's cross-section parameters start
+  std::uint32_t known_sides;  ///< bit q: side q is known somewhere beyond its edges; bit 4 + e: edge e along s is
+  Index first_end_value;      ///< where the displacements of the chain's two ends start: (2, n_b, n_a), chain frame
+  Index first_section;        ///< correction: where the chain's cross-section parameters start
 
   /// Whether anything asks for the arc lengths of its lines.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_parameters() const {
     return law != LineLaw::constant || first_side >= 0;
+  }
+  /// Whether of the sides only the two across a (direction 0) or across b (1) are known beyond their edges.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool blends_along(int direction) const {
+    unsigned const across_a = known_sides & 3u, across_b = known_sides & 12u;
+    return direction == 0 ? across_a != 0 && across_b == 0 : across_b != 0 && across_a == 0;
+  }
+  /// Whether a side or one of its edges is known anywhere.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool side_matters(int q) const {
+    unsigned const edges[4] = {1u | 4u, 2u | 8u, 1u | 2u, 4u | 8u};
+    return ((known_sides >> q) & 1u) != 0 || ((known_sides >> 4) & edges[q]) != 0;
   }
   KOKKOS_INLINE_FUNCTION Index section_size() const { return Index(n_a) * n_b; }
 };

@@ -7,14 +7,21 @@
 // is blended across the chain by the Boolean sum of Gordon and Hall (Int. J. Num. Meth. Eng. 7, 1973), dimension by
 // dimension: first the four edges along s, then the four sides, then the volume
 //
-//   c(s,a,b) = (1-A) c0 + A c1 + (1-B) c2 + B c3 - [(1-A)(1-B) e00 + A(1-B) e10 + (1-A)B e01 + AB e11]
+//   c(s,a,b) = (1-A) c0' + A c1' + (1-B) c2' + B c3' + (1-A)(1-B) e00 + A(1-B) e10 + (1-A)B e01 + AB e11
 //
-// with A, B the arc-length fractions across the chain, interpolated linearly along the line between its two ends, and the
-// c on the right taken where the side lines and edges have the same fraction of *their* length as node (s, a, b) has of
-// its line (not the same index: where a side is spaced evenly and the lines beside it are clustered at a wall, its residual
-// would be pushed between the wall's first nodes). What
-// is unknown on an edge is filled linearly between the nearest known nodes (zero at the ends of the chain), what is
+// with A, B the arc-length fractions across the chain, interpolated linearly along the line between its two ends, and c' the
+// residual of a side beyond what its two edges give it, c' = c - (1-f) e_lower - f e_upper with f the fraction across that
+// side. Where only opposite sides are known beyond their edges, this is their linear blend, c = (1-A) c0 + A c1.
+//
+// All values on the right are taken where the side lines and edges have the same fraction of *their* length as node
+// (s, a, b) has of its line. (Not the same index: where a side is spaced evenly and the lines beside it are clustered at a
+// wall, its residual would be pushed between the wall's first nodes.)
+//
+// What is unknown on an edge is filled linearly between the nearest known nodes (zero at the ends of the chain), what is
 // unknown on a side by the same Boolean sum from its borders. With all residuals zero this is the plain sweep.
+//
+// Cost per node: one or two lookups in a side table where opposite sides are known, eight at most; each reads two
+// parameters and two residuals, from cache.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
@@ -41,6 +48,7 @@ struct SideTable {
   Kokkos::View<Side const*, MemorySpace> sides;          ///< four per corrected chain
   Kokkos::View<Junction const*, MemorySpace> junctions;  ///< n_blocks + 1 per corrected chain
   Kokkos::View<double const*, MemorySpace> t;            ///< arc-length fraction along s, per side node
+  Kokkos::View<double const*, MemorySpace> per_t;        ///< 1 / (t(next) - t), 0 where they are equal
   Kokkos::View<double const*, MemorySpace> section;      ///< per chain (4, n_b, n_a): A at s = 0, A at s = 1, B, B
   Field<double const> c;                                 ///< residual per side node, chain frame
 
@@ -50,8 +58,7 @@ struct SideTable {
     Index const line = sides(chain.first_side + side).first + Index(chain.n_s) * w;
     if (t(line + guess) == t_line) return c[line + guess];
     int const lo = interval(line, chain.n_s - 1, t_line, guess);
-    double const t0 = t(line + lo), t1 = t(line + lo + 1);
-    double const f = t1 > t0 ? (t_line - t0) / (t1 - t0) : 0;
+    double const f = (t_line - t(line + lo)) * per_t(line + lo);
     return (1 - f) * c[line + lo] + f * c[line + lo + 1];
   }
   /// The largest p < last with t(line + p) <= t_line, found by steps that double away from the guess.
@@ -84,13 +91,37 @@ struct SideTable {
     return (1 - t_line) * section(n) + t_line * section(n + plane);
   }
   KOKKOS_INLINE_FUNCTION Vec3 correction(Chain const& chain, int s, int a, int b, double t_line) const {
-    double const A = across(chain, 0, a, b, t_line), B = across(chain, 1, a, b, t_line);
     auto side = [&](int q, int w) { return at(chain, q, w, t_line, s); };
-    int const last_b = chain.n_b - 1;
-    Vec3 const sum = (1 - A) * side(0, b) + A * side(1, b) + (1 - B) * side(2, a) + B * side(3, a);
-    Vec3 const edges =
-        (1 - B) * ((1 - A) * side(0, 0) + A * side(1, 0)) + B * ((1 - A) * side(0, last_b) + A * side(1, last_b));
-    return sum - edges;
+    if (chain.blends_along(0)) {
+      double const A = across(chain, 0, a, b, t_line);
+      Vec3 sum;
+      if (chain.side_matters(0)) sum += (1 - A) * side(0, b);
+      if (chain.side_matters(1)) sum += A * side(1, b);
+      return sum;
+    }
+    if (chain.blends_along(1)) {
+      double const B = across(chain, 1, a, b, t_line);
+      Vec3 sum;
+      if (chain.side_matters(2)) sum += (1 - B) * side(2, a);
+      if (chain.side_matters(3)) sum += B * side(3, a);
+      return sum;
+    }
+    double const A = across(chain, 0, a, b, t_line), B = across(chain, 1, a, b, t_line);
+    int const last_a = chain.n_a - 1, last_b = chain.n_b - 1;
+    Vec3 sum;
+    if (b > 0 && b < last_b) {
+      if (chain.known_sides & 1u) sum += (1 - A) * side(0, b);
+      if (chain.known_sides & 2u) sum += A * side(1, b);
+    }
+    if (a > 0 && a < last_a) {
+      if (chain.known_sides & 4u) sum += (1 - B) * side(2, a);
+      if (chain.known_sides & 8u) sum += B * side(3, a);
+    }
+    if (chain.known_sides & 16u) sum += ((1 - A) * (1 - B)) * side(0, 0);
+    if (chain.known_sides & 32u) sum += (A * (1 - B)) * side(1, 0);
+    if (chain.known_sides & 64u) sum += ((1 - A) * B) * side(0, last_b);
+    if (chain.known_sides & 128u) sum += (A * B) * side(1, last_b);
+    return sum;
   }
 };
 

@@ -88,7 +88,8 @@ struct EdgeFill {
   }
 };
 
-/// Unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders.
+/// Unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders. Then c' = c -
+/// edges where the correction asks for that.
 /// One item per side line that is not an edge.
 template <class MemorySpace>
 struct SideFill {
@@ -129,6 +130,9 @@ struct SideFill {
         c.set(line + p, between_edges(p, fraction_across(p)) + (1 - f) * r0 + f * r1);
       }
     }
+    // Where all pairs of sides are blended, the volume wants what a side has beyond its edges (side_correction.hpp).
+    if (chain.blends_along(0) || chain.blends_along(1)) return;
+    for (int p = 0; p < chain.n_s; ++p) c.set(line + p, c[line + p] - between_edges(p, fraction_across(p)));
   }
 };
 

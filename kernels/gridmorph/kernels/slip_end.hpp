@@ -17,6 +17,29 @@ struct SlipEnd {
   double tolerance;  ///< nodes with a given displacement are left alone this near to their surfaces
 };
 
+/// What does not change from morph to morph: position in the baseline mesh and distances from surfaces of revolution.
+struct SlipEndBaseline {
+  Vec3 position;
+  double own_offset[3] = {0, 0, 0};
+};
+
+template <class MemorySpace>
+struct SlipEndBaselines {
+  Kokkos::View<SlipEnd const*, MemorySpace> ends;
+  Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
+  Field<double const> x;
+  Kokkos::View<SlipEndBaseline*, MemorySpace> baselines;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    SlipEnd const& end = ends(item);
+    SlipEndBaseline b;
+    b.position = x[end.node];
+    for (int m = 0; m < 3; ++m)
+      if (end.surface[m] >= 0) b.own_offset[m] = surfaces(end.surface[m]).own_offset(b.position);
+    baselines(item) = b;
+  }
+};
+
 /// d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative where u changes by `rate` per
 /// unit of time. Where several surfaces meet, they are applied in turn until the node lies on all of them (exact after one
 /// round for planes at right angles and for surfaces of revolution with planes across their axis).
@@ -24,7 +47,7 @@ template <class MemorySpace, bool Rate>
 struct SlipEndValues {
   static constexpr int max_rounds = 50;
   Kokkos::View<SlipEnd const*, MemorySpace> ends;
-  Kokkos::View<Vec3 const*, MemorySpace> positions;
+  Kokkos::View<SlipEndBaseline const*, MemorySpace> baselines;
   Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
   Kokkos::View<Mat3 const*, MemorySpace> matrices;
   Field<double const> u, rate;
@@ -32,7 +55,8 @@ struct SlipEndValues {
 
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     SlipEnd const& end = ends(item);
-    Vec3 const here = positions(item), given = in_frame(end.to_node, u[end.slot]);
+    SlipEndBaseline const& baseline = baselines(item);
+    Vec3 const here = baseline.position, given = in_frame(end.to_node, u[end.slot]);
     Vec3 const given_rate = Rate ? in_frame(end.to_node, rate[end.slot]) : Vec3{};
     Vec3 wanted = given, wanted_rate = given_rate;
     bool const several = end.surface[1] >= 0;
@@ -41,8 +65,8 @@ struct SlipEndValues {
       for (int m = 0; m < 3; ++m) {
         if (end.surface[m] < 0) continue;
         SlipSurfaceView const& surface = surfaces(end.surface[m]);
-        if constexpr (Rate) wanted_rate = surface.constrain_rate(here, wanted, wanted_rate);
-        wanted = surface.constrain(here, wanted);
+        if constexpr (Rate) wanted_rate = surface.constrain_rate(here, baseline.own_offset[m], wanted, wanted_rate);
+        wanted = surface.constrain(here, baseline.own_offset[m], wanted);
       }
       if (wanted == before) break;
     }

@@ -4,7 +4,7 @@
 // precision, chord error of the profile): the correction is the *change* of that distance. So zero displacement stays
 // exactly zero, and a displacement that already keeps the node on its surface comes back bit for bit.
 //
-// Cost: plane and axial about 10 flops; revolution one binary search in the profile plus two square roots.
+// Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
@@ -28,16 +28,33 @@ struct ProfileView {
   /// profile has a kink.
   double const* curvature = nullptr;
   int size = 0;
+  /// (n_buckets + 1): the piece that holds the lower end of each of n_buckets equal parts of the axial range.
+  int const* bucket_piece = nullptr;
+  int n_buckets = 0;
 
-  /// Written in differences, so that a constant profile comes back bit for bit; the end slopes are continued outside.
-  KOKKOS_INLINE_FUNCTION double operator()(double a) const {
+  /// The piece that holds an axial position inside the range: a bisection among those of its bucket.
+  KOKKOS_INLINE_FUNCTION int piece(double a) const {
     int lo = 0, hi = size - 1;
-    if (a <= axial[lo]) return radius[lo] + slope[lo] * (a - axial[lo]);
-    if (a >= axial[hi]) return radius[hi] + slope[hi] * (a - axial[hi]);
+    if (n_buckets > 0) {
+      double const place = (a - axial[0]) / (axial[size - 1] - axial[0]) * n_buckets;
+      int const bucket = place < n_buckets ? int(place) : n_buckets - 1;
+      // One piece more on either side, for positions that round into the neighbouring bucket.
+      lo = bucket_piece[bucket] > 0 ? bucket_piece[bucket] - 1 : 0;
+      hi = bucket_piece[bucket + 1] + 2 < size - 1 ? bucket_piece[bucket + 1] + 2 : size - 1;
+    }
     while (hi - lo > 1) {
       int const mid = (lo + hi) / 2;
       (axial[mid] <= a ? lo : hi) = mid;
     }
+    return lo;
+  }
+
+  /// Written in differences, so that a constant profile comes back bit for bit; the end slopes are continued outside.
+  KOKKOS_INLINE_FUNCTION double operator()(double a) const {
+    int const last = size - 1;
+    if (a <= axial[0]) return radius[0] + slope[0] * (a - axial[0]);
+    if (a >= axial[last]) return radius[last] + slope[last] * (a - axial[last]);
+    int const lo = piece(a), hi = lo + 1;
     double const h = axial[hi] - axial[lo];
     double const t = (a - axial[lo]) / h, t2 = t * t, t3 = t2 * t;
     double const rise = (radius[hi] - radius[lo]) * t3 * (10 + t * (6 * t - 15));
@@ -49,13 +66,9 @@ struct ProfileView {
 
   /// Its derivative with respect to the axial position.
   KOKKOS_INLINE_FUNCTION double derivative(double a) const {
-    int lo = 0, hi = size - 1;
-    if (a <= axial[lo]) return slope[lo];
-    if (a >= axial[hi]) return slope[hi];
-    while (hi - lo > 1) {
-      int const mid = (lo + hi) / 2;
-      (axial[mid] <= a ? lo : hi) = mid;
-    }
+    if (a <= axial[0]) return slope[0];
+    if (a >= axial[size - 1]) return slope[size - 1];
+    int const lo = piece(a), hi = lo + 1;
     double const h = axial[hi] - axial[lo];
     double const t = (a - axial[lo]) / h, t2 = t * t;
     double const rise = (radius[hi] - radius[lo]) * 30 * t2 * (1 - t) * (1 - t);
@@ -86,8 +99,21 @@ struct SlipSurfaceView {
     return r > 0 ? p + ((profile(a) - r) / r) * radial : p;
   }
 
+  /// Distance of a baseline node from a surface of revolution that is the baseline mesh's own and is kept; 0 for other
+  /// kinds and for nodes that are farther off.
+  KOKKOS_INLINE_FUNCTION double own_offset(Vec3 const& baseline) const {
+    if (kind != SlipKind::revolution) return 0;
+    Vec3 const d = baseline - origin;
+    double const a = dot(d, direction);
+    double const offset = norm(d - a * direction) - profile(a);
+    return is_own(offset) ? offset : 0;
+  }
+
   /// The displacement of a baseline node, corrected so that the moved node is where the surface wants it.
   KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, Vec3 const& u) const {
+    return constrain(baseline, own_offset(baseline), u);
+  }
+  KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, double own, Vec3 const& u) const {
     if (u.x == 0 && u.y == 0 && u.z == 0) return u;
     double const tolerance = 1e-14 * size;
     double const du = dot(u, direction);
@@ -103,13 +129,12 @@ struct SlipSurfaceView {
     Vec3 const moved = radial + (u - du * direction);
     double const r = norm(moved);
     if (!(r > 0)) return u;
-    double const offset = norm(radial) - profile(a);
-    double const excess = r - (profile(a + du) + (is_own(offset) ? offset : 0.0));
+    double const excess = r - (profile(a + du) + own);
     return small(excess, tolerance) ? u : u - (excess / r) * moved;
   }
 
-  /// How constrain(baseline, u) changes where u changes by `rate` per unit of time.
-  KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, Vec3 const& u, Vec3 const& rate) const {
+  /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time.
+  KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, double own, Vec3 const& u, Vec3 const& rate) const {
     double const axial_rate = dot(rate, direction);
     if (kind != SlipKind::revolution) return rate - axial_rate * direction;
     Vec3 const d = baseline - origin;
@@ -118,8 +143,7 @@ struct SlipSurfaceView {
     Vec3 const moved = radial + (u - du * direction), moved_rate = rate - axial_rate * direction;
     double const r = norm(moved);
     if (!(r > 0)) return rate;
-    double const offset = norm(radial) - profile(a);
-    double const excess = r - (profile(a + du) + (is_own(offset) ? offset : 0.0));
+    double const excess = r - (profile(a + du) + own);
     double const r_rate = dot(moved, moved_rate) / r;
     double const excess_rate = r_rate - profile.derivative(a + du) * axial_rate;
     return rate - ((excess_rate - excess * r_rate / r) / r) * moved - (excess / r) * moved_rate;

@@ -88,48 +88,82 @@ struct VolumePass {
  private:
   KOKKOS_INLINE_FUNCTION static int smaller(int a, int b) { return a < b ? a : b; }
 
+  /// u = (first) or u += the displacement that one chain gives to a row.
   KOKKOS_INLINE_FUNCTION void add_term(VolumeBox const& box, VolumeTerm const& term, bool first, int f, int i, int j,
                                        int k, int n, Row& u) const {
     Chain const& chain = chains(term.chain);
-    Field<double const> const e = ends[f];
-    Index const lower = term.end_value + i * term.end_stride[0] + j * term.end_stride[1] + k * term.end_stride[2];
-    double const* const here = term.t < 0 ? nullptr : t + term.t + i + box.n[0] * (j + Index(box.n[1]) * k);
-    Row v;
-    if (chain.law == LineLaw::constant) {
-      with_step(term.end_stride[0], [&](auto step) {
-        for (int w = 0; w < n; ++w) {
-          v.x[w] = e.x[lower + w * step];
-          v.y[w] = e.y[lower + w * step];
-          v.z[w] = e.z[lower + w * step];
-        }
-      });
-    } else {
-      double weight[width];
-      weights(chain.law, n, here, weight);
-      Index const upper = lower + chain.section_size();
-      with_step(term.end_stride[0], [&](auto step) {
-        for (int w = 0; w < n; ++w) {
-          double const x0 = e.x[lower + w * step], y0 = e.y[lower + w * step], z0 = e.z[lower + w * step];
-          v.x[w] = x0 + weight[w] * (e.x[upper + w * step] - x0);
-          v.y[w] = y0 + weight[w] * (e.y[upper + w * step] - y0);
-          v.z[w] = z0 + weight[w] * (e.z[upper + w * step] - z0);
-        }
-      });
+    RowEnds const row{ends[f],
+                      term.end_value + i * term.end_stride[0] + j * term.end_stride[1] + k * term.end_stride[2],
+                      chain.section_size(),
+                      term.end_stride[0],
+                      term.t < 0 ? nullptr : t + term.t + i + box.n[0] * (j + Index(box.n[1]) * k),
+                      n};
+    if (chain.first_side < 0 && term.matrix < 0) {
+      first ? interpolate<false>(chain.law, row, u) : interpolate<true>(chain.law, row, u);
+      return;
     }
-    if (chain.first_side >= 0) add_correction(chain, term, f, i, j, k, n, here, v);
+    Row v;
+    interpolate<false>(chain.law, row, v);
+    if (chain.first_side >= 0) add_correction(chain, term, f, i, j, k, n, row.t, v);
     if (term.matrix >= 0) turn(matrices(term.matrix), n, v);
-    if (first) {
-      copy(n, v, u);
-    } else {
-      for (int w = 0; w < n; ++w) {
-        u.x[w] += v.x[w];
-        u.y[w] += v.y[w];
-        u.z[w] += v.z[w];
-      }
+    for (int w = 0; w < n; ++w) {
+      u.x[w] = first ? v.x[w] : u.x[w] + v.x[w];
+      u.y[w] = first ? v.y[w] : u.y[w] + v.y[w];
+      u.z[w] = first ? v.z[w] : u.z[w] + v.z[w];
     }
   }
 
-  /// Calls body(step) with the steps that occur most as constants, so that the compiler sees unit stride.
+  /// The two ends of the lines through a row of nodes, and where the nodes lie on them.
+  struct RowEnds {
+    Field<double const> e;
+    Index lower, section, step;
+    double const* t;
+    int n;
+  };
+
+  /// One loop per law, and per step between the lines of neighbouring nodes: the steps that occur most are constants, so
+  /// that the compiler sees one line for the whole row, or unit stride.
+  template <bool Add>
+  KOKKOS_INLINE_FUNCTION static void interpolate(LineLaw law, RowEnds const& row, Row& u) {
+    with_step(row.step, [&](auto step) {
+      switch (law) {
+        case LineLaw::linear:
+          return between_ends<Add>(
+              row, step, [](double t) { return t; }, u);
+        case LineLaw::c1:
+          return between_ends<Add>(
+              row, step, [](double t) { return t * t * (3 - 2 * t); }, u);
+        case LineLaw::c2:
+          return between_ends<Add>(
+              row, step, [](double t) { return law_weight(LineLaw::c2, t); }, u);
+        case LineLaw::constant:
+          put<Add>(
+              row.n, [&](int w) { return row.e.x[row.lower + w * step]; }, u.x);
+          put<Add>(
+              row.n, [&](int w) { return row.e.y[row.lower + w * step]; }, u.y);
+          put<Add>(
+              row.n, [&](int w) { return row.e.z[row.lower + w * step]; }, u.z);
+      }
+    });
+  }
+  template <bool Add, class Step, class Weight>
+  KOKKOS_INLINE_FUNCTION static void between_ends(RowEnds const& row, Step step, Weight const& weight, Row& u) {
+    double const *const x0 = row.e.x + row.lower, *const y0 = row.e.y + row.lower, *const z0 = row.e.z + row.lower;
+    double const *const x1 = x0 + row.section, *const y1 = y0 + row.section, *const z1 = z0 + row.section;
+    for (int w = 0; w < row.n; ++w) {
+      double const f = weight(row.t[w]);
+      double const x = x0[w * step] + f * (x1[w * step] - x0[w * step]);
+      double const y = y0[w * step] + f * (y1[w * step] - y0[w * step]);
+      double const z = z0[w * step] + f * (z1[w * step] - z0[w * step]);
+      u.x[w] = Add ? u.x[w] + x : x;
+      u.y[w] = Add ? u.y[w] + y : y;
+      u.z[w] = Add ? u.z[w] + z : z;
+    }
+  }
+  template <bool Add, class Value>
+  KOKKOS_INLINE_FUNCTION static void put(int n, Value const& value, double* u) {
+    for (int w = 0; w < n; ++w) u[w] = Add ? u[w] + value(w) : value(w);
+  }
   template <class Body>
   KOKKOS_INLINE_FUNCTION static void with_step(Index step, Body const& body) {
     if (width == 1 || step == 0)
@@ -138,19 +172,6 @@ struct VolumePass {
       body(std::integral_constant<int, 1>());
     else
       body(step);
-  }
-
-  KOKKOS_INLINE_FUNCTION static void weights(LineLaw law, int n, double const* here, double* weight) {
-    switch (law) {
-      case LineLaw::linear:
-        for (int w = 0; w < n; ++w) weight[w] = law_weight(LineLaw::linear, here[w]);
-        break;
-      case LineLaw::c1:
-        for (int w = 0; w < n; ++w) weight[w] = law_weight(LineLaw::c1, here[w]);
-        break;
-      default:
-        for (int w = 0; w < n; ++w) weight[w] = law_weight(law, here[w]);
-    }
   }
 
   KOKKOS_INLINE_FUNCTION void add_correction(Chain const& chain, VolumeTerm const& term, int f, int i, int j, int k,
@@ -172,14 +193,6 @@ struct VolumePass {
       v.x[w] = turned.x;
       v.y[w] = turned.y;
       v.z[w] = turned.z;
-    }
-  }
-
-  KOKKOS_INLINE_FUNCTION static void copy(int n, Row const& from, Row& to) {
-    for (int w = 0; w < n; ++w) {
-      to.x[w] = from.x[w];
-      to.y[w] = from.y[w];
-      to.z[w] = from.z[w];
     }
   }
 

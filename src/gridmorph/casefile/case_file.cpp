@@ -91,13 +91,34 @@ std::string one_line(std::string_view drawn) {
   return out;
 }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The value that the parser could not read, for messages that do not show it. TOML asks for digits on both sides of a
+/// point, other languages do not.
+std::string unreadable_value(std::string_view what, toml::source_location const& place) {
+  if (!what.starts_with("bad ") && !what.starts_with("value having invalid format")) return {};
+  std::string const& line = place.line_str();
+  if (place.column() == 0 || place.column() > line.size()) return {};
+  std::string_view rest = std::string_view(line).substr(place.column() - 1);
+  if (auto const equals = rest.find('='); equals != std::string_view::npos) rest.remove_prefix(equals + 1);
+  rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+  std::string_view const value = rest.substr(0, rest.find_first_of(",]} \t\r#"));
+  if (value.empty()) return {};
+  std::string_view const number = value.substr(value.front() == '-' || value.front() == '+' ? 1 : 0);
+  bool const bare_point = number.size() > 1 && ((number.front() == '.' && is_digit(number[1])) ||
+                                                (number.back() == '.' && is_digit(number.front())));
+  return fmt::format("; found {}{}", value, bare_point ? ", write a digit on both sides of the point, as in 0.5" : "");
+}
+
 toml::value parse_toml(std::string const& text, std::string const& file) {
   check_text(text, file);
   std::istringstream in(text);
   try {
     return toml::parse(in, file);
   } catch (toml::exception const& e) {
-    throw ConfigError(fmt::format("{}:{}: not valid TOML: {}", file, e.location().line(), one_line(e.what())));
+    std::string const what = one_line(e.what());
+    throw ConfigError(fmt::format("{}:{}: not valid TOML: {}{}", file, e.location().line(), what,
+                                  unreadable_value(what, e.location())));
   } catch (std::exception const& e) {
     throw ConfigError(fmt::format("{}: not valid TOML: {}", file, one_line(e.what())));
   }

@@ -134,9 +134,9 @@ void guess_roles(Mesh const& mesh, MeshSummary& s) {
     else if (auto revolution = guess_revolution(s, points, bounds))
       said.push_back(std::move(*revolution));
     else if (is_outer_hull(s.box, b.box))
-      said.push_back("reaches round the whole mesh: far field");
+      said.emplace_back("reaches round the whole mesh: far field");
     if (b.first_height_mean > 0 && b.first_height_mean < thin * size && !one_cell_thick(mesh, b))
-      said.push_back("thin first cells: viscous wall");
+      said.emplace_back("thin first cells: viscous wall");
     for (auto const& text : said) b.guess += (b.guess.empty() ? "" : "; ") + text;
   }
 }

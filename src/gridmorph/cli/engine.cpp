@@ -1,4 +1,5 @@
 #include <gridmorph/cli/engine.hpp>
+#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/trim_note.hpp>
@@ -26,8 +27,12 @@ struct Engine::Impl {
   Mesh& mesh;
   PreparedMorph prepared;
   std::vector<std::string> morph_notes;  ///< of the last morph()
+  StepTimes times;
 
-  Impl(Mesh& m, CaseFile const& c) : mesh(m), prepared(prepare(m, c.motion, c.plan)) {}
+  Impl(Mesh& m, CaseFile const& c) : mesh(m), prepared(prepare(m, c.motion, c.plan)) {
+    times = {
+        {"topology", prepared.seconds.topology}, {"rules", prepared.seconds.rules}, {"plan", prepared.seconds.plan}};
+  }
   [[nodiscard]] Plan const& plan() const { return prepared.plan(); }
 };
 
@@ -48,6 +53,8 @@ std::vector<std::string> Engine::notes() const {
   append(out, impl_->morph_notes);
   return out;
 }
+
+StepTimes const& Engine::times() const { return impl_->times; }
 
 std::vector<unsigned char> Engine::near_field() const {
   Mesh const& mesh = impl_->mesh;
@@ -73,10 +80,12 @@ std::vector<StageResult> Engine::stage_results(Coordinates const& morphed) const
 }
 
 Coordinates Engine::morph(Terminal& terminal) const {
+  Stopwatch watch;
   terminal.progress("moving the boundary");
   auto const boundary = impl_->prepared.boundary_displacement(impl_->mesh);
   impl_->morph_notes.clear();
   if (auto const note = trim_note(impl_->mesh, impl_->plan(), boundary)) impl_->morph_notes.push_back(*note);
+  impl_->times.push_back({"boundary", watch.lap()});
   terminal.progress("morphing the volume");
   Exec const exec;
   Coordinates const& x = impl_->mesh.coordinates;
@@ -88,6 +97,7 @@ Coordinates Engine::morph(Terminal& terminal) const {
   Morpher<Exec> const morpher(exec, impl_->plan(), from);
   morpher.apply(exec, given, from, to);
   exec.fence();
+  impl_->times.push_back({"morph", watch.lap(), true});
   return morphed;
 }
 

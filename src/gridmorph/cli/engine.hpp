@@ -5,6 +5,7 @@
 #include <gridmorph/cli/terminal.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/quality/quality.hpp>
+#include <gridmorph/report/step_times.hpp>
 
 #include <memory>
 #include <string>
@@ -39,6 +40,8 @@ class Engine {
   [[nodiscard]] Coordinates morph(Terminal& terminal) const;
   /// The worst cell of every stage, in order.
   [[nodiscard]] std::vector<StageResult> stage_results(Coordinates const& morphed) const;
+  /// How long each step so far took: topology, rules, plan, and boundary and morph once morph() has run.
+  [[nodiscard]] StepTimes const& times() const;
 
  private:
   struct Impl;

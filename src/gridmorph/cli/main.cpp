@@ -14,6 +14,7 @@
 #include <gridmorph/core/error.hpp>
 
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -65,7 +66,7 @@ int run_and_report(CommandLine const& options, Terminal& terminal) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   // A reader that goes away, or a file that may not grow, is an error to report, not a reason to die.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -81,4 +82,7 @@ int main(int argc, char** argv) {
   auto const& options = std::get<CommandLine>(parsed);
   Terminal terminal(options.quiet);
   return run_and_report(options, terminal);
+} catch (...) {  // what fails in reporting a failure, when memory has run out
+  std::fputs("gridmorph: error: internal failure\n", stderr);
+  return machine_failure;
 }

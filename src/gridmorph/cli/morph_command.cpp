@@ -2,9 +2,11 @@
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
+#include <gridmorph/report/step_times.hpp>
 
 #include <fmt/format.h>
 #include <Kokkos_Core.hpp>
@@ -20,6 +22,9 @@
 namespace gridmorph::cli {
 
 namespace {
+
+/// More than the digits of three numbers in JSON.
+constexpr std::size_t room_for_a_time = 128;
 
 /// The cell fields of the output mesh.
 constexpr std::array field_measures{Measure::aspect_ratio,       Measure::determinant_2x2x2,
@@ -87,6 +92,7 @@ std::string report_text(CaseFile const& case_file, MorphResult const& result, bo
   json["input"] = case_file.input.string();
   json["output"] = written ? nlohmann::json(case_file.output.string()) : nlohmann::json(nullptr);
   json["nodes"] = result.mesh.n_nodes();
+  json["times"] = times_json(result.times, result.mesh.n_nodes());
   json["notes"] = result.notes;
   json["stages"] = stages_json(result);
   json["fields"] = nlohmann::json::array();
@@ -117,23 +123,36 @@ int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
       throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
   }
 
-  MorphResult const result = run_morph(case_file, terminal);
+  MorphResult result = run_morph(case_file, terminal);
   bool const written = !newly_inverted(result) || case_file.guard.write_inverted;
-  // The report waits beside its place until the mesh is there: both appear, or none.
+  OutputFields fields;
+  if (written) {
+    Stopwatch watch;
+    fields = output_fields(case_file, result);
+    result.times.back().seconds += watch.lap();
+    result.times.push_back({"write", 0, true});
+  }
+  // The report waits beside its place until the mesh is there: both appear, or none. It has room to spare for the time
+  // that writing the mesh takes.
   std::optional<PendingFile> pending;
-  if (report) pending.emplace(*report, report_text(case_file, result, written));
+  if (report) pending.emplace(*report, report_text(case_file, result, written) + std::string(room_for_a_time, '\n'));
   if (written) {
     terminal.progress("writing " + case_file.output.string());
-    write_morphed(case_file.input.string(), case_file.output.string(), result.mesh, result.morphed,
-                  output_fields(case_file, result));
+    Stopwatch watch;
+    write_morphed(case_file.input.string(), case_file.output.string(), result.mesh, result.morphed, fields);
+    result.times.back().seconds = watch.lap();
   }
-  if (pending) pending->commit();
+  if (pending) {
+    pending->replace(report_text(case_file, result, written));
+    pending->commit();
+  }
 
   std::string text;
   for (auto const& note : result.notes) text += "note: " + note + "\n";
   text += stages_text(result);
   text += (text.empty() ? "" : "\n") + format_table(result.before, result.after, thresholds_of(case_file));
   text += "\n" + format_short_table(result.before, result.after);
+  text += "\n" + format_times(result.times, result.mesh.n_nodes());
   if (written) text += fmt::format("\nwrote {}\n", case_file.output.string());
   if (report) text += fmt::format("wrote {}\n", report->string());
   terminal.say(text);

@@ -26,21 +26,35 @@ void check_output(std::filesystem::path const& path, std::string const& what, st
                                   what, path.string(), input.string()));
 }
 
-PendingFile::PendingFile(std::filesystem::path path, std::string const& text)
-    : path_(std::move(path)), beside_(path_.string() + "." + std::to_string(getpid()) + ".part") {
+namespace {
+
+/// Writes the whole text; 0 or the system's reason why not. `mode` as of fopen; nothing but the text remains in the file.
+int write_text(std::filesystem::path const& path, char const* mode, std::string const& text) {
   errno = 0;
-  std::FILE* file = std::fopen(beside_.c_str(), "wb");
-  bool good =
-      file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  std::FILE* file = std::fopen(path.c_str(), mode);
+  bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size() &&
+              std::fflush(file) == 0 && ftruncate(fileno(file), off_t(text.size())) == 0;
   int reason = errno;
   if (file != nullptr && std::fclose(file) != 0) {
     if (good) reason = errno;
     good = false;
   }
-  if (!good) {
+  return good ? 0 : reason;
+}
+
+}  // namespace
+
+PendingFile::PendingFile(std::filesystem::path path, std::string const& text)
+    : path_(std::move(path)), beside_(path_.string() + "." + std::to_string(getpid()) + ".part") {
+  if (int const reason = write_text(beside_, "wb", text)) {
     std::remove(beside_.c_str());
     throw MachineError(fmt::format("'{}' cannot be written: {}", path_.string(), std::strerror(reason)));
   }
+}
+
+void PendingFile::replace(std::string const& text) {
+  if (int const reason = write_text(beside_, "r+b", text))
+    throw MachineError(fmt::format("'{}' cannot be written: {}", path_.string(), std::strerror(reason)));
 }
 
 PendingFile::PendingFile(PendingFile&& other) noexcept

@@ -19,6 +19,8 @@ class PendingFile {
   PendingFile(PendingFile&&) noexcept;
   PendingFile& operator=(PendingFile&&) = delete;
 
+  /// Puts another text in the place of the first one. A text that is no longer than that needs no more room on the disk.
+  void replace(std::string const& text);
   void commit();
 
  private:

@@ -1,4 +1,5 @@
 #include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/motion/motion.hpp>
 
@@ -49,13 +50,17 @@ QualityThresholds thresholds_of(CaseFile const& case_file) {
 
 MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   MorphResult out;
+  Stopwatch watch;
   terminal.progress("reading " + case_file.input.string());
   out.mesh = read_mesh(case_file.input.string());
+  out.times.push_back({"read", watch.lap(), true});
   Engine const engine(out.mesh, case_file, terminal);
   out.morphed = engine.morph(terminal);
   out.notes = engine.notes();
   for (auto const& use : case_file.fields) out.notes.push_back(use.where + ": " + describe_mapping(*use.field));
 
+  out.times.insert(out.times.end(), engine.times().begin(), engine.times().end());
+  watch.lap();
   terminal.progress("measuring quality");
   out.stages = engine.stage_results(out.morphed);
   Exec const exec;
@@ -68,6 +73,7 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   input.coordinates = views(out.morphed);
   out.after = measure_quality(exec, out.mesh, input);
   out.shortfalls = shortfalls(out.before, out.after, thresholds_of(case_file));
+  out.times.push_back({"quality", watch.lap(), true});
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/report/shortfalls.hpp>
+#include <gridmorph/report/step_times.hpp>
 
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct MorphResult {
   std::vector<Shortfall> shortfalls;  ///< against [guard]
   std::vector<StageResult> stages;    ///< smallest determinant of each
   std::vector<std::string> notes;     ///< defaults taken, mapping distances, facts found on the way
+  StepTimes times;                    ///< read to quality, in order
 };
 
 /// Reads the mesh, plans, morphs and measures. Throws the errors of all of these; writes nothing.

@@ -1,7 +1,10 @@
 #include <gridmorph/io/cgns_layout.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
+#include <memory>
+#include <type_traits>
 
 namespace gridmorph::cgns {
 
@@ -126,6 +129,21 @@ void find_coordinates(File const& file, ZoneLayout& zone, std::string const& whe
                  list_names(zone.grid->children, "DataArray_t") + ")");
 }
 
+/// Reads n floats as doubles without memory of its own: they come into the upper half of `dest` and are widened from there,
+/// lowest first, block by block. Double m ends where float 2 m + 1 was, and that one has been read by then (m < n).
+void read_widened(File const& file, Node const& array, Index n, double* dest) {
+  auto* const bytes = reinterpret_cast<char*>(dest);
+  char const* const stored = bytes + std::size_t(n) * sizeof(float);
+  file.read(array, "R4", bytes + std::size_t(n) * sizeof(float));
+  constexpr Index block = 1024;
+  std::array<float, block> buffer;
+  for (Index at = 0; at < n; at += block) {
+    Index const m = std::min(block, n - at);
+    std::memcpy(buffer.data(), stored + std::size_t(at) * sizeof(float), std::size_t(m) * sizeof(float));
+    std::copy(buffer.begin(), buffer.begin() + m, dest + at);
+  }
+}
+
 }  // namespace
 
 Index ZoneLayout::stored_size() const {
@@ -180,26 +198,26 @@ void read_component(File const& file, ZoneLayout const& zone, int component, dou
     return;
   }
   bool const rind = zone.stored_size() != zone.nodes_in_file();
-  if (!zone.single_precision[component] && !rind) {
-    file.read(*array, "R8", dest);
-    return;
+  if (!rind) {
+    if (!zone.single_precision[component]) return file.read(*array, "R8", dest);
+    return read_widened(file, *array, zone.nodes_in_file(), dest);
   }
-  auto const copy_nodes = [&](auto const& stored) {
+  auto const copy_nodes = [&](auto const* stored) {
     for (int k = 0; k < zone.extent[2]; ++k)
       for (int j = 0; j < zone.extent[1]; ++j) {
-        auto const* line = stored.data() + zone.stored_line(j, k);
+        auto const* line = stored + zone.stored_line(j, k);
         dest = std::copy(line, line + zone.extent[0], dest);
       }
   };
   auto const n = static_cast<std::size_t>(zone.stored_size());
   if (zone.single_precision[component]) {
-    std::vector<float> stored(n);
-    file.read(*array, "R4", stored.data());
-    copy_nodes(stored);
+    auto const stored = std::make_unique_for_overwrite<float[]>(n);
+    file.read(*array, "R4", stored.get());
+    copy_nodes(stored.get());
   } else {
-    std::vector<double> stored(n);
-    file.read(*array, "R8", stored.data());
-    copy_nodes(stored);
+    auto const stored = std::make_unique_for_overwrite<double[]>(n);
+    file.read(*array, "R8", stored.get());
+    copy_nodes(stored.get());
   }
 }
 
@@ -211,21 +229,22 @@ void write_component(File& file, ZoneLayout const& zone, int component, double c
     file.write(*array, source);
     return;
   }
-  auto const replace = [&](auto stored, char const* type) {
-    if (rind) file.read(*array, type, stored.data());
-    using Stored = typename decltype(stored)::value_type;
+  auto const replace = [&](auto* stored, char const* type) {
+    using Stored = std::remove_pointer_t<decltype(stored)>;
+    if (rind) file.read(*array, type, stored);
     for (int k = 0; k < zone.extent[2]; ++k)
       for (int j = 0; j < zone.extent[1]; ++j) {
-        auto* line = stored.data() + zone.stored_line(j, k);
-        for (int i = 0; i < zone.extent[0]; ++i) line[i] = Stored(*source++);
+        std::transform(source, source + zone.extent[0], stored + zone.stored_line(j, k),
+                       [](double v) { return Stored(v); });
+        source += zone.extent[0];
       }
-    file.write(*array, stored.data());
+    file.write(*array, stored);
   };
   auto const n = static_cast<std::size_t>(zone.stored_size());
   if (zone.single_precision[component])
-    replace(std::vector<float>(n), "R4");
+    replace(std::make_unique_for_overwrite<float[]>(n).get(), "R4");
   else
-    replace(std::vector<double>(n), "R8");
+    replace(std::make_unique_for_overwrite<double[]>(n).get(), "R8");
 }
 
 }  // namespace gridmorph::cgns

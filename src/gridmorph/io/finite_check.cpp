@@ -1,16 +1,24 @@
 #include <gridmorph/io/finite_check.hpp>
+#include <gridmorph/mesh/extent.hpp>
 
 #include <cmath>
 
 namespace gridmorph::io {
 
+namespace {
+
+/// One test per node: x + y + z is finite unless one of them is not (or they are so large that nothing can be computed
+/// with them either).
+bool is_finite(Coordinates const& c, Index n) { return std::isfinite(c.x(n) + c.y(n) + c.z(n)); }
+
+}  // namespace
+
 void check_finite(Mesh const& mesh, Coordinates const& coordinates, std::string const& where, Problems& problems) {
+  if (extent_of(coordinates).finite) return;
   for (auto const& zone : mesh.zones) {
     Index bad = 0, first = -1;
     for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
-      // One test per node on the path that is always taken: x + y + z is finite unless one of them is not (or they are so
-      // large that nothing can be computed with them either).
-      if (std::isfinite(coordinates.x(n) + coordinates.y(n) + coordinates.z(n))) continue;
+      if (is_finite(coordinates, n)) continue;
       if (bad++ == 0) first = n;
     }
     if (bad == 0) continue;

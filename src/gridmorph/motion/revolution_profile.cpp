@@ -245,6 +245,19 @@ class Slopes {
   std::vector<bool> kink_;
 };
 
+/// As many buckets as pieces (see ProfileView::piece).
+std::vector<int> bucket_pieces(std::vector<double> const& axial) {
+  int const pieces = int(axial.size()) - 1;
+  std::vector<int> out;
+  int piece = 0;
+  for (int bucket = 0; bucket <= pieces; ++bucket) {
+    double const lower = axial.front() + (axial.back() - axial.front()) * bucket / pieces;
+    while (piece + 1 < pieces && axial[piece + 1] <= lower) ++piece;
+    out.push_back(piece);
+  }
+  return out;
+}
+
 }  // namespace
 
 RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
@@ -288,6 +301,7 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
   Slopes const slopes(points, std::max(noise, 4e-16 * size), size);
   profile.slope = slopes.all();
   profile.curvature = slopes.curvatures(profile.slope);
+  profile.bucket_piece = bucket_pieces(profile.axial);
   for (auto const& [a, r] : points) {
     profile.axial.push_back(a);
     profile.radius.push_back(r);

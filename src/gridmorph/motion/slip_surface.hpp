@@ -6,6 +6,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct RevolutionProfile {
   std::vector<double> radius;
   std::vector<double> slope;      ///< d radius / d axial at each point
   std::vector<double> curvature;  ///< second derivative at the lower and upper end of each piece
+  std::vector<int> bucket_piece;  ///< see ProfileView
   double deviation = 0;           ///< largest |radius - profile(axial)| over the points it was built from
 
   /// Sorts, merges near-duplicates, estimates slopes. Between kinks a slope is the derivative of the polynomial through
@@ -36,7 +38,13 @@ struct RevolutionProfile {
 
   /// Borrows the tables: valid on the host while this profile lives unchanged.
   [[nodiscard]] ProfileView view() const {
-    return {axial.data(), radius.data(), slope.data(), curvature.data(), int(axial.size())};
+    return {axial.data(),
+            radius.data(),
+            slope.data(),
+            curvature.data(),
+            int(axial.size()),
+            bucket_piece.data(),
+            std::max(0, int(bucket_piece.size()) - 1)};
   }
 };
 
@@ -62,6 +70,7 @@ template <class MemorySpace>
 struct SlipSurfaceTable {
   Kokkos::View<SlipSurfaceView*, MemorySpace> surfaces;
   Kokkos::View<double*, MemorySpace> tables;  ///< axial, radius, slope, curvature of each profile one after another
+  Kokkos::View<int*, MemorySpace> buckets;    ///< bucket_piece of each profile one after another
 
   SlipSurfaceTable() = default;
 
@@ -70,8 +79,15 @@ struct SlipSurfaceTable {
   SlipSurfaceTable(ExecutionSpace const& exec, std::vector<SlipSurface> const& host)
       : surfaces(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::surfaces"),
                  host.size()) {
-    std::size_t n = 0;
-    for (auto const& s : host) n += 3 * s.profile.axial.size() + s.profile.curvature.size();
+    std::size_t n = 0, n_buckets = 0;
+    for (auto const& s : host) {
+      n += 3 * s.profile.axial.size() + s.profile.curvature.size();
+      n_buckets += s.profile.bucket_piece.size();
+    }
+    buckets = Kokkos::View<int*, MemorySpace>(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::buckets"), n_buckets);
+    auto buckets_h = Kokkos::create_mirror_view(buckets);
+    std::size_t bucket_at = 0;
     tables = Kokkos::View<double*, MemorySpace>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::tables"), n);
     auto surfaces_h = Kokkos::create_mirror_view(surfaces);
@@ -88,10 +104,13 @@ struct SlipSurfaceTable {
       view.profile.radius = store(host[s].profile.radius);
       view.profile.slope = store(host[s].profile.slope);
       view.profile.curvature = store(host[s].profile.curvature);
+      view.profile.bucket_piece = buckets.data() + bucket_at;
+      for (int const piece : host[s].profile.bucket_piece) buckets_h(bucket_at++) = piece;
       surfaces_h(s) = view;
     }
     Kokkos::deep_copy(exec, surfaces, surfaces_h);
     Kokkos::deep_copy(exec, tables, tables_h);
+    Kokkos::deep_copy(exec, buckets, buckets_h);
     compat::fence(exec, "gridmorph::SlipSurfaceTable (host buffers end here)");
   }
 };

@@ -129,7 +129,7 @@ class Scheduler {
                    chains.end());
       // Chains that do not get in each other's way need no order among them.
       if (!independent(chains)) {
-        for (RankedChain& chain : chains) priority_.add_quality(chain);
+        priority_.add_quality(chains);
         priority_.sort(chains);
       }
       Claims claims(topology_, known_);

@@ -1,3 +1,4 @@
+#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
 #include <utility>
@@ -5,11 +6,16 @@
 namespace gridmorph {
 
 PreparedMorph prepare(Mesh& mesh, Motion const& motion, PlanOptions const& options) {
+  Stopwatch watch;
+  PreparedMorph::Seconds seconds;
   Links links = connect_and_check(mesh, options.topology);
+  seconds.topology = watch.lap();
   ResolvedMotion resolved = resolve(mesh, motion);
   SurfaceMotion surface(mesh, resolved);
+  seconds.rules = watch.lap();
   PlannedMorph planned = make_plan(mesh, links, resolved, surface, options);
-  return {std::move(links), std::move(resolved), std::move(surface), std::move(planned)};
+  seconds.plan = watch.lap();
+  return {std::move(links), std::move(resolved), std::move(surface), std::move(planned), seconds};
 }
 
 }  // namespace gridmorph

@@ -13,6 +13,13 @@ struct PreparedMorph {
   SurfaceMotion surface;
   PlannedMorph planned;
 
+  /// Wall-clock time of the three parts of prepare().
+  struct Seconds {
+    double topology = 0;  ///< interfaces and coverage of all faces
+    double rules = 0;     ///< which rule moves which patch, slip surfaces, blade rows
+    double plan = 0;      ///< blocks, chains, stages
+  } seconds{};
+
   [[nodiscard]] Plan const& plan() const { return planned.plan; }
   /// Displacements of Plan::boundary_nodes by the rules. Throws MotionError (see evaluate_boundary).
   [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& mesh) const {

@@ -6,39 +6,11 @@
 #include <numbers>
 #include <tuple>
 
+#include <gridmorph/plan/smallest_angle.hpp>
 #include <gridmorph/plan/stage_builder.hpp>
 
 namespace gridmorph {
 namespace {
-
-/// Largest cosine between grid edges of different directions that meet at a node, over all nodes and the edges inside the
-/// box: the cosine of the smallest angle of the faces of its cells.
-double largest_cosine(Mesh const& mesh, Zone const& zone, IndexRange const& r) {
-  double largest = -1;
-  auto const stride = zone.strides();
-  for (int k = r.begin[2]; k < r.end[2]; ++k)
-    for (int j = r.begin[1]; j < r.end[1]; ++j)
-      for (int i = r.begin[0]; i < r.end[0]; ++i) {
-        Index3 const p{i, j, k};
-        Index const n = zone.node(p);
-        Vec3 const here = mesh.coordinates[n];
-        Vec3 edge[6];
-        bool has[6];
-        for (int d = 0; d < 6; ++d) {
-          int const a = d / 2;
-          has[d] = d % 2 == 0 ? p[a] > r.begin[a] : p[a] + 1 < r.end[a];
-          if (!has[d]) continue;
-          edge[d] = mesh.coordinates[n + (d % 2 == 0 ? -stride[a] : stride[a])] - here;
-          double const length = norm(edge[d]);
-          has[d] = length > 0;
-          if (has[d]) edge[d] = (1 / length) * edge[d];
-        }
-        for (int d = 0; d < 6; ++d)
-          for (int e = (d / 2 + 1) * 2; e < 6; ++e)
-            if (has[d] && has[e]) largest = std::max(largest, dot(edge[d], edge[e]));
-      }
-  return largest;
-}
 
 struct Corners {
   Vec3 p[2][2][2];  ///< [s][a][b] end
@@ -72,24 +44,37 @@ Priority::Priority(Mesh const& mesh, Topology const& topology, VolumeOptions con
     if (rule.kind == PriorityRule::Kind::boundary) kind_order_ = rule.order;
 }
 
-double Priority::minimum_angle_deg(int block) {
-  double& angle = angle_of_block_[block];
-  if (angle < 0) {
-    double cosine = -1;
+void Priority::measure_angles(std::set<int> const& blocks) {
+  std::vector<NodeBox> boxes;
+  std::vector<int> block_of_box;
+  for (int const block : blocks) {
+    if (angle_of_block_[block] >= 0) continue;
     for (PlacedPiece const& placed : topology_.blocks[block].pieces) {
       Piece const& piece = topology_.lattice.pieces()[placed.piece];
-      cosine = std::max(cosine, largest_cosine(mesh_, mesh_.zones[piece.zone], piece.nodes));
+      boxes.push_back({piece.zone, piece.nodes});
+      block_of_box.push_back(block);
     }
-    angle = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
   }
-  return angle;
+  if (boxes.empty()) return;
+  std::vector<double> const cosine = largest_cosines(mesh_, boxes);
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    double const angle = std::acos(std::clamp(cosine[b], -1.0, 1.0)) * 180 / std::numbers::pi;
+    double& smallest = angle_of_block_[block_of_box[b]];
+    smallest = smallest < 0 ? angle : std::min(smallest, angle);
+  }
 }
 
-void Priority::add_quality(RankedChain& ranked) {
-  for (PriorityRule const& rule : options_.priority) {
-    if (rule.kind != PriorityRule::Kind::quality) continue;
+void Priority::add_quality(std::span<RankedChain> chains) {
+  bool const wanted = std::any_of(options_.priority.begin(), options_.priority.end(),
+                                  [](PriorityRule const& rule) { return rule.kind == PriorityRule::Kind::quality; });
+  if (!wanted) return;
+  std::set<int> blocks;
+  for (RankedChain const& ranked : chains)
+    for (ChainStep const& step : ranked.chain.steps) blocks.insert(step.block);
+  measure_angles(blocks);
+  for (RankedChain& ranked : chains) {
     double angle = 180;
-    for (ChainStep const& step : ranked.chain.steps) angle = std::min(angle, minimum_angle_deg(step.block));
+    for (ChainStep const& step : ranked.chain.steps) angle = std::min(angle, angle_of_block_[step.block]);
     ranked.quality = std::llround(angle * 1e6);
   }
 }

@@ -5,6 +5,8 @@
 #include <gridmorph/plan/options.hpp>
 
 #include <array>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,14 +23,15 @@ struct RankedChain {
 };
 
 /// Computes ranks; the quality of a block (smallest angle between cell edges on the baseline) is computed when first
-/// needed and kept. Cost of a block's quality: one pass over its cells.
+/// needed and kept. Cost of a block's quality: one pass over its nodes, in parallel over all blocks asked for at once.
 class Priority {
  public:
   Priority(Mesh const& mesh, Topology const& topology, VolumeOptions const& options, double mesh_size);
 
   /// Boundary rank and geometry; the quality only once it has to break a tie.
   [[nodiscard]] RankedChain rank(Chain chain) const;
-  void add_quality(RankedChain& chain);
+  void add_quality(std::span<RankedChain> chains);
+  void add_quality(RankedChain& chain) { add_quality(std::span(&chain, 1)); }
   /// Best first, by the rule groups in the user's order, then by place.
   void sort(std::vector<RankedChain>& chains) const;
   /// Equal in the boundary group (chains of one stage).
@@ -37,7 +40,7 @@ class Priority {
   [[nodiscard]] std::vector<std::string> const& kind_order() const { return kind_order_; }
 
  private:
-  double minimum_angle_deg(int block);
+  void measure_angles(std::set<int> const& blocks);
 
   Mesh const& mesh_;
   Topology const& topology_;

@@ -136,6 +136,10 @@ void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout
     any = any || (inside && junctions[m].known_across != 0);
   }
   if (!any) return;
+  for (int m = 0; m <= n_blocks; ++m) {
+    device.known_sides |= junctions[m].known_along;
+    if (m > 0 && (m < n_blocks || device.open_end)) device.known_sides |= junctions[m].known_across;
+  }
 
   SideTables& tables = stage.sides;
   device.first_side = std::int32_t(tables.sides.size());

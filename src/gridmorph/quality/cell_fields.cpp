@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/quality/detail/visit_chunks.hpp>
 #include <gridmorph/quality/detail/volume_ratio.hpp>
 
 #include <algorithm>
@@ -11,6 +12,7 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, Mesh const& mesh, QualityInput<typename Exec::memory_space> const& input,
     std::span<Measure const> measures) {
   using MemorySpace = typename Exec::memory_space;
+  using Policy = detail::CellPolicy<Exec>;
   using Field = Kokkos::View<double*, MemorySpace>;
   bool const against_baseline = input.baseline.x.extent(0) > 0;
   detail::check_size(mesh, input.coordinates, "coordinates to measure");
@@ -29,7 +31,7 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
 
   std::vector<int> const handedness =
       zone_handedness(exec, mesh, against_baseline ? input.baseline : input.coordinates);
-  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh, detail::cells_per_chunk<Exec>);
+  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
   auto const zones = detail::upload(exec, "gridmorph::quality::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
   auto const coordinates = input.coordinates;
@@ -38,40 +40,46 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
               det27 = fields[int(Measure::determinant_3x3x3)], angle = fields[int(Measure::minimum_angle_deg)],
               skewness = fields[int(Measure::equiangle_skewness)], volume = fields[int(Measure::volume)],
               ratio = fields[int(Measure::volume_ratio)], relative = fields[int(Measure::relative_displacement)];
-  Kokkos::parallel_for(
-      "gridmorph::cell_fields", Kokkos::RangePolicy<Exec>(exec, 0, int(table.size())), KOKKOS_LAMBDA(int c) {
-        detail::CellChunk const chunk = chunks(c);
-        detail::ZoneCells const zone = zones(chunk.zone);
-        detail::for_each_cell(chunk, [&](int i, int j, int k) {
-          Index const cell = zone.first_cell + i + j * zone.cell_stride(1) + k * zone.cell_stride(2);
-          HexCell const corners = detail::load_cell(coordinates, zone, i, j, k);
-          CellMeasures const m = cell_measures(corners, zone.handedness);
-          if (aspect_ratio.extent(0) > 0) aspect_ratio(cell) = m.aspect_ratio;
-          if (det8.extent(0) > 0) det8(cell) = m.determinant_2x2x2;
-          if (det27.extent(0) > 0) det27(cell) = m.determinant_3x3x3;
-          if (angle.extent(0) > 0) angle(cell) = m.minimum_angle_deg;
-          if (skewness.extent(0) > 0) skewness(cell) = m.equiangle_skewness;
-          if (volume.extent(0) > 0) volume(cell) = m.volume;
-          if (relative.extent(0) > 0) {
-            Vec3 const r = against_baseline ? relative_displacement(detail::load_cell(baseline, zone, i, j, k), corners)
-                                            : Vec3{0, 0, 0};
-            relative(cell) = larger(r.x, larger(r.y, r.z));
-          }
-        });
+  Kokkos::View<detail::NoResult*, MemorySpace> const nothing;
+  detail::visit_chunks(
+      exec, "gridmorph::cell_fields", chunks, nothing, KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::NoResult&) {
+        constexpr int lanes = Policy::lanes, length = Policy::row_length;
+        detail::ZoneCells const zone = zones(row.zone);
+        Index const cell = detail::first_cell(zone, row);
+        auto const write = [&](Field const& field, double const* values) {
+          if (field.extent(0) > 0)
+            for (int n = 0; n < row.count; ++n) field(cell + n) = values[n];
+        };
+        CellRow const now = detail::cell_row(coordinates, zone, row);
+        RowMeasures<length> m;
+        row_measures<lanes>(now, m);
+        write(aspect_ratio, m.aspect_ratio);
+        write(det8, m.determinant_2x2x2);
+        write(det27, m.determinant_3x3x3);
+        write(angle, m.minimum_angle_deg);
+        write(skewness, m.equiangle_skewness);
+        write(volume, m.volume);
+        if (relative.extent(0) > 0) {
+          double values[length];
+          if (against_baseline)
+            row_relative_displacements<lanes>(detail::cell_row(baseline, zone, row), now, values);
+          else
+            for (double& value : values) value = 0;
+          write(relative, values);
+        }
       });
 
   if (wanted(Measure::volume_ratio)) {
     auto const neighbours = detail::upload_neighbours(exec, mesh);
     Kokkos::View<double const*, MemorySpace> const volumes = volume;
-    Kokkos::parallel_for(
-        "gridmorph::cell_fields::volume_ratio", Kokkos::RangePolicy<Exec>(exec, 0, int(table.size())),
-        KOKKOS_LAMBDA(int c) {
-          detail::CellChunk const chunk = chunks(c);
-          detail::ZoneCells const zone = zones(chunk.zone);
-          detail::for_each_cell(chunk, [&](int i, int j, int k) {
-            Index const cell = zone.first_cell + i + j * zone.cell_stride(1) + k * zone.cell_stride(2);
-            ratio(cell) = detail::worst_volume_ratio(volumes, chunk.zone, zone, neighbours, i, j, k);
-          });
+    detail::visit_chunks(
+        exec, "gridmorph::cell_fields::volume_ratio", chunks, nothing,
+        KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::NoResult&) {
+          double values[Policy::row_length];
+          detail::ZoneCells const zone = zones(row.zone);
+          detail::worst_volume_ratios<Policy::row_length>(volumes, zone, neighbours, row, values);
+          Index const cell = detail::first_cell(zone, row);
+          for (int n = 0; n < row.count; ++n) ratio(cell + n) = values[n];
         });
   }
   compat::fence(exec, "gridmorph::cell_fields (temporary fields go away)");

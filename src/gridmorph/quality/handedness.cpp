@@ -1,34 +1,36 @@
 #include <gridmorph/core/instantiate.hpp>
-#include <gridmorph/quality/detail/zone_cells.hpp>
+#include <gridmorph/quality/detail/visit_chunks.hpp>
 
 namespace gridmorph {
+
+namespace {
+
+/// Positive minus negative Jacobians at corner (0, 0, 0) of some cells.
+struct Balance {
+  int count = 0;
+
+  KOKKOS_INLINE_FUNCTION void join(Balance const& other) { count += other.count; }
+};
+
+}  // namespace
 
 template <class Exec>
 std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
                                  CoordinateViews<typename Exec::memory_space> const& baseline) {
   detail::check_size(mesh, baseline, "coordinates for the handedness of zones");
   auto const zones = detail::upload(exec, "gridmorph::quality::zones", detail::zone_cells(mesh, {}));
-  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh, detail::cells_per_chunk<Exec>);
+  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
-  // Positive minus negative Jacobians at corner (0, 0, 0) of the cells of each chunk.
-  Kokkos::View<int*, typename Exec::memory_space> balance(
+  Kokkos::View<Balance*, typename Exec::memory_space> const balance(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::balance"), table.size());
-  Kokkos::parallel_for(
-      "gridmorph::zone_handedness", Kokkos::RangePolicy<Exec>(exec, 0, int(table.size())), KOKKOS_LAMBDA(int c) {
-        detail::CellChunk const chunk = chunks(c);
-        detail::ZoneCells const zone = zones(chunk.zone);
-        int count = 0;
-        detail::for_each_cell(chunk, [&](int i, int j, int k) {
-          HexEdges const e = hex_edges(detail::load_cell(baseline, zone, i, j, k));
-          double const jacobian = dot(cross(e.of[0][0], e.of[1][0]), e.of[2][0]);
-          count += (jacobian > 0 ? 1 : 0) - (jacobian < 0 ? 1 : 0);
-        });
-        balance(c) = count;
+  detail::visit_chunks(
+      exec, "gridmorph::zone_handedness", chunks, balance, KOKKOS_LAMBDA(detail::RowOfCells const& row, Balance& b) {
+        b.count += row_orientation(detail::cell_row(baseline, zones(row.zone), row));
       });
   auto const balance_h = detail::download(exec, balance);
 
   std::vector<Index> total(mesh.zones.size(), 0);
-  for (std::size_t c = 0; c < table.size(); ++c) total[table[c].zone] += balance_h(c);
+  for (std::size_t c = 0; c < table.size(); ++c) total[table[c].zone] += balance_h(c).count;
   std::vector<int> handedness(total.size());
   for (std::size_t z = 0; z < total.size(); ++z) handedness[z] = total[z] >= 0 ? 1 : -1;
   return handedness;

@@ -1,14 +1,22 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
-#include <gridmorph/quality/detail/zone_cells.hpp>
+#include <gridmorph/quality/detail/visit_chunks.hpp>
 
 namespace gridmorph {
 
 namespace {
 
-struct ChunkMinimum {
-  double value;
-  int cell[3];
+/// The smallest value of some cells, and of equal ones the first cell in order of i, j, k.
+struct SmallestCell {
+  double value = 2;  // above every determinant
+  int i = 0, j = 0, k = 0;
+
+  KOKKOS_INLINE_FUNCTION bool before(SmallestCell const& other) const {
+    return k != other.k ? k < other.k : j != other.j ? j < other.j : i < other.i;
+  }
+  KOKKOS_INLINE_FUNCTION void join(SmallestCell const& other) {
+    if (other.value < value || (other.value == value && other.before(*this))) *this = other;
+  }
 };
 
 }  // namespace
@@ -22,31 +30,28 @@ CellValue min_determinant(Exec const& exec, Mesh const& mesh,
     throw MeshError("smallest determinant: " + std::to_string(handedness.size()) +
                     " zones have a handedness, the mesh '" + mesh.source + "' has " +
                     std::to_string(mesh.zones.size()) + " zones; use zone_handedness()");
-  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh, boxes, detail::cells_per_chunk<Exec>);
+  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh, boxes);
   CellValue smallest;
   if (table.empty()) return smallest;
 
+  using Policy = detail::CellPolicy<Exec>;
   auto const zones = detail::upload(exec, "gridmorph::quality::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
-  Kokkos::View<ChunkMinimum*, typename Exec::memory_space> minima(
+  Kokkos::View<SmallestCell*, typename Exec::memory_space> const minima(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::minima"), table.size());
-  Kokkos::parallel_for(
-      "gridmorph::min_determinant", Kokkos::RangePolicy<Exec>(exec, 0, int(table.size())), KOKKOS_LAMBDA(int c) {
-        detail::CellChunk const chunk = chunks(c);
-        detail::ZoneCells const zone = zones(chunk.zone);
-        ChunkMinimum m{2, {0, 0, 0}};
-        detail::for_each_cell(chunk, [&](int i, int j, int k) {
-          double const d = determinant_3x3x3(detail::load_cell(coordinates, zone, i, j, k), zone.handedness);
-          if (d < m.value) m = {d, {i, j, k}};
-        });
-        minima(c) = m;
+  detail::visit_chunks(
+      exec, "gridmorph::min_determinant", chunks, minima,
+      KOKKOS_LAMBDA(detail::RowOfCells const& row, SmallestCell& smallest_of_chunk) {
+        double determinant[Policy::row_length], mark[Policy::row_length];
+        row_determinants<Policy::lanes>(detail::cell_row(coordinates, zones(row.zone), row), determinant, mark);
+        for (int n = 0; n < row.count; ++n)
+          if (determinant[n] < smallest_of_chunk.value) smallest_of_chunk = {determinant[n], row.i + n, row.j, row.k};
       });
   auto const minima_h = detail::download(exec, minima);
 
   for (std::size_t c = 0; c < table.size(); ++c) {
-    ChunkMinimum const& m = minima_h(c);
-    if (smallest.zone < 0 || m.value < smallest.value)
-      smallest = {m.value, table[c].zone, {m.cell[0], m.cell[1], m.cell[2]}};
+    SmallestCell const& m = minima_h(c);
+    if (smallest.zone < 0 || m.value < smallest.value) smallest = {m.value, table[c].zone, {m.i, m.j, m.k}};
   }
   return smallest;
 }

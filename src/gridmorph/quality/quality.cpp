@@ -38,7 +38,9 @@ std::vector<WallFace> wall_faces(Mesh const& mesh, std::span<int const> patches)
       }
     if (thin != 1) continue;
     int const last = mesh.zones[patch.zone].extent[axis] - 1, at = patch.range.begin[axis];
-    if (at == 0 || at == last) faces.push_back({patch.zone, patch.range, axis, at == 0 ? 0 : 1});
+    if (at == 0 || at == last)
+      faces.push_back({patch.zone, patch.range, axis, at == 0 ? 0 : 1,
+                       patch.families.empty() ? patch.name : patch.families.front()});
   }
   return faces;
 }

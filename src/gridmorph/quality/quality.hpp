@@ -80,9 +80,16 @@ struct WallQuality {
   NodeLocation orthogonality_change_worst;
 };
 
+/// The walls that an engineer knows by one name: a family or, without one, a BC name.
+struct WallGroup {
+  std::string name;
+  WallQuality quality;
+};
+
 struct QualityReport {
   QualityRegion near_field, far_field;
-  WallQuality wall;
+  WallQuality wall;                     ///< all walls together
+  std::vector<WallGroup> wall_groups;   ///< the same walls by group, in the order of QualityInput::walls
   std::vector<std::string> zone_names;  ///< for messages: MeasureStatistics::worst_zone is a number in it
   int left_handed_zones = 0;
   bool against_baseline = false;  ///< relative displacement and changes at walls were measured
@@ -107,10 +114,11 @@ struct WallFace {
   IndexRange range;
   int axis = 0;
   int side = 0;
+  std::string group = {};  ///< WallGroup::name it counts for
 };
 
 /// Faces of the given patches (numbers in Mesh::patches). Patches that lie on no zone face or are no wider than one node
-/// have no surface normal and are left out.
+/// have no surface normal and are left out. They are grouped by the first family of a patch, or its BC name without one.
 std::vector<WallFace> wall_faces(Mesh const& mesh, std::span<int const> patches);
 
 /// Number of the first cell of each zone, and of all cells at the end: cells are numbered zone after zone, i fastest.
@@ -138,9 +146,9 @@ std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
 /// Measures every cell and the walls. Returns numbers, so it fences.
 ///
 /// Throws MeshError when Views are shorter than the mesh, or a wall or interface lies outside its zone.
-/// Memory: 8 bytes per cell for volumes, below 1 byte per cell (5 on GPUs) for partial sums, 48 bytes per
+/// Memory: 8 bytes per cell for volumes, below 1 byte per cell for partial sums, 48 bytes per
 /// node of the largest wall face.
-/// Cost: one pass over the cells (about 1000 flops each), one over the volumes.
+/// Cost: one pass over the cells (about 1000 flops each, as many cells at once as the registers hold), one over the volumes.
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
                               QualityInput<typename Exec::memory_space> const& input);

@@ -44,8 +44,7 @@ json place_json(QualityReport const& report, NodeLocation const& location) {
   return {{"zone", report.zone_names.at(std::size_t(location.zone))}, {"node", one_based(location.node)}};
 }
 
-json wall_json(QualityReport const& report) {
-  WallQuality const& w = report.wall;
+json wall_json(QualityReport const& report, WallQuality const& w) {
   json walls = {{"nodes", w.nodes},
                 {"first_height",
                  {{"min", number(w.first_height_min)},
@@ -78,6 +77,7 @@ json definitions() {
   list["first_height"] = {{"formula",
                            "|v . n|, v from a wall node to the first node on the grid line that leaves the wall, "
                            "n the wall normal by differences of wall nodes"}};
+  list["groups"] = {{"formula", "the same by family of the wall patches, by BC name where they have none"}};
   list["orthogonality_deg"] = {{"formula", "angle between v and n in degrees; best 0"}};
   list["first_height_change"] = {{"formula", "|h / h_baseline - 1|"}};
   list["near_field"] = {{"formula", "the boundary-layer region of the moving walls; far_field: everything else"}};
@@ -91,7 +91,9 @@ void to_json(nlohmann::json& json, QualityReport const& report) {
   json = {{"near_field", region_json(report, report.near_field)},
           {"far_field", region_json(report, report.far_field)},
           {"left_handed_zones", report.left_handed_zones},
-          {"walls", wall_json(report)}};
+          {"walls", wall_json(report, report.wall)}};
+  nlohmann::json& groups = json["walls"]["groups"] = nlohmann::json::object();
+  for (WallGroup const& group : report.wall_groups) groups[group.name] = wall_json(report, group.quality);
 }
 
 nlohmann::json quality_json(QualityReport const& baseline, std::optional<QualityReport> const& morphed,

@@ -11,7 +11,7 @@
 namespace gridmorph {
 
 /// One report: {"near_field": {"cells", "inverted", ..., "measures": {"aspect_ratio": {"min", "mean", "max", "worst":
-/// {"value", "zone", "cell": [i, j, k]}}, ...}}, "far_field": ..., "walls": ...}. Indices are 1-based; values without
+/// {"value", "zone", "cell": [i, j, k]}}, ...}}, "far_field": ..., "walls": {"nodes", "first_height", ..., "groups": {name: the same per group}}}. Indices are 1-based; values without
 /// bound are null.
 void to_json(nlohmann::json& json, QualityReport const& report);
 

@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
+#include <initializer_list>
+#include <numeric>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace gridmorph {
@@ -78,6 +82,54 @@ void walls(std::string& out, QualityReport const& baseline, std::optional<Qualit
                      node_place(*morphed, morphed->wall.orthogonality_change_worst));
 }
 
+/// Groups for the terminal: all in their order or, where they are many, the worst first.
+std::vector<std::size_t> shown_groups(std::vector<WallGroup> const& groups, std::size_t limit) {
+  std::vector<std::size_t> order(groups.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  if (order.size() <= limit) return order;
+  auto const badness = [&](std::size_t g) {
+    WallQuality const& q = groups[g].quality;
+    return std::tuple(q.height_change_max, q.orthogonality_change_deg_max, q.orthogonality_deg_max);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return badness(a) > badness(b); });
+  order.resize(limit);
+  return order;
+}
+
+void wall_groups(std::string& out, QualityReport const& baseline, std::optional<QualityReport> const& morphed) {
+  constexpr std::size_t limit = 12, name_width = 23;
+  auto const& before = baseline.wall_groups;
+  auto const& now = morphed ? morphed->wall_groups : before;
+  if (before.size() < 2 || now.size() != before.size()) return;
+  auto const cells = [&](std::initializer_list<std::string> list, int width) {
+    for (std::string const& text : list) out += fmt::format("{:>{}}", text, width);
+    out += '\n';
+  };
+  out += fmt::format("\n{:<24}{:>9}", "By wall", "nodes");
+  if (morphed) {
+    cells({"first height, min", "line to normal, max", "largest change"}, 22);
+    out += fmt::format("{:33}", "");
+    cells({"baseline", "morphed", "baseline", "morphed", "height", "angle"}, 11);
+  } else {
+    cells({"first height, min", "line to normal, max"}, 22);
+  }
+  for (std::size_t const g : shown_groups(now, limit)) {
+    WallQuality const &b = before[g].quality, &m = now[g].quality;
+    std::string name = now[g].name;
+    if (name.size() > name_width) name = name.substr(0, name_width - 3) + "...";
+    out += fmt::format("{:<24}{:>9}", name, m.nodes);
+    auto const degrees = [](double angle) { return fmt::format("{:.3g} deg", angle); };
+    if (morphed)
+      cells({format_value(b.first_height_min), format_value(m.first_height_min), degrees(b.orthogonality_deg_max),
+             degrees(m.orthogonality_deg_max), fmt::format("{:.3g} %", 100 * m.height_change_max),
+             degrees(m.orthogonality_change_deg_max)},
+            11);
+    else
+      cells({format_value(m.first_height_min), degrees(m.orthogonality_deg_max)}, 22);
+  }
+  if (now.size() > limit) out += fmt::format("and {} more, in the JSON report\n", now.size() - limit);
+}
+
 void worst_cells(std::string& out, QualityReport const& report, std::string_view state) {
   out += fmt::format("\nWorst cells, {}\n", state);
   auto const region = [&](std::string_view name, QualityRegion const& r) {
@@ -116,6 +168,7 @@ std::string format_table(QualityReport const& baseline, std::optional<QualityRep
   if (morphed && morphed->against_baseline)
     measure_row(out, list, Measure::relative_displacement, "max", &MeasureStatistics::max);
   walls(out, baseline, morphed);
+  wall_groups(out, baseline, morphed);
   worst_cells(out, morphed ? *morphed : baseline, morphed ? "morphed" : "baseline");
 
   auto const list_short = shortfalls(baseline, morphed, thresholds);

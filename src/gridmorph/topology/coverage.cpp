@@ -46,7 +46,35 @@ bool lies_on(Mesh const& mesh, FaceCells const& face, IndexRange const& r) {
 /// Overlaps found while marking: (patch, other owner) -> first place.
 using Overlaps = std::map<std::pair<int, int>, IndexRange>;
 
-FaceCells mark(Mesh const& mesh, Links const& links, int zone, int axis, int side, Overlaps* overlaps) {
+/// Numbers of the patches of each zone.
+std::vector<std::vector<int>> patches_by_zone(Mesh const& mesh) {
+  std::vector<std::vector<int>> out(mesh.zones.size());
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) out[mesh.patches[p].zone].push_back(int(p));
+  return out;
+}
+
+/// Whether one patch or interface covers the face and nothing else lies on it: the rule in most meshes, and known without
+/// a look at single cells.
+bool has_one_owner(Mesh const& mesh, Links const& links, std::vector<int> const& patches, int zone, int axis,
+                   int side) {
+  int const plane = side == 0 ? 0 : mesh.zones[zone].extent[axis] - 1;
+  IndexRange whole{{0, 0, 0}, mesh.zones[zone].extent};
+  whole.begin[axis] = plane;
+  whole.end[axis] = plane + 1;
+  int on_face = 0;
+  bool covered = false;
+  auto const count = [&](IndexRange const& r) {
+    if (r.extent(axis) != 1 || r.begin[axis] != plane) return;
+    ++on_face;
+    covered = covered || r == whole;
+  };
+  for (int const l : links.of_zone[zone]) count(links.all[l].range);
+  for (int const p : patches) count(mesh.patches[p].range);
+  return covered && on_face == 1;
+}
+
+FaceCells mark(Mesh const& mesh, Links const& links, std::vector<int> const& patches, int zone, int axis, int side,
+               Overlaps* overlaps) {
   FaceCells face(mesh, zone, axis, side);
   auto cover = [&](IndexRange const& r, int who) {
     for (int b = r.begin[face.v]; b < r.end[face.v] - 1; ++b)
@@ -60,9 +88,8 @@ FaceCells mark(Mesh const& mesh, Links const& links, int zone, int axis, int sid
   };
   for (int l : links.of_zone[zone])
     if (lies_on(mesh, face, links.all[l].range)) cover(links.all[l].range, -2 - l);
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-    if (mesh.patches[p].zone == zone && lies_on(mesh, face, mesh.patches[p].range))
-      cover(mesh.patches[p].range, int(p));
+  for (int const p : patches)
+    if (lies_on(mesh, face, mesh.patches[p].range)) cover(mesh.patches[p].range, p);
   return face;
 }
 
@@ -158,8 +185,10 @@ void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& opt
     patch.kind = PatchKind::degenerate;
   }
   std::vector<Patch> added;
+  auto const patches = patches_by_zone(mesh);
   for_each_face(mesh, [&](int z, int axis, int side) {
-    FaceCells face = mark(mesh, links, z, axis, side, nullptr);
+    if (has_one_owner(mesh, links, patches[z], z, axis, side)) return;
+    FaceCells face = mark(mesh, links, patches[z], z, axis, side, nullptr);
     for (IndexRange const& r : open_rectangles(mesh, face)) {
       bool const pole = is_collapsed(mesh, z, r, links.mesh_size);
       if (!pole && options.open_faces.empty()) continue;
@@ -178,9 +207,11 @@ void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& opt
 void check_coverage(Mesh const& mesh, Links const& links) {
   check_patch_ranges(mesh);
   Problems problems;
+  auto const patches = patches_by_zone(mesh);
   for_each_face(mesh, [&](int z, int axis, int side) {
+    if (has_one_owner(mesh, links, patches[z], z, axis, side)) return;
     Overlaps overlaps;
-    FaceCells face = mark(mesh, links, z, axis, side, &overlaps);
+    FaceCells face = mark(mesh, links, patches[z], z, axis, side, &overlaps);
     for (auto const& [who, where] : overlaps) {
       std::string const other = who.second >= 0
                                     ? "patch " + describe_patch(mesh, mesh.patches[who.second])

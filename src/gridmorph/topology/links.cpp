@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/topology/links.hpp>
 
 #include <algorithm>
@@ -163,25 +164,26 @@ Links connect(Mesh const& mesh, TopologyOptions const& options) {
 Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& problems) {
   Links links;
   links.of_zone.resize(mesh.zones.size());
-  links.mesh_size = mesh.size();
-  for (Index n = 0; n < mesh.coordinates.size(); ++n)
-    if (!std::isfinite(norm(mesh.coordinates[n])))
+  MeshExtent const extent = extent_of(mesh.coordinates);
+  links.mesh_size = extent.size();
+  for (Index n = 0; !extent.finite && n < mesh.coordinates.size(); ++n)
+    if (Vec3 const p = mesh.coordinates[n]; !std::isfinite(p.x + p.y + p.z))
       throw MeshError(mesh.source + ": " + describe_node(mesh, n) + " is not finite; repair the mesh first");
 
   for (std::size_t f = 0; f < mesh.interfaces.size(); ++f) {
     Interface1to1 const& face = mesh.interfaces[f];
-    std::string const name = describe_interface(mesh, face);
+    auto const name = [&] { return describe_interface(mesh, face); };
     if (face.donor_zone < 0 || face.donor_zone >= int(mesh.zones.size())) {
-      problems.add(name + ": its donor zone does not exist; correct the connection");
+      problems.add(name() + ": its donor zone does not exist; correct the connection");
       continue;
     }
     if (!within(mesh.zones[face.zone], face.range) || !on_one_face(mesh.zones[face.zone], face.range)) {
-      problems.add(name + ": the range is not on a face of its zone; correct the connection");
+      problems.add(name() + ": the range is not on a face of its zone; correct the connection");
       continue;
     }
     IndexRange const image = face.to_donor(face.range);
     if (!within(mesh.zones[face.donor_zone], image) || !on_one_face(mesh.zones[face.donor_zone], image)) {
-      problems.add(name + ": the donor range " + to_string(image) + " is not on a face of zone '" +
+      problems.add(name() + ": the donor range " + to_string(image) + " is not on a face of zone '" +
                    mesh.zones[face.donor_zone].name + "'; correct the connection");
       continue;
     }
@@ -205,9 +207,10 @@ Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& proble
     double const tolerance =
         options.matching_tolerance > 0 ? options.matching_tolerance : (single ? 1e-6 : 1e-8) * links.mesh_size;
     if (!(worst.distance <= tolerance))
-      problems.add(name + ": its points do not coincide with the donor's: " + describe_node(mesh, worst.own) + " and " +
-                   describe_node(mesh, worst.donor) + " are " + format_length(worst.distance) + " apart (tolerance " +
-                   format_length(tolerance) + "); raise matching_tolerance if that is how the mesh was made");
+      problems.add(name() + ": its points do not coincide with the donor's: " + describe_node(mesh, worst.own) +
+                   " and " + describe_node(mesh, worst.donor) + " are " + format_length(worst.distance) +
+                   " apart (tolerance " + format_length(tolerance) +
+                   "); raise matching_tolerance if that is how the mesh was made");
     int const forward = int(links.all.size());
     links.all.push_back(link);
     links.of_zone[link.zone].push_back(forward);

@@ -89,21 +89,13 @@ void collect_parts(std::vector<VolumePart> const& parts, Shift const& shift,
   }
 }
 
-/// Baseline positions of slip ends.
-template <class Memory>
-struct EndPositions {
-  Kokkos::View<kernels::SlipEnd const*, Memory> ends;
-  kernels::Field<double const> x;
-  Kokkos::View<Vec3*, Memory> positions;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { positions(n) = x[ends(n).node]; }
-};
-
 }  // namespace
 
 template <class Exec>
 DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<double const> x, int n_fields)
     : fields(n_fields) {
   using Range = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>;
+  surfaces = SlipSurfaceTable<Memory>(exec, plan.surfaces);
   JoinedTables joined;
   std::vector<std::vector<kernels::VolumeTerm>> of_box(plan.boxes.size());
   auto copies = [&](std::vector<kernels::NodeCopy> const& list, char const* what) {
@@ -137,10 +129,11 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     std::vector<kernels::SlipEnd> slip_ends = pass.ends;
     for (kernels::SlipEnd& end : slip_ends) end.value += shift.end_value;
     device.ends = upload(exec, slip_ends, "slip_ends");
-    device.positions = Kokkos::View<Vec3*, Memory>(
-        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::slip_positions"), slip_ends.size());
-    Kokkos::parallel_for("gridmorph::slip_positions", Range(exec, 0, Index(slip_ends.size())),
-                         EndPositions<Memory>{device.ends, x, device.positions});
+    device.baselines = Kokkos::View<kernels::SlipEndBaseline*, Memory>(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::slip_ends::baselines"),
+        slip_ends.size());
+    Kokkos::parallel_for("gridmorph::slip_ends::baselines", Range(exec, 0, Index(slip_ends.size())),
+                         kernels::SlipEndBaselines<Memory>{device.ends, surfaces.surfaces, x, device.baselines});
     device.sweeps = sweeps(shifted(pass.sweeps, shift));
     device.first_value = shift.end_value;
     device.n_values = pass.lines.n_end_values;
@@ -162,9 +155,12 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   sides.sides = upload(exec, joined.sides.sides, "sides");
   sides.junctions = upload(exec, joined.sides.junctions, "junctions");
   sides.t = upload(exec, joined.sides.t, "side_parameters");
+  std::vector<double> per_t(joined.sides.t.size(), 0);
+  for (std::size_t n = 0; n + 1 < per_t.size(); ++n)
+    if (double const step = joined.sides.t[n + 1] - joined.sides.t[n]; step > 0) per_t[n] = 1 / step;
+  sides.per_t = upload(exec, per_t, "side_parameters::inverse_steps");
   sides.section = upload(exec, joined.sides.section, "section_parameters");
   rotations = upload(exec, plan.rotations, "rotations");
-  surfaces = SlipSurfaceTable<Memory>(exec, plan.surfaces);
   boundary_slots = upload(exec, plan.boundary_slots, "boundary_slots");
   boundary_projections = copies(plan.boundary_projections, "boundary_projections");
   skeleton_nodes = copies(plan.skeleton_nodes, "skeleton_nodes");

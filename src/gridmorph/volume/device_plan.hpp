@@ -75,7 +75,7 @@ template <class Exec>
 struct DeviceSpread {
   using Memory = typename Exec::memory_space;
   Kokkos::View<kernels::SlipEnd*, Memory> ends;
-  Kokkos::View<Vec3*, Memory> positions;  ///< baseline, per end
+  Kokkos::View<kernels::SlipEndBaseline*, Memory> baselines;  ///< per end
   WorkList<kernels::SkeletonSweep, Memory> sweeps;
   Index first_value = 0, n_values = 0;
 };

@@ -86,7 +86,7 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
            ZeroField{{end_values.x + first, end_values.y + first, end_values.z + first}});
     launch(
         "gridmorph::slip_ends", exec, Index(pass.ends.extent(0)),
-        kernels::SlipEndValues<MemorySpace, Rate>{pass.ends, pass.positions, this->surfaces.surfaces, this->rotations,
+        kernels::SlipEndValues<MemorySpace, Rate>{pass.ends, pass.baselines, this->surfaces.surfaces, this->rotations,
                                                   this->skeleton.read()[of], this->skeleton.read()[f], end_values});
   }
 

@@ -49,7 +49,8 @@ void TableReader::problem(std::string const& key, std::string const& text) {
 
 void TableReader::require(std::string const& key, std::string_view what_to_write) {
   if (find(key) == nullptr)
-    context_->problem(line_, fmt::format("{}: key '{}' is missing; add {}", name_, key, what_to_write));
+    context_->problem(
+        line_, fmt::format("{}{}key '{}' is missing; add {}", name_, name_.empty() ? "" : ": ", key, what_to_write));
 }
 
 std::optional<std::string> TableReader::string(std::string const& key) {

@@ -215,9 +215,6 @@ Vec3 RowMotion::follow(Vec3 const& point) const {
   MeridionalPoint const p = frame_.meridional(point);
   double const h = annulus_.span(p);
   CylindricalMotion m = follow_motion(p, h);
-  if (annulus_.has_walls())
-    // A blade whose ends depart from the end walls must not take the periodics off them.
-    m.radial -= (1 - h) * follow_motion(p, 0).radial + h * follow_motion(p, 1).radial;
   m.radial += annulus_.radius_change(p, m.axial);
   return frame_.displacement(point, m);
 }

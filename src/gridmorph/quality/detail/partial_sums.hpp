@@ -3,6 +3,7 @@
 
 #include <gridmorph/quality/detail/zone_cells.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace gridmorph::detail {
@@ -10,14 +11,60 @@ namespace gridmorph::detail {
 /// One measure over some cells.
 struct PartialMeasure {
   double sum = 0, min = unbounded, max = -unbounded;
-  Index worst_cell = -1;  ///< number in the mesh
+  Index worst_cell = -1;  ///< number in the mesh, the first one of equals
 
-  KOKKOS_INLINE_FUNCTION void add(double value, Index cell, bool larger_is_worse) {
-    sum += value;
-    bool const worst = larger_is_worse ? value > max : value < min;
-    if (worst || worst_cell < 0) worst_cell = cell;
-    min = smaller(min, value);
-    max = larger(max, value);
+  /// Adds values of consecutive cells, the first one of them `cell`. Sums are made in `partial_sums` parts, so that they
+  /// do not depend on the number of lanes.
+  template <int W>
+  KOKKOS_INLINE_FUNCTION void add(double const* value, int count, Index cell, bool larger_is_worse) {
+    double total = 0, least = unbounded, largest = -unbounded;
+    int n = 0;
+    if constexpr (W > 1) {
+      constexpr int partial_sums = 8;
+      static_assert(partial_sums % W == 0);
+      if (count >= partial_sums) {
+        using T = Lanes<W>;
+        T sums[partial_sums / W] = {}, low = broadcast<T>(unbounded), high = -low;
+        for (; n + partial_sums <= count; n += partial_sums)
+          for (int p = 0; p < partial_sums / W; ++p) {
+            T const v = load_lanes<T>(value + n + p * W);
+            sums[p] += v;
+            low = smaller(low, v);
+            high = larger(high, v);
+          }
+        for (int p = 0; p < partial_sums; ++p) total += sums[p / W][p % W];
+        for (int p = 0; p < W; ++p) {
+          least = smaller(least, double(low[p]));
+          largest = larger(largest, double(high[p]));
+        }
+      }
+    }
+    for (; n < count; ++n) {
+      total += value[n];
+      least = smaller(least, value[n]);
+      largest = larger(largest, value[n]);
+    }
+    bool const worse = larger_is_worse ? largest > max : least < min;
+    if (worse || worst_cell < 0) {
+      double const worst = larger_is_worse ? largest : least;
+      int at = 0;
+      while (at + 1 < count && value[at] != worst) ++at;
+      worst_cell = cell + at;
+    }
+    sum += total;
+    min = smaller(min, least);
+    max = larger(max, largest);
+  }
+
+  /// Adds another part of the same cells' chunk.
+  KOKKOS_INLINE_FUNCTION void join(PartialMeasure const& other, bool larger_is_worse) {
+    if (other.worst_cell < 0) return;
+    double const own = larger_is_worse ? -max : min, others = larger_is_worse ? -other.max : other.min;
+    if (worst_cell < 0 || others < own || (others == own && other.worst_cell < worst_cell))
+      worst_cell = other.worst_cell;
+    sum += other.sum;
+    min = smaller(min, other.min);
+    max = larger(max, other.max);
   }
 };
 
@@ -26,14 +73,52 @@ struct PartialRegion {
   int cells = 0, inverted = 0, newly_inverted = 0, collapsed = 0;
   PartialMeasure measure[n_measures];
 
-  KOKKOS_INLINE_FUNCTION void add(Measure m, double value, Index cell) {
-    measure[int(m)].add(value, cell, larger_is_worse(m));
+  template <int W>
+  KOKKOS_INLINE_FUNCTION void add(Measure m, double const* value, int count, Index cell) {
+    measure[int(m)].template add<W>(value, count, cell, larger_is_worse(m));
+  }
+  KOKKOS_INLINE_FUNCTION void join(PartialRegion const& other) {
+    cells += other.cells;
+    inverted += other.inverted;
+    newly_inverted += other.newly_inverted;
+    collapsed += other.collapsed;
+    for (int m = 0; m < int(n_measures); ++m) measure[m].join(other.measure[m], larger_is_worse(Measure(m)));
   }
 };
 
 struct PartialSums {
   PartialRegion region[2];
+
+  KOKKOS_INLINE_FUNCTION void join(PartialSums const& other) {
+    for (int r = 0; r < 2; ++r) region[r].join(other.region[r]);
+  }
 };
+
+/// The volume ratio of both regions: it has a pass of its own, when all volumes are known.
+struct VolumeRatios {
+  PartialMeasure region[2];
+
+  KOKKOS_INLINE_FUNCTION void join(VolumeRatios const& other) {
+    for (int r = 0; r < 2; ++r) region[r].join(other.region[r], larger_is_worse(Measure::volume_ratio));
+  }
+};
+
+/// Calls f(region, begin, end) for the runs of cells begin <= n < end of a row that lie in one region. mask: nonzero in
+/// the near field, from the first cell of the row on; null where there is none.
+template <class Function>
+KOKKOS_INLINE_FUNCTION void for_each_region_run(std::uint8_t const* mask, int count, Function const& f) {
+  if (mask == nullptr) {
+    f(1, 0, count);
+    return;
+  }
+  for (int begin = 0; begin < count;) {
+    bool const near_field = mask[begin] != 0;
+    int end = begin + 1;
+    while (end < count && (mask[end] != 0) == near_field) ++end;
+    f(near_field ? 0 : 1, begin, end);
+    begin = end;
+  }
+}
 
 /// Adds the chunks in order and turns cell numbers into zones and indices. sums: as many as chunks.
 void combine(Mesh const& mesh, std::vector<CellChunk> const& chunks, PartialSums const* sums, QualityRegion& near_field,

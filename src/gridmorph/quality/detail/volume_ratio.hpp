@@ -39,41 +39,70 @@ Neighbours<typename Exec::memory_space> upload_neighbours(Exec const& exec, Mesh
           upload(exec, "gridmorph::quality::interface_first", table.first)};
 }
 
-/// Larger / smaller volume of two neighbours; unbounded unless both are positive.
-KOKKOS_INLINE_FUNCTION double volume_ratio(double a, double b) {
-  return a > 0 && b > 0 ? larger(a, b) / smaller(a, b) : unbounded;
+/// Smallest and largest volume of the cells of a row and their neighbours so far.
+template <int N>
+struct VolumeRange {
+  double least[N], largest[N];
+
+  /// Takes in the neighbours of the cells begin <= n < end: those of `begin` at `volume`, and on in steps of `stride`.
+  KOKKOS_INLINE_FUNCTION void add(double const* volume, Index stride, int begin, int end) {
+    if (stride == 1)
+      for (int n = begin; n < end; ++n) take(n, volume[n - begin]);
+    else
+      for (int n = begin; n < end; ++n) take(n, volume[(n - begin) * stride]);
+  }
+
+ private:
+  KOKKOS_FORCEINLINE_FUNCTION void take(int n, double volume) {
+    least[n] = smaller(least[n], volume);
+    largest[n] = larger(largest[n], volume);
+  }
+};
+
+/// Neighbours behind the interfaces of the row's zone.
+template <int N, class MemorySpace>
+KOKKOS_INLINE_FUNCTION void add_interface_neighbours(Kokkos::View<double const*, MemorySpace> const& volumes,
+                                                     Neighbours<MemorySpace> const& neighbours, RowOfCells const& row,
+                                                     VolumeRange<N>& range) {
+  for (int f = neighbours.first(row.zone); f < neighbours.first(row.zone + 1); ++f) {
+    InterfaceCells const& c = neighbours.cells(f);
+    if (row.j < c.begin[1] || row.j >= c.end[1] || row.k < c.begin[2] || row.k >= c.end[2]) continue;
+    int const begin = c.begin[0] > row.i ? c.begin[0] : row.i;
+    int const end = c.end[0] < row.i + row.count ? c.end[0] : row.i + row.count;
+    if (begin >= end) continue;
+    Index const donor =
+        c.donor_offset + begin * c.donor_stride[0] + row.j * c.donor_stride[1] + row.k * c.donor_stride[2];
+    range.add(volumes.data() + donor, c.donor_stride[0], begin - row.i, end - row.i);
+  }
 }
 
-/// Largest volume ratio of cell (i, j, k) to its face neighbours; 1 for a cell without any.
-template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION double worst_volume_ratio(Kokkos::View<double const*, MemorySpace> const& volumes,
-                                                 int zone_number, ZoneCells const& zone,
-                                                 Neighbours<MemorySpace> const& neighbours, int i, int j, int k) {
-  int const p[3] = {i, j, k};
-  Index const own = zone.first_cell + i + j * zone.cell_stride(1) + k * zone.cell_stride(2);
-  double const volume = volumes(own);
-  double worst = 1;
-  bool on_face = false;
-  for (int a = 0; a < 3; ++a) {
-    if (p[a] > 0)
-      worst = larger(worst, volume_ratio(volume, volumes(own - zone.cell_stride(a))));
-    else
-      on_face = true;
-    if (p[a] < zone.extent[a] - 1)
-      worst = larger(worst, volume_ratio(volume, volumes(own + zone.cell_stride(a))));
-    else
-      on_face = true;
+/// ratio[n]: largest ratio of larger to smaller volume between cell n of the row and its face neighbours; 1 for a cell
+/// without any, unbounded unless all volumes are positive. The ratio to one neighbour grows with the distance of its
+/// volume, so only the smallest and the largest are divided. N: the greatest length of rows.
+template <int N, class MemorySpace>
+KOKKOS_INLINE_FUNCTION void worst_volume_ratios(Kokkos::View<double const*, MemorySpace> const& volumes,
+                                                ZoneCells const& zone, Neighbours<MemorySpace> const& neighbours,
+                                                RowOfCells const& row, double* ratio) {
+  double const* const own = volumes.data() + first_cell(zone, row);
+  VolumeRange<N> range;
+  for (int n = 0; n < row.count; ++n) range.least[n] = range.largest[n] = own[n];
+  bool const at_begin = row.i == 0, at_end = row.i + row.count == zone.extent[0];
+  if (!at_begin) range.add(own - 1, 1, 0, 1);
+  range.add(own, 1, 1, row.count);
+  range.add(own + 1, 1, 0, row.count - 1);
+  if (!at_end) range.add(own + row.count, 1, row.count - 1, row.count);
+  int const p[3] = {row.i, row.j, row.k};
+  bool on_face = at_begin || at_end;
+  for (int a = 1; a < 3; ++a) {
+    if (p[a] > 0) range.add(own - zone.cell_stride(a), 1, 0, row.count);
+    if (p[a] < zone.extent[a] - 1) range.add(own + zone.cell_stride(a), 1, 0, row.count);
+    on_face = on_face || p[a] == 0 || p[a] == zone.extent[a] - 1;
   }
-  if (!on_face) return worst;
-  for (int n = neighbours.first(zone_number); n < neighbours.first(zone_number + 1); ++n) {
-    InterfaceCells const& c = neighbours.cells(n);
-    bool inside = true;
-    for (int a = 0; a < 3; ++a) inside = inside && p[a] >= c.begin[a] && p[a] < c.end[a];
-    if (!inside) continue;
-    Index const donor = c.donor_offset + p[0] * c.donor_stride[0] + p[1] * c.donor_stride[1] + p[2] * c.donor_stride[2];
-    worst = larger(worst, volume_ratio(volume, volumes(donor)));
+  if (on_face) add_interface_neighbours(volumes, neighbours, row, range);
+  for (int n = 0; n < row.count; ++n) {
+    double const worst = larger(own[n] / range.least[n], range.largest[n] / own[n]);
+    ratio[n] = range.least[n] > 0 ? worst : unbounded;
   }
-  return worst;
 }
 
 }  // namespace gridmorph::detail

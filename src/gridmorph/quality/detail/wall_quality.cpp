@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace gridmorph::detail {
 
@@ -102,12 +103,13 @@ struct WallSums {
 }  // namespace
 
 template <class Exec>
-WallQuality wall_quality(Exec const& exec, Mesh const& mesh,
-                         CoordinateViews<typename Exec::memory_space> const& coordinates,
-                         CoordinateViews<typename Exec::memory_space> const& baseline,
-                         std::vector<WallFace> const& walls) {
+WallQualities wall_quality(Exec const& exec, Mesh const& mesh,
+                           CoordinateViews<typename Exec::memory_space> const& coordinates,
+                           CoordinateViews<typename Exec::memory_space> const& baseline,
+                           std::vector<WallFace> const& walls) {
   bool const against_baseline = baseline.x.extent(0) > 0;
-  WallSums sums;
+  WallSums all;
+  std::vector<std::pair<std::string, WallSums>> groups;
   for (WallFace const& face : walls) {
     WallGrid const wall = wall_grid(mesh, face);
     Index const n = wall.extent[0] * wall.extent[1];
@@ -122,19 +124,25 @@ WallQuality wall_quality(Exec const& exec, Mesh const& mesh,
           if (against_baseline) pair.before = wall_node_at(baseline, wall, p, q);
           nodes(m) = pair;
         });
+    auto group = std::find_if(groups.begin(), groups.end(), [&](auto const& g) { return g.first == face.group; });
+    if (group == groups.end()) group = groups.insert(group, {face.group, {}});
     auto const nodes_h = download(exec, nodes);
     Index const first = wall.first;
     for (Index m = 0; m < n; ++m) {
       Index const node = first + m % wall.extent[0] * wall.stride[0] + m / wall.extent[0] * wall.stride[1];
-      sums.add(nodes_h(m), {face.zone, mesh.zones[face.zone].index(node)}, against_baseline);
+      NodeLocation const where{face.zone, mesh.zones[face.zone].index(node)};
+      all.add(nodes_h(m), where, against_baseline);
+      group->second.add(nodes_h(m), where, against_baseline);
     }
   }
-  return sums.result();
+  WallQualities out{all.result(), {}};
+  for (auto const& [name, sums] : groups) out.groups.push_back({name, sums.result()});
+  return out;
 }
 
-#define GRIDMORPH_INSTANTIATE(Exec)                                                                       \
-  template WallQuality wall_quality(Exec const&, Mesh const&, CoordinateViews<Exec::memory_space> const&, \
-                                    CoordinateViews<Exec::memory_space> const&, std::vector<WallFace> const&);
+#define GRIDMORPH_INSTANTIATE(Exec)                                                                         \
+  template WallQualities wall_quality(Exec const&, Mesh const&, CoordinateViews<Exec::memory_space> const&, \
+                                      CoordinateViews<Exec::memory_space> const&, std::vector<WallFace> const&);
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE
 

@@ -7,11 +7,16 @@
 
 namespace gridmorph::detail {
 
-/// WallQuality over the faces; baseline Views may be empty.
+struct WallQualities {
+  WallQuality all;
+  std::vector<WallGroup> groups;
+};
+
+/// WallQuality over the faces, all and group by group; baseline Views may be empty.
 template <class Exec>
-WallQuality wall_quality(Exec const& exec, Mesh const& mesh,
-                         CoordinateViews<typename Exec::memory_space> const& coordinates,
-                         CoordinateViews<typename Exec::memory_space> const& baseline,
-                         std::vector<WallFace> const& walls);
+WallQualities wall_quality(Exec const& exec, Mesh const& mesh,
+                           CoordinateViews<typename Exec::memory_space> const& coordinates,
+                           CoordinateViews<typename Exec::memory_space> const& baseline,
+                           std::vector<WallFace> const& walls);
 
 }  // namespace gridmorph::detail

@@ -19,7 +19,7 @@ std::vector<ZoneCells> zone_cells(Mesh const& mesh, std::span<int const> handedn
 
 namespace {
 
-void append_chunks(std::vector<CellChunk>& chunks, CellBox const& box, Index size) {
+void append_chunks(std::vector<CellChunk>& chunks, CellBox const& box) {
   CellChunk chunk;
   chunk.zone = box.zone;
   for (int a = 0; a < 3; ++a) {
@@ -27,25 +27,25 @@ void append_chunks(std::vector<CellChunk>& chunks, CellBox const& box, Index siz
     chunk.box_extent[a] = box.cells.extent(a);
   }
   Index const n = box.cells.size();
-  for (Index begin = 0; begin < n; begin += size) {
+  for (Index begin = 0; begin < n; begin += cells_per_chunk) {
     chunk.begin = begin;
-    chunk.end = std::min(begin + size, n);
+    chunk.end = std::min(begin + cells_per_chunk, n);
     chunks.push_back(chunk);
   }
 }
 
 }  // namespace
 
-std::vector<CellChunk> chunks_of(Mesh const& mesh, Index size) {
+std::vector<CellChunk> chunks_of(Mesh const& mesh) {
   std::vector<CellChunk> chunks;
   for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
     auto const& n = mesh.zones[z].extent;
-    append_chunks(chunks, {int(z), {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}}, size);
+    append_chunks(chunks, {int(z), {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}});
   }
   return chunks;
 }
 
-std::vector<CellChunk> chunks_of(Mesh const& mesh, std::span<CellBox const> boxes, Index size) {
+std::vector<CellChunk> chunks_of(Mesh const& mesh, std::span<CellBox const> boxes) {
   std::vector<CellChunk> chunks;
   for (CellBox const& box : boxes) {
     if (box.zone < 0 || box.zone >= int(mesh.zones.size()))
@@ -57,7 +57,7 @@ std::vector<CellChunk> chunks_of(Mesh const& mesh, std::span<CellBox const> boxe
         throw MeshError("zone '" + zone.name + "': the cell box " + to_string(box.cells) + " does not lie within the " +
                         std::to_string(zone.extent[0] - 1) + " x " + std::to_string(zone.extent[1] - 1) + " x " +
                         std::to_string(zone.extent[2] - 1) + " cells of the zone");
-    append_chunks(chunks, box, size);
+    append_chunks(chunks, box);
   }
   return chunks;
 }

@@ -1,0 +1,173 @@
+// The whole workflow of the paper's turbomachinery example (its Figure 11) on the demo passage.
+//
+//   workflow    line parameters and one morph in place: what a program that morphs once pays
+//   plan_made   the Morpher alone: tables, workspace, line parameters           32 bytes per line parameter
+//   apply       a kept plan in place                              48 bytes per node, 8 per line parameter
+//   apply_to    the same into other arrays                        48 bytes per node, 8 per line parameter
+//   displace    displacements only                                24 bytes per node, 8 per line parameter
+//   displace_4  four displacement fields at once                  96 bytes per node, 8 per line parameter
+//
+// Bytes are those that must move at least; "share" compares with an in-place update, so stores that first read the line
+// they write (apply_to, displace) count as what they are: slower.
+#include "bench.hpp"
+#include "roof.hpp"
+
+#include <gridmorph/demo/passage.hpp>
+#include <gridmorph/demo/passage_motion.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/volume/morpher.hpp>
+
+#include <memory>
+
+namespace gridmorph::bench {
+namespace {
+
+struct Passage {
+  PassageOptions options;
+  Mesh mesh;
+  PreparedMorph prepared;
+  std::vector<Vec3> boundary;
+  Index n_parameters = 0;
+
+  explicit Passage(std::int64_t nodes)
+      : options(of_size(nodes)),
+        mesh(make_passage(options)),
+        prepared(plan(options, mesh)),
+        boundary(prepared.boundary_displacement(mesh)) {
+    for (Stage const& stage : prepared.plan().stages) n_parameters += stage.lines.n_parameters;
+    for (SpreadPass const& pass : prepared.plan().spreads) n_parameters += pass.lines.n_parameters;
+  }
+  static PassageOptions of_size(std::int64_t nodes) {
+    PassageOptions options;
+    options.nodes = std::max<std::int64_t>(nodes, 10'000);
+    return options;
+  }
+  static PreparedMorph plan(PassageOptions const& options, Mesh& mesh) {
+    PassageMotion const section = rotated_sections();
+    Motion motion;
+    motion.axis = {{0, 0, 0}, {1, 0, 0}};
+    FunctionRule const blade{"rotated sections", [=](std::span<Vec3 const> points, std::span<Vec3> u) {
+                               for (std::size_t n = 0; n < points.size(); ++n)
+                                 u[n] = passage_displacement(options, section, points[n]);
+                             }};
+    motion.rules = {{{"blade"}, blade, 0, "blade"},
+                    {{"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}, 0, "slide"},
+                    {{"type:periodic"}, FollowRule{{"blade"}}, 0, "follow"},
+                    {{"hub", "case"}, SlipRule{SlipRule::Surface::revolution}, 0, "slip"}};
+    PlanOptions plan;
+    plan.boundary_layers = {{{"blade"}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::translate}};
+    return prepare(mesh, motion, plan);
+  }
+  [[nodiscard]] double parameters_per_node() const { return double(n_parameters) / double(mesh.n_nodes()); }
+};
+
+/// One passage at a time: the large ones take gigabytes.
+Passage const& passage(std::int64_t nodes) {
+  static std::unique_ptr<Passage> kept;
+  static std::int64_t kept_nodes = -1;
+  static bool const cleared_in_time = [] {
+    Kokkos::push_finalize_hook([] { kept.reset(); });
+    return true;
+  }();
+  (void)cleared_in_time;
+  if (kept_nodes != nodes) {
+    kept.reset();
+    kept = std::make_unique<Passage>(nodes);
+    kept_nodes = nodes;
+  }
+  return *kept;
+}
+
+template <class ExecutionSpace>
+struct OnDevice {
+  using Memory = typename ExecutionSpace::memory_space;
+  using View = Kokkos::View<double*, Memory>;
+  View x, y, z;
+  Kokkos::View<Vec3*, Memory> boundary;
+
+  OnDevice(ExecutionSpace const& exec, Passage const& p)
+      : x("gridmorph::bench::x", p.mesh.n_nodes()),
+        y("gridmorph::bench::y", p.mesh.n_nodes()),
+        z("gridmorph::bench::z", p.mesh.n_nodes()),
+        boundary("gridmorph::bench::boundary", p.boundary.size()) {
+    Kokkos::deep_copy(x, p.mesh.coordinates.x);
+    Kokkos::deep_copy(y, p.mesh.coordinates.y);
+    Kokkos::deep_copy(z, p.mesh.coordinates.z);
+    Kokkos::View<Vec3 const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const host(p.boundary.data(),
+                                                                                                     p.boundary.size());
+    Kokkos::deep_copy(boundary, host);
+    compat::fence(exec, "gridmorph::bench (passage is ready)");
+  }
+  [[nodiscard]] kernels::Field<double const> read() const { return {x.data(), y.data(), z.data()}; }
+  [[nodiscard]] kernels::Field<double> write() const { return {x.data(), y.data(), z.data()}; }
+};
+
+/// Calls work(passage, its arrays) for every iteration. In place means that a mesh drifts from iteration to iteration;
+/// the line parameters, and so the work, stay those of the baseline.
+template <class Work>
+struct OnPassage {
+  Work work;
+  double fixed_bytes;  ///< per node
+  double bytes_per_parameter;
+
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    Passage const& p = passage(state.range(0));
+    OnDevice<ExecutionSpace> const mesh(exec, p);
+    auto const step = work(exec, p, mesh);
+    for (auto _ : state) state.SetIterationTime(seconds(exec, step));
+    set_shares(state, exec, p.mesh.n_nodes(), fixed_bytes + bytes_per_parameter * p.parameters_per_node());
+  }
+};
+
+template <class Work>
+void add(std::string const& name, double fixed_bytes, double bytes_per_parameter, Work const& work) {
+  register_benchmark("passage/" + name, OnPassage<Work>{work, fixed_bytes, bytes_per_parameter}, passage_sizes);
+}
+
+}  // namespace
+
+void register_all() {
+  add("workflow", 48, 40, [](auto const& exec, Passage const& p, auto const& mesh) {
+    using Exec = std::decay_t<decltype(exec)>;
+    return [&, mesh] {
+      Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read());
+      morpher.apply(exec, mesh.boundary, mesh.read(), mesh.write());
+    };
+  });
+  add("plan_made", 0, 32, [](auto const& exec, Passage const& p, auto const& mesh) {
+    using Exec = std::decay_t<decltype(exec)>;
+    return [&, mesh] { Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read()); };
+  });
+  add("apply", 48, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
+    using Exec = std::decay_t<decltype(exec)>;
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read());
+    return [&, mesh, morpher] { morpher.apply(exec, mesh.boundary, mesh.read(), mesh.write()); };
+  });
+  add("apply_to", 48, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
+    using Exec = std::decay_t<decltype(exec)>;
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read());
+    std::decay_t<decltype(mesh)> const to(exec, p);
+    return [&, mesh, morpher, to] { morpher.apply(exec, mesh.boundary, mesh.read(), to.write()); };
+  });
+  add("displace", 24, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
+    using Exec = std::decay_t<decltype(exec)>;
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read());
+    return [&, mesh, morpher] { morpher.displace(exec, mesh.boundary, mesh.write()); };
+  });
+  add("displace_4", 96, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
+    using Exec = std::decay_t<decltype(exec)>;
+    using Memory = typename Exec::memory_space;
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read(), {4});
+    Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> const boundary("gridmorph::bench::batch", 4,
+                                                                     mesh.boundary.extent(0));
+    for (int f = 0; f < 4; ++f) Kokkos::deep_copy(Kokkos::subview(boundary, f, Kokkos::ALL), mesh.boundary);
+    Index const n = p.mesh.n_nodes();
+    Kokkos::View<double*, Memory> const u("gridmorph::bench::u", 12 * n);
+    return [&, morpher, boundary, u, n] {
+      morpher.displace(exec, boundary, kernels::FieldBatch<double>{{u.data(), u.data() + n, u.data() + 2 * n}, 3 * n});
+    };
+  });
+}
+
+}  // namespace gridmorph::bench

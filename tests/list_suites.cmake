@@ -1,0 +1,46 @@
+# Read by ctest once per GoogleTest program: asks the program for its tests and makes one ctest test per suite, since one
+# process per test takes longer than most tests; where split is on, one per test, or per value of a suite's parameter. Asking when ctest runs, not
+# when the program is built, lets machines build what they cannot run.
+#
+# Given are name, program, split and environment.
+cmake_policy(VERSION 3.25)
+if(NOT EXISTS "${program}")
+  add_test("${name}.is_not_built" "${program}")
+  return()
+endif()
+execute_process(COMMAND "${program}" --gtest_list_tests OUTPUT_VARIABLE listing RESULT_VARIABLE failure TIMEOUT 60)
+if(failure)
+  message(FATAL_ERROR "${program} does not list its tests (${failure}):\n${listing}")
+endif()
+
+# A suite stands at the start of its line and ends with a dot, its tests follow indented. What parameters print comes after
+# a '#' and may hold anything.
+string(REGEX REPLACE " +#[^\n]*" "" listing "${listing}")
+string(REGEX MATCHALL "[^\n]+" lines "${listing}")
+set(filters "")
+foreach(line IN LISTS lines)
+  if(line MATCHES "^([A-Za-z0-9_/]+)[.]$")
+    set(suite "${CMAKE_MATCH_1}")
+    continue()
+  endif()
+  if(split AND line MATCHES "^  [A-Za-z0-9_]+(/[A-Za-z0-9_]+)$")
+    set(filter "${suite}.*${CMAKE_MATCH_1}")
+  elseif(split AND line MATCHES "^  ([A-Za-z0-9_]+)$")
+    set(filter "${suite}.${CMAKE_MATCH_1}")
+  elseif(line MATCHES "^  [A-Za-z0-9_/]+$")
+    set(filter "${suite}.*")
+  else()
+    continue()
+  endif()
+  if(filter IN_LIST filters)
+    continue()
+  endif()
+  list(APPEND filters "${filter}")
+  string(REGEX REPLACE "[.][*]/?" "." group "${filter}") # Suite.value, Suite.Test
+  string(REGEX REPLACE "[.]$" "" group "${group}")
+  add_test("${name}.${group}" "${program}" "--gtest_filter=${filter}" --gtest_brief=1)
+  # Skipped: where no test passed and none failed. A program says so in its last lines.
+  set_tests_properties(
+    "${name}.${group}" PROPERTIES ENVIRONMENT "${environment}"
+                                  SKIP_REGULAR_EXPRESSION "PASSED  \\] 0 tests\\.\n(\\[  SKIPPED \\][^\n]*\n)+$")
+endforeach()
