@@ -251,8 +251,11 @@ TEST(NodeCopy, CopiesRangesWithStridesAndTurns) {
 }
 
 TEST(NodeCopy, MovesKeepEveryBitOfANodeThatStays) {
-  EXPECT_TRUE(std::signbit(kernels::moved(-0.0, 0.0)));
-  EXPECT_FALSE(std::signbit(kernels::moved(0.0, -0.0)));
+  for (double const zero : {0.0, -0.0}) {
+    EXPECT_TRUE(std::signbit(kernels::moved(-0.0, zero)));
+    EXPECT_FALSE(std::signbit(kernels::moved(0.0, zero)));
+    EXPECT_EQ(kernels::moved(1e-310, zero), 1e-310);
+  }
   EXPECT_EQ(kernels::moved(1.5, 0.25), 1.75);
 }
 

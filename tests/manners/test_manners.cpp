@@ -136,7 +136,7 @@ TEST_F(Manners, PlanningLaunchesOnTheHostOnlyWhatReadsTheWholeMesh) {
   PreparedMorph const p = prepare(again, m, {});
   EXPECT_FALSE(p.boundary_displacement(again).empty());
   for (auto const& kernel : record.kernels)
-    EXPECT_TRUE(kernel == "gridmorph::extent_of" || kernel == "gridmorph::smallest_angle") << kernel;
+    EXPECT_TRUE(kernel == "gridmorph::extent_of" || kernel == "gridmorph::largest_cosines") << kernel;
 }
 
 }  // namespace

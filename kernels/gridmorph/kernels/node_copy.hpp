@@ -15,8 +15,9 @@ struct NodeCopy {
   std::int32_t matrix;  ///< in the rotation table, -1 for the identity
 };
 
-/// x + u; a node that stays keeps its sign bits too (-0.0 + 0.0 is +0.0).
-KOKKOS_INLINE_FUNCTION double moved(double x, double u) { return u == 0 ? x : x + u; }
+/// x + u, and x bit for bit where u is zero of either sign: -0.0 + 0.0 would be +0.0, but -0.0 - (0.0 - u) is -0.0.
+/// Without a comparison the loops over it vectorise.
+KOKKOS_INLINE_FUNCTION double moved(double x, double u) { return x - (0.0 - u); }
 KOKKOS_INLINE_FUNCTION Vec3 moved(Vec3 const& x, Vec3 const& u) {
   return {moved(x.x, u.x), moved(x.y, u.y), moved(x.z, u.z)};
 }

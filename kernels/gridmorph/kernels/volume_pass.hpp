@@ -196,7 +196,7 @@ struct VolumePass {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void write(Index node, int n, Row const& u, Field<double> const& to) const {
+  KOKKOS_INLINE_FUNCTION void write(Index node, int n, Row& u, Field<double> const& to) const {
     if (baseline.stride == 1 && to.stride == 1) {
       write_component(n, u.x, baseline.x + node, to.x + node);
       write_component(n, u.y, baseline.y + node, to.y + node);
@@ -209,13 +209,12 @@ struct VolumePass {
       }
     }
   }
-  KOKKOS_INLINE_FUNCTION static void write_component(int n, double const* u, double const* x, double* to) {
-    for (int w = 0; w < n; ++w) {
-      if constexpr (Move)
-        to[w] = moved(x[w], u[w]);
-      else
-        to[w] = u[w];
-    }
+  /// The sum goes through the row: baseline and destination may be the same array, which would keep the compiler from
+  /// vectorising a loop that reads one and writes the other.
+  KOKKOS_INLINE_FUNCTION static void write_component(int n, double* u, double const* x, double* to) {
+    if constexpr (Move)
+      for (int w = 0; w < n; ++w) u[w] = moved(x[w], u[w]);
+    for (int w = 0; w < n; ++w) to[w] = u[w];
   }
 };
 
