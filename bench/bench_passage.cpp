@@ -10,14 +10,14 @@
 // Bytes are those that must move at least; "share" compares with an in-place update, so stores that first read the line
 // they write (apply_to, displace) count as what they are: slower.
 #include "bench.hpp"
+#include "last_made.hpp"
+#include "node_arrays.hpp"
 #include "roof.hpp"
 
 #include <gridmorph/demo/passage.hpp>
 #include <gridmorph/demo/passage_motion.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/volume/morpher.hpp>
-
-#include <memory>
 
 namespace gridmorph::bench {
 namespace {
@@ -63,43 +63,22 @@ struct Passage {
 
 /// One passage at a time: the large ones take gigabytes.
 Passage const& passage(std::int64_t nodes) {
-  static std::unique_ptr<Passage> kept;
-  static std::int64_t kept_nodes = -1;
-  static bool const cleared_in_time = [] {
-    Kokkos::push_finalize_hook([] { kept.reset(); });
-    return true;
-  }();
-  (void)cleared_in_time;
-  if (kept_nodes != nodes) {
-    kept.reset();
-    kept = std::make_unique<Passage>(nodes);
-    kept_nodes = nodes;
-  }
-  return *kept;
+  static LastMade<std::int64_t, Passage> last;
+  return last.get(nodes, [&] { return Passage(nodes); });
 }
 
 template <class ExecutionSpace>
-struct OnDevice {
-  using Memory = typename ExecutionSpace::memory_space;
-  using View = Kokkos::View<double*, Memory>;
-  View x, y, z;
-  Kokkos::View<Vec3*, Memory> boundary;
+struct OnDevice : NodeArrays<typename ExecutionSpace::memory_space> {
+  Kokkos::View<Vec3*, typename ExecutionSpace::memory_space> boundary;
 
   OnDevice(ExecutionSpace const& exec, Passage const& p)
-      : x("gridmorph::bench::x", p.mesh.n_nodes()),
-        y("gridmorph::bench::y", p.mesh.n_nodes()),
-        z("gridmorph::bench::z", p.mesh.n_nodes()),
+      : NodeArrays<typename ExecutionSpace::memory_space>(p.mesh.coordinates),
         boundary("gridmorph::bench::boundary", p.boundary.size()) {
-    Kokkos::deep_copy(x, p.mesh.coordinates.x);
-    Kokkos::deep_copy(y, p.mesh.coordinates.y);
-    Kokkos::deep_copy(z, p.mesh.coordinates.z);
     Kokkos::View<Vec3 const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const host(p.boundary.data(),
                                                                                                      p.boundary.size());
     Kokkos::deep_copy(boundary, host);
     compat::fence(exec, "gridmorph::bench (passage is ready)");
   }
-  [[nodiscard]] kernels::Field<double const> read() const { return {x.data(), y.data(), z.data()}; }
-  [[nodiscard]] kernels::Field<double> write() const { return {x.data(), y.data(), z.data()}; }
 };
 
 /// Calls work(passage, its arrays) for every iteration. In place means that a mesh drifts from iteration to iteration;
@@ -115,8 +94,8 @@ struct OnPassage {
     Passage const& p = passage(state.range(0));
     OnDevice<ExecutionSpace> const mesh(exec, p);
     auto const step = work(exec, p, mesh);
-    for (auto _ : state) state.SetIterationTime(seconds(exec, step));
-    set_shares(state, exec, p.mesh.n_nodes(), fixed_bytes + bytes_per_parameter * p.parameters_per_node());
+    double const mean = time_iterations(state, exec, step);
+    set_shares(state, exec, mean, p.mesh.n_nodes(), fixed_bytes + bytes_per_parameter * p.parameters_per_node());
   }
 };
 

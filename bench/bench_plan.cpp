@@ -113,6 +113,7 @@ void run(benchmark::State& state) {
   state.counters["topology"] = benchmark::Counter(sum.topology, mean);
   state.counters["rules"] = benchmark::Counter(sum.rules, mean);
   state.counters["plan"] = benchmark::Counter(sum.plan, mean);
+  state.counters["nodes"] = double(original.n_nodes());
   state.counters["nodes/s"] =
       benchmark::Counter(double(original.n_nodes()), benchmark::Counter::kIsIterationInvariantRate);
 }

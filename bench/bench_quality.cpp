@@ -7,6 +7,7 @@
 // About 960 and 530 flops per cell (kernels/gridmorph/kernels/regular_cell.hpp), 20 per byte: arithmetic sets the time, not
 // memory. "read share": bytes per second over those of reading three arrays of this size, measured in the same run.
 #include "bench.hpp"
+#include "roof.hpp"
 
 #include <gridmorph/quality/quality.hpp>
 
@@ -65,38 +66,26 @@ double read_seconds(ExecutionSpace const& exec, std::int64_t n) {
   View const x(Kokkos::view_alloc(exec, "gridmorph::bench::roof_x"), n),
       y(Kokkos::view_alloc(exec, "gridmorph::bench::roof_y"), n),
       z(Kokkos::view_alloc(exec, "gridmorph::bench::roof_z"), n);
-  // Small arrays are read several times per reading of the clock, so that the clock does not count.
-  int const repeats = int(std::clamp<std::int64_t>(2'000'000 / n, 1, 1000));
-  std::vector<double> readings;
-  readings.reserve(7);
-  for (int reading = 0; reading < 7; ++reading)
-    readings.push_back(seconds(exec,
-                               [&] {
-                                 for (int r = 0; r < repeats; ++r) {
-                                   std::int64_t sum = 0;
-                                   Kokkos::parallel_reduce(
-                                       "gridmorph::bench::read",
-                                       Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<std::int64_t>>(exec, 0, n),
-                                       KOKKOS_LAMBDA(std::int64_t i, std::int64_t & s) { s += x(i) + y(i) + z(i); },
-                                       sum);
-                                   benchmark::DoNotOptimize(sum);
-                                 }
-                               }) /
-                       repeats);
-  std::sort(readings.begin(), readings.end());
-  return known[n] = readings[readings.size() / 2];
+  typename RoofArrays<ExecutionSpace>::Range const range(exec, 0, n);
+  auto const add = KOKKOS_LAMBDA(std::int64_t i, std::int64_t & sum) { sum += x(i) + y(i) + z(i); };
+  return known[n] = median_seconds(exec, n, [&] {
+           std::int64_t sum = 0;
+           Kokkos::parallel_reduce("gridmorph::bench::read", range, add, sum);
+           benchmark::DoNotOptimize(sum);
+         });
 }
 
 /// set_rates() and "cells/s", "bytes/cell" and, as a share of 1, "read share".
 template <class ExecutionSpace>
-void set_cell_rates(benchmark::State& state, ExecutionSpace const& exec, Mesh const& mesh, double bytes_per_node) {
+void set_cell_rates(benchmark::State& state, ExecutionSpace const& exec, double mean, Mesh const& mesh,
+                    double bytes_per_node) {
   auto const rate = benchmark::Counter::kIsIterationInvariantRate;
   auto const nodes = std::int64_t(mesh.n_nodes());
   auto const cells = double(first_cells(mesh).back());
   set_rates(state, nodes, bytes_per_node);
   state.counters["cells/s"] = benchmark::Counter(cells, rate);
   state.counters["bytes/cell"] = double(nodes) * bytes_per_node / cells;
-  state.counters["read share"] = benchmark::Counter(read_seconds(exec, nodes) * bytes_per_node / 24, rate);
+  state.counters["read share"] = bytes_per_node / mean / (24 / read_seconds(exec, nodes));
 }
 
 struct MeasureQuality {
@@ -110,9 +99,9 @@ struct MeasureQuality {
     QualityInput<typename ExecutionSpace::memory_space> input;
     input.coordinates = on_device<ExecutionSpace>(morphed);
     input.baseline = on_device<ExecutionSpace>(mesh.coordinates);
-    for (auto _ : state)
-      state.SetIterationTime(seconds(exec, [&] { benchmark::DoNotOptimize(measure_quality(exec, mesh, input)); }));
-    set_cell_rates(state, exec, mesh, 56);
+    double const mean =
+        time_iterations(state, exec, [&] { benchmark::DoNotOptimize(measure_quality(exec, mesh, input)); });
+    set_cell_rates(state, exec, mean, mesh, 56);
   }
 };
 
@@ -130,12 +119,11 @@ struct MinDeterminant {
       auto const& n = mesh.zones[z].extent;
       all.push_back({z, {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}});
     }
-    for (auto _ : state)
-      state.SetIterationTime(seconds(exec, [&] {
-        benchmark::DoNotOptimize(
-            min_determinant(exec, mesh, coordinates, std::span<int const>(handedness), std::span<CellBox const>(all)));
-      }));
-    set_cell_rates(state, exec, mesh, 24);
+    double const mean = time_iterations(state, exec, [&] {
+      benchmark::DoNotOptimize(
+          min_determinant(exec, mesh, coordinates, std::span<int const>(handedness), std::span<CellBox const>(all)));
+    });
+    set_cell_rates(state, exec, mean, mesh, 24);
   }
 };
 

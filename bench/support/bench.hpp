@@ -30,9 +30,10 @@ double seconds(ExecutionSpace const& exec, Work const& work) {
   return std::chrono::duration<double>(clock::now() - start).count();
 }
 
-/// Adds the counters "nodes" and "bytes", both per second, from the figures of one iteration.
+/// Adds the counters "nodes", which need not be the number in the benchmark's name, "nodes/s" and "bytes/s".
 inline void set_rates(benchmark::State& state, std::int64_t nodes, double bytes_per_node) {
   auto const per_iteration = benchmark::Counter::kIsIterationInvariantRate;
+  state.counters["nodes"] = double(nodes);
   state.counters["nodes/s"] = benchmark::Counter(double(nodes), per_iteration);
   state.counters["bytes/s"] = benchmark::Counter(double(nodes) * bytes_per_node, per_iteration);
 }

@@ -1,6 +1,8 @@
 // Helpers of the casefile tests: read text, and expect messages.
 #pragma once
 
+#include "support/temporary_folder.hpp"
+
 #include <gridmorph/casefile/case_file.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/motion.hpp>
@@ -18,23 +20,7 @@
 
 namespace gridmorph::testing {
 
-/// A folder that is gone at the end of the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "gridmorph-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  [[nodiscard]] std::filesystem::path path(std::string const& name) const { return path_ / name; }
-  std::filesystem::path write(std::string const& name, std::string const& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using test::TemporaryFolder;
 
 /// The lines of the error that `action` throws; empty when it throws nothing.
 template <class E = ConfigError, class Action>

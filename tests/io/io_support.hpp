@@ -1,6 +1,8 @@
 // Shared by the tests of files: a folder of their own, and a way to look at a file without the code under test.
 #pragma once
 
+#include "support/temporary_folder.hpp"
+
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <gtest/gtest.h>
@@ -15,46 +17,11 @@
 
 namespace gridmorph::test {
 
-/// An empty folder, removed at the end of the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "gridmorph_io_XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(TemporaryFolder const&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder const&) = delete;
-  [[nodiscard]] std::string file(std::string const& name) const { return (path_ / name).string(); }
-  [[nodiscard]] std::vector<std::string> names() const {
-    std::vector<std::string> out;
-    for (auto const& entry : std::filesystem::directory_iterator(path_))
-      out.push_back(entry.path().filename().string());
-    return out;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Path of a mesh from outside, or "" when the folder is not there.
 inline std::string shared_mesh(std::string const& name) {
   char const* folder = std::getenv("GRIDMORPH_MESHES");
   auto const path = std::filesystem::path(folder ? folder : GRIDMORPH_MESHES_DIR) / name;
   return std::filesystem::exists(path) ? path.string() : "";
-}
-
-inline std::string bytes_of(std::string const& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-inline void write_bytes(std::string const& path, std::string const& bytes) {
-  std::ofstream(path, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
 }
 
 /// Every node of a file: path -> "label|type|dimensions|bytes".

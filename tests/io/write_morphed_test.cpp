@@ -1,14 +1,12 @@
 // Writing coordinates back: everything else in the file stays what it was, and failures leave nothing behind.
 #include "block_lattice.hpp"
 #include "io_support.hpp"
+#include "support/file_size_limit.hpp"
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
-#include <sys/resource.h>
 #include <sys/stat.h>
-
-#include <csignal>
 
 namespace gridmorph::test {
 namespace {
@@ -218,27 +216,6 @@ TEST_P(Formats, NonFiniteCoordinatesAreNotWritten) {
   EXPECT_NE(message.find("1 node of zone 'Zone 1'"), std::string::npos) << message;
   EXPECT_EQ(folder_.names(), std::vector<std::string>{"in.cgns"});
 }
-
-/// While it lives no file may grow beyond `bytes`: what a full disk looks like to a program.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit const limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(FileSizeLimit const&) = delete;
-  FileSizeLimit& operator=(FileSizeLimit const&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int) = nullptr;
-};
 
 TEST_P(Formats, AFullDiskIsNoticedAndLeavesNothingBehind) {
   Mesh const mesh = write_lattice(brick_);

@@ -282,6 +282,21 @@ TEST(SlipSurfaceView, PlaneAndAxialRemoveOneComponentOnly) {
   }
 }
 
+/// Two displacements of every point: by the first and by the second surface. (nvcc takes no device lambda inside TEST, which
+/// makes a private function.)
+template <class Space>
+struct ConstrainByBoth {
+  Kokkos::View<SlipSurfaceView const*, Space> surfaces;
+  Kokkos::View<Vec3 const*, Space> points;
+  Vec3 u;
+  Kokkos::View<Vec3*, Space> result;
+
+  KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+    result(2 * i) = surfaces(0).constrain(points(i), u);
+    result(2 * i + 1) = surfaces(1).constrain(points(i), u);
+  }
+};
+
 TEST(SlipSurfaceTable, KernelsSeeTheSameSurfacesBitForBit) {
   PlacedHub const hub_wall(false);
   SlipSurface plane;
@@ -296,13 +311,8 @@ TEST(SlipSurfaceTable, KernelsSeeTheSameSurfacesBitForBit) {
   for (int i = 0; i < n; ++i) points_h(i) = hub_wall.nodes[i];
   Kokkos::deep_copy(points, points_h);
   Vec3 const u{0.01, 0.02, -0.03};
-  auto const surfaces = table.surfaces;
-  Kokkos::parallel_for(
-      "gridmorph::test::constrain", Kokkos::RangePolicy<Kokkos::DefaultExecutionSpace>(exec, 0, n),
-      KOKKOS_LAMBDA(int i) {
-        result(2 * i) = surfaces(0).constrain(points(i), u);
-        result(2 * i + 1) = surfaces(1).constrain(points(i), u);
-      });
+  Kokkos::parallel_for("gridmorph::test::constrain", Kokkos::RangePolicy<Kokkos::DefaultExecutionSpace>(exec, 0, n),
+                       ConstrainByBoth<Space>{table.surfaces, points, u, result});
   auto const result_h = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), result);
   for (int i = 0; i < n; ++i) {
     EXPECT_EQ(result_h(2 * i), plane.view().constrain(hub_wall.nodes[i], u));

@@ -122,7 +122,7 @@ struct LineParameters {
             pz[w] = xz[w * step];
           }
         } else if (step == 1) {
-          add_edges(n, xx, xy, xz, std::integral_constant<int, 1>(), px, py, pz, sum);
+          add_edges(n, xx, xy, xz, Constant<1>(), px, py, pz, sum);
         } else {
           add_edges(n, xx, xy, xz, step, px, py, pz, sum);
         }
@@ -165,7 +165,7 @@ struct LineParameters {
           Index const first = s.first + k0 * s.stride_s + (tile.a + w0 + w) * s.stride_a + tile.b * s.stride_b;
           double const *const xx = x.x + first, *const xy = x.y + first, *const xz = x.z + first;
           if (s.stride_s == 1) {
-            edges_of(k0 == 0 ? 1 : 0, length, xx, xy, xz, std::integral_constant<int, 1>(), edge[w]);
+            edges_of(k0 == 0 ? 1 : 0, length, xx, xy, xz, Constant<1>(), edge[w]);
           } else {
             edges_of(k0 == 0 ? 1 : 0, length, xx, xy, xz, s.stride_s, edge[w]);
           }

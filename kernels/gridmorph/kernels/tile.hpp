@@ -22,6 +22,13 @@ struct TileShape {
   static constexpr int volume_k = host ? 32 : 1;
 };
 
+/// A number that the compiler knows where a variable may stand too. (The conversion of std::integral_constant is a function
+/// for the host alone.)
+template <int N>
+struct Constant {
+  KOKKOS_INLINE_FUNCTION constexpr operator int() const { return N; }
+};
+
 KOKKOS_INLINE_FUNCTION constexpr Index tiles(Index n, Index width) { return (n + width - 1) / width; }
 
 /// The entry that holds an item, by bisection in the running totals `first` (one past the last included).

@@ -167,9 +167,9 @@ struct VolumePass {
   template <class Body>
   KOKKOS_INLINE_FUNCTION static void with_step(Index step, Body const& body) {
     if (width == 1 || step == 0)
-      body(std::integral_constant<int, 0>());
+      body(Constant<0>());
     else if (step == 1)
-      body(std::integral_constant<int, 1>());
+      body(Constant<1>());
     else
       body(step);
   }

@@ -1,0 +1,147 @@
+// The kernels that run under a plan, each by itself: what to launch for a plan, on how many nodes, moving how many bytes.
+#pragma once
+
+#include "node_arrays.hpp"
+
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/volume/device_plan.hpp>
+#include <gridmorph/volume/morpher.hpp>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace gridmorph::bench {
+
+/// What a benchmark times, and what it has touched then.
+struct Timed {
+  std::function<void()> launch;
+  std::int64_t nodes = 0;
+  double bytes_per_node = 0;
+};
+
+template <class Exec, class Kernel>
+void launch(char const* label, Exec const& exec, Index items, Kernel const& kernel) {
+  Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, items), kernel);
+}
+
+/// The tables of a plan in an execution space, all displacements of its workspace small and alike.
+template <class Exec>
+std::shared_ptr<detail::DevicePlan<Exec>> device_plan(Exec const& exec, Plan const& plan,
+                                                      kernels::Field<double const> const& x) {
+  auto device = std::make_shared<detail::DevicePlan<Exec>>(exec, plan, x, 1);
+  for (auto const* work : {&device->skeleton, &device->ends, &device->residuals})
+    Kokkos::deep_copy(exec, work->values, 1e-9);
+  return device;
+}
+
+struct Touched {
+  std::int64_t nodes = 0, parameters = 0;
+};
+
+/// Nodes inside pieces, and the line parameters that the pass over them reads.
+inline Touched touched_by_volume(Plan const& plan) {
+  Touched sum;
+  auto const size = [&](int box) {
+    auto const& n = plan.boxes[box].n;
+    return std::int64_t(n[0]) * n[1] * n[2];
+  };
+  for (int box = 0; box < int(plan.boxes.size()); ++box) sum.nodes += size(box);
+  auto const add = [&](std::vector<VolumePart> const& parts) {
+    for (VolumePart const& part : parts)
+      if (part.term.t >= 0) sum.parameters += size(part.box);
+  };
+  for (Stage const& stage : plan.stages) add(stage.volume);
+  for (SpreadPass const& pass : plan.spreads) add(pass.volume);
+  return sum;
+}
+
+struct Volume {
+  template <class Exec>
+  Timed operator()(Exec const& exec, PreparedMorph const& prepared,
+                   NodeArrays<typename Exec::memory_space> const& x) const {
+    using Memory = typename Exec::memory_space;
+    auto const d = device_plan(exec, prepared.plan(), x.read());
+    kernels::VolumePass<Memory, kernels::TileShape<Exec>, true> const kernel{
+        d->boxes.entries, d->terms,       d->boxes.first_item, d->lines.chains, d->rotations, d->sides,
+        d->t.data(),      d->ends.read(), d->residuals.read(), x.read(),        {x.write()}};
+    Touched const touched = touched_by_volume(prepared.plan());
+    return {[=] { launch("gridmorph::bench::volume", exec, d->boxes.n_items, kernel); }, touched.nodes,
+            48 + 8 * double(touched.parameters) / double(touched.nodes)};
+  }
+};
+
+struct Apply {
+  template <class Exec>
+  Timed operator()(Exec const& exec, PreparedMorph const& prepared,
+                   NodeArrays<typename Exec::memory_space> const& x) const {
+    Plan const& plan = prepared.plan();
+    Morpher<Exec> const morpher(exec, plan, x.read());
+    Kokkos::View<Vec3*, typename Exec::memory_space> const boundary("gridmorph::bench::boundary",
+                                                                    plan.boundary_nodes.size());
+    Kokkos::deep_copy(exec, boundary, Vec3{1e-9, 2e-9, 3e-9});
+    return {[=] { morpher.apply(exec, boundary, x.read(), x.write()); }, plan.n_nodes,
+            48 + 8 * double(touched_by_volume(plan).parameters) / double(plan.n_nodes)};
+  }
+};
+
+struct SkeletonSweep {
+  template <class Exec>
+  Timed operator()(Exec const& exec, PreparedMorph const& prepared,
+                   NodeArrays<typename Exec::memory_space> const& x) const {
+    auto const d = device_plan(exec, prepared.plan(), x.read());
+    auto const& list = d->stages.front().sweeps;
+    typename detail::DevicePlan<Exec>::Sweep const kernel{
+        list.entries, list.first_item, d->lines.chains,      d->rotations,
+        d->sides,     d->t.data(),     d->ends.read().first, d->skeleton.batch().first};
+    std::int64_t nodes = 0;
+    for (auto const& sweep : prepared.plan().stages.front().sweeps) nodes += std::int64_t(sweep.n_p) * sweep.n_q;
+    return {[=] { launch("gridmorph::bench::skeleton_sweep", exec, d->stages.front().sweeps.n_items, kernel); }, nodes,
+            32};
+  }
+};
+
+struct NodeCopies {
+  template <class Exec>
+  Timed operator()(Exec const& exec, PreparedMorph const& prepared,
+                   NodeArrays<typename Exec::memory_space> const& x) const {
+    using Memory = typename Exec::memory_space;
+    auto const d = device_plan(exec, prepared.plan(), x.read());
+    kernels::CopyNodes<Memory, kernels::TileShape<Exec>::row, true> const kernel{d->skeleton_nodes.entries,
+                                                                                 d->skeleton_nodes.first_item,
+                                                                                 d->rotations,
+                                                                                 d->skeleton.read().first,
+                                                                                 x.write(),
+                                                                                 x.read()};
+    std::int64_t nodes = 0;
+    for (auto const& copy : prepared.plan().skeleton_nodes) nodes += std::int64_t(copy.n_p) * copy.n_q;
+    return {[=] { launch("gridmorph::bench::node_copy", exec, d->skeleton_nodes.n_items, kernel); }, nodes, 72};
+  }
+};
+
+struct SideResiduals {
+  template <class Exec>
+  Timed operator()(Exec const& exec, PreparedMorph const& prepared,
+                   NodeArrays<typename Exec::memory_space> const& x) const {
+    using Memory = typename Exec::memory_space;
+    auto const d = device_plan(exec, prepared.plan(), x.read());
+    auto const& stage = d->stages.front();
+    kernels::Field<double> const c = d->residuals.batch().first;
+    typename detail::DevicePlan<Exec>::Copy const gather{stage.gathers.entries, stage.gathers.first_item, d->rotations,
+                                                         d->skeleton.read().first, c};
+    kernels::SideResidual<Memory> const residual{d->lines.chains, d->sides, stage.side_lines, d->ends.read().first, c};
+    kernels::EdgeFill<Memory> const edges{d->lines.chains, d->sides, stage.corrected, c};
+    kernels::SideFill<Memory> const sides{d->lines.chains, d->sides, stage.side_lines, c};
+    return {[=] {
+              auto const& s = d->stages.front();
+              auto const lines = Index(s.side_lines.extent(0));
+              launch("gridmorph::bench::side_residual::known", exec, s.gathers.n_items, gather);
+              launch("gridmorph::bench::side_residual", exec, lines, residual);
+              launch("gridmorph::bench::side_residual::edges", exec, 4 * Index(s.corrected.extent(0)), edges);
+              launch("gridmorph::bench::side_residual::sides", exec, lines, sides);
+            },
+            std::int64_t(d->residuals.n), 104};
+  }
+};
+
+}  // namespace gridmorph::bench
