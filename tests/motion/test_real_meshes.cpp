@@ -119,7 +119,7 @@ TEST_P(RealRow, EndWallsAreSurfacesOfRevolutionAndOneProfileEach) {
     auto const s = surface.slip_surface(int(p));
     ASSERT_TRUE(s);
     EXPECT_LT(s->baseline_deviation, 1e-5 * mesh_.size()) << describe_patch(mesh_, mesh_.patches[p]);
-    for (double slope : s->profile.slope) EXPECT_LT(std::abs(slope), 2);
+    for (ProfileKnot const& knot : s->profile.knots) EXPECT_LT(std::abs(knot.slope), 2);
   }
 }
 

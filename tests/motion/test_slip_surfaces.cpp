@@ -40,8 +40,7 @@ TEST(SlipSurfaces, AHubSplitInPiecesIsOneProfile) {
   for (std::size_t p = 1; p < mesh.patches.size(); ++p) {
     auto const other = motion.slip_surface(int(p));
     ASSERT_TRUE(other);
-    EXPECT_EQ(other->profile.axial, first->profile.axial);
-    EXPECT_EQ(other->profile.slope, first->profile.slope);
+    EXPECT_TRUE(other->profile.knots == first->profile.knots);
   }
   for (double x = -0.55; x < 1.1; x += 0.013) EXPECT_NEAR(first->profile(x), hub(x), 1e-10);
   EXPECT_LT(first->baseline_deviation, 1e-14);

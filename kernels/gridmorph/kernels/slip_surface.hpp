@@ -19,14 +19,19 @@ enum class SlipKind {
   axial        ///< nodes keep their axial position; not a surface
 };
 
+/// What a profile knows at one axial position. All of it lies together: nodes look at few positions each, far apart.
+struct ProfileKnot {
+  double axial = 0;
+  double radius = 0;
+  double slope = 0;  ///< d radius / d axial
+  /// Second derivatives at the two ends of the piece that begins here; across a knot where the profile has a kink they differ.
+  double curvature[2] = {0, 0};
+  friend bool operator==(ProfileKnot const&, ProfileKnot const&) = default;
+};
+
 /// Radius as a function of axial position: quintic Hermite pieces between `size` knots. Borrows its tables.
 struct ProfileView {
-  double const* axial = nullptr;  ///< (size), strictly increasing
-  double const* radius = nullptr;
-  double const* slope = nullptr;
-  /// (2 * (size - 1)): second derivative at the lower and upper end of each piece; they differ across a knot where the
-  /// profile has a kink.
-  double const* curvature = nullptr;
+  ProfileKnot const* knots = nullptr;  ///< (size), axial positions strictly increasing
   int size = 0;
   /// (n_buckets + 1): the piece that holds the lower end of each of n_buckets equal parts of the axial range.
   int const* bucket_piece = nullptr;
@@ -36,7 +41,7 @@ struct ProfileView {
   KOKKOS_INLINE_FUNCTION int piece(double a) const {
     int lo = 0, hi = size - 1;
     if (n_buckets > 0) {
-      double const place = (a - axial[0]) / (axial[size - 1] - axial[0]) * n_buckets;
+      double const place = (a - knots[0].axial) / (knots[size - 1].axial - knots[0].axial) * n_buckets;
       int const bucket = place < n_buckets ? int(place) : n_buckets - 1;
       // One piece more on either side, for positions that round into the neighbouring bucket.
       lo = bucket_piece[bucket] > 0 ? bucket_piece[bucket] - 1 : 0;
@@ -44,37 +49,39 @@ struct ProfileView {
     }
     while (hi - lo > 1) {
       int const mid = (lo + hi) / 2;
-      (axial[mid] <= a ? lo : hi) = mid;
+      (knots[mid].axial <= a ? lo : hi) = mid;
     }
     return lo;
   }
 
   /// Written in differences, so that a constant profile comes back bit for bit; the end slopes are continued outside.
   KOKKOS_INLINE_FUNCTION double operator()(double a) const {
-    int const last = size - 1;
-    if (a <= axial[0]) return radius[0] + slope[0] * (a - axial[0]);
-    if (a >= axial[last]) return radius[last] + slope[last] * (a - axial[last]);
-    int const lo = piece(a), hi = lo + 1;
-    double const h = axial[hi] - axial[lo];
-    double const t = (a - axial[lo]) / h, t2 = t * t, t3 = t2 * t;
-    double const rise = (radius[hi] - radius[lo]) * t3 * (10 + t * (6 * t - 15));
-    double const slopes = slope[lo] * (t + t3 * (-6 + t * (8 - 3 * t))) + slope[hi] * t3 * (-4 + t * (7 - 3 * t));
-    double const bends = curvature[2 * lo] * t2 * (0.5 + t * (-1.5 + t * (1.5 - 0.5 * t))) +
-                         curvature[2 * lo + 1] * t3 * (0.5 + t * (-1 + 0.5 * t));
-    return radius[lo] + (rise + h * (slopes + h * bends));
+    ProfileKnot const &first = knots[0], &last = knots[size - 1];
+    if (a <= first.axial) return first.radius + first.slope * (a - first.axial);
+    if (a >= last.axial) return last.radius + last.slope * (a - last.axial);
+    int const p = piece(a);
+    ProfileKnot const &lo = knots[p], &hi = knots[p + 1];
+    double const h = hi.axial - lo.axial;
+    double const t = (a - lo.axial) / h, t2 = t * t, t3 = t2 * t;
+    double const rise = (hi.radius - lo.radius) * t3 * (10 + t * (6 * t - 15));
+    double const slopes = lo.slope * (t + t3 * (-6 + t * (8 - 3 * t))) + hi.slope * t3 * (-4 + t * (7 - 3 * t));
+    double const bends = lo.curvature[0] * t2 * (0.5 + t * (-1.5 + t * (1.5 - 0.5 * t))) +
+                         lo.curvature[1] * t3 * (0.5 + t * (-1 + 0.5 * t));
+    return lo.radius + (rise + h * (slopes + h * bends));
   }
 
   /// Its derivative with respect to the axial position.
   KOKKOS_INLINE_FUNCTION double derivative(double a) const {
-    if (a <= axial[0]) return slope[0];
-    if (a >= axial[size - 1]) return slope[size - 1];
-    int const lo = piece(a), hi = lo + 1;
-    double const h = axial[hi] - axial[lo];
-    double const t = (a - axial[lo]) / h, t2 = t * t;
-    double const rise = (radius[hi] - radius[lo]) * 30 * t2 * (1 - t) * (1 - t);
-    double const slopes = slope[lo] * (1 + t2 * (-18 + t * (32 - 15 * t))) + slope[hi] * t2 * (-12 + t * (28 - 15 * t));
-    double const bends = curvature[2 * lo] * t * (1 + t * (-4.5 + t * (6 - 2.5 * t))) +
-                         curvature[2 * lo + 1] * t2 * (1.5 + t * (-4 + 2.5 * t));
+    if (a <= knots[0].axial) return knots[0].slope;
+    if (a >= knots[size - 1].axial) return knots[size - 1].slope;
+    int const p = piece(a);
+    ProfileKnot const &lo = knots[p], &hi = knots[p + 1];
+    double const h = hi.axial - lo.axial;
+    double const t = (a - lo.axial) / h, t2 = t * t;
+    double const rise = (hi.radius - lo.radius) * 30 * t2 * (1 - t) * (1 - t);
+    double const slopes = lo.slope * (1 + t2 * (-18 + t * (32 - 15 * t))) + hi.slope * t2 * (-12 + t * (28 - 15 * t));
+    double const bends =
+        lo.curvature[0] * t * (1 + t * (-4.5 + t * (6 - 2.5 * t))) + lo.curvature[1] * t2 * (1.5 + t * (-4 + 2.5 * t));
     return rise / h + slopes + h * bends;
   }
 };

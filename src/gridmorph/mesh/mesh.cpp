@@ -2,35 +2,14 @@
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <gridmorph/core/index.hpp>
+#include <gridmorph/core/large_pages.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
 namespace gridmorph {
-
-namespace {
-
-/// Asks for 2 MiB pages where the system offers them: first touches of a large array then cost a third, and passes along
-/// k, whose steps leave the page each time, miss the translation buffers less often.
-void prefer_large_pages([[maybe_unused]] double* data, [[maybe_unused]] Index n) {
-#if defined(__linux__) && defined(MADV_HUGEPAGE)
-  constexpr std::uintptr_t large_page = std::uintptr_t(2) << 20;
-  auto const address = reinterpret_cast<std::uintptr_t>(data);
-  std::uintptr_t const begin = (address + large_page - 1) / large_page * large_page;
-  std::uintptr_t const end = (address + std::uintptr_t(n) * sizeof(double)) / large_page * large_page;
-  // Only a hint: a system without large pages says no, and nothing is lost.
-  if (begin < end) static_cast<void>(::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
-#endif
-}
-
-}  // namespace
 
 std::string to_string(IndexRange const& range) {
   std::string text = "[";
@@ -72,7 +51,8 @@ Coordinates::Coordinates(Index n_nodes)
     : x(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::x"), n_nodes),
       y(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::y"), n_nodes),
       z(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::z"), n_nodes) {
-  for (View const* component : {&x, &y, &z}) prefer_large_pages(component->data(), n_nodes);
+  for (View const* component : {&x, &y, &z})
+    prefer_large_pages(component->data(), std::size_t(n_nodes) * sizeof(double));
 }
 
 Index Mesh::n_cells() const {

@@ -246,13 +246,14 @@ class Slopes {
 };
 
 /// As many buckets as pieces (see ProfileView::piece).
-std::vector<int> bucket_pieces(std::vector<double> const& axial) {
-  int const pieces = int(axial.size()) - 1;
+std::vector<int> bucket_pieces(std::vector<ProfileKnot> const& knots) {
+  int const pieces = int(knots.size()) - 1;
+  double const first = knots.front().axial, last = knots.back().axial;
   std::vector<int> out;
   int piece = 0;
   for (int bucket = 0; bucket <= pieces; ++bucket) {
-    double const lower = axial.front() + (axial.back() - axial.front()) * bucket / pieces;
-    while (piece + 1 < pieces && axial[piece + 1] <= lower) ++piece;
+    double const lower = first + (last - first) * bucket / pieces;
+    while (piece + 1 < pieces && knots[piece + 1].axial <= lower) ++piece;
     out.push_back(piece);
   }
   return out;
@@ -299,13 +300,13 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
 
   RevolutionProfile profile;
   Slopes const slopes(points, std::max(noise, 4e-16 * size), size);
-  profile.slope = slopes.all();
-  profile.curvature = slopes.curvatures(profile.slope);
-  profile.bucket_piece = bucket_pieces(profile.axial);
-  for (auto const& [a, r] : points) {
-    profile.axial.push_back(a);
-    profile.radius.push_back(r);
+  std::vector<double> const slope = slopes.all(), curvature = slopes.curvatures(slope);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    ProfileKnot knot{points[n].first, points[n].second, slope[n], {0, 0}};
+    if (n + 1 < points.size()) std::copy_n(curvature.begin() + std::ptrdiff_t(2 * n), 2, knot.curvature);
+    profile.knots.push_back(knot);
   }
+  profile.bucket_piece = bucket_pieces(profile.knots);
   for (auto const& [a, r] : original) profile.deviation = std::max(profile.deviation, std::abs(r - profile(a)));
   return profile;
 }

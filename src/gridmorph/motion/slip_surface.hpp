@@ -17,10 +17,7 @@ namespace gridmorph {
 ///
 /// Built on the host from any set of (axial, radius) points; evaluated on host and device alike.
 struct RevolutionProfile {
-  std::vector<double> axial;  ///< strictly increasing
-  std::vector<double> radius;
-  std::vector<double> slope;      ///< d radius / d axial at each point
-  std::vector<double> curvature;  ///< second derivative at the lower and upper end of each piece
+  std::vector<ProfileKnot> knots;
   std::vector<int> bucket_piece;  ///< see ProfileView
   double deviation = 0;           ///< largest |radius - profile(axial)| over the points it was built from
 
@@ -33,18 +30,12 @@ struct RevolutionProfile {
   /// axial position, two surfaces at once, or a surface that is not one of revolution. Cost O(n log n).
   static RevolutionProfile from_points(std::vector<std::pair<double, double>> axial_radius);
 
-  /// Outside [axial.front(), axial.back()] the end slope is continued.
+  /// Outside the knots the end slope is continued.
   [[nodiscard]] double operator()(double axial_position) const { return view()(axial_position); }
 
   /// Borrows the tables: valid on the host while this profile lives unchanged.
   [[nodiscard]] ProfileView view() const {
-    return {axial.data(),
-            radius.data(),
-            slope.data(),
-            curvature.data(),
-            int(axial.size()),
-            bucket_piece.data(),
-            std::max(0, int(bucket_piece.size()) - 1)};
+    return {knots.data(), int(knots.size()), bucket_piece.data(), std::max(0, int(bucket_piece.size()) - 1)};
   }
 };
 
@@ -69,47 +60,40 @@ struct SlipSurface {
 template <class MemorySpace>
 struct SlipSurfaceTable {
   Kokkos::View<SlipSurfaceView*, MemorySpace> surfaces;
-  Kokkos::View<double*, MemorySpace> tables;  ///< axial, radius, slope, curvature of each profile one after another
-  Kokkos::View<int*, MemorySpace> buckets;    ///< bucket_piece of each profile one after another
+  Kokkos::View<ProfileKnot*, MemorySpace> knots;  ///< of each profile one after another
+  Kokkos::View<int*, MemorySpace> buckets;        ///< bucket_piece of each profile one after another
 
   SlipSurfaceTable() = default;
 
   /// Copies on `exec`; fences it, because the host buffers end with the call.
   template <class ExecutionSpace>
-  SlipSurfaceTable(ExecutionSpace const& exec, std::vector<SlipSurface> const& host)
-      : surfaces(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::surfaces"),
-                 host.size()) {
-    std::size_t n = 0, n_buckets = 0;
-    for (auto const& s : host) {
-      n += 3 * s.profile.axial.size() + s.profile.curvature.size();
+  SlipSurfaceTable(ExecutionSpace const& exec, std::vector<SlipSurface> const& host) {
+    std::size_t n_knots = 0, n_buckets = 0;
+    for (SlipSurface const& s : host) {
+      n_knots += s.profile.knots.size();
       n_buckets += s.profile.bucket_piece.size();
     }
+    using Kokkos::WithoutInitializing;
+    surfaces = Kokkos::View<SlipSurfaceView*, MemorySpace>(
+        Kokkos::view_alloc(exec, WithoutInitializing, "gridmorph::SlipSurfaceTable::surfaces"), host.size());
+    knots = Kokkos::View<ProfileKnot*, MemorySpace>(
+        Kokkos::view_alloc(exec, WithoutInitializing, "gridmorph::SlipSurfaceTable::knots"), n_knots);
     buckets = Kokkos::View<int*, MemorySpace>(
-        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::buckets"), n_buckets);
-    auto buckets_h = Kokkos::create_mirror_view(buckets);
-    std::size_t bucket_at = 0;
-    tables = Kokkos::View<double*, MemorySpace>(
-        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::SlipSurfaceTable::tables"), n);
+        Kokkos::view_alloc(exec, WithoutInitializing, "gridmorph::SlipSurfaceTable::buckets"), n_buckets);
     auto surfaces_h = Kokkos::create_mirror_view(surfaces);
-    auto tables_h = Kokkos::create_mirror_view(tables);
-    std::size_t at = 0;
-    auto const store = [&](std::vector<double> const& values) {
-      double const* const there = tables.data() + at;
-      for (double v : values) tables_h(at++) = v;
-      return there;
-    };
+    auto knots_h = Kokkos::create_mirror_view(knots);
+    auto buckets_h = Kokkos::create_mirror_view(buckets);
+    std::size_t knot = 0, bucket = 0;
     for (std::size_t s = 0; s < host.size(); ++s) {
       SlipSurfaceView view = host[s].view();
-      view.profile.axial = store(host[s].profile.axial);
-      view.profile.radius = store(host[s].profile.radius);
-      view.profile.slope = store(host[s].profile.slope);
-      view.profile.curvature = store(host[s].profile.curvature);
-      view.profile.bucket_piece = buckets.data() + bucket_at;
-      for (int const piece : host[s].profile.bucket_piece) buckets_h(bucket_at++) = piece;
+      view.profile.knots = knots.data() + knot;
+      view.profile.bucket_piece = buckets.data() + bucket;
+      for (ProfileKnot const& k : host[s].profile.knots) knots_h(knot++) = k;
+      for (int const piece : host[s].profile.bucket_piece) buckets_h(bucket++) = piece;
       surfaces_h(s) = view;
     }
     Kokkos::deep_copy(exec, surfaces, surfaces_h);
-    Kokkos::deep_copy(exec, tables, tables_h);
+    Kokkos::deep_copy(exec, knots, knots_h);
     Kokkos::deep_copy(exec, buckets, buckets_h);
     compat::fence(exec, "gridmorph::SlipSurfaceTable (host buffers end here)");
   }

@@ -11,8 +11,7 @@ namespace gridmorph {
 namespace {
 
 bool same_surface(SlipSurface const& a, SlipSurface const& b) {
-  return a.kind == b.kind && a.origin == b.origin && a.direction == b.direction && a.profile.axial == b.profile.axial &&
-         a.profile.radius == b.profile.radius;
+  return a.kind == b.kind && a.origin == b.origin && a.direction == b.direction && a.profile.knots == b.profile.knots;
 }
 
 /// Number of each patch's slip surface in `surfaces`, -1 for patches that do not slip.

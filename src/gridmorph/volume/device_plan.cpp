@@ -1,5 +1,8 @@
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/core/large_pages.hpp>
 #include <gridmorph/volume/device_plan.hpp>
+
+#include <type_traits>
 
 namespace gridmorph::detail {
 namespace {
@@ -174,6 +177,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   t = Kokkos::View<double*, Memory>(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::line_parameters"),
       joined.lines.n_parameters);
+  if constexpr (std::is_same_v<Memory, Kokkos::HostSpace>) prefer_large_pages(t.data(), t.extent(0) * sizeof(double));
   std::vector<kernels::Tube> with_parameters;
   for (kernels::Tube const& tube : joined.lines.tubes)
     if (joined.lines.chains[tube.chain].has_parameters()) with_parameters.push_back(tube);

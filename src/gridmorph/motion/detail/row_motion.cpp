@@ -96,7 +96,7 @@ Annulus::Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidate
 
 RevolutionProfile const& Annulus::at(Profiles const& profiles, double axial) {
   auto const gap = [axial](RevolutionProfile const* p) {
-    return std::max({p->axial.front() - axial, axial - p->axial.back(), 0.0});
+    return std::max({p->knots.front().axial - axial, axial - p->knots.back().axial, 0.0});
   };
   return **std::min_element(profiles.begin(), profiles.end(),
                             [&](auto const* a, auto const* b) { return gap(a) < gap(b); });

@@ -238,7 +238,7 @@ class Finder {
     SlipSurface surface = on_axis();
     surface.profile = RevolutionProfile::from_points(std::move(meridional));
     surface.baseline_deviation = surface.profile.deviation;
-    size = std::max(size, surface.profile.axial.back() - surface.profile.axial.front());
+    size = std::max(size, surface.profile.knots.back().axial - surface.profile.knots.front().axial);
     if (surface.baseline_deviation > 1e-3 * size)
       throw MotionError("its nodes are up to " + number(surface.baseline_deviation) +
                         " off the nearest surface of revolution about the "
@@ -265,9 +265,10 @@ class Finder {
   }
 
   void note(Patches const& patches, SlipSurface const& s, char const* what) {
-    notes_.push_back("slip " + describe(mesh_, patches) + ": " + what + " " + std::to_string(s.profile.axial.size()) +
-                     " points, axial " + number(s.profile.axial.front()) + " to " + number(s.profile.axial.back()) +
-                     "; nodes are within " + number(s.baseline_deviation) + " of it");
+    notes_.push_back("slip " + describe(mesh_, patches) + ": " + what + " " + std::to_string(s.profile.knots.size()) +
+                     " points, axial " + number(s.profile.knots.front().axial) + " to " +
+                     number(s.profile.knots.back().axial) + "; nodes are within " + number(s.baseline_deviation) +
+                     " of it");
   }
 
   Mesh const& mesh_;

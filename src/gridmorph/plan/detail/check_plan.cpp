@@ -72,13 +72,12 @@ class Checker {
       require(s.kind == SlipKind::plane || s.kind == SlipKind::revolution || s.kind == SlipKind::axial,
               "kind of slip surface");
       RevolutionProfile const& p = s.profile;
-      std::size_t const n = p.axial.size();
-      require(p.radius.size() == n && p.slope.size() == n && p.curvature.size() == (n == 0 ? 0 : 2 * (n - 1)),
-              "length of profile tables");
+      std::size_t const n = p.knots.size();
       require(n >= 2 || (n == 0 && s.kind != SlipKind::revolution && p.bucket_piece.empty()), "length of profile");
-      for (std::size_t m = 1; m < n; ++m)
-        require(std::isfinite(p.axial[m - 1]) && p.axial[m - 1] < p.axial[m] && std::isfinite(p.axial[m]),
-                "axial positions of profile");
+      for (std::size_t m = 1; m < n; ++m) {
+        double const lower = p.knots[m - 1].axial, upper = p.knots[m].axial;
+        require(std::isfinite(lower) && lower < upper && std::isfinite(upper), "axial positions of profile");
+      }
       require(p.bucket_piece.size() != 1, "buckets of profile");
       for (int const piece : p.bucket_piece) require(piece >= 0 && piece < int(n) - 1, "buckets of profile");
     }
