@@ -1,8 +1,8 @@
 // Motion rules: how the boundary of the domain moves. Plain values; case files and solvers fill them alike.
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
-// `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, circumferential slide,
-// follow: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections,
+// circumferential slide, follow: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface).
 #pragma once
 
@@ -40,6 +40,47 @@ struct FunctionRule {
   std::function<void(std::span<Vec3 const> points, std::span<Vec3> displacement)> function;
 };
 
+/// Values of one parameter along the span.
+struct SpanwiseTable {
+  enum class Interpolation {
+    spline,  ///< C1 cubics without overshoot: level at extremes, harmonic means of the secants elsewhere
+    linear
+  };
+  /// (span fraction, value), span fractions strictly increasing. Beyond the first and the last: their values. Empty: 0.
+  std::vector<std::pair<double, double>> stations;
+  Interpolation interpolation = Interpolation::spline;
+
+  /// Value at a span fraction; exactly the station's at a station. Cost O(log stations).
+  [[nodiscard]] double at(double span) const;
+  /// Whether every value is exactly zero.
+  [[nodiscard]] bool is_zero() const;
+};
+
+/// Redesign of an airfoil section by section: every section changes its shape in its own plane, by parameters that vary
+/// along the span. Leading edge, trailing edge, chord line, camber and span fraction are found from the patches
+/// themselves; docs/motion.md has the formulas. Where all parameters are zero the displacement is exactly zero.
+struct SectionsRule {
+  /// blade: sections are surfaces of constant span fraction between hub and case about Motion::axis, rolled out with
+  /// the coordinates (axial position, R theta). wing: plane sections across the span direction.
+  enum class Sections { blade, wing };
+  Sections sections = Sections::blade;
+  /// Wing: from root to tip. Found when absent: across the symmetry plane the wing stands on, else its longest extent.
+  std::optional<Vec3> span{};
+  /// Wing: the way of the flow, roughly; tells leading from trailing edge. Blades: along the axis.
+  Vec3 flow{1, 0, 0};
+  /// Chord fraction of the point of the chord line that chord, scale, twist and stagger leave in place.
+  double pivot = 0.5;
+
+  SpanwiseTable chord;        ///< relative change of length along the chord line (-0.1: 10 % shorter), thickness kept
+  SpanwiseTable scale;        ///< relative change of size of the section as a whole
+  SpanwiseTable thickness;    ///< relative change of thickness about the camber line
+  SpanwiseTable twist_rad;    ///< the section turns rigidly; positive: towards a larger stagger angle
+  SpanwiseTable stagger_rad;  ///< change of the stagger angle that keeps every axial (wing: streamwise) position
+  SpanwiseTable sweep;        ///< shift along the baseline chord line [length], positive towards the trailing edge
+  SpanwiseTable lean;         ///< circumferential shift [length; blade: R theta, wing: across span and flow]
+  SpanwiseTable bow_rad;      ///< lean angle of the stacking line; shifts like lean by its tangent's integral from span 0
+};
+
 /// Inlet and exit: turn about the axis by the angle that the leading edge (upstream patches) or trailing edge
 /// (downstream patches) of the `of` patches turns by at the same span fraction; axial position and radius kept.
 struct CircumferentialSlideRule {
@@ -68,7 +109,8 @@ struct FreeRule {
   Constraint constraint = Constraint::none;  ///< axial: axial position kept; plane: nodes stay on the patch's plane
 };
 
-using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule>;
+using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
+                          SectionsRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").

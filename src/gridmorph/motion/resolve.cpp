@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace gridmorph {
@@ -22,7 +24,9 @@ bool is(Rule const& rule) {
 }
 
 /// Displacements that need no other patch: what a blade must have for others to follow it.
-bool is_direct(Rule const& rule) { return is<FixedRule>(rule) || is<RigidRule>(rule) || is<FunctionRule>(rule); }
+bool is_direct(Rule const& rule) {
+  return is<FixedRule>(rule) || is<RigidRule>(rule) || is<FunctionRule>(rule) || is<SectionsRule>(rule);
+}
 
 /// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
 /// only if there is no other.
@@ -106,7 +110,42 @@ class Resolver {
         problems_.add(label(r) +
                       ": the plane needs a finite point and a "
                       "normal that is not (0, 0, 0)");
+    } else if (auto const* sections = std::get_if<SectionsRule>(&rule)) {
+      check_sections(r, *sections);
     }
+  }
+
+  void check_sections(int r, SectionsRule const& rule) {
+    constexpr double inf = std::numeric_limits<double>::infinity(), right_angle = std::numbers::pi / 2;
+    // Each parameter with its name and the open interval of its values.
+    struct Parameter {
+      char const* name;
+      SpanwiseTable const& table;
+      double above, below;
+    };
+    for (Parameter const& p :
+         {Parameter{"chord", rule.chord, -1, inf}, Parameter{"scale", rule.scale, -1, inf},
+          Parameter{"thickness", rule.thickness, -1, inf}, Parameter{"twist", rule.twist_rad, -inf, inf},
+          Parameter{"stagger", rule.stagger_rad, -2 * right_angle, 2 * right_angle},
+          Parameter{"sweep", rule.sweep, -inf, inf}, Parameter{"lean", rule.lean, -inf, inf},
+          Parameter{"bow", rule.bow_rad, -right_angle, right_angle}}) {
+      double before = -inf;
+      for (auto const& [span, value] : p.table.stations) {
+        if (!std::isfinite(span) || !(span > before))
+          problems_.add(label(r) + ": " + p.name + ": span fraction " + std::to_string(span) +
+                        " does not lie above the one before; give them in ascending order, each once");
+        if (!(value > p.above && value < p.below) || !std::isfinite(value))
+          problems_.add(label(r) + ": " + p.name + ": the value " + std::to_string(value) + " at span fraction " +
+                        std::to_string(span) + " is not " +
+                        (p.above == -1      ? "finite and above -1, which would leave nothing of the section"
+                         : p.below == inf ? "finite"
+                                          : "a number of radians that a line can turn by"));
+        before = span;
+      }
+    }
+    if (!std::isfinite(rule.pivot)) problems_.add(label(r) + ": the pivot is not finite; give a chord fraction");
+    if (!finite(rule.flow) || !(norm(rule.flow) > 0) || (rule.span && (!finite(*rule.span) || !(norm(*rule.span) > 0))))
+      problems_.add(label(r) + ": the directions of flow and span must be finite and not (0, 0, 0)");
   }
 
   void claim(int r) {
@@ -135,7 +174,7 @@ class Resolver {
     }
     Rule const& rule = motion_.rules[r].rule;
     auto const* free = std::get_if<FreeRule>(&rule);
-    if (is<SlipRule>(rule) || (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
+    if (is<SlipRule>(rule) || is<SectionsRule>(rule) || (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
       problems_.add(label(r) + " names the periodic " + name +
                     "; periodic interfaces take free without constraint, "
                     "follow, circumferential-slide, fixed, rigid or "
@@ -233,7 +272,7 @@ class Resolver {
       problems_.add(label(r) + ": of: " + quote_list(names_of(mesh_, patches)) + " has the rule '" +
                     std::string(rule_name(result_.rules[own].rule)) +
                     "', whose displacement is not known beforehand; give it "
-                    "fixed, rigid, formula or field");
+                    "fixed, rigid, formula, field or sections");
   }
 
   Mesh const& mesh_;
@@ -248,7 +287,7 @@ class Resolver {
 
 std::string_view rule_name(Rule const& rule) {
   static constexpr std::array<std::string_view, std::variant_size_v<Rule>> names{
-      "fixed", "rigid", "function", "circumferential-slide", "follow", "slip", "free"};
+      "fixed", "rigid", "function", "circumferential-slide", "follow", "slip", "free", "sections"};
   return names[rule.index()];
 }
 

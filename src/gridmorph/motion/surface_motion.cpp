@@ -2,6 +2,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/detail/row_motion.hpp>
+#include <gridmorph/motion/detail/section_motion.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/selectors.hpp>
@@ -36,10 +37,23 @@ struct SurfaceMotion::Impl {
   std::map<std::vector<int>, RowMotion> rows;  ///< by the patches of the blade; map, so that rows stay where they
                                                ///< are
   std::vector<RowMotion const*> row_of_rule;   ///< per rule, null for rules without a blade
+  std::vector<std::unique_ptr<SectionMotion>> sections_of_rule;  ///< per rule, null for other rules
 
   Impl(Mesh const& mesh, ResolvedMotion const& motion)
       : rules(motion.rules), surfaces(mesh, motion, notes), row_of_rule(rules.size(), nullptr) {
     Problems problems;
+    sections_of_rule.resize(rules.size());
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      auto const* sections = std::get_if<SectionsRule>(&rules[r].rule);
+      if (sections == nullptr) continue;
+      try {
+        sections_of_rule[r] =
+            std::make_unique<SectionMotion>(mesh, motion, *sections, patches_of(motion, int(r)), surfaces, notes);
+      } catch (MotionError const& e) {
+        problems.add(label(int(r)) + ": " + e.what());
+      }
+    }
+    problems.throw_if_any<MotionError>();  // rows take up what the sections do
     for (std::size_t r = 0; r < rules.size(); ++r) {
       if (blades_of(rules[r].rule) == nullptr) continue;
       try {
@@ -58,7 +72,7 @@ struct SurfaceMotion::Impl {
         throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
                           std::string(rule_name(rule)) +
                           "', whose displacement is not known beforehand; give "
-                          "it fixed, rigid, formula or field");
+                          "it fixed, rigid, formula, field or sections");
     if (blades.empty()) throw MotionError("of: names no patch");
     auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[p].rule, points, out);
@@ -68,7 +82,14 @@ struct SurfaceMotion::Impl {
 
   static bool is_direct(Rule const& rule) {
     return std::holds_alternative<FixedRule>(rule) || std::holds_alternative<RigidRule>(rule) ||
-           std::holds_alternative<FunctionRule>(rule);
+           std::holds_alternative<FunctionRule>(rule) || std::holds_alternative<SectionsRule>(rule);
+  }
+
+  static std::vector<int> patches_of(ResolvedMotion const& motion, int r) {
+    std::vector<int> patches;
+    for (std::size_t p = 0; p < motion.patch.size(); ++p)
+      if (motion.patch[p].rule == r) patches.push_back(int(p));
+    return patches;
   }
 
   std::string label(int r) const {
@@ -89,6 +110,9 @@ struct SurfaceMotion::Impl {
                      [rigid](Vec3 const& p) { return gridmorph::displacement(*rigid, p); });
     } else if (auto const* function = std::get_if<FunctionRule>(&rule)) {
       function->function(points, out);
+    } else if (SectionMotion const* sections = sections_of_rule[r].get()) {
+      std::transform(points.begin(), points.end(), out.begin(),
+                     [sections](Vec3 const& p) { return sections->displacement(p); });
     } else {
       RowMotion const& row = *row_of_rule[r];
       bool const slides = std::holds_alternative<CircumferentialSlideRule>(rule);

@@ -22,7 +22,7 @@ class SurfaceMotion {
   SurfaceMotion& operator=(SurfaceMotion&&) noexcept;
 
   /// Whether rule number r (in ResolvedMotion::rules) fixes displacements before the volume stage (fixed, rigid,
-  /// function, circumferential-slide, follow).
+  /// function, sections, circumferential-slide, follow).
   [[nodiscard]] bool is_explicit(int rule) const;
 
   /// Displacement that rule number r gives to baseline points. Throws MotionError (rule, point and value) when a

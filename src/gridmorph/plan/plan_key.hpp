@@ -29,7 +29,7 @@ struct PlanKey {
 ///
 /// Of the motion counts what a plan depends on: axis, selectors, kinds of rules, ranks, slip surfaces, constraints. How
 /// far nodes move does not: a RigidRule counts by its name (rule_name()) without its matrix, a FunctionRule by its name
-/// without its function and description. Neither do Motion::conformity_tolerance and MotionRule::where.
+/// without its function and description, a SectionsRule by its name without its tables. Neither do Motion::conformity_tolerance and MotionRule::where.
 /// Cost: O(nodes), 24 bytes read per node.
 PlanKey plan_key(Mesh const& mesh, Motion const& motion, PlanOptions const& options);
 

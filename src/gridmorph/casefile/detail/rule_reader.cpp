@@ -1,4 +1,5 @@
 #include <gridmorph/casefile/detail/rule_reader.hpp>
+#include <gridmorph/casefile/detail/sections_reader.hpp>
 #include <gridmorph/casefile/formula.hpp>
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/core/rigid_transform.hpp>
@@ -255,6 +256,7 @@ Rule read_rule(std::size_t number, TableReader& table, RuleContext const& shared
     case 5: needs_axis(table, shared, rule_names[number]); return FollowRule{read_of(table)};
     case 6: return read_slip(table, shared);
     case 7: return read_free(table, shared);
+    case 8: return read_sections(table, shared.axis.has_value());
     default: return FixedRule{};
   }
 }
@@ -310,7 +312,7 @@ void read_motion_rule(TableReader& table, RuleContext const& shared, CaseFile& o
     table.problem("rule", fmt::format("\"{}\" is no rule{}", *name, suggestion(*name, rule_names)));
     return;  // its other keys cannot be judged
   }
-  if (*name == "sections" || *name == "target") {
+  if (*name == "target") {
     table.problem(
         "rule",
         fmt::format("\"{}\" is not available yet; use \"field\" with the displacement of the surface nodes", *name));

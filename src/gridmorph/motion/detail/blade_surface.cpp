@@ -109,14 +109,15 @@ class Stitcher {
     double span_lo = std::numeric_limits<double>::infinity(), span_hi = -span_lo, r_lo = span_lo, r_hi = -span_lo;
     for (std::size_t n = 0; n < piece.points.size(); ++n) {
       MeridionalPoint const m = input_.frame.meridional(piece.points[n]);
-      nodes.push_back({m.axial, input_.span(m), input_.motion(piece.points[n], displacement[n])});
+      nodes.push_back({m.axial, input_.span(m), input_.motion(piece.points[n], displacement[n]), piece.points[n]});
       piece.span.push_back(nodes.back().span);
       span_lo = std::min(span_lo, piece.span.back());
       span_hi = std::max(span_hi, piece.span.back());
       r_lo = std::min(r_lo, m.radius);
       r_hi = std::max(r_hi, m.radius);
     }
-    double const height = span_hi > span_lo ? (r_hi - r_lo) / (span_hi - span_lo) : 0;
+    double height = input_.height;
+    if (!(height > 0)) height = span_hi > span_lo ? (r_hi - r_lo) / (span_hi - span_lo) : 0;
     std::array<double, 2> const share{spanwise_share(piece, 0, height), spanwise_share(piece, 1, height)};
     int const direction = share[0] > share[1] ? 0 : 1;
     if (!(share[direction] > 0.3)) {

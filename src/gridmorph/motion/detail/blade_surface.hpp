@@ -14,6 +14,7 @@ struct BladeNode {
   double axial = 0;
   double span = 0;  ///< span fraction: 0 at the hub, 1 at the case
   CylindricalMotion motion;
+  Vec3 point;
 };
 
 /// Spanwise lines that follow one another around the sections.
@@ -36,6 +37,8 @@ struct BladeInput {
   std::function<CylindricalMotion(Vec3 const& point, Vec3 const& displacement)> motion;
   /// Displacements of the nodes of one patch, in patch_points order.
   std::function<void(int patch, std::span<Vec3 const> points, std::span<Vec3> displacement)> displacement;
+  /// Length from span fraction 0 to 1; 0: what the patch's radii say.
+  double height = 0;
 };
 
 /// Stitches the structured ranges of the patches: finds which index direction of each runs spanwise, joins pieces that

@@ -3,6 +3,7 @@
 
 #include <gridmorph/mesh/mesh.hpp>
 
+#include <algorithm>
 #include <vector>
 
 namespace gridmorph {
@@ -13,6 +14,14 @@ void for_each_node(Zone const& zone, IndexRange const& range, F const& f) {
   for (int k = range.begin[2]; k < range.end[2]; ++k)
     for (int j = range.begin[1]; j < range.end[1]; ++j)
       for (int i = range.begin[0]; i < range.end[0]; ++i) f(zone.node({i, j, k}));
+}
+
+/// Whether two patches have nodes of one zone in common.
+inline bool share_nodes(Patch const& a, Patch const& b) {
+  bool shared = a.zone == b.zone;
+  for (int axis = 0; axis < 3; ++axis)
+    shared = shared && std::max(a.range.begin[axis], b.range.begin[axis]) < std::min(a.range.end[axis], b.range.end[axis]);
+  return shared;
 }
 
 /// Positions of all nodes of the patches, patch after patch, i fastest.

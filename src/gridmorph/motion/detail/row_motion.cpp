@@ -111,11 +111,21 @@ double Annulus::span(MeridionalPoint const& p) const {
   return (p.radius - inner) / (outer - inner);
 }
 
+double Annulus::height(MeridionalPoint const& p) const {
+  return has_walls() ? at(outer_, p.axial)(p.axial) - at(inner_, p.axial)(p.axial) : r_hi_ - r_lo_;
+}
+
 double Annulus::radius_change(MeridionalPoint const& p, double axial) const {
   if (axial == 0 || !has_walls()) return 0;
   double const h = span(p), moved = p.axial + axial;
   return (1 - h) * (at(inner_, moved)(moved) - at(inner_, p.axial)(p.axial)) +
          h * (at(outer_, moved)(moved) - at(outer_, p.axial)(p.axial));
+}
+
+Annulus annulus_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
+                       std::vector<int> const& blades) {
+  return {surfaces, surfaces_of_row(mesh, surfaces, zones_of_row(mesh, blades)),
+          meridional_points(mesh, frame, blades)};
 }
 
 RowMotion::RowMotion(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,

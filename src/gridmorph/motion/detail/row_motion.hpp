@@ -24,6 +24,8 @@ class Annulus {
   [[nodiscard]] bool has_walls() const { return !inner_.empty() && !outer_.empty(); }
   /// 0 at the hub, 1 at the case.
   [[nodiscard]] double span(MeridionalPoint const& p) const;
+  /// Distance from hub to case through p.
+  [[nodiscard]] double height(MeridionalPoint const& p) const;
   /// How much the radius changes when the axial position does and the span fraction does not. Exactly zero for zero,
   /// and where the end walls are not known.
   [[nodiscard]] double radius_change(MeridionalPoint const& p, double axial) const;
@@ -36,6 +38,10 @@ class Annulus {
   Profiles inner_, outer_;
   double r_lo_ = 0, r_hi_ = 0;
 };
+
+/// Hub, case and span fraction of the row that holds the blades. Keeps pointers to `surfaces`.
+Annulus annulus_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
+                       std::vector<int> const& blades);
 
 /// Motion of the surfaces around one blade row of an axial machine. Only axial position and radius of a point enter,
 /// and the displacement is turned to the point: copies of a point, turned about the axis, get copies of its
