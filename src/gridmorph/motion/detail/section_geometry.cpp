@@ -40,28 +40,27 @@ Sample place_at(SectionGeometry::Line const& line, double h) {
 }
 
 /// One section as a closed polygon in its plane.
-struct Section {
-  std::vector<Point> points;
-  double scale = 1;
-
+class Section {
+ public:
   Section(std::vector<SectionGeometry::Line> const& lines, double h) {
-    double lo = inf, hi = -inf, unit_lo = 1, unit_hi = 1;
-    for (auto const& line : lines) {
-      Sample const p = place_at(line, h);
-      points.push_back({p[0], p[1]});
-      if (p[0] < lo) lo = p[0], unit_lo = p[2];
-      if (p[0] > hi) hi = p[0], unit_hi = p[2];
-    }
-    scale = 0.5 * (unit_lo + unit_hi);
-    for (Point& p : points) p.y *= scale;
+    for (auto const& line : lines) places_.push_back(place_at(line, h));
+    auto const [up, down] =
+        std::minmax_element(places_.begin(), places_.end(), [](auto const& a, auto const& b) { return a[0] < b[0]; });
+    scale = 0.5 * ((*up)[2] + (*down)[2]);
   }
-  [[nodiscard]] int size() const { return int(points.size()); }
-  [[nodiscard]] Point const& operator[](int n) const { return points[std::size_t(((n % size()) + size()) % size())]; }
+  double scale = 1;  ///< length of a unit of t
 
+  [[nodiscard]] int size() const { return int(places_.size()); }
+  [[nodiscard]] Point operator[](int n) const { return {place(n)[0], scale * place(n)[1]}; }
+  /// Length of a unit of t at point n itself.
+  [[nodiscard]] double unit(int n) const { return place(n)[2]; }
+
+  [[nodiscard]] int most_upstream() const { return extreme(-1); }
+  [[nodiscard]] int most_downstream() const { return extreme(+1); }
   [[nodiscard]] int farthest_from(Point const& p) const {
     int best = 0;
     for (int n = 1; n < size(); ++n)
-      if (length(points[n] - p) > length(points[best] - p)) best = n;
+      if (length((*this)[n] - p) > length((*this)[best] - p)) best = n;
     return best;
   }
   /// How far the outline turns at point n; 0 where nodes coincide.
@@ -70,11 +69,23 @@ struct Section {
     if (length(a) == 0 || length(b) == 0) return 0;
     return std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
   }
+
+ private:
+  [[nodiscard]] Sample const& place(int n) const { return places_[std::size_t(((n % size()) + size()) % size())]; }
+  [[nodiscard]] int extreme(int sign) const {
+    int best = 0;
+    for (int n = 1; n < size(); ++n)
+      if (sign * (places_[n][0] - places_[best][0]) > 0) best = n;
+    return best;
+  }
+
+  Samples places_;  ///< s, t, unit
 };
 
 /// Where an edge of one section is. The sides of the section begin after `last` and end before `first`.
 struct Edge {
   Point at;
+  double unit = 0;
   int first = 0, last = 0;  ///< lines that belong to the edge, counted around; first > last when it lies between two
 };
 
@@ -84,22 +95,26 @@ struct EdgeFinder {
 
   [[nodiscard]] Edge operator()(Section const& section, Point const& opposite) const {
     if (!corners.empty()) {
-      Edge edge{{}, corners.front(), corners.back()};
+      Edge edge{{}, 0, corners.front(), corners.back()};
       for (int c : corners) {
         edge.at.x += section[c].x / double(corners.size());
         edge.at.y += section[c].y / double(corners.size());
+        edge.unit += section.unit(c) / double(corners.size());
       }
       return edge;
     }
     int const m = section.farthest_from(opposite);
-    Point const &a = section[m - 1], &b = section[m], &c = section[m + 1];
+    Point const a = section[m - 1], b = section[m], c = section[m + 1];
     double const fa = length(a - opposite), fb = length(b - opposite), fc = length(c - opposite);
     double const bend = fa - 2 * fb + fc;
     double const t = bend < 0 ? std::clamp(-0.5 * (fc - fa) / bend, -0.5, 0.5) : 0.0;
     auto const between = [t](double p, double q, double r) {
       return q + t * (0.5 * (r - p) + 0.5 * t * ((p - q) + (r - q)));
     };
-    Edge edge{{between(a.x, b.x, c.x), between(a.y, b.y, c.y)}, m, m};
+    Edge edge{{between(a.x, b.x, c.x), between(a.y, b.y, c.y)},
+              between(section.unit(m - 1), section.unit(m), section.unit(m + 1)),
+              m,
+              m};
     if (t > 0) edge.first = m + 1;
     if (t < 0) edge.last = m - 1;
     return edge;
@@ -130,9 +145,7 @@ struct EdgeFinders {
 
 EdgeFinders find_edges(Section const& middle, std::vector<double> const& turn,
                        std::vector<SectionGeometry::Line> const& lines) {
-  int leading = int(std::min_element(middle.points.begin(), middle.points.end(),
-                                     [](Point const& a, Point const& b) { return a.x < b.x; }) -
-                    middle.points.begin());
+  int leading = middle.most_upstream();
   int trailing = middle.farthest_from(middle[leading]);
   for (int pass = 0; pass < 8; ++pass) {
     leading = middle.farthest_from(middle[trailing]);
@@ -205,15 +218,15 @@ SectionGeometry::SectionGeometry(Outline outline) {
   double shortest = inf, longest = 0;
   for (int k = 0; k < n_sections_; ++k) {
     double const h = span_of(k);
-    Section const section(lines, h);
-    Edge leading = find.leading(
-        section, *std::max_element(section.points.begin(), section.points.end(),
-                                   [](Point const& a, Point const& b) { return a.x < b.x; }));
-    Edge trailing;
+    Section section(lines, h);
+    Edge leading = find.leading(section, section[section.most_downstream()]), trailing;
     for (int pass = 0; pass < 6; ++pass) {
       trailing = find.trailing(section, leading.at);
       leading = find.leading(section, trailing.at);
+      section.scale = 0.5 * (leading.unit + trailing.unit);
     }
+    trailing = find.trailing(section, leading.at);
+    leading = find.leading(section, trailing.at);
     double const chord = length(trailing.at - leading.at);
     if (!(chord > 0))
       throw MotionError("at span fraction " + number(h) + " the section has no chord; check axis, span and flow");
@@ -347,7 +360,7 @@ std::vector<SectionGeometry> find_sections(Mesh const& mesh, SectionFrame const&
       double const h = 0.5 * (lines.front().span.front() + lines.front().span.back());
       Section const section(lines, h);
       double size = 0;
-      for (Point const& p : section.points) size = std::max(size, length(p - section[0]));
+      for (int n = 0; n < section.size(); ++n) size = std::max(size, length(section[n] - section[0]));
       whole = length(section[-1] - section[0]) < 0.3 * size;
     }
     if (whole)
