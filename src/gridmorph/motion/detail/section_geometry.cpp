@@ -241,8 +241,12 @@ SectionGeometry::SectionGeometry(Outline outline) {
   images_ = {0};
   if (outline.shift != 0) images_.push_back(outline.shift);
 
-  auto const edge = [](EdgeFinder const& finder) {
-    return finder.corners.empty() ? "round" : (finder.corners.size() == 1 ? "sharp" : "blunt");
+  Section const middle(lines, span_of((n_sections_ - 1) / 2));
+  auto const edge = [&](EdgeFinder const& finder) {
+    if (finder.corners.empty()) return "round";
+    double wide = 0;
+    for (int c : finder.corners) wide = std::max(wide, length(middle[c] - middle[finder.corners.front()]));
+    return wide < 1e-6 * longest ? "sharp" : "blunt";
   };
   ChordLine const root = chord_line(span_lo_), tip = chord_line(span_hi_);
   auto const degrees = [](ChordLine const& c) {
@@ -376,8 +380,10 @@ std::vector<SectionGeometry> find_sections(Mesh const& mesh, SectionFrame const&
     throw MotionError("the patches make up " + std::to_string(open.size()) +
                       " open surfaces; give each blade, with its two sides, a rule of its own");
   if (found.empty()) throw MotionError("the patches make up no blade or wing; name its walls");
-  for (SectionGeometry const& blade : found)
-    notes.push_back("sections of " + describe_patch(mesh, mesh.patches[patches.front()]) + ": " + blade.description());
+  for (std::size_t b = 0; b < found.size(); ++b)
+    notes.push_back("sections of " + describe_patch(mesh, mesh.patches[patches.front()]) +
+                    (found.size() > 1 ? ", number " + std::to_string(b + 1) : std::string()) + ": " +
+                    found[b].description());
   return found;
 }
 
