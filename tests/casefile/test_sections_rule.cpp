@@ -66,7 +66,8 @@ TEST(SectionsRuleText, ColumnsMayBeSeparatedByBlanksOrSemicolons) {
 TEST(SectionsRuleErrors, NameTheLineTheValueAndTheRemedy) {
   EXPECT_TRUE(reported(sections_problems(""), "case.toml:7: ", {"at least one of chord", "bow_deg"}));
   EXPECT_TRUE(reported(sections_problems("cord = 0.1"), "case.toml:8: ", {"unknown key 'cord'", "'chord'"}));
-  EXPECT_TRUE(reported(sections_problems("chord = [[0, 0.1], [0.5]]"), "case.toml:8: ", {"chord", "[span fraction, value]"}));
+  EXPECT_TRUE(
+      reported(sections_problems("chord = [[0, 0.1], [0.5]]"), "case.toml:8: ", {"chord", "[span fraction, value]"}));
   EXPECT_TRUE(reported(sections_problems("chord = []"), "case.toml:8: ", {"empty"}));
   EXPECT_TRUE(reported(sections_problems("chord = \"a\""), "case.toml:8: ", {"expected a number"}));
   EXPECT_TRUE(reported(sections_problems("chord = [[0, 0], [0, 1]]"), "case.toml:8: ", {"must ascend", "0 after 0"}));
@@ -74,8 +75,8 @@ TEST(SectionsRuleErrors, NameTheLineTheValueAndTheRemedy) {
   EXPECT_TRUE(reported(sections_problems("chord = -1"), "case.toml:8: ", {"above -1", "found -1"}));
   EXPECT_TRUE(reported(sections_problems("bow_deg = 90"), "case.toml:8: ", {"between -90 and 90", "found 90"}));
   EXPECT_TRUE(reported(sections_problems("chord = 0\nspan = [0, 0, 1]"), "case.toml:9: ", {"kind = \"wing\""}));
-  EXPECT_TRUE(reported(sections_problems("chord = 0\nkind = \"wing\"\nspan = [2, 0, 0]"), "case.toml:10: ",
-                       {"runs along the flow"}));
+  EXPECT_TRUE(reported(sections_problems("chord = 0\nkind = \"wing\"\nspan = [2, 0, 0]"),
+                       "case.toml:10: ", {"runs along the flow"}));
   EXPECT_TRUE(reported(problems_of("[mesh]\ninput = \"a\"\n[[motion]]\npatches = \"b\"\nrule = \"sections\"\n"
                                    "kind = \"blade\"\nchord = 0.1\n"),
                        "case.toml:6: ", {"machine axis"}));
@@ -95,8 +96,8 @@ TEST(SectionsRuleErrors, OfFilesNameTheLineInTheFile) {
   EXPECT_TRUE(reported(problems("\n# nothing\n"), "t.csv: ", {"holds no table"}));
   TemporaryFolder const folder;
   auto const missing = folder.write("case.toml", case_with_rule("rule = \"sections\"\nfile = \"none.csv\"\n"));
-  EXPECT_TRUE(reported(error_lines([&] { (void)read_case_file(missing); }), missing.string() + ":8: ",
-                       {"none.csv", "does not exist"}));
+  EXPECT_TRUE(reported(error_lines([&] { (void)read_case_file(missing); }),
+                       missing.string() + ":8: ", {"none.csv", "does not exist"}));
   folder.write("t.csv", "span,chord\n0,0.1\n");
   auto const twice = folder.write("twice.toml", case_with_rule("rule = \"sections\"\nfile = \"t.csv\"\nchord = 0.2\n"));
   EXPECT_TRUE(reported(error_lines([&] { (void)read_case_file(twice); }), twice.string() + ":9: ", {"remove one"}));

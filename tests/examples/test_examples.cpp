@@ -1,6 +1,10 @@
 // Every example runs through and does what its case file says, measured with the formulas of the case files written anew.
 #include "example_run.hpp"
 
+#include <array>
+#include <map>
+#include <vector>
+
 namespace gridmorph::testing {
 namespace {
 
@@ -141,6 +145,195 @@ TEST_F(ExampleTest, WingletCantsAndTheWingInboardStays) {
   expect_fixed("Far");
   for_patch("Sym", "",
             [&](Index n) { EXPECT_NEAR(after.coordinates.z(n), before.coordinates.z(n), 1e-10 * before.size()); });
+}
+
+/// Leading and trailing edge of each spanwise station of an H mesh's blade side, hub to case.
+struct EdgeNodes {
+  std::vector<Index> leading, trailing;
+};
+
+EdgeNodes edge_nodes(Mesh const& mesh, std::string const& family, std::string const& side, int axis) {
+  EdgeNodes nodes;
+  for (auto const& patch : mesh.patches) {
+    if (patch.name != side || patch.families.empty() || patch.families.front() != family) continue;
+    Zone const& zone = mesh.zones[patch.zone];
+    auto const at = [&](int along, int i, int across, int j) {
+      Index3 p{patch.range.begin[0], patch.range.begin[1], patch.range.begin[2]};
+      p[along] += i;
+      p[across] += j;
+      return zone.node(p);
+    };
+    std::array<int, 2> directions{};
+    for (int d = 0, n = 0; d < 3; ++d)
+      if (patch.range.extent(d) > 1) directions[n++] = d;
+    auto const r = [&](Index n) { return cylindrical(mesh.coordinates[n], axis).r; };
+    // Along the span the radius changes.
+    int const n0 = patch.range.extent(directions[0]) - 1;
+    bool const first_is_span =
+        std::abs(r(at(directions[0], n0, directions[1], 0)) - r(at(directions[0], 0, directions[1], 0))) >
+        std::abs(r(at(directions[1], patch.range.extent(directions[1]) - 1, directions[0], 0)) -
+                 r(at(directions[1], 0, directions[0], 0)));
+    int const span = directions[first_is_span ? 0 : 1], flow = directions[first_is_span ? 1 : 0];
+    int const n = patch.range.extent(span) - 1, m = patch.range.extent(flow) - 1;
+    bool const outwards = r(at(span, n, flow, 0)) > r(at(span, 0, flow, 0));
+    bool const downstream = cylindrical(mesh.coordinates[at(span, 0, flow, m)], axis).axial >
+                            cylindrical(mesh.coordinates[at(span, 0, flow, 0)], axis).axial;
+    for (int j = 0; j <= n; ++j) {
+      nodes.leading.push_back(at(span, outwards ? j : n - j, flow, downstream ? 0 : m));
+      nodes.trailing.push_back(at(span, outwards ? j : n - j, flow, downstream ? m : 0));
+    }
+  }
+  EXPECT_FALSE(nodes.leading.empty()) << family << " " << side;
+  return nodes;
+}
+
+/// Chord line between two nodes in the surface developed with the mean of their baseline radii.
+struct Chord {
+  double length, stagger_deg;
+};
+Chord chord_between(Mesh const& mesh, Index leading, Index trailing, double radius, int axis) {
+  Cylindrical const a = cylindrical(mesh.coordinates[leading], axis), b = cylindrical(mesh.coordinates[trailing], axis);
+  double const s = b.axial - a.axial, t = radius * wrapped(b.theta - a.theta);
+  return {std::hypot(s, t), std::atan2(t, s) / deg};
+}
+double mean_radius(Mesh const& mesh, Index a, Index b, int axis) {
+  return 0.5 * (cylindrical(mesh.coordinates[a], axis).r + cylindrical(mesh.coordinates[b], axis).r);
+}
+
+TEST_F(ExampleTest, StageRedesignBowsTheVaneAndKeepsItsAxialPositionsAndEnds) {
+  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
+  ASSERT_NO_FATAL_FAILURE(morph("stage_redesign", "axial_turbine_stage_H.cgns"));
+  for_patch("BLADE1", "", [&](Index n) { EXPECT_NEAR(motion(n, 0).axial, 0, 1e-15); });
+  EdgeNodes const edges = edge_nodes(before, "BLADE1", "blade_ps", 0);
+  std::size_t const n = edges.leading.size() - 1;
+  double const r0 = mean_radius(before, edges.leading[0], edges.trailing[0], 0);
+  double const height = mean_radius(before, edges.leading[n], edges.trailing[n], 0) - r0;
+  for (std::size_t j = 0; j <= n; ++j) {
+    double const r = mean_radius(before, edges.leading[j], edges.trailing[j], 0), h = (r - r0) / height;
+    double const shift = 0.5 * r * (motion(edges.leading[j], 0).theta + motion(edges.trailing[j], 0).theta);
+    // The integral of tan(12 - 24 h degrees); leading and trailing edge move against each other by the stagger.
+    double const wanted =
+        height * (std::log(std::cos((12 - 24 * h) * deg)) - std::log(std::cos(12 * deg))) / (24 * deg);
+    EXPECT_NEAR(shift, wanted, 2e-3 * height * std::tan(12 * deg)) << h;
+    Chord const chord_before = chord_between(before, edges.leading[j], edges.trailing[j], r, 0);
+    Chord const chord_after = chord_between(after, edges.leading[j], edges.trailing[j], r, 0);
+    double const turned = chord_after.stagger_deg - chord_before.stagger_deg;
+    if (j == 0 || j == n)
+      EXPECT_NEAR(turned, 0, 1e-9);
+    else
+      EXPECT_GT(turned, 0);
+    if (std::abs(h - 0.5) < 0.01) {
+      EXPECT_NEAR(turned, 2, 0.01);
+    }
+  }
+}
+
+TEST_F(ExampleTest, StageRedesignChangesTheChordOfTheRotorAsInThePaper) {
+  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
+  ASSERT_NO_FATAL_FAILURE(morph("stage_redesign", "axial_turbine_stage_H.cgns"));
+  expect_periodic_copies_move_alike(0);
+  EdgeNodes const edges = edge_nodes(before, "BLADE2", "blade_ps", 0);
+  std::size_t const n = edges.leading.size() - 1;
+  double const r0 = mean_radius(before, edges.leading[0], edges.trailing[0], 0);
+  double const height = mean_radius(before, edges.leading[n], edges.trailing[n], 0) - r0;
+  double least = 1, most = 1;
+  for (std::size_t j = 0; j <= n; ++j) {
+    double const r = mean_radius(before, edges.leading[j], edges.trailing[j], 0), h = (r - r0) / height;
+    Chord const chord_before = chord_between(before, edges.leading[j], edges.trailing[j], r, 0);
+    Chord const chord_after = chord_between(after, edges.leading[j], edges.trailing[j], r, 0);
+    double const factor = chord_after.length / chord_before.length;
+    EXPECT_NEAR(chord_after.stagger_deg, chord_before.stagger_deg, 1e-3);
+    if (j == 0 || j == n) EXPECT_NEAR(factor, 1, 1e-6);
+    if (std::abs(h - 0.15) < 0.01 || std::abs(h - 0.9) < 0.01) EXPECT_NEAR(factor, 0.9, 2e-3) << h;
+    if (std::abs(h - 0.5) < 0.01) EXPECT_NEAR(factor, 1.1, 2e-3) << h;
+    least = std::min(least, factor);
+    most = std::max(most, factor);
+  }
+  EXPECT_NEAR(least, 0.9, 2e-3);
+  EXPECT_NEAR(most, 1.1, 2e-3);
+  // Between hub and case at every axial position: both are in the baseline's profile.
+  for (std::string const wall : {"HUB", "SHROUD"}) {
+    std::map<double, double> profile;
+    for_patch(wall, "", [&](Index m) {
+      Cylindrical const x = cylindrical(before.coordinates[m], 0);
+      profile[x.axial] = x.r;
+    });
+    double worst = 0;
+    for_patch(wall, "", [&](Index m) {
+      Cylindrical const x = cylindrical(after.coordinates[m], 0);
+      auto const above = profile.lower_bound(x.axial);
+      if (above == profile.begin() || above == profile.end()) return;
+      auto const below = std::prev(above);
+      double const t = (x.axial - below->first) / (above->first - below->first);
+      worst = std::max(worst, std::abs(x.r - (1 - t) * below->second - t * above->second));
+    });
+    EXPECT_LT(worst, 1e-4) << wall;  // straight pieces between the nodes of the profile
+  }
+}
+
+TEST_F(ExampleTest, KaplanRedesignTurnsItsBladesInTheirCylinders) {
+  GRIDMORPH_NEEDS("axialTurbine_7blk.cgns");
+  ASSERT_NO_FATAL_FAILURE(morph("kaplan_redesign", "axialTurbine_7blk.cgns"));
+  expect_periodic_copies_move_alike(2);
+  auto const each_station = [&](std::string const& family, auto const& check) {
+    for (std::string const side : {"ps", "ss"}) {
+      EdgeNodes const edges = edge_nodes(before, family, side, 2);
+      std::size_t const n = edges.leading.size() - 1;
+      double const r0 = mean_radius(before, edges.leading[0], edges.trailing[0], 2);
+      double const r1 = mean_radius(before, edges.leading[n], edges.trailing[n], 2);
+      for (std::size_t j = 0; j <= n; ++j) {
+        double const r = mean_radius(before, edges.leading[j], edges.trailing[j], 2);
+        Chord const a = chord_between(before, edges.leading[j], edges.trailing[j], r, 2);
+        Chord const b = chord_between(after, edges.leading[j], edges.trailing[j], r, 2);
+        check((r - r0) / (r1 - r0), b.length / a.length, b.stagger_deg - a.stagger_deg,
+              0.5 * r * (motion(edges.leading[j], 2).theta + motion(edges.trailing[j], 2).theta));
+      }
+    }
+  };
+  each_station("BLADE_GV", [](double h, double factor, double turned, double shift) {
+    EXPECT_NEAR(turned, -5, 1e-6) << h;
+    EXPECT_NEAR(factor, 1, 1e-7) << h;
+    EXPECT_NEAR(shift, 0, 1e-8) << h;
+  });
+  each_station("BLADE_RU", [](double h, double factor, double turned, double shift) {
+    EXPECT_NEAR(turned, 6 * h, 1e-3) << h;
+    EXPECT_NEAR(shift, 0.01 * h, 1e-6) << h;
+    EXPECT_GT(factor, 1 - 1e-4) << h;
+    if (std::abs(h - 0.5) < 0.02) {
+      EXPECT_NEAR(factor, 1.1, 1e-3);
+    }
+  });
+  for (std::string const wall : {"HUB", "SHROUD"})
+    for_patch(wall, "", [&](Index n) { EXPECT_NEAR(motion(n, 2).r, 0, 1e-11) << wall; });
+}
+
+TEST_F(ExampleTest, WingRedesignChangesChordAlongTheSpanAndLeavesTheRoot) {
+  GRIDMORPH_NEEDS("mdo_tutorial_000_vol.cgns");
+  ASSERT_NO_FATAL_FAILURE(morph("wing_redesign", "mdo_tutorial_000_vol.cgns"));
+  expect_fixed("far");
+  for_patch("sym", "", [&](Index n) { EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n)); });
+  std::map<long, std::vector<Index>> sections;  // by spanwise position, to 1e-6
+  for_patch("wall", "", [&](Index n) {
+    EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n));
+    sections[std::lround(1e6 * before.coordinates.z(n))].push_back(n);
+  });
+  auto const longest = [](Mesh const& mesh, std::vector<Index> const& nodes) {
+    double most = 0;
+    for (Index const a : nodes)
+      for (Index const b : nodes) most = std::max(most, distance(mesh.coordinates[a], mesh.coordinates[b]));
+    return most;
+  };
+  for (Index const n : sections.begin()->second) EXPECT_TRUE(after.coordinates[n] == before.coordinates[n]);
+  int checked = 0;
+  for (auto const& [z, nodes] : sections) {
+    if (nodes.size() < 40) continue;  // the tip cap has lines of its own
+    double const h = 1e-6 * double(z) / 14, factor = longest(after, nodes) / longest(before, nodes);
+    EXPECT_GT(factor, 0.895) << h;
+    EXPECT_LT(factor, 1.105) << h;
+    if (std::abs(h - 0.15) < 0.02 || std::abs(h - 0.9) < 0.02) EXPECT_NEAR(factor, 0.9, 5e-3), ++checked;
+    if (std::abs(h - 0.5) < 0.02) EXPECT_NEAR(factor, 1.1, 5e-3), ++checked;
+  }
+  EXPECT_GT(checked, 1);
 }
 
 TEST_F(ExampleTest, RotorstatorIsRefusedInterfaceByInterfaceWithoutATolerance) {

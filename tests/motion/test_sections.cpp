@@ -139,16 +139,24 @@ void add_airfoil(RowMesh& mesh, Topology topology, Place const& place) {
       break;
     case Topology::c:
     case Topology::c_cut:
-      mesh.add(surface(n_around, [=](double s, double h) {
-                 return place(s <= 0.5 ? Around{pi * (1 - 2 * s), false} : Around{pi * (2 * s - 1), true}, h, false);
-               }),
-               topology == Topology::c ? Storage{} : Storage{{20, 90}, {11}, 6, 1});
+      mesh.add(
+          surface(n_around,
+                  [=](double s, double h) {
+                    return place(s <= 0.5 ? Around{pi * (1 - 2 * s), false} : Around{pi * (2 * s - 1), true}, h, false);
+                  }),
+          topology == Topology::c ? Storage{} : Storage{{20, 90}, {11}, 6, 1});
       break;
     case Topology::h:
     case Topology::h_cut:
-      mesh.add(surface(n_side, [=](double s, double h) { return place({pi * s, true}, h, false); }),
+      mesh.add(surface(n_side,
+                       [=](double s, double h) {
+                         return place({pi * s, true}, h, false);
+                       }),
                topology == Topology::h ? Storage{} : Storage{{40}, {20}, 1, 3});
-      mesh.add(surface(n_side, [=](double s, double h) { return place({pi * s, false}, h, true); }),
+      mesh.add(surface(n_side,
+                       [=](double s, double h) {
+                         return place({pi * s, false}, h, true);
+                       }),
                topology == Topology::h ? Storage{} : Storage{{10, 11}, {5, 23}, 6, 1});
       break;
   }
@@ -172,8 +180,9 @@ struct Moved {
 
 Mesh wing_mesh(Topology topology, Planform const& plan) {
   RowMesh row;
-  add_airfoil(row, topology,
-              [&](Around const& at, double h, bool) { return wing_point(section_point(plan, at.phi, at.upper, h), h); });
+  add_airfoil(row, topology, [&](Around const& at, double h, bool) {
+    return wing_point(section_point(plan, at.phi, at.upper, h), h);
+  });
   return row.finish();
 }
 
@@ -196,8 +205,8 @@ Vec3 displacement(SurfaceMotion const& motion, Vec3 const& point, int rule = 0) 
 
 class WingRedesign : public ::testing::TestWithParam<std::tuple<Topology, Redesign>> {};
 INSTANTIATE_TEST_SUITE_P(Sections, WingRedesign,
-                         ::testing::Combine(::testing::Values(Topology::o, Topology::o_cut, Topology::h, Topology::h_cut,
-                                                              Topology::c, Topology::c_cut),
+                         ::testing::Combine(::testing::Values(Topology::o, Topology::o_cut, Topology::h,
+                                                              Topology::h_cut, Topology::c, Topology::c_cut),
                                             ::testing::ValuesIn(redesigns())));
 
 TEST_P(WingRedesign, MovesEveryPointAsItsSectionIsRedesigned) {
@@ -347,8 +356,8 @@ Motion blade_rules(SectionsRule const& rule) {
 
 class BladeRedesign : public ::testing::TestWithParam<std::tuple<Topology, Redesign>> {};
 INSTANTIATE_TEST_SUITE_P(Sections, BladeRedesign,
-                         ::testing::Combine(::testing::Values(Topology::o, Topology::o_cut, Topology::h, Topology::h_cut,
-                                                              Topology::c, Topology::c_cut),
+                         ::testing::Combine(::testing::Values(Topology::o, Topology::o_cut, Topology::h,
+                                                              Topology::h_cut, Topology::c, Topology::c_cut),
                                             ::testing::ValuesIn(redesigns())));
 
 TEST_P(BladeRedesign, MovesEveryPointInTheDevelopedSurfaceAndKeepsItsSpanFraction) {
@@ -377,9 +386,9 @@ TEST_P(BladeRedesign, MovesEveryPointInTheDevelopedSurfaceAndKeepsItsSpanFractio
 
 TEST(Sections, ZeroTablesMoveNothingBitForBit) {
   SectionsRule rule;
-  for (auto SectionsRule::*table : {&SectionsRule::chord, &SectionsRule::scale, &SectionsRule::thickness,
-                                    &SectionsRule::twist_rad, &SectionsRule::stagger_rad, &SectionsRule::sweep,
-                                    &SectionsRule::lean, &SectionsRule::bow_rad})
+  for (auto SectionsRule::*table :
+       {&SectionsRule::chord, &SectionsRule::scale, &SectionsRule::thickness, &SectionsRule::twist_rad,
+        &SectionsRule::stagger_rad, &SectionsRule::sweep, &SectionsRule::lean, &SectionsRule::bow_rad})
     rule.*table = {{{0, 0}, {0.3, 0}, {1, 0}}};
   for (Topology topology : {Topology::o, Topology::h, Topology::c}) {
     for (bool wing : {true, false}) {
@@ -484,9 +493,11 @@ TEST(SectionsErrors, NameRuleAndValue) {
 
 TEST(SectionsErrors, ThicknessOfASingleSide) {
   RowMesh row;
-  row.add({"wing", PatchKind::wall, {61, 21}, [](double s, double h) {
-             return wing_point(section_point({}, pi * s, true, h), h);
-           }, {}});
+  row.add({"wing",
+           PatchKind::wall,
+           {61, 21},
+           [](double s, double h) { return wing_point(section_point({}, pi * s, true, h), h); },
+           {}});
   Mesh const mesh = row.finish();
   SectionsRule rule;
   rule.thickness = linear(0.1, 0.1);
@@ -495,17 +506,22 @@ TEST(SectionsErrors, ThicknessOfASingleSide) {
   rule.chord = linear(0.1, 0.1);
   Vec3 const p = wing_point(section_point({}, 1, true, 0.4), 0.4);
   EXPECT_LT(distance(displacement(make(mesh, wing_rules(rule)), p),
-                     wing_point(section_point({}, 1, true, 0.4, rule), 0.4) - p), 1e-6);
+                     wing_point(section_point({}, 1, true, 0.4, rule), 0.4) - p),
+            1e-6);
 }
 
 TEST(SectionsErrors, SidesThatBelongToDifferentBlades) {
   RowMesh row;
   auto const side = [&](bool upper, double twist) {
-    return Surface{"wing", PatchKind::wall, {61, 21}, [=](double s, double h) {
+    return Surface{"wing",
+                   PatchKind::wall,
+                   {61, 21},
+                   [=](double s, double h) {
                      Flat p = section_point({}, pi * s, upper, h);
                      p.t += (upper ? 0 : pitch) * section_radius(h) + twist * h;
                      return blade_place(p, h);
-                   }, {}};
+                   },
+                   {}};
   };
   row.add(side(true, 0));
   row.add(side(false, 0.1));

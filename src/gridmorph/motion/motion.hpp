@@ -78,7 +78,7 @@ struct SectionsRule {
   SpanwiseTable stagger_rad;  ///< change of the stagger angle that keeps every axial (wing: streamwise) position
   SpanwiseTable sweep;        ///< shift along the baseline chord line [length], positive towards the trailing edge
   SpanwiseTable lean;         ///< circumferential shift [length; blade: R theta, wing: across span and flow]
-  SpanwiseTable bow_rad;      ///< lean angle of the stacking line; shifts like lean by its tangent's integral from span 0
+  SpanwiseTable bow_rad;  ///< lean angle of the stacking line; shifts like lean by its tangent's integral from span 0
 };
 
 /// Inlet and exit: turn about the axis by the angle that the leading edge (upstream patches) or trailing edge

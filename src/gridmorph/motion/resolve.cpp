@@ -137,7 +137,7 @@ class Resolver {
         if (!(value > p.above && value < p.below) || !std::isfinite(value))
           problems_.add(label(r) + ": " + p.name + ": the value " + std::to_string(value) + " at span fraction " +
                         std::to_string(span) + " is not " +
-                        (p.above == -1      ? "finite and above -1, which would leave nothing of the section"
+                        (p.above == -1    ? "finite and above -1, which would leave nothing of the section"
                          : p.below == inf ? "finite"
                                           : "a number of radians that a line can turn by"));
         before = span;
@@ -174,7 +174,8 @@ class Resolver {
     }
     Rule const& rule = motion_.rules[r].rule;
     auto const* free = std::get_if<FreeRule>(&rule);
-    if (is<SlipRule>(rule) || is<SectionsRule>(rule) || (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
+    if (is<SlipRule>(rule) || is<SectionsRule>(rule) ||
+        (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
       problems_.add(label(r) + " names the periodic " + name +
                     "; periodic interfaces take free without constraint, "
                     "follow, circumferential-slide, fixed, rigid or "

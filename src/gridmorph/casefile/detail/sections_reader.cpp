@@ -43,7 +43,8 @@ std::vector<std::string> parameter_keys() {
 std::string_view trimmed(std::string_view text) {
   constexpr char const* blanks = " \t\r\"";
   auto const first = text.find_first_not_of(blanks);
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 std::vector<std::string_view> cells_of(std::string_view line) {
@@ -92,8 +93,8 @@ std::vector<std::pair<double, double>> read_stations(TableReader& table, std::st
     auto const span = two ? number(pair.as_array()[0]) : std::nullopt;
     auto const v = two ? number(pair.as_array()[1]) : std::nullopt;
     if (!span || !v) {
-      table.context().problem(line_of(pair), fmt::format("[[motion]] {}: expected [span fraction, value], found {}", key,
-                                                         describe_value(pair)));
+      table.context().problem(line_of(pair), fmt::format("[[motion]] {}: expected [span fraction, value], found {}",
+                                                         key, describe_value(pair)));
       return {};
     }
     stations.emplace_back(*span, *v);
@@ -107,12 +108,16 @@ void check(TableReader& table, std::string const& where, Parameter const& p,
   for (std::size_t n = 0; n < stations.size(); ++n) {
     auto const [span, value] = stations[n];
     if (span < 0 || span > 1)
-      table.problem(where, fmt::format("{}: span fractions lie between 0 (root, hub) and 1 (tip, case), found {}", p.key, span));
+      table.problem(
+          where, fmt::format("{}: span fractions lie between 0 (root, hub) and 1 (tip, case), found {}", p.key, span));
     if (n > 0 && !(span > stations[n - 1].first))
-      table.problem(where, fmt::format("{}: span fractions must ascend, found {} after {}", p.key, span, stations[n - 1].first));
+      table.problem(
+          where, fmt::format("{}: span fractions must ascend, found {} after {}", p.key, span, stations[n - 1].first));
     if (!(value > p.above && value < p.below))
-      table.problem(where, p.above == -1 ? fmt::format("{}: relative changes are above -1 (-0.1 is 10 % less), found {}", p.key, value)
-                                         : fmt::format("{}: must lie between {} and {} degrees, found {}", p.key, p.above, p.below, value));
+      table.problem(
+          where, p.above == -1
+                     ? fmt::format("{}: relative changes are above -1 (-0.1 is 10 % less), found {}", p.key, value)
+                     : fmt::format("{}: must lie between {} and {} degrees, found {}", p.key, p.above, p.below, value));
   }
 }
 
@@ -121,8 +126,7 @@ std::vector<SpanwiseColumn> read_columns(std::filesystem::path const& path) {
   auto const status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
     throw ConfigError(fmt::format("table '{}' does not exist; check the path", path.string()));
-  if (!std::filesystem::is_regular_file(status))
-    throw ConfigError(fmt::format("table '{}' is no file", path.string()));
+  if (!std::filesystem::is_regular_file(status)) throw ConfigError(fmt::format("table '{}' is no file", path.string()));
   std::ifstream in(path, std::ios::binary);
   if (!in) throw ConfigError(fmt::format("table '{}' cannot be opened; check its permissions", path.string()));
   std::ostringstream text;
@@ -159,7 +163,8 @@ std::vector<SpanwiseColumn> parse_spanwise_columns(std::string_view text, std::s
       }
       auto const span = std::find_if(columns.begin(), columns.end(), [](auto const& c) { return c.name == "span"; });
       if (span == columns.end())
-        problems.add(where + ": the first line must name the columns, one of them 'span'; for example span,chord,twist_deg");
+        problems.add(where +
+                     ": the first line must name the columns, one of them 'span'; for example span,chord,twist_deg");
       problems.throw_if_any<ConfigError>();
       span_column = std::size_t(span - columns.begin());
       continue;
@@ -184,7 +189,8 @@ std::vector<SpanwiseColumn> parse_spanwise_columns(std::string_view text, std::s
     }
   }
   problems.throw_if_any<ConfigError>();
-  if (columns.empty()) throw ConfigError(source + ": holds no table; expected a header line such as span,chord,twist_deg");
+  if (columns.empty())
+    throw ConfigError(source + ": holds no table; expected a header line such as span,chord,twist_deg");
   columns.erase(columns.begin() + std::ptrdiff_t(span_column));
   return columns;
 }
@@ -195,8 +201,8 @@ SectionsRule read_sections(TableReader& table, bool has_axis) {
   rule.sections = (kind ? *kind == 0 : has_axis) ? SectionsRule::Sections::blade : SectionsRule::Sections::wing;
   bool const wing = rule.sections == SectionsRule::Sections::wing;
   if (!wing && !has_axis)
-    table.problem("kind",
-                  "\"blade\" needs the machine axis; add axis = { origin = [0, 0, 0], direction = [1, 0, 0] } to [mesh]");
+    table.problem(
+        "kind", "\"blade\" needs the machine axis; add axis = { origin = [0, 0, 0], direction = [1, 0, 0] } to [mesh]");
   for (std::string const key : {"span", "flow"}) {
     auto const direction = table.vector(key);
     if (direction && !wing) table.problem(key, "belongs to kind = \"wing\"; remove it");
@@ -237,9 +243,10 @@ SectionsRule read_sections(TableReader& table, bool has_axis) {
     for (auto const& [span, value] : stations) out.stations.emplace_back(span, p.factor * value);
   }
   if (!any)
-    table.problem("rule",
-                  "sections needs at least one of chord, scale, thickness, twist_deg, stagger_deg, sweep, lean, bow_deg, "
-                  "each a number or [[span fraction, value], ...], or file = \"redesign.csv\"");
+    table.problem(
+        "rule",
+        "sections needs at least one of chord, scale, thickness, twist_deg, stagger_deg, sweep, lean, bow_deg, "
+        "each a number or [[span fraction, value], ...], or file = \"redesign.csv\"");
   return rule;
 }
 

@@ -20,7 +20,8 @@ void for_each_node(Zone const& zone, IndexRange const& range, F const& f) {
 inline bool share_nodes(Patch const& a, Patch const& b) {
   bool shared = a.zone == b.zone;
   for (int axis = 0; axis < 3; ++axis)
-    shared = shared && std::max(a.range.begin[axis], b.range.begin[axis]) < std::min(a.range.end[axis], b.range.end[axis]);
+    shared =
+        shared && std::max(a.range.begin[axis], b.range.begin[axis]) < std::min(a.range.end[axis], b.range.end[axis]);
   return shared;
 }
 

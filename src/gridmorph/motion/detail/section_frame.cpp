@@ -51,7 +51,8 @@ class BladeFrame final : public SectionFrame {
   [[nodiscard]] double height() const override { return height_; }
   [[nodiscard]] double period() const override { return 2 * std::numbers::pi; }
   [[nodiscard]] BladeInput stitching() const override {
-    return geometry_only(frame_, [this](MeridionalPoint const& m) { return annulus_.span(m); }, height_);
+    return geometry_only(
+        frame_, [this](MeridionalPoint const& m) { return annulus_.span(m); }, height_);
   }
 
  private:
@@ -84,8 +85,9 @@ class WingFrame final : public SectionFrame {
   [[nodiscard]] double period() const override { return 0; }
   [[nodiscard]] BladeInput stitching() const override {
     // The position along an axis that runs spanwise is all that stitching asks for.
-    return geometry_only(CylindricalFrame({{0, 0, 0}, span_}),
-                         [this](MeridionalPoint const& m) { return (m.axial - lo_) / (hi_ - lo_); }, hi_ - lo_);
+    return geometry_only(
+        CylindricalFrame({{0, 0, 0}, span_}),
+        [this](MeridionalPoint const& m) { return (m.axial - lo_) / (hi_ - lo_); }, hi_ - lo_);
   }
 
  private:
@@ -108,9 +110,8 @@ Vec3 longest_extent(std::vector<Vec3> const& points) {
 Vec3 span_direction(Mesh const& mesh, std::vector<int> const& patches, std::vector<Vec3> const& points) {
   for (Patch const& symmetry : mesh.patches) {
     if (symmetry.kind != PatchKind::symmetry) continue;
-    bool const meets = std::any_of(patches.begin(), patches.end(), [&](int p) {
-      return share_nodes(mesh.patches[p], symmetry);
-    });
+    bool const meets =
+        std::any_of(patches.begin(), patches.end(), [&](int p) { return share_nodes(mesh.patches[p], symmetry); });
     if (!meets) continue;
     std::vector<Vec3> plane;
     for_each_node(mesh.zones[symmetry.zone], symmetry.range, [&](Index n) { plane.push_back(mesh.coordinates[n]); });

@@ -337,8 +337,9 @@ SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<Secti
     Distance const leading = apart(one.front(), other.front()), trailing = apart(one.back(), other.back());
     Distance const& image = leading.spread <= trailing.spread ? leading : trailing;
     if (!(image.spread < 1e-6 * period))
-      throw MotionError("its two open sides share neither leading nor trailing edge, nor lie a pitch apart (distances vary by " +
-                        number(image.spread) + "); name the two sides of one blade row, or each blade in a rule of its own");
+      throw MotionError(
+          "its two open sides share neither leading nor trailing edge, nor lie a pitch apart (distances vary by " +
+          number(image.spread) + "); name the two sides of one blade row, or each blade in a rule of its own");
     if (std::abs(image.mean) > 1e-9) outline.shift = image.mean;
     for (auto& line : other)
       for (auto& p : line.place) p[1] -= outline.shift;

@@ -35,9 +35,9 @@ class SectionGeometry {
  public:
   /// One line along the span as it lies in the section frame.
   struct Line {
-    std::vector<double> span;  ///< strictly increasing
+    std::vector<double> span;             ///< strictly increasing
     std::vector<SpanTable::Value> place;  ///< s, t, unit
-    bool end = false;          ///< of an open surface
+    bool end = false;                     ///< of an open surface
   };
   /// Lines once around the sections. The second side of an H mesh has been turned onto the first.
   struct Outline {
