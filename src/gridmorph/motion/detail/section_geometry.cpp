@@ -344,6 +344,25 @@ SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<Secti
     for (auto& line : other)
       for (auto& p : line.place) p[1] -= outline.shift;
   }
+  // Where both sides end in one line the surface goes on from side to side: whether that is a corner, its turn says.
+  double const extent =
+      std::abs(place_at(one.back(), one.back().span.front())[0] - place_at(one.front(), one.front().span.front())[0]);
+  auto const is_one_line = [extent](SectionGeometry::Line const& a, SectionGeometry::Line const& b) {
+    for (int k = 0; k <= 8; ++k) {
+      double const h = a.span.front() + (a.span.back() - a.span.front()) * k / 8;
+      Sample const pa = place_at(a, h), pb = place_at(b, h);
+      if (std::hypot(pb[0] - pa[0], pa[2] * (pb[1] - pa[1])) > 1e-4 * extent) return false;
+    }
+    return true;
+  };
+  if (is_one_line(one.front(), other.front())) {
+    one.front().end = false;
+    other.erase(other.begin());
+  }
+  if (is_one_line(one.back(), other.back())) {
+    one.back().end = false;
+    other.pop_back();
+  }
   std::reverse(other.begin(), other.end());
   outline.lines = std::move(one);
   outline.lines.insert(outline.lines.end(), other.begin(), other.end());
