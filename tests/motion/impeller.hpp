@@ -57,8 +57,9 @@ inline FunctionRule blade_rule(BladeShape const& b, BladeMotion const& motion) {
               Place const p = place_of(points[n]);
               double const c = b.fraction(p);
               double const off = std::remainder(p.theta - b.camber(c, p.h), pitch) / half_thickness;
-              out[n] = point({p.s + motion.axial(c, p.h), p.h, p.theta + motion.angle(c, p.h) + motion.difference * off}) -
-                       points[n];
+              out[n] =
+                  point({p.s + motion.axial(c, p.h), p.h, p.theta + motion.angle(c, p.h) + motion.difference * off}) -
+                  points[n];
             }
           }};
 }
@@ -98,7 +99,9 @@ inline Surface end_plane(std::string name, PatchKind kind, double s, int spanwis
   return {std::move(name),
           kind,
           {spanwise, around},
-          [=](double h, double t) { return point({s, h, 0.2 * s + pitch * t}); },
+          [=](double h, double t) {
+            return point({s, h, 0.2 * s + pitch * t});
+          },
           {}};
 }
 

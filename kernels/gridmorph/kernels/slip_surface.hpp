@@ -116,13 +116,13 @@ struct ProfileView {
     ProfileKnot const &lo = knots[p], &hi = knots[p + 1];
     double const h = hi.axial - lo.axial, rise = hi.radius - lo.radius;
     double const t = (a - lo.axial) / h, t2 = t * t, t3 = t2 * t, c0 = lo.curvature[0], c1 = lo.curvature[1];
-    double const slopes[3] = {lo.slope * (t + t3 * (-6 + t * (8 - 3 * t))) + hi.slope * t3 * (-4 + t * (7 - 3 * t)),
-                              lo.slope * (1 + t2 * (-18 + t * (32 - 15 * t))) + hi.slope * t2 * (-12 + t * (28 - 15 * t)),
-                              lo.slope * t * (-36 + t * (96 - 60 * t)) + hi.slope * t * (-24 + t * (84 - 60 * t))};
-    double const bends[3] = {
-        c0 * t2 * (0.5 + t * (-1.5 + t * (1.5 - 0.5 * t))) + c1 * t3 * (0.5 + t * (-1 + 0.5 * t)),
-        c0 * t * (1 + t * (-4.5 + t * (6 - 2.5 * t))) + c1 * t2 * (1.5 + t * (-4 + 2.5 * t)),
-        c0 * (1 + t * (-9 + t * (18 - 10 * t))) + c1 * t * (3 + t * (-12 + 10 * t))};
+    double const slopes[3] = {
+        lo.slope * (t + t3 * (-6 + t * (8 - 3 * t))) + hi.slope * t3 * (-4 + t * (7 - 3 * t)),
+        lo.slope * (1 + t2 * (-18 + t * (32 - 15 * t))) + hi.slope * t2 * (-12 + t * (28 - 15 * t)),
+        lo.slope * t * (-36 + t * (96 - 60 * t)) + hi.slope * t * (-24 + t * (84 - 60 * t))};
+    double const bends[3] = {c0 * t2 * (0.5 + t * (-1.5 + t * (1.5 - 0.5 * t))) + c1 * t3 * (0.5 + t * (-1 + 0.5 * t)),
+                             c0 * t * (1 + t * (-4.5 + t * (6 - 2.5 * t))) + c1 * t2 * (1.5 + t * (-4 + 2.5 * t)),
+                             c0 * (1 + t * (-9 + t * (18 - 10 * t))) + c1 * t * (3 + t * (-12 + 10 * t))};
     return {lo.radius + (rise * t3 * (10 + t * (6 * t - 15)) + h * (slopes[0] + h * bends[0])),
             rise / h * 30 * t2 * (1 - t) * (1 - t) + slopes[1] + h * bends[1],
             (rise / h * 60 * t * (1 + t * (-3 + 2 * t)) + slopes[2]) / h + bends[2]};
@@ -147,9 +147,9 @@ struct ProfileView {
 
 /// A point's place relative to a meridional profile.
 struct MeridionalFoot {
-  double away = 0;                 ///< signed distance from the profile, along (axial, radial)
-  double axial = 0, radial = 0;    ///< unit, in the direction in which `away` grows: the way back to the profile
-  double slope = 0, bend = 0;      ///< of the profile there
+  double away = 0;               ///< signed distance from the profile, along (axial, radial)
+  double axial = 0, radial = 0;  ///< unit, in the direction in which `away` grows: the way back to the profile
+  double slope = 0, bend = 0;    ///< of the profile there
 };
 
 struct SlipSurfaceView {
@@ -242,14 +242,15 @@ struct SlipSurfaceView {
     ProfileSample const s = profile.sample(at);
     if (!frame.inclined()) return {y - s.value, frame.axial(0, 1), frame.radius(0, 1), s.slope, s.bend};
     double const stretch = 1 / sqrt(1 + s.slope * s.slope), nx = -s.slope * stretch;
-    return {(x - at) * nx + (y - s.value) * stretch, frame.axial(nx, stretch), frame.radius(nx, stretch), s.slope, s.bend};
+    return {(x - at) * nx + (y - s.value) * stretch, frame.axial(nx, stretch), frame.radius(nx, stretch), s.slope,
+            s.bend};
   }
 
  private:
   /// Derivative of the correction that constrain() subtracts. Along the profile's normal n with tangent t, of a point q
   /// whose foot moves at t . q' / (1 - curvature away): away' = n . q', n' = -curvature t (t . q') / (1 - curvature away).
-  KOKKOS_INLINE_FUNCTION Vec3 meridional_rate(double axial, Vec3 const& moved, double axial_rate, Vec3 const& moved_rate,
-                                              double r_rate, double own) const {
+  KOKKOS_INLINE_FUNCTION Vec3 meridional_rate(double axial, Vec3 const& moved, double axial_rate,
+                                              Vec3 const& moved_rate, double r_rate, double own) const {
     using std::sqrt;
     double const r = norm(moved);
     MeridionalFoot const f = foot(axial, r);

@@ -41,6 +41,23 @@ double steepest_piece(RevolutionProfile const& profile) {
   return most;
 }
 
+/// Points of two walls, taken by turns, make a line longer than every other of them does, or do not lie on it; points along
+/// one wall do neither.
+bool zigzags(RevolutionProfile const& profile) {
+  constexpr std::size_t least = 16;
+  auto const& knots = profile.knots;
+  if (profile.deviation > 1e-3 * (knots.back().axial - knots.front().axial)) return true;
+  if (knots.size() < least) return false;
+  auto const length = [&](std::size_t step) {
+    double sum = 0;
+    for (std::size_t n = 0; n + step < knots.size(); n += step)
+      sum += std::hypot(knots[n + step].axial - knots[n].axial, knots[n + step].radius - knots[n].radius);
+    return sum;
+  };
+  constexpr double longer = 1.02;
+  return length(1) > longer * length(2) + 2 * longer * length(1) / double(knots.size());
+}
+
 }  // namespace
 
 bool RevolutionProfile::is_steep() const {
@@ -76,9 +93,10 @@ TurnedProfile TurnedProfile::from_points(Points const& points) {
   for (int const degrees : {45, 30, 60, -45, -30, -60, 15, 75, -15, -75}) {
     MeridionalFrame const frame = turned_by(degrees);
     try {
-      double const slope = steepest_piece(RevolutionProfile::from_points(in_frame(frame, points, step)));
+      RevolutionProfile const fit = RevolutionProfile::from_points(in_frame(frame, points, step));
+      double const slope = steepest_piece(fit);
       // Keeps to the frames named first where others are no better than by round-off.
-      if (slope >= 0.999 * least) continue;
+      if (slope >= 0.999 * least || fit.is_steep() || zigzags(fit)) continue;
       least = slope;
       best = frame;
     } catch (MotionError const&) {
@@ -90,8 +108,9 @@ TurnedProfile TurnedProfile::from_points(Points const& points) {
   } catch (MotionError const&) {
   }
   if (upright) return *upright;
-  throw MotionError(reason + "; nor is it a function in any turned frame of the meridional plane: a wall may turn by less "
-                             "than 180 degrees; split it, or give its patches rules of their own");
+  throw MotionError(reason +
+                    "; nor is it a function in any turned frame of the meridional plane: a wall may turn by less "
+                    "than 180 degrees; split it, or give its patches rules of their own");
 }
 
 }  // namespace gridmorph

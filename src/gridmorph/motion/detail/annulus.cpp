@@ -18,8 +18,7 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 
 std::pair<double, double> axial_range(std::vector<MeridionalPoint> const& points) {
   std::pair<double, double> range{inf, -inf};
-  for (MeridionalPoint const& p : points)
-    range = {std::min(range.first, p.axial), std::max(range.second, p.axial)};
+  for (MeridionalPoint const& p : points) range = {std::min(range.first, p.axial), std::max(range.second, p.axial)};
   return range;
 }
 
@@ -53,12 +52,11 @@ Annulus::Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidate
   } else {
     for (int s : candidates)
       if (SlipSurface const& surface = surfaces.surfaces[s]; is_revolution(surface))
-        pieces.push_back({surface.profile, surface.frame, surface.profile.knots.front().axial,
-                          surface.profile.knots.back().axial});
+        pieces.push_back(
+            {surface.profile, surface.frame, surface.profile.knots.front().axial, surface.profile.knots.back().axial});
   }
-  bool const across = pieces.size() > 1 && std::any_of(pieces.begin(), pieces.end(), [](WallPiece const& piece) {
-                        return piece.frame.cosine == 0;
-                      });
+  bool const across = pieces.size() > 1 && std::any_of(pieces.begin(), pieces.end(),
+                                                       [](WallPiece const& piece) { return piece.frame.cosine == 0; });
   if (has_walls() ? !is_axial_along(blade) || (meridional && !spans(blade)) : meridional || across) {
     std::vector<WallCurve> curves = chain_walls(std::move(pieces));
     turning_.emplace(std::move(curves[0]), std::move(curves[1]));
@@ -67,9 +65,10 @@ Annulus::Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidate
       return h > -0.05 && h < 1.05;
     });
     if (10 * std::size_t(between) < 9 * blade.size())
-      throw MotionError("only " + std::to_string(between) + " of " + std::to_string(blade.size()) +
-                        " nodes of the blade lie between the row's two end walls; check the axis, and which patches of the "
-                        "row slip on a surface of revolution: they must make up one hub and one case");
+      throw MotionError(
+          "only " + std::to_string(between) + " of " + std::to_string(blade.size()) +
+          " nodes of the blade lie between the row's two end walls; check the axis, and which patches of the "
+          "row slip on a surface of revolution: they must make up one hub and one case");
   }
   if (!has_walls() && !(r_hi_ > r_lo_))
     throw MotionError("the blade lies at one radius, " + std::to_string(r_lo_) +

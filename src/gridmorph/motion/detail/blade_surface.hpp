@@ -12,8 +12,8 @@
 namespace gridmorph {
 
 struct BladeNode {
-  double m = 0;     ///< position along the flow path: the axial position where that is axial
-  double span = 0;  ///< span fraction: 0 at the hub, 1 at the case
+  double m = 0;              ///< position along the flow path: the axial position where that is axial
+  double span = 0;           ///< span fraction: 0 at the hub, 1 at the case
   CylindricalMotion motion;  ///< in the components of Annulus
 };
 

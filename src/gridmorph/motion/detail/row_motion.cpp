@@ -48,7 +48,8 @@ std::vector<int> surfaces_of_row(Mesh const& mesh, SlipSurfaces const& surfaces,
 
 /// Rules may name a row by its main blade alone, or with its splitter.
 bool is_same_row(std::vector<int> const& blades, std::vector<int> const& others) {
-  return std::any_of(blades.begin(), blades.end(), [&](int p) { return std::binary_search(others.begin(), others.end(), p); });
+  return std::any_of(blades.begin(), blades.end(),
+                     [&](int p) { return std::binary_search(others.begin(), others.end(), p); });
 }
 
 BladeSections make_sections(Mesh const& mesh, std::vector<int> const& blades, CylindricalFrame const& frame,
@@ -73,8 +74,8 @@ BladeSections make_sections(Mesh const& mesh, std::vector<int> const& blades, Cy
                   " open contours; span fractions " + std::to_string(sections.first_span()) + " to " +
                   std::to_string(sections.last_span()) +
                   (annulus.has_walls() ? " between hub and case" : " of its own radii") +
-                  (annulus.turns() ? ", along the flow path " : ", axial ") +
-                  std::to_string(sections.most_upstream()) + " to " + std::to_string(sections.most_downstream()));
+                  (annulus.turns() ? ", along the flow path " : ", axial ") + std::to_string(sections.most_upstream()) +
+                  " to " + std::to_string(sections.most_downstream()));
   return sections;
 }
 
@@ -137,11 +138,12 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
   } catch (MotionError const& e) {
     // An end that does not move may have any shape: the taper then ends at the outermost position.
     if (end.slides)
-      throw MotionError("patch " + describe_patch(mesh, mesh.patches[first_sliding]) +
-                        " has the rule circumferential-slide, but its position along the flow (its axial position, where "
-                        "that is axial) is not a function of the span fraction (here called axial position, and its "
-                        "position along the flow radius): " +
-                        e.what());
+      throw MotionError(
+          "patch " + describe_patch(mesh, mesh.patches[first_sliding]) +
+          " has the rule circumferential-slide, but its position along the flow (its axial position, where "
+          "that is axial) is not a function of the span fraction (here called axial position, and its "
+          "position along the flow radius): " +
+          e.what());
   }
   if (!end.m_of_span) end.m = outermost(mesh, side);
   return end;

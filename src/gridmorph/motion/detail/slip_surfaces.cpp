@@ -275,8 +275,8 @@ class Finder {
     for (Vec3 const& p : points) {
       auto const [a, r] = frame_.meridional(p);
       MeridionalFrame const& frame = surface.frame;
-      surface.baseline_deviation = std::max(
-          surface.baseline_deviation, std::abs(frame.ordinate(a, r) - surface.profile(frame.abscissa(a, r))));
+      surface.baseline_deviation =
+          std::max(surface.baseline_deviation, std::abs(frame.ordinate(a, r) - surface.profile(frame.abscissa(a, r))));
     }
     note(patches, surface, "given profile of");
     store(std::move(surface), patches, points);
@@ -290,8 +290,8 @@ class Finder {
 
   void note(Patches const& patches, SlipSurface const& s, char const* what) {
     notes_.push_back("slip " + describe(mesh_, patches) + ": " + what + " " + std::to_string(s.profile.knots.size()) +
-                     " points, " + end(s, s.profile.knots.front()) + " to " + end(s, s.profile.knots.back()) + "; nodes are within " + number(s.baseline_deviation) +
-                     " of it");
+                     " points, " + end(s, s.profile.knots.front()) + " to " + end(s, s.profile.knots.back()) +
+                     "; nodes are within " + number(s.baseline_deviation) + " of it");
   }
 
   Mesh const& mesh_;

@@ -99,9 +99,10 @@ MeridionalPoint WallCurve::at(double s) const {
 
 std::vector<WallCurve> chain_walls(std::vector<WallPiece> pieces) {
   if (pieces.size() < 2)
-    throw MotionError("where the flow path turns from axial to radial, hub and case must both slip on a surface of "
-                      "revolution; only " +
-                      std::to_string(pieces.size()) + " such surface was found in the zones of this row");
+    throw MotionError(
+        "where the flow path turns from axial to radial, hub and case must both slip on a surface of "
+        "revolution; only " +
+        std::to_string(pieces.size()) + " such surface was found in the zones of this row");
   std::vector<std::vector<WallPiece>> chains;
   for (WallPiece& piece : pieces) chains.push_back({std::move(piece)});
   while (chains.size() > 2) {
@@ -187,7 +188,9 @@ FlowPosition FlowCoordinates::position(MeridionalPoint const& p) const {
   bool const inside = found >= 0 && nearest < 1.5;
   if (!inside) {
     // Beyond an end: on the continued curves, without a bracket.
-    auto const off = [&](Line const& l) { return std::hypot(p.axial - l.from.axial - 0.5 * l.axial, p.radius - l.from.radius - 0.5 * l.radius); };
+    auto const off = [&](Line const& l) {
+      return std::hypot(p.axial - l.from.axial - 0.5 * l.axial, p.radius - l.from.radius - 0.5 * l.radius);
+    };
     bool const before = off(lines_.front()) < off(lines_.back());
     lo = before ? 0 : 1;
     hi = before ? -1.0 / last : 1 + 1.0 / last;

@@ -33,8 +33,8 @@ class WallCurve {
  private:
   struct Stretch {
     WallPiece piece;
-    double begin = 0, end = 0;      ///< arc lengths
-    RevolutionProfile abscissa;     ///< of the arc length from `begin`
+    double begin = 0, end = 0;         ///< arc lengths
+    RevolutionProfile abscissa;        ///< of the arc length from `begin`
     MeridionalPoint gap_from, gap_to;  ///< a straight line when there is no profile
   };
   std::vector<Stretch> stretches_;
