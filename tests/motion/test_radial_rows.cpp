@@ -4,6 +4,7 @@
 
 #include <gridmorph/core/error.hpp>
 
+#include <gridmorph/motion/detail/wall_curve.hpp>
 #include <gridmorph/motion/surface_motion.hpp>
 
 #include <random>
@@ -276,12 +277,145 @@ TEST(RadialRow, ItsWallsMayBeOfSeveralFamiliesThatFollowOneAnother) {
   for (std::size_t n = 0; n < u.size(); ++n) EXPECT_LT(distance(u[n], v[n]), 1e-8);
 }
 
+/// A vaned diffuser between parallel straight walls that run outwards, across the axis or nearly so.
+struct Diffuser {
+  double slope_rad;
+  [[nodiscard]] Vec3 point(double s, double h, double theta) const {
+    double const c = std::cos(slope_rad), n = std::sin(slope_rad);
+    return testing::cylindrical(0.8 * s * c - 0.2 * h * n, 1 + 0.8 * s * n + 0.2 * h * c, theta);
+  }
+  [[nodiscard]] Place place_of(Vec3 const& p) const {
+    double const c = std::cos(slope_rad), n = std::sin(slope_rad), x = p.x, r = radius_of(p) - 1;
+    return {(x * c + r * n) / 0.8, (r * c - x * n) / 0.2, angle_of(p)};
+  }
+  static double fraction(double s) { return (s - 0.3) / 0.4; }
+  static double angle(double c, double h) { return 0.1 * (1 + c) * (1 + h * h); }
+
+  [[nodiscard]] Mesh mesh() const {
+    auto const at = [d = *this](auto f) { return [=](double s, double t) { return f(d, s, t); }; };
+    RowMesh row;
+    row.add({"blade",
+             PatchKind::wall,
+             {121, 31},
+             at([](Diffuser const& d, double s, double t) {
+               double const phi = 2 * std::numbers::pi * (s == 1 ? 0 : s), c = 0.5 * (1 - std::cos(phi));
+               return d.point(0.3 + 0.4 * c, t, 0.3 * c + 0.02 * std::sin(phi));
+             }),
+             {}});
+    for (double h : {0.0, 1.0})
+      row.add({h == 0 ? "hub" : "case",
+               PatchKind::wall,
+               {101, 5},
+               at([h](Diffuser const& d, double s, double t) { return d.point(s, h, 0.5 * t); }),
+               {}});
+    for (double s : {0.0, 1.0})
+      row.add({s == 0 ? "inlet" : "outlet",
+               s == 0 ? PatchKind::inflow : PatchKind::outflow,
+               {21, 5},
+               at([s](Diffuser const& d, double h, double t) { return d.point(s, h, 0.5 * t); }),
+               {}});
+    row.add({"periodic",
+             PatchKind::other,
+             {41, 21},
+             at([](Diffuser const& d, double s, double h) { return d.point(s, h, 0.1); }),
+             {}});
+    return row.finish();
+  }
+};
+
+TEST(RadialRow, FlatAndSteepConicalWallsMakeARadialRow) {
+  using Wall = SlipRule::Surface;
+  double const right = 0.5 * std::numbers::pi;
+  for (auto const& [slope, wall] :
+       {std::pair{right, Wall::revolution}, {right, Wall::plane}, {0.8 * right, Wall::revolution}}) {
+    Diffuser const d{slope};
+    Mesh const mesh = d.mesh();
+    Motion motion;
+    motion.rules = {{{"blade"},
+                     FunctionRule{"turn",
+                                  [d](std::span<Vec3 const> points, std::span<Vec3> out) {
+                                    for (std::size_t n = 0; n < points.size(); ++n) {
+                                      Place const p = d.place_of(points[n]);
+                                      out[n] = d.point(p.s, p.h, p.theta + d.angle(d.fraction(p.s), p.h)) - points[n];
+                                    }
+                                  }},
+                     0,
+                     ""},
+                    {{"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}, 0, ""},
+                    {{"periodic"}, FollowRule{{"blade"}}, 0, ""},
+                    {{"hub", "case"}, SlipRule{wall}, 0, ""}};
+    SurfaceMotion const surface = make(mesh, motion);
+    for (Vec3 const& x : points_of(mesh, "periodic")) {
+      Place const p = d.place_of(x);
+      Vec3 const wanted = d.point(p.s, p.h, p.theta + d.angle(std::clamp(d.fraction(p.s), 0.0, 1.0), p.h)) - x;
+      EXPECT_LT(distance(evaluate(surface, 2, {x})[0], wanted), 2e-6);
+    }
+    for (Vec3 const& x : points_of(mesh, "outlet")) {
+      Place const p = d.place_of(x);
+      EXPECT_LT(distance(evaluate(surface, 1, {x})[0], d.point(p.s, p.h, p.theta + d.angle(1, p.h)) - x), 2e-6);
+    }
+  }
+}
+
 TEST(RadialRow, OneEndWallIsNotEnough) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
   Motion motion = redesigned();
   motion.rules.back().patches = {"hub"};
   motion.rules.back().where = "case.toml:9";
   expect_all_in(message_of<MotionError>([&] { make(mesh, motion); }), {"hub and case", "slip", "revolution"});
+}
+
+TEST(RadialRow, BladesOfTwoRowsInOneOfAreRefused) {
+  RowMesh row;
+  row.add(impeller::o_blade("main", {0.1, 0, 0.3, 0, 0}, 81, 21));
+  row.add(impeller::o_blade("main", {0.6, 0, 0.2, 0, 0}, 81, 21));
+  row.add(impeller::end_wall("hub", 0, 201, 5));
+  row.add(impeller::end_wall("case", 1, 201, 5));
+  row.add(impeller::periodic());
+  Mesh const mesh = row.finish();
+  Motion m;
+  m.rules = {{{"main"}, FixedRule{}, 0, ""},
+             {{"periodic"}, FollowRule{{"main"}}, 0, "case.toml:7"},
+             {{"hub", "case"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};
+  expect_all_in(message_of<MotionError>([&] { make(mesh, m); }), {"case.toml:7", "two rows"});
+}
+
+// ---- flow coordinates --------------------------------------------------------------------------------------------
+
+/// A wall of an elliptic bend, in a frame turned by 45 degrees.
+WallPiece elliptic_wall(double a, double b) {
+  std::vector<std::pair<double, double>> points;
+  for (int n = 0; n <= 300; ++n) {
+    double const t = 0.5 * std::numbers::pi * n / 300;
+    points.emplace_back(a * std::sin(t), 2 - b * std::cos(t));
+  }
+  TurnedProfile const fit = TurnedProfile::from_points(points);
+  return {fit.profile, fit.frame, fit.profile.knots.front().axial, fit.profile.knots.back().axial};
+}
+
+TEST(FlowCoordinates, PointAndPositionAreInverses) {
+  std::vector<WallCurve> walls = chain_walls({elliptic_wall(0.6, 0.9), elliptic_wall(1.4, 1.5)});
+  FlowCoordinates const flow(walls[0], walls[1]);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<> s(-0.02, 1.02), h(-0.1, 1.1);
+  for (int n = 0; n < 1000; ++n) {
+    FlowPosition const f{s(random) * flow.length(), h(random)}, g = flow.position(flow.point(f));
+    EXPECT_NEAR(g.m, f.m, 1e-13);
+    EXPECT_NEAR(g.h, f.h, 1e-13);
+  }
+  // Hub and case themselves, and where they begin and end.
+  for (double t : {0.0, 0.3, 1.0})
+    for (auto const& [a, b, span] : {std::tuple{0.6, 0.9, 1.0}, {1.4, 1.5, 0.0}}) {
+      double const angle = 0.5 * std::numbers::pi * t;
+      FlowPosition const f = flow.position({a * std::sin(angle), 2 - b * std::cos(angle)});
+      EXPECT_NEAR(f.h, span, 1e-9);
+      if (t == 0) {
+        EXPECT_NEAR(f.m, 0, 1e-9);
+      }
+      if (t == 1) {
+        EXPECT_NEAR(f.m, flow.length(), 1e-9);
+      }
+    }
 }
 
 // ---- slip --------------------------------------------------------------------------------------------------------

@@ -46,29 +46,26 @@ Annulus::Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidate
                                        [&](MeridionalPoint const& p) { return p.radius > surface.profile(p.axial); });
     (2 * std::size_t(outside) > blade.size() ? inner_ : outer_).push_back(&surface.profile);
   }
-  std::vector<WallPiece> pieces;
-  if (walls) {
-    if (meridional || !has_walls() || !is_axial_along(blade)) pieces = walls();
-  } else {
-    for (int s : candidates)
-      if (SlipSurface const& surface = surfaces.surfaces[s]; is_revolution(surface))
-        pieces.push_back(
-            {surface.profile, surface.frame, surface.profile.knots.front().axial, surface.profile.knots.back().axial});
-  }
-  bool const across = pieces.size() > 1 && std::any_of(pieces.begin(), pieces.end(),
-                                                       [](WallPiece const& piece) { return piece.frame.cosine == 0; });
-  if (has_walls() ? !is_axial_along(blade) || (meridional && !spans(blade)) : meridional || across) {
-    std::vector<WallCurve> curves = chain_walls(std::move(pieces));
-    turning_.emplace(std::move(curves[0]), std::move(curves[1]));
-    auto const between = std::count_if(blade.begin(), blade.end(), [&](MeridionalPoint const& p) {
-      double const h = turning_->position(p).h;
-      return h > -0.05 && h < 1.05;
-    });
-    if (10 * std::size_t(between) < 9 * blade.size())
-      throw MotionError(
-          "only " + std::to_string(between) + " of " + std::to_string(blade.size()) +
-          " nodes of the blade lie between the row's two end walls; check the axis, and which patches of the "
-          "row slip on a surface of revolution: they must make up one hub and one case");
+  // A wall that is no function of the axial position makes a row that turns, unless the blade lies where hub and case both are.
+  bool const must_turn = meridional && !(has_walls() && spans(blade));
+  bool const may_turn = !has_walls() || is_steep_along(blade);
+  if (must_turn || may_turn) {
+    std::vector<WallPiece> pieces;
+    if (walls) {
+      pieces = walls();
+    } else {
+      for (int s : candidates)
+        if (SlipSurface const& surface = surfaces.surfaces[s]; is_revolution(surface))
+          pieces.push_back({surface.profile, surface.frame, surface.profile.knots.front().axial,
+                            surface.profile.knots.back().axial});
+    }
+    bool const across =
+        std::any_of(pieces.begin(), pieces.end(), [](WallPiece const& p) { return p.frame.cosine == 0; });
+    try {
+      if (must_turn || has_walls() || across) turn(std::move(pieces), blade);
+    } catch (MotionError const&) {
+      if (must_turn) throw;
+    }
   }
   if (!has_walls() && !(r_hi_ > r_lo_))
     throw MotionError("the blade lies at one radius, " + std::to_string(r_lo_) +
@@ -76,14 +73,33 @@ Annulus::Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidate
                       "the rule slip on a surface of revolution");
 }
 
-bool Annulus::is_axial_along(std::vector<MeridionalPoint> const& blade) const {
+void Annulus::turn(std::vector<WallPiece> pieces, std::vector<MeridionalPoint> const& blade) {
+  std::vector<WallCurve> curves = chain_walls(std::move(pieces));
+  FlowCoordinates flow(std::move(curves[0]), std::move(curves[1]));
+  auto const between = std::count_if(blade.begin(), blade.end(), [&](MeridionalPoint const& p) {
+    double const h = flow.position(p).h;
+    return h > -0.05 && h < 1.05;
+  });
+  if (10 * std::size_t(between) < 9 * blade.size())
+    throw MotionError(
+        "only " + std::to_string(between) + " of " + std::to_string(blade.size()) +
+        " nodes of the blade lie between the row's two end walls; check the axis, and which patches of the "
+        "row slip on a surface of revolution: they must make up one hub and one case");
+  turning_.emplace(std::move(flow));
+}
+
+bool Annulus::is_steep_along(std::vector<MeridionalPoint> const& blade) const {
   constexpr double steep = 2;
   auto const [lo, hi] = axial_range(blade);
+  bool anywhere = false;
   for (Profiles const* profiles : {&inner_, &outer_})
-    for (RevolutionProfile const* profile : *profiles)
+    for (RevolutionProfile const* profile : *profiles) {
+      double const begin = std::max(lo, profile->knots.front().axial), end = std::min(hi, profile->knots.back().axial);
+      if (end > begin && std::abs((*profile)(end) - (*profile)(begin)) > steep * (end - begin)) return true;
       for (ProfileKnot const& knot : profile->knots)
-        if (knot.axial > lo && knot.axial < hi && std::abs(knot.slope) > steep) return false;
-  return true;
+        anywhere = anywhere || (knot.axial > lo && knot.axial < hi && std::abs(knot.slope) > steep);
+    }
+  return anywhere && !spans(blade);
 }
 
 bool Annulus::spans(std::vector<MeridionalPoint> const& blade) const {

@@ -45,8 +45,11 @@ class Annulus {
   using Profiles = std::vector<RevolutionProfile const*>;
   /// The profile whose axial range holds the position, or comes nearest.
   static RevolutionProfile const& at(Profiles const& profiles, double axial);
-  /// Whether hub and case run along the axis more than across it (a slope of 2) where the blade is.
-  [[nodiscard]] bool is_axial_along(std::vector<MeridionalPoint> const& blade) const;
+  /// Makes FlowCoordinates of the walls, and checks that the blade lies between them.
+  void turn(std::vector<WallPiece> pieces, std::vector<MeridionalPoint> const& blade);
+  /// Whether hub or case run across the axis more than along it (a slope of 2) over the blade, or somewhere along it when
+  /// the other ends there.
+  [[nodiscard]] bool is_steep_along(std::vector<MeridionalPoint> const& blade) const;
   /// Whether the profiles over the axial position of both hub and case reach from end to end of the blade.
   [[nodiscard]] bool spans(std::vector<MeridionalPoint> const& blade) const;
   /// How much the radius changes when the axial position does and the span fraction does not. Exactly zero for zero,
