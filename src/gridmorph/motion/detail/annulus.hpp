@@ -29,6 +29,8 @@ class Annulus {
   /// Whether the flow path turns from axial to radial.
   [[nodiscard]] bool turns() const { return turning_.has_value(); }
   [[nodiscard]] FlowPosition position(MeridionalPoint const& p) const;
+  /// position(p).m, also where there is no span, beyond the ends of hub and case.
+  [[nodiscard]] double along(MeridionalPoint const& p) const { return turning_ ? turning_->position(p).m : p.axial; }
   /// 0 at the hub, 1 at the case.
   [[nodiscard]] double span(MeridionalPoint const& p) const { return position(p).h; }
   /// Distance from hub to case through p.

@@ -96,26 +96,23 @@ RowMotion::RowMotion(Mesh const& mesh, ResolvedMotion const& motion, std::vector
 RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,
                                    int side) const {
   double const edge = side < 0 ? sections_.most_upstream() : sections_.most_downstream();
-  auto const positions = [&](std::vector<int> const& patches) {
-    std::vector<FlowPosition> out;
-    for (MeridionalPoint const& p : meridional_points(mesh, frame_, patches)) out.push_back(annulus_.position(p));
-    return out;
-  };
-  auto const beyond = [&](std::vector<FlowPosition> const& points, double limit) {
-    return std::all_of(points.begin(), points.end(), [&](auto const& p) { return side * (p.m - limit) > 0; });
+  auto const beyond = [&](std::vector<MeridionalPoint> const& points, double limit) {
+    return std::all_of(points.begin(), points.end(),
+                       [&](auto const& p) { return side * (annulus_.along(p) - limit) > 0; });
   };
 
-  std::vector<FlowPosition> sliding, others;
+  std::vector<MeridionalPoint> sliding, others;
   int first_sliding = -1;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     Patch const& patch = mesh.patches[p];
     auto const* slide = std::get_if<CircumferentialSlideRule>(&motion.patch_rule(int(p)));
     if (slide != nullptr && is_same_row(select_patches(mesh, slide->of), blades)) {
-      auto const points = positions({int(p)});
+      auto const points = meridional_points(mesh, frame_, {int(p)});
       if (beyond(points, middle_)) {
         sliding.insert(sliding.end(), points.begin(), points.end());
         if (first_sliding < 0) first_sliding = int(p);
-      } else if (std::any_of(points.begin(), points.end(), [&](auto const& q) { return side * (q.m - middle_) > 0; })) {
+      } else if (std::any_of(points.begin(), points.end(),
+                             [&](auto const& q) { return side * (annulus_.along(q) - middle_) > 0; })) {
         throw MotionError("patch " + describe_patch(mesh, patch) +
                           " has the rule circumferential-slide but lies beside the blade's "
                           "mid-chord at " +
@@ -124,7 +121,7 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
       }
     } else if (row_zones_[patch.zone] && (patch.kind != PatchKind::wall && patch.kind != PatchKind::symmetry &&
                                           patch.kind != PatchKind::degenerate)) {
-      auto const points = positions({int(p)});
+      auto const points = meridional_points(mesh, frame_, {int(p)});
       if (beyond(points, edge)) others.insert(others.end(), points.begin(), points.end());
     }
   }
@@ -132,7 +129,10 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
   End end;
   end.slides = first_sliding >= 0;
   std::vector<std::pair<double, double>> nodes;
-  for (FlowPosition const& p : end.slides ? sliding : others) nodes.emplace_back(p.h, p.m);
+  for (MeridionalPoint const& p : end.slides ? sliding : others) {
+    FlowPosition const at = annulus_.position(p);
+    nodes.emplace_back(at.h, at.m);
+  }
   try {
     if (!nodes.empty()) end.m_of_span = RevolutionProfile::from_points(std::move(nodes));
   } catch (MotionError const& e) {
@@ -155,8 +155,7 @@ double RowMotion::outermost(Mesh const& mesh, int side) const {
     if (!row_zones_[z]) continue;
     Zone const& zone = mesh.zones[z];
     for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
-      MeridionalPoint const p = frame_.meridional(mesh.coordinates[n]);
-      double const here = annulus_.turns() ? annulus_.position(p).m : p.axial;
+      double const here = annulus_.along(frame_.meridional(mesh.coordinates[n]));
       m = side < 0 ? std::min(m, here) : std::max(m, here);
     }
   }
