@@ -102,6 +102,22 @@ std::vector<Case> make_cases() {
        moves(turning_waves(sector, 0.1), {"*", "type:periodic"}),
        {},
        axial},
+      {"bend_on_its_walls",
+       [=] { return bend_sector(sector, 24); },
+       [=](double f) {
+         VectorField const turn = [=](Vec3 const& p) {
+           Vec3 const q = sector_coordinates(sector, p);  // keeps to hub and case
+           return sector_position(sector, q.x, q.y, q.z + f * 0.1 * (1 + q.x - 0.5 * q.y)) - p;
+         };
+         Motion m =
+             motion({rule({"inlet", "outlet"}, function_rule([=](Vec3 const& p) { return f == 0 ? Vec3{} : turn(p); })),
+                     rule({"hub", "case"}, SlipRule{SlipRule::Surface::revolution, {}, {}})});
+         m.axis = {sector.origin, sector.axis};
+         return m;
+       },
+       {},
+       axial,
+       {"hub", "case", "inlet", "outlet"}},
       {"wedge",
        [=] { return annulus_sector(wedge, 20); },
        moves(turning_waves(wedge, 0.1), {"case", "inlet", "outlet", "pole"}),

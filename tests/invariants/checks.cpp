@@ -68,7 +68,9 @@ double off_slip_surface(Outcome const& run) {
       Vec3 const d = x - surface->origin;
       double const a = dot(d, surface->direction);
       if (surface->kind == SlipSurface::Kind::plane) return a;
-      return norm(d - a * surface->direction) - surface->profile(a);
+      double const r = norm(d - a * surface->direction);
+      if (surface->kind == SlipSurface::Kind::meridional) return surface->view().foot(a, r).away;
+      return r - surface->profile(a);
     };
     each_node(run.mesh.zones[patch.zone], patch.range, [&](Index3 const&, Index n) {
       double const change = offset(run.morphed.position[n]) - offset(run.mesh.coordinates[n]);

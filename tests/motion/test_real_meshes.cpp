@@ -153,6 +153,44 @@ TEST_P(RealRow, PeriodicCopiesMoveAlike) {
   }
 }
 
+/// Both rows of a stage at once, each with its own motion: what a row gets is what it gets alone.
+TEST(RealStage, RowsInOneFileFollowTheirOwnBlades) {
+  char const* folder = std::getenv("GRIDMORPH_MESHES");
+  auto const path = std::filesystem::path(folder ? folder : GRIDMORPH_MESHES_DIR) / "axial_turbine_stage_H.cgns";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path << "; set GRIDMORPH_MESHES";
+  Mesh const mesh = read_mesh(path.string());
+  Axis const axis{{0, 0, 0}, {1, 0, 0}};
+  std::vector<MotionRule> const first{{{"BLADE1"}, twist(axis, 0.5), 0, ""},
+                                      {{"INLET", "mixing_out"}, CircumferentialSlideRule{{"BLADE1"}}, 0, ""},
+                                      {{"row1/per*"}, FollowRule{{"BLADE1"}}, 0, ""}},
+      second{{{"BLADE2"}, twist(axis, -0.3), 0, ""},
+             {{"OUTLET", "mixing_in"}, CircumferentialSlideRule{{"BLADE2"}}, 0, ""},
+             {{"row2/per*"}, FollowRule{{"BLADE2"}}, 0, ""}};
+  auto const surface_motion = [&](std::vector<std::vector<MotionRule>> const& rows) {
+    Motion motion;
+    motion.axis = axis;
+    for (auto const& row : rows) motion.rules.insert(motion.rules.end(), row.begin(), row.end());
+    motion.rules.push_back({{"HUB", "SHROUD"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""});
+    return SurfaceMotion(mesh, resolve(mesh, motion));
+  };
+  SurfaceMotion const both = surface_motion({first, second}),
+                      alone[2] = {surface_motion({first}), surface_motion({second})};
+  std::vector<Vec3> points;
+  for (Index n = 0; n < mesh.n_nodes(); n += 97) points.push_back(mesh.coordinates[n]);
+  std::vector<Vec3> u(points.size()), v(points.size());
+  double largest[2] = {0, 0};
+  for (int row : {0, 1})
+    for (int rule : {1, 2}) {
+      both.displacement(3 * row + rule, points, u);
+      alone[row].displacement(rule, points, v);
+      for (std::size_t n = 0; n < points.size(); ++n) {
+        EXPECT_EQ(u[n], v[n]);
+        largest[row] = std::max(largest[row], norm(u[n]));
+      }
+    }
+  for (double l : largest) EXPECT_GT(l, 1e-3 * mesh.size());
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Meshes, RealRow,
     ::testing::Values(

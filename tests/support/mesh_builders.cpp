@@ -126,6 +126,25 @@ Mesh annulus_sector(Sector const& sector, unsigned seed) {
   return make(b);
 }
 
+Mesh bend_sector(Sector const& sector, unsigned seed) {
+  Bricks b;
+  b.name = "bend";
+  b.extent = {9, 6, 5};
+  double const pitch = two_pi / sector.copies;
+  b.position = [=, d = Distortion(seed)](Vec3 const& uvw) {
+    Vec3 const q = d(uvw);
+    double const bend = 1.2 - 0.5 * q.y, phi = 0.25 * two_pi * q.x;
+    return sector_position(sector, bend * std::sin(phi), 1.8 - bend * std::cos(phi), pitch * q.z + 0.2 * q.x);
+  };
+  double angle = -pitch;
+  if (sector.single_precision_angle) angle = float(angle);
+  b.wrap[2] = {Wrap::Kind::periodic, rotation(sector.origin, (1 / norm(sector.axis)) * sector.axis, angle)};
+  b.family = {"inlet", "outlet", "hub", "case", "", ""};
+  b.kind = {PatchKind::inflow, PatchKind::outflow, PatchKind::wall,
+            PatchKind::wall,   PatchKind::other,   PatchKind::other};
+  return make(b);
+}
+
 Mesh o_grid(double inner_radius, unsigned seed) {
   Bricks b;
   b.name = "O";

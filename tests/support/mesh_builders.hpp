@@ -98,6 +98,9 @@ Mesh annulus_sector(Sector const& sector, unsigned seed);
 Vec3 sector_position(Sector const& sector, double axial, double radius, double theta);
 /// Axial, radius, theta about the sector's axis.
 Vec3 sector_coordinates(Sector const& sector, Vec3 const& p);
+/// Annulus sector of the same axis and families whose flow path turns from axial to radial: hub and case are quarter circles
+/// about one centre in the meridional plane.
+Mesh bend_sector(Sector const& sector, unsigned seed);
 /// O-grid: one zone whose ends in u meet, wall (family "body") at v_min, farfield at v_max; inner_radius 0: a pole line.
 Mesh o_grid(double inner_radius, unsigned seed);
 /// C-grid around a body with a blunt nose; the wake is an interface of the zone with itself, the wall a part of j_min.

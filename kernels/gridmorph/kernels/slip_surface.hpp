@@ -4,7 +4,8 @@
 // precision, chord error of the profile): the correction is the *change* of that distance. So zero displacement stays
 // exactly zero, and a displacement that already keeps the node on its surface comes back bit for bit.
 //
-// Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots.
+// Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots; meridional the same
+// across the axis, otherwise two to five lookups more to find the nearest point.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
@@ -16,7 +17,22 @@ namespace gridmorph {
 enum class SlipKind {
   plane,       ///< nodes stay on a plane
   revolution,  ///< nodes stay on a surface of revolution, moved radially at constant axial position and angle
-  axial        ///< nodes keep their axial position; not a surface
+  axial,       ///< nodes keep their axial position; not a surface
+  meridional   ///< surface of revolution whose profile is a function in a turned frame: see MeridionalFrame
+};
+
+/// A frame of the meridional plane: (abscissa, ordinate) is (axial, radius) turned. Walls at constant axial position are
+/// functions of the abscissa when it is the radius (cosine 0, sine 1), walls that turn from axial to radial in a frame
+/// between the two. Nodes move along the ordinate to a wall across the axis (at constant radius and angle), and along the
+/// wall's normal in the meridional plane where the frame is inclined.
+struct MeridionalFrame {
+  double cosine = 1, sine = 0;
+  KOKKOS_INLINE_FUNCTION double abscissa(double axial, double radius) const { return cosine * axial + sine * radius; }
+  KOKKOS_INLINE_FUNCTION double ordinate(double axial, double radius) const { return cosine * radius - sine * axial; }
+  KOKKOS_INLINE_FUNCTION double axial(double x, double y) const { return cosine * x - sine * y; }
+  KOKKOS_INLINE_FUNCTION double radius(double x, double y) const { return sine * x + cosine * y; }
+  KOKKOS_INLINE_FUNCTION bool inclined() const { return cosine != 0 && sine != 0; }
+  friend bool operator==(MeridionalFrame const&, MeridionalFrame const&) = default;
 };
 
 /// What a profile knows at one axial position. All of it lies together: nodes look at few positions each, far apart.
@@ -29,7 +45,13 @@ struct ProfileKnot {
   friend bool operator==(ProfileKnot const&, ProfileKnot const&) = default;
 };
 
-/// Radius as a function of axial position: quintic Hermite pieces between `size` knots. Borrows its tables.
+/// A profile at one position: value, first and second derivative.
+struct ProfileSample {
+  double value = 0, slope = 0, bend = 0;
+};
+
+/// Radius as a function of axial position (in a turned frame: ordinate as a function of abscissa): quintic Hermite pieces
+/// between `size` knots. Borrows its tables.
 struct ProfileView {
   ProfileKnot const* knots = nullptr;  ///< (size), axial positions strictly increasing
   int size = 0;
@@ -84,18 +106,63 @@ struct ProfileView {
         lo.curvature[0] * t * (1 + t * (-4.5 + t * (6 - 2.5 * t))) + lo.curvature[1] * t2 * (1.5 + t * (-4 + 2.5 * t));
     return rise / h + slopes + h * bends;
   }
+
+  /// Value and derivatives by one lookup; the end slopes are continued outside.
+  KOKKOS_INLINE_FUNCTION ProfileSample sample(double a) const {
+    ProfileKnot const &first = knots[0], &last = knots[size - 1];
+    if (a <= first.axial) return {first.radius + first.slope * (a - first.axial), first.slope, 0};
+    if (a >= last.axial) return {last.radius + last.slope * (a - last.axial), last.slope, 0};
+    int const p = piece(a);
+    ProfileKnot const &lo = knots[p], &hi = knots[p + 1];
+    double const h = hi.axial - lo.axial, rise = hi.radius - lo.radius;
+    double const t = (a - lo.axial) / h, t2 = t * t, t3 = t2 * t, c0 = lo.curvature[0], c1 = lo.curvature[1];
+    double const slopes[3] = {
+        lo.slope * (t + t3 * (-6 + t * (8 - 3 * t))) + hi.slope * t3 * (-4 + t * (7 - 3 * t)),
+        lo.slope * (1 + t2 * (-18 + t * (32 - 15 * t))) + hi.slope * t2 * (-12 + t * (28 - 15 * t)),
+        lo.slope * t * (-36 + t * (96 - 60 * t)) + hi.slope * t * (-24 + t * (84 - 60 * t))};
+    double const bends[3] = {c0 * t2 * (0.5 + t * (-1.5 + t * (1.5 - 0.5 * t))) + c1 * t3 * (0.5 + t * (-1 + 0.5 * t)),
+                             c0 * t * (1 + t * (-4.5 + t * (6 - 2.5 * t))) + c1 * t2 * (1.5 + t * (-4 + 2.5 * t)),
+                             c0 * (1 + t * (-9 + t * (18 - 10 * t))) + c1 * t * (3 + t * (-12 + 10 * t))};
+    return {lo.radius + (rise * t3 * (10 + t * (6 * t - 15)) + h * (slopes[0] + h * bends[0])),
+            rise / h * 30 * t2 * (1 - t) * (1 - t) + slopes[1] + h * bends[1],
+            (rise / h * 60 * t * (1 + t * (-3 + 2 * t)) + slopes[2]) / h + bends[2]};
+  }
+
+  /// Abscissa of the profile's point nearest to (x, y), by Newton's method from the point at x; where the distance is not
+  /// convex there, steps of Gauss and Newton. Meant for points nearer to the profile than its radius of curvature.
+  KOKKOS_INLINE_FUNCTION double nearest(double x, double y) const {
+    constexpr int most_steps = 30;
+    double const length = knots[size - 1].axial - knots[0].axial;
+    double at = x;
+    for (int n = 0; n < most_steps; ++n) {
+      ProfileSample const s = sample(at);
+      double const metric = 1 + s.slope * s.slope, second = metric + (s.value - y) * s.bend;
+      double const step = (x - at + (y - s.value) * s.slope) / (second > 0.25 * metric ? second : metric);
+      at += step;
+      if (step <= 1e-15 * length && step >= -1e-15 * length) break;
+    }
+    return at;
+  }
+};
+
+/// A point's place relative to a meridional profile.
+struct MeridionalFoot {
+  double away = 0;               ///< signed distance from the profile, along (axial, radial)
+  double axial = 0, radial = 0;  ///< unit, in the direction in which `away` grows: the way back to the profile
+  double slope = 0, bend = 0;    ///< of the profile there
 };
 
 struct SlipSurfaceView {
   SlipKind kind = SlipKind::plane;
   Vec3 origin;                    ///< plane: a point on it; otherwise a point on the axis
   Vec3 direction;                 ///< unit: plane normal, or axis
-  ProfileView profile;            ///< revolution only
+  ProfileView profile;            ///< revolution and meridional only
   double size = 0;                ///< length that "1e-14 of the size" refers to
   double baseline_deviation = 0;  ///< offsets up to this are the baseline mesh's own and are kept
+  MeridionalFrame frame{};        ///< meridional only
 
   /// The point of the surface that p slides to: orthogonally (plane) or radially at constant axial position and angle
-  /// (revolution). A point on the axis has no radial direction and stays. Kind axial: p itself.
+  /// (revolution), or as MeridionalFrame says. A point on the axis has no radial direction and stays. Kind axial: p itself.
   KOKKOS_INLINE_FUNCTION Vec3 project(Vec3 const& p) const {
     Vec3 const d = p - origin;
     double const a = dot(d, direction);
@@ -103,16 +170,21 @@ struct SlipSurfaceView {
     if (kind == SlipKind::axial) return p;
     Vec3 const radial = d - a * direction;
     double const r = norm(radial);
-    return r > 0 ? p + ((profile(a) - r) / r) * radial : p;
+    if (!(r > 0)) return p;
+    if (kind == SlipKind::meridional) {
+      MeridionalFoot const f = foot(a, r);
+      return p - f.away * (f.axial * direction + (f.radial / r) * radial);
+    }
+    return p + ((profile(a) - r) / r) * radial;
   }
 
   /// Distance of a baseline node from a surface of revolution that is the baseline mesh's own and is kept; 0 for other
   /// kinds and for nodes that are farther off.
   KOKKOS_INLINE_FUNCTION double own_offset(Vec3 const& baseline) const {
-    if (kind != SlipKind::revolution) return 0;
+    if (kind != SlipKind::revolution && kind != SlipKind::meridional) return 0;
     Vec3 const d = baseline - origin;
-    double const a = dot(d, direction);
-    double const offset = norm(d - a * direction) - profile(a);
+    double const a = dot(d, direction), r = norm(d - a * direction);
+    double const offset = kind == SlipKind::revolution ? r - profile(a) : foot(a, r).away;
     return is_own(offset) ? offset : 0;
   }
 
@@ -136,6 +208,11 @@ struct SlipSurfaceView {
     Vec3 const moved = radial + (u - du * direction);
     double const r = norm(moved);
     if (!(r > 0)) return u;
+    if (kind == SlipKind::meridional) {
+      MeridionalFoot const f = foot(a + du, r);
+      double const too_far = f.away - own;
+      return small(too_far, tolerance) ? u : u - too_far * (f.axial * direction + (f.radial / r) * moved);
+    }
     double const excess = r - (profile(a + du) + own);
     return small(excess, tolerance) ? u : u - (excess / r) * moved;
   }
@@ -143,20 +220,55 @@ struct SlipSurfaceView {
   /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time.
   KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, double own, Vec3 const& u, Vec3 const& rate) const {
     double const axial_rate = dot(rate, direction);
-    if (kind != SlipKind::revolution) return rate - axial_rate * direction;
+    if (kind != SlipKind::revolution && kind != SlipKind::meridional) return rate - axial_rate * direction;
     Vec3 const d = baseline - origin;
     double const a = dot(d, direction), du = dot(u, direction);
     Vec3 const radial = d - a * direction;
     Vec3 const moved = radial + (u - du * direction), moved_rate = rate - axial_rate * direction;
     double const r = norm(moved);
     if (!(r > 0)) return rate;
-    double const excess = r - (profile(a + du) + own);
     double const r_rate = dot(moved, moved_rate) / r;
+    if (kind == SlipKind::meridional) return rate - meridional_rate(a + du, moved, axial_rate, moved_rate, r_rate, own);
+    double const excess = r - (profile(a + du) + own);
     double const excess_rate = r_rate - profile.derivative(a + du) * axial_rate;
     return rate - ((excess_rate - excess * r_rate / r) / r) * moved - (excess / r) * moved_rate;
   }
 
+  /// Where a point of the meridional plane is relative to the profile. Kind meridional.
+  KOKKOS_INLINE_FUNCTION MeridionalFoot foot(double axial, double radius) const {
+    using std::sqrt;
+    double const x = frame.abscissa(axial, radius), y = frame.ordinate(axial, radius);
+    double const at = frame.inclined() ? profile.nearest(x, y) : x;
+    ProfileSample const s = profile.sample(at);
+    if (!frame.inclined()) return {y - s.value, frame.axial(0, 1), frame.radius(0, 1), s.slope, s.bend};
+    double const stretch = 1 / sqrt(1 + s.slope * s.slope), nx = -s.slope * stretch;
+    return {(x - at) * nx + (y - s.value) * stretch, frame.axial(nx, stretch), frame.radius(nx, stretch), s.slope,
+            s.bend};
+  }
+
  private:
+  /// Derivative of the correction that constrain() subtracts. Along the profile's normal n with tangent t, of a point q
+  /// whose foot moves at t . q' / (1 - curvature away): away' = n . q', n' = -curvature t (t . q') / (1 - curvature away).
+  KOKKOS_INLINE_FUNCTION Vec3 meridional_rate(double axial, Vec3 const& moved, double axial_rate,
+                                              Vec3 const& moved_rate, double r_rate, double own) const {
+    using std::sqrt;
+    double const r = norm(moved);
+    MeridionalFoot const f = foot(axial, r);
+    double const too_far = f.away - own;
+    double away_rate = f.axial * axial_rate + f.radial * r_rate, turn = 0;
+    if (frame.inclined()) {
+      double const metric = 1 + f.slope * f.slope, curvature = f.bend / (metric * sqrt(metric));
+      // (n, t) is right-handed the other way round: t = (n_radial, -n_axial).
+      double const along = f.radial * axial_rate - f.axial * r_rate;
+      turn = -curvature * along / (1 - curvature * f.away);
+    } else {
+      away_rate -= f.slope * frame.abscissa(axial_rate, r_rate);
+    }
+    Vec3 const outwards = (1 / r) * moved, outwards_rate = (1 / r) * (moved_rate - r_rate * outwards);
+    Vec3 const normal = f.axial * direction + f.radial * outwards;
+    Vec3 const normal_rate = turn * (f.radial * direction - f.axial * outwards) + f.radial * outwards_rate;
+    return away_rate * normal + too_far * normal_rate;
+  }
   KOKKOS_INLINE_FUNCTION static bool small(double v, double tolerance) { return v <= tolerance && v >= -tolerance; }
   KOKKOS_INLINE_FUNCTION bool is_own(double offset) const {
     return small(offset, baseline_deviation * (1 + 1e-6) + 1e-14 * size);

@@ -90,9 +90,9 @@ std::optional<std::string> guess_revolution(MeshSummary const& s, std::vector<Ve
   }
   if (!(high > 0)) return std::nullopt;
   try {
-    if (RevolutionProfile::from_points(profile).deviation > round * high) return std::nullopt;
+    if (TurnedProfile::from_points(profile).profile.deviation > round * high) return std::nullopt;
   } catch (Error const&) {
-    return std::nullopt;  // not a function of the axial position
+    return std::nullopt;  // no surface of revolution
   }
   std::string text = fmt::format("surface of revolution, radius {:.6g} to {:.6g}", low, high);
   double const range = bounds.radius_max - bounds.radius_min;

@@ -88,7 +88,7 @@ struct CircumferentialSlideRule {
 };
 
 /// Periodics: replicate the mid-camber motion of `of` between its leading and trailing edge at the same span and chord
-/// fraction, taper linearly in axial distance to the motion of inlet and exit; copies stay 1-to-1.
+/// fraction, taper linearly along the flow path to the motion of inlet and exit; copies stay 1-to-1.
 struct FollowRule {
   std::vector<std::string> of;
 };
@@ -99,7 +99,7 @@ struct SlipRule {
   Surface surface = Surface::plane;
   /// Plane: a point and a normal; fitted to the baseline patch when absent.
   std::optional<std::pair<Vec3, Vec3>> plane{};
-  /// Revolution: (axial, radius) points along the profile; read off the baseline patch when empty.
+  /// Revolution: (axial, radius) points along the profile; read off the baseline patch when empty. See TurnedProfile.
   std::vector<std::pair<double, double>> profile{};
 };
 

@@ -30,6 +30,10 @@ struct RevolutionProfile {
   /// axial position, two surfaces at once, or a surface that is not one of revolution. Cost O(n log n).
   static RevolutionProfile from_points(std::vector<std::pair<double, double>> axial_radius);
 
+  /// Slopes above 10 over more than a thousandth of its extent: a displacement along the radius is no way to come back to
+  /// such a wall, it carries nodes far along it.
+  [[nodiscard]] bool is_steep() const;
+
   /// Outside the knots the end slope is continued.
   [[nodiscard]] double operator()(double axial_position) const { return view()(axial_position); }
 
@@ -39,20 +43,33 @@ struct RevolutionProfile {
   }
 };
 
+/// A profile and the frame of the meridional plane in which it is a function.
+struct TurnedProfile {
+  RevolutionProfile profile;
+  MeridionalFrame frame;
+
+  /// Of points along one connected wall: radius over axial position where that is a function and not steep; otherwise
+  /// axial position over radius (walls across the axis), or in the frame, turned in steps of 15 degrees, in which the slopes
+  /// are smallest. Throws MotionError when there is no such frame: a wall that turns by 180 degrees, two surfaces, or no
+  /// surface of revolution. Cost O(n log n).
+  static TurnedProfile from_points(std::vector<std::pair<double, double>> const& axial_radius);
+};
+
 struct SlipSurface {
   using Kind = SlipKind;
   Kind kind = Kind::plane;
-  Vec3 origin;     ///< plane: a point on it; revolution and axial: a point on the axis
+  Vec3 origin;     ///< plane: a point on it; otherwise a point on the axis
   Vec3 direction;  ///< unit: plane normal, or axis
   RevolutionProfile profile;
   /// Largest distance of the baseline patch's nodes from the surface.
   double baseline_deviation = 0;
   /// Largest distance of the baseline patch's nodes from `origin`: what round-off and relative tolerances refer to.
   double size = 0;
+  MeridionalFrame frame{};  ///< of the profile of a meridional surface
 
   /// For host code; borrows the profile: valid while this surface lives unchanged.
   [[nodiscard]] SlipSurfaceView view() const {
-    return {kind, origin, direction, profile.view(), size, baseline_deviation};
+    return {kind, origin, direction, profile.view(), size, baseline_deviation, frame};
   }
 };
 

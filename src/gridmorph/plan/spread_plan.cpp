@@ -11,7 +11,8 @@ namespace gridmorph {
 namespace {
 
 bool same_surface(SlipSurface const& a, SlipSurface const& b) {
-  return a.kind == b.kind && a.origin == b.origin && a.direction == b.direction && a.profile.knots == b.profile.knots;
+  return a.kind == b.kind && a.origin == b.origin && a.direction == b.direction && a.profile.knots == b.profile.knots &&
+         a.frame == b.frame;
 }
 
 /// Number of each patch's slip surface in `surfaces`, -1 for patches that do not slip.
@@ -60,7 +61,8 @@ std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topolog
       chain = std::move(*one);
     }
     int const steps = int(chain.steps.size());
-    bool const revolution = surfaces[surface_of_patch[patch]].kind == SlipKind::revolution;
+    SlipKind const kind = surfaces[surface_of_patch[patch]].kind;
+    bool const revolution = kind == SlipKind::revolution || kind == SlipKind::meridional;
     candidates.push_back({motion.patch[patch].rule, revolution, std::move(chain), steps});
   }
   return candidates;

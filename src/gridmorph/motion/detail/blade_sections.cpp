@@ -26,7 +26,7 @@ struct SpanLine {
       BladeNode const& b = blade.nodes[n];
       if (!span.empty() && !(b.span > span.back() + 1e-9)) continue;
       span.push_back(b.span);
-      samples.push_back({b.axial, b.motion.axial, b.motion.radial, b.motion.angle_rad});
+      samples.push_back({b.m, b.motion.axial, b.motion.radial, b.motion.angle_rad});
     }
   }
   [[nodiscard]] Sample at(double h) const {

@@ -106,18 +106,14 @@ class Stitcher {
     std::vector<Vec3> displacement(piece.points.size());
     input_.displacement(p, piece.points, displacement);
     std::vector<BladeNode> nodes;
-    double span_lo = std::numeric_limits<double>::infinity(), span_hi = -span_lo, r_lo = span_lo, r_hi = -span_lo;
+    double height = 0;
     for (std::size_t n = 0; n < piece.points.size(); ++n) {
       MeridionalPoint const m = input_.frame.meridional(piece.points[n]);
-      nodes.push_back({m.axial, input_.span(m), input_.motion(piece.points[n], displacement[n]), piece.points[n]});
-      piece.span.push_back(nodes.back().span);
-      span_lo = std::min(span_lo, piece.span.back());
-      span_hi = std::max(span_hi, piece.span.back());
-      r_lo = std::min(r_lo, m.radius);
-      r_hi = std::max(r_hi, m.radius);
+      FlowPosition const at = input_.position(m);
+      nodes.push_back({at.m, at.h, input_.motion(piece.points[n], displacement[n]), piece.points[n]});
+      piece.span.push_back(at.h);
+      height += input_.height(m) / double(piece.points.size());
     }
-    double height = input_.height;
-    if (!(height > 0)) height = span_hi > span_lo ? (r_hi - r_lo) / (span_hi - span_lo) : 0;
     std::array<double, 2> const share{spanwise_share(piece, 0, height), spanwise_share(piece, 1, height)};
     int const direction = share[0] > share[1] ? 0 : 1;
     if (!(share[direction] > 0.3)) {
@@ -194,7 +190,7 @@ class Stitcher {
     for (std::size_t l = 0; l < neighbours.size(); ++l)
       if (neighbours[l].size() > 2) {
         BladeNode const& node = blade_.nodes[blade_.lines[l].front()];
-        throw MotionError("at axial position " + std::to_string(node.axial) + " and span fraction " +
+        throw MotionError("at position " + std::to_string(node.m) + " along the flow path" + " and span fraction " +
                           std::to_string(node.span) +
                           " more than two surfaces of the blade meet in one spanwise line; "
                           "let `of` name the two sides of one blade row only");
@@ -235,6 +231,43 @@ BladeSurface stitch_blade(Mesh const& mesh, std::vector<int> const& patches, Bla
   double const size = box_diagonal(patch_points(mesh, patches));
   if (!(size > 0) || !std::isfinite(size)) throw MotionError("the blade's nodes are one point, or not finite");
   return Stitcher(mesh, patches, input, notes).run();
+}
+
+int leave_out_splitters(BladeSurface& blade) {
+  struct Chord {
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    [[nodiscard]] double length() const { return hi - lo; }
+  };
+  // Chords at mid-span of each line: sweep moves the edges of a blade along the span as far as splitters are apart.
+  std::vector<Chord> chords;
+  for (BladeContour const& contour : blade.contours) {
+    Chord& chord = chords.emplace_back();
+    for (int l : contour.lines) {
+      std::vector<int> const& line = blade.lines[l];
+      double const middle = 0.5 * (blade.nodes[line.front()].span + blade.nodes[line.back()].span);
+      int const n = *std::min_element(line.begin(), line.end(), [&](int a, int b) {
+        return std::abs(blade.nodes[a].span - middle) < std::abs(blade.nodes[b].span - middle);
+      });
+      chord.lo = std::min(chord.lo, blade.nodes[n].m);
+      chord.hi = std::max(chord.hi, blade.nodes[n].m);
+    }
+  }
+  if (chords.empty()) return 0;
+  Chord const longest = *std::max_element(chords.begin(), chords.end(),
+                                          [](Chord const& a, Chord const& b) { return a.length() < b.length(); });
+  constexpr double alike = 0.15;
+  std::vector<BladeContour> kept;
+  for (std::size_t c = 0; c < chords.size(); ++c) {
+    if (chords[c].hi < longest.lo || chords[c].lo > longest.hi)
+      throw MotionError("the blade has surfaces from " + std::to_string(longest.lo) + " to " +
+                        std::to_string(longest.hi) + " along the flow path and from " + std::to_string(chords[c].lo) +
+                        " to " + std::to_string(chords[c].hi) + ": blades of two rows; let `of` name those of one row");
+    if (std::max(std::abs(chords[c].lo - longest.lo), std::abs(chords[c].hi - longest.hi)) <= alike * longest.length())
+      kept.push_back(std::move(blade.contours[c]));
+  }
+  int const left_out = int(chords.size() - kept.size());
+  blade.contours = std::move(kept);
+  return left_out;
 }
 
 }  // namespace gridmorph

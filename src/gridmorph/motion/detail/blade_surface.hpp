@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/motion/detail/cylindrical.hpp>
+#include <gridmorph/motion/detail/wall_curve.hpp>
 
 #include <functional>
 #include <span>
@@ -11,9 +12,9 @@
 namespace gridmorph {
 
 struct BladeNode {
-  double axial = 0;
-  double span = 0;  ///< span fraction: 0 at the hub, 1 at the case
-  CylindricalMotion motion;
+  double m = 0;              ///< position along the flow path: the axial position where that is axial
+  double span = 0;           ///< span fraction: 0 at the hub, 1 at the case
+  CylindricalMotion motion;  ///< in the components of Annulus
   Vec3 point;
 };
 
@@ -32,7 +33,9 @@ struct BladeSurface {
 /// What stitch_blade needs to know about nodes.
 struct BladeInput {
   CylindricalFrame frame;
-  std::function<double(MeridionalPoint const&)> span;
+  std::function<FlowPosition(MeridionalPoint const&)> position;
+  /// Distance from hub to case through a point.
+  std::function<double(MeridionalPoint const&)> height;
   /// What the displacement of a point means for those that follow it: the components that are tabulated.
   std::function<CylindricalMotion(Vec3 const& point, Vec3 const& displacement)> motion;
   /// Displacements of the nodes of one patch, in patch_points order.
@@ -47,5 +50,10 @@ struct BladeInput {
 /// surfaces meet in one line. Cost O(nodes log nodes).
 BladeSurface stitch_blade(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes);
+
+/// Leaves out the contours of splitter blades: those that begin or end elsewhere along the flow than the longest one does,
+/// by more than 15 % of its chord. What is left are the sides of one blade, or copies of it. Returns how many were left out.
+/// Throws MotionError when a contour lies wholly before or behind the longest: that is another row.
+int leave_out_splitters(BladeSurface& blade);
 
 }  // namespace gridmorph

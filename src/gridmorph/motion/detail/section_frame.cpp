@@ -24,10 +24,11 @@ Vec3 across(Vec3 const& direction) {
 }
 
 /// Stitching looks at no motion here.
-BladeInput geometry_only(CylindricalFrame const& frame, std::function<double(MeridionalPoint const&)> span,
+BladeInput geometry_only(CylindricalFrame const& frame, std::function<FlowPosition(MeridionalPoint const&)> position,
                          double height) {
-  return {frame, std::move(span), [](Vec3 const&, Vec3 const&) { return CylindricalMotion{}; },
-          [](int, std::span<Vec3 const>, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }, height};
+  return {frame, std::move(position), [height](MeridionalPoint const&) { return height; },
+          [](Vec3 const&, Vec3 const&) { return CylindricalMotion{}; },
+          [](int, std::span<Vec3 const>, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }};
 }
 
 class BladeFrame final : public SectionFrame {
@@ -43,16 +44,16 @@ class BladeFrame final : public SectionFrame {
   [[nodiscard]] SectionPoint at(Vec3 const& point) const override {
     MeridionalPoint const m = frame_.meridional(point);
     Vec3 const d = point - frame_.origin();
-    return {annulus_.span(m), m.axial, std::atan2(dot(d, second_), dot(d, first_)), m.radius};
+    return {annulus_.span(m), annulus_.along(m), std::atan2(dot(d, second_), dot(d, first_)), m.radius};
   }
   [[nodiscard]] Vec3 displacement(Vec3 const& point, double ds, double dt) const override {
-    return frame_.displacement(point, {ds, annulus_.radius_change(frame_.meridional(point), ds), dt});
+    return frame_.displacement(point, annulus_.motion(frame_.meridional(point), {ds, 0, dt}));
   }
   [[nodiscard]] double height() const override { return height_; }
   [[nodiscard]] double period() const override { return 2 * std::numbers::pi; }
   [[nodiscard]] BladeInput stitching() const override {
     return geometry_only(
-        frame_, [this](MeridionalPoint const& m) { return annulus_.span(m); }, height_);
+        frame_, [this](MeridionalPoint const& m) { return annulus_.position(m); }, height_);
   }
 
  private:
@@ -87,7 +88,7 @@ class WingFrame final : public SectionFrame {
     // The position along an axis that runs spanwise is all that stitching asks for.
     return geometry_only(
         CylindricalFrame({{0, 0, 0}, span_}),
-        [this](MeridionalPoint const& m) { return (m.axial - lo_) / (hi_ - lo_); }, hi_ - lo_);
+        [this](MeridionalPoint const& m) { return FlowPosition{m.axial, (m.axial - lo_) / (hi_ - lo_)}; }, hi_ - lo_);
   }
 
  private:

@@ -199,9 +199,10 @@ class Finder {
     }
     for (auto const& [family, members] : families) {
       try {
-        revolution(members);
+        revolution(members, radius_over_axial);
       } catch (MotionError const&) {
-        // One family may hold several surfaces, such as hub and case: tell them apart by what meets.
+        // One family may hold several surfaces, such as hub and case: tell them apart by what meets. Only what meets is
+        // looked at in turned frames, where hub and case can follow one another.
         connected(members);
       }
     }
@@ -211,7 +212,7 @@ class Finder {
   void connected(Patches const& patches) {
     for (Patches const& members : meridionally_connected(mesh_, frame_, patches)) {
       try {
-        revolution(members);
+        revolution(members, TurnedProfile::from_points);
       } catch (MotionError const& e) {
         problems_.add(where_ + ": patch " + describe(mesh_, members) + ": " + e.what());
       }
@@ -226,9 +227,24 @@ class Finder {
     return surface;
   }
 
-  void revolution(Patches const& members) {
+  using MeridionalPoints = std::vector<std::pair<double, double>>;
+
+  static TurnedProfile radius_over_axial(MeridionalPoints const& points) {
+    TurnedProfile fit{RevolutionProfile::from_points(points), {}};
+    if (fit.profile.is_steep()) throw MotionError("too steep for a radius over the axial position");
+    return fit;
+  }
+
+  static void set_profile(SlipSurface& surface, TurnedProfile fit) {
+    surface.kind = fit.frame == MeridionalFrame{} ? SlipSurface::Kind::revolution : SlipSurface::Kind::meridional;
+    surface.profile = std::move(fit.profile);
+    surface.frame = fit.frame;
+  }
+
+  template <class Fit>
+  void revolution(Patches const& members, Fit const& fit) {
     auto const points = patch_points(mesh_, members);
-    std::vector<std::pair<double, double>> meridional;
+    MeridionalPoints meridional;
     double size = 0;
     for (Vec3 const& p : points) {
       auto const [a, r] = frame_.meridional(p);
@@ -236,7 +252,7 @@ class Finder {
       size = std::max(size, r);
     }
     SlipSurface surface = on_axis();
-    surface.profile = RevolutionProfile::from_points(std::move(meridional));
+    set_profile(surface, fit(meridional));
     surface.baseline_deviation = surface.profile.deviation;
     size = std::max(size, surface.profile.knots.back().axial - surface.profile.knots.front().axial);
     if (surface.baseline_deviation > 1e-3 * size)
@@ -250,7 +266,7 @@ class Finder {
   void given_profile(Patches const& patches, SlipRule const& slip) {
     SlipSurface surface = on_axis();
     try {
-      surface.profile = RevolutionProfile::from_points(slip.profile);
+      set_profile(surface, TurnedProfile::from_points(slip.profile));
     } catch (MotionError const& e) {
       problems_.add(where_ + ": profile: " + e.what());
       return;
@@ -258,17 +274,24 @@ class Finder {
     auto const points = patch_points(mesh_, patches);
     for (Vec3 const& p : points) {
       auto const [a, r] = frame_.meridional(p);
-      surface.baseline_deviation = std::max(surface.baseline_deviation, std::abs(r - surface.profile(a)));
+      MeridionalFrame const& frame = surface.frame;
+      surface.baseline_deviation =
+          std::max(surface.baseline_deviation, std::abs(frame.ordinate(a, r) - surface.profile(frame.abscissa(a, r))));
     }
     note(patches, surface, "given profile of");
     store(std::move(surface), patches, points);
   }
 
+  static std::string end(SlipSurface const& s, ProfileKnot const& k) {
+    if (s.kind == SlipSurface::Kind::revolution) return "axial " + number(k.axial);
+    return "(axial " + number(s.frame.axial(k.axial, k.radius)) + ", radius " +
+           number(s.frame.radius(k.axial, k.radius)) + ")";
+  }
+
   void note(Patches const& patches, SlipSurface const& s, char const* what) {
     notes_.push_back("slip " + describe(mesh_, patches) + ": " + what + " " + std::to_string(s.profile.knots.size()) +
-                     " points, axial " + number(s.profile.knots.front().axial) + " to " +
-                     number(s.profile.knots.back().axial) + "; nodes are within " + number(s.baseline_deviation) +
-                     " of it");
+                     " points, " + end(s, s.profile.knots.front()) + " to " + end(s, s.profile.knots.back()) +
+                     "; nodes are within " + number(s.baseline_deviation) + " of it");
   }
 
   Mesh const& mesh_;

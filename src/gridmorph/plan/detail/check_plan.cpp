@@ -69,11 +69,15 @@ class Checker {
 
   void surfaces() const {
     for (SlipSurface const& s : plan_.surfaces) {
-      require(s.kind == SlipKind::plane || s.kind == SlipKind::revolution || s.kind == SlipKind::axial,
+      require(s.kind == SlipKind::plane || s.kind == SlipKind::revolution || s.kind == SlipKind::axial ||
+                  s.kind == SlipKind::meridional,
               "kind of slip surface");
+      double const turned = s.frame.cosine * s.frame.cosine + s.frame.sine * s.frame.sine;
+      require(turned > 0.99 && turned < 1.01, "frame of slip surface");
       RevolutionProfile const& p = s.profile;
       std::size_t const n = p.knots.size();
-      require(n >= 2 || (n == 0 && s.kind != SlipKind::revolution && p.bucket_piece.empty()), "length of profile");
+      bool const has_profile = s.kind == SlipKind::revolution || s.kind == SlipKind::meridional;
+      require(n >= 2 || (n == 0 && !has_profile && p.bucket_piece.empty()), "length of profile");
       for (std::size_t m = 1; m < n; ++m) {
         double const lower = p.knots[m - 1].axial, upper = p.knots[m].axial;
         require(std::isfinite(lower) && lower < upper && std::isfinite(upper), "axial positions of profile");
