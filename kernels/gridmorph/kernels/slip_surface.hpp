@@ -4,9 +4,11 @@
 // precision, chord error of the profile): the correction is the *change* of that distance. So zero displacement stays
 // exactly zero, and a displacement that already keeps the node on its surface comes back bit for bit.
 //
-// Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots.
+// Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots; facets a search in
+// O(log facets) and about 2000 flops (facet_surface.hpp).
 #pragma once
 
+#include <gridmorph/kernels/facet_surface.hpp>
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <cmath>
@@ -16,7 +18,8 @@ namespace gridmorph {
 enum class SlipKind {
   plane,       ///< nodes stay on a plane
   revolution,  ///< nodes stay on a surface of revolution, moved radially at constant axial position and angle
-  axial        ///< nodes keep their axial position; not a surface
+  axial,       ///< nodes keep their axial position; not a surface
+  facets       ///< nodes stay on a discrete surface made smooth, moved along its normals
 };
 
 /// What a profile knows at one axial position. All of it lies together: nodes look at few positions each, far apart.
@@ -88,15 +91,17 @@ struct ProfileView {
 
 struct SlipSurfaceView {
   SlipKind kind = SlipKind::plane;
-  Vec3 origin;                    ///< plane: a point on it; otherwise a point on the axis
+  Vec3 origin;                    ///< plane: a point on it; facets: one near them; otherwise a point on the axis
   Vec3 direction;                 ///< unit: plane normal, or axis
   ProfileView profile;            ///< revolution only
   double size = 0;                ///< length that "1e-14 of the size" refers to
   double baseline_deviation = 0;  ///< offsets up to this are the baseline mesh's own and are kept
+  FacetSurfaceView facets{};      ///< facets only
 
-  /// The point of the surface that p slides to: orthogonally (plane) or radially at constant axial position and angle
+  /// The point of the surface that p slides to: orthogonally (plane), along the normals (facets), or radially at constant axial position and angle
   /// (revolution). A point on the axis has no radial direction and stays. Kind axial: p itself.
   KOKKOS_INLINE_FUNCTION Vec3 project(Vec3 const& p) const {
+    if (kind == SlipKind::facets) return facets.slide(facets.closest_point(p), p);
     Vec3 const d = p - origin;
     double const a = dot(d, direction);
     if (kind == SlipKind::plane) return p - a * direction;
@@ -106,9 +111,14 @@ struct SlipSurfaceView {
     return r > 0 ? p + ((profile(a) - r) / r) * radial : p;
   }
 
-  /// Distance of a baseline node from a surface of revolution that is the baseline mesh's own and is kept; 0 for other
-  /// kinds and for nodes that are farther off.
+  /// Distance of a baseline node from a surface of revolution or of facets that is the baseline mesh's own and is kept; 0
+  /// for other kinds and for nodes that are farther off.
   KOKKOS_INLINE_FUNCTION double own_offset(Vec3 const& baseline) const {
+    if (kind == SlipKind::facets) {
+      FacetFoot const foot = facets.closest_point(baseline);
+      double const off = dot(baseline - foot.point, foot.normal);
+      return is_own(off) ? off : 0;
+    }
     if (kind != SlipKind::revolution) return 0;
     Vec3 const d = baseline - origin;
     double const a = dot(d, direction);
@@ -123,6 +133,12 @@ struct SlipSurfaceView {
   KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, double own, Vec3 const& u) const {
     if (u.x == 0 && u.y == 0 && u.z == 0) return u;
     double const tolerance = 1e-14 * size;
+    if (kind == SlipKind::facets) {
+      Vec3 const p = baseline + u;
+      FacetFoot const foot = facets.closest_point(p);
+      Vec3 const change = (facets.slide(foot, p) - p) + own * foot.normal;
+      return norm(change) <= tolerance ? u : u + change;
+    }
     double const du = dot(u, direction);
     if (kind == SlipKind::axial) return small(du, tolerance) ? u : u - du * direction;
 
@@ -140,8 +156,10 @@ struct SlipSurfaceView {
     return small(excess, tolerance) ? u : u - (excess / r) * moved;
   }
 
-  /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time.
+  /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time. Facets: the derivative of the foot,
+  /// without the change of the normal along which `own` is kept; beyond a rim, the part of `rate` in its tangent plane.
   KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, double own, Vec3 const& u, Vec3 const& rate) const {
+    if (kind == SlipKind::facets) return facets.foot_rate(facets.closest_point(baseline + u), baseline + u, rate);
     double const axial_rate = dot(rate, direction);
     if (kind != SlipKind::revolution) return rate - axial_rate * direction;
     Vec3 const d = baseline - origin;
@@ -154,6 +172,27 @@ struct SlipSurfaceView {
     double const r_rate = dot(moved, moved_rate) / r;
     double const excess_rate = r_rate - profile.derivative(a + du) * axial_rate;
     return rate - ((excess_rate - excess * r_rate / r) / r) * moved - (excess / r) * moved_rate;
+  }
+
+  /// How far a displaced node is from where the surface wants it, 0 there, and the gradient of that in `gradient`.
+  KOKKOS_INLINE_FUNCTION double excess(Vec3 const& baseline, double own, Vec3 const& u, Vec3& gradient) const {
+    if (kind == SlipKind::facets) {
+      Vec3 const p = baseline + u;
+      FacetFoot const foot = facets.closest_point(p);
+      bool const off_edge = foot.place == FacetFoot::Place::crease && foot.distance > 1e-14 * size;
+      gradient = off_edge ? (1 / foot.distance) * (p - foot.point) : foot.normal;
+      return off_edge ? foot.distance : dot(p - foot.point, gradient) - own;
+    }
+    Vec3 const d = baseline - origin;
+    double const a = dot(d, direction), du = dot(u, direction);
+    gradient = direction;
+    if (kind == SlipKind::axial) return du;
+    if (kind == SlipKind::plane) return du + (is_own(a) ? 0.0 : a);
+    Vec3 const moved = (d - a * direction) + (u - du * direction);
+    double const r = norm(moved);
+    if (!(r > 0)) return 0;
+    gradient = (1 / r) * moved - profile.derivative(a + du) * direction;
+    return r - (profile(a + du) + own);
   }
 
  private:

@@ -9,7 +9,7 @@
 namespace gridmorph {
 
 /// Raised whenever the tables of a plan, their meaning, or what the planner makes of the same mesh and rules change.
-inline constexpr std::uint32_t plan_format_version = 1;
+inline constexpr std::uint32_t plan_format_version = 2;
 
 /// Hashes are XXH64 over numbers as little-endian bytes, so they do not depend on the machine. They find accidents, not
 /// forgeries.

@@ -43,12 +43,15 @@ class Builder {
     return false;
   }
 
-  /// Whether a rim or crease has a corner at v for the grid, whatever its angle: between it and its continuation there is
-  /// one quadrilateral, or three.
-  bool turns_at(int e, int v) const {
+  /// What the facets on the sides of a rim or crease say about its going on at v. A grid of quadrilaterals has a corner
+  /// there, whatever its angle, where one or three of them lie between the edge and its continuation.
+  enum class Grid { goes_on, corner, none };
+  Grid grid_beside(int e, int v) const {
+    Grid found = Grid::goes_on;
     for (int const first : t_.edges[e].facet) {
       int n = 0;
-      bool quads = first >= 0;
+      if (first < 0) continue;
+      bool quads = true;
       for (int f = first, in = e; quads && n <= int(t_.facets_of_point[v].size());) {
         ++n;
         quads = t_.n_corners(f) == 4;
@@ -59,9 +62,10 @@ class Builder {
         f = t_.edges[out].facet[t_.edges[out].facet[0] == f ? 1 : 0];
         in = out;
       }
-      if (quads && n != 2) return true;
+      if (quads && n != 2) return Grid::corner;
+      if (!quads) found = Grid::none;
     }
-    return false;
+    return found;
   }
 
   /// The edge that continues the line of edge e at point v.
@@ -74,7 +78,8 @@ class Builder {
         if (f != e) other_special = f;
       }
     if (t_.edges[e].special()) {
-      bool const goes_on = n_special == 2 && straight(e, other_special, v, 0.94) && !turns_at(e, v);
+      Grid const grid = n_special == 2 ? grid_beside(e, v) : Grid::corner;
+      bool const goes_on = grid != Grid::corner && straight(e, other_special, v, grid == Grid::none ? 0.94 : 0.5);
       return goes_on ? other_special : line_ends;
     }
     if (n_special == 0) {
@@ -224,14 +229,15 @@ class Builder {
       double const side = dot(best, mean);
       return std::abs(side) > 0.5 ? (side > 0 ? best : -best) : mean;
     }
-    Vec3 n = fit_normal(t_.points[v], mean, around(v, fan, mean)).value_or(mean);
+    Vec3 n = fit_normal(t_.points[v], mean, around(v, fan, mean, fixed.empty() ? 1 : 2)).value_or(mean);
     if (!(dot(n, mean) > 0.5)) n = mean;
     if (!fixed.empty()) n = n - dot(n, fixed.front()) * fixed.front();
     return norm(n) > 0.1 ? (1 / norm(n)) * n : mean;
   }
 
-  /// The points around v that smooth edges lead to: those of the fan and, until there are enough, those one facet farther.
-  std::vector<Vec3> around(int v, std::vector<int> fan, Vec3 const& mean) const {
+  /// The points around v that smooth edges lead to: those of the fan and, until there are enough, those one facet
+  /// farther; more at rims, where they are on one side only.
+  std::vector<Vec3> around(int v, std::vector<int> fan, Vec3 const& mean, int least_rings) const {
     constexpr std::size_t enough = 14;
     std::vector<int> points;
     std::size_t begin = 0;
@@ -251,7 +257,7 @@ class Builder {
           }
         }
       }
-      if (ring >= 1 && points.size() >= enough) break;
+      if (ring >= least_rings && points.size() >= enough) break;
     }
     std::sort(points.begin(), points.end());
     std::vector<Vec3> out;

@@ -130,16 +130,20 @@ void FacetTopology::weld(FacetList const& list, double relative) {
     number[n] = int(points.size());
     points.push_back(list.points[n]);
   }
-  std::vector<std::vector<int>> good;
-  for (auto const& facet : list.facets) {
+  std::vector<std::pair<std::vector<int>, int>> good;
+  for (int f = 0; f < int(list.facets.size()); ++f) {
     std::vector<int> corners;
-    for (int const c : facet)
+    for (int const c : list.facets[f])
       if (c >= 0) corners.push_back(number[stands_for[c]]);
-    if (corners = in_order(std::move(corners)); !corners.empty()) good.push_back(std::move(corners));
+    if (corners = in_order(std::move(corners)); !corners.empty()) good.emplace_back(std::move(corners), f);
   }
   std::sort(good.begin(), good.end());
-  good.erase(std::unique(good.begin(), good.end()), good.end());
-  for (auto const& c : good) facets.push_back({c[0], c[1], c[2], c.size() == 4 ? c[3] : -1});
+  good.erase(std::unique(good.begin(), good.end(), [](auto const& a, auto const& b) { return a.first == b.first; }),
+             good.end());
+  for (auto const& [c, number_in_list] : good) {
+    facets.push_back({c[0], c[1], c[2], c.size() == 4 ? c[3] : -1});
+    source.push_back(number_in_list);
+  }
   if (facets.empty())
     throw MotionError("of " + std::to_string(list.facets.size()) +
                       " facets none has an area; a surface needs at least one triangle or quadrilateral");

@@ -21,6 +21,7 @@ struct FacetEdge {
 struct FacetTopology {
   std::vector<Vec3> points;  ///< in lexicographic order
   std::vector<std::array<int, 4>> facets;
+  std::vector<int> source;                         ///< per facet its number in the list
   std::vector<std::array<int, 4>> edges_of_facet;  ///< edge q runs from corner q to the next
   std::vector<FacetEdge> edges;
   std::vector<std::vector<int>> edges_of_point, facets_of_point;

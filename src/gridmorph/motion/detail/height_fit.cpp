@@ -17,7 +17,7 @@ bool least_squares(std::vector<std::array<double, most_terms + 1>>& rows, int n,
     for (auto const& row : rows) after += row[j] * row[j];
     for (int k = 0; k < j; ++k) before += r[k][j] * r[k][j];
     double const length = std::sqrt(after);
-    if (!(length > 1e-6 * std::sqrt(before + after))) return false;
+    if (!(length > 0.03 * std::sqrt(before + after))) return false;  // as where points lie on three lines
     r[j][j] = length;
     for (auto& row : rows) row[j] /= length;
     for (int k = j + 1; k <= n; ++k) {
