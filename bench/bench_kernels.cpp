@@ -88,7 +88,8 @@ struct LineParameters {
   }
 };
 
-/// Nodes all over a sector of a surface of revolution, or of a plane, that would leave it by a little.
+/// Nodes all over a sector of a surface of revolution (as a profile or as facets), or of a plane, that would leave it by a
+/// little.
 struct SlipEnds {
   SlipKind kind;
 
@@ -103,10 +104,26 @@ struct SlipEnds {
       for (int m = 0; m <= 2000; ++m) points.emplace_back(m / 2000.0, radius(m / 2000.0));
       surface.profile = RevolutionProfile::from_points(points);
     }
+    Index const row = std::max<Index>(1, Index(std::sqrt(double(n))));
+    if (kind == SlipKind::facets) {
+      // As many facets as nodes, as on a patch of the mesh, and a few more all round.
+      FacetList list;
+      int const side = int(row) + 3;
+      for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) {
+          double const axial = (i - 1) / double(row), theta = 0.5 * (j - 1) / double(row);
+          list.points.push_back({axial, radius(axial) * std::cos(theta), radius(axial) * std::sin(theta)});
+        }
+      for (int j = 0; j + 1 < side; ++j)
+        for (int i = 0; i + 1 < side; ++i) {
+          int const at = i + side * j;
+          list.facets.push_back({at, at + 1, at + 1 + side, at + side});
+        }
+      surface.facets = FacetSurface::from_facets(list);
+    }
     SlipSurfaceTable<Memory> const surfaces(exec, {surface});
     std::vector<kernels::SlipEnd> ends;
     std::vector<kernels::SlipEndBaseline> baselines;
-    Index const row = std::max<Index>(1, Index(std::sqrt(double(n))));
     for (Index m = 0; m < n; ++m) {
       double const axial = double(m % row) / double(row), theta = 0.5 * double(m / row) / double(row);
       Vec3 const p{axial, radius(axial) * std::cos(theta), radius(axial) * std::sin(theta)};
@@ -186,9 +203,9 @@ void register_all() {
     register_one_cube(nodes);
   if (has_memory(16)) register_one_cube(cube(513));  // takes about 11
   for (std::int64_t const nodes : {smoke_nodes, cube(8 * 9), cube(8 * 17), cube(8 * 33)}) register_many_cubes(nodes);
-  for (SlipKind const kind : {SlipKind::plane, SlipKind::revolution})
-    register_benchmark(kind == SlipKind::plane ? "kernels/slip_ends/plane" : "kernels/slip_ends/revolution",
-                       SlipEnds{kind}, {smoke_nodes, cache_nodes, 1'000'000});
+  for (auto const& [kind, name] : {std::pair{SlipKind::plane, "plane"}, std::pair{SlipKind::revolution, "revolution"},
+                                   std::pair{SlipKind::facets, "baseline"}})
+    register_benchmark(std::string("kernels/slip_ends/") + name, SlipEnds{kind}, {smoke_nodes, cache_nodes, 1'000'000});
 }
 
 }  // namespace gridmorph::bench

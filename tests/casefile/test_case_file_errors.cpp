@@ -127,8 +127,6 @@ TEST(CaseFileErrors, MeshSettings) {
 TEST(CaseFileErrors, RulesOfLaterTimesAreKnownButNotAvailable) {
   EXPECT_TRUE(
       reported(rule_problems("rule = \"target\"\nanything = 3"), "case.toml:7: ", {"\"target\"", "not available yet"}));
-  EXPECT_TRUE(
-      reported(rule_problems("rule = \"slip\"\nsurface = \"baseline\""), "case.toml:8: ", {"not available yet"}));
   EXPECT_TRUE(reported(problems_of(head + rule + "[boundary_layer]\nmode = \"rotate\"\n"),
                        "case.toml:7: ", {"mode", "translate"}));
 }
@@ -213,6 +211,13 @@ TEST(CaseFileErrors, RulesThatNeedTheMachineAxis) {
 }
 
 TEST(CaseFileErrors, Slip) {
+  EXPECT_TRUE(reported(rule_problems("rule = \"slip\"\nsurface = \"plane\"\ncrease_angle_deg = 30"),
+                       "case.toml:9: ", {"baseline"}));
+  EXPECT_TRUE(reported(rule_problems("rule = \"slip\"\nsurface = \"baseline\"\ncrease_angle_deg = -30"),
+                       "case.toml:9: ", {"-30", "180"}));
+  EXPECT_TRUE(reported(
+      rule_problems("rule = \"slip\"\nsurface = \"baseline\"\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }"),
+      "case.toml:9: ", {"surface = \"plane\""}));
   EXPECT_TRUE(reported(rule_problems("rule = \"slip\"\nsurface = \"plane\"\nprofile = [[0, 1], [1, 1]]"),
                        "case.toml:9: ", {"revolution"}));
   EXPECT_TRUE(reported(rule_problems("rule = \"slip\"\nsurface = \"revolution\"\nprofile = [[0, 1]]"),

@@ -104,6 +104,14 @@ TEST(SlipRuleText, ReadsPlanesAndProfiles) {
   EXPECT_EQ(round.profile, (std::vector<std::pair<double, double>>{{0, 1}, {0.5, 1.25}, {1, 2}}));
 }
 
+TEST(SlipRuleText, ReadsTheBaselineSurface) {
+  auto const plain = std::get<SlipRule>(rule_of("rule = \"slip\"\nsurface = \"baseline\""));
+  EXPECT_EQ(plain.surface, SlipRule::Surface::baseline);
+  EXPECT_EQ(plain.crease_angle_rad, SlipRule{}.crease_angle_rad);
+  auto const sharp = std::get<SlipRule>(rule_of("rule = \"slip\"\nsurface = \"baseline\"\ncrease_angle_deg = 30"));
+  EXPECT_NEAR(sharp.crease_angle_rad, std::numbers::pi / 6, 1e-15);
+}
+
 TEST(FreeRuleText, ReadsItsConstraint) {
   auto const constraint = [](std::string const& text) {
     return std::get<FreeRule>(rule_of("rule = \"free\"\n" + text)).constraint;

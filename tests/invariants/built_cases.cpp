@@ -30,6 +30,18 @@ std::function<Motion(double)> moves(VectorField field, std::vector<std::string> 
   };
 }
 
+/// One end of a straight box moves, tangentially where it meets the sides, on which nodes slip.
+std::function<Motion(double)> on_planes(SlipRule const& sides) {
+  return [=](double f) {
+    VectorField const field = scaled(f, waves(0.1));
+    return motion({rule({"u_min"}, function_rule([=](Vec3 const& p) {
+                          Vec3 const u = field(p);
+                          return Vec3{u.x, p.y * (1 - p.y) * u.y, p.z * (1.2 - p.z) * u.z};
+                        })),
+                   rule({"u_max"}, FixedRule{}), rule({"v_min", "v_max"}, sides), rule({"w_min", "w_max"}, sides)});
+  };
+}
+
 }  // namespace
 
 std::vector<Case> make_cases() {
@@ -44,18 +56,10 @@ std::vector<Case> make_cases() {
       {"box_all_faces", [=] { return box(n, Shape::curved, 1); }, moves(waves(0.1), {"*"}), {}},
       {"box_one_face", [=] { return box(n, Shape::curved, 2); }, moves(waves(0.1), {"u_min"}, {"u_max"}, sides),
        law(Law::c1, layers(2))},
-      {"box_on_planes",
+      {"box_on_planes", [=] { return box(n, Shape::straight, 3); }, on_planes(SlipRule{}), {}},
+      {"box_on_its_own_sides",
        [=] { return box(n, Shape::straight, 3); },
-       [=](double f) {
-         VectorField const field = scaled(f, waves(0.1));
-         // Tangential where the moved face meets the planes.
-         return motion({rule({"u_min"}, function_rule([=](Vec3 const& p) {
-                               Vec3 const u = field(p);
-                               return Vec3{u.x, p.y * (1 - p.y) * u.y, p.z * (1.2 - p.z) * u.z};
-                             })),
-                        rule({"u_max"}, FixedRule{}), rule({"v_min", "v_max"}, SlipRule{}),
-                        rule({"w_min", "w_max"}, SlipRule{})});
-       },
+       on_planes(SlipRule{SlipRule::Surface::baseline}),
        {}},
       {"bricks_all_faces", [] { return bricks_with_t_junctions(4); }, moves(waves(0.1), {"*"}), {}},
       {"bricks_one_face", [] { return bricks_with_t_junctions(5); }, moves(waves(0.1), {"u_min"}, {"u_max"}, sides),

@@ -64,6 +64,10 @@ double off_slip_surface(Outcome const& run) {
     if (!surface) continue;
     Patch const& patch = run.mesh.patches[p];
     auto const offset = [&](Vec3 const& x) {
+      if (surface->kind == SlipSurface::Kind::facets) {
+        FacetFoot const foot = surface->facets.closest_point(x);
+        return dot(x - foot.point, foot.normal);
+      }
       if (surface->kind == SlipSurface::Kind::axial) return dot(x - surface->origin, surface->direction);
       Vec3 const d = x - surface->origin;
       double const a = dot(d, surface->direction);

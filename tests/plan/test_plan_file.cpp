@@ -33,9 +33,22 @@ Case sliding_sector() {
   return c;
 }
 
+/// The same on the smooth surface through the nodes of hub and case.
+Case sliding_on_baseline() {
+  Case c = sliding_sector();
+  c.name = "sliding_on_baseline";
+  c.motion = [=, revolution = c.motion](double factor) {
+    Motion m = revolution(factor);
+    m.rules[1].rule = SlipRule{SlipRule::Surface::baseline};
+    return m;
+  };
+  return c;
+}
+
 std::vector<Case> cases() {
   std::vector<Case> list = make_cases();
   list.push_back(sliding_sector());
+  list.push_back(sliding_on_baseline());
   return list;
 }
 
@@ -149,6 +162,7 @@ std::vector<Change> changes() {
          std::get<SlipRule>(i.motion.rules[1].rule).profile = {{0, 1}, {1, 1.5}};
        },
        rules},
+      {"slip_crease", [](Input& i) { std::get<SlipRule>(i.motion.rules[1].rule).crease_angle_rad = 0.7; }, rules},
       {"slip_plane",
        [](Input& i) {
          std::get<SlipRule>(i.motion.rules[1].rule).plane = {{Vec3{}, Vec3{0, 0, 1}}};

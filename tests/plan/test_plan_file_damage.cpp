@@ -88,10 +88,10 @@ Kept small() {
 }
 
 /// Stages, corrections, rotations, slip surfaces and their spread.
-Kept large() {
+Kept large(SlipRule const& walls = {SlipRule::Surface::revolution}) {
   Sector const shape;
-  Motion m = motion({rule({"inlet", "outlet"}, function_rule(turning_waves(shape, 0.05))),
-                     rule({"hub", "case"}, SlipRule{SlipRule::Surface::revolution, {}, {}})});
+  Motion m =
+      motion({rule({"inlet", "outlet"}, function_rule(turning_waves(shape, 0.05))), rule({"hub", "case"}, walls)});
   m.axis = {shape.origin, shape.axis};
   PlanOptions options;
   options.boundary_layers = {{{"inlet"}, BoundaryLayer::Extent::layers, 1, 0, BoundaryLayer::Mode::translate}};
@@ -210,6 +210,9 @@ void run_with_wrong_numbers(Kept const& kept, unsigned seed, int trials) {
 
 TEST(WrongNumbersInAPlanFile, DoNotReachTheKernelsOfASlidingSector) {
   run_with_wrong_numbers(large(), 1, reduced() ? 1500 : 3000);
+}
+TEST(WrongNumbersInAPlanFile, DoNotReachTheKernelsOfNodesOnFacets) {
+  run_with_wrong_numbers(large({SlipRule::Surface::baseline}), 4, reduced() ? 1500 : 3000);
 }
 TEST(WrongNumbersInAPlanFile, DoNotReachTheKernelsOfABranchedMesh) {
   run_with_wrong_numbers(branched(), 2, reduced() ? 1500 : 3000);

@@ -17,7 +17,7 @@ struct SlipEnd {
   double tolerance;  ///< nodes with a given displacement are left alone this near to their surfaces
 };
 
-/// What does not change from morph to morph: position in the baseline mesh and distances from surfaces of revolution.
+/// What does not change from morph to morph: position in the baseline mesh and own distances from its surfaces.
 struct SlipEndBaseline {
   Vec3 position;
   double own_offset[3] = {0, 0, 0};
@@ -41,11 +41,17 @@ struct SlipEndBaselines {
 };
 
 /// d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative where u changes by `rate` per
-/// unit of time. Where several surfaces meet, they are applied in turn until the node lies on all of them (exact after one
-/// round for planes at right angles and for surfaces of revolution with planes across their axis).
+/// unit of time.
+///
+/// Where several surfaces meet, the node slides along their common edge. They are applied in turn; planes at right angles,
+/// and surfaces of revolution with planes across or along their axis, are exact after one round. Other nodes then take
+/// Gauss-Newton steps: the shortest step that brings the node onto the tangent planes of all surfaces at once (quadratic
+/// convergence, whatever the angle). Surfaces that meet at less than 0.01 rad count as one in these steps. The rate after
+/// them is the one before without its components across the edge: exact but for the curvature of the surfaces over the
+/// length of the steps.
 template <class MemorySpace, bool Rate>
 struct SlipEndValues {
-  static constexpr int max_rounds = 50;
+  static constexpr int max_rounds = 3, max_steps = 20;
   Kokkos::View<SlipEnd const*, MemorySpace> ends;
   Kokkos::View<SlipEndBaseline const*, MemorySpace> baselines;
   Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
@@ -59,8 +65,8 @@ struct SlipEndValues {
     Vec3 const here = baseline.position, given = in_frame(end.to_node, u[end.slot]);
     Vec3 const given_rate = Rate ? in_frame(end.to_node, rate[end.slot]) : Vec3{};
     Vec3 wanted = given, wanted_rate = given_rate;
-    bool const several = end.surface[1] >= 0;
-    for (int round = 0; round < (several ? max_rounds : 1); ++round) {
+    bool on_all = end.surface[1] < 0;
+    for (int round = 0; round < (on_all ? 1 : max_rounds); ++round) {
       Vec3 const before = wanted;
       for (int m = 0; m < 3; ++m) {
         if (end.surface[m] < 0) continue;
@@ -68,14 +74,48 @@ struct SlipEndValues {
         if constexpr (Rate) wanted_rate = surface.constrain_rate(here, baseline.own_offset[m], wanted, wanted_rate);
         wanted = surface.constrain(here, baseline.own_offset[m], wanted);
       }
-      if (wanted == before) break;
+      if (wanted == before) {
+        on_all = true;
+        break;
+      }
     }
+    if (!on_all) slide_along_edge(end, baseline, wanted, wanted_rate);
     bool const left_alone = norm(wanted - given) <= end.tolerance && end.tolerance > 0;
     Vec3 const d = left_alone ? Vec3{} : (Rate ? wanted_rate - given_rate : wanted - given);
     values.set(end.value, in_frame(end.to_chain, d));
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION void slide_along_edge(SlipEnd const& end, SlipEndBaseline const& baseline, Vec3& u,
+                                               Vec3& u_rate) const {
+    double last = -1;
+    for (int n = 0; n < max_steps; ++n) {
+      // Gram-Schmidt: what a surface asks for is added across the surfaces before it, so they stay satisfied.
+      Vec3 across[3], step;
+      int n_across = 0;
+      for (int m = 0; m < 3; ++m) {
+        if (end.surface[m] < 0) continue;
+        Vec3 gradient;
+        double const excess = surfaces(end.surface[m]).excess(baseline.position, baseline.own_offset[m], u, gradient);
+        Vec3 part = gradient;
+        for (int k = 0; k < n_across; ++k) part = part - dot(part, across[k]) * across[k];
+        double const share = dot(part, part);
+        if (!(share > 1e-4 * dot(gradient, gradient))) continue;
+        step = step - ((excess + dot(gradient, step)) / share) * part;
+        across[n_across++] = (1 / norm(part)) * part;
+      }
+      double const length = norm(step);
+      bool const done = !(length > 1e-15 * surfaces(end.surface[0]).size) || (last >= 0 && !(length < 0.9 * last));
+      if (!done) u += step;
+      if (done || n + 1 == max_steps) {
+        if constexpr (Rate)
+          for (int k = 0; k < n_across; ++k) u_rate = u_rate - dot(u_rate, across[k]) * across[k];
+        return;
+      }
+      last = length;
+    }
+  }
+
   KOKKOS_INLINE_FUNCTION Vec3 in_frame(std::int32_t matrix, Vec3 const& v) const {
     return matrix < 0 ? v : matrices(matrix) * v;
   }

@@ -5,9 +5,11 @@
 // exactly zero, and a displacement that already keeps the node on its surface comes back bit for bit.
 //
 // Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots; meridional the same
-// across the axis, otherwise two to five lookups more to find the nearest point.
+// across the axis, otherwise two to five lookups more to find the nearest point; facets a search in O(log facets) and about
+// 2000 flops (facet_surface.hpp).
 #pragma once
 
+#include <gridmorph/kernels/facet_surface.hpp>
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <cmath>
@@ -18,7 +20,8 @@ enum class SlipKind {
   plane,       ///< nodes stay on a plane
   revolution,  ///< nodes stay on a surface of revolution, moved radially at constant axial position and angle
   axial,       ///< nodes keep their axial position; not a surface
-  meridional   ///< surface of revolution whose profile is a function in a turned frame: see MeridionalFrame
+  meridional,  ///< surface of revolution whose profile is a function in a turned frame: see MeridionalFrame
+  facets       ///< nodes stay on a discrete surface made smooth, moved along its normals
 };
 
 /// A frame of the meridional plane: (abscissa, ordinate) is (axial, radius) turned. Walls at constant axial position are
@@ -154,16 +157,19 @@ struct MeridionalFoot {
 
 struct SlipSurfaceView {
   SlipKind kind = SlipKind::plane;
-  Vec3 origin;                    ///< plane: a point on it; otherwise a point on the axis
+  Vec3 origin;                    ///< plane: a point on it; facets: one near them; otherwise a point on the axis
   Vec3 direction;                 ///< unit: plane normal, or axis
   ProfileView profile;            ///< revolution and meridional only
   double size = 0;                ///< length that "1e-14 of the size" refers to
   double baseline_deviation = 0;  ///< offsets up to this are the baseline mesh's own and are kept
   MeridionalFrame frame{};        ///< meridional only
+  FacetSurfaceView facets{};      ///< facets only
 
-  /// The point of the surface that p slides to: orthogonally (plane) or radially at constant axial position and angle
-  /// (revolution), or as MeridionalFrame says. A point on the axis has no radial direction and stays. Kind axial: p itself.
+  /// The point of the surface that p slides to: orthogonally (plane), along the normals (facets), radially at constant axial
+  /// position and angle (revolution), or as MeridionalFrame says. A point on the axis has no radial direction and stays.
+  /// Kind axial: p itself.
   KOKKOS_INLINE_FUNCTION Vec3 project(Vec3 const& p) const {
+    if (kind == SlipKind::facets) return facets.slide(facets.closest_point(p), p);
     Vec3 const d = p - origin;
     double const a = dot(d, direction);
     if (kind == SlipKind::plane) return p - a * direction;
@@ -178,9 +184,14 @@ struct SlipSurfaceView {
     return p + ((profile(a) - r) / r) * radial;
   }
 
-  /// Distance of a baseline node from a surface of revolution that is the baseline mesh's own and is kept; 0 for other
-  /// kinds and for nodes that are farther off.
+  /// Distance of a baseline node from a surface of revolution or of facets that is the baseline mesh's own and is kept; 0
+  /// for other kinds and for nodes that are farther off.
   KOKKOS_INLINE_FUNCTION double own_offset(Vec3 const& baseline) const {
+    if (kind == SlipKind::facets) {
+      FacetFoot const foot = facets.closest_point(baseline);
+      double const off = dot(baseline - foot.point, foot.normal);
+      return is_own(off) ? off : 0;
+    }
     if (kind != SlipKind::revolution && kind != SlipKind::meridional) return 0;
     Vec3 const d = baseline - origin;
     double const a = dot(d, direction), r = norm(d - a * direction);
@@ -195,6 +206,12 @@ struct SlipSurfaceView {
   KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, double own, Vec3 const& u) const {
     if (u.x == 0 && u.y == 0 && u.z == 0) return u;
     double const tolerance = 1e-14 * size;
+    if (kind == SlipKind::facets) {
+      Vec3 const p = baseline + u;
+      FacetFoot const foot = facets.closest_point(p);
+      Vec3 const change = (facets.slide(foot, p) - p) + own * foot.normal;
+      return norm(change) <= tolerance ? u : u + change;
+    }
     double const du = dot(u, direction);
     if (kind == SlipKind::axial) return small(du, tolerance) ? u : u - du * direction;
 
@@ -217,8 +234,10 @@ struct SlipSurfaceView {
     return small(excess, tolerance) ? u : u - (excess / r) * moved;
   }
 
-  /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time.
+  /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time. Facets: the derivative of the foot,
+  /// without the change of the normal along which `own` is kept; beyond a rim, the part of `rate` in its tangent plane.
   KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, double own, Vec3 const& u, Vec3 const& rate) const {
+    if (kind == SlipKind::facets) return facets.foot_rate(facets.closest_point(baseline + u), baseline + u, rate);
     double const axial_rate = dot(rate, direction);
     if (kind != SlipKind::revolution && kind != SlipKind::meridional) return rate - axial_rate * direction;
     Vec3 const d = baseline - origin;
@@ -244,6 +263,35 @@ struct SlipSurfaceView {
     double const stretch = 1 / sqrt(1 + s.slope * s.slope), nx = -s.slope * stretch;
     return {(x - at) * nx + (y - s.value) * stretch, frame.axial(nx, stretch), frame.radius(nx, stretch), s.slope,
             s.bend};
+  }
+
+  /// How far a displaced node is from where the surface wants it, 0 there, and the gradient of that in `gradient`.
+  KOKKOS_INLINE_FUNCTION double excess(Vec3 const& baseline, double own, Vec3 const& u, Vec3& gradient) const {
+    if (kind == SlipKind::facets) {
+      Vec3 const p = baseline + u;
+      FacetFoot const foot = facets.closest_point(p);
+      bool const off_edge = foot.place == FacetFoot::Place::crease && foot.distance > 1e-14 * size;
+      gradient = off_edge ? (1 / foot.distance) * (p - foot.point) : foot.normal;
+      return off_edge ? foot.distance : dot(p - foot.point, gradient) - own;
+    }
+    Vec3 const d = baseline - origin;
+    double const a = dot(d, direction), du = dot(u, direction);
+    gradient = direction;
+    if (kind == SlipKind::axial) return du;
+    if (kind == SlipKind::plane) return du + (is_own(a) ? 0.0 : a);
+    Vec3 const moved = (d - a * direction) + (u - du * direction);
+    double const r = norm(moved);
+    if (!(r > 0)) return 0;
+    if (kind == SlipKind::meridional) {
+      MeridionalFoot const f = foot(a + du, r);
+      // Away is measured along the ordinate where the frame is not inclined, and falls along the abscissa by the slope.
+      double const fall = frame.inclined() ? 0.0 : f.slope;
+      double const axial = f.axial - fall * frame.axial(1, 0), outward = f.radial - fall * frame.radius(1, 0);
+      gradient = axial * direction + (outward / r) * moved;
+      return f.away - own;
+    }
+    gradient = (1 / r) * moved - profile.derivative(a + du) * direction;
+    return r - (profile(a + du) + own);
   }
 
  private:

@@ -95,12 +95,14 @@ struct FollowRule {
 
 /// No deformation of the surface: nodes slide on it.
 struct SlipRule {
-  enum class Surface { plane, revolution };
+  enum class Surface { plane, revolution, baseline };
   Surface surface = Surface::plane;
   /// Plane: a point and a normal; fitted to the baseline patch when absent.
   std::optional<std::pair<Vec3, Vec3>> plane{};
   /// Revolution: (axial, radius) points along the profile; read off the baseline patch when empty. See TurnedProfile.
   std::vector<std::pair<double, double>> profile{};
+  /// Baseline: facets of the patch that meet at a larger angle meet at a crease, which stays sharp.
+  double crease_angle_rad = 0.8;
 };
 
 /// Left to the volume stage, with an optional constraint.

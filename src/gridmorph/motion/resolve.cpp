@@ -110,6 +110,9 @@ class Resolver {
         problems_.add(label(r) +
                       ": the plane needs a finite point and a "
                       "normal that is not (0, 0, 0)");
+      if (!(slip->crease_angle_rad > 0))
+        problems_.add(label(r) + ": the angle of a crease is " + std::to_string(slip->crease_angle_rad) +
+                      " rad; it must be positive");
     } else if (auto const* sections = std::get_if<SectionsRule>(&rule)) {
       check_sections(r, *sections);
     }

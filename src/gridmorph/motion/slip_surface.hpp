@@ -1,12 +1,15 @@
-// Surfaces that nodes slide on: planes, surfaces of revolution, and the constraint "axial position kept".
+// Surfaces that nodes slide on: planes, surfaces of revolution, discrete surfaces, and the constraint "axial position
+// kept".
 #pragma once
 
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/kernels/slip_surface.hpp>
+#include <gridmorph/motion/facet_surface.hpp>
 
 #include <Kokkos_Core.hpp>
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -58,7 +61,7 @@ struct TurnedProfile {
 struct SlipSurface {
   using Kind = SlipKind;
   Kind kind = Kind::plane;
-  Vec3 origin;     ///< plane: a point on it; otherwise a point on the axis
+  Vec3 origin;     ///< plane: a point on it; facets: a corner of their box; otherwise a point on the axis
   Vec3 direction;  ///< unit: plane normal, or axis
   RevolutionProfile profile;
   /// Largest distance of the baseline patch's nodes from the surface.
@@ -66,10 +69,11 @@ struct SlipSurface {
   /// Largest distance of the baseline patch's nodes from `origin`: what round-off and relative tolerances refer to.
   double size = 0;
   MeridionalFrame frame{};  ///< of the profile of a meridional surface
+  FacetSurface facets{};  ///< kind facets only
 
-  /// For host code; borrows the profile: valid while this surface lives unchanged.
+  /// For host code; borrows profile and facets: valid while this surface lives unchanged.
   [[nodiscard]] SlipSurfaceView view() const {
-    return {kind, origin, direction, profile.view(), size, baseline_deviation, frame};
+    return {kind, origin, direction, profile.view(), size, baseline_deviation, frame, facets.view()};
   }
 };
 
@@ -77,42 +81,72 @@ struct SlipSurface {
 template <class MemorySpace>
 struct SlipSurfaceTable {
   Kokkos::View<SlipSurfaceView*, MemorySpace> surfaces;
-  Kokkos::View<ProfileKnot*, MemorySpace> knots;  ///< of each profile one after another
-  Kokkos::View<int*, MemorySpace> buckets;        ///< bucket_piece of each profile one after another
+  // Tables of all surfaces, each one after another.
+  Kokkos::View<ProfileKnot*, MemorySpace> knots;
+  Kokkos::View<int*, MemorySpace> buckets;  ///< bucket_piece of each profile
+  Kokkos::View<Vec3*, MemorySpace> facet_points, facet_normals, facet_bends;
+  Kokkos::View<Facet*, MemorySpace> facets;
+  Kokkos::View<FacetBox*, MemorySpace> facet_boxes;
 
   SlipSurfaceTable() = default;
 
   /// Copies on `exec`; fences it, because the host buffers end with the call.
   template <class ExecutionSpace>
   SlipSurfaceTable(ExecutionSpace const& exec, std::vector<SlipSurface> const& host) {
-    std::size_t n_knots = 0, n_buckets = 0;
+    std::vector<SlipSurfaceView> views;
+    std::vector<ProfileKnot> all_knots;
+    std::vector<int> all_buckets;
+    std::vector<Vec3> all_points, all_normals, all_bends;
+    std::vector<Facet> all_facets;
+    std::vector<FacetBox> all_boxes;
+    auto const append = [](auto& to, auto const& from) { to.insert(to.end(), from.begin(), from.end()); };
     for (SlipSurface const& s : host) {
-      n_knots += s.profile.knots.size();
-      n_buckets += s.profile.bucket_piece.size();
+      append(all_knots, s.profile.knots);
+      append(all_buckets, s.profile.bucket_piece);
+      append(all_points, s.facets.points);
+      append(all_normals, s.facets.normals);
+      append(all_bends, s.facets.bends);
+      append(all_facets, s.facets.facets);
+      append(all_boxes, s.facets.boxes);
     }
-    using Kokkos::WithoutInitializing;
-    surfaces = Kokkos::View<SlipSurfaceView*, MemorySpace>(
-        Kokkos::view_alloc(exec, WithoutInitializing, "gridmorph::SlipSurfaceTable::surfaces"), host.size());
-    knots = Kokkos::View<ProfileKnot*, MemorySpace>(
-        Kokkos::view_alloc(exec, WithoutInitializing, "gridmorph::SlipSurfaceTable::knots"), n_knots);
-    buckets = Kokkos::View<int*, MemorySpace>(
-        Kokkos::view_alloc(exec, WithoutInitializing, "gridmorph::SlipSurfaceTable::buckets"), n_buckets);
-    auto surfaces_h = Kokkos::create_mirror_view(surfaces);
-    auto knots_h = Kokkos::create_mirror_view(knots);
-    auto buckets_h = Kokkos::create_mirror_view(buckets);
-    std::size_t knot = 0, bucket = 0;
-    for (std::size_t s = 0; s < host.size(); ++s) {
-      SlipSurfaceView view = host[s].view();
-      view.profile.knots = knots.data() + knot;
-      view.profile.bucket_piece = buckets.data() + bucket;
-      for (ProfileKnot const& k : host[s].profile.knots) knots_h(knot++) = k;
-      for (int const piece : host[s].profile.bucket_piece) buckets_h(bucket++) = piece;
-      surfaces_h(s) = view;
+    fill(exec, knots, all_knots, "knots");
+    fill(exec, buckets, all_buckets, "buckets");
+    fill(exec, facet_points, all_points, "facet_points");
+    fill(exec, facet_normals, all_normals, "facet_normals");
+    fill(exec, facet_bends, all_bends, "facet_bends");
+    fill(exec, facets, all_facets, "facets");
+    fill(exec, facet_boxes, all_boxes, "facet_boxes");
+    std::size_t knot = 0, bucket = 0, point = 0, normal = 0, bend = 0, facet = 0, box = 0;
+    auto const next = [](auto const& all, std::size_t& first, auto const& own) {
+      auto const* at = all.data() + first;
+      first += own.size();
+      return at;
+    };
+    for (SlipSurface const& s : host) {
+      SlipSurfaceView view = s.view();
+      view.profile.knots = next(knots, knot, s.profile.knots);
+      view.profile.bucket_piece = next(buckets, bucket, s.profile.bucket_piece);
+      view.facets.tree.points = next(facet_points, point, s.facets.points);
+      view.facets.normals = next(facet_normals, normal, s.facets.normals);
+      view.facets.bends = next(facet_bends, bend, s.facets.bends);
+      view.facets.tree.facets = next(facets, facet, s.facets.facets);
+      view.facets.tree.boxes = next(facet_boxes, box, s.facets.boxes);
+      views.push_back(view);
     }
-    Kokkos::deep_copy(exec, surfaces, surfaces_h);
-    Kokkos::deep_copy(exec, knots, knots_h);
-    Kokkos::deep_copy(exec, buckets, buckets_h);
+    fill(exec, surfaces, views, "surfaces");
     compat::fence(exec, "gridmorph::SlipSurfaceTable (host buffers end here)");
+  }
+
+ private:
+  template <class ExecutionSpace, class T>
+  static void fill(ExecutionSpace const& exec, Kokkos::View<T*, MemorySpace>& to, std::vector<T> const& from,
+                   char const* what) {
+    to = Kokkos::View<T*, MemorySpace>(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, std::string("gridmorph::SlipSurfaceTable::") + what),
+        from.size());
+    Kokkos::View<T const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const source(from.data(),
+                                                                                                    from.size());
+    if (!from.empty()) Kokkos::deep_copy(exec, to, source);
   }
 };
 

@@ -52,8 +52,9 @@ void add(ByteWriter& to, CircumferentialSlideRule const& rule) { pass(to, rule.o
 void add(ByteWriter& to, FollowRule const& rule) { pass(to, rule.of); }
 void add(ByteWriter& to, FreeRule const& rule) { pass(to, rule.constraint); }
 void add(ByteWriter& to, SlipRule const& rule) {
-  auto const& [surface, plane, profile] = rule;
+  auto const& [surface, plane, profile, crease_angle_rad] = rule;
   pass(to, surface);
+  pass(to, crease_angle_rad);
   to.number(plane.has_value());
   if (plane) {
     pass(to, plane->first);

@@ -12,7 +12,7 @@ namespace {
 
 bool same_surface(SlipSurface const& a, SlipSurface const& b) {
   return a.kind == b.kind && a.origin == b.origin && a.direction == b.direction && a.profile.knots == b.profile.knots &&
-         a.frame == b.frame;
+         a.frame == b.frame && a.facets.points == b.facets.points;
 }
 
 /// Number of each patch's slip surface in `surfaces`, -1 for patches that do not slip.
@@ -31,7 +31,7 @@ std::vector<int> surface_numbers(Mesh const& mesh, SurfaceMotion const& surface,
 /// A chain off a slip block face, slip end first, and how many of its steps are used.
 struct Candidate {
   int rule = -1;
-  bool revolution = false;
+  bool curved = false;
   Chain chain;
   int steps = 0;
   [[nodiscard]] bool whole() const { return steps == int(chain.steps.size()); }
@@ -62,8 +62,8 @@ std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topolog
     }
     int const steps = int(chain.steps.size());
     SlipKind const kind = surfaces[surface_of_patch[patch]].kind;
-    bool const revolution = kind == SlipKind::revolution || kind == SlipKind::meridional;
-    candidates.push_back({motion.patch[patch].rule, revolution, std::move(chain), steps});
+    bool const curved = kind == SlipKind::revolution || kind == SlipKind::meridional || kind == SlipKind::facets;
+    candidates.push_back({motion.patch[patch].rule, curved, std::move(chain), steps});
   }
   return candidates;
 }
@@ -120,6 +120,7 @@ Chain used_part(Candidate const& c) {
 /// The chains of one rule, or of two rules whose chains are the same from end to end (hub and case).
 struct RuleChains {
   std::set<int> rules;
+  bool curved = false;
   std::vector<Chain> chains;
 };
 
@@ -127,9 +128,9 @@ struct RuleChains {
 /// alone, but not curved surfaces, which are put right last and by lines that lie in those planes.
 std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion const& motion,
                                        std::vector<int> const& surface_of_patch, std::vector<Candidate>& candidates) {
-  using Key = std::pair<bool, int>;  // (revolution, rule)
+  using Key = std::pair<bool, int>;  // (curved, rule)
   std::map<Key, std::vector<Candidate*>> groups;
-  for (Candidate& c : candidates) groups[{c.revolution, c.rule}].push_back(&c);
+  for (Candidate& c : candidates) groups[{c.curved, c.rule}].push_back(&c);
   std::map<Key, std::set<std::pair<int, int>>> whole_blocks;  // (block, axis), if all chains of the rule are whole
   for (auto& [key, group] : groups) {
     close_sides(topology, group);
@@ -153,6 +154,7 @@ std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion 
     list_of[key] = lists.size();
     RuleChains list;
     list.rules.insert(key.second);
+    list.curved = key.first;
     std::set<std::pair<int, int>> taken;  // a chain with both ends on this rule's patches is found twice
     for (Candidate const* c : group) {
       Chain chain = used_part(*c);
@@ -183,7 +185,15 @@ void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, Surf
   // A node on several surfaces is put on those of earlier passes and its own: each correction is spread along the lines
   // of its own rule.
   std::vector<int> surface_so_far(mesh.patches.size(), -1);
-  for (RuleChains& list : chains_by_rule(topology, motion, surface_of_patch, candidates)) {
+  std::vector<RuleChains> lists = chains_by_rule(topology, motion, surface_of_patch, candidates);
+  // What a curved surface asks for, spread along lines on another curved surface, takes their nodes off it. Once more for
+  // those: the disturbance left is that of a disturbance.
+  auto const first_curved = std::find_if(lists.begin(), lists.end(), [](RuleChains const& l) { return l.curved; });
+  if (lists.end() - first_curved > 1) {
+    std::vector<RuleChains> const again(first_curved, lists.end() - 1);
+    lists.insert(lists.end(), again.rbegin(), again.rend());
+  }
+  for (RuleChains& list : lists) {
     for (std::size_t p = 0; p < mesh.patches.size(); ++p)
       if (list.rules.contains(motion.patch[p].rule)) surface_so_far[p] = surface_of_patch[p];
     while (!list.chains.empty()) {

@@ -186,13 +186,23 @@ std::vector<std::string> read_of(TableReader& table) {
 Rule read_slip(TableReader& table, RuleContext const& shared) {
   SlipRule rule;
   auto const surface = table.choice("surface", {"plane", "revolution", "baseline"});
-  table.require("surface", "surface = \"plane\" or \"revolution\"");
-  if (surface && *surface == 2)
-    table.problem("surface", "\"baseline\" is not available yet; use \"revolution\" or \"plane\"");
-  rule.surface = surface && *surface == 1 ? SlipRule::Surface::revolution : SlipRule::Surface::plane;
+  table.require("surface", "surface = \"plane\", \"revolution\" or \"baseline\"");
+  if (surface)
+    rule.surface =
+        std::array{SlipRule::Surface::plane, SlipRule::Surface::revolution, SlipRule::Surface::baseline}[*surface];
   bool const round = rule.surface == SlipRule::Surface::revolution;
+  if (table.has("crease_angle_deg")) {
+    if (rule.surface != SlipRule::Surface::baseline)
+      table.problem("crease_angle_deg", "belongs to surface = \"baseline\"; remove it or change the surface");
+    if (auto const angle = table.number("crease_angle_deg")) {
+      if (!(*angle > 0 && *angle <= 180))
+        table.problem("crease_angle_deg", fmt::format("the angle {} is not above 0 and up to 180 degrees", *angle));
+      rule.crease_angle_rad = *angle * std::numbers::pi / 180;
+    }
+  }
   if (auto plane = table.table("plane")) {
-    if (round) table.problem("plane", "belongs to surface = \"plane\"; remove it or change the surface");
+    if (rule.surface != SlipRule::Surface::plane)
+      table.problem("plane", "belongs to surface = \"plane\"; remove it or change the surface");
     auto const point = plane->vector("point"), normal = plane->vector("normal");
     plane->require("point", "point = [x, y, z]");
     plane->require("normal", "normal = [x, y, z]");

@@ -1,6 +1,7 @@
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/detail/baseline_facets.hpp>
 #include <gridmorph/motion/detail/cylindrical.hpp>
 #include <gridmorph/motion/detail/patch_points.hpp>
 #include <gridmorph/motion/detail/plane_fit.hpp>
@@ -112,10 +113,11 @@ class Finder {
       MotionRule const& rule = motion_.rules[r];
       where_ = rule.where.empty() ? "rule " + std::to_string(r + 1) : rule.where;
       if (auto const* slip = std::get_if<SlipRule>(&rule.rule)) {
-        if (slip->surface == SlipRule::Surface::revolution)
-          revolutions(patches, *slip);
-        else
-          planes(patches, slip->plane);
+        switch (slip->surface) {
+          case SlipRule::Surface::revolution: revolutions(patches, *slip); break;
+          case SlipRule::Surface::baseline: baseline(patches, *slip); break;
+          case SlipRule::Surface::plane: planes(patches, slip->plane); break;
+        }
       } else if (auto const* free = std::get_if<FreeRule>(&rule.rule)) {
         if (free->constraint == FreeRule::Constraint::plane) planes(patches, std::nullopt);
         if (free->constraint == FreeRule::Constraint::axial) axial(patches);
@@ -187,6 +189,44 @@ class Finder {
       return;
     }
     store(std::move(surface), members, points);
+  }
+
+  void baseline(Patches const& patches, SlipRule const& slip) {
+    FacetOptions const options{.crease_angle_rad = slip.crease_angle_rad};
+    // A rule whose patches are all collapsed has no facets to join.
+    for (int const p : patches)
+      if (facets_of_patches(mesh_, {&p, 1}).facets.empty())
+        problems_.add(where_ + ": patch " + describe(mesh_, {p}) + " has no facets; give it another rule");
+    try {
+      for (Patches const& members : smoothly_joined(mesh_, patches, options)) {
+        SlipSurface surface;
+        surface.kind = SlipSurface::Kind::facets;
+        surface.facets = FacetSurface::from_facets(with_periodic_copies(mesh_, members), options);
+        surface.origin = surface.facets.boxes.front().low;
+        auto const points = patch_points(mesh_, members);
+        PlaneFit const fit = fit_plane(points);
+        if (fit.determined &&
+            deviation_from_plane(points, fit.origin, fit.normal) <= 1e-13 * largest_coordinate(points)) {
+          // Flat to round-off: a plane is the same surface at a fraction of the cost.
+          plane(members, std::nullopt);
+          continue;
+        }
+        for (Vec3 const& p : points) {
+          FacetFoot const foot = surface.facets.closest_point(p);
+          surface.baseline_deviation = std::max(surface.baseline_deviation, foot.distance);
+        }
+        std::size_t creases = 0;
+        for (Facet const& f : surface.facets.facets)
+          for (int q = 0; q < 4; ++q) creases += f.is_crease(q) ? 1 : 0;
+        notes_.push_back("slip " + describe(mesh_, members) + ": its own surface, smooth through " +
+                         std::to_string(surface.facets.facets.size()) + " facets (periodic copies included), " +
+                         std::to_string(creases / 2) + " edges are creases; nodes are within " +
+                         number(surface.baseline_deviation) + " of it");
+        store(std::move(surface), members, points);
+      }
+    } catch (MotionError const& e) {
+      problems_.add(where_ + ": patch " + describe(mesh_, patches) + ": " + e.what());
+    }
   }
 
   void revolutions(Patches const& patches, SlipRule const& slip) {

@@ -70,7 +70,7 @@ class Checker {
   void surfaces() const {
     for (SlipSurface const& s : plan_.surfaces) {
       require(s.kind == SlipKind::plane || s.kind == SlipKind::revolution || s.kind == SlipKind::axial ||
-                  s.kind == SlipKind::meridional,
+                  s.kind == SlipKind::meridional || s.kind == SlipKind::facets,
               "kind of slip surface");
       double const turned = s.frame.cosine * s.frame.cosine + s.frame.sine * s.frame.sine;
       require(turned > 0.99 && turned < 1.01, "frame of slip surface");
@@ -84,7 +84,42 @@ class Checker {
       }
       require(p.bucket_piece.size() != 1, "buckets of profile");
       for (int const piece : p.bucket_piece) require(piece >= 0 && piece < int(n) - 1, "buckets of profile");
+      require(s.facets.empty() != (s.kind == SlipKind::facets) && s.facets.empty() == s.facets.boxes.empty(),
+              "facets of slip surface");
+      facets(s.facets);
     }
+  }
+
+  void facets(FacetSurface const& s) const {
+    for (Facet const& f : s.facets) {
+      require(f.corner[3] >= -1, "corner of facet");
+      for (int q = 0; q < f.n_corners(); ++q) {
+        require(is_entry(f.corner[q], s.points) && is_entry(f.normal[q], s.normals), "corner of facet");
+        require(is_entry(f.bend[q], s.bends) && is_entry(f.bend[q] ^ 1, s.bends), "edge of facet");
+        std::int32_t const beyond = f.neighbour[q];
+        require(beyond == -1 ||
+                    (beyond >= 0 && is_entry(beyond / 4, s.facets) && beyond % 4 < s.facets[beyond / 4].n_corners()),
+                "neighbour of facet");
+      }
+    }
+    // Boxes come after the one box that holds them, so their depth is known when they are reached.
+    std::vector<int> depth(s.boxes.size(), 0);
+    Index n_facets = 0;
+    for (std::size_t b = 0; b < s.boxes.size(); ++b) {
+      FacetBox const& box = s.boxes[b];
+      require(box.first >= 0 && box.count >= 0 && depth[b] < FacetTreeView::max_depth, "box of facets");
+      if (box.count > 0) {
+        require(Index(box.first) + box.count <= Index(s.facets.size()), "facets of box");
+        n_facets += box.count;
+        continue;
+      }
+      require(Index(box.first) > Index(b) && Index(box.first) + 1 < Index(s.boxes.size()), "boxes of box");
+      for (int const half : {box.first, box.first + 1}) {
+        require(depth[half] == 0, "boxes of box");
+        depth[half] = depth[b] + 1;
+      }
+    }
+    require(n_facets == Index(s.facets.size()), "facets of boxes");
   }
 
   void boundary() const {

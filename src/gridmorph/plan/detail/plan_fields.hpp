@@ -34,7 +34,10 @@ GRIDMORPH_DETAIL_FIELDS(SpreadPass, lines, ends, sweeps, volume, description)
 GRIDMORPH_DETAIL_FIELDS(ProfileKnot, axial, radius, slope, curvature)
 GRIDMORPH_DETAIL_FIELDS(RevolutionProfile, knots, bucket_piece, deviation)
 GRIDMORPH_DETAIL_FIELDS(MeridionalFrame, cosine, sine)
-GRIDMORPH_DETAIL_FIELDS(SlipSurface, kind, origin, direction, profile, baseline_deviation, size, frame)
+GRIDMORPH_DETAIL_FIELDS(Facet, corner, normal, bend, neighbour, creases)
+GRIDMORPH_DETAIL_FIELDS(FacetBox, low, high, first, count)
+GRIDMORPH_DETAIL_FIELDS(FacetSurface, points, normals, bends, facets, boxes)
+GRIDMORPH_DETAIL_FIELDS(SlipSurface, kind, origin, direction, profile, baseline_deviation, size, frame, facets)
 GRIDMORPH_DETAIL_FIELDS(Plan, boundary_nodes, boundary_slots, boundary_projections, stages, spreads, skeleton_nodes,
                         boxes, surfaces, rotations, near_field, notes, n_nodes, n_slots, mesh_size)
 
