@@ -16,8 +16,9 @@ class PassageWheel : public WheelTest {
     PassageOptions options;
     options.nodes = 10'000;
     options.blades = n_blades;
-    options.hub = {0.08, 0.10, 1, 0};  // 8 blades need a small hub
-    options.casing = {0.17, 0.165, 1, 0};
+    // 8 blades need a small hub. On cylinders the blade's motion below stays exactly on the end walls.
+    options.hub = {0.09, 0.09, 0, 0};
+    options.casing = {0.167, 0.167, 0, 0};
     mesh = make_passage(options);
     write_mesh(folder.file("passage.cgns"), mesh);
     folder.write("passage.toml", R"([mesh]
@@ -124,10 +125,8 @@ TEST_F(PassageWheel, GivesEveryBladeItsOwnMotion) {
       auto const a = cylindrical(x), b = cylindrical(y);
       double const f = sequence[p] == 'A' ? 1 : 0.5;
       bool const c = sequence[p] == 'C';
-      EXPECT_NEAR(b.angle - a.angle, c ? -0.3 * a.axial : f * (0.06 * std::sin(a.axial / 0.05) + 0.1 * a.axial), f < 1 ? 2e-4 : 1e-14) << n;
-      if (c || f == 1) {
-        EXPECT_NEAR(b.axial - a.axial, c ? 0 : 0.1 * (a.radius - 0.12) * a.axial, 1e-15) << n;
-      }
+      EXPECT_NEAR(b.angle - a.angle, c ? -0.3 * a.axial : f * (0.06 * std::sin(a.axial / 0.05) + 0.1 * a.axial), 1e-14) << n;
+      EXPECT_NEAR(b.axial - a.axial, c ? 0 : f * 0.1 * (a.radius - 0.12) * a.axial, 1e-15) << n;
     });
 }
 

@@ -12,7 +12,7 @@ namespace gridmorph {
 /// [[wheel.blade]]: a blade that differs from what [[motion]] says.
 struct WheelBlade {
   std::string name;
-  double factor = 1;              ///< on the displacement that rigid, formula and field rules give
+  double factor = 1;              ///< on the displacement that rigid, formula and field rules give, in cylindrical components
   std::vector<MotionRule> rules;  ///< in place of the [[motion]] rules of the same patches
   std::string where;              ///< "case.toml:14"
 };

@@ -2,6 +2,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/selectors.hpp>
+#include <gridmorph/wheel/blade_share.hpp>
 
 #include <fmt/format.h>
 
@@ -13,19 +14,24 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// A rule whose displacement is multiplied; rules that follow others do so by themselves.
-void scale(Rule& rule, double factor) {
+/// A rule whose displacement is multiplied, in cylindrical components, so that a turn stays a turn; rules that follow others do so
+/// by themselves.
+void scale(Rule& rule, double factor, Axis const& axis) {
+  auto const scaled = [axis, factor](std::span<Vec3 const> points, std::span<Vec3> out) {
+    for (std::size_t n = 0; n < points.size(); ++n) out[n] = share_motion(axis, points[n], {}, out[n], factor);
+  };
   if (auto* function = std::get_if<FunctionRule>(&rule)) {
     *function = {fmt::format("{} times {}", factor, function->description),
-                 [inner = function->function, factor](std::span<Vec3 const> points, std::span<Vec3> out) {
+                 [inner = function->function, scaled](std::span<Vec3 const> points, std::span<Vec3> out) {
                    inner(points, out);
-                   for (Vec3& u : out) u = factor * u;
+                   scaled(points, out);
                  }};
   } else if (auto const* rigid = std::get_if<RigidRule>(&rule)) {
     rule = FunctionRule{fmt::format("{} times a rigid motion", factor),
-                        [inner = *rigid, factor](std::span<Vec3 const> points, std::span<Vec3> out) {
+                        [inner = *rigid, scaled](std::span<Vec3 const> points, std::span<Vec3> out) {
                           std::transform(points.begin(), points.end(), out.begin(),
-                                         [&](Vec3 const& p) { return factor * displacement(inner, p); });
+                                         [&](Vec3 const& p) { return displacement(inner, p); });
+                          scaled(points, out);
                         }};
   }
 }
@@ -127,7 +133,7 @@ class Setup {
     }
     if (factor != 1) name += fmt::format("{}x {:g}", name.empty() ? "" : " ", factor);
     if (all != 1)
-      for (auto& rule : made.rules) scale(rule.rule, all);
+      for (auto& rule : made.rules) scale(rule.rule, all, made.axis);
     out_.motions.push_back(std::move(made));
     out_.names.push_back(std::move(name));
     return at->second;
