@@ -1,6 +1,7 @@
 #include <gridmorph/casefile/case_file.hpp>
 #include <gridmorph/casefile/detail/rule_reader.hpp>
 #include <gridmorph/casefile/detail/table_reader.hpp>
+#include <gridmorph/casefile/detail/wheel_reader.hpp>
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
 
@@ -160,6 +161,7 @@ void read_motion(TableReader& root, CaseFile& out) {
   casefile::RuleContext shared{out.axis, {}};
   casefile::read_constants(root, "constants", shared.constants);
   for (auto& table : root.tables("motion")) casefile::read_motion_rule(table, shared, out);
+  casefile::read_wheel(root, shared, out);
   if (!root.has("motion"))
     root.context().problems.add(root.context().file +
                                 ": no [[motion]] rule; add at least one, for example [[motion]] with "

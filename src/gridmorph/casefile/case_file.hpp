@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gridmorph/casefile/point_field.hpp>
+#include <gridmorph/casefile/wheel_case.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
 
@@ -44,6 +45,7 @@ struct CaseFile {
   GuardOptions guard;
   OutputOptions output_options;
   std::vector<FieldUse> fields;
+  std::optional<WheelCase> wheel;  ///< [wheel], for `gridmorph wheel`
 };
 
 /// Reads a case file and the displacement files that it names. Throws one ConfigError that lists every problem, each as

@@ -12,7 +12,7 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "demo"};
+std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "wheel", "demo"};
 
 constexpr char const* footer =
     "Exit status: 0 done; 1 the mesh falls short of the thresholds; 2 bad input; 3 failure of the machine.";
@@ -24,6 +24,14 @@ CLI::App* add_morph(CLI::App& app, CommandLine& out) {
   morph->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
   morph->add_flag("--dry-run", out.dry_run, "Check everything and print the plan; write nothing");
   return morph;
+}
+
+CLI::App* add_wheel(CLI::App& app, CommandLine& out) {
+  auto* wheel = app.add_subcommand("wheel", "Make a wheel of passages, each with its own blade, as a case file says");
+  wheel->add_option("case", out.input, "Case file (TOML) with [wheel]")->required();
+  wheel->add_option("-o,--output", out.output, "Mesh of the wheel, instead of the case file's output");
+  wheel->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
+  return wheel;
 }
 
 CLI::App* add_demo(CLI::App& app, CommandLine& out) {
@@ -64,6 +72,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   quality->add_option("morphed", out.second, "Morphed mesh (CGNS)");
   quality->add_flag("--json", out.json, "Print JSON");
   commands.emplace_back(quality, Command::quality);
+  commands.emplace_back(add_wheel(app, out), Command::wheel);
   commands.emplace_back(add_demo(app, out), Command::demo);
 
   // CLI11 takes a misspelt command for a stray argument; say what it is.

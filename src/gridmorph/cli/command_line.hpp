@@ -11,15 +11,15 @@
 namespace gridmorph::cli {
 
 struct CommandLine {
-  enum class Command { morph, inspect, plan, quality, demo };
+  enum class Command { morph, inspect, plan, quality, wheel, demo };
   Command command = Command::morph;
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
 
   std::filesystem::path input;                  ///< case file or mesh
   std::optional<std::filesystem::path> second;  ///< quality: morphed mesh
-  std::optional<std::filesystem::path> output;  ///< morph: instead of the case file's
-  std::optional<std::filesystem::path> report;  ///< morph: instead of the case file's
+  std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's
+  std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   bool dry_run = false;
   bool json = false;
 

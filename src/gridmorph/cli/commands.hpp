@@ -1,4 +1,4 @@
-// The five commands. Each returns the exit status 0 or 1 and throws for the others (main maps errors to 2 and 3).
+// The six commands. Each returns the exit status 0 or 1 and throws for the others (main maps errors to 2 and 3).
 #pragma once
 
 #include <gridmorph/cli/command_line.hpp>
@@ -17,6 +17,7 @@ int run_morph_command(CommandLine const& options, Terminal& terminal);
 int run_inspect_command(CommandLine const& options, Terminal& terminal);
 int run_plan_command(CommandLine const& options, Terminal& terminal);
 int run_quality_command(CommandLine const& options, Terminal& terminal);
+int run_wheel_command(CommandLine const& options, Terminal& terminal);
 int run_demo_command(CommandLine const& options, Terminal& terminal);
 
 }  // namespace gridmorph::cli

@@ -1,4 +1,5 @@
 #include <gridmorph/cli/engine.hpp>
+#include <gridmorph/cli/near_field_mask.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/plan/prepare.hpp>
@@ -56,19 +57,7 @@ std::vector<std::string> Engine::notes() const {
 
 StepTimes const& Engine::times() const { return impl_->times; }
 
-std::vector<unsigned char> Engine::near_field() const {
-  Mesh const& mesh = impl_->mesh;
-  std::vector<unsigned char> mask(std::size_t(mesh.n_cells()), 0);
-  std::vector<Index> const first = first_cells(mesh);
-  for (auto const& box : impl_->plan().near_field) {
-    Index const ni = mesh.zones[box.zone].extent[0] - 1, nj = mesh.zones[box.zone].extent[1] - 1;
-    for (int k = box.cells.begin[2]; k < box.cells.end[2]; ++k)
-      for (int j = box.cells.begin[1]; j < box.cells.end[1]; ++j)
-        for (int i = box.cells.begin[0]; i < box.cells.end[0]; ++i)
-          mask[std::size_t(first[box.zone] + i + ni * (j + nj * k))] = 1;
-  }
-  return mask;
-}
+std::vector<unsigned char> Engine::near_field() const { return near_field_mask(impl_->mesh, impl_->plan()); }
 
 std::vector<StageResult> Engine::stage_results(Coordinates const& morphed) const {
   Exec const exec;

@@ -1,9 +1,10 @@
-// gridmorph: morph, inspect, plan, quality, demo.
+// gridmorph: morph, inspect, plan, quality, wheel, demo.
 //
 //   gridmorph inspect passage.cgns
 //   gridmorph plan case.toml
 //   gridmorph morph case.toml --report report.json
 //   gridmorph quality passage.cgns passage_morphed.cgns
+//   gridmorph wheel case.toml
 //   gridmorph demo passage --nodes 1000000
 //
 // Parses the command line, runs one command, and turns errors into messages and exit statuses.
@@ -32,6 +33,7 @@ int run(CommandLine const& options, Terminal& terminal) {
     case Command::inspect: return run_inspect_command(options, terminal);
     case Command::plan: return run_plan_command(options, terminal);
     case Command::quality: return run_quality_command(options, terminal);
+    case Command::wheel: return run_wheel_command(options, terminal);
     case Command::demo: return run_demo_command(options, terminal);
   }
   return bad_input;

@@ -16,8 +16,10 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
+}  // namespace
+
 /// All walls: a wall that stays while its neighbours move can lose its first cells too.
-std::vector<int> wall_patches(Mesh const& mesh, CaseFile const& case_file) {
+std::vector<int> measured_walls(Mesh const& mesh, CaseFile const& case_file) {
   std::set<int> out;
   for (int p = 0; p < int(mesh.patches.size()); ++p)
     if (mesh.patches[p].kind == PatchKind::wall) out.insert(p);
@@ -33,12 +35,10 @@ Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> mask_view(std::vector<unsig
   return view;
 }
 
-}  // namespace
-
 QualityReport measure_mesh(Mesh const& mesh) {
   QualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(mesh.coordinates);
-  input.walls = wall_faces(mesh, wall_patches(mesh, {}));
+  input.walls = wall_faces(mesh, measured_walls(mesh, {}));
   return measure_quality(Exec(), mesh, input);
 }
 
@@ -67,7 +67,7 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   QualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(out.mesh.coordinates);
   input.near_field = mask_view(engine.near_field());
-  input.walls = wall_faces(out.mesh, wall_patches(out.mesh, case_file));
+  input.walls = wall_faces(out.mesh, measured_walls(out.mesh, case_file));
   out.before = measure_quality(exec, out.mesh, input);
   input.baseline = input.coordinates;
   input.coordinates = views(out.morphed);

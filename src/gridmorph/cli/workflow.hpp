@@ -9,6 +9,9 @@
 #include <gridmorph/report/shortfalls.hpp>
 #include <gridmorph/report/step_times.hpp>
 
+#include <Kokkos_Core.hpp>
+
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -32,6 +35,12 @@ std::string run_plan(CaseFile const& case_file, Terminal& terminal);
 
 /// Quality of a mesh as it is, without a near field, at all its wall patches.
 QualityReport measure_mesh(Mesh const& mesh);
+
+/// Patches whose first cells are measured: all walls, and those with a near field.
+std::vector<int> measured_walls(Mesh const& mesh, CaseFile const& case_file);
+
+/// A mask of cells as quality takes it.
+Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> mask_view(std::vector<unsigned char> const& mask);
 
 /// [guard] as thresholds of the quality report.
 QualityThresholds thresholds_of(CaseFile const& case_file);

@@ -8,6 +8,7 @@
 
 #include <gridmorph/mesh/mesh.hpp>
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,27 @@ struct WriteOptions {
 /// that type, and its patches become FamilySpecified. Patches of kind `connection` have no donor in a Mesh and become
 /// UserDefined boundary conditions of the same name. The file appears whole or not at all.
 void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options = {});
+
+/// Writes a mesh as write_mesh does, but zone by zone: for meshes that never are in memory as a whole. The file appears with
+/// commit(), or not at all. While a writer is alive, no other file may fail to be written (see MachineError above).
+class MeshFileWriter {
+ public:
+  /// mesh: everything but the coordinates, which are not looked at; must outlive the writer. Writes all that is no coordinate
+  /// when its zone comes.
+  MeshFileWriter(std::string const& path, Mesh const& mesh, WriteOptions const& options = {});
+  ~MeshFileWriter();
+  MeshFileWriter(MeshFileWriter const&) = delete;
+  MeshFileWriter& operator=(MeshFileWriter const&) = delete;
+
+  /// Zones in any order, each once. x, y, z: Zone::size() values each.
+  void write_zone(int zone, double const* x, double const* y, double const* z);
+  /// Throws MeshError when a zone is missing.
+  void commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// One value per node, numbered as Mesh::coordinates.
 struct NodeField {

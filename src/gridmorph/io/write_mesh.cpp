@@ -5,8 +5,10 @@
 #include <gridmorph/io/output_file.hpp>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace gridmorph {
 
@@ -48,10 +50,29 @@ class MeshWriter {
       if (!patch.families.empty()) family_types_[patch.families.front()].insert(bc_type_of(patch));
   }
 
-  void run() {
+  void begin() {
     float const version = library_version;
     file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &version);
-    for (std::size_t z = 0; z < mesh_.zones.size(); ++z) zone(int(z));
+  }
+
+  /// values: of this zone's nodes.
+  void zone(int z, std::array<double const*, 3> const& values) {
+    auto const& zone = mesh_.zones[z];
+    if (mesh_.two_dimensional && zone.extent[2] != 2)
+      throw IoError(mesh_.source + ": zone '" + zone.name + "' of a 2-D mesh has " + std::to_string(zone.extent[2]) +
+                    " planes along k; 2-D meshes are written from two planes along k");
+    auto const [base_name, zone_name] = split(zone.name);
+    std::vector<std::int32_t> sizes(3 * std::size_t(dimension_),
+                                    0);  // nodes, cells, boundary nodes (none when structured)
+    for (int a = 0; a < dimension_; ++a) {
+      sizes[a] = zone.extent[a];
+      sizes[dimension_ + a] = zone.extent[a] - 1;
+    }
+    double const id = file_.create(base(base_name), zone_name, "Zone_t", "I4", {dimension_, 3}, sizes.data());
+    file_.create_text(id, "ZoneType", "ZoneType_t", "Structured");
+    coordinates(zone, id, values);
+    boundary(z, id);
+    interfaces(z, id);
   }
 
  private:
@@ -86,34 +107,13 @@ class MeshWriter {
     return id;
   }
 
-  void zone(int z) {
-    auto const& zone = mesh_.zones[z];
-    if (mesh_.two_dimensional && zone.extent[2] != 2)
-      throw IoError(mesh_.source + ": zone '" + zone.name + "' of a 2-D mesh has " + std::to_string(zone.extent[2]) +
-                    " planes along k; 2-D meshes are written from two planes along k");
-    auto const [base_name, zone_name] = split(zone.name);
-    std::vector<std::int32_t> sizes(3 * std::size_t(dimension_),
-                                    0);  // nodes, cells, boundary nodes (none when structured)
-    for (int a = 0; a < dimension_; ++a) {
-      sizes[a] = zone.extent[a];
-      sizes[dimension_ + a] = zone.extent[a] - 1;
-    }
-    double const id = file_.create(base(base_name), zone_name, "Zone_t", "I4", {dimension_, 3}, sizes.data());
-    file_.create_text(id, "ZoneType", "ZoneType_t", "Structured");
-    coordinates(zone, id);
-    boundary(z, id);
-    interfaces(z, id);
-  }
-
-  void coordinates(Zone const& zone, double zone_id) {
+  void coordinates(Zone const& zone, double zone_id, std::array<double const*, 3> const& values) {
     double const grid = file_.create(zone_id, "GridCoordinates", "GridCoordinates_t");
     std::vector<Index> dimensions(zone.extent.begin(), zone.extent.begin() + dimension_);
     Index const n = dimension_ == 2 ? zone.size() / 2 : zone.size();
-    std::array<double const*, 3> const arrays{mesh_.coordinates.x.data(), mesh_.coordinates.y.data(),
-                                              mesh_.coordinates.z.data()};
     static constexpr std::array names{"CoordinateX", "CoordinateY", "CoordinateZ"};
     for (int c = 0; c < physical_dimension_; ++c) {
-      double const* source = arrays[c] + zone.first_node;
+      double const* source = values[c];
       if (zone.single_precision) {
         std::vector<float> const rounded(source, source + n);
         file_.create(grid, names[c], "DataArray_t", "R4", dimensions, rounded.data());
@@ -208,19 +208,60 @@ std::uint64_t bytes_needed(Mesh const& mesh) {
 
 }  // namespace
 
-void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options) {
+struct MeshFileWriter::State {
+  std::string path;
+  Mesh const& mesh;
+  io::OutputFile target;
+  cgns::File file;
+  MeshWriter writer;
+  std::vector<char> written;
+
+  State(std::string const& p, Mesh const& m, WriteOptions const& options)
+      : path(p), mesh(m), target(p), file(reserved(target, m), cgns::File::Mode::create, options.format),
+        writer(file, m, options), written(m.zones.size(), 0) {
+    writer.begin();
+  }
+
+ private:
+  static std::string const& reserved(io::OutputFile const& target, Mesh const& mesh) {
+    target.reserve(bytes_needed(mesh));
+    return target.path();
+  }
+};
+
+MeshFileWriter::MeshFileWriter(std::string const& path, Mesh const& mesh, WriteOptions const& options) {
   if (options.physical_dimension != 2 && options.physical_dimension != 3)
     throw IoError(path + ": physical dimension " + std::to_string(options.physical_dimension) +
                   " cannot be written; choose 2 or 3");
+  state_ = std::make_unique<State>(path, mesh, options);
+}
+MeshFileWriter::~MeshFileWriter() = default;
+
+void MeshFileWriter::write_zone(int zone, double const* x, double const* y, double const* z) {
+  if (std::exchange(state_->written.at(zone), 1) != 0)
+    throw MeshError(state_->path + ": zone '" + state_->mesh.zones[zone].name + "' is written twice");
+  state_->writer.zone(zone, {x, y, z});
+}
+
+void MeshFileWriter::commit() {
+  for (std::size_t z = 0; z < state_->written.size(); ++z)
+    if (state_->written[z] == 0)
+      throw MeshError(state_->path + ": zone '" + state_->mesh.zones[z].name + "' is missing");
+  state_->file.close();
+  state_->target.commit();
+}
+
+void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options) {
   if (mesh.coordinates.size() != mesh.n_nodes())
     throw MeshError(path + ": the mesh has " + std::to_string(mesh.n_nodes()) + " nodes, but coordinates of " +
                     std::to_string(mesh.coordinates.size()));
-  io::OutputFile target(path);
-  target.reserve(bytes_needed(mesh));
-  cgns::File file(target.path(), cgns::File::Mode::create, options.format);
-  MeshWriter(file, mesh, options).run();
-  file.close();
-  target.commit();
+  MeshFileWriter writer(path, mesh, options);
+  auto const& x = mesh.coordinates;
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+    Index const first = mesh.zones[z].first_node;
+    writer.write_zone(int(z), x.x.data() + first, x.y.data() + first, x.z.data() + first);
+  }
+  writer.commit();
 }
 
 }  // namespace gridmorph

@@ -43,6 +43,7 @@ std::string_view to_string(PatchKind kind) {
     case PatchKind::degenerate: return "degenerate";
     case PatchKind::connection: return "connection";
     case PatchKind::other: return "other";
+    case PatchKind::periodic: return "periodic";
   }
   return "other";
 }

@@ -13,7 +13,7 @@ namespace gridmorph {
 using EndKind = int;
 inline constexpr EndKind periodic_end = 100;
 inline constexpr EndKind unknown_end = -1;
-inline EndKind end_kind(PatchKind kind) { return int(kind); }
+inline EndKind end_kind(PatchKind kind) { return kind == PatchKind::periodic ? periodic_end : int(kind); }
 inline std::string_view end_kind_name(EndKind kind) {
   return kind == periodic_end ? "periodic" : (kind == unknown_end ? "open" : to_string(PatchKind(kind)));
 }

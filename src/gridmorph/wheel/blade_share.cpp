@@ -1,0 +1,203 @@
+#include <gridmorph/wheel/blade_share.hpp>
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/detail/cylindrical.hpp>
+#include <gridmorph/wheel/detail/link_nodes.hpp>
+#include <gridmorph/wheel/detail/pitch_fraction.hpp>
+#include <gridmorph/wheel/shared_nodes.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+enum Side : unsigned char { lower_side = 1, upper_side = 2 };
+
+/// Blades of one row, and what its nodes lie on.
+class Row {
+ public:
+  Row(Mesh const& mesh, Links const& links, WheelRows const& rows, int row, ResolvedMotion const& motion)
+      : mesh_(mesh), links_(links), rows_(rows), row_(row), motion_(motion) {}
+
+  void prepare(SharedNodes const& plain, SharedNodes const& all, std::vector<Index> const& first_of_group) {
+    plain_ = &plain;
+    first_of_group_ = &first_of_group;
+    for (std::size_t l = 0; l < links_.all.size(); ++l) {
+      Link const& link = links_.all[l];
+      if (rows_.pitches_of_link[l] == 0 || rows_.row_of_zone[link.zone] != row_) continue;
+      unsigned char const side = rows_.pitches_of_link[l] > 0 ? lower_side : upper_side;
+      for_each_node(mesh_.zones[link.zone], link.range, [&](Index n) { side_[key(n)] |= side; });
+    }
+    blades_ = find_blades();
+    number_blades(all);
+  }
+
+  [[nodiscard]] BladeShare share(Index node, int rule) {
+    BladeShare out;
+    Index const k = key(node);
+    auto const side = side_.find(k);
+    if (side != side_.end() && side->second == (lower_side | upper_side)) {
+      out.on_axis = true;
+    } else if (auto const blade = blade_at_.find(k); blade != blade_at_.end()) {
+      out.position = blade->second;
+    } else if (side != side_.end()) {
+      out.position = (side->second == lower_side ? 0.0 : 1.0) - middle_;
+    } else if (auto const& fraction = fraction_of(rule); !fraction.empty()) {
+      out.position = fraction(mesh_.coordinates[node]) - middle_;
+    }
+    return out;
+  }
+
+ private:
+  /// The same for all nodes that coincide inside the passage.
+  [[nodiscard]] Index key(Index node) const {
+    auto const* member = plain_->find(node);
+    return member ? (*first_of_group_)[member->group] : node;
+  }
+
+  [[nodiscard]] std::vector<int> find_blades() const {
+    std::set<int> out;
+    auto const add = [&](int p) {
+      if (rows_.row_of_zone[mesh_.patches[p].zone] == row_) out.insert(p);
+    };
+    for (MotionRule const& rule : motion_.rules) {
+      if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule.rule))
+        for (int const p : select_patches(mesh_, slide->of)) add(p);
+      if (auto const* follow = std::get_if<FollowRule>(&rule.rule))
+        for (int const p : select_patches(mesh_, follow->of)) add(p);
+    }
+    if (!out.empty()) return {out.begin(), out.end()};
+    for (int p = 0; p < int(mesh_.patches.size()); ++p) {
+      Rule const& rule = motion_.patch_rule(p);
+      if (mesh_.patches[p].kind == PatchKind::wall &&
+          (std::holds_alternative<RigidRule>(rule) || std::holds_alternative<FunctionRule>(rule)))
+        add(p);
+    }
+    return {out.begin(), out.end()};
+  }
+
+  /// Patches that meet are of one blade. A patch whose nodes are `a` passages ahead meets another whose nodes are `b` ahead:
+  /// their blades' numbers differ by a - b.
+  void number_blades(SharedNodes const& all) {
+    struct Meeting {
+      int patch, offset;
+    };
+    std::map<int, std::vector<Meeting>> meetings;  // by group
+    std::vector<unsigned char> touches(blades_.size(), 0);
+    for (std::size_t b = 0; b < blades_.size(); ++b) {
+      Patch const& patch = mesh_.patches[blades_[b]];
+      for_each_node(mesh_.zones[patch.zone], patch.range, [&](Index n) {
+        if (auto const side = side_.find(key(n)); side != side_.end()) touches[b] |= side->second;
+        if (auto const* m = all.find(n); m != nullptr && !all.on_axis(m->group))
+          meetings[m->group].push_back({int(b), m->offset});
+      });
+    }
+    std::vector<std::set<std::pair<int, int>>> neighbours(blades_.size());  // (patch, its number minus the own one)
+    for (auto const& [group, meets] : meetings)
+      for (Meeting const& m : meets) {
+        Meeting const& first = meets.front();
+        neighbours[first.patch].insert({m.patch, m.offset - first.offset});
+        neighbours[m.patch].insert({first.patch, first.offset - m.offset});
+      }
+
+    std::vector<int> number(blades_.size(), 0);
+    std::vector<char> seen(blades_.size(), 0);
+    for (std::size_t start = 0; start < blades_.size(); ++start) {
+      if (seen[start] != 0) continue;
+      std::vector<int> blade{int(start)};
+      seen[start] = 1;
+      for (std::size_t next = 0; next < blade.size(); ++next)
+        for (auto const& [other, ahead] : neighbours[blade[next]]) {
+          int const expected = number[blade[next]] + ahead;
+          if (seen[other] == 0) {
+            seen[other] = 1;
+            number[other] = expected;
+            blade.push_back(other);
+          } else if (number[other] != expected) {
+            throw MotionError("blade " + describe_patch(mesh_, mesh_.patches[blades_[start]]) +
+                              " hangs together with the blade of the next passage, so the two cannot move differently; name the "
+                              "blade alone in `of`, without hub and case");
+          }
+        }
+      // Blade p stands at the lower side of passage p, where it touches one.
+      int zero = 0;
+      for (int const b : blade)
+        if (touches[b] == upper_side) zero = number[b] - 1;
+      for (int const b : blade)
+        if (touches[b] == lower_side) zero = number[b];
+      for (int const b : blade) {
+        number[b] -= zero;
+        if (touches[b] != 0) middle_ = 0;
+      }
+    }
+    for (std::size_t b = 0; b < blades_.size(); ++b) {
+      Patch const& patch = mesh_.patches[blades_[b]];
+      for_each_node(mesh_.zones[patch.zone], patch.range, [&](Index n) { blade_at_[key(n)] = number[b]; });
+    }
+  }
+
+  PitchFraction const& fraction_of(int rule) {
+    auto const known = fractions_.find(rule);
+    if (known != fractions_.end()) return known->second;
+    std::vector<int> patches;
+    for (int p = 0; p < int(mesh_.patches.size()); ++p)
+      if (motion_.patch[p].rule == rule) patches.push_back(p);
+    return fractions_.try_emplace(rule, mesh_, links_, rows_, row_, motion_.axis, patches).first->second;
+  }
+
+  Mesh const& mesh_;
+  Links const& links_;
+  WheelRows const& rows_;
+  int row_;
+  ResolvedMotion const& motion_;
+  SharedNodes const* plain_ = nullptr;
+  std::vector<Index> const* first_of_group_ = nullptr;
+  std::vector<int> blades_;                         ///< patches
+  std::unordered_map<Index, unsigned char> side_;   ///< by key: periodic sides the node lies on
+  std::unordered_map<Index, int> blade_at_;         ///< by key: which blade
+  std::map<int, PitchFraction> fractions_;          ///< by rule
+  double middle_ = 0.5;                             ///< where in the passage its blade stands
+};
+
+}  // namespace
+
+std::vector<BladeShare> blade_shares(Mesh const& sector, Links const& links, WheelRows const& rows,
+                                     ResolvedMotion const& motion, std::vector<char> const& open,
+                                     BoundaryRequests const& boundary, std::vector<Index> const& boundary_nodes) {
+  std::vector<BladeShare> out(boundary_nodes.size());
+  SharedNodes const plain(sector, links, rows, false), all(sector, links, rows, true);
+  std::vector<Index> first_of_group(plain.n_groups(), -1);
+  for (auto const& m : plain.members())
+    if (first_of_group[m.group] < 0) first_of_group[m.group] = m.node;
+
+  std::map<int, Row> opened;
+  for (int r = 0; r < int(rows.rows.size()); ++r)
+    if (open[r] != 0)
+      opened.try_emplace(r, sector, links, rows, r, motion).first->second.prepare(plain, all, first_of_group);
+
+  std::vector<char> done(boundary_nodes.size(), 0);
+  for (auto const& request : boundary.requests) {
+    if (done[request.boundary_node] != 0) continue;
+    done[request.boundary_node] = 1;
+    Index const node = boundary_nodes[request.boundary_node];
+    auto const row = opened.find(rows.row_of_zone[sector.zone_of(node)]);
+    if (row != opened.end()) out[request.boundary_node] = row->second.share(node, request.rule);
+  }
+  return out;
+}
+
+Vec3 share_motion(Axis const& axis, Vec3 const& x, Vec3 const& a, Vec3 const& b, double w) {
+  if (w == 0 || a == b) return a;
+  CylindricalFrame const frame(axis);
+  if (frame.meridional(x).radius == 0) return a + w * (b - a);
+  CylindricalMotion const p = frame.motion(x, a), q = frame.motion(x, b);
+  return frame.displacement(x, {p.axial + w * (q.axial - p.axial), p.radial + w * (q.radial - p.radial),
+                                p.angle_rad + w * (q.angle_rad - p.angle_rad)});
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,37 @@
+// How far across its passage a point lies.
+#pragma once
+
+#include <gridmorph/motion/motion.hpp>
+#include <gridmorph/wheel/rows.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace gridmorph {
+
+/// Fraction of the pitch from the lower periodic side (0) to the upper one (1), at the same place of the meridional plane. Made from
+/// the grid lines in which patches (an inlet, say) meet the lower side; between their nodes the angle is linear.
+class PitchFraction {
+ public:
+  PitchFraction(Mesh const& mesh, Links const& links, WheelRows const& rows, int row, Axis const& axis,
+                std::vector<int> const& patches);
+
+  [[nodiscard]] bool empty() const { return segments_.empty(); }
+  /// Clamped to 0 ... 1. Cost: O(nodes of the lines).
+  [[nodiscard]] double operator()(Vec3 const& p) const;
+
+ private:
+  struct Place {
+    double axial, radius, angle;
+  };
+  struct Segment {
+    Place from, to;
+  };
+  [[nodiscard]] Place place(Vec3 const& p) const;
+
+  Vec3 origin_, direction_, zero_, quarter_;  ///< directions of axis, angle 0 and angle 90 degrees
+  int passages_;
+  std::vector<Segment> segments_;
+};
+
+}  // namespace gridmorph

@@ -1,0 +1,25 @@
+// A passage whose periodic sides move independently of each other.
+#pragma once
+
+#include <gridmorph/motion/motion.hpp>
+#include <gridmorph/topology/links.hpp>
+#include <gridmorph/wheel/rows.hpp>
+
+#include <vector>
+
+namespace gridmorph {
+
+/// The sector mesh with the periodic interfaces of some rows turned into patches of kind `periodic`, and the resolution that
+/// goes with it: patch and rule numbers stay, the new patches follow with the rule of their interface. Rules that need a blade
+/// row (slide, follow) are there as functions without a value: plans ask only whether a rule is explicit.
+/// Coordinates are shared with the sector mesh.
+struct OpenedPassage {
+  Mesh mesh;
+  ResolvedMotion motion;
+};
+
+/// open: per row. Throws MotionError naming the periodic interfaces of such rows that no rule moves beforehand.
+OpenedPassage open_passage(Mesh const& sector, Links const& links, WheelRows const& rows, ResolvedMotion const& motion,
+                           std::vector<char> const& open);
+
+}  // namespace gridmorph

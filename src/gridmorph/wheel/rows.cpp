@@ -1,0 +1,105 @@
+#include <gridmorph/wheel/rows.hpp>
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/wheel/detail/link_nodes.hpp>
+#include <gridmorph/wheel/turn.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <numeric>
+
+namespace gridmorph {
+
+namespace {
+
+std::string format(double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
+
+std::string describe(Mesh const& mesh, Link const& link) {
+  return "periodic interface '" + mesh.interfaces[link.interface].name + "' (" +
+         describe_range(mesh, link.zone, link.range) + ")";
+}
+
+/// Angle of a rotation about the unit direction d, in (-pi, pi]; meaningful when d is its axis.
+double angle_about(Vec3 const& d, Mat3 const& r) {
+  Vec3 const twice_sine{r.m[2][1] - r.m[1][2], r.m[0][2] - r.m[2][0], r.m[1][0] - r.m[0][1]};
+  return std::atan2(dot(d, twice_sine), r.m[0][0] + r.m[1][1] + r.m[2][2] - 1);
+}
+
+WheelRows connected_zones(Mesh const& mesh, Links const& links) {
+  std::vector<int> root(mesh.zones.size());
+  std::iota(root.begin(), root.end(), 0);
+  auto const find = [&](int z) {
+    while (root[z] != z) z = root[z] = root[root[z]];
+    return z;
+  };
+  for (Link const& l : links.all) root[find(l.zone)] = find(l.donor_zone);
+  WheelRows out;
+  out.row_of_zone.assign(mesh.zones.size(), -1);
+  std::vector<int> row_of_root(mesh.zones.size(), -1);
+  for (int z = 0; z < int(mesh.zones.size()); ++z) {
+    int& row = row_of_root[find(z)];
+    if (row < 0) {
+      row = int(out.rows.size());
+      out.rows.emplace_back();
+    }
+    out.row_of_zone[z] = row;
+    out.rows[row].zones.push_back(z);
+  }
+  return out;
+}
+
+}  // namespace
+
+WheelRows find_rows(Mesh const& mesh, Links const& links, Axis const& axis, TopologyOptions const& options) {
+  WheelRows out = connected_zones(mesh, links);
+  Vec3 const direction = (1 / norm(axis.direction)) * axis.direction;
+  out.pitches_of_link.assign(links.all.size(), 0);
+  Problems problems;
+  for (std::size_t l = 0; l < links.all.size(); ++l) {
+    Link const& link = links.all[l];
+    if (!link.periodic) continue;
+    double const angle = angle_about(direction, link.transform.rotation);
+    // A whole turn is a wheel already; no turn about this axis is a translation, or a rotation about another one.
+    double const count = 2 * std::numbers::pi / std::abs(angle);
+    int const passages = count < 1e6 ? int(std::lround(count)) : 0;
+    int& row_passages = out.rows[out.row_of_zone[link.zone]].passages;
+    double worst = 0;
+    Index at = -1;
+    if (passages > 1) {
+      Turn const turn(axis, angle > 0 ? 1 : -1, passages);
+      for_each_pair(mesh, link, [&](Index own, Index donor) {
+        double const gap = distance(turn(mesh.coordinates[own]), mesh.coordinates[donor]);
+        if (gap > worst) {
+          worst = gap;
+          at = own;
+        }
+      });
+    }
+    bool const single = mesh.zones[link.zone].single_precision || mesh.zones[link.donor_zone].single_precision;
+    double const tolerance =
+        options.matching_tolerance > 0 ? options.matching_tolerance : (single ? 1e-6 : 1e-8) * links.mesh_size;
+    if (passages < 2)
+      problems.add(describe(mesh, link) + " does not turn about the axis of [mesh]; a wheel needs rotational periodicity about it");
+    else if (worst > tolerance)
+      problems.add(describe(mesh, link) + " turns by " + format(angle * 180 / std::numbers::pi) + " degrees, and " +
+                   std::to_string(passages) + " passages do not make a whole wheel about the axis: a turn by 360 / " +
+                   std::to_string(passages) + " degrees leaves " + describe_node(mesh, at) + " " + format(worst) +
+                   " from its periodic partner (tolerance " + format(tolerance) + "); check the axis of [mesh]");
+    else if (row_passages > 1 && row_passages != passages)
+      problems.add(describe(mesh, link) + " turns by 360 / " + std::to_string(passages) +
+                   " degrees, another one of its row by 360 / " + std::to_string(row_passages) +
+                   "; one row has one pitch");
+    else
+      row_passages = passages;
+    out.pitches_of_link[l] = angle > 0 ? 1 : -1;
+  }
+  problems.throw_if_any<MeshError>();
+  return out;
+}
+
+}  // namespace gridmorph

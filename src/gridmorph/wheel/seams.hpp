@@ -1,0 +1,49 @@
+// Coordinates of coincident nodes of a wheel: one passage decides, the others copy.
+#pragma once
+
+#include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/wheel/shared_nodes.hpp>
+#include <gridmorph/wheel/turn.hpp>
+
+#include <map>
+#include <vector>
+
+namespace gridmorph {
+
+/// What copying changed most.
+struct SeamGap {
+  double distance = 0;
+  Index node = -1;
+  int passage = -1;
+};
+
+/// Closes the seams of one row, passage by passage from the first to the last: the first copy of a point to come decides. The
+/// last passage meets the first one again. The two ends of a part of a wheel are each other, turned by the part's angle.
+///
+/// Memory: 24 bytes per interface node, for the two or three passages that are not closed yet and for the first one.
+class Seams {
+ public:
+  /// passages: how many are made, of row.passages. `shared` covers all rows.
+  Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows, int row, Axis const& axis, int passages);
+
+  /// Replaces the positions of the row's nodes that an earlier one decides; positions are in the wheel's frame.
+  void close(int passage, Coordinates const& x);
+
+  [[nodiscard]] SeamGap const& largest_gap() const { return gap_; }
+
+ private:
+  struct Points {
+    std::vector<Vec3> position;  ///< per group of the row
+    std::vector<char> known;
+  };
+
+  std::vector<SharedNodes::Member> members_;  ///< of the row, groups renumbered
+  std::vector<char> on_axis_;                 ///< per group
+  Axis axis_;
+  int passages_, whole_;
+  int lowest_ = 0, highest_ = 0;  ///< offsets
+  std::map<int, Points> open_;    ///< by the passage of the group's own count
+  SeamGap gap_;
+};
+
+}  // namespace gridmorph

@@ -1,0 +1,125 @@
+// Wheels of meshes of others: H meshes, whose blades stand on the periodic sides.
+#include "support/expect_error.hpp"
+#include "wheel/wheel_run.hpp"
+
+namespace gridmorph::test {
+namespace {
+
+#define GRIDMORPH_NEEDS(mesh) \
+  if (!use(mesh)) GTEST_SKIP() << "no " << mesh << "; set GRIDMORPH_MESHES to its folder"
+
+class RealWheel : public WheelTest {
+ protected:
+  bool use(std::string const& mesh) const {
+    char const* meshes = std::getenv("GRIDMORPH_MESHES");
+    auto const path = std::filesystem::absolute(std::filesystem::path(meshes ? meshes : GRIDMORPH_MESHES_DIR) / mesh);
+    if (!std::filesystem::exists(path)) return false;
+    std::filesystem::create_symlink(path, folder / mesh);
+    return true;
+  }
+  /// Passages of the wheel of a zone, from the angle of its periodic interface.
+  static int wheel_of(Mesh const& mesh, int zone) {
+    for (auto const& face : mesh.interfaces)
+      if (face.zone == zone && face.periodic)
+        return int(std::lround(2 * std::acos(-1.0) / norm(face.periodic->rotation_angle_rad)));
+    return 0;
+  }
+};
+
+constexpr char const* stage = R"case([mesh]
+input  = "axial_turbine_stage_H.cgns"
+output = "morphed.cgns"
+axis   = "x"
+[[motion]]
+patches = "BLADE1"
+rule    = "formula"
+dtheta  = "0.3 * (axial - 0.05)"
+[[motion]]
+patches = "BLADE2"
+rule    = "formula"
+dtheta  = "0.2 * (axial - 0.21)"
+[[motion]]
+patches = ["INLET", "row1/mixing_out"]
+rule    = "circumferential-slide"
+of      = "BLADE1"
+[[motion]]
+patches = ["OUTLET", "row2/mixing_in"]
+rule    = "circumferential-slide"
+of      = "BLADE2"
+[[motion]]
+patches = "row1/per*"
+rule    = "follow"
+of      = "BLADE1"
+[[motion]]
+patches = "row2/per*"
+rule    = "follow"
+of      = "BLADE2"
+[[motion]]
+patches = ["HUB", "SHROUD"]
+rule    = "slip"
+surface = "revolution"
+[boundary_layer]
+walls  = ["BLADE1", "BLADE2"]
+extent = { layers = 4 }
+)case";
+
+TEST_F(RealWheel, TurbineStagePutsEachBladeBetweenItsTwoPassages) {
+  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
+  folder.write("stage.toml", stage);
+  WheelFile const wheel = this->wheel("stage.toml", R"([[wheel.row]]
+zones    = "row1"
+passages = 4
+factors  = [1, 0.5, 0, -1]
+[[wheel.row]]
+zones    = "row2"
+passages = 3
+)");
+  EXPECT_EQ(wheel.zones.size(), 7U);
+  wheel.expect_watertight();
+  Mesh const mesh = read_mesh(folder.file("axial_turbine_stage_H.cgns"));
+  double const factor[] = {1, 0.5, 0, -1};
+  Index lower = 0, upper = 0;
+  for (auto const& patch : mesh.patches) {
+    if (patch.families.empty() || patch.families.front() != "BLADE1") continue;
+    auto const& zone = mesh.zones[patch.zone];
+    bool const high = patch.range.begin[2] > 0;
+    for (int p = 0; p < 4; ++p)
+      for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
+        for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
+          Index const n = zone.node({i, j, patch.range.begin[2]});
+          Vec3 const x = mesh.coordinates[n], y = wheel.zones.at(name(zone.name, p)).at(std::size_t(n - zone.first_node));
+          double const turned = cylindrical(y).angle - cylindrical(x).angle;
+          double const moved = std::remainder(turned, 2 * std::acos(-1.0) / wheel_of(mesh, patch.zone));
+          // One of the two sides of a passage belongs to the next blade.
+          double const own = factor[p], next = factor[(p + 1) % 4];
+          bool const is_own = std::abs(moved - own * 0.3 * (x.x - 0.05)) < 1e-13, is_next = std::abs(moved - next * 0.3 * (x.x - 0.05)) < 1e-13;
+          EXPECT_TRUE(is_own || is_next) << n << " in passage " << p;
+          if (is_own != is_next) ((high ? upper : lower) += is_own ? 1 : -1);
+        }
+  }
+  EXPECT_NE(lower, 0);
+  EXPECT_LT(lower * upper, 0) << "both sides of the passages have their own blade, or both the next";
+}
+
+TEST_F(RealWheel, TurbineStageMakesBothWheels) {
+  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
+  folder.write("stage.toml", stage);
+  WheelFile const wheel = this->wheel("stage.toml", "");
+  EXPECT_EQ(wheel.n_periodic(), 0);
+  wheel.expect_watertight();
+}
+
+TEST_F(RealWheel, KaplanTurbineOfSevenZonesClosesWithDifferentBlades) {
+  GRIDMORPH_NEEDS("axialTurbine_7blk.cgns");
+  std::string rules = bytes_of(std::filesystem::path(GRIDMORPH_EXAMPLES) / "kaplan_7_blocks.toml");
+  folder.write("kaplan.toml", rules);
+  WheelFile const equal = wheel("kaplan.toml", "");
+  EXPECT_EQ(equal.zones.size(), 35U);
+  EXPECT_EQ(equal.n_periodic(), 0);
+  equal.expect_watertight();
+  WheelFile const mixed = wheel("kaplan.toml", "factors = [1, 0.9, 0.5, 0.7, 1.1]\n");
+  mixed.expect_watertight();
+}
+
+}  // namespace
+}  // namespace gridmorph::test

@@ -1,0 +1,81 @@
+// Runs `gridmorph wheel` in a folder of its own.
+#pragma once
+
+#include "support/temporary_folder.hpp"
+#include "wheel/wheel_file.hpp"
+
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/wheel/turn.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include <sys/wait.h>
+
+namespace gridmorph::test {
+
+struct CylindricalPoint {
+  double axial, radius, angle;
+};
+
+/// About the x axis.
+inline CylindricalPoint cylindrical(Vec3 const& p) { return {p.x, std::hypot(p.y, p.z), std::atan2(p.z, p.y)}; }
+
+class WheelTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] int gridmorph(std::string const& arguments) const {
+    std::string const line = "cd '" + folder.file("") + "' && '" GRIDMORPH_EXECUTABLE "' " + arguments + " >out 2>err";
+    int const code = std::system(line.c_str());
+    return WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code);
+  }
+  [[nodiscard]] std::string text(std::string const& name) const { return bytes_of(folder / name); }
+
+  /// Appends [wheel] to a case file of the folder and makes the wheel.
+  WheelFile wheel(std::string const& case_file, std::string const& keys, int status = 0) const {
+    folder.write("wheel.toml", text(case_file) + "\n[wheel]\noutput = \"wheel.cgns\"\n" + keys);
+    std::filesystem::remove(folder / "wheel.cgns");
+    EXPECT_EQ(gridmorph("wheel wheel.toml"), status) << text("out") << text("err");
+    return WheelFile(folder.file("wheel.cgns"));
+  }
+  /// The message of a wheel that is refused; nothing is left behind.
+  std::string refusal(std::string const& case_text, std::string const& keys) const {
+    folder.write("wheel.toml", case_text + "\n[wheel]\noutput = \"wheel.cgns\"\n" + keys);
+    auto const before = folder.names().size();
+    EXPECT_EQ(gridmorph("wheel wheel.toml"), 2) << text("out");
+    EXPECT_FALSE(std::filesystem::exists(folder / "wheel.cgns"));
+    EXPECT_LE(folder.names().size(), before + 2);  // out and err, unless they were there
+    return text("err");
+  }
+
+  /// The largest distance between passage p of a wheel, turned back, and a mesh of one passage.
+  static double distance_from(WheelFile const& wheel, int p, int of, Mesh const& passage) {
+    double worst = 0;
+    for (auto const& zone : passage.zones) {
+      FileZone const& copy = wheel.zones.at(name(zone.name, p));
+      for (Index n = 0; n < zone.size(); ++n)
+        worst = std::max(worst, distance(Turn(Axis{}, -p, of)(copy.at(std::size_t(n))), passage.coordinates[zone.first_node + n]));
+    }
+    return worst;
+  }
+  /// The same between passage p of one wheel and passage q of another.
+  static double distance_between(WheelFile const& a, int p, WheelFile const& b, int q, int of) {
+    double worst = 0;
+    std::string const end = name("", p);
+    for (auto const& [zone_name, zone] : a.zones) {
+      if (!zone_name.ends_with(end)) continue;
+      FileZone const& other = b.zones.at(name(zone_name.substr(0, zone_name.size() - end.size()), q));
+      for (std::size_t n = 0; n < zone.x.size(); ++n)
+        worst = std::max(worst, distance(Turn(Axis{}, -p, of)(zone.at(n)), Turn(Axis{}, -q, of)(other.at(n))));
+    }
+    return worst;
+  }
+  static std::string name(std::string const& zone, int p) { return zone + (p < 9 ? "_P0" : "_P") + std::to_string(p + 1); }
+
+  TemporaryFolder folder;
+};
+
+}  // namespace gridmorph::test
