@@ -112,6 +112,11 @@ Node File::tree() const {
   return root;
 }
 
+void File::load_children(Node& node) const {
+  node.children.clear();
+  load_children(node, max_depth - 1);
+}
+
 void File::load_children(Node& node, int depth) const {
   int count = 0;
   check(cgio_number_children(handle_, node.id, &count), "listed", node.path);

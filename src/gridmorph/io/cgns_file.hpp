@@ -42,6 +42,8 @@ class File {
 
   /// The nodes that describe a mesh, without their data. Solutions, sections and the like are listed, not entered.
   [[nodiscard]] Node tree() const;
+  /// Enters a node that tree() only lists: its children, without theirs.
+  void load_children(Node& node) const;
 
   /// "R8", "I4", "C1", "MT", ...
   [[nodiscard]] std::string type(Node const& node) const;
