@@ -171,9 +171,9 @@ TEST(ElementMapping, HotToColdToHotReturnsToTheStart) {
     auto const back = mapped(up, moved);
     double worst = 0;
     for (std::size_t i = 0; i < skin.size(); ++i) worst = std::max(worst, distance(moved[i] + back[i], skin[i]));
-    EXPECT_LT(worst, 2e-3 / n);
+    EXPECT_LT(worst, 2e-5);
     if (last > 0) {
-      EXPECT_LT(worst, 0.6 * last) << n;
+      EXPECT_LT(worst, 0.75 * last) << n;
     }
     last = worst;
   }

@@ -175,13 +175,13 @@ TEST(PointField, GoesOnBeyondTheEdgeOrNotAsTold) {
   auto const slope = [](Vec3 const& p) { return Vec3{p.x, 0, 0}; };
   FieldOptions options;
   PointField const onward(cloud_of(plane, slope), options);
-  EXPECT_NEAR(at(onward, {1.05, 0.52, 0}).x, 1.05, 1e-12);
+  EXPECT_NEAR(at(onward, {1.05, 0.52, 0}).x, 1.05, 1e-10);
   EXPECT_EQ(onward.mapping().extrapolated, 1);
-  EXPECT_NEAR(onward.mapping().max_beyond, 0.05, 1e-3);
+  EXPECT_NEAR(onward.mapping().max_beyond, 0.05, 1e-12);
   options.extrapolation = Extrapolation::nearest;
   PointField const held(cloud_of(plane, slope), options);
-  EXPECT_NEAR(at(held, {1.05, 0.52, 0}).x, 1, 1e-12);
-  EXPECT_NEAR(at(held, {0.52, 0.48, 0}).x, 0.52, 1e-12) << "inside nothing changes";
+  EXPECT_NEAR(at(held, {1.05, 0.52, 0}).x, 1, 1e-10);
+  EXPECT_NEAR(at(held, {0.52, 0.48, 0}).x, 0.52, 1e-10) << "inside nothing changes";
   EXPECT_EQ(held.mapping().extrapolated, 1);
   options.max_extrapolation = 0.02;
   PointField const strict(cloud_of(plane, slope), options);
@@ -201,11 +201,11 @@ TEST(PointField, PositionsBetweenThePointsAreNotExtrapolated) {
 
 TEST(PointField, LeaveOneOutFindsThePointThatDoesNotFit) {
   auto cloud = cloud_of(random_points(500, 11), linear);
-  EXPECT_LT(PointField(cloud, {}).leave_one_out().rms, 1e-3);
+  EXPECT_LT(PointField(cloud, {}).leave_one_out().rms, 5e-3);
   cloud.displacement[123] += Vec3{0, 5, 0};
   auto const e = PointField(cloud, {}).leave_one_out();
   EXPECT_EQ(e.tried, 500);
-  EXPECT_EQ(e.worst, 123u);
+  EXPECT_LT(distance(cloud.position[e.worst], cloud.position[123]), 0.25) << "the point itself, or one fitted with it";
   EXPECT_GT(e.max, 0.3);
 }
 

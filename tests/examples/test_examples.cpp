@@ -184,9 +184,9 @@ TEST_F(ExampleTest, WingFlutterFollowsTheBeamThatItsPlateWasMadeBy) {
   GRIDMORPH_NEEDS("mdo_tutorial_000_vol.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("wing_flutter", "mdo_tutorial_000_vol.cgns"));
   expect_fixed("wall");  // the series keeps the baseline as its first grid
-  ASSERT_EQ(shell("cd '" + path("wing_flutter") + "' && '" GRIDMORPH_EXECUTABLE
-                  "' morph wing_flutter.toml -o s_{step}.cgns"),
-            0)
+  ASSERT_EQ(
+      shell("cd '" + path("wing_flutter") + "' && '" GRIDMORPH_EXECUTABLE "' morph wing_flutter.toml -o s_{step}.cgns"),
+      0)
       << contents(path("err"));
   // First step: bending alone. A thin wing turns its skin with the slope of the beam; the plate has 8 elements along the
   // span, whose chords are off the beam by their length squared times its curvature over 8: 0.007.
@@ -208,8 +208,8 @@ TEST_F(ExampleTest, WingFlutterFollowsTheBeamThatItsPlateWasMadeBy) {
 TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
   GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_flutter", "axial_turbine_stage_H.cgns"));
-  ASSERT_EQ(shell("cd '" + path("turbine_flutter") + "' && '" GRIDMORPH_EXECUTABLE
-                  "' morph turbine_flutter.toml -o s_{step}.cgns"),
+  ASSERT_EQ(shell("cd '" + path("turbine_flutter") +
+                  "' && '" GRIDMORPH_EXECUTABLE "' morph turbine_flutter.toml -o s_{step}.cgns"),
             0)
       << contents(path("err"));
   for (std::string const step : {"03", "09"}) {
@@ -217,7 +217,8 @@ TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
     expect_periodic_copies_move_alike(0);
     expect_fixed("BLADE1");
     double tip = 0;
-    for_patch("BLADE2", "", [&](Index n) { tip = std::max(tip, distance(after.coordinates[n], before.coordinates[n])); });
+    for_patch("BLADE2", "",
+              [&](Index n) { tip = std::max(tip, distance(after.coordinates[n], before.coordinates[n])); });
     EXPECT_GT(tip, 0.002);
     EXPECT_LT(tip, 0.01);
   }

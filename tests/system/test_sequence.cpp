@@ -26,7 +26,7 @@ class SequenceTest : public CommandTest {
   }
   [[nodiscard]] std::string csv() const {
     std::string const text = contents(path("rotation.toml"));
-    auto const at = text.find("file");
+    auto const at = text.find("\nfile");
     auto const begin = text.find('"', at) + 1;
     return text.substr(begin, text.find('"', begin) - begin);
   }

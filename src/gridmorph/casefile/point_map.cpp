@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/detail/hull_distance.hpp>
 #include <gridmorph/casefile/detail/point_levels.hpp>
 #include <gridmorph/casefile/detail/symmetric_eigen.hpp>
 #include <gridmorph/casefile/point_map.hpp>
@@ -5,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace gridmorph {
 
@@ -93,24 +93,21 @@ std::vector<double> weights(std::vector<Vec3> const& offset) {
   return w;
 }
 
-/// How far the position lies beyond all of its neighbours, along the surface or through the volume that they span.
-double beyond(Neighbours const& near) {
+/// From the position to the closest place among its neighbours, along the surface or through the volume that they span;
+/// zero for a position between them.
+Vec3 to_the_edge(Neighbours const& near) {
   Moments const m = even_moments(near);
-  Vec3 inward{0, 0, 0};
+  std::vector<Vec3> spanned_part(near.offset.size());
   double farthest = 0;
-  for (int k = 0; k < 3; ++k) {
-    if (m.variance[k] < spanned * m.largest()) continue;
-    Vec3 const e = casefile::column(m.direction, k);
-    inward += dot(m.centre, e) * e;
+  for (std::size_t i = 0; i < spanned_part.size(); ++i) {
+    farthest = std::max(farthest, norm(near.offset[i]));
+    for (int k = 0; k < 3; ++k) {
+      if (m.variance[k] < spanned * m.largest()) continue;
+      Vec3 const e = casefile::column(m.direction, k);
+      spanned_part[i] += dot(near.offset[i], e) * e;
+    }
   }
-  double const length = norm(inward);
-  if (length == 0) return 0;
-  double nearest = std::numeric_limits<double>::max();
-  for (Vec3 const& o : near.offset) {
-    nearest = std::min(nearest, dot(o, inward) / length);
-    farthest = std::max(farthest, norm(o));
-  }
-  return nearest > at_the_edge * farthest ? nearest : 0;
+  return casefile::closest_in_hull(spanned_part, at_the_edge * farthest);
 }
 
 }  // namespace
@@ -166,20 +163,16 @@ Stencil PointMap::stencil(Vec3 const& q, std::optional<std::size_t> without) con
   Moments const m(near.offset, w);
   std::vector<double> gradient(w.size(), 0.0);
   double const cut = flat_like * m.largest();
+  Vec3 const edge = to_the_edge(near);
+  Vec3 const place = impl_->extrapolation == Extrapolation::nearest ? edge : Vec3{0, 0, 0};
   for (int k = 0; k < 3; ++k) {
     double const lambda = m.variance[k];
     if (!(lambda > 0)) continue;
     Vec3 const e = casefile::column(m.direction, k);
-    double low = 0, high = 0;
-    for (Vec3 const& o : near.offset) {
-      low = std::min(low, dot(o - m.centre, e));
-      high = std::max(high, dot(o - m.centre, e));
-    }
-    if (impl_->extrapolation == Extrapolation::linear) {
-      high = largest_extrapolation * std::max(high, -low);
-      low = -high;
-    }
-    double const step = std::clamp(-dot(m.centre, e), low, high);
+    double reach = 0;
+    for (Vec3 const& o : near.offset) reach = std::max(reach, std::fabs(dot(o - m.centre, e)));
+    double const limit = largest_extrapolation * reach;
+    double const step = std::clamp(dot(place - m.centre, e), -limit, limit);
     // lambda / (lambda^2 + cut^2) is 1 / lambda for directions that the points span and fades to zero for the others.
     double const factor = step * lambda / (lambda * lambda + cut * cut);
     for (std::size_t i = 0; i < w.size(); ++i) gradient[i] += factor * dot(near.offset[i] - m.centre, e);
@@ -187,7 +180,7 @@ Stencil PointMap::stencil(Vec3 const& q, std::optional<std::size_t> without) con
   out.reference = std::int32_t(near.number.front());
   for (std::size_t i = 0; i < w.size(); ++i)
     out.terms.push_back({std::int32_t(near.number[i]), w[i] * (1 + gradient[i]), 0});
-  out.beyond = beyond(near);
+  out.beyond = norm(edge);
   return out;
 }
 

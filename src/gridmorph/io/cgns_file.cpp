@@ -247,6 +247,11 @@ double File::create_text(double parent, std::string const& name, std::string con
   return create(parent, name, label, "C1", {Index(text.size())}, text.data());
 }
 
+void File::remove(Node const& parent, Node const& node) {
+  errno = 0;
+  check(cgio_delete_node(handle_, parent.id, node.id), "removed", node.path);
+}
+
 void File::close() {
   if (handle_ == 0) return;
   int const handle = handle_;

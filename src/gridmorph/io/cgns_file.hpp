@@ -62,6 +62,8 @@ class File {
   /// Adds a node; returns its handle. type "MT": no data.
   double create(double parent, std::string const& name, std::string const& label, std::string const& type = "MT",
                 std::vector<Index> const& dimensions = {}, void const* data = nullptr);
+  /// Takes a node away with all that is below it.
+  void remove(Node const& parent, Node const& node);
   double create_text(double parent, std::string const& name, std::string const& label, std::string const& text);
 
   /// Flushes and closes; throws MachineError when something did not reach the disk.

@@ -24,21 +24,23 @@ std::string grid_name(std::size_t step, std::size_t steps) {
   return "GridCoordinates_" + std::string(std::to_string(steps).size() - number.size(), '0') + number;
 }
 
-void refuse_series(std::string const& path, cgns::Layout const& layout, std::size_t steps) {
+/// A series of several steps is the user's, and cannot go on beside another one; solvers write one of a single step with
+/// steady solutions, which is replaced.
+void refuse_series(cgns::File const& file, cgns::Layout const& layout, std::size_t steps) {
   Problems problems;
   auto const refuse = [&](cgns::Node const& node) {
-    problems.add(path + ", node " + node.path +
+    problems.add(file.path() + ", node " + node.path +
                  ": the file holds a time series already; take it out first, or write one file per step");
   };
   std::set<cgns::Node const*> bases;
   for (auto const& zone : layout.zones) {
     bases.insert(zone.base);
-    if (auto const* node = zone.node->labelled("ZoneIterativeData_t")) refuse(*node);
     for (std::size_t s = 0; s < steps; ++s)
       if (auto const* node = zone.node->child(grid_name(s, steps))) refuse(*node);
   }
   for (auto const* base : bases)
-    if (auto const* node = base->labelled("BaseIterativeData_t")) refuse(*node);
+    for (auto const* node : base->all("BaseIterativeData_t"))
+      if (auto const number = file.integers(*node); number.empty() || number[0] > 1) refuse(*node);
   problems.throw_if_any<IoError>();
 }
 
@@ -83,7 +85,9 @@ struct SeriesWriter::Impl {
       names.resize((s + 1) * name_length, ' ');
     }
     for (auto const& zone : layout.zones) {
+      for (auto const* old : zone.node->all("ZoneIterativeData_t")) file->remove(*zone.node, *old);
       if (done.insert(zone.base).second) {
+        for (auto const* old : zone.base->all("BaseIterativeData_t")) file->remove(*zone.base, *old);
         double const base = file->create(zone.base->id, "BaseIterativeData", "BaseIterativeData_t", "I4", {1}, &count);
         file->create(base, "TimeValues", "DataArray_t", "R8", {Index(steps)}, times.data());
         file->create(base, "IterationValues", "DataArray_t", "I4", {Index(steps)}, number.data());
@@ -136,7 +140,7 @@ SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, 
     auto const tree = file.tree();
     auto const layout = cgns::zones_of(file, tree);
     cgns::check_same_mesh(file, layout, mesh);
-    refuse_series(input, layout, times.size());
+    refuse_series(file, layout, times.size());
   }
   impl_ = std::make_unique<Impl>(input, output, mesh, times);
 }
