@@ -1,5 +1,6 @@
 #include "case_text.hpp"
 
+#include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/casefile/point_field.hpp>
 
 #include <cmath>
@@ -165,6 +166,47 @@ TEST(PointField, ReportsTheMappingDistance) {
   EXPECT_DOUBLE_EQ(m.mean, 0.4 / 3);
   EXPECT_EQ(m.farthest, q[1]);
   EXPECT_NE(describe_mapping(field).find("1 of 3"), std::string::npos);
+}
+
+TEST(PointField, GoesOnBeyondTheEdgeOrNotAsTold) {
+  std::vector<Vec3> plane;
+  for (int j = 0; j < 11; ++j)
+    for (int i = 0; i < 11; ++i) plane.push_back({0.1 * i, 0.1 * j, 0});
+  auto const slope = [](Vec3 const& p) { return Vec3{p.x, 0, 0}; };
+  FieldOptions options;
+  PointField const onward(cloud_of(plane, slope), options);
+  EXPECT_NEAR(at(onward, {1.05, 0.52, 0}).x, 1.05, 1e-10);
+  EXPECT_EQ(onward.mapping().extrapolated, 1);
+  EXPECT_NEAR(onward.mapping().max_beyond, 0.05, 1e-12);
+  options.extrapolation = Extrapolation::nearest;
+  PointField const held(cloud_of(plane, slope), options);
+  EXPECT_NEAR(at(held, {1.05, 0.52, 0}).x, 1, 1e-10);
+  EXPECT_NEAR(at(held, {0.52, 0.48, 0}).x, 0.52, 1e-10) << "inside nothing changes";
+  EXPECT_EQ(held.mapping().extrapolated, 1);
+  options.max_extrapolation = 0.02;
+  PointField const strict(cloud_of(plane, slope), options);
+  EXPECT_NO_THROW(at(strict, {1.01, 0.52, 0}));
+  auto const lines = error_lines<MotionError>([&] { at(strict, {1.05, 0.52, 0}); });
+  EXPECT_TRUE(reported(lines, "d.csv: ", {"beyond the edge of the points", "max_extrapolation = 0.02"}));
+}
+
+TEST(PointField, PositionsBetweenThePointsAreNotExtrapolated) {
+  PointField const field(cloud_of(cylinder(31, 31), wave), {});
+  for (int s = 0; s < 200; ++s) {
+    double const t = 0.05 + 1.45 * ((s * 37) % 200) / 200.0;
+    at(field, {0.02 + 0.96 * s / 200, 1.01 * std::cos(t), 1.01 * std::sin(t)});
+  }
+  EXPECT_EQ(field.mapping().extrapolated, 0);
+}
+
+TEST(PointField, LeaveOneOutFindsThePointThatDoesNotFit) {
+  auto cloud = cloud_of(random_points(500, 11), linear);
+  EXPECT_LT(PointField(cloud, {}).leave_one_out().rms, 5e-3);
+  cloud.displacement[123] += Vec3{0, 5, 0};
+  auto const e = PointField(cloud, {}).leave_one_out();
+  EXPECT_EQ(e.tried, 500);
+  EXPECT_LT(distance(cloud.position[e.worst], cloud.position[123]), 0.25) << "the point itself, or one fitted with it";
+  EXPECT_GT(e.max, 0.3);
 }
 
 TEST(PointField, ScalesLengthsAndAmplitudes) {

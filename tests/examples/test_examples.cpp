@@ -373,6 +373,50 @@ TEST_F(ExampleTest, RotorstatorMovesAllRotorBladesTogether) {
   for (std::string const zone : {"blk2", "blk4", "blk6"}) expect_fixed("K0_1_bc2004", zone);
 }
 
+TEST_F(ExampleTest, WingFlutterFollowsTheBeamThatItsPlateWasMadeBy) {
+  GRIDMORPH_NEEDS("mdo_tutorial_000_vol.cgns");
+  ASSERT_NO_FATAL_FAILURE(morph("wing_flutter", "mdo_tutorial_000_vol.cgns"));
+  expect_fixed("wall");  // the series keeps the baseline as its first grid
+  ASSERT_EQ(
+      shell("cd '" + path("wing_flutter") + "' && '" GRIDMORPH_EXECUTABLE "' morph wing_flutter.toml -o s_{step}.cgns"),
+      0)
+      << contents(path("err"));
+  // First step: bending alone. A thin wing turns its skin with the slope of the beam; the plate has 8 elements along the
+  // span, whose chords are off the beam by their length squared times its curvature over 8: 0.007.
+  after = read_mesh(path("wing_flutter/s_01.cgns"));
+  constexpr double beta = 1.8751040687, sigma = 0.7340955137;
+  for_patch("wall", "", [&](Index n) {
+    Vec3 const x = before.coordinates[n], u = after.coordinates[n] - x;
+    double const h = x.z / 14, b = beta * h;
+    double const w = (std::cosh(b) - std::cos(b) - sigma * (std::sinh(b) - std::sin(b))) / 2;
+    double const slope = beta / 14 * (std::sinh(b) + std::sin(b) - sigma * (std::cosh(b) - std::cos(b))) / 2;
+    EXPECT_NEAR(u.y, w, 0.015) << describe_node(before, n);
+    EXPECT_NEAR(u.z, -x.y * slope, 0.01) << describe_node(before, n);
+    EXPECT_NEAR(u.x, 0, 0.003) << describe_node(before, n);
+  });
+  expect_interfaces_closed();
+  expect_fixed("far");
+}
+
+TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
+  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
+  ASSERT_NO_FATAL_FAILURE(morph("turbine_flutter", "axial_turbine_stage_H.cgns"));
+  ASSERT_EQ(shell("cd '" + path("turbine_flutter") +
+                  "' && '" GRIDMORPH_EXECUTABLE "' morph turbine_flutter.toml -o s_{step}.cgns"),
+            0)
+      << contents(path("err"));
+  for (std::string const step : {"03", "09"}) {
+    after = read_mesh(path("turbine_flutter/s_" + step + ".cgns"));
+    expect_periodic_copies_move_alike(0);
+    expect_fixed("BLADE1");
+    double tip = 0;
+    for_patch("BLADE2", "",
+              [&](Index n) { tip = std::max(tip, distance(after.coordinates[n], before.coordinates[n])); });
+    EXPECT_GT(tip, 0.002);
+    EXPECT_LT(tip, 0.01);
+  }
+}
+
 TEST_F(ExampleTest, ScriptSaysSoWhenThereAreNoMeshes) {
   EXPECT_EQ(shell(run_command(folder_.string(), "")), 2);
   EXPECT_NE(contents(path("out")).find("skipped: no multi.cgns"), std::string::npos);

@@ -29,6 +29,8 @@ using casefile::TableReader;
 constexpr std::uintmax_t largest_case_file = 4u << 20;
 /// The parser recurses into brackets; nobody nests them this deep.
 constexpr int deepest_nesting = 64;
+/// Steps are numbered with up to five digits.
+constexpr int largest_sequence = 99999;
 
 std::string read_text(std::filesystem::path const& path) {
   std::error_code error;
@@ -147,6 +149,28 @@ void read_mesh(TableReader& root, CaseFile& out) {
   mesh->finish();
 }
 
+void read_sequence(TableReader& root, CaseFile& out) {
+  auto table = root.table("sequence");
+  if (!table) return;
+  SequenceOptions sequence;
+  sequence.steps = table->integer("steps").value_or(1);
+  table->require("steps", "steps = 32, the number of meshes");
+  if (sequence.steps < 1 || sequence.steps > largest_sequence)
+    table->problem("steps", fmt::format("must be 1 to {}, found {}", largest_sequence, sequence.steps));
+  auto const positive = [&](std::string const& key, double& value) {
+    value = table->number(key).value_or(1);
+    if (value <= 0) table->problem(key, fmt::format("must be positive, found {}", value));
+  };
+  positive("period", sequence.period);
+  positive("periods", sequence.periods);
+  if (auto const output = table->string("output"))
+    sequence.output = (table->context().directory / *output).lexically_normal();
+  if (!sequence.output.empty() && sequence.output == out.input)
+    table->problem("output", "is the input; give another file name, the baseline is never overwritten");
+  table->finish();
+  out.sequence = sequence;
+}
+
 void read_motion(TableReader& root, CaseFile& out) {
   if (auto const word = root.choice("default", {"type", "error"})) out.motion.strict = *word == 1;
   if (auto conformity = root.table("conformity")) {
@@ -166,6 +190,10 @@ void read_motion(TableReader& root, CaseFile& out) {
     root.context().problems.add(root.context().file +
                                 ": no [[motion]] rule; add at least one, for example [[motion]] with "
                                 "patches = [\"blade\"] and rule = \"rigid\"");
+  else if (out.sequence && out.modal.empty() && root.context().problems.empty())
+    root.context().problem(
+        root.line("sequence"),
+        "[sequence]: no rule has modes, so that all steps would be alike; add modes to a rule \"field\"");
 }
 
 BoundaryLayer read_boundary_layer(TableReader& table) {
@@ -263,12 +291,23 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   out.source = path;
   TableReader root(context, document, "");
   read_mesh(root, out);
+  read_sequence(root, out);
   read_motion(root, out);
   read_plan(root, out);
   read_results(root, out);
   root.finish();
   context.problems.throw_if_any<ConfigError>();
   return out;
+}
+
+Motion motion_at(CaseFile const& case_file, double periods) {
+  Motion motion = case_file.motion;
+  for (auto const& use : case_file.modal)
+    std::get<FunctionRule>(motion.rules[use.rule].rule).function =
+        [field = use.field, periods](std::span<Vec3 const> points, std::span<Vec3> u) {
+          field->at(periods, points, u);
+        };
+  return motion;
 }
 
 CaseFile read_case_file(std::filesystem::path const& path) { return parse_case_file(read_text(path), path); }

@@ -3,6 +3,7 @@
 // The keys are described in docs/case_file.md.
 #pragma once
 
+#include <gridmorph/casefile/modal_field.hpp>
 #include <gridmorph/casefile/point_field.hpp>
 #include <gridmorph/casefile/wheel_case.hpp>
 #include <gridmorph/motion/motion.hpp>
@@ -35,6 +36,24 @@ struct FieldUse {
   std::shared_ptr<PointField const> field;
 };
 
+/// One `field` rule with modes, whose displacement depends on time.
+struct ModalUse {
+  std::size_t rule = 0;  ///< number in Motion::rules
+  std::shared_ptr<ModalField const> field;
+};
+
+/// [sequence]: meshes over time.
+struct SequenceOptions {
+  int steps = 0;
+  double period = 1;             ///< [time]
+  double periods = 1;            ///< that the steps are spread over
+  std::filesystem::path output;  ///< with "{step}" in its name: one file per step; without: one file with a series
+
+  /// Of step 0 ... steps - 1; the first one at 0, the last one a step short of all periods.
+  [[nodiscard]] double periods_at(int step) const { return periods * step / steps; }
+  [[nodiscard]] double time_at(int step) const { return period * periods_at(step); }
+};
+
 struct CaseFile {
   std::filesystem::path source;  ///< the case file itself, as given
   std::filesystem::path input;   ///< relative paths are already joined with the directory of the case file
@@ -46,7 +65,12 @@ struct CaseFile {
   OutputOptions output_options;
   std::vector<FieldUse> fields;
   std::optional<WheelCase> wheel;  ///< [wheel], for `gridmorph wheel`
+  std::vector<ModalUse> modal;
+  std::optional<SequenceOptions> sequence;
 };
+
+/// The rules of the case file at a time: those with modes as they are then, all others as they stand.
+Motion motion_at(CaseFile const& case_file, double periods);
 
 /// Reads a case file and the displacement files that it names. Throws one ConfigError that lists every problem, each as
 /// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.

@@ -9,6 +9,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include <optional>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -29,6 +30,24 @@ struct Engine::Impl {
   PreparedMorph prepared;
   std::vector<std::string> morph_notes;  ///< of the last morph()
   StepTimes times;
+  std::optional<Morpher<Exec>> kept_morpher;
+
+  /// Made once: tables, workspace and line parameters serve every displacement.
+  Morpher<Exec> const& morpher(Exec const& exec) {
+    Coordinates const& x = mesh.coordinates;
+    if (!kept_morpher)
+      kept_morpher.emplace(exec, plan(), kernels::Field<double const>{x.x.data(), x.y.data(), x.z.data()});
+    return *kept_morpher;
+  }
+  void apply(Exec const& exec, std::vector<Vec3> const& boundary, Coordinates const& morphed) {
+    Coordinates const& x = mesh.coordinates;
+    kernels::Field<double const> const from{x.x.data(), x.y.data(), x.z.data()};
+    kernels::Field<double> const to{morphed.x.data(), morphed.y.data(), morphed.z.data()};
+    Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
+                                                                                                       boundary.size());
+    morpher(exec).apply(exec, given, from, to);
+    exec.fence();
+  }
 
   Impl(Mesh& m, CaseFile const& c) : mesh(m), prepared(prepare(m, c.motion, c.plan)) {
     times = {
@@ -76,18 +95,21 @@ Coordinates Engine::morph(Terminal& terminal) const {
   if (auto const note = trim_note(impl_->mesh, impl_->plan(), boundary)) impl_->morph_notes.push_back(*note);
   impl_->times.push_back({"boundary", watch.lap()});
   terminal.progress("morphing the volume");
-  Exec const exec;
-  Coordinates const& x = impl_->mesh.coordinates;
-  Coordinates morphed(x.size());
-  kernels::Field<double const> const from{x.x.data(), x.y.data(), x.z.data()};
-  kernels::Field<double> const to{morphed.x.data(), morphed.y.data(), morphed.z.data()};
-  Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
-                                                                                                     boundary.size());
-  Morpher<Exec> const morpher(exec, impl_->plan(), from);
-  morpher.apply(exec, given, from, to);
-  exec.fence();
+  Coordinates morphed(impl_->mesh.coordinates.size());
+  impl_->apply(Exec(), boundary, morphed);
   impl_->times.push_back({"morph", watch.lap(), true});
   return morphed;
+}
+
+void Engine::morph_into(Motion const& motion, Coordinates const& morphed) const {
+  PreparedMorph const& prepared = impl_->prepared;
+  ResolvedMotion resolved = prepared.motion;
+  for (std::size_t r = 0; r < motion.rules.size(); ++r) resolved.rules[r].rule = motion.rules[r].rule;
+  // Slides and followers take their motion over from the blade's as it is now.
+  SurfaceMotion const surface(impl_->mesh, resolved);
+  auto const boundary = evaluate_boundary(impl_->mesh, prepared.planned.boundary, impl_->plan(), resolved, surface,
+                                          prepared.links.mesh_size);
+  impl_->apply(Exec(), boundary, morphed);
 }
 
 }  // namespace gridmorph::cli

@@ -38,6 +38,10 @@ class Engine {
 
   /// Evaluates the rules and moves the mesh. Memory: 24 bytes per node for the result. Throws MotionError.
   [[nodiscard]] Coordinates morph(Terminal& terminal) const;
+  /// Moves the mesh from the baseline by other displacements: `motion` has the rules that the engine was made for, and only
+  /// the displacements that they give may differ (another time of a sequence). Plan, tables and line parameters are kept.
+  /// `morphed`: room for every node. Throws MotionError.
+  void morph_into(Motion const& motion, Coordinates const& morphed) const;
   /// The worst cell of every stage, in order.
   [[nodiscard]] std::vector<StageResult> stage_results(Coordinates const& morphed) const;
   /// How long each step so far took: topology, rules, plan, and boundary and morph once morph() has run.

@@ -1,6 +1,8 @@
+#include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/cli/sequence.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
@@ -46,6 +48,8 @@ std::string field_name(Measure measure) {
   return out;
 }
 
+}  // namespace
+
 OutputFields output_fields(CaseFile const& case_file, MorphResult const& result) {
   OutputFields fields;
   fields.displacement = case_file.output_options.displacement;
@@ -59,6 +63,8 @@ OutputFields output_fields(CaseFile const& case_file, MorphResult const& result)
         {field_name(field_measures[m]), std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0))});
   return fields;
 }
+
+namespace {
 
 nlohmann::json stages_json(MorphResult const& result) {
   nlohmann::json stages = nlohmann::json::array();
@@ -85,34 +91,45 @@ std::string stages_text(MorphResult const& result) {
   return text;
 }
 
-std::string report_text(CaseFile const& case_file, MorphResult const& result, bool written) {
+}  // namespace
+
+nlohmann::json report_json(CaseFile const& case_file, MorphResult const& result) {
   nlohmann::json json = quality_json(result.before, result.after, thresholds_of(case_file));
   json["gridmorph"] = GRIDMORPH_VERSION;
   json["case_file"] = case_file.source.string();
   json["input"] = case_file.input.string();
-  json["output"] = written ? nlohmann::json(case_file.output.string()) : nlohmann::json(nullptr);
   json["nodes"] = result.mesh.n_nodes();
   json["times"] = times_json(result.times, result.mesh.n_nodes());
   json["notes"] = result.notes;
   json["stages"] = stages_json(result);
   json["fields"] = nlohmann::json::array();
   for (auto const& use : case_file.fields) {
-    auto const m = use.field->mapping();
-    json["fields"].push_back({{"rule", use.where},
-                              {"file", use.field->source()},
-                              {"evaluated", m.evaluated},
-                              {"coincident", m.coincident},
-                              {"mapping_distance", {{"mean", m.mean}, {"max", m.max}}}});
+    json["fields"].push_back(mapping_json(*use.field));
+    json["fields"].back()["rule"] = use.where;
   }
+  return json;
+}
+
+namespace {
+
+std::string report_text(CaseFile const& case_file, MorphResult const& result, bool written) {
+  nlohmann::json json = report_json(case_file, result);
+  json["output"] = written ? nlohmann::json(case_file.output.string()) : nlohmann::json(nullptr);
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-/// The mesh that comes out has cells turned inside out that were sound in the baseline.
-bool newly_inverted(MorphResult const& result) {
-  return result.after.near_field.newly_inverted + result.after.far_field.newly_inverted > 0;
+}  // namespace
+
+std::string format_result(CaseFile const& case_file, MorphResult const& result) {
+  std::string text = stages_text(result);
+  text += (text.empty() ? "" : "\n") + format_table(result.before, result.after, thresholds_of(case_file));
+  text += "\n" + format_short_table(result.before, result.after);
+  return text + "\n" + format_times(result.times, result.mesh.n_nodes());
 }
 
-}  // namespace
+Index newly_inverted(QualityReport const& quality) {
+  return quality.near_field.newly_inverted + quality.far_field.newly_inverted;
+}
 
 int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
   check_output(case_file.output, "output", case_file.input);
@@ -124,7 +141,7 @@ int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
   }
 
   MorphResult result = run_morph(case_file, terminal);
-  bool const written = !newly_inverted(result) || case_file.guard.write_inverted;
+  bool const written = newly_inverted(result.after) == 0 || case_file.guard.write_inverted;
   OutputFields fields;
   if (written) {
     Stopwatch watch;
@@ -149,10 +166,7 @@ int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
 
   std::string text;
   for (auto const& note : result.notes) text += "note: " + note + "\n";
-  text += stages_text(result);
-  text += (text.empty() ? "" : "\n") + format_table(result.before, result.after, thresholds_of(case_file));
-  text += "\n" + format_short_table(result.before, result.after);
-  text += "\n" + format_times(result.times, result.mesh.n_nodes());
+  text += format_result(case_file, result);
   if (written) text += fmt::format("\nwrote {}\n", case_file.output.string());
   if (report) text += fmt::format("wrote {}\n", report->string());
   terminal.say(text);
@@ -170,12 +184,13 @@ int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
 
 int run_morph_command(CommandLine const& options, Terminal& terminal) {
   CaseFile case_file = read_case_file(options.input);
-  if (options.output) case_file.output = *options.output;
+  if (options.output) (case_file.sequence ? case_file.sequence->output : case_file.output) = *options.output;
   if (options.report) case_file.output_options.report = *options.report;
   if (options.dry_run) {
     terminal.result(run_plan(case_file, terminal));
     return done;
   }
+  if (case_file.sequence) return morph_sequence(case_file, terminal);
   if (case_file.output.empty())
     throw ConfigError(fmt::format("{}: no output; add output = \"morphed.cgns\" to [mesh] or give --output FILE",
                                   options.input.string()));

@@ -3,8 +3,22 @@
 
 #include <gridmorph/cli/terminal.hpp>
 #include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
 
 namespace gridmorph::cli {
+
+/// What [output] adds to the output mesh.
+OutputFields output_fields(CaseFile const& case_file, MorphResult const& result);
+/// The report, less the name of the output.
+nlohmann::json report_json(CaseFile const& case_file, MorphResult const& result);
+/// Stages, quality tables and times for the terminal.
+std::string format_result(CaseFile const& case_file, MorphResult const& result);
+/// Cells turned inside out that were sound in the baseline.
+Index newly_inverted(QualityReport const& quality);
 
 /// Morphs, writes mesh and report, prints the quality table. Returns done or falls_short. Throws ConfigError before any
 /// work when an output cannot be written where it should.

@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
@@ -48,30 +49,51 @@ QualityThresholds thresholds_of(CaseFile const& case_file) {
   return out;
 }
 
-MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
+void add_mapping_notes(CaseFile const& case_file, std::vector<std::string>& notes) {
+  for (auto const& use : case_file.fields) {
+    notes.insert(notes.end(), use.field->notes().begin(), use.field->notes().end());
+    notes.push_back(use.where + ": " + describe_mapping(*use.field));
+  }
+}
+
+QualityMeter::QualityMeter(Mesh const& mesh, CaseFile const& case_file, Engine const& engine) : mesh_(mesh) {
+  input_.coordinates = views(mesh.coordinates);
+  input_.near_field = mask_view(engine.near_field());
+  input_.walls = wall_faces(mesh, measured_walls(mesh, case_file));
+}
+
+QualityReport QualityMeter::baseline() const { return measure_quality(Exec(), mesh_, input_); }
+
+QualityReport QualityMeter::morphed(Coordinates const& morphed) const {
+  QualityInput<Kokkos::HostSpace> input = input_;
+  input.baseline = input_.coordinates;
+  input.coordinates = views(morphed);
+  return measure_quality(Exec(), mesh_, input);
+}
+
+MorphResult read_baseline(CaseFile const& case_file) {
   MorphResult out;
+  out.mesh = read_mesh(case_file.input.string());
+  return out;
+}
+
+MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   Stopwatch watch;
   terminal.progress("reading " + case_file.input.string());
-  out.mesh = read_mesh(case_file.input.string());
+  MorphResult out = read_baseline(case_file);
   out.times.push_back({"read", watch.lap(), true});
   Engine const engine(out.mesh, case_file, terminal);
   out.morphed = engine.morph(terminal);
   out.notes = engine.notes();
-  for (auto const& use : case_file.fields) out.notes.push_back(use.where + ": " + describe_mapping(*use.field));
+  add_mapping_notes(case_file, out.notes);
 
   out.times.insert(out.times.end(), engine.times().begin(), engine.times().end());
   watch.lap();
   terminal.progress("measuring quality");
   out.stages = engine.stage_results(out.morphed);
-  Exec const exec;
-  QualityInput<Kokkos::HostSpace> input;
-  input.coordinates = views(out.mesh.coordinates);
-  input.near_field = mask_view(engine.near_field());
-  input.walls = wall_faces(out.mesh, measured_walls(out.mesh, case_file));
-  out.before = measure_quality(exec, out.mesh, input);
-  input.baseline = input.coordinates;
-  input.coordinates = views(out.morphed);
-  out.after = measure_quality(exec, out.mesh, input);
+  QualityMeter const meter(out.mesh, case_file, engine);
+  out.before = meter.baseline();
+  out.after = meter.morphed(out.morphed);
   out.shortfalls = shortfalls(out.before, out.after, thresholds_of(case_file));
   out.times.push_back({"quality", watch.lap(), true});
   return out;

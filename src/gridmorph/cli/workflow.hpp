@@ -27,6 +27,25 @@ struct MorphResult {
   StepTimes times;                    ///< read to quality, in order
 };
 
+/// A result that has the mesh of the case file and nothing else yet.
+MorphResult read_baseline(CaseFile const& case_file);
+
+/// How far the nodes were from the models of `field` rules, and what was left out of these.
+void add_mapping_notes(CaseFile const& case_file, std::vector<std::string>& notes);
+
+/// Quality of a mesh before and after a morph: the walls and the near field of a case file.
+class QualityMeter {
+ public:
+  /// `mesh` must outlive the meter.
+  QualityMeter(Mesh const& mesh, CaseFile const& case_file, Engine const& engine);
+  [[nodiscard]] QualityReport baseline() const;
+  [[nodiscard]] QualityReport morphed(Coordinates const& morphed) const;
+
+ private:
+  Mesh const& mesh_;
+  QualityInput<Kokkos::HostSpace> input_;
+};
+
 /// Reads the mesh, plans, morphs and measures. Throws the errors of all of these; writes nothing.
 MorphResult run_morph(CaseFile const& case_file, Terminal& terminal);
 

@@ -112,6 +112,11 @@ Node File::tree() const {
   return root;
 }
 
+void File::load_children(Node& node) const {
+  node.children.clear();
+  load_children(node, max_depth - 1);
+}
+
 void File::load_children(Node& node, int depth) const {
   int count = 0;
   check(cgio_number_children(handle_, node.id, &count), "listed", node.path);
@@ -240,6 +245,11 @@ double File::create(double parent, std::string const& name, std::string const& l
 
 double File::create_text(double parent, std::string const& name, std::string const& label, std::string const& text) {
   return create(parent, name, label, "C1", {Index(text.size())}, text.data());
+}
+
+void File::remove(Node const& parent, Node const& node) {
+  errno = 0;
+  check(cgio_delete_node(handle_, parent.id, node.id), "removed", node.path);
 }
 
 void File::close() {

@@ -42,6 +42,8 @@ class File {
 
   /// The nodes that describe a mesh, without their data. Solutions, sections and the like are listed, not entered.
   [[nodiscard]] Node tree() const;
+  /// Enters a node that tree() only lists: its children, without theirs.
+  void load_children(Node& node) const;
 
   /// "R8", "I4", "C1", "MT", ...
   [[nodiscard]] std::string type(Node const& node) const;
@@ -60,6 +62,8 @@ class File {
   /// Adds a node; returns its handle. type "MT": no data.
   double create(double parent, std::string const& name, std::string const& label, std::string const& type = "MT",
                 std::vector<Index> const& dimensions = {}, void const* data = nullptr);
+  /// Takes a node away with all that is below it.
+  void remove(Node const& parent, Node const& node);
   double create_text(double parent, std::string const& name, std::string const& label, std::string const& text);
 
   /// Flushes and closes; throws MachineError when something did not reach the disk.

@@ -1,9 +1,8 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_layout.hpp>
-#include <gridmorph/io/extrude.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_file.hpp>
 
 #include <algorithm>
@@ -13,27 +12,6 @@ namespace gridmorph {
 namespace {
 
 std::array<double const*, 3> components(Coordinates const& c) { return {c.x.data(), c.y.data(), c.z.data()}; }
-
-/// The file must hold the mesh it is said to hold; also refuses coordinates that live in another file.
-void check_same_mesh(cgns::File const& file, cgns::Layout const& layout, Mesh const& mesh) {
-  Problems problems;
-  if (layout.zones.size() != mesh.zones.size())
-    problems.add(file.path() + ": holds " + std::to_string(layout.zones.size()) + " zones, but the mesh has " +
-                 std::to_string(mesh.zones.size()) + "; give the file that the mesh was read from");
-  else
-    for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
-      auto const& found = layout.zones[z];
-      if (found.name != mesh.zones[z].name || found.mesh_extent() != mesh.zones[z].extent)
-        problems.add(file.path() + ": zone '" + found.name + "' is not zone '" + mesh.zones[z].name +
-                     "' of the mesh, or has another size; give the file that the mesh was read from");
-      for (auto const* array : found.array)
-        if (array && array->linked)
-          problems.add(file.path() + ", node " + array->path +
-                       ": is a link to another place, which must not be changed; write the mesh into one file without "
-                       "links first");
-    }
-  problems.throw_if_any<IoError>();
-}
 
 void check_sizes(Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields) {
   auto const expect = [](std::string const& what, Index found, Index expected) {
@@ -45,18 +23,6 @@ void check_sizes(Mesh const& mesh, Coordinates const& morphed, OutputFields cons
   if (fields.displacement) expect("the array of baseline coordinates", mesh.coordinates.size(), mesh.n_nodes());
   for (auto const& f : fields.nodes) expect("node field '" + f.name + "'", Index(f.values.size()), mesh.n_nodes());
   for (auto const& f : fields.cells) expect("cell field '" + f.name + "'", Index(f.values.size()), mesh.n_cells());
-}
-
-/// Calls put(values) with those of a zone's node values that the file has: all of them, or plane 0 of a 2-D zone.
-template <class Put>
-void with_file_nodes(cgns::ZoneLayout const& layout, Zone const& zone, double const* source, std::vector<double>& plane,
-                     Put put) {
-  if (layout.flat_axis < 0) return put(source);
-  plane.clear();
-  auto const p = cgns::plane_steps(zone, layout.flat_axis);
-  for (int b = 0; b < zone.extent[p.axis[1]]; ++b)
-    for (int a = 0; a < zone.extent[p.axis[0]]; ++a) plane.push_back(source[a * p.step[0] + b * p.step[1]]);
-  put(plane.data());
 }
 
 class SolutionWriter {
@@ -94,12 +60,13 @@ void write_node_fields(cgns::File& file, cgns::ZoneLayout const& layout, Mesh co
       if (!layout.array[c]) continue;
       for (Index n = 0; n < zone.size(); ++n)
         difference[n] = after[c][zone.first_node + n] - before[c][zone.first_node + n];
-      with_file_nodes(layout, zone, difference.data(), plane, [&](double const* v) { solution.add(names[c], v); });
+      cgns::with_file_nodes(layout, zone, difference.data(), plane,
+                            [&](double const* v) { solution.add(names[c], v); });
     }
   }
   for (auto const& field : fields.nodes)
-    with_file_nodes(layout, zone, field.values.data() + zone.first_node, plane,
-                    [&](double const* v) { solution.add(field.name, v); });
+    cgns::with_file_nodes(layout, zone, field.values.data() + zone.first_node, plane,
+                          [&](double const* v) { solution.add(field.name, v); });
 }
 
 void write_cell_fields(cgns::File& file, cgns::ZoneLayout const& layout, Index first_cell, OutputFields const& fields) {
@@ -118,13 +85,6 @@ std::uint64_t bytes_needed(Mesh const& mesh, OutputFields const& fields) {
              (node_fields * std::uint64_t(mesh.n_nodes()) + fields.cells.size() * std::uint64_t(mesh.n_cells()));
 }
 
-cgns::Layout zones_of(cgns::File const& file, cgns::Node const& tree) {
-  Problems problems;
-  auto layout = cgns::find_zones(file, tree, problems);
-  problems.throw_if_any<IoError>();
-  return layout;
-}
-
 }  // namespace
 
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
@@ -136,7 +96,7 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   {
     cgns::File const file(input, cgns::File::Mode::read);
     auto const tree = file.tree();
-    check_same_mesh(file, zones_of(file, tree), mesh);
+    cgns::check_same_mesh(file, cgns::zones_of(file, tree), mesh);
   }
 
   io::OutputFile target(output);
@@ -145,15 +105,15 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree();
-    auto const layout = zones_of(file, tree);
+    auto const layout = cgns::zones_of(file, tree);
     std::vector<double> plane;
     Index first_cell = 0;
     for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
       auto const& zone = mesh.zones[z];
       auto const arrays = components(morphed);
       for (int c = 0; c < 3; ++c)
-        with_file_nodes(layout.zones[z], zone, arrays[c] + zone.first_node, plane,
-                        [&](double const* v) { write_component(file, layout.zones[z], c, v); });
+        cgns::with_file_nodes(layout.zones[z], zone, arrays[c] + zone.first_node, plane,
+                              [&](double const* v) { write_component(file, layout.zones[z], c, v); });
       write_node_fields(file, layout.zones[z], mesh, zone, morphed, fields);
       write_cell_fields(file, layout.zones[z], first_cell, fields);
       first_cell += Index(zone.extent[0] - 1) * (zone.extent[1] - 1) * (zone.extent[2] - 1);

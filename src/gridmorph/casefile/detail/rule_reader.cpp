@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/detail/field_reader.hpp>
 #include <gridmorph/casefile/detail/rule_reader.hpp>
 #include <gridmorph/casefile/detail/sections_reader.hpp>
 #include <gridmorph/casefile/formula.hpp>
@@ -148,33 +149,6 @@ Rule read_formula(TableReader& table, RuleContext const& shared) {
                   "direction = [1, 0, 0] } to [mesh]");
   return make_formula(round ? FormulaFrame::cylindrical : FormulaFrame::cartesian, components, constants,
                       shared.axis.value_or(Axis{}), table.context().problems);
-}
-
-Rule read_field(TableReader& table, CaseFile& out) {
-  auto const file = table.string("file");
-  table.require("file", "file = \"displacement.csv\" (columns x,y,z,dx,dy,dz)");
-  FieldOptions options;
-  if (auto const s = table.number("length_scale")) {
-    options.length_scale = *s;
-    if (*s <= 0) table.problem("length_scale", fmt::format("must be positive, found {}", *s));
-  }
-  options.factor = table.number("factor").value_or(1);
-  if (auto const d = table.number("max_distance")) {
-    options.max_distance = *d;
-    if (*d <= 0) table.problem("max_distance", fmt::format("must be positive, found {}; remove it for no limit", *d));
-  }
-  if (!file) return FixedRule{};
-  try {
-    auto const path = table.context().directory / *file;
-    auto const field = std::make_shared<PointField const>(read_point_cloud(path.lexically_normal()), options);
-    out.fields.push_back({table.context().where(table.line()), field});
-    return FunctionRule{
-        fmt::format("field {} ({} points)", *file, field->size()),
-        [field](std::span<Vec3 const> points, std::span<Vec3> displacement) { (*field)(points, displacement); }};
-  } catch (ConfigError const& e) {
-    table.problem("file", e.what());
-    return FixedRule{};
-  }
 }
 
 std::vector<std::string> read_of(TableReader& table) {

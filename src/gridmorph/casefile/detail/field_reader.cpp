@@ -1,0 +1,125 @@
+#include <gridmorph/casefile/detail/field_reader.hpp>
+#include <gridmorph/casefile/modal_field.hpp>
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <vector>
+
+namespace gridmorph::casefile {
+
+namespace {
+
+FieldOptions read_options(TableReader& table) {
+  FieldOptions options;
+  if (auto const s = table.number("length_scale")) {
+    options.length_scale = *s;
+    if (*s <= 0) table.problem("length_scale", fmt::format("must be positive, found {}", *s));
+  }
+  options.factor = table.number("factor").value_or(1);
+  if (auto const d = table.number("max_distance")) {
+    options.max_distance = *d;
+    if (*d <= 0) table.problem("max_distance", fmt::format("must be positive, found {}; remove it for no limit", *d));
+  }
+  if (auto const word = table.choice("extrapolation", {"linear", "nearest"}))
+    options.extrapolation = Extrapolation(*word);
+  if (auto const d = table.number("max_extrapolation")) {
+    options.max_extrapolation = *d;
+    if (*d < 0)
+      table.problem("max_extrapolation", fmt::format("must not be negative, found {}; remove it for no limit", *d));
+  }
+  if (auto const word = table.choice("offset", {"turn", "translate"})) options.turn_offset = *word == 0;
+  return options;
+}
+
+/// Reads a model; problems of its files are noted at the key `file`.
+std::optional<StructuralModel> read_model(TableReader& table, std::optional<std::string> const& elements,
+                                          std::optional<std::string> const& solution) {
+  auto const file = table.string("file");
+  if (!file) return std::nullopt;
+  auto const path = [&](std::string const& name) { return (table.context().directory / name).lexically_normal(); };
+  ModelFiles files{path(*file), std::nullopt, solution};
+  if (elements) files.elements = path(*elements);
+  try {
+    return read_structural_model(files);
+  } catch (Error const& e) {
+    table.problem("file", e.what());
+    return std::nullopt;
+  }
+}
+
+std::optional<Mode> read_mode(TableReader& table, std::optional<std::string> const& shared_elements,
+                              double const* period) {
+  Mode mode;
+  table.require("file", "file = \"mode_1.csv\", the displacement of the mode shape");
+  mode.amplitude = table.number("amplitude").value_or(1);
+  mode.phase_turns = table.number("phase_deg").value_or(0) / 360;
+  mode.harmonic = table.number("harmonic").value_or(1);
+  if (auto const frequency = table.number("frequency")) {
+    if (table.has("harmonic"))
+      table.problem("frequency",
+                    "stands beside harmonic, which says the same in cycles per period; remove one of them");
+    if (!period) table.problem("frequency", "needs the period; add period to [sequence]");
+    mode.harmonic = *frequency * (period ? *period : 1);
+  }
+  auto const own = table.string("elements");
+  auto const solution = table.string("solution");
+  auto model = read_model(table, own ? own : shared_elements, solution);
+  table.finish();
+  if (!model) return std::nullopt;
+  mode.model = std::move(*model);
+  return mode;
+}
+
+Rule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& options, std::optional<StructuralModel> mean,
+                std::vector<Mode> modes) {
+  auto const n_modes = modes.size();
+  auto const field = std::make_shared<ModalField const>(std::move(mean), std::move(modes), options);
+  for (auto const& one : field->fields()) out.fields.push_back({table.context().where(table.line()), one});
+  FunctionRule rule;
+  rule.description = fmt::format("field of {} modes", n_modes);
+  rule.function = [field](std::span<Vec3 const> points, std::span<Vec3> u) { field->at(0, points, u); };
+  out.modal.push_back({out.motion.rules.size(), field});
+  return rule;
+}
+
+}  // namespace
+
+Rule read_field(TableReader& table, CaseFile& out) {
+  FieldOptions const options = read_options(table);
+  auto const elements = table.string("elements");
+  auto const solution = table.string("solution");
+  double const* const period = out.sequence ? &out.sequence->period : nullptr;
+  bool const has_modes = table.has("modes");
+  std::vector<Mode> modes;
+  bool good = true;
+  for (auto& mode_table : table.tables("modes")) {
+    auto mode = read_mode(mode_table, elements, period);
+    good = good && mode;
+    if (mode) modes.push_back(std::move(*mode));
+  }
+  if (has_modes && good && modes.empty()) {
+    table.problem("modes", "the list is empty; give { file = \"mode_1.csv\" } or remove it");
+    good = false;
+  }
+  if (!has_modes) table.require("file", "file = \"displacement.csv\" (columns x,y,z,dx,dy,dz)");
+  auto const file = table.string("file");
+  auto model = read_model(table, elements, solution);
+  if (!good || (!model && (file || !has_modes))) return FixedRule{};
+  try {
+    if (has_modes) return modal_rule(table, out, options, std::move(model), std::move(modes));
+    if (!model->nodes.imaginary.empty())
+      model->notes.push_back(fmt::format("{}: the imaginary part is not used; name the file in modes", *file));
+    auto const field = std::make_shared<PointField const>(std::move(*model), options);
+    out.fields.push_back({table.context().where(table.line()), field});
+    return FunctionRule{
+        fmt::format("field {} ({} points{})", *file, field->size(),
+                    field->n_elements() > 0 ? fmt::format(", {} elements", field->n_elements()) : ""),
+        [field](std::span<Vec3 const> points, std::span<Vec3> displacement) { (*field)(points, displacement); }};
+  } catch (Error const& e) {
+    table.problem("file", e.what());
+    return FixedRule{};
+  }
+}
+
+}  // namespace gridmorph::casefile

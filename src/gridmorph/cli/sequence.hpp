@@ -1,0 +1,15 @@
+// A sequence of meshes over time from one plan.
+#pragma once
+
+#include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/cli/terminal.hpp>
+
+namespace gridmorph::cli {
+
+/// Morphs every step of [sequence] from the baseline, measures it, writes it, prints a table of the steps and the quality
+/// of the worst one, and writes the report. Nothing is written when a step has cells inverted that were not in the baseline,
+/// unless the case file says so. Returns done or falls_short; throws ConfigError before any work when an output cannot be
+/// written where it should.
+int morph_sequence(CaseFile const& case_file, Terminal& terminal);
+
+}  // namespace gridmorph::cli

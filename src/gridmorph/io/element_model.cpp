@@ -1,0 +1,193 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/element_faces.hpp>
+#include <gridmorph/io/element_model.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr std::int64_t mixed = 20;
+constexpr std::array<char const*, 3> coordinate_names{"CoordinateX", "CoordinateY", "CoordinateZ"};
+constexpr std::array<char const*, 3> displacement_names{"DisplacementX", "DisplacementY", "DisplacementZ"};
+
+/// Reads one file, zone after zone; problems of the mesh are collected, damage is thrown.
+class ModelReader {
+ public:
+  ModelReader(std::string const& path, std::string solution)
+      : file_(path, cgns::File::Mode::read), wanted_(std::move(solution)) {}
+
+  ElementModel read() {
+    cgns::Node const tree = file_.tree();
+    for (auto const* base : tree.all("CGNSBase_t"))
+      for (auto const* zone : base->all("Zone_t")) read_zone(*zone);
+    if (zones_ == 0) throw IoError(file_.path() + ": holds no Zone_t node; there is no model in it");
+    problems_.throw_if_any<MeshError>();
+    // Shells are the surface that the analyst chose; the outside of solids is taken where there are none.
+    auto const faces = shells_.empty() ? outer_faces(solids_) : shells_;
+    for (auto const& face : faces) add_facets(face, out_.facets);
+    if (!shells_.empty() && !solids_.empty())
+      out_.notes.push_back(file_.path() + ": solid elements are left out; the shell elements beside them are used");
+    if (passed_over_ > 0)
+      out_.notes.push_back(file_.path() + ": " + std::to_string(passed_over_) + " node and line elements passed over");
+    out_.solution = wanted_;
+    return std::move(out_);
+  }
+
+ private:
+  void read_zone(cgns::Node const& zone) {
+    ++zones_;
+    auto const sizes = file_.integers(zone);
+    auto const dimensions = file_.dimensions(zone);
+    auto const* type = zone.labelled("ZoneType_t");
+    bool const structured = type == nullptr || file_.text(*type) == "Structured";
+    int const index_dimension = structured && !dimensions.empty() ? int(dimensions[0]) : 1;
+    if (sizes.empty() || Index(sizes.size()) < index_dimension) fail(zone, "has no sizes");
+    if (structured && index_dimension != 2)
+      fail(zone, "is structured with " + std::to_string(index_dimension) +
+                     " index directions; a model is unstructured, or a surface of two index directions");
+    Index n = 1;
+    for (int a = 0; a < index_dimension; ++a) {
+      if (sizes[a] < 1 || sizes[a] > std::numeric_limits<std::int32_t>::max() / n) fail(zone, "has unusable sizes");
+      n *= sizes[a];
+    }
+    std::int32_t const first = std::int32_t(out_.position.size());
+    if (n > std::numeric_limits<std::int32_t>::max() - first) fail(zone, "makes the model too large");
+    read_nodes(zone, n);
+    if (structured)
+      add_cells(first, std::int32_t(sizes[0]), std::int32_t(sizes[1]));
+    else
+      for (auto const* section : zone.all("Elements_t")) read_section(*section, first, n);
+  }
+
+  [[noreturn]] void fail(cgns::Node const& node, std::string const& what) const {
+    throw IoError(file_.path() + ", node " + node.path + ": " + what);
+  }
+
+  std::vector<double> array(cgns::Node const& node, Index n) const {
+    if (file_.count(node) != n)
+      fail(node,
+           "has " + std::to_string(file_.count(node)) + " values, but the zone has " + std::to_string(n) + " nodes");
+    return file_.reals(node);
+  }
+
+  /// A vector field from three arrays, of which at least one is there; empty otherwise.
+  std::vector<Vec3> vectors(cgns::Node const& parent, std::array<char const*, 3> const& names, std::string const& part,
+                            Index n) {
+    std::vector<Vec3> out;
+    for (int c = 0; c < 3; ++c) {
+      auto const* node = parent.child(names[c] + part);
+      if (node == nullptr) continue;
+      auto const values = array(*node, n);
+      out.resize(std::size_t(n));
+      for (Index i = 0; i < n; ++i) {
+        (c == 0 ? out[i].x : c == 1 ? out[i].y : out[i].z) = values[i];
+        if (!std::isfinite(values[i])) {
+          problems_.add(file_.path() + ", node " + node->path + ": value " + std::to_string(i + 1) +
+                        " is not finite; correct the model");
+          break;
+        }
+      }
+    }
+    return out;
+  }
+
+  void read_nodes(cgns::Node const& zone, Index n) {
+    auto const* grid = zone.child("GridCoordinates");
+    if (grid == nullptr) grid = zone.labelled("GridCoordinates_t");
+    if (grid == nullptr) fail(zone, "has no GridCoordinates_t node");
+    auto const position = vectors(*grid, coordinate_names, "", n);
+    if (position.empty()) fail(*grid, "has none of CoordinateX, CoordinateY, CoordinateZ");
+    out_.position.insert(out_.position.end(), position.begin(), position.end());
+
+    std::string found;
+    for (auto const* listed : zone.all("FlowSolution_t")) {
+      found += (found.empty() ? "'" : ", '") + listed->name + "'";
+      if (!wanted_.empty() && listed->name != wanted_) continue;
+      cgns::Node solution = *listed;
+      file_.load_children(solution);
+      bool const any = std::any_of(displacement_names.begin(), displacement_names.end(),
+                                   [&](char const* name) { return solution.child(name) != nullptr; });
+      if (!any) continue;
+      auto const* location = solution.labelled("GridLocation_t");
+      if (location != nullptr && file_.text(*location) != "Vertex")
+        fail(solution,
+             "is given at " + file_.text(*location) + "; the displacement must be given at the nodes (Vertex)");
+      wanted_ = listed->name;
+      auto const real = vectors(solution, displacement_names, "", n);
+      auto const imaginary = vectors(solution, displacement_names, "_im", n);
+      if (zones_ > 1 && imaginary.empty() != out_.imaginary.empty())
+        fail(solution, "has an imaginary part in some zones only");
+      out_.displacement.insert(out_.displacement.end(), real.begin(), real.end());
+      out_.imaginary.insert(out_.imaginary.end(), imaginary.begin(), imaginary.end());
+      return;
+    }
+    fail(zone, "has no " +
+                   (wanted_.empty() ? std::string("solution with DisplacementX, DisplacementY, DisplacementZ")
+                                    : "solution '" + wanted_ + "' with DisplacementX, Y, Z") +
+                   " (solutions there: " + (found.empty() ? "none" : found) + ")");
+  }
+
+  void add_cells(std::int32_t first, std::int32_t ni, std::int32_t nj) {
+    for (std::int32_t j = 0; j + 1 < nj; ++j)
+      for (std::int32_t i = 0; i + 1 < ni; ++i) {
+        std::int32_t const a = first + i + ni * j;
+        cgns::ElementFace face;
+        face.corner = {a, a + 1, a + 1 + ni, a + ni};
+        shells_.push_back(face);
+      }
+  }
+
+  void read_section(cgns::Node const& listed, std::int32_t first, Index n) {
+    cgns::Node section = listed;
+    file_.load_children(section);
+    auto const head = file_.integers(section);
+    auto const* list = section.child("ElementConnectivity");
+    if (head.empty() || list == nullptr) fail(section, "has no element type or no ElementConnectivity");
+    auto const numbers = file_.integers(*list);
+    std::vector<std::int32_t> nodes;
+    for (std::size_t at = 0; at < numbers.size();) {
+      std::int64_t const type = head[0] == mixed ? numbers[at++] : head[0];
+      auto const* kind = cgns::element_kind(type);
+      if (kind == nullptr)
+        fail(section, "holds elements of type number " + std::to_string(type) +
+                          "; read are TRI_3, TRI_6, QUAD_4, QUAD_8, QUAD_9, TETRA_4, TETRA_10, PYRA_5, PENTA_6, "
+                          "PENTA_15, HEXA_8, HEXA_20 and MIXED: convert the model to these");
+      if (numbers.size() - at < std::size_t(kind->nodes)) fail(*list, "ends amid an element; the file is damaged");
+      nodes.clear();
+      bool good = true;
+      for (int k = 0; k < kind->nodes; ++k, ++at) {
+        good = good && numbers[at] >= 1 && numbers[at] <= n;
+        if (good) nodes.push_back(first + std::int32_t(numbers[at] - 1));
+      }
+      if (!good) {
+        problems_.add(file_.path() + ", node " + list->path + ": a " + std::string(kind->name) +
+                      " element names a node that is not there (the zone has nodes 1 to " + std::to_string(n) + ")");
+        return;
+      }
+      if (kind->dimension < 2) ++passed_over_;
+      add_faces(*kind, nodes, kind->dimension == 3 ? solids_ : shells_);
+    }
+  }
+
+  cgns::File file_;
+  std::string wanted_;
+  ElementModel out_;
+  Problems problems_;
+  std::vector<cgns::ElementFace> shells_, solids_;
+  Index passed_over_ = 0;
+  int zones_ = 0;
+};
+
+}  // namespace
+
+ElementModel read_element_model(std::string const& path, std::string const& solution) {
+  return ModelReader(path, solution).read();
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,163 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/finite_check.hpp>
+#include <gridmorph/io/morphed_file.hpp>
+#include <gridmorph/io/output_file.hpp>
+#include <gridmorph/io/write_series.hpp>
+
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <set>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr std::size_t name_length = 32;  // of names in pointers, padded with blanks (SIDS)
+constexpr std::array<char const*, 3> coordinate_names{"CoordinateX", "CoordinateY", "CoordinateZ"};
+
+/// "GridCoordinates_007" where there are at most 999 steps.
+std::string grid_name(std::size_t step, std::size_t steps) {
+  std::string number = std::to_string(step + 1);
+  return "GridCoordinates_" + std::string(std::to_string(steps).size() - number.size(), '0') + number;
+}
+
+/// A series of several steps is the user's, and cannot go on beside another one; solvers write one of a single step with
+/// steady solutions, which is replaced.
+void refuse_series(cgns::File const& file, cgns::Layout const& layout, std::size_t steps) {
+  Problems problems;
+  auto const refuse = [&](cgns::Node const& node) {
+    problems.add(file.path() + ", node " + node.path +
+                 ": the file holds a time series already; take it out first, or write one file per step");
+  };
+  std::set<cgns::Node const*> bases;
+  for (auto const& zone : layout.zones) {
+    bases.insert(zone.base);
+    for (std::size_t s = 0; s < steps; ++s)
+      if (auto const* node = zone.node->child(grid_name(s, steps))) refuse(*node);
+  }
+  for (auto const* base : bases)
+    for (auto const* node : base->all("BaseIterativeData_t"))
+      if (auto const number = file.integers(*node); number.empty() || number[0] > 1) refuse(*node);
+  problems.throw_if_any<IoError>();
+}
+
+}  // namespace
+
+struct SeriesWriter::Impl {
+  Mesh const& mesh;
+  std::size_t steps;
+  std::size_t written = 0;
+  io::OutputFile target;
+  std::optional<cgns::File> file;
+  cgns::Node tree;
+  cgns::Layout layout;
+  std::vector<double> plane;
+  std::vector<float> single;
+
+  Impl(std::string const& input, std::string const& output, Mesh const& m, std::vector<double> const& times)
+      : mesh(m), steps(times.size()), target(output) {
+    if (times.empty()) throw MeshError(output + ": a series needs at least one step");
+    target.copy_from(input);
+    target.reserve(bytes_needed());
+    file.emplace(target.path(), cgns::File::Mode::modify);
+    tree = file->tree();
+    layout = cgns::zones_of(*file, tree);
+    add_iterative_data(times);
+  }
+
+  [[nodiscard]] std::uint64_t bytes_needed() const {
+    std::uint64_t const nodes_per_step = 4 * mesh.zones.size(), once = 4 * mesh.zones.size() + 4;
+    return steps * (cgns::File::bytes_per_node * nodes_per_step + 3 * sizeof(double) * std::uint64_t(mesh.n_nodes())) +
+           cgns::File::bytes_per_node * once + steps * name_length * mesh.zones.size();
+  }
+
+  void add_iterative_data(std::vector<double> const& times) {
+    std::vector<std::int32_t> number(steps);
+    std::iota(number.begin(), number.end(), 1);
+    auto const count = std::int32_t(steps);
+    std::set<cgns::Node const*> done;
+    std::string names;
+    for (std::size_t s = 0; s < steps; ++s) {
+      names += grid_name(s, steps);
+      names.resize((s + 1) * name_length, ' ');
+    }
+    for (auto const& zone : layout.zones) {
+      for (auto const* old : zone.node->all("ZoneIterativeData_t")) file->remove(*zone.node, *old);
+      if (done.insert(zone.base).second) {
+        for (auto const* old : zone.base->all("BaseIterativeData_t")) file->remove(*zone.base, *old);
+        double const base = file->create(zone.base->id, "BaseIterativeData", "BaseIterativeData_t", "I4", {1}, &count);
+        file->create(base, "TimeValues", "DataArray_t", "R8", {Index(steps)}, times.data());
+        file->create(base, "IterationValues", "DataArray_t", "I4", {Index(steps)}, number.data());
+        if (zone.base->labelled("SimulationType_t") == nullptr)
+          file->create_text(zone.base->id, "SimulationType", "SimulationType_t", "TimeAccurate");
+      }
+      double const iterative = file->create(zone.node->id, "ZoneIterativeData", "ZoneIterativeData_t");
+      file->create(iterative, "GridCoordinatesPointers", "DataArray_t", "C1", {Index(name_length), Index(steps)},
+                   names.data());
+    }
+  }
+
+  void add(Coordinates const& morphed) {
+    if (written == steps)
+      throw MeshError(target.path() + ": more steps than the " + std::to_string(steps) + " times of the series");
+    if (morphed.size() != mesh.n_nodes())
+      throw MeshError("the array of morphed coordinates has " + std::to_string(morphed.size()) +
+                      " values, but the mesh asks for " + std::to_string(mesh.n_nodes()));
+    Problems problems;
+    io::check_finite(mesh, morphed, "step " + std::to_string(written + 1) + " of the series", problems);
+    problems.throw_if_any<MeshError>();
+    std::array<double const*, 3> const arrays{morphed.x.data(), morphed.y.data(), morphed.z.data()};
+    for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+      auto const& place = layout.zones[z];
+      double const grid = file->create(place.node->id, grid_name(written, steps), "GridCoordinates_t");
+      std::vector<Index> sizes(place.extent.begin(), place.extent.begin() + place.index_dimension);
+      for (int c = 0; c < 3; ++c) {
+        if (place.array[c] == nullptr) continue;
+        cgns::with_file_nodes(place, mesh.zones[z], arrays[c] + mesh.zones[z].first_node, plane,
+                              [&](double const* values) { write(grid, place, c, sizes, values); });
+      }
+    }
+    ++written;
+  }
+
+  void write(double grid, cgns::ZoneLayout const& place, int c, std::vector<Index> const& sizes, double const* values) {
+    if (!place.single_precision[c]) {
+      file->create(grid, coordinate_names[c], "DataArray_t", "R8", sizes, values);
+      return;
+    }
+    single.assign(values, values + place.nodes_in_file());
+    file->create(grid, coordinate_names[c], "DataArray_t", "R4", sizes, single.data());
+  }
+};
+
+SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh,
+                           std::vector<double> const& times) {
+  {
+    cgns::File const file(input, cgns::File::Mode::read);
+    auto const tree = file.tree();
+    auto const layout = cgns::zones_of(file, tree);
+    cgns::check_same_mesh(file, layout, mesh);
+    refuse_series(file, layout, times.size());
+  }
+  impl_ = std::make_unique<Impl>(input, output, mesh, times);
+}
+
+SeriesWriter::~SeriesWriter() = default;
+SeriesWriter::SeriesWriter(SeriesWriter&&) noexcept = default;
+
+void SeriesWriter::add(Coordinates const& morphed) { impl_->add(morphed); }
+
+void SeriesWriter::commit() {
+  if (impl_->written < impl_->steps)
+    throw MeshError(impl_->target.path() + ": " + std::to_string(impl_->written) + " of " +
+                    std::to_string(impl_->steps) + " steps of the series were written");
+  impl_->file->close();
+  impl_->file.reset();
+  cgns::check_file(impl_->target.path());
+  impl_->target.commit();
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,146 @@
+// Sequences of meshes from one plan.
+#include "run_command.hpp"
+
+#include <gridmorph/io/mesh_io.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+
+namespace gridmorph::testing {
+namespace {
+
+class SequenceTest : public CommandTest {
+ protected:
+  /// A case on the passage: the displacement of `rotation.toml`'s file as a mode shape.
+  void write_sequence(std::string const& sequence, std::string const& mode, std::string const& rest = "") const {
+    write("case.toml",
+          "[mesh]\ninput = \"passage.cgns\"\naxis = \"x\"\n[sequence]\n" + sequence +
+              "[[motion]]\npatches = [\"blade\"]\nrule = \"field\"\nmodes = [ { file = \"" + csv() + "\"" + mode +
+              " } ]\n"
+              "[[motion]]\npatches = [\"inlet\", \"outlet\"]\nrule = \"circumferential-slide\"\nof = \"blade\"\n"
+              "[[motion]]\npatches = [\"type:periodic\"]\nrule = \"follow\"\nof = \"blade\"\n"
+              "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n" +
+              rest);
+  }
+  [[nodiscard]] std::string csv() const {
+    std::string const text = contents(path("rotation.toml"));
+    auto const at = text.find("\nfile");
+    auto const begin = text.find('"', at) + 1;
+    return text.substr(begin, text.find('"', begin) - begin);
+  }
+  [[nodiscard]] Mesh mesh(std::string const& name) const { return read_mesh(path(name).string()); }
+  static void expect_same(Mesh const& a, Mesh const& b) {
+    ASSERT_EQ(a.n_nodes(), b.n_nodes());
+    for (Index n = 0; n < a.n_nodes(); ++n) ASSERT_EQ(a.coordinates[n], b.coordinates[n]) << describe_node(a, n);
+  }
+};
+
+TEST_F(SequenceTest, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
+  write_sequence("steps = 8\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0.4, phase_deg = 30");
+  Outcome const run = gridmorph("morph case.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  for (int step = 0; step < 8; ++step) {
+    double const factor = 0.4 * std::cos(std::acos(-1.0) * (step / 4.0 + 1 / 6.0));
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", factor);
+    std::string single = contents(path("case.toml"));
+    single.replace(single.find("[sequence]"), single.find("[[motion]]") - single.find("[sequence]"), "");
+    single.replace(single.find("modes = ["),
+                   single.find(" ]\n", single.find("modes = [")) + 3 - single.find("modes = ["),
+                   "file = \"" + csv() + "\"\nfactor = " + text + "\n");
+    write("single.toml", single);
+    ASSERT_EQ(gridmorph("morph single.toml -o single.cgns").status, 0);
+    Mesh const alone = mesh("single.cgns"), in_sequence = mesh("out_" + std::to_string(step + 1) + ".cgns");
+    for (Index n = 0; n < alone.n_nodes(); ++n)
+      ASSERT_LT(distance(alone.coordinates[n], in_sequence.coordinates[n]), 1e-14 * alone.size()) << step;
+  }
+}
+
+TEST_F(SequenceTest, ManyStepsDriftByNothing) {
+  // Ten periods of four steps: each of the four times comes round ten times, and a quarter of a period is no motion at all.
+  write_sequence("steps = 40\nperiods = 10\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0.4");
+  Outcome const run = gridmorph("morph case.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  Mesh const baseline = mesh("passage.cgns");
+  for (int step = 4; step < 40; ++step) {
+    char first[32], later[32];
+    std::snprintf(first, sizeof first, "out_%02d.cgns", step % 4 + 1);
+    std::snprintf(later, sizeof later, "out_%02d.cgns", step + 1);
+    expect_same(mesh(first), mesh(later));
+  }
+  expect_same(mesh("out_02.cgns"), baseline);
+  expect_same(mesh("out_40.cgns"), baseline);
+  EXPECT_GT(distance(mesh("out_01.cgns").coordinates[0], baseline.coordinates[0]) +
+                distance(mesh("out_01.cgns").coordinates[baseline.n_nodes() / 2],
+                         baseline.coordinates[baseline.n_nodes() / 2]),
+            0);
+}
+
+TEST_F(SequenceTest, OneFileHoldsTheSameStepsAsOneFileEach) {
+  write_sequence("steps = 3\nperiod = 0.5\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0.4");
+  ASSERT_EQ(gridmorph("morph case.toml").status, 0);
+  Outcome const run = gridmorph("morph case.toml -o out_series.cgns --report r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("out_series.cgns (3 steps)"), std::string::npos);
+  expect_same(mesh("out_series.cgns"), mesh("passage.cgns"));
+  auto const json = nlohmann::json::parse(contents(path("r.json")));
+  auto const& steps = json["sequence"]["steps"];
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_NEAR(steps[1]["time"].get<double>(), 0.5 / 3, 1e-15);
+  double smallest = 1;
+  for (auto const& step : steps) {
+    smallest = std::min(smallest, step["min_determinant"]["value"].get<double>());
+    EXPECT_EQ(step["newly_inverted"], 0);
+  }
+  auto const worst = json["sequence"]["worst_step"].get<int>();
+  EXPECT_EQ(steps[worst - 1]["min_determinant"]["value"].get<double>(), smallest);
+  auto const region_min = [&](char const* region) {
+    return json["morphed"][region]["measures"]["determinant_3x3x3"]["min"].get<double>();
+  };
+  EXPECT_EQ(std::min(region_min("near_field"), region_min("far_field")), smallest) << "the tables show the worst step";
+  EXPECT_EQ(json["fields"][0]["evaluated"], json["fields"][0]["coincident"]);
+}
+
+TEST_F(SequenceTest, ZeroAmplitudeLeavesEveryStepBitIdentical) {
+  write_sequence("steps = 3\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0, phase_deg = 12");
+  ASSERT_EQ(gridmorph("morph case.toml").status, 0);
+  for (int step = 1; step <= 3; ++step)
+    expect_same(mesh("out_" + std::to_string(step) + ".cgns"), mesh("passage.cgns"));
+}
+
+TEST_F(SequenceTest, AStepThatInvertsKeepsAllFilesFromAppearing) {
+  for (std::string const output : {"out_{step}.cgns", "out.cgns"}) {
+    write_sequence("steps = 4\noutput = \"" + output + "\"\n", ", amplitude = 40, phase_deg = 90");
+    Outcome const run = gridmorph("morph case.toml --report out.json");
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_NE(run.err.find("is not written"), std::string::npos);
+    EXPECT_TRUE(nlohmann::json::parse(contents(path("out.json")))["output"].is_null());
+    std::filesystem::remove(path("out.json"));
+    expect_nothing_written();
+  }
+}
+
+TEST_F(SequenceTest, ADiskThatIsFullLeavesNothing) {
+  for (std::string const output : {"out_{step}.cgns", "out.cgns"}) {
+    write_sequence("steps = 4\noutput = \"" + output + "\"\n", ", amplitude = 0.2");
+    Outcome const run = shell("ulimit -f 64; $G morph case.toml");
+    EXPECT_EQ(run.status, 3) << run.err;
+    expect_nothing_written();
+  }
+}
+
+TEST_F(SequenceTest, ProblemsAreKnownBeforeAnyWork) {
+  write_sequence("steps = 4\n", "");
+  expect_bad_input(gridmorph("morph case.toml"), {"no output", "[sequence]"});
+  write_sequence("steps = 4\noutput = \"nowhere/out_{step}.cgns\"\n", "");
+  expect_bad_input(gridmorph("morph case.toml"), {"'nowhere' does not exist"});
+  write_sequence("steps = 4\noutput = \"out.cgns\"\n", "", "[output]\ndisplacement = true\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"one file per step"});
+  write_sequence("steps = 4\noutput = \"out_{step}.cgns\"\n", "", "[output]\nreport = \"out_3.cgns\"\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"the same file"});
+}
+
+}  // namespace
+}  // namespace gridmorph::testing
