@@ -1,12 +1,15 @@
 #include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/motion/motion.hpp>
 
 #include <Kokkos_Core.hpp>
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <set>
 #include <utility>
 
@@ -33,6 +36,15 @@ Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> mask_view(std::vector<unsig
   return view;
 }
 
+Mesh read_structured(std::filesystem::path const& path) {
+  if (mesh_kind(path.string()) == MeshKind::unstructured)
+    throw MeshError(
+        path.string() +
+        ": is an unstructured mesh; only structured ones can be morphed yet, unstructured ones can be inspected "
+        "and measured (gridmorph inspect, gridmorph quality)");
+  return read_mesh(path.string());
+}
+
 }  // namespace
 
 QualityReport measure_mesh(Mesh const& mesh) {
@@ -52,7 +64,7 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   MorphResult out;
   Stopwatch watch;
   terminal.progress("reading " + case_file.input.string());
-  out.mesh = read_mesh(case_file.input.string());
+  out.mesh = read_structured(case_file.input);
   out.times.push_back({"read", watch.lap(), true});
   Engine const engine(out.mesh, case_file, terminal);
   out.morphed = engine.morph(terminal);
@@ -79,7 +91,7 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
 
 std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
   terminal.progress("reading " + case_file.input.string());
-  Mesh mesh = read_mesh(case_file.input.string());
+  Mesh mesh = read_structured(case_file.input);
   Engine const engine(mesh, case_file, terminal);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";
