@@ -3,6 +3,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
@@ -35,6 +36,11 @@ TEST(RealUnstructured, HeatingCoilIsReadWholeAndClosed) {
     EXPECT_GT(claims.faces_of_patch[p], 0) << mesh.patches[p].name;
     EXPECT_EQ(claims.faces_of_patch[p], mesh.patches[p].faces.size()) << mesh.patches[p].name;
   }
+  // The coil is in both zones, though the file does not say that they touch.
+  auto const touching = undeclared_connections(mesh, 1e-6 * mesh.size());
+  ASSERT_EQ(touching.size(), 1u);
+  EXPECT_EQ(mesh.patches[std::size_t(touching[0].patch)].name, "Default 1 Side FluidZone Part 1");
+  EXPECT_EQ(mesh.patches[std::size_t(touching[0].other)].name, "Default 1 Side SolidZone Part 2");
   // Volume and surface agree, zone by zone (Gauss).
   UnstructuredQualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(mesh.coordinates);
@@ -90,8 +96,12 @@ TEST(RealUnstructured, TurbineCascadeIsReadWholeWithItsPeriodicPoints) {
   EXPECT_EQ(pairs, 294);
   auto const topology = make_topology(mesh);
   auto const claims = claim_boundary(mesh, topology);
+  EXPECT_TRUE(claims.problems.empty());
+  // A layer of elements beyond periodic_2 repeats those inside periodic_1: that marker lies inside the mesh, and the edges
+  // around the layer belong to the connection.
   for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-    EXPECT_EQ(claims.faces_of_patch[p], mesh.patches[p].faces.size()) << mesh.patches[p].name;
+    EXPECT_EQ(claims.faces_of_patch[p], mesh.patches[p].name == "periodic_2" ? 0 : mesh.patches[p].faces.size())
+        << mesh.patches[p].name;
   EXPECT_TRUE(negative_elements(mesh).empty());
   TemporaryFolder const folder;
   write_morphed(path, folder.file("out.su2"), mesh, mesh.coordinates);

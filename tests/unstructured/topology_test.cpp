@@ -3,6 +3,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <gtest/gtest.h>
@@ -202,6 +203,27 @@ TEST(UnstructuredTopology, PointsAreMatchedByPosition) {
   EXPECT_EQ(match_points(mesh.coordinates, c.nodes, all, 1e-9), c.donor_nodes);
   std::vector<Number> const far{Number(mesh.zones[0].first_node)};
   EXPECT_EQ(match_points(mesh.coordinates, far, all, 1e-9), std::vector<Number>{-1});
+}
+
+TEST(UnstructuredTopology, PatchesThatTouchWithoutAConnectionAreFound) {
+  auto mesh = to_hexahedra(two_zones({}, false));
+  for (int const side : {0, 1}) {
+    UnstructuredPatch patch;
+    patch.name = side == 0 ? "this side" : "that side";
+    patch.zone = side;
+    patch.nodes = side == 0 ? mesh.connections[0].nodes : mesh.connections[0].donor_nodes;
+    mesh.patches.push_back(patch);
+  }
+  auto const connection = mesh.connections[0];
+  EXPECT_TRUE(undeclared_connections(mesh, 1e-9).empty());
+  mesh.connections.clear();
+  auto const found = undeclared_connections(mesh, 1e-9);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].nodes, connection.nodes);
+  EXPECT_EQ(found[0].other_nodes, connection.donor_nodes);
+  EXPECT_NE(describe(mesh, found[0]).find("'that side'"), std::string::npos);
+  mesh.coordinates.set(connection.nodes[7], mesh.coordinates[connection.nodes[7]] + Vec3{1e-3, 0, 0});
+  EXPECT_TRUE(undeclared_connections(mesh, 1e-9).empty());
 }
 
 TEST(UnstructuredTopology, FlatMeshesHaveEdgesAsBoundary) {

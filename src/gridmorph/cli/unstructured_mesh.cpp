@@ -2,6 +2,7 @@
 #include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <fmt/format.h>
@@ -21,6 +22,9 @@ LoadedMesh load_unstructured(std::filesystem::path const& path) {
   out.problems = out.claims.problems;
   for (auto const& negative : negative_elements(out.mesh))
     out.problems.push_back(out.mesh.source + ": " + describe(out.mesh, negative));
+  constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
+  for (auto const& pair : undeclared_connections(out.mesh, tolerance * out.mesh.size()))
+    out.mesh.notes.push_back(out.mesh.source + ": " + describe(out.mesh, pair));
   return out;
 }
 

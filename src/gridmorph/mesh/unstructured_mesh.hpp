@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace gridmorph {
@@ -173,7 +174,7 @@ namespace detail {
 template <class MemorySpace, class T>
 Kokkos::View<T const*, MemorySpace> view_of(std::vector<T> const& list, [[maybe_unused]] char const* label) {
   Kokkos::View<T const*, Kokkos::HostSpace> const host(list.data(), list.size());
-  if constexpr (Kokkos::SpaceAccessibility<Kokkos::HostSpace, MemorySpace>::accessible) {
+  if constexpr (std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
     return host;
   } else {
     Kokkos::View<T*, MemorySpace> device(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), list.size());

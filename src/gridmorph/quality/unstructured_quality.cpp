@@ -16,6 +16,8 @@ namespace {
 std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
   using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;
+  detail::check_size(mesh, mesh.coordinates.x.extent(0), mesh.coordinates.y.extent(0), mesh.coordinates.z.extent(0),
+                     "coordinates of the mesh");
   std::vector<signed char> sign(std::size_t(mesh.n_elements()), 0);
   auto const tables = detail::element_tables<Kokkos::HostSpace>(mesh);
   auto const coordinates = views(mesh.coordinates);
