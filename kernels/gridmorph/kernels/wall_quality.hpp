@@ -19,10 +19,9 @@ struct WallNode {
   bool defined = false;  ///< false where the normal or the line vanishes (poles) or a node is not finite
 };
 
-/// along1, along2: wall tangents of any length; line: from the wall node to the first inner node.
-KOKKOS_INLINE_FUNCTION WallNode wall_node(Vec3 const& along1, Vec3 const& along2, Vec3 const& line) {
+/// normal: of the wall, of any length; line: from the wall node to the first inner node.
+KOKKOS_INLINE_FUNCTION WallNode wall_node(Vec3 const& normal, Vec3 const& line) {
   using compat::math::acos;
-  Vec3 const normal = cross(along1, along2);
   double const area = norm(normal), length = norm(line);
   WallNode w;
   if (!(area > 0) || !(length > 0) || area - area != 0 || length - length != 0) return w;
@@ -33,6 +32,11 @@ KOKKOS_INLINE_FUNCTION WallNode wall_node(Vec3 const& along1, Vec3 const& along2
   w.orthogonality_deg = degrees * acos(cosine < 1 ? cosine : 1.0);
   w.defined = true;
   return w;
+}
+
+/// along1, along2: wall tangents of any length; line: from the wall node to the first inner node.
+KOKKOS_INLINE_FUNCTION WallNode wall_node(Vec3 const& along1, Vec3 const& along2, Vec3 const& line) {
+  return wall_node(cross(along1, along2), line);
 }
 
 }  // namespace gridmorph

@@ -1,6 +1,8 @@
 #include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
@@ -35,9 +37,41 @@ void check_same_zones(Mesh const& a, Mesh const& b) {
   problems.throw_if_any<MeshError>();
 }
 
+int show(QualityReport const& before, std::optional<QualityReport> const& after, CommandLine const& options,
+         Terminal& terminal) {
+  QualityThresholds const thresholds;
+  terminal.result(
+      options.json
+          ? quality_json(before, after, thresholds).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+          : format_table(before, after, thresholds));
+  // A single mesh cannot have been morphed badly; a morphed one can.
+  return after && any_failure(shortfalls(before, after, thresholds)) ? falls_short : done;
+}
+
+int quality_of_unstructured(CommandLine const& options, Terminal& terminal) {
+  terminal.progress("reading " + options.input.string());
+  LoadedMesh const loaded = load_unstructured(options.input);
+  std::optional<Coordinates> morphed;
+  if (options.second) {
+    terminal.progress("reading " + options.second->string());
+    if (mesh_kind(options.second->string()) != MeshKind::unstructured)
+      throw MeshError(fmt::format("'{}' is unstructured and '{}' is not; compare a mesh with its own baseline",
+                                  options.input.string(), options.second->string()));
+    UnstructuredMesh const other = read_unstructured_mesh(options.second->string());
+    check_same_mesh(loaded.mesh, other);
+    morphed = other.coordinates;
+  }
+  terminal.progress("measuring quality");
+  QualityReport const before = measure_mesh(loaded);
+  std::optional<QualityReport> after;
+  if (morphed) after = measure_mesh(loaded, morphed);
+  return show(before, after, options, terminal);
+}
+
 }  // namespace
 
 int run_quality_command(CommandLine const& options, Terminal& terminal) {
+  if (mesh_kind(options.input.string()) == MeshKind::unstructured) return quality_of_unstructured(options, terminal);
   terminal.progress("reading " + options.input.string());
   Mesh const mesh = read_mesh(options.input.string());
   std::optional<Mesh> morphed;
@@ -63,13 +97,7 @@ int run_quality_command(CommandLine const& options, Terminal& terminal) {
     after = measure_quality(exec, mesh, input);
   }
 
-  QualityThresholds const thresholds;
-  terminal.result(
-      options.json
-          ? quality_json(before, after, thresholds).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-          : format_table(before, after, thresholds));
-  // A single mesh cannot have been morphed badly; a morphed one can.
-  return after && any_failure(shortfalls(before, after, thresholds)) ? falls_short : done;
+  return show(before, after, options, terminal);
 }
 
 }  // namespace gridmorph::cli

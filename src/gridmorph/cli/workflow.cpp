@@ -1,13 +1,16 @@
 #include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/motion/motion.hpp>
 
 #include <Kokkos_Core.hpp>
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <set>
 #include <utility>
 
@@ -16,6 +19,15 @@ namespace gridmorph::cli {
 namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
+
+Mesh read_structured(std::filesystem::path const& path) {
+  if (mesh_kind(path.string()) == MeshKind::unstructured)
+    throw MeshError(
+        path.string() +
+        ": is an unstructured mesh; only structured ones can be morphed yet, unstructured ones can be inspected "
+        "and measured (gridmorph inspect, gridmorph quality)");
+  return read_mesh(path.string());
+}
 
 }  // namespace
 
@@ -73,7 +85,7 @@ QualityReport QualityMeter::morphed(Coordinates const& morphed) const {
 
 MorphResult read_baseline(CaseFile const& case_file) {
   MorphResult out;
-  out.mesh = read_mesh(case_file.input.string());
+  out.mesh = read_structured(case_file.input);
   return out;
 }
 
@@ -101,7 +113,7 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
 
 std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
   terminal.progress("reading " + case_file.input.string());
-  Mesh mesh = read_mesh(case_file.input.string());
+  Mesh mesh = read_structured(case_file.input);
   Engine const engine(mesh, case_file, terminal);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";

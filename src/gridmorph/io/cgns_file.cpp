@@ -19,6 +19,7 @@ bool holds_mesh(std::string const& label) {
   static constexpr std::string_view entered[] = {"CGNSBase_t",
                                                  "Zone_t",
                                                  "GridCoordinates_t",
+                                                 "Elements_t",
                                                  "Family_t",
                                                  "ZoneBC_t",
                                                  "BC_t",

@@ -21,11 +21,10 @@ std::string list_names(std::vector<Node> const& nodes, std::string_view label) {
 
 /// Reads Zone_t: vertex sizes, and whether it is structured at all.
 bool read_extent(File const& file, ZoneLayout& zone, std::string const& where, Problems& problems) {
-  auto const* type = zone.node->labelled("ZoneType_t");
-  std::string const zone_type = type ? file.text(*type) : "Structured";
-  if (zone_type != "Structured") {
-    problems.add(where + ": is of type " + (zone_type.empty() ? "(none)" : zone_type) +
-                 "; unstructured meshes are not supported yet by this reader, only structured zones are");
+  std::string const type = zone_type(file, *zone.node);
+  if (type != "Structured") {
+    problems.add(where + ": is of type " + (type.empty() ? "(none)" : type) +
+                 "; only structured zones can be morphed yet, unstructured meshes can be inspected and measured");
     return false;
   }
   auto const dimensions = file.dimensions(*zone.node);
@@ -146,6 +145,11 @@ void read_widened(File const& file, Node const& array, Index n, double* dest) {
 
 }  // namespace
 
+std::string zone_type(File const& file, Node const& zone) {
+  auto const* type = zone.labelled("ZoneType_t");
+  return type ? file.text(*type) : "Structured";
+}
+
 Index ZoneLayout::stored_size() const {
   Index n = 1;
   for (int a = 0; a < 3; ++a) n *= extent[a] + rind_low[a] + rind_high[a];
@@ -156,6 +160,37 @@ Index ZoneLayout::stored_line(int j, int k) const {
   Index const ni = extent[0] + rind_low[0] + rind_high[0];
   Index const nj = extent[1] + rind_low[1] + rind_high[1];
   return rind_low[0] + ni * (j + rind_low[1] + nj * Index(k + rind_low[2]));
+}
+
+Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems) {
+  Layout layout;
+  auto const bases = tree.all("CGNSBase_t");
+  auto const with_zones =
+      std::count_if(bases.begin(), bases.end(), [](Node const* b) { return b->labelled("Zone_t") != nullptr; });
+  if (with_zones == 0) problems.add(file.path() + ": holds no Zone_t node; there is no mesh in it");
+  for (auto const* base : bases)
+    for (auto const* node : base->all("Zone_t")) {
+      ZoneLayout zone;
+      zone.base = base;
+      zone.node = node;
+      zone.name = with_zones > 1 ? base->name + "/" + node->name : node->name;
+      zone.index_dimension = 1;
+      std::string const where = file.path() + ": zone '" + zone.name + "'";
+      auto const sizes = file.integers(*node);
+      if (sizes.size() < 2 || sizes[0] < 1 || sizes[0] >= std::numeric_limits<int>::max()) {
+        problems.add(where + ": its size is not that of an unstructured zone" +
+                     (sizes.empty() ? std::string() : " (" + std::to_string(sizes[0]) + " nodes)"));
+        continue;
+      }
+      zone.extent = {int(sizes[0]), 1, 1};
+      auto const* grid = node->labelled("GridCoordinates_t");
+      if (grid && !grid->child(coordinate_names[2]) && grid->child(coordinate_names[0]) &&
+          grid->child(coordinate_names[1]))
+        zone.flat_axis = 2;
+      find_coordinates(file, zone, where, problems, layout.notes);
+      layout.zones.push_back(std::move(zone));
+    }
+  return layout;
 }
 
 Layout find_zones(File const& file, Node const& tree, Problems& problems) {

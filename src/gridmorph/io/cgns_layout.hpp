@@ -47,6 +47,13 @@ struct Layout {
 /// mesh: unstructured zones, missing or misfitting coordinate arrays, cylindrical coordinates, ...
 Layout find_zones(File const& file, Node const& tree, Problems& problems);
 
+/// The same for unstructured meshes: every zone is a line of nodes, extent {nodes, 1, 1}; flat_axis is 2 where the file has no
+/// CoordinateZ.
+Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems);
+
+/// ZoneType_t of a zone; "Structured" where it has none.
+std::string zone_type(File const& file, Node const& zone);
+
 /// Coordinates of one component of one zone as doubles, without rind; dest has nodes_in_file() entries.
 void read_component(File const& file, ZoneLayout const& zone, int component, double* dest);
 /// The reverse; keeps the array's precision, and what is stored in rind planes.

@@ -1,4 +1,5 @@
 #include <gridmorph/io/cgns_periodic.hpp>
+#include <gridmorph/io/periodic_transform.hpp>
 
 #include <array>
 #include <cmath>
@@ -62,10 +63,7 @@ std::optional<Periodic> read_periodic(File const& file, Node const& base, Node c
   }
   if (degrees.value_or(false)) angle = (std::numbers::pi / 180) * angle;
   periodic.rotation_angle_rad = angle;
-  Mat3 const rotation =
-      rotation_matrix({0, 0, 1}, angle.z) * (rotation_matrix({0, 1, 0}, angle.y) * rotation_matrix({1, 0, 0}, angle.x));
-  Vec3 const& c = periodic.rotation_center;
-  periodic.declared = {rotation, c - rotation * c + periodic.translation};
+  io::set_declared(periodic);
   return periodic;
 }
 

@@ -93,6 +93,8 @@ struct QualityReport {
   std::vector<std::string> zone_names;  ///< for messages: MeasureStatistics::worst_zone is a number in it
   int left_handed_zones = 0;
   bool against_baseline = false;  ///< relative displacement and changes at walls were measured
+  /// Cells are elements: worst_cell[0] and NodeLocation::node[0] are one less than the number in the file, the rest is 0.
+  bool unstructured = false;
 
   [[nodiscard]] Index cells() const { return near_field.cells + far_field.cells; }
 };

@@ -44,6 +44,40 @@ MeasureText text_of(Measure measure) {
   return {"unknown", ""};
 }
 
+std::string_view element_formula(Measure measure) {
+  switch (measure) {
+    case Measure::aspect_ratio: return "longest / shortest edge of an element (collapsed edges left out); best 1";
+    case Measure::determinant_2x2x2:
+      return "hexahedra, prisms, pyramids, quadrilaterals: smallest / largest Jacobian determinant over the corners "
+             "(pyramids: of the base, without the factor that vanishes at the apex); tetrahedra: sqrt(2) J / largest "
+             "product of the 3 edge lengths of a corner; triangles: 2/sqrt(3) J / largest product of 2; best 1, "
+             "negative "
+             "when any J is negative, never below -1";
+    case Measure::determinant_3x3x3:
+      return "the same over the corners and the points half way between them; for tetrahedra and triangles equal to "
+             "determinant_2x2x2";
+    case Measure::minimum_angle_deg:
+      return "smallest angle between the two edges in the corners of the faces, in degrees; best 60 in triangles, 90 "
+             "in "
+             "quadrilaterals";
+    case Measure::equiangle_skewness:
+      return "max((amax - a) / (180 - a), (a - amin) / a) over the face angles in degrees, a = 60 in triangles, 90 in "
+             "quadrilaterals; best 0, worst 1";
+    case Measure::volume: return "integral of the Jacobian determinant, in length units cubed; in 2-D the area";
+    case Measure::volume_ratio:
+      return "largest of larger / smaller volume of an element and each neighbour across a side, through connections "
+             "too; "
+             "best 1, unbounded (null) unless all volumes are positive";
+    case Measure::relative_displacement:
+      return "for each set of edges that run along one direction of the element (a tetrahedron's edges each alone) the "
+             "largest |u_p - u_q| over its edges pq, divided by their mean baseline length (u: displacement of a "
+             "node); "
+             "the largest of them";
+    case Measure::count: break;
+  }
+  return "";
+}
+
 std::string format_value(double value) {
   if (std::isinf(value)) return value > 0 ? "unbounded" : "-unbounded";
   return fmt::format("{:.4g}", value);
@@ -51,11 +85,16 @@ std::string format_value(double value) {
 
 std::string worst_place(QualityReport const& report, MeasureStatistics const& statistics) {
   if (statistics.worst_zone < 0) return "-";
+  if (report.unstructured)
+    return fmt::format("zone '{}' element {}", report.zone_names.at(std::size_t(statistics.worst_zone)),
+                       statistics.worst_cell[0] + 1);
   return describe_cell(report.zone_names.at(std::size_t(statistics.worst_zone)), statistics.worst_cell);
 }
 
 std::string node_place(QualityReport const& report, NodeLocation const& location) {
   if (location.zone < 0) return "-";
+  if (report.unstructured)
+    return fmt::format("zone '{}' node {}", report.zone_names.at(std::size_t(location.zone)), location.node[0] + 1);
   return fmt::format("zone '{}' node (i {}, j {}, k {})", report.zone_names.at(std::size_t(location.zone)),
                      location.node[0] + 1, location.node[1] + 1, location.node[2] + 1);
 }

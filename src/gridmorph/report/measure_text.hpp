@@ -15,6 +15,9 @@ struct MeasureText {
 
 MeasureText text_of(Measure measure);
 
+/// The formula for the elements of unstructured meshes.
+std::string_view element_formula(Measure measure);
+
 /// A value as tables and messages show it: four significant digits, "unbounded" for infinity.
 std::string format_value(double value);
 

@@ -18,13 +18,12 @@ json number(double value) { return std::isfinite(value) ? json(value) : json(nul
 json one_based(Index3 const& p) { return {p[0] + 1, p[1] + 1, p[2] + 1}; }
 
 json statistics_json(QualityReport const& report, MeasureStatistics const& s) {
-  return {{"min", number(s.min)},
-          {"mean", number(s.mean)},
-          {"max", number(s.max)},
-          {"worst",
-           {{"value", number(s.worst)},
-            {"zone", report.zone_names.at(std::size_t(s.worst_zone))},
-            {"cell", one_based(s.worst_cell)}}}};
+  json worst{{"value", number(s.worst)}, {"zone", report.zone_names.at(std::size_t(s.worst_zone))}};
+  if (report.unstructured)
+    worst["element"] = s.worst_cell[0] + 1;
+  else
+    worst["cell"] = one_based(s.worst_cell);
+  return {{"min", number(s.min)}, {"mean", number(s.mean)}, {"max", number(s.max)}, {"worst", std::move(worst)}};
 }
 
 json region_json(QualityReport const& report, QualityRegion const& region) {
@@ -41,7 +40,8 @@ json region_json(QualityReport const& report, QualityRegion const& region) {
 
 json place_json(QualityReport const& report, NodeLocation const& location) {
   if (location.zone < 0) return nullptr;
-  return {{"zone", report.zone_names.at(std::size_t(location.zone))}, {"node", one_based(location.node)}};
+  return {{"zone", report.zone_names.at(std::size_t(location.zone))},
+          {"node", report.unstructured ? json(location.node[0] + 1) : one_based(location.node)}};
 }
 
 json wall_json(QualityReport const& report, WallQuality const& w) {
@@ -63,11 +63,12 @@ json wall_json(QualityReport const& report, WallQuality const& w) {
   return walls;
 }
 
-json definitions() {
+json definitions(bool unstructured) {
   json list = json::object();
   for (std::size_t m = 0; m < n_measures; ++m)
-    list[std::string(to_string(Measure(m)))] = {{"formula", text_of(Measure(m)).formula},
-                                                {"worse", larger_is_worse(Measure(m)) ? "larger" : "smaller"}};
+    list[std::string(to_string(Measure(m)))] = {
+        {"formula", unstructured ? element_formula(Measure(m)) : text_of(Measure(m)).formula},
+        {"worse", larger_is_worse(Measure(m)) ? "larger" : "smaller"}};
   list["inverted"] = {{"formula",
                        "number of cells whose smallest corner Jacobian, times the handedness of the zone, is not "
                        "positive; newly_inverted: those that were not inverted in the baseline"}};
@@ -81,7 +82,8 @@ json definitions() {
   list["orthogonality_deg"] = {{"formula", "angle between v and n in degrees; best 0"}};
   list["first_height_change"] = {{"formula", "|h / h_baseline - 1|"}};
   list["near_field"] = {{"formula", "the boundary-layer region of the moving walls; far_field: everything else"}};
-  list["indices"] = {{"formula", "1-based, as in the mesh file; cell i lies between nodes i and i + 1"}};
+  list["indices"] = {{"formula", unstructured ? "numbers of elements and nodes as the mesh file counts them"
+                                              : "1-based, as in the mesh file; cell i lies between nodes i and i + 1"}};
   return list;
 }
 
@@ -98,7 +100,7 @@ void to_json(nlohmann::json& json, QualityReport const& report) {
 
 nlohmann::json quality_json(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
                             QualityThresholds const& thresholds) {
-  json result = {{"definitions", definitions()},
+  json result = {{"definitions", definitions(baseline.unstructured)},
                  {"baseline", baseline},
                  {"thresholds",
                   {{"min_determinant", thresholds.min_determinant},

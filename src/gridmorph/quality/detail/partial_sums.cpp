@@ -28,11 +28,19 @@ void add(MeasureStatistics& total, PartialMeasure const& part, bool larger_is_wo
 void combine(Mesh const& mesh, std::vector<CellChunk> const& chunks, PartialSums const* sums, QualityRegion& near_field,
              QualityRegion& far_field) {
   std::vector<Index> const first = first_cells(mesh);
+  combine(chunks.size(), sums, near_field, far_field, [&](Index cell, MeasureStatistics& s) {
+    s.worst_zone = int(std::upper_bound(first.begin(), first.end(), cell) - first.begin()) - 1;
+    s.worst_cell = cell_index(mesh.zones[s.worst_zone], cell - first[s.worst_zone]);
+  });
+}
+
+void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_field, QualityRegion& far_field,
+             std::function<void(Index cell, MeasureStatistics& statistics)> const& place) {
   QualityRegion* const regions[2] = {&near_field, &far_field};
   for (int r = 0; r < 2; ++r) {
     QualityRegion& region = *regions[r];
     region = {};
-    for (std::size_t c = 0; c < chunks.size(); ++c) {
+    for (std::size_t c = 0; c < n_chunks; ++c) {
       PartialRegion const& part = sums[c].region[r];
       region.cells += part.cells;
       region.inverted += part.inverted;
@@ -44,12 +52,11 @@ void combine(Mesh const& mesh, std::vector<CellChunk> const& chunks, PartialSums
       s.min = unbounded;
       s.max = -unbounded;
       Index worst = -1;
-      for (std::size_t c = 0; c < chunks.size(); ++c)
+      for (std::size_t c = 0; c < n_chunks; ++c)
         add(s, sums[c].region[r].measure[m], larger_is_worse(Measure(m)), worst);
       if (worst < 0) continue;  // no cells, or not measured: all zero
       s.mean /= double(region.cells);
-      s.worst_zone = int(std::upper_bound(first.begin(), first.end(), worst) - first.begin()) - 1;
-      s.worst_cell = cell_index(mesh.zones[s.worst_zone], worst - first[s.worst_zone]);
+      place(worst, s);
       region.measure[m] = s;
     }
   }

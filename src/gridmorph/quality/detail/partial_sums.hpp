@@ -4,6 +4,7 @@
 #include <gridmorph/quality/detail/zone_cells.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace gridmorph::detail {
@@ -123,5 +124,9 @@ KOKKOS_INLINE_FUNCTION void for_each_region_run(std::uint8_t const* mask, int co
 /// Adds the chunks in order and turns cell numbers into zones and indices. sums: as many as chunks.
 void combine(Mesh const& mesh, std::vector<CellChunk> const& chunks, PartialSums const* sums, QualityRegion& near_field,
              QualityRegion& far_field);
+
+/// The same for any cells: place(cell) sets zone and index of the worst cells of a measure.
+void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_field, QualityRegion& far_field,
+             std::function<void(Index cell, MeasureStatistics& statistics)> const& place);
 
 }  // namespace gridmorph::detail

@@ -1,0 +1,206 @@
+#include <gridmorph/cli/mesh_summary.hpp>
+#include <gridmorph/cli/unstructured_mesh.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mesh/undeclared_connections.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gridmorph::cli {
+
+LoadedMesh load_unstructured(std::filesystem::path const& path) {
+  LoadedMesh out;
+  out.mesh = read_unstructured_mesh(path.string());
+  out.topology = make_topology(out.mesh);
+  out.claims = claim_boundary(out.mesh, out.topology);
+  out.problems = out.claims.problems;
+  for (auto const& negative : negative_elements(out.mesh))
+    out.problems.push_back(out.mesh.source + ": " + describe(out.mesh, negative));
+  constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
+  for (auto const& pair : undeclared_connections(out.mesh, tolerance * out.mesh.size()))
+    out.mesh.notes.push_back(out.mesh.source + ": " + describe(out.mesh, pair));
+  return out;
+}
+
+QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed) {
+  UnstructuredQualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(morphed ? *morphed : loaded.mesh.coordinates);
+  if (morphed) input.baseline = views(loaded.mesh.coordinates);
+  for (int p = 0; p < int(loaded.mesh.patches.size()); ++p)
+    if (loaded.mesh.patches[std::size_t(p)].kind == PatchKind::wall) input.walls.push_back(p);
+  return measure_quality(Kokkos::DefaultHostExecutionSpace(), loaded.mesh, loaded.topology, loaded.claims, input);
+}
+
+void check_same_mesh(UnstructuredMesh const& a, UnstructuredMesh const& b) {
+  bool same = a.zones.size() == b.zones.size() && a.elements.type == b.elements.type &&
+              a.elements.nodes.item == b.elements.nodes.item;
+  for (std::size_t z = 0; same && z < a.zones.size(); ++z)
+    same = a.zones[z].n_nodes == b.zones[z].n_nodes && a.zones[z].n_elements == b.zones[z].n_elements;
+  if (!same)
+    throw MeshError(
+        fmt::format("'{}' ({} nodes, {} elements) and '{}' ({} nodes, {} elements) are not the same mesh; "
+                    "compare a mesh with its own baseline",
+                    a.source, a.n_nodes(), a.n_elements(), b.source, b.n_nodes(), b.n_elements()));
+}
+
+namespace {
+
+constexpr std::size_t most_rows = 60, most_problems = 12;
+
+std::string range_text(double low, double high) {
+  if (!(low <= high)) return "-";
+  return fmt::format("{:.5g} .. {:.5g}", low == 0 ? 0.0 : low, high == 0 ? 0.0 : high);
+}
+
+std::string types_text(UnstructuredMesh const& mesh, int zone) {
+  auto const count = count_types(mesh, zone);
+  std::string out;
+  for (int t = 0; t < n_element_types; ++t) {
+    if (count[std::size_t(t)] == 0) continue;
+    std::string name(to_string(ElementType(t)));
+    if (count[std::size_t(t)] != 1)
+      name = name == "prism" || name == "pyramid" ? name + "s"
+             : name.ends_with("hedron")           ? name.substr(0, name.size() - 2) + "a"
+                                                  : name + "s";
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count[std::size_t(t)], name);
+  }
+  return out;
+}
+
+Box box_of(UnstructuredMesh const& mesh, std::vector<Number> const& nodes) {
+  Box box;
+  for (Number const n : nodes) box.add(mesh.coordinates[n]);
+  return box;
+}
+
+Box box_of(UnstructuredMesh const& mesh, UnstructuredZone const& zone) {
+  Box box;
+  for (Index n = zone.first_node; n < zone.first_node + zone.n_nodes; ++n) box.add(mesh.coordinates[n]);
+  return box;
+}
+
+std::string list_text(std::string const& title, std::vector<std::string> const& lines) {
+  if (lines.empty()) return "";
+  std::string text = "\n" + title + "\n";
+  for (std::size_t n = 0; n < std::min(lines.size(), most_problems); ++n) text += "  " + lines[n] + "\n";
+  if (lines.size() > most_problems)
+    text += fmt::format("  ... and {} more (--json lists all)\n", lines.size() - most_problems);
+  return text;
+}
+
+std::string periodic_text(Periodic const& p) {
+  double const angle = norm(p.rotation_angle_rad) * 180 / std::numbers::pi;
+  if (angle > 0)
+    return fmt::format("periodic by a rotation of {:.6g} degrees about ({:.4g}, {:.4g}, {:.4g})", angle,
+                       p.rotation_center.x, p.rotation_center.y, p.rotation_center.z);
+  return fmt::format("periodic by the translation ({:.6g}, {:.6g}, {:.6g})", p.translation.x, p.translation.y,
+                     p.translation.z);
+}
+
+std::vector<std::string> all_notes(LoadedMesh const& loaded) {
+  auto notes = loaded.mesh.notes;
+  notes.insert(notes.end(), loaded.claims.notes.begin(), loaded.claims.notes.end());
+  return notes;
+}
+
+}  // namespace
+
+std::string inspect_text(LoadedMesh const& loaded, std::string const& quality) {
+  auto const& mesh = loaded.mesh;
+  std::string text = fmt::format("{}: unstructured, {}-D, {} zone{}, {} nodes, {} elements ({})\n", mesh.source,
+                                 mesh.dimension, mesh.zones.size(), mesh.zones.size() == 1 ? "" : "s", mesh.n_nodes(),
+                                 mesh.n_elements(), types_text(mesh, -1));
+  text += "\nZones\n";
+  for (std::size_t z = 0; z < std::min(mesh.zones.size(), most_rows); ++z) {
+    auto const& zone = mesh.zones[z];
+    Box const box = box_of(mesh, zone);
+    text += fmt::format("  {}: {} nodes, {}; x {}, y {}, z {}\n", zone.name, zone.n_nodes, types_text(mesh, int(z)),
+                        range_text(box.low.x, box.high.x), range_text(box.low.y, box.high.y),
+                        range_text(box.low.z, box.high.z));
+  }
+  if (mesh.zones.size() > most_rows)
+    text += fmt::format("  ... and {} more (--json lists all)\n", mesh.zones.size() - most_rows);
+  text += "\nBoundaries that a case file can name\n";
+  if (mesh.patches.empty()) text += "  none\n";
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    auto const& patch = mesh.patches[p];
+    auto const nodes = patch_nodes(patch);
+    Box const box = box_of(mesh, nodes);
+    text += fmt::format("  {} (zone {}, type:{}{}): {} faces, {} nodes; x {}, y {}, z {}\n",
+                        patch.families.empty() ? patch.name : patch.families.front(),
+                        mesh.zones[std::size_t(patch.zone)].name, to_string(patch.kind),
+                        patch.bc_type.empty() ? "" : ", " + patch.bc_type, loaded.claims.faces_of_patch[p],
+                        nodes.size(), range_text(box.low.x, box.high.x), range_text(box.low.y, box.high.y),
+                        range_text(box.low.z, box.high.z));
+  }
+  text += "\nConnections\n";
+  if (mesh.connections.empty()) text += "  none\n";
+  for (auto const& c : mesh.connections)
+    text += fmt::format("  {} (zone {} to zone {}): {} pairs of nodes, at most {:.3g} apart{}\n", c.name,
+                        mesh.zones[std::size_t(c.zone)].name, mesh.zones[std::size_t(c.donor_zone)].name,
+                        c.nodes.size(), largest_mismatch(mesh, c), c.periodic ? "; " + periodic_text(*c.periodic) : "");
+  text += list_text("Notes of the reader", all_notes(loaded));
+  text += list_text("Problems that stop a morph", loaded.problems);
+  return text + "\n" + quality;
+}
+
+nlohmann::json inspect_json(LoadedMesh const& loaded) {
+  auto const& mesh = loaded.mesh;
+  auto const vector = [](Vec3 const& v) { return nlohmann::json{v.x, v.y, v.z}; };
+  auto const box_json = [&](Box const& box) {
+    return box.low.x <= box.high.x ? nlohmann::json{{"min", vector(box.low)}, {"max", vector(box.high)}}
+                                   : nlohmann::json();
+  };
+  auto const types_json = [&](int zone) {
+    auto const count = count_types(mesh, zone);
+    nlohmann::json out = nlohmann::json::object();
+    for (int t = 0; t < n_element_types; ++t)
+      if (count[std::size_t(t)] > 0) out[std::string(to_string(ElementType(t)))] = count[std::size_t(t)];
+    return out;
+  };
+  nlohmann::json json{{"source", mesh.source},     {"unstructured", true},          {"dimension", mesh.dimension},
+                      {"nodes", mesh.n_nodes()},   {"elements", mesh.n_elements()}, {"types", types_json(-1)},
+                      {"families", mesh.families}, {"notes", all_notes(loaded)},    {"problems", loaded.problems}};
+  json["zones"] = nlohmann::json::array();
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z)
+    json["zones"].push_back({{"name", mesh.zones[z].name},
+                             {"nodes", mesh.zones[z].n_nodes},
+                             {"elements", mesh.zones[z].n_elements},
+                             {"types", types_json(int(z))},
+                             {"box", box_json(box_of(mesh, mesh.zones[z]))}});
+  json["boundaries"] = nlohmann::json::array();
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    auto const& patch = mesh.patches[p];
+    auto const nodes = patch_nodes(patch);
+    json["boundaries"].push_back({{"name", patch.name},
+                                  {"families", patch.families},
+                                  {"kind", to_string(patch.kind)},
+                                  {"bc_type", patch.bc_type},
+                                  {"zone", mesh.zones[std::size_t(patch.zone)].name},
+                                  {"faces", loaded.claims.faces_of_patch[p]},
+                                  {"nodes", nodes.size()},
+                                  {"box", box_json(box_of(mesh, nodes))}});
+  }
+  json["connections"] = nlohmann::json::array();
+  for (auto const& c : mesh.connections) {
+    nlohmann::json entry{{"name", c.name},
+                         {"zone", mesh.zones[std::size_t(c.zone)].name},
+                         {"donor_zone", mesh.zones[std::size_t(c.donor_zone)].name},
+                         {"pairs", c.nodes.size()},
+                         {"largest_mismatch", largest_mismatch(mesh, c)}};
+    if (c.periodic)
+      entry["periodic"] = {{"rotation_center", vector(c.periodic->rotation_center)},
+                           {"rotation_angle_rad", vector(c.periodic->rotation_angle_rad)},
+                           {"translation", vector(c.periodic->translation)}};
+    json["connections"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,36 @@
+// What inspect and quality do with unstructured meshes.
+#pragma once
+
+#include <gridmorph/mesh/unstructured_topology.hpp>
+#include <gridmorph/quality/quality.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+/// A mesh with what follows from it.
+struct LoadedMesh {
+  UnstructuredMesh mesh;
+  UnstructuredTopology topology;
+  BoundaryClaims claims;
+  std::vector<std::string> problems;  ///< open faces, elements that are numbered inside out, ...
+};
+
+LoadedMesh load_unstructured(std::filesystem::path const& path);
+
+/// Quality at all wall patches; of `morphed` against the mesh itself where it is given.
+QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed = {});
+
+/// Throws MeshError unless both meshes have the same zones, nodes and elements.
+void check_same_mesh(UnstructuredMesh const& a, UnstructuredMesh const& b);
+
+/// Zones, boundaries, connections, notes and problems; `quality` is printed last.
+std::string inspect_text(LoadedMesh const& loaded, std::string const& quality);
+nlohmann::json inspect_json(LoadedMesh const& loaded);
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,121 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/cgns_unstructured_boundary.hpp>
+#include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/su2_file.hpp>
+#include <gridmorph/io/unstructured_check.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mesh/extent.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gridmorph {
+
+namespace io {
+
+void check_finite(UnstructuredMesh const& mesh, Coordinates const& coordinates, std::string const& where,
+                  Problems& problems) {
+  if (extent_of(coordinates).finite) return;
+  for (auto const& zone : mesh.zones) {
+    Index bad = 0, first = -1;
+    for (Index n = zone.first_node; n < zone.first_node + zone.n_nodes; ++n)
+      if (!std::isfinite(coordinates.x(n) + coordinates.y(n) + coordinates.z(n)) && bad++ == 0) first = n;
+    if (bad == 0) continue;
+    Vec3 const p = coordinates[first];
+    problems.add(where + ": " + std::to_string(bad) + (bad == 1 ? " node" : " nodes") + " of zone '" + zone.name +
+                 "' have coordinates that are not finite numbers, the first is " + describe_node(mesh, first) +
+                 " at (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
+                 "); repair the mesh where it was made");
+  }
+}
+
+}  // namespace io
+
+namespace {
+
+UnstructuredMesh read_cgns(std::string const& path) {
+  cgns::File const file(path, cgns::File::Mode::read);
+  auto const tree = file.tree();
+  Problems unreadable;
+  auto layout = find_unstructured_zones(file, tree, unreadable);
+  for (auto const& zone : layout.zones)
+    if (zone_type(file, *zone.node) != "Unstructured")
+      unreadable.add(path + ": zone '" + zone.name + "' is not unstructured");
+  unreadable.throw_if_any<IoError>();
+
+  std::vector<std::vector<cgns::Section>> sections;
+  int dimension = 0;
+  for (auto const& zone : layout.zones) {
+    sections.push_back(read_sections(file, zone, unreadable));
+    dimension = std::max(dimension, cgns::dimension_of(sections.back()));
+  }
+  if (dimension < 2 && unreadable.empty())
+    unreadable.add(path + ": has no elements (Elements_t) that fill a volume or a surface");
+  unreadable.throw_if_any<IoError>();
+
+  UnstructuredMesh mesh;
+  mesh.source = path;
+  mesh.dimension = dimension;
+  mesh.notes = std::move(layout.notes);
+  Problems problems;
+  std::vector<cgns::ListedFaces> faces;
+  for (std::size_t z = 0; z < layout.zones.size(); ++z) {
+    auto const& zone = layout.zones[z];
+    mesh.add_zone(zone.name, zone.nodes_in_file());
+    mesh.zones.back().single_precision =
+        zone.single_precision[0] || zone.single_precision[1] || zone.single_precision[2];
+    std::string const where = path + ": zone '" + zone.name + "'";
+    faces.push_back(add_elements(sections[z], where, mesh, problems));
+    sections[z] = {};
+    if (mesh.zones.back().n_elements == 0)
+      problems.add(where + ": has no elements of dimension " + std::to_string(dimension) +
+                   ", which other zones of the file have");
+  }
+  problems.throw_if_any<MeshError>();
+
+  mesh.coordinates = Coordinates(mesh.n_nodes());
+  std::array<double*, 3> const arrays{mesh.coordinates.x.data(), mesh.coordinates.y.data(), mesh.coordinates.z.data()};
+  for (std::size_t z = 0; z < layout.zones.size(); ++z)
+    for (int c = 0; c < 3; ++c)
+      read_component(file, layout.zones[z], c, arrays[std::size_t(c)] + mesh.zones[z].first_node);
+  io::check_finite(mesh, mesh.coordinates, path, problems);
+  problems.throw_if_any<MeshError>();
+  read_boundary(file, tree, layout, faces, mesh, problems);
+  read_connections(file, layout, faces, mesh, problems);
+  problems.throw_if_any<MeshError>();
+  check_mesh(mesh);
+  return mesh;
+}
+
+bool is_cgns(std::string const& path) {
+  try {
+    cgns::check_file(path);
+    return true;
+  } catch (IoError const&) {
+    return false;  // the reader of that file says why
+  }
+}
+
+}  // namespace
+
+MeshKind mesh_kind(std::string const& path) {
+  if (su2::is_su2(path)) return MeshKind::unstructured;
+  if (!is_cgns(path)) return MeshKind::structured;
+  cgns::File const file(path, cgns::File::Mode::read);
+  auto const tree = file.tree();
+  std::string structured, unstructured;
+  for (auto const* base : tree.all("CGNSBase_t"))
+    for (auto const* zone : base->all("Zone_t"))
+      (zone_type(file, *zone) == "Unstructured" ? unstructured : structured) += " '" + zone->name + "'";
+  if (!structured.empty() && !unstructured.empty())
+    throw IoError(path + ": mixes structured zones (" + structured.substr(1, 200) + ") with unstructured ones (" +
+                  unstructured.substr(1, 200) +
+                  "); such hybrid files cannot be handled, write the two kinds into files of their own");
+  return unstructured.empty() ? MeshKind::structured : MeshKind::unstructured;
+}
+
+UnstructuredMesh read_unstructured_mesh(std::string const& path) {
+  return su2::is_su2(path) ? su2::read(path) : read_cgns(path);
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,215 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace gridmorph {
+
+std::string_view to_string(ElementType type) {
+  switch (type) {
+    case ElementType::triangle: return "triangle";
+    case ElementType::quadrilateral: return "quadrilateral";
+    case ElementType::tetrahedron: return "tetrahedron";
+    case ElementType::pyramid: return "pyramid";
+    case ElementType::prism: return "prism";
+    case ElementType::hexahedron: return "hexahedron";
+    case ElementType::polyhedron: return "polyhedron";
+  }
+  return "element";
+}
+
+int UnstructuredMesh::add_zone(std::string name, Index n_nodes) {
+  UnstructuredZone zone;
+  zone.name = std::move(name);
+  zone.first_node = this->n_nodes();
+  zone.n_nodes = n_nodes;
+  zone.first_element = n_elements();
+  zones.push_back(std::move(zone));
+  return int(zones.size()) - 1;
+}
+
+void UnstructuredMesh::add_element(ElementType type, std::span<Number const> nodes) {
+  elements.type.push_back(type);
+  elements.nodes.add(nodes);
+  zones.back().n_elements = n_elements() - zones.back().first_element;
+}
+
+int UnstructuredMesh::zone_of_node(Index node) const {
+  auto const after = std::upper_bound(zones.begin(), zones.end(), node,
+                                      [](Index n, UnstructuredZone const& z) { return n < z.first_node; });
+  return int(after - zones.begin()) - 1;
+}
+
+int UnstructuredMesh::zone_of_element(Index element) const {
+  auto const after = std::upper_bound(zones.begin(), zones.end(), element,
+                                      [](Index e, UnstructuredZone const& z) { return e < z.first_element; });
+  return int(after - zones.begin()) - 1;
+}
+
+double UnstructuredMesh::size() const { return extent_of(coordinates).size(); }
+
+namespace {
+
+std::size_t place_of_polyhedron(UnstructuredMesh const& mesh, Index element) {
+  auto const& list = mesh.polyhedra.element;
+  return std::size_t(std::lower_bound(list.begin(), list.end(), Number(element)) - list.begin());
+}
+
+}  // namespace
+
+int n_sides(UnstructuredMesh const& mesh, Index element) {
+  ElementType const type = mesh.elements.type[std::size_t(element)];
+  if (type != ElementType::polyhedron) return n_faces(type);
+  std::size_t const p = place_of_polyhedron(mesh, element);
+  return int(mesh.polyhedra.first_face[p + 1] - mesh.polyhedra.first_face[p]);
+}
+
+std::span<Number const> side_nodes(UnstructuredMesh const& mesh, Index element, int side,
+                                   std::array<Number, max_face_corners>& room) {
+  ElementType const type = mesh.elements.type[std::size_t(element)];
+  if (type == ElementType::polyhedron)
+    return mesh.polyhedra.faces[mesh.polyhedra.first_face[place_of_polyhedron(mesh, element)] + side];
+  Number const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(element)];
+  int const n = n_face_corners(type, side);
+  std::size_t kept = 0;
+  for (int c = 0; c < n; ++c) {
+    Number const corner = node[face_corner(type, side, c)];
+    if (std::find(room.begin(), room.begin() + kept, corner) == room.begin() + kept) room[kept++] = corner;
+  }
+  return {room.data(), kept};
+}
+
+std::vector<Number> patch_nodes(UnstructuredPatch const& patch) {
+  std::vector<Number> nodes = patch.faces.size() > 0 ? patch.faces.item : patch.nodes;
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+std::array<Index, n_element_types> count_types(UnstructuredMesh const& mesh, int zone) {
+  std::array<Index, n_element_types> count{};
+  Index const begin = zone < 0 ? 0 : mesh.zones[std::size_t(zone)].first_element;
+  Index const end = zone < 0 ? mesh.n_elements() : begin + mesh.zones[std::size_t(zone)].n_elements;
+  for (Index e = begin; e < end; ++e) ++count[std::size_t(mesh.elements.type[std::size_t(e)])];
+  return count;
+}
+
+std::string describe_node(UnstructuredMesh const& mesh, Index node) {
+  auto const& zone = mesh.zones[std::size_t(mesh.zone_of_node(node))];
+  return "zone '" + zone.name + "' node " + std::to_string(node - zone.first_node + mesh.first_number);
+}
+
+Index number_in_file(UnstructuredMesh const& mesh, Index element) {
+  if (!mesh.elements.number.empty()) return mesh.elements.number[std::size_t(element)];
+  return element - mesh.zones[std::size_t(mesh.zone_of_element(element))].first_element + mesh.first_number;
+}
+
+std::string describe_element(UnstructuredMesh const& mesh, Index element) {
+  return "zone '" + mesh.zones[std::size_t(mesh.zone_of_element(element))].name + "' " +
+         std::string(to_string(mesh.elements.type[std::size_t(element)])) + " " +
+         std::to_string(number_in_file(mesh, element));
+}
+
+std::string describe_patch(UnstructuredMesh const& mesh, UnstructuredPatch const& patch) {
+  std::string text = "'" + (patch.families.empty() ? patch.name : patch.families.front()) + "'";
+  return text + " (BC '" + patch.name + "', zone '" + mesh.zones[std::size_t(patch.zone)].name + "')";
+}
+
+namespace {
+
+class MeshCheck {
+ public:
+  explicit MeshCheck(UnstructuredMesh const& mesh) : mesh_(mesh) {}
+
+  void run() {
+    sizes();
+    if (problems_.empty()) {
+      elements();
+      patches();
+      connections();
+    }
+    problems_.throw_if_any<MeshError>();
+  }
+
+ private:
+  void sizes() {
+    constexpr Index most = std::numeric_limits<Number>::max();
+    auto const& e = mesh_.elements;
+    Index nodes = 0, elements = 0;
+    for (auto const& zone : mesh_.zones) {
+      if (zone.n_nodes < 0 || zone.n_elements < 0 || zone.first_node != nodes || zone.first_element != elements)
+        problems_.add("zone '" + zone.name + "': its nodes and elements do not follow those of the zone before it");
+      nodes = zone.first_node + zone.n_nodes;
+      elements = zone.first_element + zone.n_elements;
+    }
+    if (nodes > most || elements > most)
+      problems_.add("mesh '" + mesh_.source + "': has " + std::to_string(nodes) + " nodes and " +
+                    std::to_string(elements) + " elements; at most " + std::to_string(most) + " can be handled");
+    if (elements != e.size() || e.nodes.size() != e.size() || (!e.number.empty() && Index(e.number.size()) != e.size()))
+      problems_.add("mesh '" + mesh_.source + "': has " + std::to_string(e.size()) + " element types and " +
+                    std::to_string(e.nodes.size()) + " node lists for the " + std::to_string(elements) +
+                    " elements of its zones");
+    if (mesh_.coordinates.size() != 0 && mesh_.coordinates.size() != nodes)
+      problems_.add("mesh '" + mesh_.source + "': has " + std::to_string(mesh_.coordinates.size()) +
+                    " coordinates for " + std::to_string(nodes) + " nodes");
+  }
+
+  [[nodiscard]] bool inside(UnstructuredZone const& zone, std::span<Number const> nodes) const {
+    return std::all_of(nodes.begin(), nodes.end(),
+                       [&](Number n) { return n >= zone.first_node && n < zone.first_node + zone.n_nodes; });
+  }
+
+  void elements() {
+    for (auto const& zone : mesh_.zones) {
+      Index bad = 0, first = -1;
+      for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
+        auto const nodes = mesh_.elements.nodes[e];
+        ElementType const type = mesh_.elements.type[std::size_t(e)];
+        bool const fits = (type == ElementType::polyhedron || int(nodes.size()) >= n_corners(type)) &&
+                          (mesh_.dimension == 2) == is_surface(type) && inside(zone, nodes);
+        if (!fits && bad++ == 0) first = e;
+      }
+      if (bad > 0)
+        problems_.add(mesh_.source + ": " + std::to_string(bad) +
+                      " elements name nodes outside their zone or are of the wrong kind, the first is " +
+                      describe_element(mesh_, first) + "; zone '" + zone.name + "' has " +
+                      std::to_string(zone.n_nodes) + " nodes");
+    }
+  }
+
+  void patches() {
+    for (auto const& patch : mesh_.patches) {
+      if (patch.zone < 0 || patch.zone >= int(mesh_.zones.size())) {
+        problems_.add(mesh_.source + ": patch '" + patch.name + "' lies in no zone");
+        continue;
+      }
+      auto const& zone = mesh_.zones[std::size_t(patch.zone)];
+      if (!inside(zone, patch.nodes) || !inside(zone, patch.faces.item))
+        problems_.add(mesh_.source + ": patch " + describe_patch(mesh_, patch) +
+                      " names nodes outside its zone, which has " + std::to_string(zone.n_nodes) + " nodes");
+    }
+  }
+
+  void connections() {
+    for (auto const& c : mesh_.connections) {
+      bool const zones = c.zone >= 0 && c.zone < int(mesh_.zones.size()) && c.donor_zone >= 0 &&
+                         c.donor_zone < int(mesh_.zones.size());
+      if (!zones || c.nodes.size() != c.donor_nodes.size() || !inside(mesh_.zones[std::size_t(c.zone)], c.nodes) ||
+          !inside(mesh_.zones[std::size_t(c.donor_zone)], c.donor_nodes))
+        problems_.add(mesh_.source + ": connection '" + c.name +
+                      "' does not pair nodes of its zone with as many of its donor zone");
+    }
+  }
+
+  UnstructuredMesh const& mesh_;
+  Problems problems_;
+};
+
+}  // namespace
+
+void check_mesh(UnstructuredMesh const& mesh) { MeshCheck(mesh).run(); }
+
+}  // namespace gridmorph

@@ -1,0 +1,201 @@
+// An unstructured mesh as it stands in a file: zones, elements, boundary patches, connections, coordinates.
+//
+// The counterpart of mesh.hpp, with the same words: zone, patch, PatchKind, families, periodic, notes. Nothing here is
+// interpreted or repaired; what follows from it (neighbours, boundary faces, coincident nodes) is derived by the functions
+// of unstructured_topology.hpp. Node numbers are 0-based and run through all zones.
+#pragma once
+
+#include <gridmorph/kernels/element_shape.hpp>
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace gridmorph {
+
+/// Number of a node or an element in compressed lists: half the memory of an Index, enough for 2 thousand million.
+using Number = std::int32_t;
+
+/// Lists of numbers, stored one after another: list n is item[first[n]] ... item[first[n + 1] - 1].
+struct NumberLists {
+  std::vector<Index> first{0};  ///< (n_lists + 1)
+  std::vector<Number> item;
+
+  [[nodiscard]] Index size() const { return Index(first.size()) - 1; }
+  [[nodiscard]] std::span<Number const> operator[](Index n) const {
+    return {item.data() + first[std::size_t(n)], std::size_t(first[std::size_t(n) + 1] - first[std::size_t(n)])};
+  }
+  void add(std::span<Number const> list) {
+    item.insert(item.end(), list.begin(), list.end());
+    first.push_back(Index(item.size()));
+  }
+};
+
+/// "triangle", "tetrahedron", ...
+std::string_view to_string(ElementType type);
+
+/// A CGNS Zone_t of type Unstructured, or the one zone of an SU2 file.
+struct UnstructuredZone {
+  std::string name;  ///< unique in the mesh; "Base/Zone" when the file has several bases
+  Index first_node = 0, n_nodes = 0;
+  Index first_element = 0, n_elements = 0;
+  bool single_precision = false;  ///< the file keeps this zone's coordinates in single precision
+};
+
+/// Elements of the mesh's own dimension (volumes in 3-D, surfaces in 2-D), zone after zone in file order.
+struct Elements {
+  std::vector<ElementType> type;  ///< (n_elements)
+  NumberLists nodes;              ///< SIDS order: corners first, then the further nodes of second-order elements
+  std::vector<Number> number;     ///< as the file counts them, for messages; empty: first_number + place in its zone
+
+  [[nodiscard]] Index size() const { return Index(type.size()); }
+  /// Corner nodes of element e.
+  [[nodiscard]] std::span<Number const> corners(Index e) const {
+    auto const all = nodes[e];
+    ElementType const t = type[std::size_t(e)];
+    return t == ElementType::polyhedron ? all : all.first(std::size_t(n_corners(t)));
+  }
+};
+
+/// One boundary condition of one zone: a list of faces, or only of nodes where the file says no more.
+struct UnstructuredPatch {
+  std::string name;     ///< BC_t or GridConnectivity_t node name, SU2 marker
+  std::string bc_type;  ///< CGNS BCType_t name as in the file, resolved through the family if FamilySpecified
+  PatchKind kind = PatchKind::other;
+  std::vector<std::string> families;  ///< FamilyName_t first, then AdditionalFamilyName_t; may be empty
+  int zone = -1;                      ///< number in UnstructuredMesh::zones
+  NumberLists faces;                  ///< corner nodes of each face (each edge in 2-D), in any order around it
+  std::vector<Number> nodes;          ///< instead of faces, where the file lists nodes; ascending, each once
+};
+
+/// Two lists of nodes that coincide one by one, the donor's after `periodic` where there is one.
+struct UnstructuredConnection {
+  std::string name;
+  std::vector<std::string> families;
+  int zone = -1;
+  int donor_zone = -1;
+  std::vector<Number> nodes;        ///< of zone
+  std::vector<Number> donor_nodes;  ///< of donor_zone, as many
+  std::optional<Periodic> periodic;
+};
+
+/// Faces of the elements of type polyhedron, in element order.
+struct Polyhedra {
+  std::vector<Number> element;    ///< ascending
+  std::vector<Index> first_face;  ///< (element.size() + 1) in `faces`; empty when there are none
+  NumberLists faces;              ///< nodes in order around each face, the normal pointing outwards
+};
+
+struct UnstructuredMesh {
+  int dimension = 3;  ///< of the elements: 3 (volumes) or 2 (surfaces)
+  std::vector<UnstructuredZone> zones;
+  Elements elements;
+  Polyhedra polyhedra;
+  std::vector<UnstructuredPatch> patches;           ///< of all zones, in file order
+  std::vector<UnstructuredConnection> connections;  ///< of all zones, in file order
+  std::vector<std::string> families;                ///< Family_t names
+  Coordinates coordinates;                          ///< all three components, z = 0 where a file has two
+  std::string source;                               ///< file name or what made it, for messages
+  std::vector<std::string> notes;                   ///< what the reader skipped or assumed, for `inspect` and logs
+  int first_number = 1;                             ///< of nodes in messages: 1 in CGNS, 0 in SU2 files
+
+  [[nodiscard]] Index n_nodes() const { return zones.empty() ? 0 : zones.back().first_node + zones.back().n_nodes; }
+  [[nodiscard]] Index n_elements() const { return elements.size(); }
+  /// Appends a zone that begins after all nodes and elements so far; its elements are appended by the caller, who counts
+  /// them in n_elements.
+  int add_zone(std::string name, Index n_nodes);
+  /// Appends an element of the last zone.
+  void add_element(ElementType type, std::span<Number const> nodes);
+  [[nodiscard]] int zone_of_node(Index node) const;
+  [[nodiscard]] int zone_of_element(Index element) const;
+  /// Diagonal of the bounding box: the size that relative tolerances refer to.
+  [[nodiscard]] double size() const;
+};
+
+/// Number of sides of an element: faces in 3-D, edges in 2-D.
+int n_sides(UnstructuredMesh const& mesh, Index element);
+/// Corner nodes of one side, the normal pointing outwards; each once, so that collapsed sides have fewer. `room` holds them
+/// unless the element is a polyhedron.
+std::span<Number const> side_nodes(UnstructuredMesh const& mesh, Index element, int side,
+                                   std::array<Number, max_face_corners>& room);
+
+/// All nodes of a patch, ascending, each once.
+std::vector<Number> patch_nodes(UnstructuredPatch const& patch);
+
+/// Elements of each type, in all zones or in one.
+std::array<Index, n_element_types> count_types(UnstructuredMesh const& mesh, int zone = -1);
+
+/// "zone 'Fluid' node 17", as the file counts.
+std::string describe_node(UnstructuredMesh const& mesh, Index node);
+/// "zone 'Fluid' tetrahedron 4711", as the file counts.
+std::string describe_element(UnstructuredMesh const& mesh, Index element);
+/// The number by which the file knows an element of its zone.
+Index number_in_file(UnstructuredMesh const& mesh, Index element);
+/// Patch name for messages: "'blade' (BC 'blade_ss', zone 'Zone 1')".
+std::string describe_patch(UnstructuredMesh const& mesh, UnstructuredPatch const& patch);
+
+/// Checks what readers and generators must guarantee: node and element ranges, node numbers inside their zone, as many
+/// nodes as a type asks for, no node twice in a corner list of patches. Throws MeshError that lists all problems. Linear cost.
+void check_mesh(UnstructuredMesh const& mesh);
+
+/// Compressed element lists in a memory space, for kernels.
+template <class MemorySpace>
+struct ElementViews {
+  Kokkos::View<ElementType const*, MemorySpace> type;  ///< (n_elements)
+  Kokkos::View<Index const*, MemorySpace> first;       ///< (n_elements + 1)
+  Kokkos::View<Number const*, MemorySpace> node;
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Index size() const { return Index(type.extent(0)); }
+};
+
+/// Compressed lists in a memory space, for kernels.
+template <class MemorySpace>
+struct ListViews {
+  Kokkos::View<Index const*, MemorySpace> first;
+  Kokkos::View<Number const*, MemorySpace> item;
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Index size() const { return Index(first.extent(0)) - 1; }
+};
+
+/// The lists in a memory space that kernels can read: copied, unless that is the host's, where the Views only look at them
+/// (the lists must then outlive the Views). Fences when it copies.
+template <class MemorySpace>
+ListViews<MemorySpace> views(NumberLists const& lists);
+template <class MemorySpace>
+ElementViews<MemorySpace> views(Elements const& elements);
+
+namespace detail {
+
+template <class MemorySpace, class T>
+Kokkos::View<T const*, MemorySpace> view_of(std::vector<T> const& list, [[maybe_unused]] char const* label) {
+  Kokkos::View<T const*, Kokkos::HostSpace> const host(list.data(), list.size());
+  if constexpr (std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
+    return host;
+  } else {
+    Kokkos::View<T*, MemorySpace> device(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), list.size());
+    Kokkos::deep_copy(device, host);
+    return device;
+  }
+}
+
+}  // namespace detail
+
+template <class MemorySpace>
+ListViews<MemorySpace> views(NumberLists const& lists) {
+  return {detail::view_of<MemorySpace>(lists.first, "gridmorph::NumberLists::first"),
+          detail::view_of<MemorySpace>(lists.item, "gridmorph::NumberLists::item")};
+}
+
+template <class MemorySpace>
+ElementViews<MemorySpace> views(Elements const& elements) {
+  return {detail::view_of<MemorySpace>(elements.type, "gridmorph::Elements::type"),
+          detail::view_of<MemorySpace>(elements.nodes.first, "gridmorph::Elements::first"),
+          detail::view_of<MemorySpace>(elements.nodes.item, "gridmorph::Elements::node")};
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,226 @@
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/unstructured_topology.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+namespace gridmorph {
+
+namespace {
+
+using HostExec = Kokkos::DefaultHostExecutionSpace;
+
+/// Calls f(n) for 0 <= n < count on all cores; f writes nothing that another n writes.
+template <class Function>
+void for_all(char const* label, Index count, Function const& f) {
+  HostExec const exec;
+  Kokkos::parallel_for(label, Kokkos::RangePolicy<HostExec, Kokkos::IndexType<Index>>(exec, 0, count), f);
+  compat::fence(exec, "gridmorph::unstructured_topology (read by the host)");
+}
+
+/// Lists of the items that name a key, from the keys of each item: a counting sort, so that lists are ascending.
+template <class KeysOf>
+NumberLists invert(Index n_keys, Index n_items, KeysOf const& keys_of) {
+  NumberLists out;
+  out.first.assign(std::size_t(n_keys) + 1, 0);
+  // A collapsed item names a key more than once; it counts once.
+  std::vector<Number> last(std::size_t(n_keys), -1);
+  for (Index i = 0; i < n_items; ++i)
+    for (Number const key : keys_of(i)) {
+      if (last[std::size_t(key)] == Number(i)) continue;
+      last[std::size_t(key)] = Number(i);
+      ++out.first[std::size_t(key) + 1];
+    }
+  std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
+  out.item.resize(std::size_t(out.first.back()));
+  std::vector<Index> next(out.first.begin(), out.first.end() - 1);
+  for (Index i = 0; i < n_items; ++i)
+    for (Number const key : keys_of(i)) {
+      Index& at = next[std::size_t(key)];
+      if (at > out.first[std::size_t(key)] && out.item[std::size_t(at) - 1] == Number(i)) continue;
+      out.item[std::size_t(at++)] = Number(i);
+    }
+  return out;
+}
+
+bool contains(std::span<Number const> list, Number value) {
+  return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+/// Whether two short lists without repetitions hold the same numbers.
+bool same_set(std::span<Number const> a, std::span<Number const> b) {
+  return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Number n) { return contains(b, n); });
+}
+
+bool has_side(UnstructuredMesh const& mesh, Index element, std::span<Number const> nodes) {
+  auto const corners = mesh.elements.corners(element);
+  if (!std::all_of(nodes.begin(), nodes.end(), [&](Number n) { return contains(corners, n); })) return false;
+  std::array<Number, max_face_corners> room{};
+  int const sides = n_sides(mesh, element);
+  for (int s = 0; s < sides; ++s)
+    if (same_set(side_nodes(mesh, element, s, room), nodes)) return true;
+  return false;
+}
+
+/// The node that fewest elements share: the shortest list to search.
+Number rarest(NumberLists const& lists, std::span<Number const> nodes) {
+  return *std::min_element(nodes.begin(), nodes.end(),
+                           [&](Number a, Number b) { return lists[a].size() < lists[b].size(); });
+}
+
+Number behind(UnstructuredMesh const& mesh, NumberLists const& around, Index element, int side) {
+  std::array<Number, max_face_corners> room{};
+  auto const nodes = side_nodes(mesh, element, side, room);
+  if (int(nodes.size()) < mesh.dimension) return ElementSides::collapsed;
+  Number found = ElementSides::boundary;
+  for (Number const other : around[rarest(around, nodes)]) {
+    if (other == element || !has_side(mesh, other, nodes)) continue;
+    if (found >= 0) return ElementSides::crowded;
+    found = other;
+  }
+  return found;
+}
+
+BoundaryFaces boundary_faces(UnstructuredMesh const& mesh, ElementSides const& sides) {
+  BoundaryFaces out;
+  std::array<Number, max_face_corners> room{};
+  for (Index e = 0; e < mesh.n_elements(); ++e) {
+    auto const neighbours = sides.of(e);
+    for (std::size_t s = 0; s < neighbours.size(); ++s) {
+      if (neighbours[s] != ElementSides::boundary) continue;
+      out.nodes.add(side_nodes(mesh, e, int(s), room));
+      out.element.push_back(Number(e));
+      out.side.push_back(Number(s));
+    }
+  }
+  out.across.assign(out.element.size(), -1);
+  return out;
+}
+
+/// Finds the elements behind connections: a face whose nodes are all paired, with a face of the donors there.
+void cross_connections(UnstructuredMesh const& mesh, UnstructuredTopology& topology) {
+  std::vector<Number> donor(std::size_t(mesh.n_nodes()), -1);
+  for (auto const& c : mesh.connections)
+    for (int const way : {0, 1}) {
+      auto const& own = way == 0 ? c.nodes : c.donor_nodes;
+      auto const& other = way == 0 ? c.donor_nodes : c.nodes;
+      for (std::size_t n = 0; n < own.size(); ++n) donor[std::size_t(own[n])] = other[n];
+      std::vector<Number> image;
+      for (Number const node : own)
+        for (Number const face : topology.faces_of_nodes[node]) {
+          auto& across = topology.boundary.across[std::size_t(face)];
+          if (across >= 0) continue;
+          image.clear();
+          for (Number const n : topology.boundary.nodes[face]) image.push_back(donor[std::size_t(n)]);
+          if (contains(image, -1)) continue;
+          Number const there = find_boundary_face(topology, image);
+          if (there >= 0 && there != face) across = topology.boundary.element[std::size_t(there)];
+        }
+      for (Number const node : own) donor[std::size_t(node)] = -1;
+    }
+}
+
+}  // namespace
+
+NumberLists elements_of_nodes(UnstructuredMesh const& mesh) {
+  return invert(mesh.n_nodes(), mesh.n_elements(), [&](Index e) { return mesh.elements.corners(e); });
+}
+
+ElementSides element_sides(UnstructuredMesh const& mesh, NumberLists const& around) {
+  ElementSides out;
+  Index const n = mesh.n_elements();
+  out.first.resize(std::size_t(n) + 1, 0);
+  for (Index e = 0; e < n; ++e) out.first[std::size_t(e) + 1] = out.first[std::size_t(e)] + n_sides(mesh, e);
+  out.neighbour.resize(std::size_t(out.first.back()));
+  for_all("gridmorph::element_sides", n, [&](Index e) {
+    Index const first = out.first[std::size_t(e)], end = out.first[std::size_t(e) + 1];
+    for (Index s = first; s < end; ++s) out.neighbour[std::size_t(s)] = behind(mesh, around, e, int(s - first));
+  });
+  return out;
+}
+
+UnstructuredTopology make_topology(UnstructuredMesh const& mesh) {
+  UnstructuredTopology out;
+  out.elements_of_nodes = elements_of_nodes(mesh);
+  out.sides = element_sides(mesh, out.elements_of_nodes);
+  out.crowded_sides = std::count(out.sides.neighbour.begin(), out.sides.neighbour.end(), ElementSides::crowded);
+  out.boundary = boundary_faces(mesh, out.sides);
+  out.faces_of_nodes = invert(mesh.n_nodes(), out.boundary.size(), [&](Index f) { return out.boundary.nodes[f]; });
+  cross_connections(mesh, out);
+  return out;
+}
+
+Number find_boundary_face(UnstructuredTopology const& topology, std::span<Number const> named) {
+  if (named.empty()) return -1;
+  std::vector<Number> nodes;
+  for (Number const n : named)
+    if (!contains(nodes, n)) nodes.push_back(n);
+  for (Number const face : topology.faces_of_nodes[rarest(topology.faces_of_nodes, nodes)])
+    if (same_set(topology.boundary.nodes[face], nodes)) return face;
+  return -1;
+}
+
+std::vector<Number> coincident_nodes(UnstructuredMesh const& mesh) {
+  std::vector<Number> root(std::size_t(mesh.n_nodes()));
+  std::iota(root.begin(), root.end(), 0);
+  auto const find = [&](Number n) {
+    while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
+    return n;
+  };
+  for (auto const& c : mesh.connections) {
+    if (c.periodic) continue;
+    for (std::size_t p = 0; p < c.nodes.size(); ++p) {
+      Number const a = find(c.nodes[p]), b = find(c.donor_nodes[p]);
+      root[std::size_t(std::max(a, b))] = std::min(a, b);
+    }
+  }
+  for (Number n = 0; n < Number(root.size()); ++n) root[std::size_t(n)] = find(n);
+  return root;
+}
+
+std::vector<Number> match_points(Coordinates const& coordinates, std::span<Number const> points,
+                                 std::span<Number const> donors, double tolerance,
+                                 std::optional<Periodic> const& periodic) {
+  // Along an oblique line few points of a mesh lie side by side, even where it is a lattice.
+  constexpr Vec3 line{0.5318, 0.6173, 0.5797};
+  struct Placed {
+    double along;
+    Number node;
+  };
+  std::vector<Placed> sorted;
+  sorted.reserve(donors.size());
+  for (Number const d : donors) sorted.push_back({dot(line, coordinates[d]), d});
+  auto const before = [](Placed const& a, Placed const& b) {
+    return a.along < b.along || (a.along == b.along && a.node < b.node);
+  };
+  std::sort(sorted.begin(), sorted.end(), before);
+  std::vector<Number> out(points.size(), -1);
+  for_all("gridmorph::match_points", Index(points.size()), [&](Index p) {
+    Vec3 x = coordinates[points[std::size_t(p)]];
+    if (periodic) x = periodic->declared(x);
+    double const along = dot(line, x);
+    double nearest = tolerance;
+    Number& best = out[std::size_t(p)];
+    for (auto at = std::lower_bound(sorted.begin(), sorted.end(), Placed{along - 1.01 * tolerance, -1}, before);
+         at != sorted.end() && at->along <= along + 1.01 * tolerance; ++at) {
+      double const d = distance(x, coordinates[at->node]);
+      if (d < nearest || (d == nearest && (best < 0 || at->node < best))) {
+        nearest = d;
+        best = at->node;
+      }
+    }
+  });
+  return out;
+}
+
+double largest_mismatch(UnstructuredMesh const& mesh, UnstructuredConnection const& c) {
+  double worst = 0;
+  for (std::size_t n = 0; n < c.nodes.size(); ++n) {
+    Vec3 x = mesh.coordinates[c.nodes[n]];
+    if (c.periodic) x = c.periodic->declared(x);
+    worst = std::max(worst, distance(x, mesh.coordinates[c.donor_nodes[n]]));
+  }
+  return worst;
+}
+
+}  // namespace gridmorph

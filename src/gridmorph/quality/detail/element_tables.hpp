@@ -1,0 +1,75 @@
+// Tables that kernels over unstructured elements need; internal to the quality part.
+#pragma once
+
+#include <gridmorph/kernels/element_quality.hpp>
+#include <gridmorph/quality/detail/visit_chunks.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+
+#include <vector>
+
+namespace gridmorph::detail {
+
+template <class MemorySpace>
+struct ElementTables {
+  ElementViews<MemorySpace> elements;
+  Vec3 plane_normal;
+
+  KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
+  KOKKOS_INLINE_FUNCTION ElementCorners corners(CoordinateViews<MemorySpace> const& c, Index e) const {
+    ElementCorners out;
+    Index const first = elements.first(e);
+    int const n = n_corners(elements.type(e));
+    for (int k = 0; k < n; ++k) {
+      Number const node = elements.node(first + k);
+      out.at[k] = {c.x(node), c.y(node), c.z(node)};
+    }
+    return out;
+  }
+};
+
+template <class MemorySpace>
+ElementTables<MemorySpace> element_tables(UnstructuredMesh const& mesh) {
+  return {views<MemorySpace>(mesh.elements), plane_normal(mesh)};
+}
+
+/// Elements zone after zone in chunks of cells_per_chunk; box_extent[0] counts those of the zone.
+inline std::vector<CellChunk> chunks_of(UnstructuredMesh const& mesh) {
+  std::vector<CellChunk> chunks;
+  for (int z = 0; z < int(mesh.zones.size()); ++z) {
+    Index const n = mesh.zones[std::size_t(z)].n_elements;
+    for (Index begin = 0; begin < n; begin += cells_per_chunk)
+      chunks.push_back(
+          {z, {0, 0, 0}, {int(n), 1, 1}, begin, begin + cells_per_chunk < n ? begin + cells_per_chunk : n});
+  }
+  return chunks;
+}
+
+inline std::vector<Index> first_elements(UnstructuredMesh const& mesh) {
+  std::vector<Index> first;
+  for (auto const& zone : mesh.zones) first.push_back(zone.first_element);
+  return first;
+}
+
+/// Largest volume ratio of element e to its neighbours; 1 without any, unbounded unless all volumes are positive.
+template <class VolumeView, class MemorySpace>
+KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, ElementViews<MemorySpace> const& elements,
+                                          ListViews<MemorySpace> const& neighbours, Index e) {
+  double least = volumes(e), largest = least;
+  for (Index n = neighbours.first(e); n < neighbours.first(e + 1); ++n) {
+    Number const other = neighbours.item(n);
+    if (elements.type(other) == ElementType::polyhedron) continue;
+    least = smaller(least, volumes(other));
+    largest = larger(largest, volumes(other));
+  }
+  double const own = volumes(e);
+  if (!(least > 0)) return unbounded;
+  return larger(largest / own, own / least);
+}
+
+/// Elements on the other side of each side of each element, through connections too, where there is one.
+NumberLists neighbour_lists(UnstructuredMesh const& mesh, UnstructuredTopology const& topology);
+
+/// Throws MeshError unless each of the Views holds every node of the mesh.
+void check_size(UnstructuredMesh const& mesh, std::size_t nx, std::size_t ny, std::size_t nz, std::string const& what);
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,149 @@
+#include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/quality/detail/element_tables.hpp>
+#include <gridmorph/quality/detail/wall_columns.hpp>
+#include <gridmorph/quality/detail/wall_sums.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace gridmorph::detail {
+
+namespace {
+
+/// The nodes of one group of walls: wall node, next node on its column, faces of the group around it.
+struct WallTable {
+  std::vector<Number> node, next;
+  NumberLists faces_of_node;  ///< numbers in face_nodes
+  NumberLists face_nodes;
+};
+
+/// The next node of a column over corner `node` of boundary face f, or -1.
+Number next_on_column(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, Number f, Number node) {
+  Number const element = topology.boundary.element[std::size_t(f)];
+  auto const type = mesh.elements.type[std::size_t(element)];
+  if (type == ElementType::polyhedron) return -1;
+  auto const corners = mesh.elements.corners(element);
+  for (std::size_t c = 0; c < corners.size(); ++c)
+    if (corners[c] == node) {
+      int const next = layer_corner(type, topology.boundary.side[std::size_t(f)], int(c));
+      return next < 0 ? -1 : corners[std::size_t(next)];
+    }
+  return -1;
+}
+
+WallTable wall_table(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                     std::vector<Number> const& faces) {
+  WallTable out;
+  std::vector<std::pair<Number, Number>> pairs;  // node, face of the table
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    auto const nodes = topology.boundary.nodes[faces[f]];
+    out.face_nodes.add(nodes);
+    for (Number const n : nodes) pairs.emplace_back(n, Number(f));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<Number> around;
+  for (std::size_t p = 0; p < pairs.size();) {
+    Number const node = pairs[p].first;
+    Number next = -1;
+    around.clear();
+    for (; p < pairs.size() && pairs[p].first == node; ++p) {
+      around.push_back(pairs[p].second);
+      if (next < 0) next = next_on_column(mesh, topology, faces[std::size_t(pairs[p].second)], node);
+    }
+    if (next < 0) continue;
+    out.node.push_back(node);
+    out.next.push_back(next);
+    out.faces_of_node.add(around);
+  }
+  return out;
+}
+
+/// The table in a memory space.
+template <class MemorySpace>
+struct WallViews {
+  Kokkos::View<Number const*, MemorySpace> node, next;
+  ListViews<MemorySpace> faces_of_node, face_nodes;
+  Vec3 plane_normal;  ///< of a 2-D mesh, whose faces are edges
+
+  KOKKOS_INLINE_FUNCTION WallNode at(CoordinateViews<MemorySpace> const& c, Index m) const {
+    auto const x = [&](Number n) { return Vec3{c.x(n), c.y(n), c.z(n)}; };
+    Vec3 normal;
+    for (Index k = faces_of_node.first(m); k < faces_of_node.first(m + 1); ++k) {
+      Number const f = faces_of_node.item(k);
+      Index const begin = face_nodes.first(f), end = face_nodes.first(f + 1);
+      Vec3 const origin = x(face_nodes.item(begin));
+      if (end - begin == 2) normal += cross(x(face_nodes.item(begin + 1)) - origin, plane_normal);
+      for (Index n = begin + 2; n < end; ++n)
+        normal += 0.5 * cross(x(face_nodes.item(n - 1)) - origin, x(face_nodes.item(n)) - origin);
+    }
+    return wall_node(normal, x(next(m)) - x(node(m)));
+  }
+};
+
+}  // namespace
+
+template <class Exec>
+WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                           BoundaryClaims const& claims,
+                           UnstructuredQualityInput<typename Exec::memory_space> const& input) {
+  using MemorySpace = typename Exec::memory_space;
+  bool const against_baseline = input.baseline.x.extent(0) > 0;
+  std::vector<std::string> names;
+  std::vector<int> group_of_patch(mesh.patches.size(), -1);
+  for (int const p : input.walls) {
+    auto const& patch = mesh.patches.at(std::size_t(p));
+    std::string const& name = patch.families.empty() ? patch.name : patch.families.front();
+    auto const at = std::find(names.begin(), names.end(), name);
+    group_of_patch[std::size_t(p)] = int(at - names.begin());
+    if (at == names.end()) names.push_back(name);
+  }
+  std::vector<std::vector<Number>> faces(names.size());
+  for (std::size_t f = 0; f < claims.patch.size(); ++f)
+    if (claims.patch[f] >= 0 && group_of_patch[std::size_t(claims.patch[f])] >= 0)
+      faces[std::size_t(group_of_patch[std::size_t(claims.patch[f])])].push_back(Number(f));
+
+  WallSums all;
+  WallQualities out;
+  Vec3 const normal = plane_normal(mesh);
+  for (std::size_t g = 0; g < names.size(); ++g) {
+    WallTable const table = wall_table(mesh, topology, faces[g]);
+    Index const n = Index(table.node.size());
+    WallViews<MemorySpace> const wall{view_of<MemorySpace>(table.node, "gridmorph::quality::wall_node"),
+                                      view_of<MemorySpace>(table.next, "gridmorph::quality::wall_next"),
+                                      views<MemorySpace>(table.faces_of_node), views<MemorySpace>(table.face_nodes),
+                                      normal};
+    Kokkos::View<WallNodePair*, MemorySpace> nodes(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::wall_nodes"), n);
+    auto const now = input.coordinates;
+    auto const before = input.baseline;
+    Kokkos::parallel_for(
+        "gridmorph::wall_quality", Kokkos::RangePolicy<Exec>(exec, 0, n), KOKKOS_LAMBDA(Index m) {
+          WallNodePair pair;
+          pair.now = wall.at(now, m);
+          if (against_baseline) pair.before = wall.at(before, m);
+          nodes(m) = pair;
+        });
+    auto const nodes_h = download(exec, nodes);
+    WallSums sums;
+    for (Index m = 0; m < n; ++m) {
+      Index const node = table.node[std::size_t(m)];
+      int const zone = mesh.zone_of_node(node);
+      NodeLocation const where{zone,
+                               {int(node - mesh.zones[std::size_t(zone)].first_node) + mesh.first_number - 1, 0, 0}};
+      all.add(nodes_h(m), where, against_baseline);
+      sums.add(nodes_h(m), where, against_baseline);
+    }
+    out.groups.push_back({names[g], sums.result()});
+  }
+  out.all = all.result();
+  return out;
+}
+
+#define GRIDMORPH_INSTANTIATE(Exec)                                                                      \
+  template WallQualities wall_quality(Exec const&, UnstructuredMesh const&, UnstructuredTopology const&, \
+                                      BoundaryClaims const&, UnstructuredQualityInput<Exec::memory_space> const&);
+GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
+#undef GRIDMORPH_INSTANTIATE
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,274 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/quality/detail/element_tables.hpp>
+#include <gridmorph/quality/detail/partial_sums.hpp>
+#include <gridmorph/quality/detail/wall_columns.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+/// Sign of an element's volume: all that its numbering decides.
+std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Exec const exec;
+  detail::check_size(mesh, mesh.coordinates.x.extent(0), mesh.coordinates.y.extent(0), mesh.coordinates.z.extent(0),
+                     "coordinates of the mesh");
+  std::vector<signed char> sign(std::size_t(mesh.n_elements()), 0);
+  auto const tables = detail::element_tables<Kokkos::HostSpace>(mesh);
+  auto const coordinates = views(mesh.coordinates);
+  Kokkos::parallel_for("gridmorph::volume_signs",
+                       Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, mesh.n_elements()), [&](Index e) {
+                         ElementType const type = tables.type(e);
+                         if (type == ElementType::polyhedron) return;
+                         double const v = element_volume(type, tables.corners(coordinates, e), 1, tables.plane_normal);
+                         sign[std::size_t(e)] = v > 0 ? 1 : v < 0 ? -1 : 0;
+                       });
+  compat::fence(exec, "gridmorph::volume_signs (read by the host)");
+  return sign;
+}
+
+}  // namespace
+
+Vec3 plane_normal(UnstructuredMesh const& mesh) {
+  Vec3 const up{0, 0, 1};
+  if (mesh.dimension == 3 || mesh.coordinates.size() == 0) return up;
+  MeshExtent const box = extent_of(mesh.coordinates);
+  double const flat = 1e-9 * box.size();
+  Vec3 const size = box.high - box.low;
+  if (size.z <= flat) return up;
+  if (size.y <= flat) return {0, 1, 0};
+  if (size.x <= flat) return {1, 0, 0};
+  Vec3 sum;
+  for (Index e = 0; e < mesh.n_elements(); ++e) {
+    auto const n = mesh.elements.corners(e);
+    Vec3 const origin = mesh.coordinates[n[0]];
+    for (std::size_t k = 2; k < n.size(); ++k)
+      sum += cross(mesh.coordinates[n[k - 1]] - origin, mesh.coordinates[n[k]] - origin);
+  }
+  double const length = norm(sum);
+  return length > 0 ? (1 / length) * sum : up;
+}
+
+std::vector<int> zone_orientation(UnstructuredMesh const& mesh) {
+  auto const sign = volume_signs(mesh);
+  std::vector<int> out;
+  for (auto const& zone : mesh.zones) {
+    Index balance = 0;
+    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) balance += sign[std::size_t(e)];
+    out.push_back(balance >= 0 ? 1 : -1);
+  }
+  return out;
+}
+
+std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh) {
+  auto const sign = volume_signs(mesh);
+  std::vector<NegativeElements> out;
+  for (int z = 0; z < int(mesh.zones.size()); ++z) {
+    auto const& zone = mesh.zones[std::size_t(z)];
+    std::array<NegativeElements, n_element_types> types;
+    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
+      auto& entry = types[std::size_t(mesh.elements.type[std::size_t(e)])];
+      ++entry.of;
+      if (sign[std::size_t(e)] < 0 && entry.count++ == 0) entry.first = e;
+    }
+    for (int t = 0; t < n_element_types; ++t) {
+      if (types[std::size_t(t)].count == 0) continue;
+      types[std::size_t(t)].zone = z;
+      types[std::size_t(t)].type = ElementType(t);
+      out.push_back(types[std::size_t(t)]);
+    }
+  }
+  return out;
+}
+
+std::string describe(UnstructuredMesh const& mesh, NegativeElements const& n) {
+  auto const& zone = mesh.zones[std::size_t(n.zone)];
+  std::string const type(to_string(n.type));
+  return "zone '" + zone.name + "': " + std::to_string(n.count) + " of " + std::to_string(n.of) + " elements of type " +
+         type + (n.count == 1 ? " is" : " are") + " numbered inside out (negative volume), the first is " + type + " " +
+         std::to_string(number_in_file(mesh, n.first));
+}
+
+template <class Exec>
+QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                              BoundaryClaims const& claims,
+                              UnstructuredQualityInput<typename Exec::memory_space> const& input) {
+  using MemorySpace = typename Exec::memory_space;
+  auto const& c = input.coordinates;
+  auto const& b = input.baseline;
+  bool const against_baseline = b.x.extent(0) > 0;
+  detail::check_size(mesh, c.x.extent(0), c.y.extent(0), c.z.extent(0), "coordinates to measure");
+  if (against_baseline) detail::check_size(mesh, b.x.extent(0), b.y.extent(0), b.z.extent(0), "baseline coordinates");
+  if (input.near_field.extent(0) > 0 && Index(input.near_field.extent(0)) < mesh.n_elements())
+    throw MeshError("near-field mask: it holds " + std::to_string(input.near_field.extent(0)) +
+                    " elements, the mesh '" + mesh.source + "' has " + std::to_string(mesh.n_elements()));
+
+  std::vector<int> const orientation = zone_orientation(mesh);
+  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
+  auto const tables = detail::element_tables<MemorySpace>(mesh);
+  auto const first_element = detail::upload(exec, "gridmorph::quality::zones", detail::first_elements(mesh));
+  auto const signs = detail::upload(exec, "gridmorph::quality::signs", orientation);
+  auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
+  NumberLists const neighbours_h = detail::neighbour_lists(mesh, topology);
+  auto const neighbours = views<MemorySpace>(neighbours_h);
+  Kokkos::View<double*, MemorySpace> volumes(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volumes"), mesh.n_elements());
+  Kokkos::View<detail::PartialSums*, MemorySpace> const sums(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::sums"), table.size());
+  auto const coordinates = input.coordinates;
+  auto const baseline = input.baseline;
+  auto const near_field = input.near_field;
+  bool const has_near_field = near_field.extent(0) > 0;
+  detail::visit_chunks(
+      exec, "gridmorph::measure_quality::elements", chunks, sums,
+      KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::PartialSums& s) {
+        for (int n = 0; n < row.count; ++n) {
+          Index const e = first_element(row.zone) + row.i + n;
+          ElementType const type = tables.type(e);
+          if (type == ElementType::polyhedron) {
+            volumes(e) = 0;
+            continue;
+          }
+          double const sign = signs(row.zone);
+          ElementCorners const now = tables.corners(coordinates, e);
+          CellMeasures const m = element_measures(type, now, sign, tables.plane_normal);
+          volumes(e) = m.volume;
+          auto& region = s.region[has_near_field && near_field(e) != 0 ? 0 : 1];
+          auto const add = [&](Measure measure, double value) { region.template add<1>(measure, &value, 1, e); };
+          add(Measure::aspect_ratio, m.aspect_ratio);
+          add(Measure::determinant_2x2x2, m.determinant_2x2x2);
+          add(Measure::determinant_3x3x3, m.determinant_3x3x3);
+          add(Measure::minimum_angle_deg, m.minimum_angle_deg);
+          add(Measure::equiangle_skewness, m.equiangle_skewness);
+          add(Measure::volume, m.volume);
+          region.cells += 1;
+          region.collapsed += m.collapsed ? 1 : 0;
+          bool const inverted = !(m.smallest_corner_jacobian > 0);
+          region.inverted += inverted ? 1 : 0;
+          if (!against_baseline) continue;
+          ElementCorners const before = tables.corners(baseline, e);
+          add(Measure::relative_displacement, element_relative_displacement(type, before, now));
+          if (inverted && element_measures(type, before, sign, tables.plane_normal).smallest_corner_jacobian > 0)
+            region.newly_inverted += 1;
+        }
+      });
+
+  Kokkos::View<double const*, MemorySpace> const all_volumes = volumes;
+  Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());
+  detail::visit_chunks(
+      exec, "gridmorph::measure_quality::volume_ratio", chunks, ratios,
+      KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::VolumeRatios& s) {
+        for (int n = 0; n < row.count; ++n) {
+          Index const e = first_element(row.zone) + row.i + n;
+          if (tables.type(e) == ElementType::polyhedron) continue;
+          double const ratio = detail::worst_ratio(all_volumes, tables.elements, neighbours, e);
+          s.region[has_near_field && near_field(e) != 0 ? 0 : 1].template add<1>(
+              &ratio, 1, e, larger_is_worse(Measure::volume_ratio));
+        }
+      });
+  auto const sums_h = detail::download(exec, sums);
+  auto const ratios_h = detail::download(exec, ratios);
+  for (std::size_t k = 0; k < table.size(); ++k)
+    for (int r = 0; r < 2; ++r) sums_h(k).region[r].measure[int(Measure::volume_ratio)] = ratios_h(k).region[r];
+
+  QualityReport report;
+  detail::combine(table.size(), sums_h.data(), report.near_field, report.far_field,
+                  [&](Index element, MeasureStatistics& s) {
+                    s.worst_zone = mesh.zone_of_element(element);
+                    s.worst_cell = {int(number_in_file(mesh, element) - 1), 0, 0};
+                  });
+  detail::WallQualities walls = detail::wall_quality(exec, mesh, topology, claims, input);
+  report.wall = walls.all;
+  report.wall_groups = std::move(walls.groups);
+  for (auto const& zone : mesh.zones) report.zone_names.push_back(zone.name);
+  report.left_handed_zones = int(std::count(orientation.begin(), orientation.end(), -1));
+  report.against_baseline = against_baseline;
+  report.unstructured = true;
+  return report;
+}
+
+template <class Exec>
+std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
+    Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+    UnstructuredQualityInput<typename Exec::memory_space> const& input, std::span<Measure const> measures) {
+  using MemorySpace = typename Exec::memory_space;
+  using Field = Kokkos::View<double*, MemorySpace>;
+  auto const& c = input.coordinates;
+  auto const& b = input.baseline;
+  bool const against_baseline = b.x.extent(0) > 0;
+  detail::check_size(mesh, c.x.extent(0), c.y.extent(0), c.z.extent(0), "coordinates to measure");
+  if (against_baseline) detail::check_size(mesh, b.x.extent(0), b.y.extent(0), b.z.extent(0), "baseline coordinates");
+  Index const n_elements = mesh.n_elements();
+  Field fields[n_measures];
+  for (std::size_t m = 0; m < n_measures; ++m) {
+    auto const wanted = [&](Measure which) {
+      return std::find(measures.begin(), measures.end(), which) != measures.end();
+    };
+    bool const needed = wanted(Measure(m)) || (Measure(m) == Measure::volume && wanted(Measure::volume_ratio));
+    fields[m] = Field(Kokkos::view_alloc(exec, "gridmorph::cell_fields::" + std::string(to_string(Measure(m)))),
+                      needed ? n_elements : 0);
+  }
+  auto const tables = detail::element_tables<MemorySpace>(mesh);
+  std::vector<Number> zone_of(std::size_t(n_elements), 0);
+  std::vector<int> const orientation = zone_orientation(mesh);
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z)
+    std::fill_n(zone_of.begin() + mesh.zones[z].first_element, mesh.zones[z].n_elements, Number(z));
+  auto const zone = detail::view_of<MemorySpace>(zone_of, "gridmorph::quality::zone_of");
+  auto const signs = detail::upload(exec, "gridmorph::quality::signs", orientation);
+  auto const coordinates = input.coordinates;
+  auto const baseline = input.baseline;
+  Field const aspect_ratio = fields[int(Measure::aspect_ratio)], det8 = fields[int(Measure::determinant_2x2x2)],
+              det27 = fields[int(Measure::determinant_3x3x3)], angle = fields[int(Measure::minimum_angle_deg)],
+              skewness = fields[int(Measure::equiangle_skewness)], volume = fields[int(Measure::volume)],
+              ratio = fields[int(Measure::volume_ratio)], relative = fields[int(Measure::relative_displacement)];
+  using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>;
+  Kokkos::parallel_for(
+      "gridmorph::cell_fields", Policy(exec, 0, n_elements), KOKKOS_LAMBDA(Index e) {
+        ElementType const type = tables.type(e);
+        if (type == ElementType::polyhedron) return;
+        auto const write = [&](Field const& field, double value) {
+          if (field.extent(0) > 0) field(e) = value;
+        };
+        ElementCorners const now = tables.corners(coordinates, e);
+        CellMeasures const m = element_measures(type, now, signs(zone(e)), tables.plane_normal);
+        write(aspect_ratio, m.aspect_ratio);
+        write(det8, m.determinant_2x2x2);
+        write(det27, m.determinant_3x3x3);
+        write(angle, m.minimum_angle_deg);
+        write(skewness, m.equiangle_skewness);
+        write(volume, m.volume);
+        if (against_baseline && relative.extent(0) > 0)
+          relative(e) = element_relative_displacement(type, tables.corners(baseline, e), now);
+      });
+  NumberLists lists;
+  if (ratio.extent(0) > 0) {
+    lists = detail::neighbour_lists(mesh, topology);
+    auto const neighbours = views<MemorySpace>(lists);
+    Kokkos::parallel_for(
+        "gridmorph::cell_fields::volume_ratio", Policy(exec, 0, n_elements), KOKKOS_LAMBDA(Index e) {
+          if (tables.type(e) == ElementType::polyhedron) return;
+          ratio(e) = detail::worst_ratio(volume, tables.elements, neighbours, e);
+        });
+  }
+  compat::fence(exec, "gridmorph::cell_fields (temporary lists go away)");
+  std::vector<Field> result;
+  for (Measure const m : measures) result.push_back(fields[int(m)]);
+  return result;
+}
+
+#define GRIDMORPH_INSTANTIATE(Exec)                                                                                   \
+  template QualityReport measure_quality(Exec const&, UnstructuredMesh const&, UnstructuredTopology const&,           \
+                                         BoundaryClaims const&, UnstructuredQualityInput<Exec::memory_space> const&); \
+  template std::vector<Kokkos::View<double*, Exec::memory_space>> cell_fields(                                        \
+      Exec const&, UnstructuredMesh const&, UnstructuredTopology const&,                                              \
+      UnstructuredQualityInput<Exec::memory_space> const&, std::span<Measure const>);
+GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
+#undef GRIDMORPH_INSTANTIATE
+
+}  // namespace gridmorph

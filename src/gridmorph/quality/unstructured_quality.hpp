@@ -1,0 +1,59 @@
+// Quality of unstructured meshes: the measures, the report and the guarantees of quality.hpp, for elements of all types.
+//
+// Formulas are written beside the device functions in gridmorph/kernels/element_quality.hpp. Hexahedra give the same numbers
+// as the cells of a structured mesh. Polyhedra are not measured.
+#pragma once
+
+#include <gridmorph/mesh/unstructured_topology.hpp>
+#include <gridmorph/quality/quality.hpp>
+
+namespace gridmorph {
+
+/// What is measured.
+template <class MemorySpace>
+struct UnstructuredQualityInput {
+  CoordinateViews<MemorySpace> coordinates;
+  /// The mesh before morphing; left empty, `coordinates` are the baseline.
+  CoordinateViews<MemorySpace> baseline;
+  /// (n_elements), nonzero: near field. Left empty, every element is in the far field.
+  Kokkos::View<std::uint8_t const*, MemorySpace> near_field;
+  /// Numbers in UnstructuredMesh::patches. Heights are measured at their nodes that a column of prisms, hexahedra or (2-D)
+  /// quadrilaterals leaves from.
+  std::vector<int> walls;
+};
+
+/// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the mean
+/// normal of its elements. (0, 0, 1) for a 3-D mesh.
+Vec3 plane_normal(UnstructuredMesh const& mesh);
+
+/// +1, or -1 for a zone most of whose elements are numbered inside out (negative volume in SIDS order). Host, parallel.
+std::vector<int> zone_orientation(UnstructuredMesh const& mesh);
+
+/// Elements of one type in one zone whose volume is negative as they are numbered.
+struct NegativeElements {
+  int zone = -1;
+  ElementType type = ElementType::tetrahedron;
+  Index count = 0, of = 0;
+  Index first = -1;  ///< number in the mesh
+};
+
+/// Only where there are any; host, parallel.
+std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh);
+
+/// "zone 'Fluid': 12 of 400 prisms are numbered inside out (negative volume), the first is prism 17".
+std::string describe(UnstructuredMesh const& mesh, NegativeElements const& negative);
+
+/// Measures every element and the walls. Returns numbers, so it fences. Throws MeshError when Views are shorter than the mesh.
+/// Memory: 8 bytes per element for volumes and, on devices, the element lists and neighbours.
+template <class Exec>
+QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                              BoundaryClaims const& claims,
+                              UnstructuredQualityInput<typename Exec::memory_space> const& input);
+
+/// Values of the given measures in every element, (n_elements) each, in the order asked for; zero for polyhedra.
+template <class Exec>
+std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
+    Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+    UnstructuredQualityInput<typename Exec::memory_space> const& input, std::span<Measure const> measures);
+
+}  // namespace gridmorph

@@ -1,0 +1,23 @@
+// Structured meshes as unstructured ones: oracles for what is derived and measured.
+#pragma once
+
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+
+namespace gridmorph::test {
+
+/// Every cell a hexahedron: the same nodes and cells, in the same order. Left-handed zones are turned, so that all sound
+/// elements are positive. Patches become faces, interfaces connections.
+UnstructuredMesh to_hexahedra(Mesh const& mesh);
+
+/// The cells below k = `prism_layers` of each zone split into two prisms along k, the others into six tetrahedra (H. Kuhn's
+/// subdivision): conforming inside each zone. Right-handed zones only. Patches become faces.
+UnstructuredMesh to_prisms_and_tetrahedra(Mesh const& mesh, int prism_layers);
+
+/// A box of unit cells from (0, 0, 0) with patches "i_min" ... "k_max"; k_min is a wall, the others are of no kind.
+Mesh unit_box(Index3 cells);
+
+/// A 2-D mesh of one zone: cells (i, j) of the plane z = 0, below j = `layers` quadrilaterals, above two triangles each; patches
+/// "i_min" ... "j_max", j_min a wall.
+UnstructuredMesh flat_box(int ni, int nj, int layers);
+
+}  // namespace gridmorph::test

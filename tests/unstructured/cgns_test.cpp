@@ -1,0 +1,327 @@
+// Unstructured CGNS files: written by this library and by the CGNS mid-level library.
+#include "io/io_support.hpp"
+#include "quality/test_meshes.hpp"
+#include "support/unstructured_meshes.hpp"
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mesh/unstructured_topology.hpp>
+
+#include <cgnslib.h>
+
+#include <algorithm>
+
+namespace gridmorph::test {
+namespace {
+
+void check(int status) {
+  if (status != CG_OK) throw std::runtime_error(cg_get_error());
+}
+
+void expect_same(UnstructuredMesh const& a, UnstructuredMesh const& b) {
+  ASSERT_EQ(a.zones.size(), b.zones.size());
+  EXPECT_EQ(a.dimension, b.dimension);
+  for (std::size_t z = 0; z < a.zones.size(); ++z) {
+    EXPECT_EQ(a.zones[z].name, b.zones[z].name);
+    EXPECT_EQ(a.zones[z].n_nodes, b.zones[z].n_nodes);
+    EXPECT_EQ(a.zones[z].n_elements, b.zones[z].n_elements);
+  }
+  EXPECT_EQ(a.elements.type, b.elements.type);
+  EXPECT_EQ(a.elements.nodes.first, b.elements.nodes.first);
+  EXPECT_EQ(a.elements.nodes.item, b.elements.nodes.item);
+  ASSERT_EQ(a.patches.size(), b.patches.size());
+  for (std::size_t p = 0; p < a.patches.size(); ++p) {
+    EXPECT_EQ(a.patches[p].name, b.patches[p].name);
+    EXPECT_EQ(a.patches[p].kind, b.patches[p].kind);
+    EXPECT_EQ(a.patches[p].families, b.patches[p].families);
+    EXPECT_EQ(a.patches[p].faces.item, b.patches[p].faces.item);
+    EXPECT_EQ(a.patches[p].nodes, b.patches[p].nodes);
+  }
+  ASSERT_EQ(a.connections.size(), b.connections.size());
+  for (std::size_t c = 0; c < a.connections.size(); ++c) {
+    EXPECT_EQ(a.connections[c].nodes, b.connections[c].nodes);
+    EXPECT_EQ(a.connections[c].donor_nodes, b.connections[c].donor_nodes);
+    EXPECT_EQ(a.connections[c].periodic.has_value(), b.connections[c].periodic.has_value());
+  }
+  expect_same_coordinates(a.coordinates, b.coordinates);
+}
+
+UnstructuredMesh mixed_box() {
+  auto mesh = to_prisms_and_tetrahedra(unit_box({4, 3, 5}), 2);
+  mesh.patches[4].families = {"bottom", "walls"};
+  mesh.patches[5].nodes = patch_nodes(mesh.patches[5]);
+  mesh.patches[5].faces = {};
+  return mesh;
+}
+
+class UnstructuredCgns : public testing::TestWithParam<FileFormat> {
+ protected:
+  TemporaryFolder folder_;
+};
+INSTANTIATE_TEST_SUITE_P(Formats, UnstructuredCgns, testing::Values(FileFormat::cgns_hdf5, FileFormat::cgns_adf),
+                         [](auto const& info) {
+                           return std::string(info.param == FileFormat::cgns_hdf5 ? "hdf5" : "adf");
+                         });
+
+TEST_P(UnstructuredCgns, WhatIsWrittenReadsBackTheSame) {
+  auto const file = folder_.file("mesh.cgns");
+  for (auto mesh : {mixed_box(), to_hexahedra(two_zones({}, true)), flat_box(5, 4, 2)}) {
+    mesh.zones[0].single_precision = false;
+    write_mesh(file, mesh, {.format = GetParam()});
+    EXPECT_EQ(mesh_kind(file), MeshKind::unstructured);
+    expect_same(read_unstructured_mesh(file), mesh);
+  }
+}
+
+TEST_P(UnstructuredCgns, PeriodicConnectionsComeThrough) {
+  auto mesh = to_hexahedra(unit_box({3, 2, 2}));
+  UnstructuredConnection c;
+  c.name = "around";
+  c.zone = c.donor_zone = 0;
+  c.nodes = patch_nodes(mesh.patches[0]);
+  c.donor_nodes = patch_nodes(mesh.patches[1]);
+  c.periodic = Periodic{};
+  c.periodic->translation = {3, 0, 0};
+  c.periodic->declared.translation = {3, 0, 0};
+  mesh.connections = {c};
+  mesh.patches.erase(mesh.patches.begin(), mesh.patches.begin() + 2);
+  write_mesh(folder_.file("mesh.cgns"), mesh, {.format = GetParam()});
+  auto const read = read_unstructured_mesh(folder_.file("mesh.cgns"));
+  expect_same(read, mesh);
+  EXPECT_LT(largest_mismatch(read, read.connections[0]), 1e-12);
+  auto const topology = make_topology(read);
+  EXPECT_TRUE(claim_boundary(read, topology).problems.empty());
+  EXPECT_EQ(
+      std::count_if(topology.boundary.across.begin(), topology.boundary.across.end(), [](Number e) { return e >= 0; }),
+      2 * 4);
+}
+
+TEST_P(UnstructuredCgns, MorphedFilesDifferInTheirCoordinatesAlone) {
+  auto mesh = mixed_box();
+  auto const input = folder_.file("in.cgns"), output = folder_.file("out.cgns");
+  write_mesh(input, mesh, {.format = GetParam()});
+  Coordinates after(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) after.set(n, wavy(mesh.coordinates[n], 0.1));
+  write_morphed(input, output, mesh, after);
+  expect_same_coordinates(read_unstructured_mesh(output).coordinates, after);
+  auto const before = dump_tree(input), now = dump_tree(output);
+  ASSERT_EQ(before.size(), now.size());
+  for (auto const& [path, text] : before)
+    EXPECT_EQ(text == now.at(path), path.find("/Coordinate") == std::string::npos) << path;
+  // No motion: the same bytes in every node.
+  write_morphed(input, output, mesh, mesh.coordinates);
+  EXPECT_EQ(dump_tree(output), before);
+}
+
+TEST_P(UnstructuredCgns, FieldsAreAddedPerNodeAndPerElement) {
+  auto const mesh = mixed_box();
+  auto const input = folder_.file("in.cgns");
+  write_mesh(input, mesh, {.format = GetParam()});
+  OutputFields fields;
+  fields.displacement = true;
+  fields.cells.push_back({"Number", {}});
+  for (Index e = 0; e < mesh.n_elements(); ++e) fields.cells[0].values.push_back(double(e));
+  Coordinates after(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) after.set(n, mesh.coordinates[n] + Vec3{0.5, 0, 0});
+  write_morphed(input, input, mesh, after, fields);
+  auto const tree = dump_tree(input);
+  ASSERT_TRUE(tree.contains("/Base/box/MorphNodes/DisplacementX"));
+  ASSERT_TRUE(tree.contains("/Base/box/MorphCells/Number"));
+  auto const bytes = payload(tree.at("/Base/box/MorphNodes/DisplacementX"));
+  double first = 0;
+  std::memcpy(&first, bytes.data(), sizeof first);
+  EXPECT_EQ(first, 0.5);
+  EXPECT_EQ(payload(tree.at("/Base/box/MorphCells/Number")).size(), sizeof(double) * std::size_t(mesh.n_elements()));
+  fields.cells[0].values.pop_back();
+  EXPECT_THROW(write_morphed(input, input, mesh, after, fields), MeshError);
+}
+
+/// Two hexahedra side by side, x from 0 to 2, with sections and boundary conditions as the test asks for.
+class HandMadeFile {
+ public:
+  explicit HandMadeFile(std::string const& path, bool with_structured_zone = false) {
+    check(cg_set_file_type(CG_FILE_HDF5));
+    check(cg_open(path.c_str(), CG_MODE_WRITE, &file_));
+    check(cg_base_write(file_, "Base", 3, 3, &base_));
+    cgsize_t size[3] = {12, 2, 0};
+    check(cg_zone_write(file_, base_, "Hexa", size, CGNS_ENUMV(Unstructured), &zone_));
+    coordinates(zone_);
+    cgsize_t const nodes[16] = {1, 2, 5, 4, 7, 8, 11, 10, 2, 3, 6, 5, 8, 9, 12, 11};
+    int section = 0;
+    check(cg_section_write(file_, base_, zone_, "Cells", CGNS_ENUMV(HEXA_8), 1, 2, 0, nodes, &section));
+    cgsize_t const sides[8] = {1, 4, 10, 7, 3, 9, 12, 6};
+    check(cg_section_write(file_, base_, zone_, "sides", CGNS_ENUMV(QUAD_4), 3, 4, 0, sides, &section));
+    if (with_structured_zone) {
+      cgsize_t box[9] = {3, 2, 2, 2, 1, 1, 0, 0, 0};
+      int structured = 0;
+      check(cg_zone_write(file_, base_, "Box", box, CGNS_ENUMV(Structured), &structured));
+      coordinates(structured);
+    }
+  }
+  ~HandMadeFile() { cg_close(file_); }
+  HandMadeFile(HandMadeFile const&) = delete;
+  HandMadeFile& operator=(HandMadeFile const&) = delete;
+
+  void bc(char const* name, CGNS_ENUMT(PointSetType_t) set, std::vector<cgsize_t> const& points,
+          CGNS_ENUMT(GridLocation_t) location = CGNS_ENUMV(Vertex)) {
+    int number = 0;
+    check(cg_boco_write(file_, base_, zone_, name, CGNS_ENUMV(BCWall), set, cgsize_t(points.size()), points.data(),
+                        &number));
+    if (location != CGNS_ENUMV(Vertex)) check(cg_boco_gridlocation_write(file_, base_, zone_, number, location));
+  }
+  void section(char const* name, CGNS_ENUMT(ElementType_t) type, cgsize_t first, cgsize_t last,
+               std::vector<cgsize_t> const& nodes) {
+    int section = 0;
+    check(cg_section_write(file_, base_, zone_, name, type, first, last, 0, nodes.data(), &section));
+  }
+  void family(char const* name, CGNS_ENUMT(BCType_t) type) {
+    int family = 0, bc = 0;
+    check(cg_family_write(file_, base_, name, &family));
+    check(cg_fambc_write(file_, base_, family, "FamilyBC", type, &bc));
+  }
+
+ private:
+  void coordinates(int zone) {
+    for (int c = 0; c < 3; ++c) {
+      std::vector<double> x;
+      for (int k = 0; k < 2; ++k)
+        for (int j = 0; j < 2; ++j)
+          for (int i = 0; i < 3; ++i) x.push_back(std::array{i, j, k}[std::size_t(c)]);
+      static constexpr std::array names{"CoordinateX", "CoordinateY", "CoordinateZ"};
+      int number = 0;
+      check(cg_coord_write(file_, base_, zone, CGNS_ENUMV(RealDouble), names[std::size_t(c)], x.data(), &number));
+    }
+  }
+  int file_ = 0, base_ = 0, zone_ = 0;
+};
+
+std::vector<Number> const x_min{0, 3, 6, 9}, x_max{2, 5, 8, 11};
+
+TEST(UnstructuredBoundary, PointListsRangesElementListsAndNodesAllNameTheSameFaces) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("bc.cgns");
+  {
+    HandMadeFile file(path);
+    file.bc("list", CGNS_ENUMV(PointList), {3}, CGNS_ENUMV(FaceCenter));
+    file.bc("range", CGNS_ENUMV(PointRange), {4, 4}, CGNS_ENUMV(FaceCenter));
+    file.bc("cells", CGNS_ENUMV(PointRange), {3, 4}, CGNS_ENUMV(CellCenter));
+    file.bc("nodes", CGNS_ENUMV(PointList), {10, 1, 4, 7, 1});
+    file.bc("node range", CGNS_ENUMV(PointRange), {1, 12});
+  }
+  auto const mesh = read_unstructured_mesh(path);
+  ASSERT_EQ(mesh.patches.size(), 5u);
+  EXPECT_EQ(patch_nodes(mesh.patches[0]), x_min);
+  EXPECT_EQ(patch_nodes(mesh.patches[1]), x_max);
+  EXPECT_EQ(mesh.patches[2].faces.size(), 2);
+  EXPECT_EQ(mesh.patches[3].nodes, x_min);
+  EXPECT_EQ(mesh.patches[4].nodes.size(), 12u);
+  for (auto const& patch : mesh.patches) EXPECT_EQ(patch.kind, PatchKind::wall);
+}
+
+TEST(UnstructuredBoundary, SectionsThatNoConditionNamesBecomePatchesOfTheirFamily) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("bc.cgns");
+  {
+    HandMadeFile file(path);
+    file.family("sides", CGNS_ENUMV(BCInflow));
+  }
+  auto const mesh = read_unstructured_mesh(path);
+  ASSERT_EQ(mesh.patches.size(), 1u);
+  EXPECT_EQ(mesh.patches[0].name, "sides");
+  EXPECT_EQ(mesh.patches[0].kind, PatchKind::inflow);
+  EXPECT_EQ(mesh.patches[0].faces.size(), 2);
+  ASSERT_EQ(mesh.notes.size(), 1u);
+  EXPECT_NE(mesh.notes[0].find("no boundary condition names them"), std::string::npos);
+}
+
+TEST(UnstructuredBoundary, ANodeListTakesTheFacesOfTheSectionOfItsName) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("bc.cgns");
+  {
+    HandMadeFile file(path);
+    file.bc("sides", CGNS_ENUMV(PointList), {1, 3, 4, 6, 7, 9, 10, 12});
+  }
+  auto const mesh = read_unstructured_mesh(path);
+  ASSERT_EQ(mesh.patches.size(), 1u);
+  EXPECT_EQ(mesh.patches[0].faces.size(), 2);
+  EXPECT_TRUE(mesh.patches[0].nodes.empty());
+}
+
+TEST(UnstructuredBoundary, NumbersThatAreNotThereAreProblemsThatNameThem) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("bc.cgns");
+  {
+    HandMadeFile file(path);
+    file.bc("high", CGNS_ENUMV(PointList), {1, 13});
+    file.bc("none", CGNS_ENUMV(PointList), {17}, CGNS_ENUMV(FaceCenter));
+    file.bc("volume", CGNS_ENUMV(PointList), {1}, CGNS_ENUMV(FaceCenter));
+  }
+  auto const message = message_of<MeshError>([&] { read_unstructured_mesh(path); });
+  for (auto const* part : {"BC 'high'", "node 13", "12 nodes", "BC 'none'", "element 17"})
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  EXPECT_EQ(message.find("volume"), std::string::npos) << message;
+}
+
+TEST(UnstructuredFiles, SecondOrderElementsKeepAllTheirNodes) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("tetra10.cgns");
+  int file = 0, base = 0, zone = 0, number = 0;
+  check(cg_set_file_type(CG_FILE_HDF5));
+  check(cg_open(path.c_str(), CG_MODE_WRITE, &file));
+  check(cg_base_write(file, "Base", 3, 3, &base));
+  cgsize_t size[3] = {10, 1, 0};
+  check(cg_zone_write(file, base, "Zone", size, CGNS_ENUMV(Unstructured), &zone));
+  std::array<std::array<double, 10>, 3> const x{
+      {{0, 2, 0, 0, 1, 1, 0, 0, 1, 0}, {0, 0, 2, 0, 0, 1, 1, 0, 0, 1}, {0, 0, 0, 2, 0, 0, 0, 1, 1, 1}}};
+  check(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), "CoordinateX", x[0].data(), &number));
+  check(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), "CoordinateY", x[1].data(), &number));
+  check(cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), "CoordinateZ", x[2].data(), &number));
+  cgsize_t const nodes[10] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, face[6] = {1, 3, 2, 7, 6, 5};
+  check(cg_section_write(file, base, zone, "T", CGNS_ENUMV(TETRA_10), 1, 1, 0, nodes, &number));
+  check(cg_section_write(file, base, zone, "F", CGNS_ENUMV(TRI_6), 2, 2, 0, face, &number));
+  cg_close(file);
+  auto const mesh = read_unstructured_mesh(path);
+  EXPECT_EQ(mesh.elements.nodes[0].size(), 10u);
+  EXPECT_EQ(mesh.elements.corners(0).size(), 4u);
+  auto const topology = make_topology(mesh);
+  EXPECT_EQ(topology.boundary.size(), 4);
+  EXPECT_EQ(claim_boundary(mesh, topology).faces_of_patch[0], 1);
+}
+
+TEST(UnstructuredFiles, HybridFilesAreRefused) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("hybrid.cgns");
+  { HandMadeFile const file(path, true); }
+  for (auto const& message :
+       {message_of<IoError>([&] { mesh_kind(path); }), message_of<IoError>([&] { read_unstructured_mesh(path); })})
+    EXPECT_NE(message.find("'Box'"), std::string::npos) << message;
+}
+
+TEST(UnstructuredFiles, ElementsThatNameNodesOutsideTheZoneAreRefused) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("bad.cgns");
+  {
+    HandMadeFile file(path);
+    file.section("bad", CGNS_ENUMV(TRI_3), 5, 6, {1, 2, 3, 4, 5, 99});
+  }
+  auto const message = message_of<IoError>([&] { read_unstructured_mesh(path); });
+  for (auto const* part : {"elements 'bad'", "element 6", "node 99", "12 nodes"})
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
+TEST(UnstructuredFiles, ConnectionsAreFoundByPositionWhereTheirListsAreNotInOrder) {
+  TemporaryFolder const folder;
+  auto mesh = to_hexahedra(two_zones({}, false));
+  auto const good = mesh.connections[0];
+  std::reverse(mesh.connections[0].donor_nodes.begin(), mesh.connections[0].donor_nodes.end());
+  write_mesh(folder.file("mesh.cgns"), mesh);
+  auto const read = read_unstructured_mesh(folder.file("mesh.cgns"));
+  ASSERT_EQ(read.connections.size(), 1u);
+  EXPECT_EQ(read.connections[0].nodes, good.nodes);
+  EXPECT_EQ(read.connections[0].donor_nodes, good.donor_nodes);
+  EXPECT_TRUE(std::any_of(read.notes.begin(), read.notes.end(),
+                          [](auto const& n) { return n.find("paired by position") != std::string::npos; }));
+}
+
+}  // namespace
+}  // namespace gridmorph::test
