@@ -40,8 +40,6 @@ struct BladeInput {
   std::function<CylindricalMotion(Vec3 const& point, Vec3 const& displacement)> motion;
   /// Displacements of the nodes of one patch, in patch_points order.
   std::function<void(int patch, std::span<Vec3 const> points, std::span<Vec3> displacement)> displacement;
-  /// Length from span fraction 0 to 1; 0: what the patch's radii say.
-  double height = 0;
 };
 
 /// Stitches the structured ranges of the patches: finds which index direction of each runs spanwise, joins pieces that
