@@ -5,7 +5,7 @@
 // exactly zero, and a displacement that already keeps the node on its surface comes back bit for bit.
 //
 // Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots; meridional the same
-// across the axis, otherwise two to five lookups more to find the nearest point.
+// across the axis, otherwise some six lookups with derivatives to find the nearest point: eight times revolution.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
