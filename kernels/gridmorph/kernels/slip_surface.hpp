@@ -5,8 +5,8 @@
 // exactly zero, and a displacement that already keeps the node on its surface comes back bit for bit.
 //
 // Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots; meridional the same
-// across the axis, otherwise two to five lookups more to find the nearest point; facets a search in O(log facets) and about
-// 2000 flops (facet_surface.hpp).
+// across the axis, otherwise some six lookups with derivatives to find the nearest point: eight times revolution; facets a
+// search in O(log facets) and about 2000 flops (facet_surface.hpp).
 #pragma once
 
 #include <gridmorph/kernels/facet_surface.hpp>
