@@ -15,9 +15,10 @@ namespace {
 SlipRule on(SlipRule::Surface surface) { return {.surface = surface}; }
 
 /// What nodes on slip patches do in two runs of the same mesh: largest difference of their displacements, and largest
-/// distance from the surfaces of the one and of the other.
+/// distance from the surfaces of the one and of the other; for the latter those that have left the baseline surface over a
+/// rim count apart.
 struct Comparison {
-  double apart = 0, off_own = 0, off_reference = 0, moved = 0;
+  double apart = 0, off_own = 0, off_reference = 0, off_reference_beyond = 0, moved = 0;
 };
 
 Comparison compare(Outcome const& own, Outcome const& reference) {
@@ -33,9 +34,12 @@ Comparison compare(Outcome const& own, Outcome const& reference) {
         for (int i = r.begin[0]; i < r.end[0]; ++i) {
           Index const n = own.mesh.zones[patch.zone].node({i, j, k});
           Vec3 const x = own.morphed.position[n];
-          c.apart = std::max(c.apart, distance(x, reference.morphed.position[n]));
+          bool const beyond = surface->kind == SlipSurface::Kind::facets &&
+                              surface->facets.closest_point(x).place == FacetFoot::Place::rim;
+          if (!beyond) c.apart = std::max(c.apart, distance(x, reference.morphed.position[n]));
           c.off_own = std::max(c.off_own, distance(surface->view().project(x), x));
-          c.off_reference = std::max(c.off_reference, distance(true_surface->view().project(x), x));
+          double& off = beyond ? c.off_reference_beyond : c.off_reference;
+          off = std::max(off, distance(true_surface->view().project(x), x));
           c.moved = std::max(c.moved, norm(own.u(n)));
         }
   }
@@ -57,13 +61,13 @@ TEST(BaselineSlipOnRealMeshes, EndWallsOfATurbineStageAsFacetsAreSurfacesOfRevol
   };
   Outcome const own = run(SlipRule::Surface::baseline, 0.02), revolution = run(SlipRule::Surface::revolution, 0.02);
   Comparison const c = compare(own, revolution);
-  RecordProperty("apart", std::to_string(c.apart));
-  std::printf("apart %.2e, off facets %.2e, off revolution %.2e, moved %.2e\n", c.apart, c.off_own, c.off_reference,
-              c.moved);
   EXPECT_GT(c.moved, 0.01);
   EXPECT_LE(c.off_own, 1e-10 * own.plan().mesh_size);
   EXPECT_LE(c.off_reference, 2e-6);  // of radii near 1, cells of 0.01 to 0.03
   EXPECT_LE(c.apart, 2e-6);
+  // The feet of the blades are holes of the baseline end walls; a node that moves d into one is on the tangent plane of the
+  // hole's rim, d^2 / 2 r off.
+  EXPECT_LE(c.off_reference_beyond, 0.02 * 0.02 / 2);
 
   Outcome const still = run(SlipRule::Surface::baseline, 0);
   EXPECT_EQ(different_bits(still.morphed.position, still.mesh.coordinates), 0);
@@ -91,8 +95,6 @@ TEST_P(WingOnItsSymmetryPlane, FacetsAreThePlane) {
   };
   Outcome const own = run(SlipRule::Surface::baseline), plane = run(SlipRule::Surface::plane);
   Comparison const c = compare(own, plane);
-  std::printf("apart %.2e, off facets %.2e, off plane %.2e, moved %.2e\n", c.apart, c.off_own, c.off_reference,
-              c.moved);
   EXPECT_GT(c.moved, 1e-3);
   EXPECT_LE(c.off_own, 1e-10 * own.plan().mesh_size);
   EXPECT_LE(c.off_reference, 1e-10 * own.plan().mesh_size);
