@@ -64,7 +64,8 @@ extent = "block"
         for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
           for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
             Index const n = zone.node({i, j, k});
-            Vec3 const x = mesh.coordinates[n], y = Turn(Axis{}, -p, n_blades)(copy.at(std::size_t(n - zone.first_node)));
+            Vec3 const x = mesh.coordinates[n],
+                       y = Turn(Axis{}, -p, n_blades)(copy.at(std::size_t(n - zone.first_node)));
             visit(n, x, y);
           }
     }
@@ -97,7 +98,10 @@ TEST_F(PassageWheel, OfEqualBladesIsTheMorphedPassageTurned) {
 }
 
 TEST_F(PassageWheel, WithoutMotionIsTheBaselineTurned) {
-  for (std::string const blades : {"factors = [0]", "factors = [0, -0.0]\n", "sequence = [\"A\", \"B\"]\n[[wheel.blade]]\nname = \"A\"\nfactor = 0\n[[wheel.blade]]\nname = \"B\"\n[[wheel.blade.motion]]\npatches = \"blade\"\nrule = \"fixed\"\n"}) {
+  for (std::string const blades :
+       {"factors = [0]", "factors = [0, -0.0]\n",
+        "sequence = [\"A\", \"B\"]\n[[wheel.blade]]\nname = \"A\"\nfactor = 0\n[[wheel.blade]]\nname = "
+        "\"B\"\n[[wheel.blade.motion]]\npatches = \"blade\"\nrule = \"fixed\"\n"}) {
     WheelFile const wheel = this->wheel("passage.toml", blades);
     wheel.expect_watertight();
     EXPECT_EQ(distance_from(wheel, 0, n_blades, mesh), 0) << blades;
@@ -107,7 +111,9 @@ TEST_F(PassageWheel, WithoutMotionIsTheBaselineTurned) {
 
 TEST_F(PassageWheel, WithItsSidesOpenedForEqualBladesIsTheSame) {
   WheelFile const closed = wheel("passage.toml", "factors = [0.5]");
-  WheelFile const opened = wheel("passage.toml", "sequence = [\"A\", \"B\"]\n[[wheel.blade]]\nname = \"A\"\nfactor = 0.5\n[[wheel.blade]]\nname = \"B\"\nfactor = 0.5000000000000001\n");
+  WheelFile const opened = wheel("passage.toml",
+                                 "sequence = [\"A\", \"B\"]\n[[wheel.blade]]\nname = \"A\"\nfactor = "
+                                 "0.5\n[[wheel.blade]]\nname = \"B\"\nfactor = 0.5000000000000001\n");
   for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_between(opened, p, closed, p, n_blades), 1e-13 * size()) << p;
 }
 
@@ -125,7 +131,8 @@ TEST_F(PassageWheel, GivesEveryBladeItsOwnMotion) {
       auto const a = cylindrical(x), b = cylindrical(y);
       double const f = sequence[p] == 'A' ? 1 : 0.5;
       bool const c = sequence[p] == 'C';
-      EXPECT_NEAR(b.angle - a.angle, c ? -0.3 * a.axial : f * (0.06 * std::sin(a.axial / 0.05) + 0.1 * a.axial), 1e-14) << n;
+      EXPECT_NEAR(b.angle - a.angle, c ? -0.3 * a.axial : f * (0.06 * std::sin(a.axial / 0.05) + 0.1 * a.axial), 1e-14)
+          << n;
       EXPECT_NEAR(b.axial - a.axial, c ? 0 : f * 0.1 * (a.radius - 0.12) * a.axial, 1e-15) << n;
     });
 }
@@ -141,7 +148,9 @@ TEST_F(PassageWheel, SharesTheMotionOfAPeriodicSideEvenly) {
         for (int j = face.range.begin[1] + 1; j < face.range.end[1] - 1; ++j)  // end walls correct the radius
           for (int i = face.range.begin[0]; i < face.range.end[0]; ++i) {
             auto const n = std::size_t(zone.node({i, j, k}) - zone.first_node);
-            auto const at = [&](WheelFile const& w) { return cylindrical(Turn(Axis{}, -p, n_blades)(w.zones.at(name(zone.name, p)).at(n))); };
+            auto const at = [&](WheelFile const& w) {
+              return cylindrical(Turn(Axis{}, -p, n_blades)(w.zones.at(name(zone.name, p)).at(n)));
+            };
             visit(at(all_a), at(all_b), at(mixed));
           }
     }
@@ -192,19 +201,24 @@ TEST_F(PassageWheel, IsTheSameBitsOnOneThread) {
 }
 
 TEST_F(PassageWheel, InPartStaysPeriodicByTheAngleOfThePart) {
-  WheelFile const part = wheel("passage.toml", "passages = 3\nsequence = [\"A\", \"B\", \"B\"]\n[[wheel.blade]]\nname = \"A\"\n[[wheel.blade]]\nname = \"B\"\nfactor = 0.2\n");
+  WheelFile const part = wheel("passage.toml",
+                               "passages = 3\nsequence = [\"A\", \"B\", \"B\"]\n[[wheel.blade]]\nname = "
+                               "\"A\"\n[[wheel.blade]]\nname = \"B\"\nfactor = 0.2\n");
   EXPECT_EQ(part.zones.size(), 3 * mesh.zones.size());
   part.expect_watertight();
   EXPECT_EQ(part.n_periodic(), 6);  // three zones on either side
   double worst = 0;
-  part.for_each_pair([&](FileConnection const& c, FileZone const& own, std::size_t p, FileZone const& donor, std::size_t q) {
-    if (!c.periodic) return;
-    EXPECT_NEAR(std::abs(c.angle[0]), 2 * pi * 3 / n_blades, 1e-6);
-    worst = std::max(worst, distance(Turn(Axis{}, c.angle[0] > 0 ? 3 : -3, n_blades)(own.at(p)), donor.at(q)));
-  });
+  part.for_each_pair(
+      [&](FileConnection const& c, FileZone const& own, std::size_t p, FileZone const& donor, std::size_t q) {
+        if (!c.periodic) return;
+        EXPECT_NEAR(std::abs(c.angle[0]), 2 * pi * 3 / n_blades, 1e-6);
+        worst = std::max(worst, distance(Turn(Axis{}, c.angle[0] > 0 ? 3 : -3, n_blades)(own.at(p)), donor.at(q)));
+      });
   EXPECT_LT(worst, 2e-16);
   // The whole wheel of the same blades, repeated, where the part does not end; 3 does not go into 8, so the ends differ.
-  WheelFile const whole = wheel("passage.toml", "sequence = [\"A\", \"B\", \"B\", \"A\", \"B\", \"B\", \"A\", \"B\"]\n[[wheel.blade]]\nname = \"A\"\n[[wheel.blade]]\nname = \"B\"\nfactor = 0.2\n");
+  WheelFile const whole = wheel("passage.toml",
+                                "sequence = [\"A\", \"B\", \"B\", \"A\", \"B\", \"B\", \"A\", "
+                                "\"B\"]\n[[wheel.blade]]\nname = \"A\"\n[[wheel.blade]]\nname = \"B\"\nfactor = 0.2\n");
   EXPECT_LT(distance_between(part, 1, whole, 1, n_blades), 1e-15 * size());
   EXPECT_LT(distance_between(part, 0, whole, 3, n_blades), 1e-14 * size());
 }
@@ -237,10 +251,13 @@ TEST_F(PassageWheel, IsRefusedWithALineForEveryMistake) {
   expect_all_in(refusal(rules, "passages = 9\n"), {"passages: 9", "8 in 360 degrees"});
   expect_all_in(refusal(rules, "zones = \"rotor*\"\n"), {"no zone of a row", "ring_le"});
   expect_all_in(refusal(rules, "sequense = [\"A\"]\n"), {"sequense", "sequence"});
-  expect_all_in(refusal(rules, "sequence = [\"A\"]\n[[wheel.blade]]\nname = \"A\"\n[[wheel.blade.motion]]\npatches = \"hub\"\nrule = \"fixed\"\n"),
+  expect_all_in(refusal(rules,
+                        "sequence = [\"A\"]\n[[wheel.blade]]\nname = \"A\"\n[[wheel.blade.motion]]\npatches = "
+                        "\"hub\"\nrule = \"fixed\"\n"),
                 {"'hub'", "same patches"});
-  expect_all_in(refusal(rules, "[[wheel.blade]]\nname = \"A\"\n[[wheel.blade.motion]]\npatches = \"hub\"\nrule = \"free\"\n"),
-                {"found free"});
+  expect_all_in(
+      refusal(rules, "[[wheel.blade]]\nname = \"A\"\n[[wheel.blade.motion]]\npatches = \"hub\"\nrule = \"free\"\n"),
+      {"found free"});
 }
 
 TEST_F(PassageWheel, OfDifferentBladesNeedsARuleForItsSides) {
@@ -253,7 +270,8 @@ TEST_F(PassageWheel, OfDifferentBladesNeedsARuleForItsSides) {
 }
 
 TEST_F(PassageWheel, WithCellsTurnedOverIsNotWritten) {
-  folder.write("wheel.toml", text("passage.toml") + "\n[wheel]\noutput = \"wheel.cgns\"\nfactors = [1, 1, 1, 40, 1, 1, 1, 1]\n");
+  folder.write("wheel.toml",
+               text("passage.toml") + "\n[wheel]\noutput = \"wheel.cgns\"\nfactors = [1, 1, 1, 40, 1, 1, 1, 1]\n");
   EXPECT_EQ(gridmorph("wheel wheel.toml"), 1) << text("err");
   EXPECT_FALSE(std::filesystem::exists(folder / "wheel.cgns"));
   expect_all_in(text("err"), {"passage 4", "is not written"});

@@ -87,12 +87,14 @@ passages = 3
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
           Index const n = zone.node({i, j, patch.range.begin[2]});
-          Vec3 const x = mesh.coordinates[n], y = wheel.zones.at(name(zone.name, p)).at(std::size_t(n - zone.first_node));
+          Vec3 const x = mesh.coordinates[n],
+                     y = wheel.zones.at(name(zone.name, p)).at(std::size_t(n - zone.first_node));
           double const turned = cylindrical(y).angle - cylindrical(x).angle;
           double const moved = std::remainder(turned, 2 * std::acos(-1.0) / wheel_of(mesh, patch.zone));
           // One of the two sides of a passage belongs to the next blade.
           double const own = factor[p], next = factor[(p + 1) % 4];
-          bool const is_own = std::abs(moved - own * 0.3 * (x.x - 0.05)) < 1e-13, is_next = std::abs(moved - next * 0.3 * (x.x - 0.05)) < 1e-13;
+          bool const is_own = std::abs(moved - own * 0.3 * (x.x - 0.05)) < 1e-13,
+                     is_next = std::abs(moved - next * 0.3 * (x.x - 0.05)) < 1e-13;
           EXPECT_TRUE(is_own || is_next) << n << " in passage " << p;
           if (is_own != is_next) ((high ? upper : lower) += is_own ? 1 : -1);
         }

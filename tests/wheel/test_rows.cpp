@@ -59,9 +59,13 @@ TEST(WheelRows, CountThePassagesOfTheWheel) {
 TEST(WheelRows, AreRefusedAboutAnotherAxis) {
   Mesh mesh = passage(36);
   Links const links = connect_and_check(mesh, {});
-  expect_all_in(message_of<MeshError>([&] { find_rows(mesh, links, Axis{{0, 0, 0}, {0, 1, 0}}, {}); }),
+  expect_all_in(message_of<MeshError>([&] {
+                  find_rows(mesh, links, Axis{{0, 0, 0}, {0, 1, 0}}, {});
+                }),
                 {"periodic", "does not turn about the axis"});
-  expect_all_in(message_of<MeshError>([&] { find_rows(mesh, links, Axis{{0, 0.01, 0}, {1, 0, 0}}, {}); }),
+  expect_all_in(message_of<MeshError>([&] {
+                  find_rows(mesh, links, Axis{{0, 0.01, 0}, {1, 0, 0}}, {});
+                }),
                 {"360 / 36", "check the axis"});
 }
 

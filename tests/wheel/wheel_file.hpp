@@ -88,16 +88,19 @@ struct WheelFile {
   /// Every plain connection joins the same bits, and has its other side.
   void expect_watertight() const {
     std::size_t pairs = 0, open = 0;
-    for_each_pair([&](FileConnection const& c, FileZone const& own, std::size_t p, FileZone const& donor, std::size_t q) {
-      if (c.periodic) return;
-      ++pairs;
-      if (!(own.at(p) == donor.at(q))) ++open;
-    });
+    for_each_pair(
+        [&](FileConnection const& c, FileZone const& own, std::size_t p, FileZone const& donor, std::size_t q) {
+          if (c.periodic) return;
+          ++pairs;
+          if (!(own.at(p) == donor.at(q))) ++open;
+        });
     EXPECT_GT(pairs, 0U);
     EXPECT_EQ(open, 0U) << "of " << pairs;
     for (auto const& c : connections) {
       bool found = false;
-      for (auto const& d : connections) found = found || (d.zone == c.donor && d.donor == c.zone && sorted(d.range) == sorted(c.donor_range) && sorted(d.donor_range) == sorted(c.range));
+      for (auto const& d : connections)
+        found = found || (d.zone == c.donor && d.donor == c.zone && sorted(d.range) == sorted(c.donor_range) &&
+                          sorted(d.donor_range) == sorted(c.range));
       EXPECT_TRUE(found) << c.zone << " " << c.name;
     }
   }
@@ -122,20 +125,24 @@ struct WheelFile {
     zone.name = name.data();
     zone.extent = {size[0], size[1], size[2]};
     std::array<cgsize_t, 3> const first{1, 1, 1};
-    for (auto [component, values] : {std::pair{"CoordinateX", &zone.x}, {"CoordinateY", &zone.y}, {"CoordinateZ", &zone.z}}) {
+    for (auto [component, values] :
+         {std::pair{"CoordinateX", &zone.x}, {"CoordinateY", &zone.y}, {"CoordinateZ", &zone.z}}) {
       values->resize(std::size_t(size[0] * size[1] * size[2]));
-      check_cgns(cg_coord_read(file, 1, z, component, CGNS_ENUMV(RealDouble), first.data(), size.data(), values->data()));
+      check_cgns(
+          cg_coord_read(file, 1, z, component, CGNS_ENUMV(RealDouble), first.data(), size.data(), values->data()));
     }
     int n = 0;
     check_cgns(cg_n1to1(file, 1, z, &n));
     for (int c = 1; c <= n; ++c) {
       FileConnection face;
       std::array<char, 34> connection{}, donor{};
-      check_cgns(cg_1to1_read(file, 1, z, c, connection.data(), donor.data(), face.range.data(), face.donor_range.data(), face.transform.data()));
+      check_cgns(cg_1to1_read(file, 1, z, c, connection.data(), donor.data(), face.range.data(),
+                              face.donor_range.data(), face.transform.data()));
       face.zone = zone.name;
       face.name = connection.data();
       face.donor = donor.data();
-      face.periodic = cg_1to1_periodic_read(file, 1, z, c, face.center.data(), face.angle.data(), face.translation.data()) == CG_OK;
+      face.periodic =
+          cg_1to1_periodic_read(file, 1, z, c, face.center.data(), face.angle.data(), face.translation.data()) == CG_OK;
       connections.push_back(face);
     }
     check_cgns(cg_nbocos(file, 1, z, &n));

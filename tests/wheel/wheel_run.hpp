@@ -57,7 +57,8 @@ class WheelTest : public ::testing::Test {
     for (auto const& zone : passage.zones) {
       FileZone const& copy = wheel.zones.at(name(zone.name, p));
       for (Index n = 0; n < zone.size(); ++n)
-        worst = std::max(worst, distance(Turn(Axis{}, -p, of)(copy.at(std::size_t(n))), passage.coordinates[zone.first_node + n]));
+        worst = std::max(
+            worst, distance(Turn(Axis{}, -p, of)(copy.at(std::size_t(n))), passage.coordinates[zone.first_node + n]));
     }
     return worst;
   }
@@ -73,7 +74,9 @@ class WheelTest : public ::testing::Test {
     }
     return worst;
   }
-  static std::string name(std::string const& zone, int p) { return zone + (p < 9 ? "_P0" : "_P") + std::to_string(p + 1); }
+  static std::string name(std::string const& zone, int p) {
+    return zone + (p < 9 ? "_P0" : "_P") + std::to_string(p + 1);
+  }
 
   TemporaryFolder folder;
 };

@@ -12,17 +12,18 @@ namespace gridmorph {
 /// [[wheel.blade]]: a blade that differs from what [[motion]] says.
 struct WheelBlade {
   std::string name;
-  double factor = 1;              ///< on the displacement that rigid, formula and field rules give, in cylindrical components
+  double factor = 1;  ///< on the displacement that rigid, formula and field rules give, in cylindrical components
   std::vector<MotionRule> rules;  ///< in place of the [[motion]] rules of the same patches
   std::string where;              ///< "case.toml:14"
 };
 
 /// [[wheel.row]], or the same keys in [wheel].
 struct WheelRowCase {
-  std::vector<std::string> zones;     ///< names or globs; empty: all zones
-  int passages = 0;                   ///< 0: the whole wheel
-  std::vector<std::string> sequence;  ///< names of blades, first passage first, repeated round the wheel; empty: as [[motion]] says
-  std::vector<double> factors;        ///< on the displacement as WheelBlade::factor, repeated likewise; empty: 1
+  std::vector<std::string> zones;  ///< names or globs; empty: all zones
+  int passages = 0;                ///< 0: the whole wheel
+  std::vector<std::string>
+      sequence;  ///< names of blades, first passage first, repeated round the wheel; empty: as [[motion]] says
+  std::vector<double> factors;  ///< on the displacement as WheelBlade::factor, repeated likewise; empty: 1
   std::string where;
 };
 

@@ -31,17 +31,22 @@ kernels::Field<double const> field(Coordinates const& c) { return {c.x.data(), c
 
 /// Puts a zone of the sector where its passage stands. Cost: 48 bytes per node.
 void turn_zone(Exec const& exec, Zone const& zone, Turn const& turn, Coordinates const& from, Coordinates const& to) {
-  Kokkos::parallel_for("gridmorph::wheel::turn",
-                       Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, zone.first_node, zone.first_node + zone.size()),
-                       [=](Index n) { to.set(n, turn(from[n])); });
+  Kokkos::parallel_for(
+      "gridmorph::wheel::turn",
+      Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, zone.first_node, zone.first_node + zone.size()),
+      [=](Index n) { to.set(n, turn(from[n])); });
 }
 
 /// Morphs, measures, turns and writes a wheel, one passage at a time.
 class WheelRun {
  public:
   WheelRun(CaseFile const& case_file, Terminal& terminal)
-      : case_(case_file), terminal_(terminal), mesh_(read(case_file, terminal)), links_(connect_and_check(mesh_, case_file.plan.topology)),
-        rows_(find_rows(mesh_, links_, case_file.motion.axis, case_file.plan.topology)), setup_(wheel_setup(case_file, mesh_, rows_)),
+      : case_(case_file),
+        terminal_(terminal),
+        mesh_(read(case_file, terminal)),
+        links_(connect_and_check(mesh_, case_file.plan.topology)),
+        rows_(find_rows(mesh_, links_, case_file.motion.axis, case_file.plan.topology)),
+        setup_(wheel_setup(case_file, mesh_, rows_)),
         wheel_(make_wheel_mesh(mesh_, links_, rows_, case_file.motion.axis, setup_.passages(),
                                case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)) {
     result_.nodes = wheel_.mesh.n_nodes();
@@ -84,7 +89,8 @@ class WheelRun {
       result_.passages.back().blades = blades_of(p);
       for (int n = zone; n < int(wheel_.zones.size()) && wheel_.zones[n].passage == p; ++n) {
         int const z = wheel_.zones[n].zone;
-        turn_zone(exec_, mesh_.zones[z], Turn(case_.motion.axis, p, rows_.rows[rows_.row_of_zone[z]].passages), morphed, placed);
+        turn_zone(exec_, mesh_.zones[z], Turn(case_.motion.axis, p, rows_.rows[rows_.row_of_zone[z]].passages), morphed,
+                  placed);
       }
       exec_.fence();
       for (int r = 0; r < int(seams.size()); ++r)
@@ -108,7 +114,8 @@ class WheelRun {
 
   void time(std::string const& step) {
     double const seconds = watch_.lap();
-    auto const at = std::find_if(result_.times.begin(), result_.times.end(), [&](auto const& t) { return t.step == step; });
+    auto const at =
+        std::find_if(result_.times.begin(), result_.times.end(), [&](auto const& t) { return t.step == step; });
     if (at != result_.times.end())
       at->seconds += seconds;
     else
@@ -159,9 +166,10 @@ class WheelRun {
     for (Link const& link : links_.all) mismatch = std::max(mismatch, link.mismatch);
     double const tolerance = 4 * mismatch + std::max(1e-8, case_.motion.conformity_tolerance) * links_.mesh_size;
     if (gap.distance > tolerance)
-      throw MotionError(fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
-                                    "periodic side must move alike on both sides of the passage, in cylindrical components",
-                                    gap.passage + 1, describe_node(mesh_, gap.node), gap.distance));
+      throw MotionError(
+          fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
+                      "periodic side must move alike on both sides of the passage, in cylindrical components",
+                      gap.passage + 1, describe_node(mesh_, gap.node), gap.distance));
   }
 
   CaseFile const& case_;
@@ -187,7 +195,8 @@ std::string text_of(WheelRun const& run, WheelResult const& result) {
   std::string text;
   for (auto const& note : result.notes) text += "note: " + note + "\n";
   text += describe_rows(run.mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
-  text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n", result.gap.distance);
+  text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
+                      result.gap.distance);
   return text + "\n" + format_times(result.times, result.nodes);
 }
 
@@ -200,7 +209,8 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   auto const output = options.output.value_or(case_file.wheel->output);
   auto const report = options.report ? options.report : case_file.output_options.report;
   if (output.empty())
-    throw ConfigError(options.input.string() + ": no output; add output = \"wheel.cgns\" to [wheel] or give --output FILE");
+    throw ConfigError(options.input.string() +
+                      ": no output; add output = \"wheel.cgns\" to [wheel] or give --output FILE");
   check_output(output, "output", case_file.input);
   if (report) {
     check_output(*report, "report", case_file.input);
@@ -237,9 +247,10 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   if (written)
     terminal.say(fmt::format("\nwrote {}\n", output.string()));
   else
-    terminal.error(fmt::format("'{}' is not written, because cells are inverted that were not in the baseline; move the blades less, "
-                               "change [volume] or [boundary_layer], or set write_inverted = true in [guard]",
-                               output.string()));
+    terminal.error(fmt::format(
+        "'{}' is not written, because cells are inverted that were not in the baseline; move the blades less, "
+        "change [volume] or [boundary_layer], or set write_inverted = true in [guard]",
+        output.string()));
   return failed ? falls_short : done;
 }
 

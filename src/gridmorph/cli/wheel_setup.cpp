@@ -65,7 +65,9 @@ class Setup {
                         "' is named by another [[wheel.row]] too");
         place(row, r);
       }
-      if (!any) problems_.add(row.where + ": zones: names no zone of a row with periodic interfaces; there are " + periodic_zones());
+      if (!any)
+        problems_.add(row.where + ": zones: names no zone of a row with periodic interfaces; there are " +
+                      periodic_zones());
     }
     for (auto& row : out_.blades)
       if (row.blades.empty()) row.blades.assign(std::size_t(row.passages), motion(-1, 1));
@@ -101,8 +103,9 @@ class Setup {
     if (row.passages > 0) blades.passages = row.passages;
     auto const fits = [&](std::size_t length, char const* key) {
       if (length == 0 || std::size_t(blades.passages) % length == 0) return true;
-      problems_.add(fmt::format("{}: {}: has {} entries, which do not go evenly into the {} passages of the row of zone '{}'",
-                                row.where, key, length, blades.passages, zone));
+      problems_.add(
+          fmt::format("{}: {}: has {} entries, which do not go evenly into the {} passages of the row of zone '{}'",
+                      row.where, key, length, blades.passages, zone));
       return false;
     };
     bool const sequence = fits(row.sequence.size(), "sequence"), factors = fits(row.factors.size(), "factors");
@@ -111,7 +114,8 @@ class Setup {
       int blade = -1;
       if (!row.sequence.empty()) {
         auto const& name = row.sequence[p % row.sequence.size()];
-        auto const at = std::find_if(wheel_.blades.begin(), wheel_.blades.end(), [&](auto const& b) { return b.name == name; });
+        auto const at =
+            std::find_if(wheel_.blades.begin(), wheel_.blades.end(), [&](auto const& b) { return b.name == name; });
         blade = int(at - wheel_.blades.begin());
       }
       blades.blades.push_back(motion(blade, row.factors.empty() ? 1 : row.factors[p % row.factors.size()]));
@@ -148,15 +152,17 @@ class Setup {
           std::holds_alternative<FunctionRule>(base)) {
         // A near field of fixed walls would be another plan.
         base = std::holds_alternative<FixedRule>(rule.rule)
-                   ? Rule(FunctionRule{"fixed", [](auto, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }})
+                   ? Rule(FunctionRule{"fixed",
+                                       [](auto, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }})
                    : rule.rule;
         motion.rules[r].where = rule.where;
         return;
       }
     }
-    problems_.add(fmt::format("{}: patches {} are those of no rule fixed, rigid, formula or field in [[motion]]; a blade replaces "
-                              "such a rule with the same patches",
-                              rule.where, quote_list(rule.patches)));
+    problems_.add(fmt::format(
+        "{}: patches {} are those of no rule fixed, rigid, formula or field in [[motion]]; a blade replaces "
+        "such a rule with the same patches",
+        rule.where, quote_list(rule.patches)));
   }
 
   CaseFile const& case_;

@@ -23,12 +23,14 @@ std::string blades_text(std::vector<std::string> const& blades) {
   return out;
 }
 
-std::string line(std::string const& passage, std::string const& blade, std::size_t width, std::string const& displacement,
-                 QualityReport const& q) {
-  auto const smallest = [&](Measure m) { return q.near_field.cells == 0 ? q.far_field[m].min : std::min(q.near_field[m].min, q.far_field[m].min); };
+std::string line(std::string const& passage, std::string const& blade, std::size_t width,
+                 std::string const& displacement, QualityReport const& q) {
+  auto const smallest = [&](Measure m) {
+    return q.near_field.cells == 0 ? q.far_field[m].min : std::min(q.near_field[m].min, q.far_field[m].min);
+  };
   auto const largest = [&](Measure m) { return std::max(q.near_field[m].max, q.far_field[m].max); };
-  return fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11.4g}  {:>9.4g}  {:>12.4g}\n", passage, blade, width, displacement,
-                     q.near_field.inverted + q.far_field.inverted, smallest(Measure::determinant_3x3x3),
+  return fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11.4g}  {:>9.4g}  {:>12.4g}\n", passage, blade, width,
+                     displacement, q.near_field.inverted + q.far_field.inverted, smallest(Measure::determinant_3x3x3),
                      smallest(Measure::minimum_angle_deg), largest(Measure::aspect_ratio));
 }
 
@@ -38,8 +40,9 @@ std::string describe_rows(Mesh const& mesh, WheelRows const& rows, WheelSetup co
   std::string text;
   for (std::size_t r = 0; r < rows.rows.size(); ++r) {
     auto const zones = quote_list(zone_names(mesh, rows.rows[r]), 6);
-    text += rows.rows[r].periodic() ? fmt::format("row of {}: {} of {} passages\n", zones, setup.blades[r].passages, rows.rows[r].passages)
-                                    : fmt::format("{}: no periodic interface, kept as it is\n", zones);
+    text += rows.rows[r].periodic()
+                ? fmt::format("row of {}: {} of {} passages\n", zones, setup.blades[r].passages, rows.rows[r].passages)
+                : fmt::format("{}: no periodic interface, kept as it is\n", zones);
   }
   return text;
 }
@@ -47,8 +50,8 @@ std::string describe_rows(Mesh const& mesh, WheelRows const& rows, WheelSetup co
 std::string passage_table(WheelResult const& result) {
   std::size_t width = 5;
   for (auto const& p : result.passages) width = std::max(width, blades_text(p.blades).size());
-  std::string text = fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11}  {:>9}  {:>12}\n", "passage", "blade", width, "displacement",
-                                 "inverted", "determinant", "angle", "aspect ratio");
+  std::string text = fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11}  {:>9}  {:>12}\n", "passage", "blade", width,
+                                 "displacement", "inverted", "determinant", "angle", "aspect ratio");
   text += line("baseline", "", width, "", result.baseline);
   for (std::size_t p = 0; p < result.passages.size(); ++p)
     text += line(std::to_string(p + 1), blades_text(result.passages[p].blades), width,
@@ -69,7 +72,8 @@ nlohmann::json wheel_json(Mesh const& mesh, WheelRows const& rows, WheelSetup co
     auto const& passage = result.passages[p];
     nlohmann::json shortfalls = nlohmann::json::array();
     for (auto const& s : passage.shortfalls)
-      shortfalls.push_back({{"severity", s.severity == Shortfall::Severity::failure ? "failure" : "warning"}, {"message", s.message}});
+      shortfalls.push_back(
+          {{"severity", s.severity == Shortfall::Severity::failure ? "failure" : "warning"}, {"message", s.message}});
     json["passages"].push_back({{"passage", p + 1},
                                 {"blades", passage.blades},
                                 {"largest_displacement", passage.largest_displacement},

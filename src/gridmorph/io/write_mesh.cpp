@@ -217,8 +217,12 @@ struct MeshFileWriter::State {
   std::vector<char> written;
 
   State(std::string const& p, Mesh const& m, WriteOptions const& options)
-      : path(p), mesh(m), target(p), file(reserved(target, m), cgns::File::Mode::create, options.format),
-        writer(file, m, options), written(m.zones.size(), 0) {
+      : path(p),
+        mesh(m),
+        target(p),
+        file(reserved(target, m), cgns::File::Mode::create, options.format),
+        writer(file, m, options),
+        written(m.zones.size(), 0) {
     writer.begin();
   }
 

@@ -26,7 +26,7 @@ enum class PatchKind {
   degenerate,  ///< BCDegenerateLine, BCDegeneratePoint, BCAxisymmetricWedge: a face collapsed to a line or point
   connection,  ///< a connection that does not match node to node: abutting, overset, mixing plane
   other,       ///< BCGeneral, BCDirichlet, BCNeumann, BCExtrapolate, UserDefined, Null, none at all
-  periodic     ///< one side of a periodic pair whose two sides move independently (passages of a wheel); never from a file
+  periodic  ///< one side of a periodic pair whose two sides move independently (passages of a wheel); never from a file
 };
 
 /// "wall", "inflow", ... as used by `type:` selectors and in messages. Periodic interfaces are "periodic".

@@ -119,9 +119,10 @@ class Row {
             number[other] = expected;
             blade.push_back(other);
           } else if (number[other] != expected) {
-            throw MotionError("blade " + describe_patch(mesh_, mesh_.patches[blades_[start]]) +
-                              " hangs together with the blade of the next passage, so the two cannot move differently; name the "
-                              "blade alone in `of`, without hub and case");
+            throw MotionError(
+                "blade " + describe_patch(mesh_, mesh_.patches[blades_[start]]) +
+                " hangs together with the blade of the next passage, so the two cannot move differently; name the "
+                "blade alone in `of`, without hub and case");
           }
         }
       // Blade p stands at the lower side of passage p, where it touches one.
@@ -157,11 +158,11 @@ class Row {
   ResolvedMotion const& motion_;
   SharedNodes const* plain_ = nullptr;
   std::vector<Index> const* first_of_group_ = nullptr;
-  std::vector<int> blades_;                         ///< patches
-  std::unordered_map<Index, unsigned char> side_;   ///< by key: periodic sides the node lies on
-  std::unordered_map<Index, int> blade_at_;         ///< by key: which blade
-  std::map<int, PitchFraction> fractions_;          ///< by rule
-  double middle_ = 0.5;                             ///< where in the passage its blade stands
+  std::vector<int> blades_;                        ///< patches
+  std::unordered_map<Index, unsigned char> side_;  ///< by key: periodic sides the node lies on
+  std::unordered_map<Index, int> blade_at_;        ///< by key: which blade
+  std::map<int, PitchFraction> fractions_;         ///< by rule
+  double middle_ = 0.5;                            ///< where in the passage its blade stands
 };
 
 }  // namespace

@@ -84,7 +84,8 @@ WheelRows find_rows(Mesh const& mesh, Links const& links, Axis const& axis, Topo
     double const tolerance =
         options.matching_tolerance > 0 ? options.matching_tolerance : (single ? 1e-6 : 1e-8) * links.mesh_size;
     if (passages < 2)
-      problems.add(describe(mesh, link) + " does not turn about the axis of [mesh]; a wheel needs rotational periodicity about it");
+      problems.add(describe(mesh, link) +
+                   " does not turn about the axis of [mesh]; a wheel needs rotational periodicity about it");
     else if (worst > tolerance)
       problems.add(describe(mesh, link) + " turns by " + format(angle * 180 / std::numbers::pi) + " degrees, and " +
                    std::to_string(passages) + " passages do not make a whole wheel about the axis: a turn by 360 / " +

@@ -17,9 +17,10 @@ struct WheelRow {
 };
 
 struct WheelRows {
-  std::vector<WheelRow> rows;        ///< by their first zone
-  std::vector<int> row_of_zone;      ///< per Mesh::zones
-  std::vector<int> pitches_of_link;  ///< per Links::all: the donor is where own nodes are after so many pitches (0, 1, -1)
+  std::vector<WheelRow> rows;    ///< by their first zone
+  std::vector<int> row_of_zone;  ///< per Mesh::zones
+  std::vector<int>
+      pitches_of_link;  ///< per Links::all: the donor is where own nodes are after so many pitches (0, 1, -1)
 };
 
 /// Finds the rows and checks that the periodic interfaces of each turn by one pitch, 360 degrees over a whole number, about

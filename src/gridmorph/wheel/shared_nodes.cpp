@@ -12,7 +12,9 @@ namespace {
 /// Union-find whose members know how many passages they are ahead of their root: (n, p) is the point (root, p + offset).
 class Unions {
  public:
-  explicit Unions(std::size_t n) : parent_(n), offset_(n, 0), axis_(n, 0) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit Unions(std::size_t n) : parent_(n), offset_(n, 0), axis_(n, 0) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
 
   struct Place {
     int root, offset;
@@ -92,8 +94,8 @@ SharedNodes::SharedNodes(Mesh const& mesh, Links const& links, WheelRows const& 
 }
 
 SharedNodes::Member const* SharedNodes::find(Index node) const {
-  auto const at = std::lower_bound(members_.begin(), members_.end(), node,
-                                   [](Member const& m, Index n) { return m.node < n; });
+  auto const at =
+      std::lower_bound(members_.begin(), members_.end(), node, [](Member const& m, Index n) { return m.node < n; });
   return at != members_.end() && at->node == node ? &*at : nullptr;
 }
 

@@ -30,7 +30,8 @@ Vec3 angles_of(Axis const& axis, RigidTransform const& t, double angle) {
   Vec3 const d = (1 / norm(axis.direction)) * axis.direction;
   if (std::abs(d.x) == 1 || std::abs(d.y) == 1 || std::abs(d.z) == 1) return angle * d;
   auto const& m = t.rotation.m;
-  return {std::atan2(m[2][1], m[2][2]), std::atan2(-m[2][0], std::hypot(m[0][0], m[1][0])), std::atan2(m[1][0], m[0][0])};
+  return {std::atan2(m[2][1], m[2][2]), std::atan2(-m[2][0], std::hypot(m[0][0], m[1][0])),
+          std::atan2(m[1][0], m[0][0])};
 }
 
 class Builder {

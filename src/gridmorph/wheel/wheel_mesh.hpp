@@ -15,7 +15,7 @@ struct WheelZone {
 };
 
 struct WheelMesh {
-  Mesh mesh;  ///< no coordinates
+  Mesh mesh;                     ///< no coordinates
   std::vector<WheelZone> zones;  ///< per Mesh::zones; passage after passage
 };
 

@@ -69,8 +69,9 @@ std::vector<Vec3> WheelMotion::boundary(int passage) const {
       continue;
     }
     int const lower = passage + share.lower();
-    out[n] = share_motion(axis_, sector_.coordinates[planned_.plan.boundary_nodes[n]], values_[motion_of(row, lower)][n],
-                          values_[motion_of(row, lower + 1)][n], share.weight_of_upper());
+    out[n] =
+        share_motion(axis_, sector_.coordinates[planned_.plan.boundary_nodes[n]], values_[motion_of(row, lower)][n],
+                     values_[motion_of(row, lower + 1)][n], share.weight_of_upper());
   }
   return out;
 }

@@ -46,9 +46,9 @@ class WheelMotion {
   std::vector<WheelRowBlades> blades_;
   Axis axis_;
   PlannedMorph planned_;
-  std::vector<BladeShare> shares_;          ///< per boundary node
-  std::vector<int> row_of_node_;            ///< per boundary node
-  std::vector<std::vector<Vec3>> values_;   ///< per motion and boundary node; empty for motions that no passage has
+  std::vector<BladeShare> shares_;         ///< per boundary node
+  std::vector<int> row_of_node_;           ///< per boundary node
+  std::vector<std::vector<Vec3>> values_;  ///< per motion and boundary node; empty for motions that no passage has
   std::vector<std::string> notes_;
 };
 

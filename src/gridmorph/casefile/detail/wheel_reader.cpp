@@ -22,9 +22,10 @@ WheelBlade read_blade(TableReader& table, RuleContext const& shared, CaseFile& o
   for (auto& rule : fragment.motion.rules)
     if (!std::holds_alternative<RigidRule>(rule.rule) && !std::holds_alternative<FunctionRule>(rule.rule) &&
         !std::holds_alternative<FixedRule>(rule.rule))
-      table.problem("motion", fmt::format("a blade can have the rules fixed, rigid, formula and field, found {}; what follows "
-                                          "from the blade belongs to [[motion]]",
-                                          rule_name(rule.rule)));
+      table.problem("motion",
+                    fmt::format("a blade can have the rules fixed, rigid, formula and field, found {}; what follows "
+                                "from the blade belongs to [[motion]]",
+                                rule_name(rule.rule)));
   blade.rules = std::move(fragment.motion.rules);
   out.fields.insert(out.fields.end(), fragment.fields.begin(), fragment.fields.end());
   table.finish();
@@ -46,7 +47,8 @@ WheelRowCase read_row(TableReader& table, std::vector<WheelBlade> const& blades)
   row.sequence = table.strings("sequence").value_or(std::vector<std::string>{});
   for (auto const& name : row.sequence)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      table.problem("sequence", fmt::format("\"{}\" is the name of no [[wheel.blade]]{}", name, suggestion(name, names)));
+      table.problem("sequence",
+                    fmt::format("\"{}\" is the name of no [[wheel.blade]]{}", name, suggestion(name, names)));
   row.factors = table.numbers("factors").value_or(std::vector<double>{});
   return row;
 }
@@ -77,10 +79,13 @@ void read_wheel(TableReader& root, RuleContext const& shared, CaseFile& out) {
     table.finish();
   }
   if (given && !value.rows.empty())
-    wheel->problem("row", "stands beside zones, passages, sequence or factors of [wheel]; give every row a [[wheel.row]] of its own");
+    wheel->problem(
+        "row",
+        "stands beside zones, passages, sequence or factors of [wheel]; give every row a [[wheel.row]] of its own");
   if (value.rows.empty()) value.rows.push_back(own);
   if (!out.axis)
-    wheel->problem("output", "a wheel needs the machine axis; add axis = { origin = [0, 0, 0], direction = [1, 0, 0] } to [mesh]");
+    wheel->problem(
+        "output", "a wheel needs the machine axis; add axis = { origin = [0, 0, 0], direction = [1, 0, 0] } to [mesh]");
   wheel->finish();
 }
 
