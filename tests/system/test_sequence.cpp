@@ -86,21 +86,24 @@ TEST_F(SequenceTest, OneFileHoldsTheSameStepsAsOneFileEach) {
   EXPECT_NE(run.out.find("out_series.cgns (3 steps)"), std::string::npos);
   expect_same(mesh("out_series.cgns"), mesh("passage.cgns"));
   auto const json = nlohmann::json::parse(contents(path("r.json")));
-  auto const& steps = json["sequence"]["steps"];
+  auto const& steps = json.at("sequence").at("steps");
   ASSERT_EQ(steps.size(), 3u);
-  EXPECT_NEAR(steps[1]["time"].get<double>(), 0.5 / 3, 1e-15);
+  EXPECT_NEAR(steps.at(1).at("time").get<double>(), 0.5 / 3, 1e-15);
   double smallest = 1;
   for (auto const& step : steps) {
-    smallest = std::min(smallest, step["min_determinant"]["value"].get<double>());
-    EXPECT_EQ(step["newly_inverted"], 0);
+    smallest = std::min(smallest, step.at("min_determinant").at("value").get<double>());
+    EXPECT_EQ(step.at("newly_inverted"), 0);
   }
-  auto const worst = json["sequence"]["worst_step"].get<int>();
-  EXPECT_EQ(steps[worst - 1]["min_determinant"]["value"].get<double>(), smallest);
-  auto const region_min = [&](char const* region) {
-    return json["morphed"][region]["measures"]["determinant_3x3x3"]["min"].get<double>();
-  };
-  EXPECT_EQ(std::min(region_min("near_field"), region_min("far_field")), smallest) << "the tables show the worst step";
-  EXPECT_EQ(json["fields"][0]["evaluated"], json["fields"][0]["coincident"]);
+  auto const worst = json.at("sequence").at("worst_step").get<int>();
+  EXPECT_EQ(steps.at(std::size_t(worst - 1)).at("min_determinant").at("value").get<double>(), smallest);
+  double in_tables = 1;  // of the regions that have cells
+  for (auto const* region : {"near_field", "far_field"}) {
+    auto const& measures = json.at("morphed").at(region).at("measures");
+    if (measures.contains("determinant_3x3x3"))
+      in_tables = std::min(in_tables, measures.at("determinant_3x3x3").at("min").get<double>());
+  }
+  EXPECT_EQ(in_tables, smallest) << "the tables show the worst step";
+  EXPECT_EQ(json.at("fields").at(0).at("evaluated"), json.at("fields").at(0).at("coincident"));
 }
 
 TEST_F(SequenceTest, ZeroAmplitudeLeavesEveryStepBitIdentical) {
