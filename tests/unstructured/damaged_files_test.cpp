@@ -23,6 +23,8 @@ void try_mesh(std::string const& path) {
   }
 }
 
+/// Few patches: HDF5 1.10 frees memory that it never set when a damaged group of more than 8 members is listed
+/// (H5G__dense_iterate), before this library sees anything of it.
 UnstructuredMesh small_mesh() {
   auto mesh = to_prisms_and_tetrahedra(unit_box({2, 2, 3}), 1);
   mesh.patches[5].nodes = patch_nodes(mesh.patches[5]);
@@ -35,6 +37,7 @@ UnstructuredMesh small_mesh() {
   c.periodic = Periodic{};
   c.periodic->translation = c.periodic->declared.translation = {2, 0, 0};
   mesh.connections.push_back(c);
+  mesh.patches.erase(mesh.patches.begin() + 1, mesh.patches.begin() + 5);
   return mesh;
 }
 

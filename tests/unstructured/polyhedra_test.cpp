@@ -51,6 +51,7 @@ void write_polyhedra(std::string const& path, UnstructuredMesh const& mesh, bool
   if (parents_only) {
     std::vector<cgsize_t> parents = parents_left;
     parents.insert(parents.end(), parents_right.begin(), parents_right.end());
+    parents.resize(2 * parents.size(), 0);  // ParentElementsPosition follows
     check(cg_parent_data_write(file, base, zone, number, parents.data()));
   } else {
     std::vector<cgsize_t> faces, face_start{0};
