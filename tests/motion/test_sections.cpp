@@ -1,6 +1,7 @@
 // The sections rule on wings and blades made from formulas. The oracle builds the redesigned section anew from the same
 // formulas: nothing of what the rule finds on the surface enters it.
 #include "annulus.hpp"
+#include "impeller.hpp"
 #include "support/expect_error.hpp"
 
 #include <gridmorph/core/error.hpp>
@@ -412,6 +413,38 @@ TEST(Sections, BladeEdgesStayOnHubAndCase) {
         Vec3 const q = p + displacement(motion, p);
         EXPECT_GT(distance(p, q), 1e-3);
         EXPECT_NEAR(radius_of(q), radius(q.x, h), 1e-10);
+      }
+  }
+}
+
+TEST(Sections, RadialBladesAreRedesignedAlongTheFlowPathBetweenHubAndCase) {
+  SectionsRule rule;
+  rule.chord = linear(-0.1, 0.1);
+  rule.twist_rad = linear(0.05, -0.05);
+  for (bool const h_mesh : {false, true}) {
+    RowMesh row;
+    if (h_mesh) {
+      row.add(impeller::h_side("wing", impeller::main_blade, true, 81, 41));
+      row.add(impeller::h_side("wing", impeller::main_blade, false, 81, 41), {{40}, {20}, 1, 3});
+    } else {
+      row.add(impeller::o_blade("wing", impeller::main_blade, 161, 41), {{33, 80, 120}, {7, 30}, 3, 5});
+    }
+    row.add(impeller::end_wall("hub", 0, 401, 5));
+    row.add(impeller::end_wall("case", 1, 301, 5));
+    row.add(impeller::end_plane("inlet", PatchKind::inflow, 0, 41, 5));
+    row.add(impeller::end_plane("outlet", PatchKind::outflow, 1, 41, 5));
+    Mesh const mesh = row.finish();
+    SurfaceMotion const motion = make(mesh, blade_rules(rule));
+    for (double h : {0.0, 0.3, 0.7, 1.0})
+      for (double phi : {0.1, 1.0, 2.0, 3.1}) {
+        Vec3 const p = impeller::blade_point(impeller::main_blade, phi, h), q = p + displacement(motion, p);
+        EXPECT_GT(distance(p, q), 1e-3);
+        EXPECT_NEAR(impeller::place_of(q).h, h, h == 0 || h == 1 ? 1e-9 : 1e-6);
+        // Mid chord stays, so the edges move apart or towards each other.
+        double const moved = impeller::place_of(q).s - impeller::place_of(p).s;
+        if (phi == 0.1 || phi == 3.1) {
+          EXPECT_GT(moved * (phi < 1 ? -1 : 1) * (h - 0.5), 0) << h << " " << phi;
+        }
       }
   }
 }

@@ -44,7 +44,8 @@ class BladeFrame final : public SectionFrame {
   [[nodiscard]] SectionPoint at(Vec3 const& point) const override {
     MeridionalPoint const m = frame_.meridional(point);
     Vec3 const d = point - frame_.origin();
-    return {annulus_.span(m), annulus_.along(m), std::atan2(dot(d, second_), dot(d, first_)), m.radius};
+    FlowPosition const at = annulus_.position(m);
+    return {at.h, at.m, std::atan2(dot(d, second_), dot(d, first_)), m.radius};
   }
   [[nodiscard]] Vec3 displacement(Vec3 const& point, double ds, double dt) const override {
     return frame_.displacement(point, annulus_.motion(frame_.meridional(point), {ds, 0, dt}));
@@ -88,7 +89,10 @@ class WingFrame final : public SectionFrame {
     // The position along an axis that runs spanwise is all that stitching asks for.
     return geometry_only(
         CylindricalFrame({{0, 0, 0}, span_}),
-        [this](MeridionalPoint const& m) { return FlowPosition{m.axial, (m.axial - lo_) / (hi_ - lo_)}; }, hi_ - lo_);
+        [this](MeridionalPoint const& m) {
+          return FlowPosition{0, (m.axial - lo_) / (hi_ - lo_)};
+        },
+        hi_ - lo_);
   }
 
  private:

@@ -14,11 +14,17 @@ namespace gridmorph {
 
 namespace {
 
-/// Radial distance of a point from a surface of revolution, with its sign; distance from a plane.
+/// Distance of a point from a slip surface, with its sign, the way that nodes are put back on it.
 double signed_distance(SlipSurface const& s, Vec3 const& p) {
+  if (s.kind == SlipSurface::Kind::facets) {
+    kernels::FacetFoot const foot = s.facets.view().closest_point(p);
+    return dot(p - foot.point, foot.normal);
+  }
   Vec3 const d = p - s.origin;
   double const a = dot(d, s.direction);
-  return s.kind == SlipSurface::Kind::plane ? a : norm(d - a * s.direction) - s.profile(a);
+  if (s.kind == SlipSurface::Kind::plane) return a;
+  double const r = norm(d - a * s.direction);
+  return s.kind == SlipSurface::Kind::revolution ? r - s.profile(a) : s.view().foot(a, r).away;
 }
 
 /// What gives the point back its distance from the surface.
