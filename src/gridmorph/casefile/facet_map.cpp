@@ -25,7 +25,7 @@ constexpr double no_area = 1e-12;
 /// Beyond an edge by less than this share of the element is rounding.
 constexpr double at_the_edge = 1e-9;
 
-std::vector<Vec3> corners_of(StructuralModel const& model, Facet const& facet) {
+std::vector<Vec3> corners_of(StructuralModel const& model, StructuralFacet const& facet) {
   std::vector<Vec3> out;
   for (int c = 0; c < facet.corners(); ++c) out.push_back(model.nodes.position[facet.node[c]]);
   return out;
@@ -48,7 +48,7 @@ double longest_side(std::vector<Vec3> const& corners) {
 
 struct FacetMap::Impl {
   std::vector<Vec3> position;
-  std::vector<Facet> facets;
+  std::vector<StructuralFacet> facets;
   std::vector<std::array<bool, 4>> free_side;  // no other element has it
   Extrapolation extrapolation;
   double coincidence;
@@ -67,7 +67,7 @@ FacetMap::FacetMap(StructuralModel const& model, Extrapolation extrapolation, do
   std::vector<FacetShape> shapes;
   std::vector<std::vector<Vec3>> corners;
   Problems problems;
-  for (Facet const& facet : model.facets) {
+  for (StructuralFacet const& facet : model.facets) {
     corners.push_back(corners_of(model, facet));
     shapes.push_back(shape_of(corners.back()));
     double const side = longest_side(corners.back());
@@ -90,13 +90,13 @@ FacetMap& FacetMap::operator=(FacetMap&&) noexcept = default;
 
 void FacetMap::Impl::find_free_sides() {
   std::map<std::pair<std::int32_t, std::int32_t>, int> count;
-  auto const side = [](Facet const& facet, int s) {
+  auto const side = [](StructuralFacet const& facet, int s) {
     auto const ends = std::minmax(facet.node[s], facet.node[(s + 1) % facet.corners()]);
     return std::pair(ends.first, ends.second);
   };
-  for (Facet const& facet : facets)
+  for (StructuralFacet const& facet : facets)
     for (int s = 0; s < facet.corners(); ++s) ++count[side(facet, s)];
-  for (Facet const& facet : facets) {
+  for (StructuralFacet const& facet : facets) {
     auto& free = free_side.emplace_back(std::array<bool, 4>{});
     for (int s = 0; s < facet.corners(); ++s) free[s] = count[side(facet, s)] == 1;
   }
@@ -110,7 +110,7 @@ bool FacetMap::Impl::at_free_side(FacetTree::Hit const& hit) const {
 
 Stencil FacetMap::stencil(Vec3 const& q) const {
   FacetTree::Hit const hit = impl_->tree->closest(q);
-  Facet const& facet = impl_->facets[hit.facet];
+  StructuralFacet const& facet = impl_->facets[hit.facet];
   FacetShape const& shape = impl_->tree->facet(hit.facet);
   FacetPoint const& p = hit.point;
   int const n = facet.corners();

@@ -12,7 +12,7 @@ namespace {
 bool same_nodes(StructuralModel const& a, StructuralModel const& b) {
   return a.nodes.position == b.nodes.position &&
          std::equal(a.facets.begin(), a.facets.end(), b.facets.begin(), b.facets.end(),
-                    [](Facet const& f, Facet const& g) { return f.node == g.node; });
+                    [](StructuralFacet const& f, StructuralFacet const& g) { return f.node == g.node; });
 }
 
 /// A model and the fields of all modes on its nodes.

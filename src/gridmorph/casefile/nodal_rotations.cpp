@@ -79,7 +79,7 @@ Frame frame_of(std::array<Vec3, 4> const& x, int corners) {
 std::vector<Vec3> nodal_rotations(StructuralModel const& model, std::span<Vec3 const> displacement) {
   std::vector<Vec3> rotation(model.nodes.size());
   std::vector<double> weight(model.nodes.size(), 0.0);
-  for (Facet const& facet : model.facets) {
+  for (StructuralFacet const& facet : model.facets) {
     int const n = facet.corners();
     std::array<Vec3, 4> x{}, moved{}, u{};
     for (int c = 0; c < n; ++c) {

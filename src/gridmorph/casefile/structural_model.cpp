@@ -92,9 +92,9 @@ StructuralModel from_cgns(ModelFiles const& files) {
 
 }  // namespace
 
-std::vector<Facet> parse_elements(std::string_view text, std::string const& source, PointCloud const& nodes) {
+std::vector<StructuralFacet> parse_elements(std::string_view text, std::string const& source, PointCloud const& nodes) {
   NodeIds const ids(nodes);
-  std::vector<Facet> facets;
+  std::vector<StructuralFacet> facets;
   std::unordered_map<double, std::int64_t> line_of_id;
   Problems problems;
   std::vector<std::string_view> fields;
@@ -120,7 +120,7 @@ std::vector<Facet> parse_elements(std::string_view text, std::string const& sour
     if (!read_whole_numbers(fields, where, problems, numbers)) continue;
     if (auto const [known, added] = line_of_id.emplace(numbers[0], lines.number()); !added)
       problems.add(fmt::format("{}: the element id {} is that of line {} already", where, numbers[0], known->second));
-    Facet facet{{-1, -1, -1, -1}, lines.number()};
+    StructuralFacet facet{{-1, -1, -1, -1}, lines.number()};
     if (numbers.size() == 5 && numbers[4] == numbers[3]) numbers.pop_back();
     bool good = true;
     for (std::size_t c = 0; c + 1 < numbers.size(); ++c) {

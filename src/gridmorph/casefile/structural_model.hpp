@@ -14,7 +14,7 @@
 namespace gridmorph {
 
 /// A triangle or a quadrilateral of the model's surface, by numbers of nodes in order around it.
-struct Facet {
+struct StructuralFacet {
   std::array<std::int32_t, 4> node{-1, -1, -1, -1};  ///< the last one is -1 in a triangle
   std::int64_t place = 0;                            ///< line of the element file, or element number; for messages
 
@@ -23,8 +23,8 @@ struct Facet {
 
 struct StructuralModel {
   PointCloud nodes;
-  std::vector<Facet> facets;  ///< empty: a cloud of points
-  std::string elements;       ///< where the facets come from, for messages
+  std::vector<StructuralFacet> facets;  ///< empty: a cloud of points
+  std::string elements;                 ///< where the facets come from, for messages
   std::vector<std::string> notes;
 };
 
@@ -43,6 +43,6 @@ StructuralModel read_structural_model(ModelFiles const& files);
 /// are ids of the model's nodes in order around the element. A quadrilateral that names its last node twice, or leaves n4
 /// empty, is a triangle. Separators, comments and an optional header as in displacement files. Throws one ConfigError that
 /// lists the first ten problems: lines cut short, nodes that are not there, nodes named twice, ids used twice.
-std::vector<Facet> parse_elements(std::string_view text, std::string const& source, PointCloud const& nodes);
+std::vector<StructuralFacet> parse_elements(std::string_view text, std::string const& source, PointCloud const& nodes);
 
 }  // namespace gridmorph

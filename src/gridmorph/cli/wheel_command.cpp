@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/near_field_mask.hpp>
 #include <gridmorph/cli/output_files.hpp>

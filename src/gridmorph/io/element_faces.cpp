@@ -11,35 +11,35 @@ namespace {
 using Faces = std::vector<std::vector<int>>;
 using Edges = std::vector<std::array<int, 2>>;
 
-ElementKind kind(int number, std::string_view name, int dimension, int corners, Faces faces, Edges edges = {},
-                 int further = 0) {
+ElementShape shape(int number, std::string_view name, int dimension, int corners, Faces faces, Edges edges = {},
+                   int further = 0) {
   int const nodes = corners + int(edges.size()) + further;
   return {number, name, dimension, nodes, std::move(faces), std::move(edges), corners};
 }
 
-std::vector<ElementKind> all_kinds() {
+std::vector<ElementShape> all_shapes() {
   Faces const triangle{{0, 1, 2}}, square{{0, 1, 2, 3}};
   Edges const around3{{0, 1}, {1, 2}, {2, 0}}, around4{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
   Faces const tetra{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   Faces const pyramid{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
   Faces const prism{{0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}, {0, 2, 1}, {3, 4, 5}};
   Faces const hexa{{0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}, {4, 5, 6, 7}};
-  return {kind(2, "NODE", 0, 1, {}),
-          kind(3, "BAR_2", 1, 2, {}),
-          kind(4, "BAR_3", 1, 2, {}, {{0, 1}}),
-          kind(5, "TRI_3", 2, 3, triangle),
-          kind(6, "TRI_6", 2, 3, triangle, around3),
-          kind(7, "QUAD_4", 2, 4, square),
-          kind(8, "QUAD_8", 2, 4, square, around4),
-          kind(9, "QUAD_9", 2, 4, square, around4, 1),
-          kind(10, "TETRA_4", 3, 4, tetra),
-          kind(11, "TETRA_10", 3, 4, tetra, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}),
-          kind(12, "PYRA_5", 3, 5, pyramid),
-          kind(14, "PENTA_6", 3, 6, prism),
-          kind(15, "PENTA_15", 3, 6, prism, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 4}, {2, 5}, {3, 4}, {4, 5}, {5, 3}}),
-          kind(17, "HEXA_8", 3, 8, hexa),
-          kind(18, "HEXA_20", 3, 8, hexa,
-               {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {4, 5}, {5, 6}, {6, 7}, {7, 4}})};
+  return {shape(2, "NODE", 0, 1, {}),
+          shape(3, "BAR_2", 1, 2, {}),
+          shape(4, "BAR_3", 1, 2, {}, {{0, 1}}),
+          shape(5, "TRI_3", 2, 3, triangle),
+          shape(6, "TRI_6", 2, 3, triangle, around3),
+          shape(7, "QUAD_4", 2, 4, square),
+          shape(8, "QUAD_8", 2, 4, square, around4),
+          shape(9, "QUAD_9", 2, 4, square, around4, 1),
+          shape(10, "TETRA_4", 3, 4, tetra),
+          shape(11, "TETRA_10", 3, 4, tetra, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}),
+          shape(12, "PYRA_5", 3, 5, pyramid),
+          shape(14, "PENTA_6", 3, 6, prism),
+          shape(15, "PENTA_15", 3, 6, prism, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 4}, {2, 5}, {3, 4}, {4, 5}, {5, 3}}),
+          shape(17, "HEXA_8", 3, 8, hexa),
+          shape(18, "HEXA_20", 3, 8, hexa,
+                {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {4, 5}, {5, 6}, {6, 7}, {7, 4}})};
 }
 
 /// Sorted corners: the same for the two elements that share a face, however each of them lists it.
@@ -51,24 +51,25 @@ std::array<std::int32_t, 4> key_of(ElementFace const& face) {
 
 }  // namespace
 
-ElementKind const* element_kind(std::int64_t number) {
-  static std::vector<ElementKind> const kinds = all_kinds();
-  auto const found = std::find_if(kinds.begin(), kinds.end(), [&](ElementKind const& k) { return k.number == number; });
-  return found == kinds.end() ? nullptr : &*found;
+ElementShape const* element_shape(std::int64_t number) {
+  static std::vector<ElementShape> const shapes = all_shapes();
+  auto const found =
+      std::find_if(shapes.begin(), shapes.end(), [&](ElementShape const& k) { return k.number == number; });
+  return found == shapes.end() ? nullptr : &*found;
 }
 
-void add_faces(ElementKind const& kind, std::span<std::int32_t const> nodes, std::vector<ElementFace>& faces) {
-  for (auto const& corners : kind.faces) {
+void add_faces(ElementShape const& shape, std::span<std::int32_t const> nodes, std::vector<ElementFace>& faces) {
+  for (auto const& corners : shape.faces) {
     ElementFace face;
     int const n = int(corners.size());
     for (int s = 0; s < n; ++s) {
       int const a = corners[s], b = corners[(s + 1) % n];
       face.corner[s] = nodes[a];
-      for (std::size_t e = 0; e < kind.mid_points.size(); ++e)
-        if (auto const [from, to] = kind.mid_points[e]; (from == a && to == b) || (from == b && to == a))
-          face.amid[s] = nodes[kind.corners + e];
+      for (std::size_t e = 0; e < shape.mid_points.size(); ++e)
+        if (auto const [from, to] = shape.mid_points[e]; (from == a && to == b) || (from == b && to == a))
+          face.amid[s] = nodes[shape.corners + e];
     }
-    if (kind.dimension == 2 && kind.nodes > kind.corners + int(kind.mid_points.size())) face.middle = nodes.back();
+    if (shape.dimension == 2 && shape.nodes > shape.corners + int(shape.mid_points.size())) face.middle = nodes.back();
     faces.push_back(face);
   }
 }

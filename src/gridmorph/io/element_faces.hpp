@@ -19,7 +19,7 @@ struct ElementFace {
   [[nodiscard]] int sides() const { return corner[3] < 0 ? 3 : 4; }
 };
 
-struct ElementKind {
+struct ElementShape {
   int number;  ///< ElementType_t
   std::string_view name;
   int dimension;                               ///< 0 node, 1 line, 2 shell, 3 solid
@@ -29,11 +29,11 @@ struct ElementKind {
   int corners;
 };
 
-/// nullptr for kinds that are not read.
-ElementKind const* element_kind(std::int64_t number);
+/// nullptr for shapes that are not read.
+ElementShape const* element_shape(std::int64_t number);
 
 /// Appends the faces of one element; `nodes` are its numbers in the mesh.
-void add_faces(ElementKind const& kind, std::span<std::int32_t const> nodes, std::vector<ElementFace>& faces);
+void add_faces(ElementShape const& shape, std::span<std::int32_t const> nodes, std::vector<ElementFace>& faces);
 
 /// Those that belong to one element alone, in their order. Cost O(n log n).
 std::vector<ElementFace> outer_faces(std::vector<ElementFace> const& faces);

@@ -153,25 +153,25 @@ class ModelReader {
     std::vector<std::int32_t> nodes;
     for (std::size_t at = 0; at < numbers.size();) {
       std::int64_t const type = head[0] == mixed ? numbers[at++] : head[0];
-      auto const* kind = cgns::element_kind(type);
-      if (kind == nullptr)
+      auto const* shape = cgns::element_shape(type);
+      if (shape == nullptr)
         fail(section, "holds elements of type number " + std::to_string(type) +
                           "; read are TRI_3, TRI_6, QUAD_4, QUAD_8, QUAD_9, TETRA_4, TETRA_10, PYRA_5, PENTA_6, "
                           "PENTA_15, HEXA_8, HEXA_20 and MIXED: convert the model to these");
-      if (numbers.size() - at < std::size_t(kind->nodes)) fail(*list, "ends amid an element; the file is damaged");
+      if (numbers.size() - at < std::size_t(shape->nodes)) fail(*list, "ends amid an element; the file is damaged");
       nodes.clear();
       bool good = true;
-      for (int k = 0; k < kind->nodes; ++k, ++at) {
+      for (int k = 0; k < shape->nodes; ++k, ++at) {
         good = good && numbers[at] >= 1 && numbers[at] <= n;
         if (good) nodes.push_back(first + std::int32_t(numbers[at] - 1));
       }
       if (!good) {
-        problems_.add(file_.path() + ", node " + list->path + ": a " + std::string(kind->name) +
+        problems_.add(file_.path() + ", node " + list->path + ": a " + std::string(shape->name) +
                       " element names a node that is not there (the zone has nodes 1 to " + std::to_string(n) + ")");
         return;
       }
-      if (kind->dimension < 2) ++passed_over_;
-      add_faces(*kind, nodes, kind->dimension == 3 ? solids_ : shells_);
+      if (shape->dimension < 2) ++passed_over_;
+      add_faces(*shape, nodes, shape->dimension == 3 ? solids_ : shells_);
     }
   }
 

@@ -69,7 +69,7 @@ struct SlipSurface {
   /// Largest distance of the baseline patch's nodes from `origin`: what round-off and relative tolerances refer to.
   double size = 0;
   MeridionalFrame frame{};  ///< of the profile of a meridional surface
-  FacetSurface facets{};  ///< kind facets only
+  FacetSurface facets{};    ///< kind facets only
 
   /// For host code; borrows profile and facets: valid while this surface lives unchanged.
   [[nodiscard]] SlipSurfaceView view() const {

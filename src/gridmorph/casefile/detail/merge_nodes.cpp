@@ -36,7 +36,7 @@ std::vector<std::size_t> first_at_position(std::vector<Vec3> const& p) {
   return first;
 }
 
-void renumber(Facet& facet, std::vector<std::int32_t> const& number) {
+void renumber(StructuralFacet& facet, std::vector<std::int32_t> const& number) {
   std::array<std::int32_t, 4> kept{-1, -1, -1, -1};
   int n = 0;
   int const corners = facet.corners();
@@ -85,7 +85,7 @@ void merge_nodes(StructuralModel& model, std::vector<std::vector<Vec3>>& fields)
   nodes.line.resize(kept);
   if (!nodes.id.empty()) nodes.id.resize(kept);
   for (auto& field : fields) field.resize(kept);
-  for (Facet& facet : model.facets) renumber(facet, number);
+  for (StructuralFacet& facet : model.facets) renumber(facet, number);
 }
 
 }  // namespace gridmorph::casefile
