@@ -1,0 +1,37 @@
+#include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/unstructured/gather_rows.hpp>
+
+namespace gridmorph {
+
+void GatherRows::add(Number row_target, std::span<Number const> items, std::span<double const> weights) {
+  double sum = 0;
+  for (double const w : weights) sum += w;
+  target.push_back(row_target);
+  item.insert(item.end(), items.begin(), items.end());
+  for (double const w : weights) weight.push_back(float(w / sum));
+  first.push_back(Index(item.size()));
+}
+
+template <class Exec>
+void gather(Exec const& exec, GatherViews<typename Exec::memory_space> const& rows, Index begin, Index end,
+            Kokkos::View<Vec3 const*, typename Exec::memory_space> source,
+            Kokkos::View<Vec3*, typename Exec::memory_space> value) {
+  if (begin >= end) return;
+  Kokkos::parallel_for(
+      "gridmorph::gather", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, begin, end),
+      KOKKOS_LAMBDA(Index const r) {
+        Index const from = rows.first(r), to = rows.first(r + 1);
+        Vec3 const base = source(rows.item(from));
+        Vec3 sum;
+        for (Index k = from + 1; k < to; ++k) sum += double(rows.weight(k)) * (source(rows.item(k)) - base);
+        value(rows.target(r)) = base + sum;
+      });
+}
+
+#define GRIDMORPH_INSTANTIATE(Exec)                                                       \
+  template void gather(Exec const&, GatherViews<Exec::memory_space> const&, Index, Index, \
+                       Kokkos::View<Vec3 const*, Exec::memory_space>, Kokkos::View<Vec3*, Exec::memory_space>);
+GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
+#undef GRIDMORPH_INSTANTIATE
+
+}  // namespace gridmorph
