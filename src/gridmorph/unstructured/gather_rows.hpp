@@ -5,6 +5,7 @@
 // number of threads.
 #pragma once
 
+#include <gridmorph/kernels/field.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -62,6 +63,11 @@ struct GatherViews {
 template <class Exec>
 void gather(Exec const& exec, GatherViews<typename Exec::memory_space> const& rows, Index begin, Index end,
             Kokkos::View<Vec3 const*, typename Exec::memory_space> source,
+            Kokkos::View<Vec3*, typename Exec::memory_space> value);
+
+/// The same from three component arrays, for all rows.
+template <class Exec>
+void gather(Exec const& exec, GatherViews<typename Exec::memory_space> const& rows, kernels::Field<double const> source,
             Kokkos::View<Vec3*, typename Exec::memory_space> value);
 
 }  // namespace gridmorph
