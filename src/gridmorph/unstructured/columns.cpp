@@ -123,8 +123,7 @@ Columns make_columns(UnstructuredMesh const& mesh, UnstructuredTopology const& t
     if (Index(out.node.size()) > out.layer.back()) out.layer.push_back(Index(out.node.size()));
     front = std::move(next);
   }
-  for (std::size_t k = 0; k < out.node.size(); ++k)
-    out.fraction.push_back(float(above_wall[std::size_t(out.node[k])] / out.height[std::size_t(out.root[k])]));
+  for (Number const n : out.node) out.above_wall.push_back(above_wall[std::size_t(n)]);
   return out;
 }
 

@@ -12,7 +12,7 @@ struct Columns {
   /// Nodes above walls, layer by layer, each in one column; walls themselves are not listed.
   std::vector<Number> node;
   std::vector<Number> root;     ///< the wall node below
-  std::vector<float> fraction;  ///< height above the wall over the height of the column, 0 < fraction <= 1
+  std::vector<double> above_wall;  ///< length of the column up to the node
   std::vector<Index> layer{0};  ///< first entry of each layer, and the end
   std::vector<double> height;   ///< (n_nodes) of the mesh: of the column on a wall node, 0 where there is none
 

@@ -11,6 +11,7 @@
 #include <Kokkos_Core.hpp>
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gridmorph {
@@ -33,7 +34,7 @@ namespace detail {
 /// A list in a View of its own; fences.
 template <class MemorySpace, class T>
 Kokkos::View<T*, MemorySpace> copy_of(std::vector<T> const& list, char const* label) {
-  Kokkos::View<T*, MemorySpace> copy(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), list.size());
+  Kokkos::View<T*, MemorySpace> copy(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), list.size());
   Kokkos::deep_copy(copy, view_of<Kokkos::HostSpace>(list, label));
   return copy;
 }

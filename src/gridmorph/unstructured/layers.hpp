@@ -10,14 +10,6 @@
 
 namespace gridmorph {
 
-/// How much each node of the layers before counts.
-enum class LayerWeight {
-  uniform,           ///< 1
-  inverse_distance,  ///< 1 / length of the edge
-  quality,           ///< inverse distance times the mean quality of the elements around the edge's two ends
-  curvature          ///< inverse distance / (1 + d / r)^2: d from the wall, r radius of curvature of the wall there
-};
-
 struct LayerRows {
   GatherRows rows;              ///< targets in the order of their layers
   std::vector<Index> level{0};  ///< first row of each layer, and the end
