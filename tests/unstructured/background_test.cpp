@@ -127,6 +127,8 @@ std::vector<Case> cases() {
           {"plus moved", plus_body(), {.offset = 0.05}, shift({0.4, 0.2, 0.1})},
           {"plus turned", plus_body(), {.offset = 0.05}, turn({0, 0, 0}, {1, 1, 1}, 30)},
           {"rod moved", rod_body(), {.offset = 0.05}, shift({0.3, 0, 0})},
+          {"fine rod moved", rod_body(), {.offset = 0.05, .resolution = 10}, shift({0.3, 0, 0})},
+          {"rod turned", rod_body(), {.offset = 0.05, .resolution = 3}, turn({0, 0, 0}, {1, -1, 0}, 30)},
           {"two bodies",
            two_bodies(),
            {.offset = 0.1},
@@ -165,7 +167,7 @@ TEST(Background, CarriesMotionsOfAllKindsOfWrapsWithoutTurningCellsOver) {
 
 TEST(Background, IsPlannedInASecondForTheMostCellsAWrapHas) {
   Bodies b = rod_body();
-  Planned const p = planned(b, {.offset = 0.05}, {-3, -3, -3}, {4, 4, 4});
+  Planned const p = planned(b, {.offset = 0.05, .resolution = 10}, {-3, -3, -3}, {4, 4, 4});
   EXPECT_GT(p.background.mesh.zones.size(), 1000u);
   auto const& s = p.prepared.seconds;
   RecordProperty("prepare_ms", int(1000 * (s.topology + s.rules + s.plan)));
@@ -201,7 +203,7 @@ TEST(Background, TakesTheWrapsDisplacementExactlyAndNoneOnTheOuterBox) {
           ASSERT_TRUE(same_bits(m.displacement[n], expected));
           on_wrap += patch.families.front() == "wrap" ? 1 : 0;
         }
-  EXPECT_GT(on_wrap, 1000);
+  EXPECT_GT(on_wrap, 500);
 }
 
 TEST(Background, ListsEachPointOfTheWrapOnce) {
@@ -240,7 +242,7 @@ TEST(Background, OfAPlaneMeshMovesInItsPlaneOnly) {
         ASSERT_EQ(below.z, 0);
         moved += norm(below) > 0 ? 1 : 0;
       }
-  EXPECT_GT(moved, 1000);
+  EXPECT_GT(moved, 500);
 }
 
 /// Rows of a far field, applied on the host.

@@ -100,7 +100,7 @@ TEST(Wrap, OfABoxIsTheBoxLargerByTheOffset) {
   EXPECT_DOUBLE_EQ(wrap.planes[2][std::size_t(wrap.cells(2)) - 1], 0.35);
   EXPECT_DOUBLE_EQ(wrap.planes[0].front(), -4);
   EXPECT_DOUBLE_EQ(wrap.planes[2].back(), 5);
-  EXPECT_EQ(wrap.cells(0) - 2, 10);
+  EXPECT_EQ(wrap.cells(0) - 2, 4);
 }
 
 TEST(Wrap, CoversWhatIsCloserThanTheOffsetAndHangsTogether) {
@@ -112,7 +112,7 @@ TEST(Wrap, CoversWhatIsCloserThanTheOffsetAndHangsTogether) {
       bodies.box({0, 0, 0}, {1, 0.2, 0.2});
       bodies.box({0, 0, 0}, {0.2, 1, 0.2});
     }
-    Wrap const wrap = wrapped(bodies, {.offset = 0.06}).wrap;
+    Wrap const wrap = wrapped(bodies, {.offset = 0.06, .resolution = 10}).wrap;
     SCOPED_TRACE(kind);
     expect_covered(bodies, wrap);
     EXPECT_EQ(connected_cells(wrap, true), wrap.n_inside());
@@ -126,7 +126,7 @@ TEST(Wrap, CoversWhatIsCloserThanTheOffsetAndHangsTogether) {
 TEST(Wrap, OfASlenderDiagonalRodIsSlender) {
   Bodies bodies;
   bodies.rod({0, 0, 0}, {1, 1, 1}, 0.02);
-  Wrap const wrap = wrapped(bodies, {.offset = 0.03}).wrap;
+  Wrap const wrap = wrapped(bodies, {.offset = 0.03, .resolution = 10}).wrap;
   // A straight line crosses about 3 cells a layer; with its offset it meets some of their neighbours.
   EXPECT_LT(wrap.n_inside(), 20 * 10);
   EXPECT_GE(wrap.n_inside(), 28);
@@ -136,7 +136,7 @@ TEST(Wrap, KeepsBodiesFarApartSmallAndApart) {
   Bodies bodies;
   bodies.sphere({0, 0, 0}, 0.5, 8);
   bodies.sphere({30, 0, 0}, 0.5, 8);
-  Wrap const wrap = wrapped(bodies, {.offset = 0.1}, {-10, -10, -10}, {40, 10, 10}).wrap;
+  Wrap const wrap = wrapped(bodies, {.offset = 0.1, .resolution = 10}, {-10, -10, -10}, {40, 10, 10}).wrap;
   expect_covered(bodies, wrap);
   EXPECT_NEAR(wrap.spacing, 0.12, 0.05);
   EXPECT_FALSE(wrap.contains({15, 0, 0}));
@@ -171,7 +171,7 @@ TEST(Wrap, OfABodyOnTheLimitOfTheMeshGoesBeyondItAndIsFull) {
   // The lower half of the nodes would be inside the body.
   for (Index n = 0; n < Index(bodies.points().size()); ++n)
     if (bodies.points()[std::size_t(n)].z < -1e-9) mesh.coordinates.set(n, {4, 4, 0});
-  Wrap const wrap = make_wrap(mesh, half.walls, {.offset = 0.1});
+  Wrap const wrap = make_wrap(mesh, half.walls, {.offset = 0.1, .resolution = 10});
   EXPECT_TRUE(wrap.contains({0, 0, 0.05}));
   EXPECT_TRUE(wrap.contains({0.3, 0.2, 0.4}));
   EXPECT_TRUE(wrap.contains({0, 0, -0.01}));
@@ -185,7 +185,7 @@ TEST(Wrap, ClosesHolesOfOneCell) {
   bodies.box({0, 0.6, 0}, {1, 1, 0.1});
   bodies.box({0, 0.4, 0}, {0.4, 0.6, 0.1});
   bodies.box({0.6, 0.4, 0}, {1, 0.6, 0.1});
-  Wrap const wrap = wrapped(bodies, {.offset = 0.03}).wrap;
+  Wrap const wrap = wrapped(bodies, {.offset = 0.03, .resolution = 10}).wrap;
   EXPECT_TRUE(wrap.contains({0.5, 0.5, 0.05}));
   EXPECT_EQ(wrap.n_inside(), Index(wrap.cells(0) - 2) * (wrap.cells(1) - 2) * (wrap.cells(2) - 2));
 }
@@ -193,7 +193,7 @@ TEST(Wrap, ClosesHolesOfOneCell) {
 TEST(Wrap, AnswersForBoxesLikeALookAtEveryCell) {
   Bodies bodies;
   bodies.rod({0, 0, 0}, {1, 0.8, 1.2}, 0.03);
-  Wrap const wrap = wrapped(bodies, {.offset = 0.05}).wrap;
+  Wrap const wrap = wrapped(bodies, {.offset = 0.05, .resolution = 10}).wrap;
   unsigned state = 1;
   auto random = [&state] {
     state = state * 1664525u + 1013904223u;
@@ -232,7 +232,7 @@ TEST(Wrap, RefusesWhatItCannotWrap) {
 TEST(Wrap, IsShownAsAMeshOfItsCells) {
   Bodies bodies;
   bodies.sphere({0, 0, 0}, 1, 12);
-  Wrap const wrap = wrapped(bodies, {.offset = 0.1}).wrap;
+  Wrap const wrap = wrapped(bodies, {.offset = 0.1, .resolution = 10}).wrap;
   UnstructuredMesh const mesh = wrap_mesh(wrap);
   check_mesh(mesh);
   EXPECT_EQ(mesh.n_elements(), wrap.n_inside());

@@ -16,8 +16,11 @@
 namespace gridmorph {
 
 struct WrapOptions {
-  double offset = 0;       ///< every point of the mesh that is closer to a moving wall is wrapped; positive
-  int resolution = 10;     ///< coarse cells along the longest extent of the walls, their offset included
+  double offset = 0;  ///< every point of the mesh that is closer to a moving wall is wrapped; positive
+  /// Coarse cells along the longest extent of the walls, their offset included. Few are best: the steps of a wrap oblique to
+  /// the axes send grid lines to different places, and the finer the steps, the steeper the displacement between those lines.
+  /// A rod along a space diagonal that turns by 30 degrees keeps all background cells sound with 3 cells, loses 0.3 % with 10.
+  int resolution = 4;
   Index max_cells = 2000;  ///< of the lattice; coarser where the resolution asks for more
   double margin = 0;       ///< how far the outer box lies beyond the mesh; more where the wrap would touch it
 };
