@@ -21,7 +21,7 @@ struct Variant {
 
 std::vector<Variant> variants() {
   std::vector<Variant> all{
-      {"prisms", {}, 0.05}, {"hexahedra", {}, 0.05}, {"mixed", {}, 0.05}, {"cube", {}, 0.05}, {"near", {}, 0.005}};
+      {"prisms", {}, 0.05}, {"hexahedra", {}, 0.05}, {"mixed", {}, 0.05}, {"cube", {}, 0.03}, {"near", {}, 0.005}};
   for (auto& v : all) v.options.elements = 40'000;
   all[1].options.layer_elements = LayerElements::hexahedra;
   all[2].options.layer_elements = LayerElements::mixed;
