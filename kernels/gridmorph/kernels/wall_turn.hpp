@@ -29,4 +29,30 @@ KOKKOS_INLINE_FUNCTION Vec3 turned_by(Vec3 const& turn, double share, Vec3 const
   return sin(a) * kv + (2 * half * half) * cross(k, kv);
 }
 
+/// A rotation given as axis times angle, minus the identity: the gradient of the displacement of what turns rigidly.
+KOKKOS_INLINE_FUNCTION Mat3 turn_gradient(Vec3 const& turn) {
+  Vec3 const x = turned_by(turn, 1, {1, 0, 0}), y = turned_by(turn, 1, {0, 1, 0}), z = turned_by(turn, 1, {0, 0, 1});
+  return {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+}
+
+/// First one rotation, then the other, both as axis times angle; exactly zero where both are. By unit quaternions.
+KOKKOS_INLINE_FUNCTION Vec3 turn_then(Vec3 const& first, Vec3 const& next) {
+  using std::atan2;
+  using std::cos;
+  using std::sin;
+  double const a = norm(first), b = norm(next);
+  if (!(a > 0)) return next;
+  if (!(b > 0)) return first;
+  double const p = cos(0.5 * a), q = cos(0.5 * b);
+  Vec3 const v = (sin(0.5 * a) / a) * first, w = (sin(0.5 * b) / b) * next;
+  double real = p * q - dot(v, w);
+  Vec3 imaginary = p * w + q * v + cross(w, v);
+  if (real < 0) {
+    real = -real;
+    imaginary = -imaginary;
+  }
+  double const sine = norm(imaginary);
+  return sine > 0 ? (2 * atan2(sine, real) / sine) * imaginary : Vec3{};
+}
+
 }  // namespace gridmorph::kernels

@@ -21,7 +21,7 @@ struct BoundaryLayer {
     translate,  ///< every node of a grid line or column takes the displacement of its wall node
     rotate,     ///< and the rotation of the wall there
     blend,      ///< the rotation fades to none at the end of the column
-    standard    ///< translate in structured meshes, blend in unstructured ones
+    standard    ///< translate in structured meshes, rotate in unstructured ones
   };
 
   std::vector<std::string> walls;  ///< selectors; empty: every wall patch whose rule moves it

@@ -25,4 +25,13 @@ LayerRows make_layers(NodeGraph const& graph, std::vector<std::uint8_t> const& s
                       std::function<double(Number node, Number source)> const& weight, int most_layers = 1 << 30,
                       int most_items = 8);
 
+/// The same in the order of a distance from the seeds instead of a number of edges: a node gathers from the neighbours that are
+/// nearer to the seeds by at least a third of the edge between them, or else from the nearest of those that are nearer at all. So
+/// fronts that leave walls with fine and with coarse elements advance alike. A layer holds the nodes whose sources lie in
+/// layers before. Seeds need not be at distance zero; wanted nodes that no chain of edges joins to a seed get no row. O(n log n + edges).
+LayerRows make_layers_by_distance(NodeGraph const& graph, Coordinates const& coordinates,
+                                  std::vector<std::uint8_t> const& seeds, std::vector<std::uint8_t> const& wanted,
+                                  std::vector<double> const& distance,
+                                  std::function<double(Number node, Number source)> const& weight, int most_items = 8);
+
 }  // namespace gridmorph

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/motion/selectors.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/unstructured/detail/corner_means.hpp>
@@ -86,6 +87,7 @@ class Planner {
       is_known_[std::size_t(b.known[k])] = 1;
       if (b.drives[k]) {
         drives_[std::size_t(b.known[k])] = 1;
+        plan.driving.push_back(b.known[k]);
         plan.driving_slots.push_back(Number(k));
       }
     }
@@ -179,23 +181,23 @@ class Planner {
       if (int const l = layer_of_patch_[std::size_t(claims_.patch[std::size_t(f)])]; l >= 0)
         for (Number const n : topology_.boundary.nodes[f])
           mode[std::size_t(owner(n))] = options_.boundary_layers[std::size_t(l)].mode;
-    ColumnPlan& plan = out_.plan.columns;
-    std::vector<Number> turned(std::size_t(mesh_.n_nodes()), -1);
+    UnstructuredPlan& plan = out_.plan;
+    std::vector<Number> place(std::size_t(mesh_.n_nodes()), -1);
+    for (std::size_t k = 0; k < plan.driving.size(); ++k) {
+      place[std::size_t(plan.driving[k])] = Number(k);
+      plan.turns.push_back(mode[std::size_t(plan.driving[k])] == Mode::translate ? 0 : 1);
+    }
+    plan.fans = detail::wall_fans(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
     for (std::size_t k = 0; k < columns_.node.size(); ++k) {
       Number const root = columns_.root[k];
       double const s = std::min(1.0, columns_.above_wall[k] / height_[std::size_t(root)]);
       Mode const m = mode[std::size_t(root)];
       // Smooth, and level at the wall: the first cells turn with it.
-      double const turn = m == Mode::translate ? 0 : m == Mode::rotate ? 1 : 1 - s * s * (3 - 2 * s);
-      plan.node.push_back(columns_.node[k]);
-      plan.turn.push_back(float(turn));
-      if (turn > 0 && turned[std::size_t(root)] < 0) {
-        turned[std::size_t(root)] = Number(plan.turned_roots.size());
-        plan.turned_roots.push_back(root);
-      }
-      plan.root.push_back(float(turn) > 0 ? turned[std::size_t(root)] : root);
+      double const turn = m == Mode::translate ? 0 : m == Mode::blend ? 1 - s * s * (3 - 2 * s) : 1;
+      plan.columns.node.push_back(columns_.node[k]);
+      plan.columns.root.push_back(place[std::size_t(root)]);
+      plan.columns.turn.push_back(float(turn));
     }
-    plan.fans = detail::wall_fans(mesh_, topology_, out_.graph, driving_faces_, plan.turned_roots);
   }
 
   // ---- regions -------------------------------------------------------------------------------------------------------
@@ -300,7 +302,9 @@ class Planner {
     Mask wanted = near_;
     for (std::size_t n = 0; n < seeds.size(); ++n)
       if (seeds[n] || !out_.graph.carries(Number(n))) wanted[n] = 0;
-    plan.near = make_layers(out_.graph, seeds, wanted, layer_weight());
+    plan.near =
+        make_layers_by_distance(out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
+    plan_smooth_walls();
     auto& layer = out_.report.layer;
     layer.assign(seeds.size(), -1);
     for (std::size_t n = 0; n < seeds.size(); ++n)
@@ -316,6 +320,30 @@ class Planner {
           std::to_string(out_.report.unreached) +
           " nodes lie in the wrap but are joined to no moving wall by edges of elements; they follow the other "
           "boundaries alone");
+  }
+
+  /// The smooth part covers the wrap; what it misses fades over a few of its cells.
+  void plan_smooth_walls() {
+    UnstructuredPlan& plan = out_.plan;
+    Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+    for (Number n = 0; n < Number(mesh_.n_nodes()); ++n) {
+      if (!near_[std::size_t(n)]) continue;
+      Vec3 const x = mesh_.coordinates[n];
+      low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+      high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+    }
+    plan.walls = make_scatter_lattice(mesh_.coordinates, plan.driving, areas(plan.driving), mesh_.dimension, low, high);
+    double const reach = 4 * plan.walls.shape.spacing;
+    for (Number const n : plan.near.rows.target) {
+      double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);
+      plan.near_fade.push_back(float(1 - s * s * (3 - 2 * s)));
+    }
+  }
+
+  /// Distance from the end of the column on the nearest wall node.
+  [[nodiscard]] double beyond_column(std::size_t n) const {
+    Number const wall = from_wall_.source[n];
+    return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - height_[std::size_t(wall)]);
   }
 
   // ---- background ----------------------------------------------------------------------------------------------------
@@ -362,21 +390,18 @@ class Planner {
     UnstructuredPlan& plan = out_.plan;
     if (!plan.background) return;
     project_wrap();
-    std::vector<Number> far, fence;
-    for (Number n = 0; n < Number(mesh_.n_nodes()); ++n) {
-      if (!out_.graph.carries(n) || out_.graph.neighbours[n].empty()) continue;
-      if (near_[std::size_t(n)]) {
-        if (!out_.report.wrap->contains(mesh_.coordinates[n])) fence.push_back(n);
-      } else {
+    // Beyond the wrap the background mesh has the say, on the fence too: layers went there only to surround the wrap's nodes.
+    Mask column = drives_;
+    for (Number const n : columns_.node) column[std::size_t(n)] = 1;
+    std::vector<Number> far;
+    for (Number n = 0; n < Number(mesh_.n_nodes()); ++n)
+      if (out_.graph.carries(n) && !out_.graph.neighbours[n].empty() && !column[std::size_t(n)] &&
+          !out_.report.wrap->contains(mesh_.coordinates[n]))
         far.push_back(n);
-      }
-    }
     FarRows rows = lattice_rows(*plan.background, mesh_.coordinates, far);
     out_.report.far_nodes = Index(far.size());
     out_.report.far_outside = rows.n_outside;
     plan.far = std::move(rows.rows);
-    plan.fence = lattice_rows(*plan.background, mesh_.coordinates, fence).rows;
-    plan_fence_spread(fence, far);
   }
 
   /// Wrap nodes in the elements that hold them; rows name representatives, so that layers reach their nodes.
@@ -407,20 +432,6 @@ class Planner {
                            text(out_.report.wrap_distance) + " away; they move as the nearest place of an element");
   }
 
-  /// What the near field and the background mesh disagree on just outside the wrap fades over a few layers.
-  void plan_fence_spread(std::vector<Number> const& fence, std::vector<Number> const& far) {
-    constexpr int layers = 6;
-    UnstructuredPlan& plan = out_.plan;
-    Mask seeds = mask(), wanted = mask();
-    for (Number const n : fence) seeds[std::size_t(n)] = 1;
-    for (Number const n : far) wanted[std::size_t(n)] = 1;
-    plan.fence_spread = make_layers(out_.graph, seeds, wanted, inverse_distance(), layers);
-    for (int l = 0; l < plan.fence_spread.n_layers(); ++l) {
-      double const s = double(l + 1) / (layers + 1);
-      plan.fence_fade.resize(std::size_t(plan.fence_spread.level[std::size_t(l) + 1]), float(1 - s * s * (3 - 2 * s)));
-    }
-  }
-
   std::function<double(Number, Number)> inverse_distance() const {
     return [this](Number a, Number b) {
       double const d = distance(mesh_.coordinates[a], mesh_.coordinates[b]);
@@ -438,13 +449,16 @@ class Planner {
       if (out_.graph.carries(Number(n)) && !drives_[n] && !is_other_[n]) plan.fade[n] = float(fade(n));
     // Columns are as rigid as their walls ask for.
     for (Number const n : columns_.node) plan.fade[std::size_t(n)] = 0;
-    plan.residual = make_residual_lattice(mesh_.coordinates, plan.other, areas(plan.other), mesh_.dimension);
+    MeshExtent const box = extent_of(mesh_.coordinates);
+    plan.residual =
+        make_scatter_lattice(mesh_.coordinates, plan.other, areas(plan.other), mesh_.dimension, box.low, box.high);
     if (plan.residual.empty()) return;
     double const reach = 2 * plan.residual.shape.spacing;
     Mask wanted = mask();
     for (std::size_t n = 0; n < wanted.size(); ++n)
       wanted[n] = plan.fade[n] != 0 && from_other_.distance[n] < reach ? 1 : 0;
-    plan.residual_detail = make_layers(out_.graph, is_other_, wanted, inverse_distance());
+    plan.residual_detail = make_layers_by_distance(out_.graph, mesh_.coordinates, is_other_, wanted,
+                                                   from_other_.distance, inverse_distance());
     for (Number const n : plan.residual_detail.rows.target) {
       double const s = from_other_.distance[std::size_t(n)] / reach;
       plan.detail_fade.push_back(float(plan.fade[std::size_t(n)] * (1 - s * s * (3 - 2 * s))));
@@ -479,9 +493,8 @@ class Planner {
   [[nodiscard]] double fade(std::size_t n) const {
     double const other = from_other_.distance[n];
     if (!std::isfinite(other)) return 0;
-    Number const wall = from_wall_.source[n];
-    if (wall < 0) return 1;
-    double const d = std::max(0.0, from_wall_.distance[n] - height_[std::size_t(wall)]);
+    double const d = beyond_column(n);
+    if (!std::isfinite(d)) return 1;
     return d + other > 0 ? d / (d + other) : 0;
   }
 

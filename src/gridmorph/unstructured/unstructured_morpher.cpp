@@ -1,6 +1,6 @@
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
-#include <gridmorph/kernels/wall_turn.hpp>
+#include <gridmorph/unstructured/detail/morph_kernels.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
 #include <gridmorph/volume/morpher.hpp>
 
@@ -10,223 +10,7 @@ namespace gridmorph {
 
 namespace {
 
-template <class MemorySpace, class T>
-using View = Kokkos::View<T*, MemorySpace>;
-
-/// Layers of rows, as many launches: the host keeps where each begins.
-template <class MemorySpace>
-struct LayerViews {
-  GatherViews<MemorySpace> rows;
-  std::vector<Index> level;
-
-  LayerViews() = default;
-  explicit LayerViews(LayerRows const& from) : rows(from.rows), level(from.level) {}
-
-  template <class Exec>
-  void run(Exec const& exec, View<MemorySpace, Vec3> const& value) const {
-    for (std::size_t l = 0; l + 1 < level.size(); ++l) gather(exec, rows, level[l], level[l + 1], value, value);
-  }
-};
-
-template <class MemorySpace>
-struct Lists {
-  View<MemorySpace, Index> first;
-  View<MemorySpace, Number> item;
-
-  Lists() = default;
-  Lists(NumberLists const& lists, char const* label)
-      : first(detail::copy_of<MemorySpace>(lists.first, label)),
-        item(detail::copy_of<MemorySpace>(lists.item, label)) {}
-};
-
-/// Position of a node: of the baseline, or moved by what it is displaced by so far.
-struct Positions {
-  kernels::Field<double const> x;
-  Vec3 const* u = nullptr;
-  KOKKOS_INLINE_FUNCTION Vec3 operator[](Index n) const { return u == nullptr ? x[n] : x[n] + u[n]; }
-};
-
-/// Area-weighted normal of the wall around a node: sum of (a - x) x (b - x) over its faces; in 2-D of (b - a) x plane normal
-/// over its edges.
-template <class MemorySpace>
-struct WallNormal {
-  View<MemorySpace, Number> roots;
-  Lists<MemorySpace> fans;
-  bool flat;
-  Vec3 across;
-
-  KOKKOS_INLINE_FUNCTION Vec3 operator()(Index r, Positions const& at) const {
-    Vec3 const x = at[roots(r)];
-    Vec3 sum;
-    for (Index k = fans.first(r); k < fans.first(r + 1); k += 2) {
-      Vec3 const a = at[fans.item(k)], b = at[fans.item(k + 1)];
-      sum += flat ? cross(b - a, across) : cross(a - x, b - x);
-    }
-    return sum;
-  }
-};
-
-template <class MemorySpace>
-struct WallTurn {
-  WallNormal<MemorySpace> normal;
-  Positions baseline, moved;
-  View<MemorySpace, Vec3> turn;
-  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
-    turn(r) = kernels::turn_between(normal(r, baseline), normal(r, moved));
-  }
-};
-
-template <class MemorySpace>
-struct MoveColumns {
-  View<MemorySpace, Number> node, root, turned_roots;
-  View<MemorySpace, float> share;
-  View<MemorySpace, Vec3> turn;
-  kernels::Field<double const> x;
-  View<MemorySpace, Vec3> u;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    double const s = share(k);
-    if (s == 0) {
-      u(node(k)) = u(root(k));
-      return;
-    }
-    Number const wall = turned_roots(root(k));
-    u(node(k)) = u(wall) + kernels::turned_by(turn(root(k)), s, x[node(k)] - x[wall]);
-  }
-};
-
-template <class MemorySpace>
-struct ScatterSlots {
-  View<MemorySpace, Number> slots, nodes;
-  Kokkos::View<Vec3 const*, MemorySpace> boundary;
-  View<MemorySpace, Vec3> u;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u(nodes(slots(k))) = boundary(slots(k)); }
-};
-
-/// What the near field says at fence nodes minus what the background mesh says.
-template <class MemorySpace>
-struct FenceDifference {
-  View<MemorySpace, Number> node;
-  View<MemorySpace, Vec3> near, background;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { background(node(k)) = near(node(k)) - background(node(k)); }
-};
-
-template <class MemorySpace>
-struct AddFaded {
-  View<MemorySpace, Number> node;
-  View<MemorySpace, float> fade;
-  View<MemorySpace, Vec3> add, u;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u(node(k)) += double(fade(k)) * add(node(k)); }
-};
-
-/// What boundaries beyond the moving walls ask for, by rule or by the surface they slide on.
-template <class MemorySpace>
-struct AskOthers {
-  View<MemorySpace, Number> node, slot;
-  Lists<MemorySpace> surfaces_of;
-  View<MemorySpace, SlipSurfaceView> surfaces;
-  Kokkos::View<Vec3 const*, MemorySpace> boundary;
-  kernels::Field<double const> x;
-  View<MemorySpace, Vec3> u, asked;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    Number const n = node(k);
-    if (slot(k) >= 0) {
-      asked(n) = boundary(slot(k));
-      return;
-    }
-    Index const from = surfaces_of.first(k), to = surfaces_of.first(k + 1);
-    // Alternating corrections come to the edge where surfaces meet; planes at right angles need one round.
-    int const rounds = to - from > 1 ? 20 : 1;
-    Vec3 v = u(n);
-    Vec3 const p = x[n];
-    for (int round = 0; round < rounds; ++round)
-      for (Index s = from; s < to; ++s) v = surfaces(surfaces_of.item(s)).constrain(p, v);
-    asked(n) = v;
-  }
-};
-
-/// Nodes behind periodic boundaries move by the mean over their class, or as the one whose displacement a rule gives.
-template <class MemorySpace>
-struct PeriodicMean {
-  View<MemorySpace, Number> owner, image_node;
-  View<MemorySpace, std::int32_t> image_rotation;
-  View<MemorySpace, std::uint8_t> owner_known;
-  Lists<MemorySpace> images_of;
-  View<MemorySpace, Mat3> rotations;
-  View<MemorySpace, Vec3> asked;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    Vec3 mean = asked(owner(k));
-    Index const from = images_of.first(k), to = images_of.first(k + 1);
-    if (owner_known(k) == 0) {
-      Vec3 const base = mean;
-      Vec3 sum;
-      for (Index i = from; i < to; ++i) {
-        Number const image = images_of.item(i);
-        Vec3 const v = asked(image_node(image));
-        sum += (image_rotation(image) < 0 ? v : transpose(rotations(image_rotation(image))) * v) - base;
-      }
-      mean = base + (1.0 / double(to - from + 1)) * sum;
-      asked(owner(k)) = mean;
-    }
-    for (Index i = from; i < to; ++i) {
-      Number const image = images_of.item(i);
-      asked(image_node(image)) = image_rotation(image) < 0 ? mean : rotations(image_rotation(image)) * mean;
-    }
-  }
-};
-
-/// u becomes what is asked for; what it lacked is left in `asked` to spread.
-template <class MemorySpace>
-struct TakeOthers {
-  View<MemorySpace, Number> node;
-  View<MemorySpace, Vec3> u, asked;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    Vec3 const before = u(node(k));
-    u(node(k)) = asked(node(k));
-    asked(node(k)) = asked(node(k)) - before;
-  }
-};
-
-/// What the lattice misses of the residual at the boundaries themselves.
-template <class MemorySpace>
-struct LatticeError {
-  View<MemorySpace, Number> node;
-  UniformLattice shape;
-  View<MemorySpace, Vec3> lattice;
-  kernels::Field<double const> x;
-  View<MemorySpace, Vec3> residual;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    Number const n = node(k);
-    residual(n) = residual(n) - shape.at(lattice.data(), x[n]);
-  }
-};
-
-template <class MemorySpace>
-struct AddResidual {
-  View<MemorySpace, float> fade;
-  UniformLattice shape;
-  View<MemorySpace, Vec3> lattice;
-  kernels::Field<double const> x;
-  View<MemorySpace, Vec3> u;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
-    double const f = fade(n);
-    if (f != 0) u(n) += f * shape.at(lattice.data(), x[n]);
-  }
-};
-
-template <class MemorySpace>
-struct CopyNodes {
-  View<MemorySpace, Number> to, from;
-  View<MemorySpace, Vec3> u;
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u(to(k)) = u(from(k)); }
-};
-
-template <class MemorySpace, bool Move>
-struct WriteNodes {
-  View<MemorySpace, Vec3> u;
-  kernels::Field<double const> x;
-  kernels::Field<double> out;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { out.set(n, Move ? x[n] + u(n) : u(n)); }
-};
+using namespace detail;
 
 }  // namespace
 
@@ -241,16 +25,17 @@ struct UnstructuredMorpher<Exec>::State {
         column_node(list(plan.columns.node, "column_node")),
         column_root(list(plan.columns.root, "column_root")),
         column_turn(list(plan.columns.turn, "column_turn")),
-        normals{list(plan.columns.turned_roots, "turned_roots"), Lists<Space>(plan.columns.fans, "gridmorph::fans"),
-                plan.dimension == 2, plan.plane_normal},
-        turn("gridmorph::UnstructuredMorpher::turn", plan.columns.turned_roots.size()),
+        driving(list(plan.driving, "driving")),
+        turns(list(plan.turns, "turns")),
+        normals{driving, Lists<Space>(plan.fans, "gridmorph::fans"), plan.dimension == 2, plan.plane_normal},
+        turn("gridmorph::UnstructuredMorpher::turn", plan.driving.size()),
+        frame("gridmorph::UnstructuredMorpher::frame", plan.driving.size()),
+        walls(plan.walls),
         near(plan.near),
+        near_fade(list(plan.near_fade, "near_fade")),
         wrap(plan.wrap),
         outer(plan.outer),
         far(plan.far),
-        fence(plan.fence),
-        fence_spread(plan.fence_spread),
-        fence_fade(list(plan.fence_fade, "fence_fade")),
         other(list(plan.other, "other")),
         other_slot(list(plan.other_slot, "other_slot")),
         other_surfaces(plan.other_surfaces, "gridmorph::other_surfaces"),
@@ -258,12 +43,8 @@ struct UnstructuredMorpher<Exec>::State {
         image_owners(list(plan.image_owners, "image_owners")),
         images_of_owner(plan.images_of_owner, "gridmorph::images_of_owner"),
         rotations(list(plan.rotations, "rotations")),
-        residual_leaves(plan.residual.leaves),
-        residual_groups(plan.residual.groups),
-        residual_lattice(plan.residual.lattice),
-        residual_shape(plan.residual.shape),
-        groups("gridmorph::UnstructuredMorpher::groups", std::size_t(plan.residual.n_groups)),
-        lattice("gridmorph::UnstructuredMorpher::lattice", std::size_t(plan.residual.lattice.size())),
+        residual(plan.residual),
+        asked("gridmorph::UnstructuredMorpher::asked", plan.other.size()),
         residual_detail(plan.residual_detail),
         detail_fade(list(plan.detail_fade, "detail_fade")),
         fade(list(plan.fade, "fade")),
@@ -289,7 +70,7 @@ struct UnstructuredMorpher<Exec>::State {
 
   template <class T>
   static View<Space, T> list(std::vector<T> const& from, char const* label) {
-    return detail::copy_of<Space>(from, (std::string("gridmorph::UnstructuredMorpher::") + label).c_str());
+    return copy_of<Space>(from, (std::string("gridmorph::UnstructuredMorpher::") + label).c_str());
   }
 
   void make_background(Exec const& exec, UnstructuredPlan const& plan) {
@@ -315,8 +96,7 @@ struct UnstructuredMorpher<Exec>::State {
 
   template <class Kernel>
   static void launch(char const* label, Exec const& exec, std::size_t n, Kernel const& kernel) {
-    if (n > 0)
-      Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, Index(n)), kernel);
+    detail::launch(label, exec, 0, Index(n), kernel);
   }
 
   void displacement(Exec const& exec, Boundary const& boundary, kernels::Field<double const> const& x) const {
@@ -325,14 +105,25 @@ struct UnstructuredMorpher<Exec>::State {
     launch("gridmorph::moving_walls", exec, driving_slots.extent(0),
            ScatterSlots<Space>{driving_slots, known, boundary, u});
     launch("gridmorph::wall_turn", exec, turn.extent(0),
-           WallTurn<Space>{normals, Positions{x, nullptr}, Positions{x, u.data()}, turn});
+           WallTurn<Space>{normals, turns, Positions{x, nullptr}, Positions{x, u.data()}, turn});
+    launch("gridmorph::wall_frames", exec, turn.extent(0), WallFrames<Space>{driving, turn, u, frame});
     launch("gridmorph::columns", exec, column_node.extent(0),
-           MoveColumns<Space>{column_node, column_root, normals.roots, column_turn, turn, x, u});
-    near.run(exec, u);
+           MoveColumns<Space>{column_node, column_root, driving, column_turn, turn, x, u});
+    near_field(exec, x);
     if (background) far_field(exec, boundary);
     others(exec, boundary, x);
     gather(exec, middle, 0, middle.size(), u, u);
     launch("gridmorph::copies", exec, copies.extent(0), CopyNodes<Space>{copies, copied, u});
+  }
+
+  void near_field(Exec const& exec, kernels::Field<double const> const& x) const {
+    walls.run(exec, frame);
+    for (auto const& seeds : {driving, column_node})
+      launch("gridmorph::near::missing", exec, seeds.extent(0),
+             SmoothMisses<Space>{seeds, walls.shape, walls.value, x, u, work});
+    near.run(exec, work);
+    launch("gridmorph::near", exec, near_fade.extent(0),
+           SmoothAndMissing<Space>{near.rows.target, near_fade, walls.shape, walls.value, x, work, u});
   }
 
   void far_field(Exec const& exec, Boundary const& boundary) const {
@@ -342,11 +133,6 @@ struct UnstructuredMorpher<Exec>::State {
                          kernels::Field<double>{background_u.data(), background_u.data() + n_background,
                                                 background_u.data() + 2 * n_background, 1});
     gather(exec, far, read(background_u), u);
-    gather(exec, fence, read(background_u), work);
-    launch("gridmorph::fence", exec, fence.target.extent(0), FenceDifference<Space>{fence.target, u, work});
-    fence_spread.run(exec, work);
-    launch("gridmorph::fence::spread", exec, fence_fade.extent(0),
-           AddFaded<Space>{fence_spread.rows.target, fence_fade, work, u});
   }
 
   void others(Exec const& exec, Boundary const& boundary, kernels::Field<double const> const& x) const {
@@ -356,13 +142,13 @@ struct UnstructuredMorpher<Exec>::State {
         "gridmorph::periodic", exec, image_owners.extent(0),
         PeriodicMean<Space>{image_owners, image_node, image_rotation, owner_known, images_of_owner, rotations, work});
     launch("gridmorph::others::take", exec, other.extent(0), TakeOthers<Space>{other, u, work});
-    if (lattice.extent(0) == 0) return;
-    gather(exec, residual_leaves, 0, residual_leaves.size(), work, groups);
-    residual_groups.run(exec, groups);
-    gather(exec, residual_lattice, 0, residual_lattice.size(), groups, lattice);
-    launch("gridmorph::residual", exec, std::size_t(n_nodes), AddResidual<Space>{fade, residual_shape, lattice, x, u});
-    launch("gridmorph::residual::error", exec, other.extent(0),
-           LatticeError<Space>{other, residual_shape, lattice, x, work});
+    if (residual.empty()) return;
+    launch("gridmorph::residual::values", exec, other.extent(0), PickNodes<Space>{other, work, asked});
+    residual.run(exec, asked);
+    launch("gridmorph::residual", exec, std::size_t(n_nodes),
+           AddResidual<Space>{fade, residual.shape, residual.value, x, u});
+    launch("gridmorph::residual::missing", exec, other.extent(0),
+           SmoothMisses<Space>{other, residual.shape, residual.value, x, work, work});
     residual_detail.run(exec, work);
     launch("gridmorph::residual::detail", exec, detail_fade.extent(0),
            AddFaded<Space>{residual_detail.rows.target, detail_fade, work, u});
@@ -371,12 +157,15 @@ struct UnstructuredMorpher<Exec>::State {
   Index n_nodes = 0, n_background = 0;
   View<Space, Number> known, driving_slots, column_node, column_root;
   View<Space, float> column_turn;
+  View<Space, Number> driving;
+  View<Space, std::uint8_t> turns;
   WallNormal<Space> normals;
   View<Space, Vec3> turn;
+  View<Space, AffineMotion> frame;
+  ScatterViews<Space, AffineMotion> walls;
   LayerViews<Space> near;
-  GatherViews<Space> wrap, outer, far, fence;
-  LayerViews<Space> fence_spread;
-  View<Space, float> fence_fade;
+  View<Space, float> near_fade;
+  GatherViews<Space> wrap, outer, far;
   View<Space, Number> other, other_slot;
   Lists<Space> other_surfaces;
   SlipSurfaceTable<Space> surfaces;
@@ -385,11 +174,8 @@ struct UnstructuredMorpher<Exec>::State {
   View<Space, std::uint8_t> owner_known;
   Lists<Space> images_of_owner;
   View<Space, Mat3> rotations;
-  GatherViews<Space> residual_leaves;
-  LayerViews<Space> residual_groups;
-  GatherViews<Space> residual_lattice;
-  UniformLattice residual_shape;
-  View<Space, Vec3> groups, lattice;
+  ScatterViews<Space, Vec3> residual;
+  View<Space, Vec3> asked;
   LayerViews<Space> residual_detail;
   View<Space, float> detail_fade;
   View<Space, float> fade;

@@ -13,7 +13,7 @@
 #include <gridmorph/unstructured/columns.hpp>
 #include <gridmorph/unstructured/layers.hpp>
 #include <gridmorph/unstructured/options.hpp>
-#include <gridmorph/unstructured/residual_lattice.hpp>
+#include <gridmorph/unstructured/scatter_lattice.hpp>
 #include <gridmorph/unstructured/wrap.hpp>
 
 #include <memory>
@@ -23,14 +23,11 @@
 
 namespace gridmorph {
 
-/// How the nodes of a column follow their wall node; see UnstructuredPlan::turn.
+/// How the nodes of a column follow their wall node.
 struct ColumnPlan {
   std::vector<Number> node;
-  std::vector<Number> root;  ///< number in turned_roots where turn > 0, node number of the root otherwise
+  std::vector<Number> root;  ///< number in UnstructuredPlan::driving
   std::vector<float> turn;  ///< share of the wall's rotation that the node makes: 0 translate, 1 rotate, between: blend
-  std::vector<Number> turned_roots;  ///< wall nodes whose rotation is needed
-  NumberLists
-      fans;  ///< per turned root: pairs (a, b) of the nodes beside it in each face, see wall_normal() in the morpher
 };
 
 struct UnstructuredPlan {
@@ -39,18 +36,21 @@ struct UnstructuredPlan {
   int dimension = 3;
 
   std::vector<Number> known;          ///< as in BoundaryConditions: the order of boundary displacements
-  std::vector<Number> driving_slots;  ///< entries of `known` that belong to moving walls
+  std::vector<Number> driving;        ///< nodes of moving walls, ascending
+  std::vector<Number> driving_slots;  ///< where they are in `known`
+  std::vector<std::uint8_t> turns;    ///< (driving) whether the rotation of the wall there is followed
+  NumberLists fans;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see detail/fans.hpp
   ColumnPlan columns;
-  LayerRows near;  ///< nodes of near and fence elements
+  /// Between walls: the smooth part of their displacement, and over all nodes of near and fence elements what it misses.
+  ScatterLattice walls;
+  LayerRows near;
+  std::vector<float> near_fade;  ///< per row of near: share of what the smooth part misses
 
   std::optional<Background> background;  ///< absent where the near field is the whole mesh
   std::optional<PreparedMorph> background_morph;
   GatherRows wrap;   ///< nodes -> Plan::boundary_nodes of the background
   GatherRows outer;  ///< `known` slots -> Plan::boundary_nodes of the background: what the outer box does
-  GatherRows far;    ///< background nodes -> nodes of the far field
-  GatherRows fence;  ///< background nodes -> nodes of fence elements outside the wrap: what the far field makes of them
-  LayerRows fence_spread;         ///< the difference, out into the far field
-  std::vector<float> fence_fade;  ///< per row of fence_spread
+  GatherRows far;    ///< background nodes -> nodes outside the wrap
 
   /// Boundary nodes beyond the moving walls: their residual (what is asked for minus the field so far) spreads over all nodes.
   std::vector<Number> other;
@@ -61,7 +61,7 @@ struct UnstructuredPlan {
   std::vector<Number> image_owners;   ///< ascending; known ones have no mean
   NumberLists images_of_owner;        ///< entries of `images`
   std::vector<Mat3> rotations;
-  ResidualLattice residual;
+  ScatterLattice residual;
   std::vector<float> fade;  ///< (n_nodes) share of the residual: d / (d + d_other), d from the end of the wall's column
   /// What the lattice misses at boundaries, out over one of its cells.
   LayerRows residual_detail;

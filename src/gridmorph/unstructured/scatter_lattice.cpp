@@ -1,5 +1,4 @@
-#include <gridmorph/mesh/extent.hpp>
-#include <gridmorph/unstructured/residual_lattice.hpp>
+#include <gridmorph/unstructured/scatter_lattice.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -30,6 +29,7 @@ class Tree {
   }
   std::vector<Group> groups;  ///< the root first
 
+  [[nodiscard]] Number place(Number k) const { return order_[std::size_t(k)]; }
   [[nodiscard]] Number node(Number k) const { return nodes_[std::size_t(order_[std::size_t(k)])]; }
   [[nodiscard]] double area(Number k) const { return area_[std::size_t(order_[std::size_t(k)])]; }
 
@@ -75,11 +75,10 @@ class Tree {
   std::vector<Number> order_;
 };
 
-UniformLattice lattice_over(Coordinates const& coordinates, int dimension, Index most_nodes) {
-  MeshExtent const box = extent_of(coordinates);
+UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dimension, Index most_nodes) {
   UniformLattice lattice;
-  lattice.low = box.low;
-  double const size[3] = {box.high.x - box.low.x, box.high.y - box.low.y, dimension == 2 ? 0 : box.high.z - box.low.z};
+  lattice.low = low;
+  double const size[3] = {high.x - low.x, high.y - low.y, dimension == 2 ? 0 : high.z - low.z};
   double spacing = std::max({size[0], size[1], size[2]}) / 4;
   auto const fits = [&](double h) {
     double n = 1;
@@ -94,13 +93,15 @@ UniformLattice lattice_over(Coordinates const& coordinates, int dimension, Index
 
 }  // namespace
 
-ResidualLattice make_residual_lattice(Coordinates const& coordinates, std::vector<Number> const& nodes,
-                                      std::vector<double> const& area, int dimension, Index most_nodes) {
-  ResidualLattice out;
+ScatterLattice make_scatter_lattice(Coordinates const& coordinates, std::vector<Number> const& nodes,
+                                    std::vector<double> const& area, int dimension, Vec3 const& low, Vec3 const& high,
+                                    Index most_nodes) {
+  ScatterLattice out;
   if (nodes.empty()) return out;
   Tree const tree(coordinates, nodes, area);
   out.n_groups = Number(tree.groups.size());
-  out.shape = lattice_over(coordinates, dimension, most_nodes);
+  for (Group const& group : tree.groups) out.centre.push_back(group.centre);
+  out.shape = lattice_over(low, high, dimension, most_nodes);
   std::vector<Number> items;
   std::vector<double> weights;
   std::vector<std::vector<Number>> by_height(std::size_t(tree.groups.front().height) + 1);
@@ -110,7 +111,7 @@ ResidualLattice make_residual_lattice(Coordinates const& coordinates, std::vecto
     items.clear();
     weights.clear();
     for (Number k = tree.groups[std::size_t(g)].begin; k < tree.groups[std::size_t(g)].end; ++k) {
-      items.push_back(tree.node(k));
+      items.push_back(tree.place(k));
       weights.push_back(tree.area(k));
     }
     out.leaves.add(g, items, weights);

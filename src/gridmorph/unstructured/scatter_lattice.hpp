@@ -1,4 +1,4 @@
-// A smooth field through scattered boundary values: what boundaries beyond the moving walls ask for, carried into the volume.
+// A smooth field between scattered boundary values: how walls and other boundaries move, carried into the volume.
 #pragma once
 
 #include <gridmorph/kernels/uniform_lattice.hpp>
@@ -9,7 +9,7 @@
 
 namespace gridmorph {
 
-/// At each node of an even lattice over the whole mesh the values of boundary nodes n are averaged with the weights
+/// At each node of an even lattice the values of boundary nodes n are averaged with the weights
 ///
 ///     w_n = A_n / |x - x_n|^p,   p = 4 (3-D), 3 (2-D),   A_n: the node's share of the boundary's area,
 ///
@@ -19,19 +19,21 @@ namespace gridmorph {
 /// reproduces constants to round-off.
 ///
 /// All values are gathered: leaves of the tree from nodes, groups from their two parts level by level, lattice nodes from groups.
-struct ResidualLattice {
+struct ScatterLattice {
   GatherRows leaves;   ///< boundary nodes (numbers in the mesh) -> groups
   LayerRows groups;    ///< groups -> groups, from the smallest on
   GatherRows lattice;  ///< groups -> lattice nodes
   Number n_groups = 0;
+  std::vector<Vec3> centre;  ///< of each group
   UniformLattice shape;
 
   [[nodiscard]] bool empty() const { return n_groups == 0; }
 };
 
-/// nodes: boundary nodes; area: the share of each, positive. At most `most_nodes` lattice nodes. Cost O(n log n) in the nodes and
-/// in the lattice's nodes.
-ResidualLattice make_residual_lattice(Coordinates const& coordinates, std::vector<Number> const& nodes,
-                                      std::vector<double> const& area, int dimension, Index most_nodes = 100'000);
+/// Over the box from low to high. nodes: boundary nodes; area: the share of each, positive. At most `most_nodes` lattice nodes.
+/// Cost O(n log n) in the nodes and in the lattice's nodes.
+ScatterLattice make_scatter_lattice(Coordinates const& coordinates, std::vector<Number> const& nodes,
+                                    std::vector<double> const& area, int dimension, Vec3 const& low, Vec3 const& high,
+                                    Index most_nodes = 100'000);
 
 }  // namespace gridmorph
