@@ -52,7 +52,7 @@ BallCounts counts_at(BallOptions const& o, int side, double resolution) {
   n.lower = rounded(0.5 * resolution, 2);
   double const face = 0.5 * std::numbers::pi / resolution, far_size = 2 * tube_half_width / resolution;
   n.upper = rounded(upper_arc(o) / face, 3);
-  n.rings_on_rope = {face, 0.15, far_size};
+  n.rings_on_rope = {face, 0.15, 0.6 * far_size};
   n.rope = n.rings_on_rope.count(0, o.rope_length);
   n.tetrahedral = rounded(0.5 * resolution, 3);
   n.lattice = {far_size, 0.15, 4 * far_size};
