@@ -1,6 +1,7 @@
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
+#include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/demo/ball_demo.hpp>
 #include <gridmorph/demo/passage_demo.hpp>
@@ -16,12 +17,12 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// Morphs what a demo has written, as `gridmorph morph` would; the report goes beside the morphed mesh.
-int morph_demo(std::filesystem::path const& path, std::filesystem::path const& morphed, Terminal& terminal) {
+/// The case file of a demo; its report goes beside the morphed mesh.
+CaseFile with_report(std::filesystem::path const& path, std::filesystem::path const& morphed) {
   CaseFile case_file = read_case_file(path);
   auto report = morphed;
   case_file.output_options.report = report.replace_extension(".json");
-  return morph_and_write(case_file, terminal);
+  return case_file;
 }
 
 int demo_passage(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
@@ -43,7 +44,7 @@ int demo_passage(CommandLine const& options, std::filesystem::path const& folder
       return write_passage_demo(folder, passage, motions[m], mesh, m == 0 ? MeshFile::write : MeshFile::keep);
     }();
     terminal.say(fmt::format("{}\n== {} ==\n", m == 0 ? "" : "\n", files.case_file.string()));
-    status = std::max(status, morph_demo(files.case_file, files.morphed, terminal));
+    status = std::max(status, morph_and_write(with_report(files.case_file, files.morphed), terminal));
   }
   return status;
 }
@@ -56,7 +57,7 @@ int demo_ball(CommandLine const& options, std::filesystem::path const& folder, T
   terminal.progress(fmt::format("making the ball mesh with {} elements", ball.elements));
   BallFiles const files = write_ball_demo(folder, ball, swing);
   terminal.say(fmt::format("\n== {} ==\n", files.case_file.string()));
-  return morph_demo(files.case_file, files.morphed, terminal);
+  return morph_unstructured(with_report(files.case_file, files.morphed), terminal);
 }
 
 /// Options of the other demo would be ignored in silence.

@@ -52,10 +52,10 @@ BallCounts counts_at(BallOptions const& o, int side, double resolution) {
   n.lower = rounded(0.5 * resolution, 2);
   double const face = 0.5 * std::numbers::pi / resolution, far_size = 2 * tube_half_width / resolution;
   n.upper = rounded(upper_arc(o) / face, 3);
-  n.rings_on_rope = {face, 0.15, far_size};
+  n.rings_on_rope = {face, 0.15, 0.6 * far_size};
   n.rope = n.rings_on_rope.count(0, o.rope_length);
-  n.tetrahedral = rounded(0.5 * resolution, 3);
-  n.lattice = {far_size, 0.15, 4 * far_size};
+  n.tetrahedral = rounded(0.8 * resolution, 4);
+  n.lattice = {far_size, 0.15, 2.5 * far_size};
   double const a = tube_half_width, mast_end = o.mast_distance + o.mast_width;
   n.behind = n.lattice.count(0, o.behind - a);
   n.between = n.lattice.count(0, o.mast_distance - a);

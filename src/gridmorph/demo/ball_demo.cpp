@@ -84,9 +84,17 @@ std::string ball_case_file(BallOptions const& options, BallSwing const& swing, B
       "patches = [\"crane\"]\n"
       "rule    = \"fixed\"\n"
       "\n"
+      "[boundary_layer]                    # the layers turn with their wall\n"
+      "walls   = [\"ball\", \"rope\"]\n"
+      "mode    = \"blend\"\n"
+      "\n"
+      "[guard]                             # its flattest tetrahedra begin with 0.01 to 0.04\n"
+      "min_determinant = 0.001\n"
+      "\n"
       "[output]\n"
       "displacement = true\n"
-      "quality      = true\n";
+      "quality      = true\n"
+      "stages       = \"stages\"            # wrap, regions and layers, background mesh: to look at\n";
   return text;
 }
 

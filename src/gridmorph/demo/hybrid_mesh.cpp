@@ -119,7 +119,7 @@ std::vector<std::uint8_t> HybridMesh::free_nodes() const {
 }
 
 void HybridMesh::jitter(double amount) {
-  constexpr double kept_volume = 0.4;
+  constexpr double kept_volume = 0.6;
   constexpr int halvings = 2;  // of the reach of a node; after that it stays, so that the loop ends
   auto const free = free_nodes();
   std::vector<float> reach(nodes_.size(), std::numeric_limits<float>::max());

@@ -61,7 +61,7 @@ class HybridMesh {
   void add_triangles(int patch, Quad const& quad);
 
   /// Moves each node that only tetrahedra and pyramids' apexes have, off the boundary, by up to `amount` of its shortest edge
-  /// in each direction; less where an element would lose more than 60 % of its volume. Depends on node numbers alone.
+  /// in each direction; less where an element would lose more than 40 % of its volume. Depends on node numbers alone.
   void jitter(double amount);
   /// Numbers nodes, and elements of each type, at random; the same for the same mesh.
   void shuffle();
