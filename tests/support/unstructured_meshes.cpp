@@ -1,7 +1,5 @@
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/quality/quality.hpp>
-
 #include <algorithm>
 #include <array>
 
@@ -62,49 +60,6 @@ UnstructuredPatch start(Patch const& patch) {
 }
 
 }  // namespace
-
-UnstructuredMesh to_hexahedra(Mesh const& mesh) {
-  UnstructuredMesh out;
-  copy_common(mesh, out);
-  auto const handedness = zone_handedness(Kokkos::DefaultHostExecutionSpace(), mesh, views(mesh.coordinates));
-  for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
-    auto const& zone = mesh.zones[z];
-    out.add_zone(zone.name, zone.size());
-    int const up = handedness[z] > 0 ? 0 : 4;  // the bottom of a turned cell is its top
-    each_cell_of(zone, [&](Index3 const& c) {
-      auto const n = cell_nodes(zone, c);
-      std::array<Number, 8> hexahedron{};
-      constexpr std::array<int, 4> around{0, 1, 3, 2};
-      for (int k = 0; k < 4; ++k) {
-        hexahedron[std::size_t(k)] = n[std::size_t(around[std::size_t(k)] + up)];
-        hexahedron[std::size_t(k + 4)] = n[std::size_t(around[std::size_t(k)] + 4 - up)];
-      }
-      out.add_element(ElementType::hexahedron, hexahedron);
-    });
-  }
-  for (auto const& patch : mesh.patches) {
-    auto faces = start(patch);
-    each_quad(mesh.zones[std::size_t(patch.zone)], patch.range,
-              [&](int, std::array<Number, 4> const& corners, int) { faces.faces.add(corners); });
-    out.patches.push_back(std::move(faces));
-  }
-  for (auto const& face : mesh.interfaces) {
-    UnstructuredConnection c;
-    c.name = face.name;
-    c.zone = face.zone;
-    c.donor_zone = face.donor_zone;
-    c.periodic = face.periodic;
-    for (int k = face.range.begin[2]; k < face.range.end[2]; ++k)
-      for (int j = face.range.begin[1]; j < face.range.end[1]; ++j)
-        for (int i = face.range.begin[0]; i < face.range.end[0]; ++i) {
-          c.nodes.push_back(Number(mesh.zones[std::size_t(face.zone)].node({i, j, k})));
-          c.donor_nodes.push_back(
-              Number(mesh.zones[std::size_t(face.donor_zone)].node(face.to_donor(Index3{i, j, k}))));
-        }
-    out.connections.push_back(std::move(c));
-  }
-  return out;
-}
 
 UnstructuredMesh to_prisms_and_tetrahedra(Mesh const& mesh, int prism_layers) {
   // Paths from corner 0 to corner 7, one step along each axis, in all orders.

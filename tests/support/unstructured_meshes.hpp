@@ -1,13 +1,13 @@
 // Structured meshes as unstructured ones: oracles for what is derived and measured.
 #pragma once
 
+#include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 namespace gridmorph::test {
 
-/// Every cell a hexahedron: the same nodes and cells, in the same order. Left-handed zones are turned, so that all sound
-/// elements are positive. Patches become faces, interfaces connections.
-UnstructuredMesh to_hexahedra(Mesh const& mesh);
+/// as_hexahedra().
+inline UnstructuredMesh to_hexahedra(Mesh const& mesh) { return as_hexahedra(mesh); }
 
 /// The cells below k = `prism_layers` of each zone split into two prisms along k, the others into six tetrahedra (H. Kuhn's
 /// subdivision): conforming inside each zone. Right-handed zones only. Patches become faces.

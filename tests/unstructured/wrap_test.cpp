@@ -201,7 +201,7 @@ TEST(Wrap, AnswersForBoxesLikeALookAtEveryCell) {
   };
   int met = 0;
   for (int n = 0; n < 2000; ++n) {
-    Box box;
+    LatticeBox box;
     for (std::size_t a = 0; a < 3; ++a) {
       box.low[a] = -1 + 3 * random();
       box.high[a] = box.low[a] + 0.8 * random();
@@ -209,7 +209,7 @@ TEST(Wrap, AnswersForBoxesLikeALookAtEveryCell) {
     bool expected = false;
     for (Index c = 0; c < wrap.n_cells(); ++c) {
       if (wrap.inside[std::size_t(c)] == 0) continue;
-      Box const cell = wrap.box(wrap.index(c));
+      LatticeBox const cell = wrap.box(wrap.index(c));
       bool overlap = true;
       for (std::size_t a = 0; a < 3; ++a) overlap = overlap && box.low[a] < cell.high[a] && cell.low[a] < box.high[a];
       expected = expected || overlap;

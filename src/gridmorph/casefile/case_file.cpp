@@ -1,4 +1,5 @@
 #include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/casefile/detail/near_field_reader.hpp>
 #include <gridmorph/casefile/detail/rule_reader.hpp>
 #include <gridmorph/casefile/detail/table_reader.hpp>
 #include <gridmorph/casefile/detail/wheel_reader.hpp>
@@ -216,10 +217,7 @@ BoundaryLayer read_boundary_layer(TableReader& table) {
       layer.thickness = thickness.value_or(0);
     }
   }
-  if (auto const mode = table.choice("mode", {"translate", "rotate", "blend"})) {
-    layer.mode = BoundaryLayer::Mode(*mode);
-    if (*mode != 0) table.problem("mode", "only \"translate\" is available yet");
-  }
+  if (auto const mode = table.choice("mode", {"translate", "rotate", "blend"})) layer.mode = BoundaryLayer::Mode(*mode);
   table.finish();
   return layer;
 }
@@ -276,6 +274,8 @@ void read_results(TableReader& root, CaseFile& out) {
   if (auto output = root.table("output")) {
     out.output_options.displacement = output->boolean("displacement").value_or(false);
     out.output_options.quality = output->boolean("quality").value_or(false);
+    if (auto const stages = output->string("stages"))
+      out.output_options.stages = (output->context().directory / *stages).lexically_normal();
     if (auto const report = output->string("report"))
       out.output_options.report = (output->context().directory / *report).lexically_normal();
     output->finish();
@@ -294,6 +294,7 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   read_sequence(root, out);
   read_motion(root, out);
   read_plan(root, out);
+  casefile::read_near_field(root, out.unstructured);
   read_results(root, out);
   root.finish();
   context.problems.throw_if_any<ConfigError>();

@@ -8,6 +8,7 @@
 #include <gridmorph/casefile/wheel_case.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
+#include <gridmorph/unstructured/options.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -28,6 +29,8 @@ struct OutputOptions {
   bool displacement = false;                    ///< displacement at the nodes, as a solution of the output mesh
   bool quality = false;                         ///< quality measures in the cells, as a solution of the output mesh
   std::optional<std::filesystem::path> report;  ///< JSON report
+  /// Folder for the wrap and the background mesh, before and after, of an unstructured morph.
+  std::optional<std::filesystem::path> stages;
 };
 
 /// One `field` rule, so that reports can say how far its nodes were from the points.
@@ -61,6 +64,7 @@ struct CaseFile {
   std::optional<Axis> axis;      ///< [mesh] axis as given; Motion::axis holds it too
   Motion motion;
   PlanOptions plan;
+  UnstructuredOptions unstructured;  ///< [near_field] and [background]; boundary layers and law are those of `plan`
   GuardOptions guard;
   OutputOptions output_options;
   std::vector<FieldUse> fields;

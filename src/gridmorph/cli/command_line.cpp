@@ -36,10 +36,17 @@ CLI::App* add_wheel(CLI::App& app, CommandLine& out) {
 
 CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   auto* demo = app.add_subcommand("demo", "Write a built-in mesh and its case files, and morph it");
-  demo->add_option("name", out.demo_name, "passage: one airfoil passage of a turbomachine (O4H)")->required();
-  demo->add_option("-n,--nodes", out.demo_nodes, "Nodes of the mesh")
+  demo->add_option(
+          "name", out.demo_name,
+          "passage: one airfoil passage of a turbomachine (O4H); ball: a ball on a rope under a crane (hybrid)")
+      ->required();
+  demo->add_option("-n,--nodes", out.demo_nodes, "passage: nodes of the mesh (default 200000)")
       ->check(CLI::Range(Index(10'000), Index(400'000'000)));
-  demo->add_option("-m,--motion", out.demo_motion, "rotation, chord, or all");
+  demo->add_option("-m,--motion", out.demo_motion, "passage: rotation, chord, or all (default)");
+  demo->add_option("-e,--elements", out.demo_elements, "ball: elements of the mesh (default 500000)")
+      ->check(CLI::Range(Index(50'000), Index(50'000'000)));
+  demo->add_option("-a,--angle", out.demo_angle_deg,
+                   "ball: how far it swings towards the mast, in degrees (default 30)");
   demo->add_option("-d,--directory", out.demo_folder, "Folder for the files (default demo_<name>)");
   return demo;
 }

@@ -24,9 +24,11 @@ struct CommandLine {
   bool json = false;
 
   std::string demo_name;
-  std::string demo_motion = "all";
-  Index demo_nodes = 200'000;
-  std::filesystem::path demo_folder;  ///< empty: "demo_<name>"
+  std::optional<std::string> demo_motion;  ///< passage
+  std::optional<Index> demo_nodes;         ///< passage
+  std::optional<Index> demo_elements;      ///< ball
+  std::optional<double> demo_angle_deg;    ///< ball
+  std::filesystem::path demo_folder;       ///< empty: "demo_<name>"
 };
 
 /// The program should stop here: help and version texts (status 0, standard output) or a wrong command line (status 2,

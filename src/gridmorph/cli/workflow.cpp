@@ -1,4 +1,5 @@
 #include <gridmorph/casefile/mapping_report.hpp>
+#include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
@@ -19,15 +20,6 @@ namespace gridmorph::cli {
 namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
-
-Mesh read_structured(std::filesystem::path const& path) {
-  if (mesh_kind(path.string()) == MeshKind::unstructured)
-    throw MeshError(
-        path.string() +
-        ": is an unstructured mesh; only structured ones can be morphed yet, unstructured ones can be inspected "
-        "and measured (gridmorph inspect, gridmorph quality)");
-  return read_mesh(path.string());
-}
 
 }  // namespace
 
@@ -85,7 +77,7 @@ QualityReport QualityMeter::morphed(Coordinates const& morphed) const {
 
 MorphResult read_baseline(CaseFile const& case_file) {
   MorphResult out;
-  out.mesh = read_structured(case_file.input);
+  out.mesh = read_mesh(case_file.input.string());
   return out;
 }
 
@@ -112,8 +104,9 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
 }
 
 std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
+  if (mesh_kind(case_file.input.string()) == MeshKind::unstructured) return unstructured_plan_text(case_file, terminal);
   terminal.progress("reading " + case_file.input.string());
-  Mesh mesh = read_structured(case_file.input);
+  Mesh mesh = read_mesh(case_file.input.string());
   Engine const engine(mesh, case_file, terminal);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";

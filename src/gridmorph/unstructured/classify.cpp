@@ -23,7 +23,7 @@ Classification classify(UnstructuredMesh const& mesh, AnyWrap const& wrap) {
     if (std::all_of(corners.begin(), corners.end(), [&](Number n) { return inside[std::size_t(n)] != 0; })) {
       region = Region::near;
     } else {
-      Box box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+      LatticeBox box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
       for (Number const n : corners) {
         Vec3 const p = mesh.coordinates[n];
         std::array<double, 3> const x{p.x, p.y, p.z};

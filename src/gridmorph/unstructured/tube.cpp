@@ -55,7 +55,7 @@ bool Tube::contains(Vec3 const& p) const {
   return (p1[0] - p0[0]) * (b - p0[1]) - (p1[1] - p0[1]) * (a - p0[0]) >= 0;
 }
 
-bool Tube::meets(Box const& box) const {
+bool Tube::meets(LatticeBox const& box) const {
   Vec3 const low{box.low[0], box.low[1], box.low[2]}, high{box.high[0], box.high[1], box.high[2]};
   Vec3 const middle = 0.5 * (low + high);
   double const reach = 0.5 * norm(high - low), s = dot(middle, axis);

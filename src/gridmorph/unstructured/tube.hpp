@@ -13,7 +13,7 @@
 namespace gridmorph {
 
 /// A box along the axes.
-struct Box {
+struct LatticeBox {
   std::array<double, 3> low{}, high{};
 };
 
@@ -38,7 +38,7 @@ struct Tube {
   [[nodiscard]] double largest_radius() const;
   [[nodiscard]] bool contains(Vec3 const& point) const;
   /// Whether a box meets the tube: looks at 27 points of the box, and for boxes that these miss at the rings' points.
-  [[nodiscard]] bool meets(Box const& box) const;
+  [[nodiscard]] bool meets(LatticeBox const& box) const;
 };
 
 /// Fits a tube around walls: along their principal axis, sections with the convex hull of the walls near them, made larger by

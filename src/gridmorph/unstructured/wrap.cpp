@@ -19,7 +19,7 @@ void mark(UnstructuredMesh const& mesh, std::span<NumberLists const> walls, Wrap
   for (NumberLists const& faces : walls)
     for (Index f = 0; f < faces.size(); ++f) {
       p.clear();
-      Box box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+      LatticeBox box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
       for (Number const n : faces[f]) {
         p.push_back(array_of(mesh.coordinates[n]));
         if (wrap.dimension == 2) p.back()[2] = 0;
@@ -58,7 +58,7 @@ void add_up(Wrap& wrap) {
 }
 
 /// A tube with an outer box that leaves room for blocks between them, also where the mesh ends beside the tube.
-Wrap around(Tube tube, Box const& domain, WrapOptions const& options) {
+Wrap around(Tube tube, LatticeBox const& domain, WrapOptions const& options) {
   Wrap wrap;
   wrap.offset = options.offset;
   double const room = 0.5 * tube.largest_radius();
@@ -79,8 +79,8 @@ Wrap around(Tube tube, Box const& domain, WrapOptions const& options) {
 
 }  // namespace
 
-Box Wrap::box(Index3 const& c) const {
-  Box box;
+LatticeBox Wrap::box(Index3 const& c) const {
+  LatticeBox box;
   for (std::size_t a = 0; a < 3; ++a) {
     box.low[a] = planes[a][std::size_t(c[a])];
     box.high[a] = planes[a][std::size_t(c[a]) + 1];
@@ -98,7 +98,7 @@ Index3 Wrap::find(Vec3 const& point) const {
   return {interval(0, point.x), interval(1, point.y), dimension == 2 ? 0 : interval(2, point.z)};
 }
 
-bool Wrap::meets(Box const& box) const {
+bool Wrap::meets(LatticeBox const& box) const {
   if (tube) return tube->meets(box);
   Index3 first{}, last{};
   for (int a = 0; a < 3; ++a) {

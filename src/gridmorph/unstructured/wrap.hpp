@@ -45,7 +45,7 @@ struct Wrap {
     return {int(cell % cells(0)), int(cell / cells(0) % cells(1)), int(cell / (Index(cells(0)) * cells(1)))};
   }
   [[nodiscard]] bool is_inside(Index3 const& c) const { return inside[std::size_t(cell(c))] != 0; }
-  [[nodiscard]] Box box(Index3 const& c) const;
+  [[nodiscard]] LatticeBox box(Index3 const& c) const;
   /// The interval of an axis that holds a coordinate, by bisection; the first or last one beyond the ends.
   [[nodiscard]] int interval(int axis, double coordinate) const;
   /// The cell that holds a point; beyond the outer box one of the outermost. In 2-D z is not looked at.
@@ -53,7 +53,7 @@ struct Wrap {
   [[nodiscard]] bool contains(Vec3 const& point) const { return tube ? tube->contains(point) : is_inside(find(point)); }
   /// Whether any point of a box is in the wrap, as contains() has it; of a tube see Tube::meets. Constant cost beyond the
   /// bisection.
-  [[nodiscard]] bool meets(Box const& box) const;
+  [[nodiscard]] bool meets(LatticeBox const& box) const;
   [[nodiscard]] Index n_inside() const { return sum.empty() ? 0 : sum.back(); }
 };
 

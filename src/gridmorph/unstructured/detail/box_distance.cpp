@@ -41,7 +41,7 @@ bool triangle_meets_box(std::array<Point, 3> const& t, Point const& half) {
 
 }  // namespace
 
-bool polygon_meets_box(std::span<std::array<double, 3> const> corners, Box const& box, double offset) {
+bool polygon_meets_box(std::span<std::array<double, 3> const> corners, LatticeBox const& box, double offset) {
   Point half{}, centre{};
   for (std::size_t a = 0; a < 3; ++a) {
     centre[a] = 0.5 * (box.low[a] + box.high[a]);

@@ -7,7 +7,7 @@ namespace {
 
 class Filler {
  public:
-  Filler(UnstructuredMesh const& mesh, Box const& domain, Wrap& wrap) : mesh_(mesh), wrap_(wrap) {
+  Filler(UnstructuredMesh const& mesh, LatticeBox const& domain, Wrap& wrap) : mesh_(mesh), wrap_(wrap) {
     for (int a = 0; a < 3; ++a) {
       auto const s = std::size_t(a);
       first_[s] = a < wrap.dimension ? wrap.interval(a, domain.low[s]) : 0;
@@ -57,7 +57,7 @@ class Filler {
   }
 
   [[nodiscard]] double size(Index3 const& c, int axis) const {
-    Box const box = wrap_.box(c);
+    LatticeBox const box = wrap_.box(c);
     return box.high[std::size_t(axis)] - box.low[std::size_t(axis)];
   }
 
@@ -184,6 +184,6 @@ class Filler {
 
 }  // namespace
 
-void fill(UnstructuredMesh const& mesh, Box const& domain, Wrap& wrap) { Filler(mesh, domain, wrap).run(); }
+void fill(UnstructuredMesh const& mesh, LatticeBox const& domain, Wrap& wrap) { Filler(mesh, domain, wrap).run(); }
 
 }  // namespace gridmorph::detail

@@ -87,7 +87,7 @@ std::vector<double> planes_of(std::vector<Interval> intervals, Interval const& d
 
 }  // namespace
 
-Wrap make_lattice(UnstructuredMesh const& mesh, std::span<NumberLists const> walls, Box const& domain,
+Wrap make_lattice(UnstructuredMesh const& mesh, std::span<NumberLists const> walls, LatticeBox const& domain,
                   WrapOptions const& options) {
   Wrap wrap;
   wrap.dimension = mesh.dimension;

@@ -1,0 +1,135 @@
+// One point in the elements of a mesh; internal to the locator.
+#pragma once
+
+#include <gridmorph/kernels/element_place.hpp>
+#include <gridmorph/unstructured/locate.hpp>
+
+namespace gridmorph::detail {
+
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION Vec3 node_at(LocatorTables<MemorySpace> const& t, Index node) {
+  return {t.x(node), t.y(node), t.z(node)};
+}
+
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION ElementCorners corners_at(LocatorTables<MemorySpace> const& t, ElementType type, Index e) {
+  ElementCorners c;
+  Index const first = t.elements.first(e);
+  int const n = n_corners(type);
+  for (int k = 0; k < n; ++k) c.at[k] = node_at(t, t.elements.node(first + k));
+  return c;
+}
+
+/// Place of an element in the list of polyhedra.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION Index polyhedron_number(LocatorTables<MemorySpace> const& t, Number element) {
+  Index begin = 0, end = Index(t.polyhedron.extent(0));
+  while (begin + 1 < end) {
+    Index const middle = (begin + end) / 2;
+    if (t.polyhedron(middle) <= element)
+      begin = middle;
+    else
+      end = middle;
+  }
+  return begin;
+}
+
+/// Calls visit(part, corners) for the tetrahedra of a polyhedron until it says true: mean of the nodes, mean of the face, and
+/// the two ends of an edge.
+template <class MemorySpace, class Visit>
+KOKKOS_INLINE_FUNCTION void for_each_part(LocatorTables<MemorySpace> const& t, Number element, Visit const& visit) {
+  ElementCorners c;
+  Index const begin = t.elements.first(element), end = t.elements.first(element + 1);
+  for (Index n = begin; n < end; ++n) c.at[0] += node_at(t, t.elements.node(n));
+  c.at[0] = (1.0 / double(end - begin)) * c.at[0];
+  Index const polyhedron = polyhedron_number(t, element);
+  Number part = 0;
+  for (Index f = t.polyhedron_face(polyhedron); f < t.polyhedron_face(polyhedron + 1); ++f) {
+    Index const first = t.polyhedron_faces.first(f), last = t.polyhedron_faces.first(f + 1);
+    c.at[1] = {};
+    for (Index n = first; n < last; ++n) c.at[1] += node_at(t, t.polyhedron_faces.item(n));
+    c.at[1] = (1.0 / double(last - first)) * c.at[1];
+    for (Index n = first; n < last; ++n, ++part) {
+      c.at[2] = node_at(t, t.polyhedron_faces.item(n));
+      c.at[3] = node_at(t, t.polyhedron_faces.item(n + 1 < last ? n + 1 : first));
+      if (visit(part, c)) return;
+    }
+  }
+}
+
+/// Whether an element contains the point; then the place in it.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION bool contains(LocatorTables<MemorySpace> const& t, Number element, Vec3 const& p,
+                                     Location& place) {
+  ElementType const type = t.elements.type(element);
+  bool found = false;
+  if (type == ElementType::polyhedron) {
+    for_each_part(t, element, [&](Number part, ElementCorners const& c) {
+      found = element_contains(ElementType::tetrahedron, c, p, t.tolerance, place.local);
+      if (found) place.part = part;
+      return found;
+    });
+  } else {
+    found = element_contains(type, corners_at(t, type, element), p, t.tolerance, place.local);
+    place.part = 0;
+  }
+  if (!found) return false;
+  place.element = element;
+  place.distance = 0;
+  return true;
+}
+
+/// The place of an element nearest to a point that it does not contain.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION Location nearest(LocatorTables<MemorySpace> const& t, Number element, Vec3 const& p) {
+  Location place;
+  place.element = element;
+  place.distance = unbounded;
+  auto const take = [&](ElementPlace const& found, Number part) {
+    if (!(found.distance < place.distance)) return;
+    place.part = part;
+    place.local = found.local;
+    place.distance = found.distance;
+  };
+  ElementType const type = t.elements.type(element);
+  if (type == ElementType::polyhedron) {
+    for_each_part(t, element, [&](Number part, ElementCorners const& c) {
+      take(nearest_in_element(ElementType::tetrahedron, c, p), part);
+      return false;
+    });
+  } else {
+    take(nearest_in_element(type, corners_at(t, type, element), p), 0);
+  }
+  if (place.distance <= t.tolerance) place.distance = 0;
+  return place;
+}
+
+/// Distances that differ by round-off are the same.
+KOKKOS_INLINE_FUNCTION bool is_nearer(Location const& a, Location const& b) {
+  float const da = float(a.distance), db = float(b.distance);
+  return da < db || (da == db && a.element < b.element);
+}
+
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION Location locate_point(LocatorTables<MemorySpace> const& t, Vec3 p) {
+  Location best;
+  best.distance = unbounded;
+  if (!is_finite(p.x) || !is_finite(p.y) || !is_finite(p.z)) return best;
+  if (t.two_dimensional) p = p - dot(t.normal, p - t.plane_point) * t.normal;
+  t.tree.for_each_holding(p, [&](Index thing) {
+    Number const element = t.element(thing);
+    if (best.element >= 0 && element > best.element) return;
+    contains(t, element, p, best);
+  });
+  if (best.element >= 0) return best;
+  t.tree.for_each_nearer(
+      p,
+      [&](Index thing) {
+        Location const place = nearest(t, t.element(thing), p);
+        if (place.distance < unbounded && (best.element < 0 || is_nearer(place, best))) best = place;
+      },
+      [&] { return best.distance * best.distance * (1 + 1e-6); });
+  return best;
+}
+
+}  // namespace gridmorph::detail
