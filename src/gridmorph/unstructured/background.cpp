@@ -1,5 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/unstructured/background.hpp>
+#include <gridmorph/unstructured/detail/o_type_mesh.hpp>
+#include <gridmorph/unstructured/detail/spacing.hpp>
 
 #include <algorithm>
 #include <string>
@@ -102,30 +104,17 @@ class LatticeMesh {
   Mesh mesh_;
 };
 
-/// Places from 0 to `length` whose spacing starts at `first` and grows by `growth` a step at most.
-std::vector<double> growing(double length, double first, double growth) {
-  constexpr int most = 64;
-  std::vector<double> at{0};
-  for (double step = first; at.back() < length && int(at.size()) <= most; step *= growth)
-    at.push_back(at.back() + step);
-  if (at.size() < 2) at.push_back(length);
-  double const scale = length / at.back();
-  for (double& place : at) place *= scale;
-  at.back() = length;
-  return at;
-}
-
 /// Nodes between two planes of the lattice, spacings near `low` and `high` at its ends (0: any).
 std::vector<double> nodes_between(double a, double b, double low, double high, int cells, double growth) {
   double const length = b - a;
   std::vector<double> at;
   if (low > 0 && high > 0) {
     // From both ends to the middle.
-    std::vector<double> const left = growing(length / 2, std::min(low, high), growth);
+    std::vector<double> const left = detail::growing(length / 2, std::min(low, high), growth);
     for (double const place : left) at.push_back(a + place);
     for (std::size_t n = left.size() - 1; n-- > 0;) at.push_back(b - left[n]);
   } else if (low > 0 || high > 0) {
-    std::vector<double> const places = growing(length, std::max(low, high), growth);
+    std::vector<double> const places = detail::growing(length, std::max(low, high), growth);
     for (std::size_t n = 0; n < places.size(); ++n)
       at.push_back(low > 0 ? a + places[n] : b - places[places.size() - 1 - n]);
   } else {
@@ -183,6 +172,10 @@ Background make_background(Wrap const& wrap, int cells, double growth) {
         std::to_string(cells) + " and " + std::to_string(growth));
   Background out;
   out.dimension = wrap.dimension;
+  if (wrap.tube) {
+    out.mesh = detail::o_type_mesh(*wrap.tube, wrap.planes, growth);
+    return out;
+  }
   FineLattice& lattice = out.lattice.emplace();
   std::array<std::vector<int>, 3> first_cell;  // of each slab
   for (int axis = 0; axis < 3; ++axis) {

@@ -57,6 +57,26 @@ void add_up(Wrap& wrap) {
                       at(i, j - 1, k - 1) + at(i - 1, j - 1, k - 1);
 }
 
+/// A tube with an outer box that leaves room for blocks between them, also where the mesh ends beside the tube.
+Wrap around(Tube tube, LatticeBox const& domain, WrapOptions const& options) {
+  Wrap wrap;
+  wrap.offset = options.offset;
+  double const room = 0.5 * tube.largest_radius();
+  for (std::size_t a = 0; a < 3; ++a) {
+    double low = domain.low[a] - options.margin, high = domain.high[a] + options.margin;
+    for (Vec3 const& p : tube.ring) {
+      low = std::min(low, array_of(p)[a] - room);
+      high = std::max(high, array_of(p)[a] + room);
+    }
+    wrap.planes[a] = {low, high};
+  }
+  wrap.spacing = wrap.layer = tube.length() / (tube.sections() - 1);
+  wrap.inside.assign(1, 0);
+  add_up(wrap);
+  wrap.tube = std::move(tube);
+  return wrap;
+}
+
 }  // namespace
 
 LatticeBox Wrap::box(Index3 const& c) const {
@@ -79,6 +99,7 @@ Index3 Wrap::find(Vec3 const& point) const {
 }
 
 bool Wrap::meets(LatticeBox const& box) const {
+  if (tube) return tube->meets(box);
   Index3 first{}, last{};
   for (int a = 0; a < 3; ++a) {
     auto const s = std::size_t(a);
@@ -108,10 +129,15 @@ Wrap make_wrap(UnstructuredMesh const& mesh, std::span<NumberLists const> walls,
   if (faces == 0) throw MeshError("there is nothing to wrap: the moving walls have no faces");
 
   MeshExtent const domain = extent_of(mesh.coordinates);
+  std::string note;
+  if (options.tube)
+    if (auto tube = fit_tube(mesh, walls, options.offset, note))
+      return around(std::move(*tube), {array_of(domain.low), array_of(domain.high)}, options);
   Wrap wrap = detail::make_lattice(mesh, walls, {array_of(domain.low), array_of(domain.high)}, options);
   mark(mesh, walls, wrap);
   detail::fill(mesh, {array_of(domain.low), array_of(domain.high)}, wrap);
   add_up(wrap);
+  wrap.note = std::move(note);
   return wrap;
 }
 

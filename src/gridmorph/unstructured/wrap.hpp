@@ -6,7 +6,7 @@
 #pragma once
 
 #include <gridmorph/mesh/extent.hpp>
-#include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/unstructured/tube.hpp>
 
 #include <array>
 #include <cstdint>
@@ -23,11 +23,8 @@ struct WrapOptions {
   int resolution = 4;
   Index max_cells = 2000;  ///< of the lattice; coarser where the resolution asks for more
   double margin = 0;       ///< how far the outer box lies beyond the mesh; more where the wrap would touch it
-};
-
-/// A box along the axes.
-struct LatticeBox {
-  std::array<double, 3> low{}, high{};
+  /// A tube around walls that are long rather than wide, where one fits; else (see Wrap::note) cells of the lattice.
+  bool tube = false;
 };
 
 struct Wrap {
@@ -37,6 +34,8 @@ struct Wrap {
   double layer = 0;                           ///< smallest
   std::array<std::vector<double>, 3> planes;  ///< of the lattice, the outer box included, ascending
   std::vector<std::uint8_t> inside;           ///< per cell, i fastest; never in the outermost cells (of x and y in 2-D)
+  std::optional<Tube> tube;  ///< the wrap, instead of cells: then the lattice is one cell, the outer box
+  std::string note;          ///< why it is not the tube that was asked for
   std::vector<std::int32_t> sum;              ///< inside cells below each lattice node: what meets() looks up
 
   [[nodiscard]] int cells(int axis) const { return int(planes[std::size_t(axis)].size()) - 1; }
@@ -51,8 +50,9 @@ struct Wrap {
   [[nodiscard]] int interval(int axis, double coordinate) const;
   /// The cell that holds a point; beyond the outer box one of the outermost. In 2-D z is not looked at.
   [[nodiscard]] Index3 find(Vec3 const& point) const;
-  [[nodiscard]] bool contains(Vec3 const& point) const { return is_inside(find(point)); }
-  /// Whether any point of a box is in the wrap, as contains() has it. Constant cost beyond the bisection.
+  [[nodiscard]] bool contains(Vec3 const& point) const { return tube ? tube->contains(point) : is_inside(find(point)); }
+  /// Whether any point of a box is in the wrap, as contains() has it; of a tube see Tube::meets. Constant cost beyond the
+  /// bisection.
   [[nodiscard]] bool meets(LatticeBox const& box) const;
   [[nodiscard]] Index n_inside() const { return sum.empty() ? 0 : sum.back(); }
 };
