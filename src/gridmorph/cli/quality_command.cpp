@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
@@ -39,7 +40,7 @@ void check_same_zones(Mesh const& a, Mesh const& b) {
 
 int run_quality_command(CommandLine const& options, Terminal& terminal) {
   terminal.progress("reading " + options.input.string());
-  Mesh const mesh = read_mesh(options.input.string());
+  Mesh const mesh = load_mesh(options.input);
   std::optional<Mesh> morphed;
   if (options.second) {
     terminal.progress("reading " + options.second->string());

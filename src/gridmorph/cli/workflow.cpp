@@ -1,4 +1,6 @@
+#include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/motion/motion.hpp>
@@ -52,7 +54,11 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   MorphResult out;
   Stopwatch watch;
   terminal.progress("reading " + case_file.input.string());
-  out.mesh = read_mesh(case_file.input.string());
+  out.mesh = load_mesh(case_file.input, case_file.side_file);
+  auto const& wanted = case_file.output_options;
+  if (!out.mesh.file_variant.empty() && (wanted.displacement || wanted.quality))
+    throw ConfigError(case_file.source.string() +
+                      ": [output] displacement and quality: PLOT3D files have no place for solutions; set both to false");
   out.times.push_back({"read", watch.lap(), true});
   Engine const engine(out.mesh, case_file, terminal);
   out.morphed = engine.morph(terminal);
@@ -79,7 +85,7 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
 
 std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
   terminal.progress("reading " + case_file.input.string());
-  Mesh mesh = read_mesh(case_file.input.string());
+  Mesh mesh = load_mesh(case_file.input, case_file.side_file);
   Engine const engine(mesh, case_file, terminal);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";

@@ -77,4 +77,7 @@ std::string describe_value(toml::value const& value);
 /// Line of a value in the case file.
 unsigned line_of(toml::value const& value);
 
+/// The tables of a TOML text; ConfigError with file and line when it is none.
+toml::value parse_toml_text(std::string const& text, std::string const& file);
+
 }  // namespace gridmorph::casefile
