@@ -109,10 +109,10 @@ TEST_P(Plot3d, CarriesNewCoordinatesAndKeepsTheRest) {
 }
 
 TEST_P(Plot3d, CutAnywhereItIsRefused) {
-  for (std::size_t length = 0; length < bytes_.size(); length += 1 + length / 40) {
+  // A number that is cut short is a number all the same.
+  std::size_t const last_number = GetParam().kind == 'f' ? bytes_.find_last_of(' ') + 1 : bytes_.size();
+  for (std::size_t length = 0; length < last_number; length += 1 + length / 40) {
     SCOPED_TRACE(length);
-    // A number that is cut short is a number all the same.
-    if (GetParam().kind == 'f' && bytes_.find_first_of(" \n", length) > bytes_.size() - 3) continue;
     write_bytes(in_, bytes_.substr(0, length));
     auto const message = message_of<IoError>([&] { read_mesh(in_); });
     EXPECT_NE(message.find("in.p3d"), std::string::npos) << message;

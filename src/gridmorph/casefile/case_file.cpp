@@ -265,8 +265,8 @@ void read_results(TableReader& root, CaseFile& out) {
 
 }  // namespace
 
-CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path) {
-  Context context{path.string(), path.parent_path(), {}};
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked) {
+  Context context{path.string(), path.parent_path(), {}, asked};
   toml::value const document = parse_toml(text, context.file);
   CaseFile out;
   out.source = path;

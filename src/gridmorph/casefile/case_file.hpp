@@ -10,7 +10,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
@@ -51,7 +53,11 @@ struct CaseFile {
 /// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
 CaseFile read_case_file(std::filesystem::path const& path);
 
+/// (table, key) pairs that the reader asked for, tables as "mesh", "mesh axis", "motion": what it knows, for checks of the docs.
+using CaseKeyUse = std::set<std::pair<std::string, std::string>>;
+
 /// The same from text; `path` names it in messages and anchors relative paths.
-CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path);
+/// `asked`, when given, is filled also when there are problems.
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked = nullptr);
 
 }  // namespace gridmorph

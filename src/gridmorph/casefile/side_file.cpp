@@ -285,7 +285,7 @@ std::optional<std::filesystem::path> find_side_file(std::filesystem::path const&
 }
 
 void add_side_file(std::string const& text, std::filesystem::path const& path, Mesh& mesh) {
-  Context context{path.string(), path.parent_path(), {}};
+  Context context{path.string(), path.parent_path(), {}, nullptr};
   toml::value const document = casefile::parse_toml_text(text, context.file);
   Reader(context, mesh).read(document);
   context.problems.throw_if_any<ConfigError>();

@@ -88,6 +88,23 @@ std::string extents_text(std::vector<ZoneData> const& zones) {
   return text + std::to_string(e[0]) + " x " + std::to_string(e[1]) + " x " + std::to_string(e[2]) + " nodes";
 }
 
+/// The integers of a record, split or not.
+std::optional<std::vector<std::int64_t>> integers(Bytes& file, std::vector<Segment> const& record, std::uint64_t count,
+                                                  bool big_endian) {
+  std::vector<unsigned char> bytes(count * 4);
+  bool good = true;
+  std::uint64_t at = 0;
+  for (auto const& s : record) {
+    std::uint64_t const n = std::min<std::uint64_t>(s.count, bytes.size() - at);
+    good = good && file.read(s.at, bytes.data() + at, n);
+    at += n;
+  }
+  if (!good || at != bytes.size()) return std::nullopt;
+  std::vector<std::int64_t> out;
+  for (std::uint64_t n = 0; n < count; ++n) out.push_back(to_integer(bytes.data() + 4 * n, 4, big_endian));
+  return out;
+}
+
 /// The record markers of a whole file: payload segments of each record.
 struct Records {
   std::vector<std::vector<Segment>> all;
@@ -156,7 +173,7 @@ void try_unformatted(Bytes& file, int marker, bool big_endian, std::vector<Candi
   std::vector<std::int64_t> sizes;
   std::size_t header = 1;
   if (v.multi_block) {
-    auto const count = integers(file, records.all[0].front().at, 1, big_endian);
+    auto const count = integers(file, records.all[0], 1, big_endian);
     if (!count || count->front() < 1 || count->front() > most_zones)
       return give_up(1, "its first record says that it has " + std::to_string(count ? count->front() : 0) + " zones");
     if (records.all.size() < 2)
@@ -166,13 +183,13 @@ void try_unformatted(Bytes& file, int marker, bool big_endian, std::vector<Candi
     if (second != 4 * n * std::uint64_t(v.dimensions))
       return give_up(1, "the record with the extents of " + std::to_string(n) + " zones has " + std::to_string(second) +
                             " bytes");
-    auto const all = integers(file, records.all[1].front().at, second / 4, big_endian);
+    auto const all = integers(file, records.all[1], second / 4, big_endian);
     if (!all) return give_up(1, "the extents of its zones cannot be read");
     sizes = *all;
     header = 2;
   } else if (first == 8 || first == 12) {
     v.dimensions = int(first / 4);
-    auto const all = integers(file, records.all[0].front().at, first / 4, big_endian);
+    auto const all = integers(file, records.all[0], first / 4, big_endian);
     if (!all) return;
     sizes = *all;
   } else {
@@ -304,17 +321,28 @@ FileLayout detect_binary(std::string const& path, Stated const& stated) {
     try_binary(file, big_endian, tried);
   }
   std::erase_if(tried, [&](Candidate const& c) { return !stated.allows(c.layout.variant); });
+  // Record markers around a header that makes sense are no accident. Files without markers have nothing but their numbers to be
+  // known by.
+  auto const has_records = [](Candidate const& c) {
+    return c.layout.variant.storage == Storage::unformatted && (c.fits || c.agreement > 1);
+  };
+  if (std::any_of(tried.begin(), tried.end(), has_records))
+    std::erase_if(tried, [&](Candidate const& c) { return !has_records(c); });
   std::vector<Candidate> good;
-  std::copy_if(tried.begin(), tried.end(), std::back_inserter(good), [](Candidate const& c) { return c.fits; });
-  // Record markers that agree throughout are no accident; numbers decide among the rest.
-  if (good.size() > 1) {
-    auto const records = [](Candidate const& c) { return c.layout.variant.storage == Storage::unformatted; };
-    if (std::count_if(good.begin(), good.end(), records) == 1)
-      std::erase_if(good, [&](Candidate const& c) { return !records(c); });
-    else if (auto sane = good; std::erase_if(sane, [&](Candidate const& c) { return !looks_sane(file, c.layout); }),
-             !sane.empty())
-      good = std::move(sane);
+  for (auto& c : tried) {
+    if (!c.fits) continue;
+    if (c.layout.variant.storage == Storage::unformatted || stated.storage || looks_sane(file, c.layout)) {
+      good.push_back(c);
+    } else {
+      c.fits = false;
+      c.miss = 0;
+      c.why = "its numbers are no coordinates (" + extents_text(c.layout.zones) + ")";
+    }
   }
+  if (good.size() > 1)
+    if (auto sane = good; std::erase_if(sane, [&](Candidate const& c) { return !looks_sane(file, c.layout); }) > 0 &&
+                          !sane.empty())
+      good = std::move(sane);
   if (good.size() == 1) return std::move(good.front().layout);
   if (good.size() > 1) {
     std::string text = path + ": could be several kinds of PLOT3D files; state which with format = \"...\" in its side file:";

@@ -63,8 +63,10 @@ struct Look {
 Look look_at(std::string_view number) {
   Look out;
   bool leading = true;
+  int digits = 0;
   for (char const c : number) {
     if (c >= '0' && c <= '9') {
+      ++digits;
       leading = leading && c == '0';
       if (!leading) ++out.significant;
       if (out.point) ++out.decimals;
@@ -76,6 +78,7 @@ Look look_at(std::string_view number) {
       break;
     }
   }
+  if (leading) out.significant = digits;  // a zero has them all
   return out;
 }
 
@@ -167,7 +170,7 @@ bool looks_like_numbers(std::string_view head) {
 
 TextLayout read_text(std::string_view text, std::string const& path, Stated const& stated) {
   std::vector<double> all;
-  std::vector<std::size_t> ends;  // of the first tokens, to know where the extents end
+  std::vector<std::size_t> ends;  // of the first numbers, to know where the extents end
   StyleFinder style;
   Scanner scanner(text, path);
   constexpr std::size_t header_most = 3 * std::size_t(most_zones) + 1;
@@ -213,6 +216,14 @@ TextLayout read_text(std::string_view text, std::string const& path, Stated cons
         nodes += product;
         c.layout.zones.push_back(zone);
       }
+      // Number of zones, extents and coordinates are read by statements of their own: each begins on a new line.
+      auto const line_ends = [&](std::size_t numbers) {
+        if (numbers > ends.size()) return false;
+        auto const rest = text.substr(ends[numbers - 1]);
+        auto const next = rest.find_first_not_of(" \t\r,");
+        return next == std::string_view::npos || rest[next] == '\n';
+      };
+      usable = usable && line_ends(c.header) && (!multi || line_ends(1));
       if (!usable) continue;
       for (bool const blank : {false, true}) {
         v.iblank = blank;
@@ -224,17 +235,6 @@ TextLayout read_text(std::string_view text, std::string const& path, Stated cons
                     std::to_string(all.size());
       }
     }
-  if (good.size() > 1) {
-    // The number of zones stands on a line of its own.
-    auto const first_line = text.substr(0, text.find('\n', text.find_first_not_of(separators)));
-    Scanner line(first_line, path);
-    Token token;
-    int count = 0;
-    while (line.next(token)) ++count;
-    auto by_line = good;
-    std::erase_if(by_line, [&](Candidate const& c) { return c.layout.variant.multi_block != (count == 1); });
-    if (!by_line.empty()) good = std::move(by_line);
-  }
   if (good.size() > 1) {
     std::string message =
         path + ": could be several kinds of PLOT3D files; state which with format = \"...\" in its side file:";

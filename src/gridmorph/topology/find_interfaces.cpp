@@ -18,6 +18,8 @@ using topology::SurfaceCells;
 using topology::Turn;
 using topology::ZoneFace;
 
+constexpr std::size_t few_of_many = 5;  // a fifth
+
 /// A pair of cells with what it has in common with others of one interface: faces, turn, and where node (0, 0) would go.
 struct Placed {
   int face, other_face, turn;
@@ -166,18 +168,28 @@ FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options) {
   if (!options.periodic) return out;
 
   auto const matches = topology::find_periodic(cells, options.tolerance, out.notes);
-  bool const turns = std::any_of(matches.begin(), matches.end(), [](auto const& m) { return m.rotation; });
+  // A few cells that happen to fit are no periodicity beside many that do.
+  std::size_t shifted = 0;
+  for (auto const& match : matches)
+    if (!match.rotation) shifted = std::max(shifted, match.pairs.size());
+  auto const counts = [&](auto const& match) { return few_of_many * match.pairs.size() >= shifted; };
+  bool const turns = std::any_of(matches.begin(), matches.end(), [&](auto const& m) { return m.rotation && counts(m); });
   for (auto const& match : matches) {
-    std::string const count = std::to_string(match.pairs.size()) + " pairs of face cells";
-    if (match.rotation) {
-      out.notes.push_back(count + " match by a rotation of " + text(match.angle_rad * 180 / std::numbers::pi) +
-                          " degrees about " + text(match.direction) + " through " + text(match.origin));
-    } else {
-      out.notes.push_back(count + " match by the translation " + text(match.transform.translation) +
-                          (turns ? "; not taken as periodic, because the mesh is by a rotation"
-                                 : "; taken as periodic, take it out if these are inlet and outlet or end walls"));
-      if (turns) continue;
-    }
+    std::string what = std::to_string(match.pairs.size()) + " pairs of face cells match by ";
+    if (match.rotation)
+      what += "a rotation of " + text(match.angle_rad * 180 / std::numbers::pi) + " degrees about " +
+              text(match.direction) + " through " + text(match.origin);
+    else
+      what += "the translation " + text(match.transform.translation);
+    bool const taken = counts(match) && (match.rotation || !turns);
+    if (!counts(match))
+      what += "; not taken as periodic, because so few are chance";
+    else if (!taken)
+      what += "; not taken as periodic, because the mesh is by a rotation";
+    else if (!match.rotation)
+      what += "; taken as periodic: take it out if these are inlet and outlet, or end walls";
+    out.notes.push_back(std::move(what));
+    if (!taken) continue;
     add(match.pairs, declared(match));
   }
   return out;

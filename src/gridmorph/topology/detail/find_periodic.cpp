@@ -2,7 +2,9 @@
 #include <gridmorph/topology/links.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -14,6 +16,7 @@ namespace {
 constexpr std::size_t most_seeds = 4000;
 constexpr std::size_t most_proposals = 4096;
 constexpr int most_trials = 48;
+constexpr int most_fits = 5;
 constexpr double smallest_angle = 1e-4;  // rad; a smaller turn is a translation
 constexpr double tidy_direction = 1e-6, tidy_angle = 1e-6;
 
@@ -28,7 +31,6 @@ std::vector<Seed> find_seeds(SurfaceCells const& cells, std::vector<std::string>
   std::vector<Seed> seeds;
   for (int f = 0; f < int(cells.faces().size()); ++f) {
     ZoneFace const& face = cells.faces()[f];
-    if (!face.thick) continue;  // the two planes of one cell layer
     for (int b = 0; b < face.nv; ++b)
       for (int a = 0; a < face.nu; ++a) {
         if (!cells.is_open(face, a, b)) continue;
@@ -50,13 +52,17 @@ std::vector<Seed> find_seeds(SurfaceCells const& cells, std::vector<std::string>
 
 /// Calls visit for all pairs of seeds with smallest edges of equal length.
 template <class Visit>
-void for_each_pair(std::vector<Seed> const& seeds, double relative, Visit visit) {
+void for_each_pair(SurfaceCells const& cells, std::vector<Seed> const& seeds, double relative, Visit visit) {
   for (std::size_t p = 0; p < seeds.size(); ++p)
     for (std::size_t q = p + 1; q < seeds.size(); ++q) {
       double const e = seeds[p].shape.edge;
       double const slack = 2 * std::max({relative * e, seeds[p].shape.noise, seeds[q].shape.noise});
       if (seeds[q].shape.edge > e + slack) break;
-      if (seeds[p].face != seeds[q].face) visit(seeds[p], seeds[q]);
+      if (seeds[p].face == seeds[q].face) continue;
+      ZoneFace const& a = cells.faces()[seeds[p].face];
+      ZoneFace const& b = cells.faces()[seeds[q].face];
+      bool const one_layer = a.zone == b.zone && a.axis == b.axis && !a.thick;  // the sides of a 2-D mesh
+      if (!one_layer) visit(seeds[p], seeds[q]);
     }
 }
 
@@ -323,41 +329,73 @@ std::vector<PeriodicMatch> find_periodic(SurfaceCells& cells, double relative, s
   double const size = distance(low, high), alike = 1e-6 * size;
   CellBins const bins(cells, relative);
 
-  auto const try_out = [&](PeriodicMatch match) {
+  auto const set_open = [&](std::vector<CellPair> const& pairs, bool open) {
+    for (auto const& pair : pairs)
+      for (Index const c : {pair.cell, pair.other}) open ? cells.release(c) : cells.claim(c);
+  };
+  // A look at the corners alone: what maps none of them has been taken by others before.
+  auto const maps_a_seed = [&](RigidTransform const& t) {
+    return std::any_of(seeds.begin(), seeds.end(), [&](Seed const& s) {
+      int hits = 0;
+      if (cells.is_open(s.cell)) (void)bins.partner(s.cell, t, false, hits);
+      return hits > 0;
+    });
+  };
+  auto const matched = [&](RigidTransform const& t) {
     Index ambiguous = 0;
-    match.pairs = bins.match(match.transform, false, ambiguous);
+    return maps_a_seed(t) || maps_a_seed(t.inverse()) ? bins.match(t, false, ambiguous) : std::vector<CellPair>{};
+  };
+  // Those that map the most cells come first: a small piece can be like others in many ways.
+  auto const by_count = [&](std::vector<Proposal> const& proposals) {
+    std::vector<std::pair<std::size_t, RigidTransform>> counted;
+    for (auto const& p : proposals) counted.emplace_back(matched(p.transform).size(), p.transform);
+    std::stable_sort(counted.begin(), counted.end(), [](auto const& a, auto const& b) { return a.first > b.first; });
+    return counted;
+  };
+  auto const try_out = [&](PeriodicMatch match) {
+    match.pairs = matched(match.transform);
     if (match.pairs.empty()) return;
-    // All cells together know the transform better than the piece that proposed it.
-    RigidTransform const fit = refitted(cells, match.pairs, match.rotation);
-    PeriodicMatch better = match;
-    better.transform = fit;
-    if (match.rotation) {
-      auto const turn = as_rotation(fit, 1e-6 * size);
-      if (turn) better = tidied(*turn, size);
+    Index ambiguous = 0;
+    // All cells together know the transform better than the piece that proposed it, and a better one may find more.
+    for (int attempt = 0; attempt < most_fits; ++attempt) {
+      PeriodicMatch better = match;
+      better.transform = refitted(cells, match.pairs, match.rotation);
+      if (match.rotation) {
+        auto const turn = as_rotation(better.transform, 1e-6 * size);
+        if (!turn) break;
+        better = tidied(*turn, size);
+      }
+      better.pairs = bins.match(better.transform, false, ambiguous);
+      if (better.pairs.size() < match.pairs.size()) break;
+      bool const more = better.pairs.size() > match.pairs.size();
+      match = std::move(better);
+      if (!more) break;
     }
-    better.pairs = bins.match(better.transform, false, ambiguous);
-    if (better.pairs.size() >= match.pairs.size()) match = std::move(better);
-    for (auto const& pair : match.pairs) {
-      cells.claim(pair.cell);
-      cells.claim(pair.other);
-    }
+    set_open(match.pairs, false);
     out.push_back(std::move(match));
   };
 
   Proposals shifts(low, high, alike);
-  for_each_pair(seeds, relative, [&](Seed const& p, Seed const& q) {
+  for_each_pair(cells, seeds, relative, [&](Seed const& p, Seed const& q) {
     if (auto const t = translation_between(p.shape, q.shape, relative)) shifts.add(*t);
   });
-  for (auto const& proposal : shifts.ranked()) {
+  for (auto const& [count, transform] : by_count(shifts.ranked())) {
     PeriodicMatch match;
-    match.transform = proposal.transform;
+    match.transform = transform;
     try_out(std::move(match));
   }
 
+  // Rotations may take cells that translations have, but are proposed by others: those of a box are of no interest.
   std::erase_if(seeds, [&](Seed const& s) { return !cells.is_open(s.cell); });
+  std::vector<std::uint8_t> shifted(std::size_t(cells.size()), 0);
+  for (auto const& match : out) {
+    for (auto const& pair : match.pairs) shifted[pair.cell] = shifted[pair.other] = 1;
+    set_open(match.pairs, true);
+  }
+  std::vector<PeriodicMatch> translations = std::exchange(out, {});
   Proposals turns(low, high, alike);
-  Index budget = 50 * cells.size() + 1'000'000;
-  for_each_pair(seeds, relative, [&](Seed const& p, Seed const& q) {
+  Index budget = 10 * cells.size() + 100'000;
+  for_each_pair(cells, seeds, relative, [&](Seed const& p, Seed const& q) {
     for (int n = 0; n < 8 && budget > 0; ++n) {
       if (!congruent(p.shape, q.shape, Turn{n}, relative)) continue;
       auto const t = Grower(cells, p, q, Turn{n}, relative, budget).fit();
@@ -365,8 +403,20 @@ std::vector<PeriodicMatch> find_periodic(SurfaceCells& cells, double relative, s
     }
   });
   if (budget <= 0) notes.emplace_back("the search for rotational periodicity was cut short: too many faces are alike");
-  for (auto const& proposal : turns.ranked())
-    if (auto match = as_rotation(proposal.transform, size)) try_out(std::move(*match));
+  for (auto const& [count, transform] : by_count(turns.ranked())) {
+    auto match = as_rotation(transform, size);
+    if (!match) continue;
+    std::size_t const before = out.size();
+    try_out(std::move(*match));
+    if (out.size() == before) continue;
+    auto const& pairs = out.back().pairs;
+    auto const also_shifted =
+        std::count_if(pairs.begin(), pairs.end(), [&](CellPair const& p) { return shifted[p.cell] != 0; });
+    if (2 * std::size_t(also_shifted) < pairs.size()) continue;
+    set_open(pairs, true);
+    out.pop_back();
+  }
+  out.insert(out.begin(), translations.begin(), translations.end());
   return out;
 }
 

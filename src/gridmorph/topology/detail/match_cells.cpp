@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 namespace gridmorph::topology {
 
@@ -85,38 +84,42 @@ CellBins::CellBins(SurfaceCells const& cells, double relative) : cells_(&cells),
   }
 }
 
+CellPair CellBins::partner(Index cell, RigidTransform const& t, bool identity, int& hits) const {
+  CellPair best;
+  hits = 0;
+  CellShape const own = identity ? cells_->shape(cell) : transformed(cells_->shape(cell), t);
+  double const size = size_of(own);
+  // The edges of two coincident cells may fall on different sides of a power of two.
+  int const low = level(size * (1 - 2 * relative_)), high = level(size * (1 + 2 * relative_));
+  for (int l = low; l <= high; ++l) {
+    double const width = std::ldexp(1.0, l), reach = 0.5 * width;
+    auto const lo = [&](double x) { return bin(x - reach, width); };
+    auto const hi = [&](double x) { return bin(x + reach, width); };
+    for (std::int64_t k = lo(own.centre.z); k <= hi(own.centre.z); ++k)
+      for (std::int64_t j = lo(own.centre.y); j <= hi(own.centre.y); ++j)
+        for (std::int64_t i = lo(own.centre.x); i <= hi(own.centre.x); ++i) {
+          std::uint64_t const wanted = key(l, i, j, k);
+          for (Index n = head_[wanted & mask_]; n >= 0; n = next_[n]) {
+            Index const other = number_[n];
+            if (key_[n] != wanted || other == cell || !cells_->is_open(other)) continue;
+            CellShape const s = cells_->shape(other);
+            Turn turn;
+            double mismatch = 0;
+            if (!lies_on(own, s, relative_, turn, mismatch) || !on_opposite_sides(own, s)) continue;
+            if (hits++ == 0 || mismatch < best.mismatch || (mismatch == best.mismatch && other < best.other))
+              best = {cell, other, turn, mismatch};
+          }
+        }
+  }
+  return best;
+}
+
 std::vector<CellPair> CellBins::match(RigidTransform const& t, bool identity, Index& ambiguous) const {
   std::vector<CellPair> found;
   for (Index const c : number_) {
     if (!cells_->is_open(c)) continue;
-    CellShape const own = identity ? cells_->shape(c) : transformed(cells_->shape(c), t);
-    double const size = size_of(own);
-    CellPair best;
-    best.mismatch = std::numeric_limits<double>::infinity();
     int hits = 0;
-    // The edges of two coincident cells may fall on different sides of a power of two.
-    int const low = level(size * (1 - 2 * relative_)), high = level(size * (1 + 2 * relative_));
-    for (int l = low; l <= high; ++l) {
-      double const width = std::ldexp(1.0, l), reach = 0.5 * width;
-      auto const lo = [&](double x) { return bin(x - reach, width); };
-      auto const hi = [&](double x) { return bin(x + reach, width); };
-      for (std::int64_t k = lo(own.centre.z); k <= hi(own.centre.z); ++k)
-        for (std::int64_t j = lo(own.centre.y); j <= hi(own.centre.y); ++j)
-          for (std::int64_t i = lo(own.centre.x); i <= hi(own.centre.x); ++i) {
-            std::uint64_t const wanted = key(l, i, j, k);
-            for (Index n = head_[wanted & mask_]; n >= 0; n = next_[n]) {
-              Index const other = number_[n];
-              if (key_[n] != wanted || other == c || !cells_->is_open(other)) continue;
-              CellShape const s = cells_->shape(other);
-              Turn turn;
-              double mismatch = 0;
-              if (!lies_on(own, s, relative_, turn, mismatch) || !on_opposite_sides(own, s)) continue;
-              ++hits;
-              if (mismatch < best.mismatch || (mismatch == best.mismatch && other < best.other))
-                best = {c, other, turn, mismatch};
-            }
-          }
-    }
+    CellPair const best = partner(c, t, identity, hits);
     if (hits > 1) ++ambiguous;
     if (hits > 0) found.push_back(best);
   }

@@ -34,6 +34,9 @@ class CellBins {
   /// Takes in the cells that are open now and have an area.
   CellBins(SurfaceCells const& cells, double relative);
 
+  /// The open cell that an open cell lies on under a transform, the nearest where there are several (`hits` of them).
+  [[nodiscard]] CellPair partner(Index cell, RigidTransform const& t, bool identity, int& hits) const;
+
   /// All pairs of open cells under a transform, each cell in one pair at most, ordered by cell. Identity: each pair once, from
   /// the cell with the lower number. Cells that lie on several others go to the nearest; `ambiguous` counts them.
   [[nodiscard]] std::vector<CellPair> match(RigidTransform const& t, bool identity, Index& ambiguous) const;
