@@ -1,7 +1,7 @@
 // PLOT3D files of every kind: read, written again in the same kind, and refused when damaged.
 #include "block_lattice.hpp"
 #include "io_support.hpp"
-#include "plot3d_file.hpp"
+#include "support/plot3d_file.hpp"
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>

@@ -58,13 +58,17 @@ constexpr auto list = std::to_array<CaseKey>({
     {"motion rigid scale", "factor", "factor or [sx, sy, sz]", "1", "required", "scale = { factor = [1, 1, 1.05], origin = [0, 0, 0] }", "Positive"},
     {"motion rigid scale", "origin", "[x, y, z]", "length", "[0, 0, 0]", "scale = { factor = 1.02, origin = [0, 0, 1] }", "The point that stays"},
 
-    {"motion formula", "dx", "expression", "length", "0", R"(dx = "-y * twist * z / 14"
-constants = { twist = 0.087 })", "Displacement along x"},
-    {"motion formula", "dy", "expression", "length", "0", R"(dy = "1.5 * (z / 14)^2")", "Displacement along y"},
-    {"motion formula", "dz", "expression", "length", "0", R"(dz = "0.01 * sin(x)")", "Displacement along z"},
+    {"motion rigid steps", "scale", "as above", "1", "1", "steps = [ { scale = 1.1 } ]", "First in its step"},
+    {"motion rigid steps", "rotation", "as above", "", "none", "steps = [ { rotation = { angle_deg = 5, axis = [0, 0, 1], origin = [0, 0, 0] } } ]", "Second in its step"},
+    {"motion rigid steps", "translation", "as above", "length", "[0, 0, 0]", "steps = [ { translation = [0.1, 0, 0] } ]", "Last in its step"},
+
+    {"motion formula", "dx", "expression", "length", "0", R"~(dx = "-y * twist * z / 14"
+constants = { twist = 0.087 })~", "Displacement along x"},
+    {"motion formula", "dy", "expression", "length", "0", R"~(dy = "1.5 * (z / 14)^2")~", "Displacement along y"},
+    {"motion formula", "dz", "expression", "length", "0", R"~(dz = "0.01 * sin(x)")~", "Displacement along z"},
     {"motion formula", "dr", "expression", "length", "0", R"(dr = "0.01 * axial")", "Displacement away from the axis; 0 on the axis itself"},
     {"motion formula", "dtheta", "expression", "rad", "0", R"(dtheta = "2 * deg * r")", "Angle about the axis, not r times the angle"},
-    {"motion formula", "daxial", "expression", "length", "0", R"(daxial = "0.002 * (r - 1)")", "Displacement along the axis"},
+    {"motion formula", "daxial", "expression", "length", "0", R"~(daxial = "0.002 * (r - 1)")~", "Displacement along the axis"},
     {"motion formula", "constants", "table of numbers", "any", "none", R"(dx = "a * z"
 constants = { a = 0.1 })", "Names for this rule, which win over [constants]"},
     {"motion formula constants", "<name>", "number", "any", "none", R"(dx = "a * z"

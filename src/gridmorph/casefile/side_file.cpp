@@ -135,7 +135,7 @@ class Reader {
     }
     if (!a || !b || a->size() != b->size()) {
       table.problem(range_key,
-                    fmt::format("expected two nodes [[i, j, k], [i, j, k]], counted from 1, found {}", describe_value(*value)));
+                    fmt::format("expected two nodes [[i, j, k], [i, j, k]], counted from 1, found {}", casefile::describe_value(*value)));
       return std::nullopt;
     }
     for (std::size_t d = 0; d < a->size(); ++d) {

@@ -59,10 +59,7 @@ void for_each_pair(SurfaceCells const& cells, std::vector<Seed> const& seeds, do
       double const slack = 2 * std::max({relative * e, seeds[p].shape.noise, seeds[q].shape.noise});
       if (seeds[q].shape.edge > e + slack) break;
       if (seeds[p].face == seeds[q].face) continue;
-      ZoneFace const& a = cells.faces()[seeds[p].face];
-      ZoneFace const& b = cells.faces()[seeds[q].face];
-      bool const one_layer = a.zone == b.zone && a.axis == b.axis && !a.thick;  // the sides of a 2-D mesh
-      if (!one_layer) visit(seeds[p], seeds[q]);
+      if (!cells.across_one_layer(seeds[p].cell, seeds[q].cell)) visit(seeds[p], seeds[q]);
     }
 }
 

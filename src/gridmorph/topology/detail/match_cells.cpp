@@ -106,6 +106,7 @@ CellPair CellBins::partner(Index cell, RigidTransform const& t, bool identity, i
             Turn turn;
             double mismatch = 0;
             if (!lies_on(own, s, relative_, turn, mismatch) || !on_opposite_sides(own, s)) continue;
+            if (!identity && cells_->across_one_layer(cell, other)) continue;
             if (hits++ == 0 || mismatch < best.mismatch || (mismatch == best.mismatch && other < best.other))
               best = {cell, other, turn, mismatch};
           }

@@ -34,7 +34,8 @@ class CellBins {
   /// Takes in the cells that are open now and have an area.
   CellBins(SurfaceCells const& cells, double relative);
 
-  /// The open cell that an open cell lies on under a transform, the nearest where there are several (`hits` of them).
+  /// The open cell that an open cell lies on under a transform, the nearest where there are several (`hits` of them). Unless
+  /// it is the identity, the two sides of one cell layer are no partners.
   [[nodiscard]] CellPair partner(Index cell, RigidTransform const& t, bool identity, int& hits) const;
 
   /// All pairs of open cells under a transform, each cell in one pair at most, ordered by cell. Identity: each pair once, from

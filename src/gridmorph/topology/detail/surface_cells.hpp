@@ -50,6 +50,12 @@ class SurfaceCells {
   [[nodiscard]] bool is_open(ZoneFace const& face, int a, int b) const {
     return a >= 0 && a < face.nu && b >= 0 && b < face.nv && open_[face.first + a + Index(face.nu) * b] != 0;
   }
+  /// Whether two cells are on the two sides of a zone of one cell layer, as the planes of a 2-D mesh are.
+  [[nodiscard]] bool across_one_layer(Index a, Index b) const {
+    ZoneFace const& f = faces_[face_of(a)];
+    ZoneFace const& g = faces_[face_of(b)];
+    return f.zone == g.zone && f.axis == g.axis && !f.thick;
+  }
   void claim(Index cell) { open_[cell] = 0; }
   void release(Index cell) { open_[cell] = 1; }
 
