@@ -14,7 +14,8 @@
 namespace gridmorph::testing {
 namespace {
 
-constexpr std::string_view note = "list it in src/gridmorph/casefile/case_keys.cpp, then run this test with GRIDMORPH_WRITE_DOCS=1";
+constexpr std::string_view note =
+    "list it in src/gridmorph/casefile/case_keys.cpp, then run this test with GRIDMORPH_WRITE_DOCS=1";
 
 /// First word of a table's name: "mesh", "motion", ...
 std::string top(std::string_view table) { return std::string(table.substr(0, table.find(' '))); }
@@ -76,8 +77,8 @@ TEST(CaseKeys, EveryKeyThatTheReaderKnowsIsListed) {
       });
       if (!listed && reported.emplace(table, key).second)
         ADD_FAILURE() << "the reader knows key '" << key << "' of [" << table << "]"
-                      << (table.starts_with("motion") ? ", rule \"" + rule + "\"" : "") << ", but nothing describes it; "
-                      << note;
+                      << (table.starts_with("motion") ? ", rule \"" + rule + "\"" : "")
+                      << ", but nothing describes it; " << note;
     }
 }
 
@@ -87,7 +88,8 @@ TEST(CaseKeys, EveryKeyThatIsListedIsKnownToTheReader) {
     if (k.key == "<name>") continue;
     auto const found = asked.find(rule_of_table(k.table));
     EXPECT_TRUE(found != asked.end() && found->second.count({as_asked(k.table), std::string(k.key)}) == 1)
-        << "case_keys.cpp describes '" << k.key << "' of [" << k.table << "], but the reader does not ask for it; take it out";
+        << "case_keys.cpp describes '" << k.key << "' of [" << k.table
+        << "], but the reader does not ask for it; take it out";
   }
 }
 
@@ -96,7 +98,9 @@ TEST(CaseKeys, EveryExampleIsValid) {
     std::string const text = case_with(k, rule_of_table(k.table));
     // A motion table has keys without which no other key can stand.
     for (auto const& line : problems_of(text))
-      EXPECT_NE(line.find("does not exist"), std::string::npos) << "[" << k.table << "] " << k.key << ": " << line << "\n" << text;
+      EXPECT_NE(line.find("does not exist"), std::string::npos)
+          << "[" << k.table << "] " << k.key << ": " << line << "\n"
+          << text;
   }
 }
 
@@ -104,7 +108,8 @@ TEST(CaseKeys, EveryLineIsComplete) {
   std::set<std::pair<std::string_view, std::string_view>> seen;
   for (auto const& k : case_keys()) {
     EXPECT_TRUE(seen.emplace(k.table, k.key).second) << k.table << " " << k.key << " is there twice";
-    for (auto const text : {k.key, k.type, k.initial, k.example, k.meaning}) EXPECT_FALSE(text.empty()) << k.table << " " << k.key;
+    for (auto const text : {k.key, k.type, k.initial, k.example, k.meaning})
+      EXPECT_FALSE(text.empty()) << k.table << " " << k.key;
   }
 }
 
@@ -138,7 +143,8 @@ TEST(CaseKeys, TheTablesOfTheDocsAreThoseOfTheList) {
   }
   for (auto const& table : tables)
     EXPECT_EQ(described.count(table), 1U) << "docs/case_file.md has no table for [" << table << "]; add the lines\n"
-                                          << open << (table.empty() ? "top level" : table) << " -->\n" << close;
+                                          << open << (table.empty() ? "top level" : table) << " -->\n"
+                                          << close;
   if (write) std::ofstream(path) << docs;
 }
 

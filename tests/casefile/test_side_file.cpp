@@ -23,9 +23,10 @@ std::vector<std::string> side_problems(std::string const& text, Mesh mesh) {
 }
 
 TEST(SideFile, WhatIsWrittenIsReadAndCoversTheMesh) {
-  for (auto const& make : {+[](unsigned s) { return test::bricks_with_t_junctions(s); },
-                           +[](unsigned s) { return test::annulus_sector({}, s); },
-                           +[](unsigned s) { return test::c_grid(s); }, +[](unsigned s) { return test::translational(1, s); }})
+  for (auto const& make :
+       {+[](unsigned s) { return test::bricks_with_t_junctions(s); },
+        +[](unsigned s) { return test::annulus_sector({}, s); }, +[](unsigned s) { return test::c_grid(s); },
+        +[](unsigned s) { return test::translational(1, s); }})
     for (unsigned seed = 1; seed < 5; ++seed) {
       Mesh const known = test::scramble(make(seed), {.seed = seed, .cuts = 2}).mesh;
       Mesh mesh = bare(known);
@@ -35,7 +36,8 @@ TEST(SideFile, WhatIsWrittenIsReadAndCoversTheMesh) {
       Mesh const nothing = bare(known);
       add_side_file(side_file_text(nothing, found), "mesh.toml", read);
       for (bool const periodic : {false, true})
-        EXPECT_EQ(test::joined_cells(read, read.interfaces, periodic), test::joined_cells(known, known.interfaces, periodic));
+        EXPECT_EQ(test::joined_cells(read, read.interfaces, periodic),
+                  test::joined_cells(known, known.interfaces, periodic));
       EXPECT_TRUE(test::flaws(read, 1e-6).empty()) << test::flaws(read, 1e-6).front();
       EXPECT_NO_THROW(connect_and_check(read, {}));
     }
@@ -45,7 +47,8 @@ TEST(SideFile, SaysPatchesFamiliesAndZoneNames) {
   Mesh mesh = bare(test::box({4, 5, 6}, test::Shape::straight, 1));
   add_side_file(
       "zone_names = [\"passage\"]\n"
-      "[[patch]]\nname = \"ps\"\nfamily = [\"blade\", \"moving\"]\nkind = \"wall\"\nzone = \"passage\"\nface = \"i_max\"\n"
+      "[[patch]]\nname = \"ps\"\nfamily = [\"blade\", \"moving\"]\nkind = \"wall\"\nzone = \"passage\"\nface = "
+      "\"i_max\"\n"
       "[[patch]]\nname = \"in\"\nkind = \"inflow\"\nzone = 1\nrange = [[4, 1, 1], [1, 1, 3]]\n",
       "mesh.toml", mesh);
   ASSERT_EQ(mesh.patches.size(), 2u);

@@ -1,7 +1,7 @@
 // Real meshes as PLOT3D files: their interfaces, known from the CGNS files, are found again from the points.
 #include "io_support.hpp"
-#include "support/plot3d_file.hpp"
 #include "support/interface_cells.hpp"
+#include "support/plot3d_file.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/topology/find_interfaces.hpp>
@@ -33,7 +33,8 @@ TEST_P(RealPlot3d, InterfacesAndPeriodicityAreFoundAgain) {
   // Bare: everything declared is among what is found.
   auto const bare = find_interfaces(mesh, {.tolerance = GetParam().tolerance}).interfaces;
   for (bool const periodic : {false, true}) {
-    if (periodic && GetParam().tolerance > 0.1) continue;  // with so wide a tolerance its two planes are alike in more ways than one
+    if (periodic && GetParam().tolerance > 0.1)
+      continue;  // with so wide a tolerance its two planes are alike in more ways than one
     auto const found = joined_cells(mesh, bare, periodic), declared = joined_cells(known, known.interfaces, periodic);
     EXPECT_TRUE(std::includes(found.begin(), found.end(), declared.begin(), declared.end()))
         << (periodic ? "periodic: " : "plain: ") << found.size() << " found, " << declared.size() << " declared";

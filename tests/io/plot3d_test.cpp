@@ -149,8 +149,9 @@ TEST(Plot3dFiles, ThatCouldBeSeveralThingsMustBeStated) {
   for (int n = 0; n < 12; ++n) put(std::int32_t(0));
   write_bytes(path, bytes);
   auto const message = message_of<IoError>([&] { read_mesh(path); });
-  for (auto const* part : {"plane.p3d", "several", "side file", "binary, little-endian, single, multi-block, 2-D, iblank",
-                           "binary, little-endian, single, single-block, 3-D, no-iblank"})
+  for (auto const* part :
+       {"plane.p3d", "several", "side file", "binary, little-endian, single, multi-block, 2-D, iblank",
+        "binary, little-endian, single, single-block, 3-D, no-iblank"})
     EXPECT_NE(message.find(part), std::string::npos) << message;
   EXPECT_EQ(read_mesh(path, {.plot3d_format = "2-D"}).zones.front().extent, (Index3{3, 4, 2}));
   Mesh const mesh = read_mesh(path, {.plot3d_format = "3-D, single"});
@@ -158,7 +159,8 @@ TEST(Plot3dFiles, ThatCouldBeSeveralThingsMustBeStated) {
   write_morphed(path, folder.file("out.p3d"), mesh, mesh.coordinates);
   EXPECT_EQ(bytes_of(folder.file("out.p3d")), bytes);
   EXPECT_THROW(read_mesh(path, {.plot3d_format = "double"}), IoError);
-  EXPECT_NE(message_of<IoError>([&] { read_mesh(path, {.plot3d_format = "dubble"}); }).find("'dubble'"), std::string::npos);
+  EXPECT_NE(message_of<IoError>([&] { read_mesh(path, {.plot3d_format = "dubble"}); }).find("'dubble'"),
+            std::string::npos);
   // Marks decide where they are marks and no numbers.
   bytes[bytes.size() - 4] = 1;
   write_bytes(path, bytes);
@@ -169,7 +171,8 @@ TEST(Plot3dText, IsReadAsFortranCompilersWriteIt) {
   TemporaryFolder const folder;
   auto const path = folder.file("in.fmt"), out = folder.file("out.fmt");
   std::string const text =
-      "           1\r\n 2,2, 2\n 0.D0 1.0d+00 0. +1 2*0,1*1.0E0 1\n 4*0.0000000000000000E+00 4*1.5\n 2*0 2*.25-1 2*0 2*1.25e-2\n";
+      "           1\r\n 2,2, 2\n 0.D0 1.0d+00 0. +1 2*0,1*1.0E0 1\n 4*0.0000000000000000E+00 4*1.5\n 2*0 2*.25-1 2*0 "
+      "2*1.25e-2\n";
   write_bytes(path, text);
   Mesh mesh = read_mesh(path);
   ASSERT_EQ(mesh.n_nodes(), 8);

@@ -99,7 +99,7 @@ class Plot3dFile {
       std::size_t at = 0;
       do {
         std::size_t const n = std::min(part, record_.size() - at);
-        bool const more = at + n < record_.size(), before = at > 0;
+        bool const more = at + n<record_.size(), before = at> 0;
         marker(more ? -std::int64_t(n) : std::int64_t(n));
         out_ += record_.substr(at, n);
         marker(before ? -std::int64_t(n) : std::int64_t(n));

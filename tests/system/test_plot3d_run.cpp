@@ -22,8 +22,8 @@ class Plot3dRunTest : public CommandTest {
     for (auto const& zone : mesh_.zones) text += "\"" + zone.name + "\", ";
     text += "]\n";
     for (auto const& patch : mesh_.patches) {
-      text += "[[patch]]\nname = \"" + patch.name + "\"\nkind = \"" + std::string(to_string(patch.kind)) + "\"\nzone = \"" +
-              mesh_.zones[patch.zone].name + "\"\nfamily = \"" + patch.families.at(0) + "\"\n";
+      text += "[[patch]]\nname = \"" + patch.name + "\"\nkind = \"" + std::string(to_string(patch.kind)) +
+              "\"\nzone = \"" + mesh_.zones[patch.zone].name + "\"\nfamily = \"" + patch.families.at(0) + "\"\n";
       auto const node = [](Index3 const& p) {
         return "[" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " + std::to_string(p[2]) + "]";
       };
@@ -77,8 +77,9 @@ TEST_F(Plot3dRunTest, TheSideFileOfABareMeshMakesItWhole) {
 
 TEST_F(Plot3dRunTest, SolutionsHaveNoPlaceInAGridFile) {
   write_plot3d({});
-  write("case.toml", "[mesh]\ninput = \"passage.p3d\"\noutput = \"out.p3d\"\nopen_faces = \"open\"\n"
-                     "[[motion]]\npatches = \"blade\"\nrule = \"fixed\"\n[output]\nquality = true\n");
+  write("case.toml",
+        "[mesh]\ninput = \"passage.p3d\"\noutput = \"out.p3d\"\nopen_faces = \"open\"\n"
+        "[[motion]]\npatches = \"blade\"\nrule = \"fixed\"\n[output]\nquality = true\n");
   expect_bad_input(gridmorph("morph case.toml"), {"case.toml", "PLOT3D", "quality"});
 }
 

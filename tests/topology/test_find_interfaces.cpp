@@ -28,7 +28,10 @@ Mesh wedge(unsigned seed) {
 }
 
 Case const cases[] = {
-    {"box", [](unsigned s) { return box({5, 4, 6}, Shape::curved, s); }},
+    {"box",
+     [](unsigned s) {
+       return box({5, 4, 6}, Shape::curved, s);
+     }},
     {"t_junctions", bricks_with_t_junctions},
     {"l_shape", l_shape},
     {"around_a_box", around_a_box},
@@ -81,7 +84,8 @@ TEST_P(FindInterfaces, NeedsNoPatches) {
   bare.patches.clear();
   FoundInterfaces const found = find_interfaces(bare);
   EXPECT_EQ(joined_cells(mesh, found.interfaces, false), joined_cells(mesh, mesh.interfaces, false));
-  auto const expected = joined_cells(mesh, mesh.interfaces, true), periodic = joined_cells(mesh, found.interfaces, true);
+  auto const expected = joined_cells(mesh, mesh.interfaces, true),
+             periodic = joined_cells(mesh, found.interfaces, true);
   // Periodic directions that nobody declared may come on top: boxes have them.
   EXPECT_TRUE(std::includes(periodic.begin(), periodic.end(), expected.begin(), expected.end()));
 }
@@ -93,7 +97,8 @@ TEST_P(FindInterfaces, NodesMayBeApartByAShareOfTheSmallestEdge) {
   for (std::size_t z = 0; z < mesh.zones.size(); ++z)
     for (Index n = mesh.zones[z].first_node; n < mesh.zones[z].first_node + mesh.zones[z].size(); ++n)
       mesh.coordinates.set(n, mesh.coordinates[n] + 1e-7 * Vec3{double(z % 3), double(z % 2), 1});
-  EXPECT_EQ(joined_cells(mesh, find_interfaces(without_interfaces(mesh), {.tolerance = 0.05}).interfaces, false), plain);
+  EXPECT_EQ(joined_cells(mesh, find_interfaces(without_interfaces(mesh), {.tolerance = 0.05}).interfaces, false),
+            plain);
   if (mesh.zones.size() < 2) return;
   auto const strict = find_interfaces(without_interfaces(mesh), {.tolerance = 1e-9});
   EXPECT_LT(joined_cells(mesh, strict.interfaces, false).size(), plain.size());

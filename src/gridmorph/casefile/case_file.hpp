@@ -41,7 +41,7 @@ struct CaseFile {
   std::filesystem::path input;   ///< relative paths are already joined with the directory of the case file
   std::filesystem::path output;  ///< empty when the case file names none
   std::optional<std::filesystem::path> side_file;  ///< patches and interfaces of the mesh (side_file.hpp)
-  std::optional<Axis> axis;      ///< [mesh] axis as given; Motion::axis holds it too
+  std::optional<Axis> axis;                        ///< [mesh] axis as given; Motion::axis holds it too
   Motion motion;
   PlanOptions plan;
   GuardOptions guard;

@@ -6,7 +6,6 @@ namespace gridmorph {
 
 namespace {
 
-
 constexpr auto list = std::to_array<CaseKey>({
     // clang-format off
     {"", "default", R"("type" or "error")", "", R"("type")", R"(default = "error")",

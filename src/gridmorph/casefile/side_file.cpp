@@ -30,7 +30,8 @@ constexpr std::uintmax_t largest_side_file = 256u << 20;
 std::string read_text(std::filesystem::path const& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))
-    throw ConfigError(fmt::format("side file '{}' does not exist or is no file; check side_file in [mesh]", path.string()));
+    throw ConfigError(
+        fmt::format("side file '{}' does not exist or is no file; check side_file in [mesh]", path.string()));
   if (std::filesystem::file_size(path, error) > largest_side_file)
     throw ConfigError(fmt::format("side file '{}' is too large for one; is it a mesh?", path.string()));
   std::ifstream in(path, std::ios::binary);
@@ -116,8 +117,9 @@ class Reader {
     if (table.has(face_key) == table.has(range_key)) {
       (void)table.find(face_key);
       (void)table.find(range_key);
-      context_.problem(table.line(), fmt::format("needs one of {} = \"i_min\" (... \"k_max\") and {} = [[1, 1, 1], [9, 9, 1]]",
-                                                 face_key, range_key));
+      context_.problem(table.line(),
+                       fmt::format("needs one of {} = \"i_min\" (... \"k_max\") and {} = [[1, 1, 1], [9, 9, 1]]",
+                                   face_key, range_key));
       return std::nullopt;
     }
     if (auto const face = table.choice(face_key, {"i_min", "i_max", "j_min", "j_max", "k_min", "k_max"})) {
@@ -134,8 +136,8 @@ class Reader {
       b = index(value->as_array()[1]);
     }
     if (!a || !b || a->size() != b->size()) {
-      table.problem(range_key,
-                    fmt::format("expected two nodes [[i, j, k], [i, j, k]], counted from 1, found {}", casefile::describe_value(*value)));
+      table.problem(range_key, fmt::format("expected two nodes [[i, j, k], [i, j, k]], counted from 1, found {}",
+                                           casefile::describe_value(*value)));
       return std::nullopt;
     }
     for (std::size_t d = 0; d < a->size(); ++d) {
@@ -240,7 +242,8 @@ class Reader {
       std::vector<std::string> names;
       for (auto const& [word, value] : periodic_) names.push_back(word);
       if (found == periodic_.end())
-        table.problem("periodic", fmt::format("there is no [[periodic]] named '{}'{}", *name, suggestion(*name, names)));
+        table.problem("periodic",
+                      fmt::format("there is no [[periodic]] named '{}'{}", *name, suggestion(*name, names)));
       else
         out.periodic = found->second;
     }
@@ -252,8 +255,8 @@ class Reader {
     bool fits = o->axis[normal] == donor_normal;
     for (int a = 0; a < 3; ++a) fits = fits && own_range->extent(a) == donor_range->extent(o->axis[a]);
     if (!fits)
-      return table.problem("transform", fmt::format("does not carry the nodes {} onto the donor's {}", to_string(*own_range),
-                                                    to_string(*donor_range)));
+      return table.problem("transform", fmt::format("does not carry the nodes {} onto the donor's {}",
+                                                    to_string(*own_range), to_string(*donor_range)));
     // Through the face into the donor, whatever the sign says.
     o->sign[normal] = (own_range->begin[normal] == 0) == (donor_range->begin[donor_normal] == 0) ? -1 : 1;
     out.zone = *own;

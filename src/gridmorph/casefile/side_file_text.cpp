@@ -71,8 +71,9 @@ std::string periodic_text(Periodic const& p, std::string const& name) {
 std::string side_file_text(Mesh const& mesh, FoundInterfaces const& found, std::string const& existing) {
   std::string text = existing;
   if (existing.empty()) {
-    text = fmt::format("# Patches and interfaces of {}. Nodes are counted from 1; docs/formats.md describes the keys.\n",
-                       std::filesystem::path(mesh.source).filename().string());
+    text =
+        fmt::format("# Patches and interfaces of {}. Nodes are counted from 1; docs/formats.md describes the keys.\n",
+                    std::filesystem::path(mesh.source).filename().string());
     if (!mesh.file_variant.empty()) text += fmt::format("format = {}\n", quoted(mesh.file_variant));
   } else if (text.back() != '\n') {
     text += '\n';
@@ -88,7 +89,9 @@ std::string side_file_text(Mesh const& mesh, FoundInterfaces const& found, std::
     return periodics.size();
   };
   Mesh rest = mesh;  // shares the coordinates
-  auto const zone = [&](int z) { return mesh.file_variant.empty() ? quoted(mesh.zones[z].name) : std::to_string(z + 1); };
+  auto const zone = [&](int z) {
+    return mesh.file_variant.empty() ? quoted(mesh.zones[z].name) : std::to_string(z + 1);
+  };
   for (auto const& face : found.interfaces) {
     std::string const periodic =
         face.periodic ? fmt::format("periodic = \"found {}\"\n", number_of(*face.periodic)) : std::string();
@@ -106,8 +109,10 @@ std::string side_file_text(Mesh const& mesh, FoundInterfaces const& found, std::
   std::size_t const before = rest.patches.size();
   complete_patches(rest, connect(rest, everything, ignored), everything);
   if (rest.patches.size() > before)
-    text += "\n# What is left is the boundary: give each patch its name, family and kind (wall, inflow, outflow, symmetry,\n"
-            "# farfield, other).\n";
+    text +=
+        "\n# What is left is the boundary: give each patch its name, family and kind (wall, inflow, outflow, "
+        "symmetry,\n"
+        "# farfield, other).\n";
   for (std::size_t p = before; p < rest.patches.size(); ++p) {
     Patch const& patch = rest.patches[p];
     int axis = 0;

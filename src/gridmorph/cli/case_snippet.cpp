@@ -55,7 +55,8 @@ constexpr std::size_t n_roles = 6;
 bool is_named(BoundarySummary const& b, std::initializer_list<std::string_view> words) {
   auto const has = [&](std::string name) {
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return name.find(w) != std::string::npos; });
+    return std::any_of(words.begin(), words.end(),
+                       [&](std::string_view w) { return name.find(w) != std::string::npos; });
   };
   return has(b.selector) || std::any_of(b.names.begin(), b.names.end(), has);
 }
@@ -64,7 +65,8 @@ bool is_named(BoundarySummary const& b, std::initializer_list<std::string_view> 
 Role role_of(BoundarySummary const& b, MeshSummary const& s) {
   auto const is = [&](PatchKind kind) { return std::find(b.kinds.begin(), b.kinds.end(), kind) != b.kinds.end(); };
   bool const round = s.axis && looks_like(b, "surface of revolution");
-  bool const blade = is_named(b, {"blade", "vane", "wing", "airfoil", "aerofoil", "stator", "rotor", "fin", "flap", "slat"});
+  bool const blade =
+      is_named(b, {"blade", "vane", "wing", "airfoil", "aerofoil", "stator", "rotor", "fin", "flap", "slat"});
   bool const end_wall = is_named(b, {"hub", "shroud", "casing", "case", "endwall", "end_wall", "end-wall"});
   if (is(PatchKind::wall)) {
     if (end_wall) return round ? Role::end_wall : Role::still;

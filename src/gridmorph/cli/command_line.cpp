@@ -30,7 +30,8 @@ CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
   auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
   inspect->add_option("mesh", out.input, "Mesh (CGNS or PLOT3D)")->required();
   auto* json = inspect->add_flag("--json", out.json, "Print JSON");
-  inspect->add_option("--side-file", out.side_file, "Patches and interfaces (TOML), instead of the file beside the mesh");
+  inspect->add_option("--side-file", out.side_file,
+                      "Patches and interfaces (TOML), instead of the file beside the mesh");
   inspect->add_flag("--match", out.match, "Look for interfaces and periodicity where nothing is declared");
   inspect->add_option("--match-tolerance", out.match_tolerance, "Distance of points that match, of the smallest edge")
       ->check(CLI::Range(1e-9, 0.25));

@@ -35,8 +35,9 @@ void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
   FoundInterfaces const found = find_interfaces(mesh, {.tolerance = options.match_tolerance});
   int const periodic = int(std::count_if(found.interfaces.begin(), found.interfaces.end(),
                                          [](auto const& f) { return f.periodic.has_value(); }));
-  mesh.notes.push_back(fmt::format("{} interfaces found by matching points, {} of them periodic; largest distance {:.3g}",
-                                   found.interfaces.size(), periodic, found.mismatch));
+  mesh.notes.push_back(
+      fmt::format("{} interfaces found by matching points, {} of them periodic; largest distance {:.3g}",
+                  found.interfaces.size(), periodic, found.mismatch));
   mesh.notes.insert(mesh.notes.end(), found.notes.begin(), found.notes.end());
   if (options.write_side_file) {
     check_output(*options.write_side_file, "side file", options.input);

@@ -57,8 +57,9 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   out.mesh = load_mesh(case_file.input, case_file.side_file);
   auto const& wanted = case_file.output_options;
   if (!out.mesh.file_variant.empty() && (wanted.displacement || wanted.quality))
-    throw ConfigError(case_file.source.string() +
-                      ": [output] displacement and quality: PLOT3D files have no place for solutions; set both to false");
+    throw ConfigError(
+        case_file.source.string() +
+        ": [output] displacement and quality: PLOT3D files have no place for solutions; set both to false");
   out.times.push_back({"read", watch.lap(), true});
   Engine const engine(out.mesh, case_file, terminal);
   out.morphed = engine.morph(terminal);

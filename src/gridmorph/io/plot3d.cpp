@@ -259,8 +259,7 @@ void write(std::string const& input, std::string const& output, Mesh const& mesh
   bool same = zones.zones.size() == mesh.zones.size();
   for (std::size_t z = 0; same && z < mesh.zones.size(); ++z)
     same = zones.zones[z].mesh_extent() == mesh.zones[z].extent;
-  if (!same)
-    throw IoError(input + ": does not hold the zones of the mesh; give the file that the mesh was read from");
+  if (!same) throw IoError(input + ": does not hold the zones of the mesh; give the file that the mesh was read from");
 
   io::OutputFile target(output);
   if (file.formatted()) {

@@ -77,9 +77,9 @@ std::optional<std::vector<ZoneData>> zones_of(std::vector<std::int64_t> const& s
 struct Candidate {
   FileLayout layout;
   bool fits = false;
-  int agreement = 0;  ///< how much of the file agrees before it does not
+  int agreement = 0;       ///< how much of the file agrees before it does not
   std::uint64_t miss = 0;  ///< bytes too many or too few
-  std::string why;    ///< not
+  std::string why;         ///< not
 };
 
 std::string extents_text(std::vector<ZoneData> const& zones) {
@@ -181,8 +181,8 @@ void try_unformatted(Bytes& file, int marker, bool big_endian, std::vector<Candi
     std::uint64_t const second = records.size(1), n = std::uint64_t(count->front());
     v.dimensions = second == 8 * n ? 2 : 3;
     if (second != 4 * n * std::uint64_t(v.dimensions))
-      return give_up(1, "the record with the extents of " + std::to_string(n) + " zones has " + std::to_string(second) +
-                            " bytes");
+      return give_up(
+          1, "the record with the extents of " + std::to_string(n) + " zones has " + std::to_string(second) + " bytes");
     auto const all = integers(file, records.all[1], second / 4, big_endian);
     if (!all) return give_up(1, "the extents of its zones cannot be read");
     sizes = *all;
@@ -265,8 +265,8 @@ void try_binary(Bytes& file, bool big_endian, std::vector<Candidate>& out) {
           c.agreement = 1;
           std::uint64_t const wanted = at + nodes * per_node;
           c.miss = wanted > file.size() ? wanted - file.size() : file.size() - wanted;
-          c.why = "it should have " + std::to_string(wanted) + " bytes (" + extents_text(*zones) +
-                  "), but it has " + std::to_string(file.size());
+          c.why = "it should have " + std::to_string(wanted) + " bytes (" + extents_text(*zones) + "), but it has " +
+                  std::to_string(file.size());
           std::uint64_t begin = at;
           for (auto& zone : c.layout.zones) {
             std::uint64_t const count = std::uint64_t(zone.nodes()) * per_node;
@@ -294,7 +294,8 @@ bool looks_sane(Bytes& file, FileLayout const& layout) {
   auto const& v = layout.variant;
   for (auto const& zone : layout.zones) {
     std::uint64_t const at = zone.segments.front().at, nodes = std::uint64_t(zone.nodes());
-    std::uint64_t const count = std::uint64_t(std::min(zone.nodes(), sample)), width = std::uint64_t(v.coordinate_bytes());
+    std::uint64_t const count = std::uint64_t(std::min(zone.nodes(), sample)),
+                        width = std::uint64_t(v.coordinate_bytes());
     std::vector<unsigned char> bytes(count * width);
     for (int c = 0; c < v.dimensions; ++c) {
       if (!file.read(at + std::uint64_t(c) * nodes * width, bytes.data(), bytes.size())) return false;
@@ -305,7 +306,8 @@ bool looks_sane(Bytes& file, FileLayout const& layout) {
     }
     if (!v.iblank) continue;
     auto const marks = integers(file, at + nodes * width * std::uint64_t(v.dimensions), count, v.big_endian);
-    if (!marks || std::any_of(marks->begin(), marks->end(), [](std::int64_t m) { return m < -largest_mark || m > largest_mark; }))
+    if (!marks ||
+        std::any_of(marks->begin(), marks->end(), [](std::int64_t m) { return m < -largest_mark || m > largest_mark; }))
       return false;
   }
   return true;
@@ -340,12 +342,13 @@ FileLayout detect_binary(std::string const& path, Stated const& stated) {
     }
   }
   if (good.size() > 1)
-    if (auto sane = good; std::erase_if(sane, [&](Candidate const& c) { return !looks_sane(file, c.layout); }) > 0 &&
-                          !sane.empty())
+    if (auto sane = good;
+        std::erase_if(sane, [&](Candidate const& c) { return !looks_sane(file, c.layout); }) > 0 && !sane.empty())
       good = std::move(sane);
   if (good.size() == 1) return std::move(good.front().layout);
   if (good.size() > 1) {
-    std::string text = path + ": could be several kinds of PLOT3D files; state which with format = \"...\" in its side file:";
+    std::string text =
+        path + ": could be several kinds of PLOT3D files; state which with format = \"...\" in its side file:";
     for (auto const& c : good) text += "\n  " + to_string(c.layout.variant) + ": " + extents_text(c.layout.zones);
     throw IoError(text);
   }
@@ -356,8 +359,9 @@ FileLayout detect_binary(std::string const& path, Stated const& stated) {
     throw IoError(path + ": begins as a PLOT3D file (" + to_string(nearest->layout.variant) + "), but " + nearest->why +
                   "; it is cut short or damaged: transfer or write it again");
   throw IoError(path + ": is not a CGNS file (neither HDF5 nor ADF by its first bytes), and " +
-                (nearest == tried.end() ? "no variant of PLOT3D fits its first numbers"
-                                        : "as PLOT3D file (" + to_string(nearest->layout.variant) + ") " + nearest->why) +
+                (nearest == tried.end()
+                     ? "no variant of PLOT3D fits its first numbers"
+                     : "as PLOT3D file (" + to_string(nearest->layout.variant) + ") " + nearest->why) +
                 "; name a mesh file, or state its format in its side file");
 }
 

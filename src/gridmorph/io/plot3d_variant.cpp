@@ -60,9 +60,10 @@ Stated parse_variant(std::string_view words, std::string const& where) {
     else if (word == "iblank" || word == "no-iblank")
       out.iblank = word == "iblank";
     else
-      throw IoError(where + ": the word '" + word +
-                    "' says nothing about a PLOT3D file; known are formatted, unformatted, binary, little-endian, "
-                    "big-endian, single, double, multi-block, single-block, 2-D, 3-D, iblank, no-iblank, 8-byte-markers");
+      throw IoError(
+          where + ": the word '" + word +
+          "' says nothing about a PLOT3D file; known are formatted, unformatted, binary, little-endian, "
+          "big-endian, single, double, multi-block, single-block, 2-D, 3-D, iblank, no-iblank, 8-byte-markers");
   }
   return out;
 }

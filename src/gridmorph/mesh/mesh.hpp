@@ -112,7 +112,7 @@ struct Mesh {
   std::vector<Interface1to1> interfaces;  ///< of all zones, in file order
   std::vector<std::string> families;      ///< Family_t names
   Coordinates coordinates;
-  std::string source;              ///< file name or what made it, for messages
+  std::string source;  ///< file name or what made it, for messages
   /// How the file is stored where the file itself does not say so (PLOT3D: "unformatted, little-endian, ..."), for the writer;
   /// empty otherwise.
   std::string file_variant;

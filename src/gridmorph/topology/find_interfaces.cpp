@@ -36,7 +36,8 @@ Placed place(SurfaceCells const& cells, CellPair const& pair) {
   ZoneFace const& other = cells.faces()[out.other_face];
   out.a = int((pair.cell - own.first) % own.nu);
   out.b = int((pair.cell - own.first) / own.nu);
-  std::array<int, 2> const there{int((pair.other - other.first) % other.nu), int((pair.other - other.first) / other.nu)};
+  std::array<int, 2> const there{int((pair.other - other.first) % other.nu),
+                                 int((pair.other - other.first) / other.nu)};
   for (int x = 0; x < 2; ++x) {
     int const base = at[pair.turn.image(0)][x];
     int const along_u = at[pair.turn.image(1)][x] - base, along_v = at[pair.turn.image(3)][x] - base;
@@ -173,7 +174,8 @@ FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options) {
   for (auto const& match : matches)
     if (!match.rotation) shifted = std::max(shifted, match.pairs.size());
   auto const counts = [&](auto const& match) { return few_of_many * match.pairs.size() >= shifted; };
-  bool const turns = std::any_of(matches.begin(), matches.end(), [&](auto const& m) { return m.rotation && counts(m); });
+  bool const turns =
+      std::any_of(matches.begin(), matches.end(), [&](auto const& m) { return m.rotation && counts(m); });
   for (auto const& match : matches) {
     std::string what = std::to_string(match.pairs.size()) + " pairs of face cells match by ";
     if (match.rotation)

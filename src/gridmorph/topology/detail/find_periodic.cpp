@@ -46,7 +46,8 @@ std::vector<Seed> find_seeds(SurfaceCells const& cells, std::vector<std::string>
                     std::to_string(most_seeds) + " of them");
     seeds.resize(most_seeds);
   }
-  std::stable_sort(seeds.begin(), seeds.end(), [](Seed const& a, Seed const& b) { return a.shape.edge < b.shape.edge; });
+  std::stable_sort(seeds.begin(), seeds.end(),
+                   [](Seed const& a, Seed const& b) { return a.shape.edge < b.shape.edge; });
   return seeds;
 }
 
@@ -110,8 +111,7 @@ std::optional<RigidTransform> translation_between(CellShape const& p, CellShape 
     Turn const turn{n};
     Vec3 const shift = q.centre - p.centre;
     bool good = norm(shift) > 10 * tolerance;
-    for (int c = 0; c < 4 && good; ++c)
-      good = distance(p.corner[c] + shift, q.corner[turn.image(c)]) <= tolerance;
+    for (int c = 0; c < 4 && good; ++c) good = distance(p.corner[c] + shift, q.corner[turn.image(c)]) <= tolerance;
     if (!good) continue;
     RigidTransform const t{Mat3{}, shift};
     if (on_opposite_sides(transformed(p, t), q)) return t;
@@ -124,8 +124,8 @@ bool congruent(CellShape const& p, CellShape const& q, Turn turn, double relativ
   double const tolerance = 2 * corner_tolerance(p, q, relative);
   for (int c = 0; c < 4; ++c)
     for (int d = c + 1; d < 4; ++d)
-      if (std::fabs(distance(p.corner[c], p.corner[d]) -
-                    distance(q.corner[turn.image(c)], q.corner[turn.image(d)])) > tolerance)
+      if (std::fabs(distance(p.corner[c], p.corner[d]) - distance(q.corner[turn.image(c)], q.corner[turn.image(d)])) >
+          tolerance)
         return false;
   return true;
 }
@@ -186,8 +186,9 @@ class Grower {
   }
 
  private:
-  [[nodiscard]] bool seed_is_low(int x) const { return x == 0 ? grown_[0][1] > 0 || grown_[0][0] == 0
-                                                              : grown_[1][1] > 0 || grown_[1][0] == 0; }
+  [[nodiscard]] bool seed_is_low(int x) const {
+    return x == 0 ? grown_[0][1] > 0 || grown_[0][0] == 0 : grown_[1][1] > 0 || grown_[1][0] == 0;
+  }
   bool extend(int axis, int side) {
     int const at = side == 0 ? low_[axis] - 1 : high_[axis];
     int const across = 1 - axis;
