@@ -21,7 +21,7 @@
 // unknown on a side by the same Boolean sum from its borders. With all residuals zero this is the plain sweep.
 //
 // Cost per node: one or two lookups in a side table where opposite sides are known, eight at most; each reads two
-// parameters and two residuals, from cache.
+// parameters and two residuals, from cache. Volumes take whole rows at once (row_correction.hpp).
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>

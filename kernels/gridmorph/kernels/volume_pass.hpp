@@ -9,7 +9,7 @@
 #pragma once
 
 #include <gridmorph/kernels/node_copy.hpp>
-#include <gridmorph/kernels/side_correction.hpp>
+#include <gridmorph/kernels/row_correction.hpp>
 #include <gridmorph/kernels/tile.hpp>
 
 namespace gridmorph::kernels {
@@ -58,9 +58,7 @@ struct VolumePass {
   int n_fields = 1;
 
   static constexpr int width = Shape::volume_i;
-  struct Row {
-    double x[width], y[width], z[width];
-  };
+  using Row = VectorRow<width>;
 
   static Index items(VolumeBox const& box) {
     return tiles(box.n[0], Shape::volume_i) * tiles(box.n[1], Shape::volume_j) * tiles(box.n[2], Shape::volume_k);
@@ -178,13 +176,10 @@ struct VolumePass {
                                              int n, double const* here, Row& v) const {
     SideTable<MemorySpace> table = sides;
     table.c = residuals[f];
-    auto at = [&](std::int32_t const* p, int w) { return p[0] + (i + w) * p[1] + j * p[2] + k * p[3]; };
-    for (int w = 0; w < n; ++w) {
-      Vec3 const c = table.correction(chain, at(term.s, w), at(term.a, w), at(term.b, w), here[w]);
-      v.x[w] += c.x;
-      v.y[w] += c.y;
-      v.z[w] += c.z;
-    }
+    auto at = [&](std::int32_t const* p) { return p[0] + i * p[1] + j * p[2] + k * p[3]; };
+    RowCorrection<MemorySpace, width>{table,     chain,      at(term.s), term.s[1], at(term.a),
+                                      term.a[1], at(term.b), term.b[1],  here,      n}
+        .add_to(v);
   }
 
   KOKKOS_INLINE_FUNCTION static void turn(Mat3 const& r, int n, Row& v) {
