@@ -70,7 +70,10 @@ std::map<std::string, CaseKeyUse> everything_asked() {
 TEST(CaseKeys, EveryKeyThatTheReaderKnowsIsListed) {
   std::set<std::pair<std::string, std::string>> reported;
   for (auto const& [rule, keys] : everything_asked())
-    for (auto const& [table, key] : keys) {
+    for (auto const& [asked_table, key] : keys) {
+      // Tables in a step are those of the rule.
+      std::string table = asked_table;
+      if (auto const at = table.find(" steps "); at != std::string::npos) table.erase(at, 6);
       bool const listed = std::any_of(case_keys().begin(), case_keys().end(), [&](CaseKey const& k) {
         std::string const of = rule_of_table(k.table);
         return as_asked(k.table) == table && (k.key == key || k.key == "<name>") && (of.empty() || of == rule);
