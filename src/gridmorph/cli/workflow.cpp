@@ -1,4 +1,5 @@
 #include <gridmorph/casefile/mapping_report.hpp>
+#include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
@@ -20,13 +21,14 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-Mesh read_structured(std::filesystem::path const& path) {
+Mesh read_structured(CaseFile const& case_file) {
+  auto const& path = case_file.input;
   if (mesh_kind(path.string()) == MeshKind::unstructured)
     throw MeshError(
         path.string() +
         ": is an unstructured mesh; only structured ones can be morphed yet, unstructured ones can be inspected "
         "and measured (gridmorph inspect, gridmorph quality)");
-  return read_mesh(path.string());
+  return load_mesh(path, case_file.side_file);
 }
 
 }  // namespace
@@ -85,7 +87,12 @@ QualityReport QualityMeter::morphed(Coordinates const& morphed) const {
 
 MorphResult read_baseline(CaseFile const& case_file) {
   MorphResult out;
-  out.mesh = read_structured(case_file.input);
+  out.mesh = read_structured(case_file);
+  auto const& wanted = case_file.output_options;
+  if (!out.mesh.file_variant.empty() && (wanted.displacement || wanted.quality))
+    throw ConfigError(
+        case_file.source.string() +
+        ": [output] displacement and quality: PLOT3D files have no place for solutions; set both to false");
   return out;
 }
 
@@ -113,7 +120,7 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
 
 std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
   terminal.progress("reading " + case_file.input.string());
-  Mesh mesh = read_structured(case_file.input);
+  Mesh mesh = read_structured(case_file);
   Engine const engine(mesh, case_file, terminal);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";
