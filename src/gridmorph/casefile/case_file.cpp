@@ -128,6 +128,16 @@ toml::value parse_toml(std::string const& text, std::string const& file) {
   }
 }
 
+}  // namespace
+
+namespace casefile {
+
+toml::value parse_toml_text(std::string const& text, std::string const& file) { return parse_toml(text, file); }
+
+}  // namespace casefile
+
+namespace {
+
 void read_mesh(TableReader& root, CaseFile& out) {
   root.require("mesh", "[mesh] with input = \"mesh.cgns\"");
   auto mesh = root.table("mesh");
@@ -138,6 +148,7 @@ void read_mesh(TableReader& root, CaseFile& out) {
   if (auto const output = mesh->string("output")) out.output = (directory / *output).lexically_normal();
   if (!out.output.empty() && out.output == out.input)
     mesh->problem("output", "is the input; give another file name, the baseline is never overwritten");
+  if (auto const side = mesh->string("side_file")) out.side_file = (directory / *side).lexically_normal();
   out.axis = casefile::read_axis(*mesh, "axis");
   if (out.axis) out.motion.axis = *out.axis;
   if (auto const tolerance = mesh->number("matching_tolerance")) {
@@ -284,8 +295,8 @@ void read_results(TableReader& root, CaseFile& out) {
 
 }  // namespace
 
-CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path) {
-  Context context{path.string(), path.parent_path(), {}};
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked) {
+  Context context{path.string(), path.parent_path(), {}, asked};
   toml::value const document = parse_toml(text, context.file);
   CaseFile out;
   out.source = path;
