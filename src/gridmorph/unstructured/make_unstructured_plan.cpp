@@ -146,6 +146,7 @@ class Planner {
         std::count_if(columns_.height.begin(), columns_.height.end(), [](double h) { return h > 0; });
     for (double const h : columns_.height) out_.report.layer_height = std::max(out_.report.layer_height, h);
     smooth_heights();
+    cut_columns();
     plan_columns();
   }
 
@@ -172,6 +173,19 @@ class Planner {
       }
       std::swap(height_, next);
     }
+  }
+
+  /// Columns end at the smooth height; what is above belongs to the layers.
+  void cut_columns() {
+    Columns cut;
+    cut.height = columns_.height;
+    for (std::size_t k = 0; k < columns_.node.size(); ++k) {
+      if (columns_.above_wall[k] > height_[std::size_t(columns_.root[k])] * (1 + 1e-9)) continue;
+      cut.node.push_back(columns_.node[k]);
+      cut.root.push_back(columns_.root[k]);
+      cut.above_wall.push_back(columns_.above_wall[k]);
+    }
+    columns_ = std::move(cut);
   }
 
   void plan_columns() {

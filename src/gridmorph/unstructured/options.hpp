@@ -25,7 +25,7 @@ struct UnstructuredOptions {
   double offset = 0;  ///< of the wrap from the moving walls [length]; 0: suggest_offset()
   double motion =
       -1;  ///< size of the displacements to come [length], for suggest_offset(); negative: what the rules give now
-  int resolution = 10;    ///< cells of the wrap's lattice along the longest extent of the walls
+  int resolution = 4;     ///< cells of the wrap's lattice along the longest extent of the walls
   int cells = 4;          ///< of the background mesh along each cell of the wrap's lattice
   Law law = Law::linear;  ///< along the grid lines of the background mesh
 };

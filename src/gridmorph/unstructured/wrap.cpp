@@ -142,7 +142,7 @@ Wrap make_wrap(UnstructuredMesh const& mesh, std::span<NumberLists const> walls,
 }
 
 double suggest_offset(OffsetHints const& hints) {
-  double offset = std::max({2 * hints.layer_height, 3 * hints.wall_edge, hints.motion / 4, hints.body / 25});
+  double offset = std::max({2 * hints.layer_height, 2 * hints.wall_edge, hints.motion / 8, hints.body / 25});
   if (hints.gap > 0) offset = std::min(offset, hints.gap / 3);
   return std::max(offset, hints.layer_height);
 }

@@ -75,7 +75,7 @@ struct OffsetHints {
 
 /// An offset from the size of things,
 ///
-///     offset = max(layer_height, min(max(2 layer_height, 3 wall_edge, motion / 4, body / 25), gap / 3)),
+///     offset = max(layer_height, min(max(2 layer_height, 2 wall_edge, motion / 8, body / 25), gap / 3)),
 ///
 /// a gap of 0 being no limit: the layers move with their wall, a few elements outside them damp details of its motion, and two
 /// thirds of the way to other boundaries are left to take the motion up.

@@ -1,0 +1,252 @@
+// Whole morphs of unstructured meshes: what must hold whatever the mesh, on made meshes of all element types.
+#include "../support/unstructured_meshes.hpp"
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/rigid_transform.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/unstructured/unstructured_morpher.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace gridmorph {
+namespace {
+
+using Exec = Kokkos::DefaultExecutionSpace;
+using Host = Kokkos::DefaultHostExecutionSpace;
+
+struct Morphed {
+  PreparedUnstructured prepared;
+  std::vector<Vec3> boundary;
+  Coordinates x;
+};
+
+/// A mesh with what follows from it.
+struct Case {
+  UnstructuredMesh mesh;
+  UnstructuredTopology topology;
+  BoundaryClaims claims;
+
+  explicit Case(UnstructuredMesh m)
+      : mesh(std::move(m)), topology(make_topology(mesh)), claims(claim_boundary(mesh, topology)) {}
+
+  [[nodiscard]] Morphed morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
+    Morphed out{prepare(mesh, topology, claims, motion, options), {}, Coordinates(mesh.n_nodes())};
+    out.boundary = out.prepared.boundary_displacement(mesh);
+    Host const exec;
+    UnstructuredMorpher<Host> const morpher(exec, out.prepared.plan);
+    Kokkos::View<Vec3*, Kokkos::HostSpace> given("boundary", out.boundary.size());
+    std::copy(out.boundary.begin(), out.boundary.end(), given.data());
+    Coordinates const& c = mesh.coordinates;
+    morpher.apply(exec, given, {c.x.data(), c.y.data(), c.z.data()}, {out.x.x.data(), out.x.y.data(), out.x.z.data()});
+    exec.fence();
+    return out;
+  }
+
+  [[nodiscard]] Index inverted(Coordinates const& x) const {
+    UnstructuredQualityInput<Kokkos::HostSpace> input;
+    input.baseline = views(mesh.coordinates);
+    input.coordinates = views(x);
+    auto const report = measure_quality(Host(), mesh, topology, claims, input);
+    return report.near_field.newly_inverted + report.far_field.newly_inverted;
+  }
+};
+
+/// A box of cells with a box-shaped body cut out: n cells along each side of the domain, the body takes the middle third. The body's
+/// faces are the wall "body", the six sides of the domain "i_min" ... "k_max".
+UnstructuredMesh box_with_body(int n) {
+  UnstructuredMesh const full = test::to_hexahedra(test::unit_box({n, n, n}));
+  UnstructuredMesh mesh;
+  mesh.source = "box with a body";
+  auto const in_body = [&](Vec3 const& p) {
+    double const low = n / 3, high = n - n / 3;
+    return p.x > low && p.x < high && p.y > low && p.y < high && p.z > low && p.z < high;
+  };
+  std::vector<Index> kept;
+  std::vector<Number> number(std::size_t(full.n_nodes()), -1);
+  std::vector<Vec3> points;
+  for (Index e = 0; e < full.n_elements(); ++e) {
+    Vec3 centre;
+    for (Number const c : full.elements.corners(e)) centre += 0.125 * full.coordinates[c];
+    if (in_body(centre)) continue;
+    kept.push_back(e);
+    for (Number const c : full.elements.corners(e))
+      if (number[std::size_t(c)] < 0) {
+        number[std::size_t(c)] = Number(points.size());
+        points.push_back(full.coordinates[c]);
+      }
+  }
+  mesh.add_zone("zone", Index(points.size()));
+  mesh.coordinates = Coordinates(Index(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) mesh.coordinates.set(Index(k), points[k]);
+  for (Index const e : kept) {
+    std::vector<Number> nodes;
+    for (Number const c : full.elements.corners(e)) nodes.push_back(number[std::size_t(c)]);
+    mesh.add_element(full.elements.type[std::size_t(e)], nodes);
+  }
+  auto const topology = make_topology(mesh);
+  std::array<std::string, 7> const names{"body", "i_min", "i_max", "j_min", "j_max", "k_min", "k_max"};
+  for (auto const& name : names) {
+    UnstructuredPatch patch;
+    patch.name = name;
+    patch.kind = name == "body" ? PatchKind::wall : PatchKind::farfield;
+    patch.bc_type = name == "body" ? "BCWall" : "BCFarfield";
+    patch.zone = 0;
+    mesh.patches.push_back(patch);
+  }
+  for (Index f = 0; f < topology.boundary.size(); ++f) {
+    auto const face = topology.boundary.nodes[f];
+    Vec3 centre;
+    for (Number const c : face) centre += 0.25 * mesh.coordinates[c];
+    int const side = centre.x == 0 ? 1 : centre.x == n ? 2 : centre.y == 0 ? 3 : centre.y == n ? 4 : centre.z == 0 ? 5 : centre.z == n ? 6 : 0;
+    mesh.patches[std::size_t(side)].faces.add(face);
+  }
+  return mesh;
+}
+
+Motion body_moves(Rule rule, std::vector<MotionRule> more = {}) {
+  Motion motion;
+  motion.rules.push_back({{"body"}, std::move(rule), 0, "test"});
+  for (auto& rule_of : more) motion.rules.push_back(std::move(rule_of));
+  return motion;
+}
+
+Rule translation(Vec3 const& t) { return RigidRule{{}, t}; }
+Rule rotation(Vec3 const& centre, Vec3 const& axis, double angle) {
+  RigidTransform const r = rotation_about(centre, axis, angle);
+  return RigidRule{r.rotation, r.translation};
+}
+
+TEST(UnstructuredMorph, WithoutMotionNothingChangesBitForBit) {
+  Case const c(box_with_body(12));
+  Morphed const m = c.morph(body_moves(translation({0, 0, 0})));
+  for (Index n = 0; n < c.mesh.n_nodes(); ++n) {
+    Vec3 const a = c.mesh.coordinates[n], b = m.x[n];
+    ASSERT_TRUE(a.x == b.x && a.y == b.y && a.z == b.z) << n;
+  }
+}
+
+TEST(UnstructuredMorph, AMotionOfAllBoundariesMovesAllNodesAlike) {
+  Case const c(box_with_body(12));
+  Vec3 const t{0.3, -0.2, 0.1};
+  Morphed const m = c.morph(body_moves(translation(t), {{{"?_min", "?_max"}, translation(t), 0, "all"}}));
+  for (Index n = 0; n < c.mesh.n_nodes(); ++n)
+    ASSERT_NEAR(distance(m.x[n], c.mesh.coordinates[n] + t), 0, 1e-13 * c.mesh.size()) << n;
+}
+
+TEST(UnstructuredMorph, PrescribedDisplacementsHoldExactlyAndTheRestIsSound) {
+  for (int const n : {9, 12, 18}) {
+    Case const c(box_with_body(n));
+    double const third = n / 3;
+    for (Rule const& rule : {translation({0.5 * third, 0, 0}), translation({0.3 * third, 0.2 * third, -0.3 * third}),
+                             rotation({n / 2., n / 2., n / 2.}, {1, 2, 3}, 0.5)}) {
+      Morphed const m = c.morph(body_moves(rule));
+      auto const& plan = m.prepared.plan;
+      for (std::size_t k = 0; k < plan.known.size(); ++k) {
+        Vec3 const x = c.mesh.coordinates[plan.known[k]], want = x + m.boundary[k], is = m.x[plan.known[k]];
+        ASSERT_TRUE(is.x == want.x && is.y == want.y && is.z == want.z) << describe_node(c.mesh, plan.known[k]);
+      }
+      EXPECT_EQ(c.inverted(m.x), 0) << n;
+    }
+  }
+}
+
+TEST(UnstructuredMorph, NodesThatSlipStayOnTheirPlane) {
+  Case const c(box_with_body(12));
+  Morphed const m = c.morph(body_moves(translation({1, 0.5, 1}), {{{"k_min"}, SlipRule{}, 0, "slip"}}));
+  Index moved = 0;
+  for (Number const n : m.prepared.boundary.nodes_of_patch[5]) {
+    EXPECT_NEAR(m.x[n].z, 0, 1e-12);
+    moved += distance(m.x[n], c.mesh.coordinates[n]) > 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(moved, 20);
+  EXPECT_EQ(c.inverted(m.x), 0);
+}
+
+TEST(UnstructuredMorph, AroundARigidWallTheNearFieldIsTheSameRigidMotion) {
+  Case const c(box_with_body(18));
+  RigidTransform const r = rotation_about({9, 9, 9}, {0, 0, 1}, 0.3);
+  UnstructuredOptions options;
+  options.offset = 1.2;
+  Morphed const m = c.morph(body_moves(RigidRule{r.rotation, r.translation}), options);
+  // One element off the body, where other boundaries are five times as far as the wall.
+  Index seen = 0;
+  for (Number const n : m.prepared.plan.near.rows.target) {
+    Vec3 const x = c.mesh.coordinates[n];
+    double const d = std::max({std::abs(x.x - 9), std::abs(x.y - 9), std::abs(x.z - 9)}) - 3;
+    if (d > 1.01 || !m.prepared.report.wrap->contains(x)) continue;
+    ++seen;
+    EXPECT_LT(distance(m.x[n], r(x)), 0.35 * distance(x, r(x)) + 1e-9) << n;
+  }
+  EXPECT_GT(seen, 100);
+}
+
+TEST(UnstructuredMorph, RulesThatNeedABladeAreRefused) {
+  Case const c(box_with_body(9));
+  EXPECT_THROW((void)c.morph(body_moves(SectionsRule{})), MotionError);
+  EXPECT_THROW((void)c.morph(body_moves(FixedRule{})), MotionError);  // no wall moves
+}
+
+TEST(UnstructuredMorph, RulesThatDisagreeOnCommonNodesAreNamed) {
+  UnstructuredMesh const mesh = test::to_prisms_and_tetrahedra(test::unit_box({6, 6, 6}), 2);
+  Case const c(mesh);
+  Motion motion;
+  motion.rules.push_back({{"k_min"}, translation({0, 0, 0.5}), 0, "here.toml:4"});
+  try {
+    (void)c.morph(motion);
+    FAIL() << "accepted";
+  } catch (MotionError const& e) {
+    EXPECT_NE(std::string(e.what()).find("here.toml:4"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("common nodes"), std::string::npos) << e.what();
+  }
+}
+
+TEST(UnstructuredMorph, ColumnsOfPrismsKeepTheirHeight) {
+  // The wall k_min bulges; its prisms go with it, the other sides slide.
+  UnstructuredMesh mesh = test::to_prisms_and_tetrahedra(test::unit_box({10, 10, 10}), 3);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) mesh.coordinates.z(n) = std::pow(mesh.coordinates.z(n) / 10, 2) * 10;
+  Case const c(mesh);
+  Motion motion;
+  motion.rules.push_back({{"k_min"},
+                          FunctionRule{"bump",
+                                       [](std::span<Vec3 const> x, std::span<Vec3> u) {
+                                         for (std::size_t n = 0; n < x.size(); ++n) {
+                                           double const s = std::sin(x[n].x * std::numbers::pi / 10) *
+                                                            std::sin(x[n].y * std::numbers::pi / 10);
+                                           u[n] = {0, 0, s * s};
+                                         }
+                                       }},
+                          0, "bump"});
+  UnstructuredOptions options;
+  options.boundary_layers.push_back({.walls = {"k_min"}, .extent = BoundaryLayer::Extent::layers, .layers = 3});
+  Morphed const m = c.morph(motion, options);
+  EXPECT_EQ(c.inverted(m.x), 0);
+  auto const& columns = m.prepared.plan.columns;
+  ASSERT_GT(columns.node.size(), 100u);
+  for (std::size_t k = 0; k < columns.node.size(); ++k) {
+    Number const wall = m.prepared.plan.driving[std::size_t(columns.root[k])];
+    // The rim of the wall is where the fixed sides begin.
+    Vec3 const w = c.mesh.coordinates[wall];
+    if (w.x < 1 || w.x > 9 || w.y < 1 || w.y > 9) continue;
+    double const before = distance(c.mesh.coordinates[columns.node[k]], w), after = distance(m.x[columns.node[k]], m.x[wall]);
+    EXPECT_NEAR(after, before, 1e-9 * before);
+  }
+}
+
+TEST(UnstructuredMorph, StructuredMeshesMoveAlikeByBothWays) {
+  // The same body, the same motion: through blocks and through elements. Both keep walls and outer boundary; between them the
+  // fields differ in kind, but not in size.
+  Case const c(box_with_body(12));
+  Morphed const m = c.morph(body_moves(translation({1, 0, 0})));
+  for (Index n = 0; n < c.mesh.n_nodes(); ++n) {
+    Vec3 const u = m.x[n] - c.mesh.coordinates[n];
+    EXPECT_GE(u.x, -0.02) << n;
+    EXPECT_LE(u.x, 1.02) << n;
+    EXPECT_LT(std::abs(u.y) + std::abs(u.z), 0.02) << n;
+  }
+}
+
+}  // namespace
+}  // namespace gridmorph
