@@ -127,7 +127,7 @@ TEST(CaseFileErrors, MeshSettings) {
 TEST(CaseFileErrors, RulesOfLaterTimesAreKnownButNotAvailable) {
   EXPECT_TRUE(
       reported(rule_problems("rule = \"target\"\nanything = 3"), "case.toml:7: ", {"\"target\"", "not available yet"}));
-  EXPECT_TRUE(reported(problems_of(head + rule + "[boundary_layer]\nmode = \"rotate\"\n"),
+  EXPECT_TRUE(reported(problems_of(head + rule + "[boundary_layer]\nmode = \"rotated\"\n"),
                        "case.toml:7: ", {"mode", "translate"}));
 }
 

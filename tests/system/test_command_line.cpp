@@ -27,9 +27,13 @@ TEST_F(CommandLineTest, WrongCommandLinesAreBadInput) {
   expect_bad_input(gridmorph("inspect passage.cgns --jsn"), {"--jsn"});
   expect_bad_input(gridmorph("--threads 0 inspect passage.cgns"), {"threads"});
   expect_bad_input(gridmorph("--threads many inspect passage.cgns"), {"many"});
-  expect_bad_input(gridmorph("demo sphere"), {"'sphere'", "passage"});
+  expect_bad_input(gridmorph("demo bal"), {"'bal'", "'ball'"});
   expect_bad_input(gridmorph("demo passage --nodes 5"), {"nodes"});
   expect_bad_input(gridmorph("demo passage --motion sideways"), {"sideways", "rotation"});
+  expect_bad_input(gridmorph("demo passage --elements 60000"), {"--elements", "'ball'"});
+  expect_bad_input(gridmorph("demo ball --nodes 60000"), {"--nodes", "'passage'"});
+  expect_bad_input(gridmorph("demo ball --elements 5"), {"elements"});
+  expect_bad_input(gridmorph("demo ball --elements 60000 --angle 100 -d none"), {"100 degrees", "crane"});
 }
 
 TEST_F(CommandLineTest, OptionsMayStandBeforeAndAfterTheCommand) {

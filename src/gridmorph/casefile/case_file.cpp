@@ -1,4 +1,5 @@
 #include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/casefile/detail/near_field_reader.hpp>
 #include <gridmorph/casefile/detail/rule_reader.hpp>
 #include <gridmorph/casefile/detail/table_reader.hpp>
 #include <gridmorph/casefile/detail/wheel_reader.hpp>
@@ -127,6 +128,16 @@ toml::value parse_toml(std::string const& text, std::string const& file) {
   }
 }
 
+}  // namespace
+
+namespace casefile {
+
+toml::value parse_toml_text(std::string const& text, std::string const& file) { return parse_toml(text, file); }
+
+}  // namespace casefile
+
+namespace {
+
 void read_mesh(TableReader& root, CaseFile& out) {
   root.require("mesh", "[mesh] with input = \"mesh.cgns\"");
   auto mesh = root.table("mesh");
@@ -137,6 +148,7 @@ void read_mesh(TableReader& root, CaseFile& out) {
   if (auto const output = mesh->string("output")) out.output = (directory / *output).lexically_normal();
   if (!out.output.empty() && out.output == out.input)
     mesh->problem("output", "is the input; give another file name, the baseline is never overwritten");
+  if (auto const side = mesh->string("side_file")) out.side_file = (directory / *side).lexically_normal();
   out.axis = casefile::read_axis(*mesh, "axis");
   if (out.axis) out.motion.axis = *out.axis;
   if (auto const tolerance = mesh->number("matching_tolerance")) {
@@ -216,10 +228,7 @@ BoundaryLayer read_boundary_layer(TableReader& table) {
       layer.thickness = thickness.value_or(0);
     }
   }
-  if (auto const mode = table.choice("mode", {"translate", "rotate", "blend"})) {
-    layer.mode = BoundaryLayer::Mode(*mode);
-    if (*mode != 0) table.problem("mode", "only \"translate\" is available yet");
-  }
+  if (auto const mode = table.choice("mode", {"translate", "rotate", "blend"})) layer.mode = BoundaryLayer::Mode(*mode);
   table.finish();
   return layer;
 }
@@ -276,6 +285,8 @@ void read_results(TableReader& root, CaseFile& out) {
   if (auto output = root.table("output")) {
     out.output_options.displacement = output->boolean("displacement").value_or(false);
     out.output_options.quality = output->boolean("quality").value_or(false);
+    if (auto const stages = output->string("stages"))
+      out.output_options.stages = (output->context().directory / *stages).lexically_normal();
     if (auto const report = output->string("report"))
       out.output_options.report = (output->context().directory / *report).lexically_normal();
     output->finish();
@@ -284,8 +295,8 @@ void read_results(TableReader& root, CaseFile& out) {
 
 }  // namespace
 
-CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path) {
-  Context context{path.string(), path.parent_path(), {}};
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked) {
+  Context context{path.string(), path.parent_path(), {}, asked};
   toml::value const document = parse_toml(text, context.file);
   CaseFile out;
   out.source = path;
@@ -294,6 +305,7 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   read_sequence(root, out);
   read_motion(root, out);
   read_plan(root, out);
+  casefile::read_near_field(root, out.unstructured);
   read_results(root, out);
   root.finish();
   context.problems.throw_if_any<ConfigError>();

@@ -8,11 +8,14 @@
 #include <gridmorph/casefile/wheel_case.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
+#include <gridmorph/unstructured/options.hpp>
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
@@ -28,6 +31,8 @@ struct OutputOptions {
   bool displacement = false;                    ///< displacement at the nodes, as a solution of the output mesh
   bool quality = false;                         ///< quality measures in the cells, as a solution of the output mesh
   std::optional<std::filesystem::path> report;  ///< JSON report
+  /// Folder for the wrap and the background mesh, before and after, of an unstructured morph.
+  std::optional<std::filesystem::path> stages;
 };
 
 /// One `field` rule, so that reports can say how far its nodes were from the points.
@@ -58,9 +63,11 @@ struct CaseFile {
   std::filesystem::path source;  ///< the case file itself, as given
   std::filesystem::path input;   ///< relative paths are already joined with the directory of the case file
   std::filesystem::path output;  ///< empty when the case file names none
-  std::optional<Axis> axis;      ///< [mesh] axis as given; Motion::axis holds it too
+  std::optional<std::filesystem::path> side_file;  ///< patches and interfaces of the mesh (side_file.hpp)
+  std::optional<Axis> axis;                        ///< [mesh] axis as given; Motion::axis holds it too
   Motion motion;
   PlanOptions plan;
+  UnstructuredOptions unstructured;  ///< [near_field] and [background]; boundary layers and law are those of `plan`
   GuardOptions guard;
   OutputOptions output_options;
   std::vector<FieldUse> fields;
@@ -76,7 +83,11 @@ Motion motion_at(CaseFile const& case_file, double periods);
 /// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
 CaseFile read_case_file(std::filesystem::path const& path);
 
+/// (table, key) pairs that the reader asked for, tables as "mesh", "mesh axis", "motion": what it knows, for checks of the docs.
+using CaseKeyUse = std::set<std::pair<std::string, std::string>>;
+
 /// The same from text; `path` names it in messages and anchors relative paths.
-CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path);
+/// `asked`, when given, is filled also when there are problems.
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked = nullptr);
 
 }  // namespace gridmorph

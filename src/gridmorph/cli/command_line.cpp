@@ -34,12 +34,37 @@ CLI::App* add_wheel(CLI::App& app, CommandLine& out) {
   return wheel;
 }
 
+CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
+  auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
+  inspect->add_option("mesh", out.input, "Mesh (CGNS or PLOT3D)")->required();
+  auto* json = inspect->add_flag("--json", out.json, "Print JSON");
+  inspect->add_option("--side-file", out.side_file,
+                      "Patches and interfaces (TOML), instead of the file beside the mesh");
+  inspect->add_flag("--match", out.match, "Look for interfaces and periodicity where nothing is declared");
+  inspect->add_option("--match-tolerance", out.match_tolerance, "Distance of points that match, of the smallest edge")
+      ->check(CLI::Range(1e-9, 0.25));
+  inspect->add_option("--write-side-file", out.write_side_file,
+                      "Look for interfaces and write them, and patches for what is left, to this file (TOML)");
+  inspect->add_option("--suggest", out.suggest, "Only a case file to start from, printed or written to a file")
+      ->expected(0, 1)
+      ->default_str("")
+      ->excludes(json);
+  return inspect;
+}
+
 CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   auto* demo = app.add_subcommand("demo", "Write a built-in mesh and its case files, and morph it");
-  demo->add_option("name", out.demo_name, "passage: one airfoil passage of a turbomachine (O4H)")->required();
-  demo->add_option("-n,--nodes", out.demo_nodes, "Nodes of the mesh")
+  demo->add_option(
+          "name", out.demo_name,
+          "passage: one airfoil passage of a turbomachine (O4H); ball: a ball on a rope under a crane (hybrid)")
+      ->required();
+  demo->add_option("-n,--nodes", out.demo_nodes, "passage: nodes of the mesh (default 200000)")
       ->check(CLI::Range(Index(10'000), Index(400'000'000)));
-  demo->add_option("-m,--motion", out.demo_motion, "rotation, chord, or all");
+  demo->add_option("-m,--motion", out.demo_motion, "passage: rotation, chord, or all (default)");
+  demo->add_option("-e,--elements", out.demo_elements, "ball: elements of the mesh (default 500000)")
+      ->check(CLI::Range(Index(50'000), Index(50'000'000)));
+  demo->add_option("-a,--angle", out.demo_angle_deg,
+                   "ball: how far it swings towards the mast, in degrees (default 30)");
   demo->add_option("-d,--directory", out.demo_folder, "Folder for the files (default demo_<name>)");
   return demo;
 }
@@ -60,16 +85,13 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
 
   std::vector<std::pair<CLI::App*, Command>> commands;
   commands.emplace_back(add_morph(app, out), Command::morph);
-  auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
-  inspect->add_option("mesh", out.input, "Mesh (CGNS)")->required();
-  inspect->add_flag("--json", out.json, "Print JSON");
-  commands.emplace_back(inspect, Command::inspect);
+  commands.emplace_back(add_inspect(app, out), Command::inspect);
   auto* plan = app.add_subcommand("plan", "Print stages and chains in order, with the reason for each rank");
   plan->add_option("case", out.input, "Case file (TOML)")->required();
   commands.emplace_back(plan, Command::plan);
   auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
-  quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS)")->required();
-  quality->add_option("morphed", out.second, "Morphed mesh (CGNS)");
+  quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS or PLOT3D)")->required();
+  quality->add_option("morphed", out.second, "Morphed mesh");
   quality->add_flag("--json", out.json, "Print JSON");
   commands.emplace_back(quality, Command::quality);
   commands.emplace_back(add_wheel(app, out), Command::wheel);

@@ -22,11 +22,18 @@ struct CommandLine {
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   bool dry_run = false;
   bool json = false;
+  std::optional<std::filesystem::path> side_file;        ///< inspect: of the mesh, instead of the one beside it
+  std::optional<std::filesystem::path> write_side_file;  ///< inspect: what was found goes there
+  std::optional<std::string> suggest;  ///< inspect: a case file to start from, to this file; empty: printed
+  bool match = false;                  ///< inspect: look for interfaces
+  double match_tolerance = 0.01;       ///< inspect: share of the smallest edge
 
   std::string demo_name;
-  std::string demo_motion = "all";
-  Index demo_nodes = 200'000;
-  std::filesystem::path demo_folder;  ///< empty: "demo_<name>"
+  std::optional<std::string> demo_motion;  ///< passage
+  std::optional<Index> demo_nodes;         ///< passage
+  std::optional<Index> demo_elements;      ///< ball
+  std::optional<double> demo_angle_deg;    ///< ball
+  std::filesystem::path demo_folder;       ///< empty: "demo_<name>"
 };
 
 /// The program should stop here: help and version texts (status 0, standard output) or a wrong command line (status 2,

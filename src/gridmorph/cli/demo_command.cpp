@@ -1,7 +1,9 @@
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
+#include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/demo/ball_demo.hpp>
 #include <gridmorph/demo/passage_demo.hpp>
 
 #include <fmt/format.h>
@@ -13,34 +15,76 @@
 
 namespace gridmorph::cli {
 
-int run_demo_command(CommandLine const& options, Terminal& terminal) {
-  if (options.demo_name != "passage")
-    throw ConfigError(
-        fmt::format("there is no demo '{}'{}", options.demo_name, suggestion(options.demo_name, {"passage"})));
+namespace {
+
+/// The case file of a demo; its report goes beside the morphed mesh.
+CaseFile with_report(std::filesystem::path const& path, std::filesystem::path const& morphed) {
+  CaseFile case_file = read_case_file(path);
+  auto report = morphed;
+  case_file.output_options.report = report.replace_extension(".json");
+  return case_file;
+}
+
+int demo_passage(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
   std::vector<PassageMotion> motions;
-  if (options.demo_motion == "all")
+  std::string const motion = options.demo_motion.value_or("all");
+  if (motion == "all")
     motions = {rotated_sections(), chord_redesign()};
   else
-    motions = {passage_motion(options.demo_motion)};
-  auto const folder = options.demo_folder.empty() ? std::filesystem::path("demo_passage") : options.demo_folder;
+    motions = {passage_motion(motion)};
 
   PassageOptions passage;
-  passage.nodes = options.demo_nodes;
+  passage.nodes = options.demo_nodes.value_or(passage.nodes);
   int status = done;
   for (std::size_t m = 0; m < motions.size(); ++m) {
-    terminal.progress(fmt::format("making the passage mesh with {} nodes", options.demo_nodes));
+    terminal.progress(fmt::format("making the passage mesh with {} nodes", passage.nodes));
     // The mesh is dropped before the morph reads it from its file: large demos need the memory.
     PassageFiles const files = [&] {
       Mesh const mesh = make_passage(passage);
       return write_passage_demo(folder, passage, motions[m], mesh, m == 0 ? MeshFile::write : MeshFile::keep);
     }();
     terminal.say(fmt::format("{}\n== {} ==\n", m == 0 ? "" : "\n", files.case_file.string()));
-    CaseFile case_file = read_case_file(files.case_file);
-    auto report = files.morphed;
-    case_file.output_options.report = report.replace_extension(".json");
-    status = std::max(status, morph_and_write(case_file, terminal));
+    status = std::max(status, morph_and_write(with_report(files.case_file, files.morphed), terminal));
   }
   return status;
+}
+
+int demo_ball(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  BallOptions ball;
+  ball.elements = options.demo_elements.value_or(ball.elements);
+  BallSwing swing;
+  swing.angle_deg = options.demo_angle_deg.value_or(swing.angle_deg);
+  terminal.progress(fmt::format("making the ball mesh with {} elements", ball.elements));
+  BallFiles const files = write_ball_demo(folder, ball, swing);
+  terminal.say(fmt::format("\n== {} ==\n", files.case_file.string()));
+  return morph_unstructured(with_report(files.case_file, files.morphed), terminal);
+}
+
+/// Options of the other demo would be ignored in silence.
+void refuse_options_of(char const* other, std::string const& chosen,
+                       std::vector<std::pair<char const*, bool>> const& given) {
+  for (auto const& [option, is_given] : given)
+    if (is_given)
+      throw ConfigError(fmt::format("{} is an option of the demo '{}', not of '{}'", option, other, chosen));
+}
+
+}  // namespace
+
+int run_demo_command(CommandLine const& options, Terminal& terminal) {
+  std::string const& name = options.demo_name;
+  auto const folder = options.demo_folder.empty() ? std::filesystem::path("demo_" + name) : options.demo_folder;
+  if (name == "passage") {
+    refuse_options_of(
+        "ball", name,
+        {{"--elements", options.demo_elements.has_value()}, {"--angle", options.demo_angle_deg.has_value()}});
+    return demo_passage(options, folder, terminal);
+  }
+  if (name == "ball") {
+    refuse_options_of("passage", name,
+                      {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
+    return demo_ball(options, folder, terminal);
+  }
+  throw ConfigError(fmt::format("there is no demo '{}'{}", name, suggestion(name, {"passage", "ball"})));
 }
 
 }  // namespace gridmorph::cli

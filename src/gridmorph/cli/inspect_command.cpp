@@ -1,19 +1,36 @@
+#include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/inspect_text.hpp>
+#include <gridmorph/cli/output_files.hpp>
 #include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
 
 namespace gridmorph::cli {
 
 namespace {
 
 int inspect_unstructured(CommandLine const& options, Terminal& terminal) {
+  if (options.match || options.side_file || options.write_side_file || options.suggest)
+    throw MeshError(
+        options.input.string() +
+        ": is an unstructured mesh; side files, matching points and suggested case files are for structured "
+        "ones");
   terminal.progress("reading " + options.input.string());
   LoadedMesh const loaded = load_unstructured(options.input);
   terminal.progress("measuring quality");
@@ -28,14 +45,51 @@ int inspect_unstructured(CommandLine const& options, Terminal& terminal) {
   return done;
 }
 
+std::string contents(std::filesystem::path const& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return std::move(text).str();
+}
+
+/// What the points say: added to the mesh, and to its side file where one is to be written.
+void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
+  terminal.progress("matching points");
+  FoundInterfaces const found = find_interfaces(mesh, {.tolerance = options.match_tolerance});
+  int const periodic = int(std::count_if(found.interfaces.begin(), found.interfaces.end(),
+                                         [](auto const& f) { return f.periodic.has_value(); }));
+  mesh.notes.push_back(
+      fmt::format("{} interfaces found by matching points, {} of them periodic; largest distance {:.3g}",
+                  found.interfaces.size(), periodic, found.mismatch));
+  mesh.notes.insert(mesh.notes.end(), found.notes.begin(), found.notes.end());
+  if (options.write_side_file) {
+    check_output(*options.write_side_file, "side file", options.input);
+    auto const present = options.side_file ? options.side_file : find_side_file(options.input);
+    PendingFile(*options.write_side_file, side_file_text(mesh, found, present ? contents(*present) : std::string()))
+        .commit();
+  }
+  mesh.interfaces.insert(mesh.interfaces.end(), found.interfaces.begin(), found.interfaces.end());
+}
+
 }  // namespace
 
 int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   if (mesh_kind(options.input.string()) == MeshKind::unstructured) return inspect_unstructured(options, terminal);
   terminal.progress("reading " + options.input.string());
-  Mesh const mesh = read_mesh(options.input.string());
+  Mesh mesh = load_mesh(options.input, options.side_file);
+  if (options.match || options.write_side_file) find_and_add(options, mesh, terminal);
   terminal.progress("looking at boundaries and connections");
   MeshSummary const summary = summarize(mesh);
+  if (options.suggest) {
+    std::string const text = case_snippet(summary);
+    if (options.suggest->empty()) {
+      terminal.result(text);
+    } else {
+      check_output(*options.suggest, "case file", options.input);
+      PendingFile(*options.suggest, text).commit();
+      terminal.say(fmt::format("wrote {}\n", *options.suggest));
+    }
+    return done;
+  }
   terminal.progress("measuring quality");
   QualityReport const quality = measure_mesh(mesh);
   if (options.json) {
@@ -44,6 +98,7 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal) {
     terminal.result(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
     terminal.result(inspect_text(summary, format_table(quality)));
+    if (options.write_side_file) terminal.say(fmt::format("wrote {}\n", options.write_side_file->string()));
   }
   return done;
 }

@@ -158,6 +158,10 @@ std::string inspect_text(MeshSummary const& s, std::string const& quality) {
   text += "\nConnections\n" + connections_text(s);
   if (!s.notes.empty()) text += "\nNotes of the reader\n";
   for (auto const& note : s.notes) text += "  " + note + "\n";
+  if (s.open_faces)
+    text +=
+        "\nFaces that nothing claims may be interfaces: --match looks for them, --write-side-file also writes them "
+        "down\n";
   if (!s.problems.empty()) text += "\nProblems that stop a morph\n";
   for (std::size_t p = 0; p < std::min(s.problems.size(), most_problems); ++p) text += "  " + s.problems[p] + "\n";
   if (s.problems.size() > most_problems)

@@ -147,6 +147,28 @@ void collect_interfaces(Mesh const& mesh, double size, MeshSummary& out) {
   }
 }
 
+/// The settings with which a mesh with problems could be morphed, if they are of that kind.
+void look_for_remedies(Mesh const& mesh, MeshSummary& summary) {
+  TopologyOptions options;
+  options.matching_tolerance = mesh.size();
+  Problems ignored;
+  double worst = 0;
+  for (auto const& link : connect(mesh, options, ignored).all) worst = std::max(worst, link.mismatch);
+  // Larger gaps are no inaccuracy.
+  if (worst > 1e-8 * mesh.size() && worst < 1e-3 * mesh.size()) summary.needed_tolerance = 1.1 * worst;
+  options.matching_tolerance = summary.needed_tolerance;
+  for (bool const open : {false, true}) {
+    options.open_faces = open ? "open" : "";
+    Mesh completed = mesh;
+    try {
+      (void)connect_and_check(completed, options);
+      summary.open_faces = open;
+      return;
+    } catch (MeshError const&) {  // said already
+    }
+  }
+}
+
 /// What the topology says to this mesh: its problems, or its blocks.
 void look_at_topology(Mesh const& mesh, MeshSummary& summary) {
   std::vector<std::string>& out = summary.problems;
@@ -167,6 +189,7 @@ void look_at_topology(Mesh const& mesh, MeshSummary& summary) {
     summary.blocks = summarize_blocks(completed, links, label);
   } catch (MeshError const& e) {
     add_lines(e.what());
+    if (summary.box.low.x <= summary.box.high.x) look_for_remedies(mesh, summary);
   }
 }
 
@@ -185,6 +208,7 @@ void Box::add(Box const& other) {
 MeshSummary summarize(Mesh const& mesh) {
   MeshSummary out;
   out.source = mesh.source;
+  out.file_variant = mesh.file_variant;
   out.families = mesh.families;
   out.nodes = mesh.n_nodes();
   out.cells = mesh.n_cells();

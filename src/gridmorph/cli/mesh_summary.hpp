@@ -55,7 +55,7 @@ struct PeriodicSummary {
 };
 
 struct MeshSummary {
-  std::string source;
+  std::string source, file_variant;  ///< as in Mesh
   std::vector<ZoneSummary> zones;
   std::vector<std::string> families;         ///< all of the file
   std::vector<std::string> unused_families;  ///< no patch has them
@@ -69,6 +69,8 @@ struct MeshSummary {
   bool two_dimensional = false;
   std::vector<std::string> notes;       ///< of the reader
   std::vector<std::string> problems;    ///< what a morph would refuse
+  double needed_tolerance = 0;          ///< matching_tolerance with which interfaces match; 0: the default does
+  bool open_faces = false;              ///< some faces are claimed by nothing
   std::optional<BlocksSummary> blocks;  ///< only without problems
 };
 

@@ -3,9 +3,11 @@
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
 #include <gridmorph/cli/sequence.hpp>
+#include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/report/step_times.hpp>
@@ -190,11 +192,15 @@ int run_morph_command(CommandLine const& options, Terminal& terminal) {
     terminal.result(run_plan(case_file, terminal));
     return done;
   }
+  bool const unstructured = mesh_kind(case_file.input.string()) == MeshKind::unstructured;
+  if (unstructured && case_file.sequence)
+    throw ConfigError(fmt::format("{}: [sequence] is for structured meshes, and '{}' is unstructured; remove it",
+                                  options.input.string(), case_file.input.string()));
   if (case_file.sequence) return morph_sequence(case_file, terminal);
   if (case_file.output.empty())
     throw ConfigError(fmt::format("{}: no output; add output = \"morphed.cgns\" to [mesh] or give --output FILE",
                                   options.input.string()));
-  return morph_and_write(case_file, terminal);
+  return unstructured ? morph_unstructured(case_file, terminal) : morph_and_write(case_file, terminal);
 }
 
 }  // namespace gridmorph::cli

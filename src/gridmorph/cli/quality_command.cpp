@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/core/error.hpp>
@@ -73,7 +74,7 @@ int quality_of_unstructured(CommandLine const& options, Terminal& terminal) {
 int run_quality_command(CommandLine const& options, Terminal& terminal) {
   if (mesh_kind(options.input.string()) == MeshKind::unstructured) return quality_of_unstructured(options, terminal);
   terminal.progress("reading " + options.input.string());
-  Mesh const mesh = read_mesh(options.input.string());
+  Mesh const mesh = load_mesh(options.input);
   std::optional<Mesh> morphed;
   if (options.second) {
     terminal.progress("reading " + options.second->string());

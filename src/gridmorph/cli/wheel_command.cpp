@@ -1,4 +1,5 @@
 #include <gridmorph/casefile/mapping_report.hpp>
+#include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/near_field_mask.hpp>
 #include <gridmorph/cli/output_files.hpp>
@@ -110,7 +111,7 @@ class WheelRun {
  private:
   static Mesh read(CaseFile const& case_file, Terminal& terminal) {
     terminal.progress("reading " + case_file.input.string());
-    return read_mesh(case_file.input.string());
+    return load_mesh(case_file.input, case_file.side_file);
   }
 
   void time(std::string const& step) {

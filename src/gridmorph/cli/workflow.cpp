@@ -1,4 +1,6 @@
 #include <gridmorph/casefile/mapping_report.hpp>
+#include <gridmorph/casefile/side_file.hpp>
+#include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
@@ -20,14 +22,7 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-Mesh read_structured(std::filesystem::path const& path) {
-  if (mesh_kind(path.string()) == MeshKind::unstructured)
-    throw MeshError(
-        path.string() +
-        ": is an unstructured mesh; only structured ones can be morphed yet, unstructured ones can be inspected "
-        "and measured (gridmorph inspect, gridmorph quality)");
-  return read_mesh(path.string());
-}
+Mesh read_structured(CaseFile const& case_file) { return load_mesh(case_file.input, case_file.side_file); }
 
 }  // namespace
 
@@ -85,7 +80,12 @@ QualityReport QualityMeter::morphed(Coordinates const& morphed) const {
 
 MorphResult read_baseline(CaseFile const& case_file) {
   MorphResult out;
-  out.mesh = read_structured(case_file.input);
+  out.mesh = read_structured(case_file);
+  auto const& wanted = case_file.output_options;
+  if (!out.mesh.file_variant.empty() && (wanted.displacement || wanted.quality))
+    throw ConfigError(
+        case_file.source.string() +
+        ": [output] displacement and quality: PLOT3D files have no place for solutions; set both to false");
   return out;
 }
 
@@ -112,8 +112,9 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
 }
 
 std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
+  if (mesh_kind(case_file.input.string()) == MeshKind::unstructured) return unstructured_plan_text(case_file, terminal);
   terminal.progress("reading " + case_file.input.string());
-  Mesh mesh = read_structured(case_file.input);
+  Mesh mesh = read_structured(case_file);
   Engine const engine(mesh, case_file, terminal);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";

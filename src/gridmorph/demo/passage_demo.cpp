@@ -1,13 +1,11 @@
-#include <gridmorph/core/error.hpp>
 #include <gridmorph/demo/passage_demo.hpp>
+#include <gridmorph/demo/text_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <string>
-#include <system_error>
 
 namespace gridmorph {
 
@@ -18,15 +16,6 @@ std::string vector_text(Vec3 const& v) {
   std::array<char, 96> text{};
   std::snprintf(text.data(), text.size(), "[%.17g, %.17g, %.17g]", v.x + 0.0, v.y + 0.0, v.z + 0.0);
   return text.data();
-}
-
-void write_text(std::filesystem::path const& path, std::string const& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file)
-    throw MachineError("case file '" + path.string() +
-                       "' cannot be written; is the disk full or the folder read-only?");
 }
 
 }  // namespace
@@ -87,15 +76,13 @@ PassageFiles write_passage_demo(std::filesystem::path const& folder, PassageOpti
 
 PassageFiles write_passage_demo(std::filesystem::path const& folder, PassageOptions const& options,
                                 PassageMotion const& motion, Mesh const& mesh, MeshFile mesh_file) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw MachineError("folder '" + folder.string() + "' cannot be made: " + error.message());
+  make_folder(folder);
   PassageFiles files{folder / "passage.cgns", folder / (motion.name + ".csv"), folder / (motion.name + ".toml"),
                      folder / ("passage_" + motion.name + ".cgns")};
   if (mesh_file == MeshFile::write) write_mesh(files.mesh.string(), mesh);
   write_displacement_csv(files.displacement.string(), mesh, "blade",
                          [&](Vec3 const& p) { return passage_displacement(options, motion, p); });
-  write_text(files.case_file, passage_case_file(options, files));
+  write_text_file(files.case_file, passage_case_file(options, files), "case file");
   return files;
 }
 

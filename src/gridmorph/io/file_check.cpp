@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string_view>
 
 namespace gridmorph::cgns {
@@ -31,12 +32,15 @@ bool has_hdf5_signature(std::ifstream& file, std::uintmax_t size) {
 
 }  // namespace
 
-FileFormat check_file(std::string const& path) {
+namespace {
+
+/// The format by the first bytes; nothing for other files.
+std::optional<FileFormat> format_of(std::string const& path) {
   namespace fs = std::filesystem;
   std::error_code failure;
   auto const status = fs::status(path, failure);
   if (!fs::exists(status)) throw IoError(path + ": no such file; check the name and the folder it is looked up from");
-  if (fs::is_directory(status)) throw IoError(path + ": is a folder, not a file; name a CGNS file in it");
+  if (fs::is_directory(status)) throw IoError(path + ": is a folder, not a file; name a mesh file in it");
   if (!fs::is_regular_file(status)) throw IoError(path + ": is not an ordinary file");
   auto const size = fs::file_size(path, failure);
   if (failure) throw IoError(path + ": cannot be examined: " + failure.message());
@@ -44,16 +48,24 @@ FileFormat check_file(std::string const& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError(path + ": cannot be opened for reading: " + std::strerror(errno));
-  if (size == 0) throw IoError(path + ": is empty; expected a CGNS file");
+  if (size == 0) throw IoError(path + ": is empty; expected a mesh");
   std::array<char, 32> head{};
   file.read(head.data(), std::streamsize(head.size()));
-  if (std::string_view(head.data(), head.size()).substr(adf_signature_at).starts_with(adf_signature)) {
-    file.close();
-    check_adf(path);
+  if (std::string_view(head.data(), head.size()).substr(adf_signature_at).starts_with(adf_signature))
     return FileFormat::cgns_adf;
-  }
   if (has_hdf5_signature(file, size)) return FileFormat::cgns_hdf5;
-  throw IoError(path + ": is not a CGNS file (neither HDF5 nor ADF by its first bytes); only CGNS meshes can be read");
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_cgns(std::string const& path) { return format_of(path).has_value(); }
+
+FileFormat check_file(std::string const& path) {
+  auto const format = format_of(path);
+  if (!format) throw IoError(path + ": is not a CGNS file (neither HDF5 nor ADF by its first bytes)");
+  if (*format == FileFormat::cgns_adf) check_adf(path);
+  return *format;
 }
 
 }  // namespace gridmorph::cgns

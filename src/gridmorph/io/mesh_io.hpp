@@ -1,4 +1,4 @@
-// Meshes in and out of files. One small interface; today it speaks CGNS, other formats come behind it.
+// Meshes in and out of files. One small interface; it speaks CGNS and PLOT3D.
 //
 // What is read, what is refused and what is kept: docs/formats.md. The functions throw IoError (the file cannot be
 // opened, is damaged, or holds something else), MeshError (ranges, donors or coordinates that cannot be used) or
@@ -24,11 +24,14 @@ struct ReadOptions {
   /// false: topology only, Mesh::coordinates stays empty (2-D zones are still made two planes thick in their index
   /// ranges). For listings of large files.
   bool coordinates = true;
+  /// What a PLOT3D file is, for files that could be several things: "unformatted", "big-endian", "single", ... (docs/formats.md).
+  std::string plot3d_format = {};
 };
 
 /// Reads a multi-block structured mesh. All problems of the mesh are reported in one error; what was skipped or assumed
-/// is in Mesh::notes. Cost: one pass over the file's coordinates, read straight into the flat arrays where they are
-/// stored in double precision.
+/// is in Mesh::notes. PLOT3D files have neither patches nor interfaces: read_side_file (casefile) or find_interfaces (topology)
+/// add them. Cost: one pass over the file's coordinates, read straight into the flat arrays where they are stored in double
+/// precision.
 Mesh read_mesh(std::string const& path, ReadOptions const& options = {});
 
 struct WriteOptions {
@@ -87,7 +90,8 @@ struct OutputFields {
 
 /// Copies the file that `mesh` was read from and replaces its node coordinates, in the precision they are stored in;
 /// everything else comes through unchanged. Of a 2-D mesh plane 0 is written. output may be input. The copy is made
-/// beside the output and renamed when complete: on any failure the output is as it was before.
+/// beside the output and renamed when complete: on any failure the output is as it was before. PLOT3D files have no place for
+/// fields.
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
                    OutputFields const& fields = {});
 

@@ -2,8 +2,10 @@
 #include <gridmorph/io/cgns_boundary.hpp>
 #include <gridmorph/io/cgns_layout.hpp>
 #include <gridmorph/io/extrude.hpp>
+#include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/plot3d.hpp>
 
 namespace gridmorph {
 
@@ -42,6 +44,7 @@ void read_coordinates(cgns::File const& file, cgns::Layout const& layout, Mesh& 
 }  // namespace
 
 Mesh read_mesh(std::string const& path, ReadOptions const& options) {
+  if (!cgns::is_cgns(path)) return plot3d::read(path, options);
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
 

@@ -4,6 +4,7 @@
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_file.hpp>
+#include <gridmorph/io/plot3d.hpp>
 
 #include <algorithm>
 
@@ -93,6 +94,11 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   Problems problems;
   io::check_finite(mesh, morphed, "morphed mesh", problems);
   problems.throw_if_any<MeshError>();
+  if (!cgns::is_cgns(input)) {
+    if (!fields.empty())
+      throw IoError(output + ": PLOT3D grid files have no place for solutions; write the mesh without fields");
+    return plot3d::write(input, output, mesh, morphed);
+  }
   {
     cgns::File const file(input, cgns::File::Mode::read);
     auto const tree = file.tree();

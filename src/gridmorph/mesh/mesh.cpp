@@ -33,6 +33,28 @@ RigidTransform rotation_about(Vec3 const& origin, Vec3 const& direction, double 
   return {r, origin - r * origin};
 }
 
+Periodic periodic_rotation(Vec3 const& center, Vec3 const& direction, double angle_rad) {
+  Periodic out;
+  out.rotation_center = center;
+  out.declared = rotation_about(center, direction, angle_rad);
+  Vec3 const unit = (1 / norm(direction)) * direction;
+  if (std::max({std::fabs(unit.x), std::fabs(unit.y), std::fabs(unit.z)}) == 1) {
+    out.rotation_angle_rad = angle_rad * unit;
+  } else {
+    auto const& m = out.declared.rotation.m;
+    out.rotation_angle_rad = {std::atan2(m[2][1], m[2][2]), std::asin(std::clamp(-m[2][0], -1.0, 1.0)),
+                              std::atan2(m[1][0], m[0][0])};
+  }
+  return out;
+}
+
+Periodic periodic_translation(Vec3 const& translation) {
+  Periodic out;
+  out.translation = translation;
+  out.declared.translation = translation;
+  return out;
+}
+
 std::string_view to_string(PatchKind kind) {
   switch (kind) {
     case PatchKind::wall: return "wall";

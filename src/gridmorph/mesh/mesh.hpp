@@ -51,6 +51,11 @@ struct Periodic {
   RigidTransform declared;
 };
 
+/// Rotation about the line through `center` along `direction` (any length): own nodes onto the donor's. The three angles are those
+/// of the CGNS convention (about x, then y, then z).
+Periodic periodic_rotation(Vec3 const& center, Vec3 const& direction, double angle_rad);
+Periodic periodic_translation(Vec3 const& translation);
+
 /// GridConnectivity1to1_t: two node ranges that coincide. Most files store each connection twice, once per side.
 struct Interface1to1 {
   std::string name;
@@ -108,7 +113,10 @@ struct Mesh {
   std::vector<Interface1to1> interfaces;  ///< of all zones, in file order
   std::vector<std::string> families;      ///< Family_t names
   Coordinates coordinates;
-  std::string source;              ///< file name or what made it, for messages
+  std::string source;  ///< file name or what made it, for messages
+  /// How the file is stored where the file itself does not say so (PLOT3D: "unformatted, little-endian, ..."), for the writer;
+  /// empty otherwise.
+  std::string file_variant;
   std::vector<std::string> notes;  ///< what the reader skipped or assumed, for `inspect` and logs
   /// A 2-D mesh that the reader extruded by one cell; writers put back plane k = 0 only.
   bool two_dimensional = false;

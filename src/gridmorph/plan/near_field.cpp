@@ -64,8 +64,10 @@ std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, Resolve
                                    SurfaceMotion const& surface, std::vector<BoundaryLayer> const& options) {
   std::vector<NearField> fields;
   for (BoundaryLayer const& option : options) {
-    if (option.mode != BoundaryLayer::Mode::translate)
-      throw PlanError("boundary layer mode 'rotate' and 'blend' are not available yet; use \"translate\"");
+    if (option.mode != BoundaryLayer::Mode::translate && option.mode != BoundaryLayer::Mode::standard)
+      throw PlanError(
+          "boundary layer: the modes \"rotate\" and \"blend\" are for unstructured meshes; use \"translate\", or "
+          "remove mode");
     NearField field;
     if (option.walls.empty()) {
       for (int p = 0; p < int(mesh.patches.size()); ++p) {

@@ -17,13 +17,18 @@ struct TopologyOptions {
 /// Near field of moving walls (design: stage 0). Several may be given, for different walls.
 struct BoundaryLayer {
   enum class Extent { block, layers, thickness };
-  enum class Mode { translate, rotate, blend };
+  enum class Mode {
+    translate,  ///< every node of a grid line or column takes the displacement of its wall node
+    rotate,     ///< and the rotation of the wall there
+    blend,      ///< the rotation fades to none at the end of the column
+    standard    ///< translate in structured meshes, rotate in unstructured ones
+  };
 
   std::vector<std::string> walls;  ///< selectors; empty: every wall patch whose rule moves it
   Extent extent = Extent::block;   ///< block: up to the first opposite block face
   int layers = 0;                  ///< cells, for Extent::layers; runs through block and zone limits
   double thickness = 0;            ///< length, for Extent::thickness
-  Mode mode = Mode::translate;
+  Mode mode = Mode::standard;
 };
 
 /// How a displacement varies along a grid line, as a function of the fraction s of its baseline arc length.

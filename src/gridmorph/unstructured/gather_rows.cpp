@@ -12,25 +12,50 @@ void GatherRows::add(Number row_target, std::span<Number const> items, std::span
   first.push_back(Index(item.size()));
 }
 
+namespace {
+
+template <class MemorySpace, class Source>
+struct GatherRow {
+  GatherViews<MemorySpace> rows;
+  Source source;
+  Kokkos::View<Vec3*, MemorySpace> value;
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    Index const from = rows.first(r), to = rows.first(r + 1);
+    Vec3 const base = source[rows.item(from)];
+    Vec3 sum;
+    for (Index k = from + 1; k < to; ++k) sum += double(rows.weight(k)) * (source[rows.item(k)] - base);
+    value(rows.target(r)) = base + sum;
+  }
+};
+
+template <class Exec, class Source>
+void launch(Exec const& exec, GatherViews<typename Exec::memory_space> const& rows, Index begin, Index end,
+            Source const& source, Kokkos::View<Vec3*, typename Exec::memory_space> const& value) {
+  if (begin < end)
+    Kokkos::parallel_for("gridmorph::gather", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, begin, end),
+                         GatherRow<typename Exec::memory_space, Source>{rows, source, value});
+}
+
+}  // namespace
+
 template <class Exec>
 void gather(Exec const& exec, GatherViews<typename Exec::memory_space> const& rows, Index begin, Index end,
             Kokkos::View<Vec3 const*, typename Exec::memory_space> source,
             Kokkos::View<Vec3*, typename Exec::memory_space> value) {
-  if (begin >= end) return;
-  Kokkos::parallel_for(
-      "gridmorph::gather", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, begin, end),
-      KOKKOS_LAMBDA(Index const r) {
-        Index const from = rows.first(r), to = rows.first(r + 1);
-        Vec3 const base = source(rows.item(from));
-        Vec3 sum;
-        for (Index k = from + 1; k < to; ++k) sum += double(rows.weight(k)) * (source(rows.item(k)) - base);
-        value(rows.target(r)) = base + sum;
-      });
+  launch(exec, rows, begin, end, source.data(), value);
 }
 
-#define GRIDMORPH_INSTANTIATE(Exec)                                                       \
-  template void gather(Exec const&, GatherViews<Exec::memory_space> const&, Index, Index, \
-                       Kokkos::View<Vec3 const*, Exec::memory_space>, Kokkos::View<Vec3*, Exec::memory_space>);
+template <class Exec>
+void gather(Exec const& exec, GatherViews<typename Exec::memory_space> const& rows, kernels::Field<double const> source,
+            Kokkos::View<Vec3*, typename Exec::memory_space> value) {
+  launch(exec, rows, 0, rows.size(), source, value);
+}
+
+#define GRIDMORPH_INSTANTIATE(Exec)                                                                             \
+  template void gather(Exec const&, GatherViews<Exec::memory_space> const&, Index, Index,                       \
+                       Kokkos::View<Vec3 const*, Exec::memory_space>, Kokkos::View<Vec3*, Exec::memory_space>); \
+  template void gather(Exec const&, GatherViews<Exec::memory_space> const&, kernels::Field<double const>,       \
+                       Kokkos::View<Vec3*, Exec::memory_space>);
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE
 

@@ -5,11 +5,13 @@
 // number of threads.
 #pragma once
 
+#include <gridmorph/kernels/field.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <Kokkos_Core.hpp>
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gridmorph {
@@ -32,7 +34,7 @@ namespace detail {
 /// A list in a View of its own; fences.
 template <class MemorySpace, class T>
 Kokkos::View<T*, MemorySpace> copy_of(std::vector<T> const& list, char const* label) {
-  Kokkos::View<T*, MemorySpace> copy(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), list.size());
+  Kokkos::View<T*, MemorySpace> copy(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), list.size());
   Kokkos::deep_copy(copy, view_of<Kokkos::HostSpace>(list, label));
   return copy;
 }
@@ -62,6 +64,11 @@ struct GatherViews {
 template <class Exec>
 void gather(Exec const& exec, GatherViews<typename Exec::memory_space> const& rows, Index begin, Index end,
             Kokkos::View<Vec3 const*, typename Exec::memory_space> source,
+            Kokkos::View<Vec3*, typename Exec::memory_space> value);
+
+/// The same from three component arrays, for all rows.
+template <class Exec>
+void gather(Exec const& exec, GatherViews<typename Exec::memory_space> const& rows, kernels::Field<double const> source,
             Kokkos::View<Vec3*, typename Exec::memory_space> value);
 
 }  // namespace gridmorph

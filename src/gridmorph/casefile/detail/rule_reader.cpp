@@ -247,6 +247,8 @@ Rule read_rule(std::size_t number, TableReader& table, RuleContext const& shared
 
 }  // namespace
 
+std::vector<std::string> const& known_rules() { return rule_names; }
+
 std::optional<Axis> read_axis(TableReader& table, std::string const& key) {
   auto const* value = table.find(key);
   if (value == nullptr) return std::nullopt;

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace gridmorph::casefile {
 
@@ -14,6 +15,9 @@ struct RuleContext {
   std::optional<Axis> axis;
   std::map<std::string, double> constants;
 };
+
+/// The words for `rule`, those that are not available yet among them.
+std::vector<std::string> const& known_rules();
 
 /// { origin = [x, y, z], direction = [x, y, z] } or "x", "y", "z". Nothing when absent or unusable (problem noted).
 std::optional<Axis> read_axis(TableReader& table, std::string const& key);

@@ -37,6 +37,11 @@ unsigned TableReader::line(std::string const& key) const {
 }
 
 toml::value const* TableReader::find(std::string const& key) {
+  if (context_->asked != nullptr) {
+    std::string table = name_;
+    std::erase_if(table, [](char c) { return c == '[' || c == ']'; });
+    context_->asked->emplace(std::move(table), key);
+  }
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   auto const& table = table_->as_table();
   auto const found = table.find(key);

@@ -2,6 +2,7 @@
 // case file reports all of them. Internal to casefile.
 #pragma once
 
+#include <gridmorph/casefile/case_file.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/kernels/vec3.hpp>
 
@@ -20,6 +21,7 @@ struct Context {
   std::string file;                 ///< as the user named it
   std::filesystem::path directory;  ///< relative paths in the case file start here
   Problems problems;
+  CaseKeyUse* asked = nullptr;  ///< every key that is asked for, where somebody wants to know
 
   void problem(unsigned line, std::string const& text) { problems.add(where(line) + ": " + text); }
   [[nodiscard]] std::string where(unsigned line) const { return file + ":" + std::to_string(line); }
@@ -76,5 +78,8 @@ std::string describe_value(toml::value const& value);
 
 /// Line of a value in the case file.
 unsigned line_of(toml::value const& value);
+
+/// The tables of a TOML text; ConfigError with file and line when it is none.
+toml::value parse_toml_text(std::string const& text, std::string const& file);
 
 }  // namespace gridmorph::casefile

@@ -1,0 +1,16 @@
+// One case file from an unstructured mesh to its morphed copy, quality and pictures of the stages.
+#pragma once
+
+#include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/cli/terminal.hpp>
+
+namespace gridmorph::cli {
+
+/// `gridmorph morph` on an unstructured mesh; returns the exit status. Throws what reading, planning and writing throw; writes
+/// nothing then.
+int morph_unstructured(CaseFile const& case_file, Terminal& terminal);
+
+/// `gridmorph plan`, and `morph --dry-run`: what the walls, regions, layers and the background mesh are, notes first.
+std::string unstructured_plan_text(CaseFile const& case_file, Terminal& terminal);
+
+}  // namespace gridmorph::cli

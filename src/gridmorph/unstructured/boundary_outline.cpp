@@ -1,0 +1,92 @@
+#include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/unstructured/boundary_outline.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace gridmorph {
+
+std::vector<std::vector<Number>> nodes_of_patches(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                                                  BoundaryClaims const& claims) {
+  std::vector<std::vector<Number>> nodes(mesh.patches.size());
+  for (Index f = 0; f < topology.boundary.size(); ++f)
+    if (int const p = claims.patch[std::size_t(f)]; p >= 0) {
+      auto const face = topology.boundary.nodes[f];
+      nodes[std::size_t(p)].insert(nodes[std::size_t(p)].end(), face.begin(), face.end());
+    }
+  for (std::size_t p = 0; p < nodes.size(); ++p) {
+    auto& list = nodes[p];
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    if (list.empty()) list = patch_nodes(mesh.patches[p]);
+  }
+  return nodes;
+}
+
+namespace {
+
+/// The connection that is this one seen from its donor's side, or the connection itself.
+std::size_t partner_of(UnstructuredMesh const& mesh, std::size_t c) {
+  auto const& own = mesh.connections[c];
+  for (std::size_t d = 0; d < mesh.connections.size(); ++d) {
+    auto const& other = mesh.connections[d];
+    if (d == c || other.zone != own.donor_zone || other.donor_zone != own.zone || !other.periodic) continue;
+    if (other.nodes.size() != own.nodes.size()) continue;
+    std::vector<Number> a = own.donor_nodes, b = other.nodes;
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    if (a == b) return d;
+  }
+  return c;
+}
+
+}  // namespace
+
+Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Number>> const& nodes_of_patch) {
+  Mesh outline;
+  outline.source = mesh.source;
+  outline.families = mesh.families;
+  auto const add_zone = [&](std::string const& name, std::size_t n) {
+    // A zone has two nodes at least along each axis; only those of the ranges are looked at.
+    return outline.add_zone(name, {std::max(2, int(n)), 2, 2});
+  };
+  // The boundary of a 2-D mesh is made of lines. As the edges of strips across its plane they have planes and profiles.
+  bool const flat = mesh.dimension == 2;
+  Vec3 const across = flat ? mesh.size() * plane_normal(mesh) : Vec3{};
+  std::vector<std::vector<Number> const*> lists;
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    UnstructuredPatch const& from = mesh.patches[p];
+    auto const& nodes = nodes_of_patch[p];
+    Patch patch{from.name, from.bc_type, from.kind, from.families, 0, {}};
+    patch.zone = add_zone(mesh.zones[std::size_t(from.zone)].name, nodes.size());
+    patch.range = {{0, 0, 0}, {int(nodes.size()), flat ? 2 : 1, 1}};
+    outline.patches.push_back(std::move(patch));
+    lists.push_back(&nodes);
+  }
+  int const first = int(outline.zones.size());
+  for (std::size_t c = 0; c < mesh.connections.size(); ++c) {
+    UnstructuredConnection const& from = mesh.connections[c];
+    Interface1to1 interface;
+    interface.name = from.name;
+    interface.families = from.families;
+    interface.periodic = from.periodic;
+    interface.zone = add_zone(mesh.zones[std::size_t(from.zone)].name, from.nodes.size());
+    interface.donor_zone = first + int(from.periodic ? partner_of(mesh, c) : c);
+    interface.range = {{0, 0, 0}, {int(from.nodes.size()), 1, 1}};
+    outline.interfaces.push_back(std::move(interface));
+    lists.push_back(&from.nodes);
+  }
+  outline.coordinates = Coordinates(outline.n_nodes());
+  for (std::size_t z = 0; z < lists.size(); ++z) {
+    auto const& nodes = *lists[z];
+    for (Index n = 0; n < outline.zones[z].size(); ++n) {
+      if (nodes.empty()) continue;
+      Index3 const at = outline.zones[z].index(outline.zones[z].first_node + n);
+      Vec3 const x = mesh.coordinates[nodes[std::min(std::size_t(at[0]), nodes.size() - 1)]];
+      outline.coordinates.set(outline.zones[z].first_node + n, x + double(at[1]) * across);
+    }
+  }
+  return outline;
+}
+
+}  // namespace gridmorph

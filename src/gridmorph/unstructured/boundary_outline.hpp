@@ -1,0 +1,22 @@
+// The boundary of an unstructured mesh in the form that motion rules are resolved and evaluated on.
+#pragma once
+
+#include <gridmorph/mesh/unstructured_topology.hpp>
+
+#include <vector>
+
+namespace gridmorph {
+
+/// A structured mesh with one zone per patch, its nodes side by side along i, and one per connection: names, families, kinds and
+/// positions of the boundary, but no faces. Patch p and interface c are those of the unstructured mesh.
+///
+/// Selectors, defaults, conflicts and everything that follows from the positions of a patch's nodes (planes, profiles of
+/// revolution, formulas) are then the structured engine's own. A patch of a 2-D mesh, a line, has a second row of nodes across
+/// the mesh's plane, so that it has a plane of its own. Cost O(boundary nodes).
+Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Number>> const& nodes_of_patch);
+
+/// Nodes of each patch, ascending: those of the boundary faces it got, or all it lists where it got none.
+std::vector<std::vector<Number>> nodes_of_patches(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                                                  BoundaryClaims const& claims);
+
+}  // namespace gridmorph

@@ -1,0 +1,51 @@
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/unstructured/classify.hpp>
+
+#include <algorithm>
+#include <atomic>
+
+namespace gridmorph {
+
+template <class AnyWrap>
+Classification classify(UnstructuredMesh const& mesh, AnyWrap const& wrap) {
+  using Host = Kokkos::DefaultHostExecutionSpace;
+  using Range = Kokkos::RangePolicy<Host, Kokkos::IndexType<Index>>;
+  Host const exec;
+  Classification out;
+  std::vector<std::uint8_t> inside(std::size_t(mesh.n_nodes()));
+  out.near.assign(std::size_t(mesh.n_nodes()), 0);
+  out.element.resize(std::size_t(mesh.n_elements()));
+  Kokkos::parallel_for("gridmorph::classify::nodes", Range(exec, 0, mesh.n_nodes()),
+                       [&](Index n) { inside[std::size_t(n)] = std::uint8_t(wrap.contains(mesh.coordinates[n])); });
+  Kokkos::parallel_for("gridmorph::classify::elements", Range(exec, 0, mesh.n_elements()), [&](Index e) {
+    auto const corners = mesh.elements.corners(e);
+    Region& region = out.element[std::size_t(e)];
+    if (std::all_of(corners.begin(), corners.end(), [&](Number n) { return inside[std::size_t(n)] != 0; })) {
+      region = Region::near;
+    } else {
+      LatticeBox box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+      for (Number const n : corners) {
+        Vec3 const p = mesh.coordinates[n];
+        std::array<double, 3> const x{p.x, p.y, p.z};
+        for (std::size_t a = 0; a < 3; ++a) {
+          box.low[a] = std::min(box.low[a], x[a]);
+          box.high[a] = std::max(box.high[a], x[a]);
+        }
+      }
+      region = wrap.meets(box) ? Region::fence : Region::far;
+    }
+    if (region == Region::far) return;
+    // Several elements may mark a node: all of them with the same value.
+    for (Number const n : mesh.elements.nodes[e])
+      std::atomic_ref<std::uint8_t>(out.near[std::size_t(n)]).store(1, std::memory_order_relaxed);
+  });
+  compat::fence(exec, "gridmorph::classify (read by the host)");
+  for (Region const region : out.element)
+    ++(region == Region::near ? out.n_near : region == Region::fence ? out.n_fence : out.n_far);
+  for (std::uint8_t const near : out.near) out.n_near_nodes += near;
+  return out;
+}
+
+template Classification classify(UnstructuredMesh const&, Wrap const&);
+
+}  // namespace gridmorph

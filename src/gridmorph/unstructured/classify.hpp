@@ -1,0 +1,26 @@
+// Which elements and nodes move with the walls, and which take their displacement from the background mesh.
+#pragma once
+
+#include <gridmorph/unstructured/wrap.hpp>
+
+namespace gridmorph {
+
+enum class Region : std::uint8_t {
+  far,    ///< outside the wrap
+  fence,  ///< its box meets the wrap, but not all of its nodes lie inside
+  near    ///< all nodes in the wrap
+};
+
+struct Classification {
+  std::vector<Region> element;
+  std::vector<std::uint8_t> near;  ///< per node: 1 when it belongs to a near or fence element
+
+  Index n_near = 0, n_fence = 0, n_far = 0;  ///< elements
+  Index n_near_nodes = 0;
+};
+
+/// Looks at the corners of each element; its further nodes go with it. In parallel on the host; linear cost.
+template <class AnyWrap>
+Classification classify(UnstructuredMesh const& mesh, AnyWrap const& wrap);
+
+}  // namespace gridmorph

@@ -1,0 +1,37 @@
+// Layers of nodes around a set of nodes, and how displacements pass from one layer to the next.
+#pragma once
+
+#include <gridmorph/unstructured/gather_rows.hpp>
+#include <gridmorph/unstructured/node_graph.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace gridmorph {
+
+struct LayerRows {
+  GatherRows rows;              ///< targets in the order of their layers
+  std::vector<Index> level{0};  ///< first row of each layer, and the end
+
+  [[nodiscard]] int n_layers() const { return int(level.size()) - 1; }
+};
+
+/// Layer 1 holds the nodes of `wanted` that an edge joins to a seed, layer 2 those joined to layer 1, and so on. A row gathers
+/// from the neighbours in the layer before. weight(node, source) must be positive.
+/// At most `most_items` sources, those of largest weight. Wanted nodes that nothing reaches get no row. Deterministic; O(edges).
+LayerRows make_layers(NodeGraph const& graph, std::vector<std::uint8_t> const& seeds,
+                      std::vector<std::uint8_t> const& wanted,
+                      std::function<double(Number node, Number source)> const& weight, int most_layers = 1 << 30,
+                      int most_items = 8);
+
+/// The same in the order of a distance from the seeds instead of a number of edges: a node gathers from the neighbours that are
+/// nearer to the seeds by at least a third of the edge between them, or else from the nearest of those that are nearer at all. So
+/// fronts that leave walls with fine and with coarse elements advance alike. A layer holds the nodes whose sources lie in
+/// layers before. Seeds need not be at distance zero; wanted nodes that no chain of edges joins to a seed get no row. O(n log n + edges).
+LayerRows make_layers_by_distance(NodeGraph const& graph, Coordinates const& coordinates,
+                                  std::vector<std::uint8_t> const& seeds, std::vector<std::uint8_t> const& wanted,
+                                  std::vector<double> const& distance,
+                                  std::function<double(Number node, Number source)> const& weight, int most_items = 8);
+
+}  // namespace gridmorph

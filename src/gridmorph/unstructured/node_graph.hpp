@@ -1,0 +1,23 @@
+// Which nodes an edge of an element joins, with the nodes that coincide in several zones taken as one.
+#pragma once
+
+#include <gridmorph/mesh/unstructured_topology.hpp>
+
+#include <vector>
+
+namespace gridmorph {
+
+struct NodeGraph {
+  /// Smallest number among the nodes at the same point: the one that carries the displacement of all of them.
+  std::vector<Number> representative;
+  /// Representatives at the other ends of the edges of elements, ascending; empty for all other nodes.
+  NumberLists neighbours;
+
+  [[nodiscard]] Index size() const { return Index(representative.size()); }
+  [[nodiscard]] bool carries(Number n) const { return representative[std::size_t(n)] == n; }
+};
+
+/// Edges of polyhedra are those of their faces. Cost O(corners of all elements); host, serial.
+NodeGraph make_node_graph(UnstructuredMesh const& mesh);
+
+}  // namespace gridmorph

@@ -1,0 +1,33 @@
+// What a user can choose about the morph of an unstructured mesh. Plain values with their defaults.
+#pragma once
+
+#include <gridmorph/plan/options.hpp>
+
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+/// How much each node of the layers before counts when displacements pass on.
+enum class LayerWeight {
+  uniform,           ///< 1
+  inverse_distance,  ///< 1 / length of the edge
+  quality,           ///< inverse distance times the mean quality of the elements around the edge's two ends
+  curvature          ///< inverse distance / (1 + d k)^2: d distance from the wall, k curvature of the wall there
+};
+
+struct UnstructuredOptions {
+  /// Selectors of the walls that drive the near field; empty: every patch with an explicit rule other than `fixed` that is no
+  /// inflow, outflow, farfield or symmetry.
+  std::vector<std::string> walls;
+  std::vector<BoundaryLayer> boundary_layers;  ///< how far the columns of which walls go, and how they turn
+  LayerWeight weight = LayerWeight::inverse_distance;
+  double offset = 0;  ///< of the wrap from the moving walls [length]; 0: suggest_offset()
+  double motion =
+      -1;  ///< size of the displacements to come [length], for suggest_offset(); negative: what the rules give now
+  int resolution = 10;    ///< cells of the wrap's lattice along the longest extent of the walls
+  int cells = 4;          ///< of the background mesh along each cell of the wrap's lattice
+  Law law = Law::linear;  ///< along the grid lines of the background mesh
+};
+
+}  // namespace gridmorph
