@@ -210,11 +210,11 @@ double sampled_distance(ElementType type, ElementCorners const& c, Vec3 const& p
       return distance(element_position(type, c, l), p);
     };
     double u = 0.5, v = 0.5, width = 1, least = unbounded;
-    for (int level = 0; level < 12; ++level, width *= 0.35) {
+    for (int level = 0; level < 8; ++level, width *= 0.3) {
       double const cu = u, cv = v;
-      for (int i = -10; i <= 10; ++i)
-        for (int j = -10; j <= 10; ++j) {
-          double const tu = std::clamp(cu + 0.1 * i * width, 0.0, 1.0), tv = std::clamp(cv + 0.1 * j * width, 0.0, 1.0);
+      for (int i = -6; i <= 6; ++i)
+        for (int j = -6; j <= 6; ++j) {
+          double const tu = std::clamp(cu + i * width / 6, 0.0, 1.0), tv = std::clamp(cv + j * width / 6, 0.0, 1.0);
           double const d = at(tu, tv);
           if (d >= least) continue;
           least = d;
@@ -232,7 +232,7 @@ TEST(ElementPlace, NearestPlaceIsAsNearAsAnyOnTheFaces) {
   for (auto const type : all_types)
     for (double const warp : {0.0, 0.2, 0.4}) {
       int outside = 0;
-      for (int n = 0; n < 120; ++n) {
+      for (int n = 0; n < 80; ++n) {
         ElementCorners const c = random_sound(type, warp, random);
         Vec3 p = Vec3{0.5, 0.5, 0.5} + random.vector(2);
         if (is_surface(type)) p.z = 0;
@@ -244,7 +244,7 @@ TEST(ElementPlace, NearestPlaceIsAsNearAsAnyOnTheFaces) {
         EXPECT_NEAR(distance(element_position(type, c, place.local), p), place.distance, 1e-14);
         EXPECT_LT(place.distance, 1.01 * sampled_distance(type, c, p) + 1e-9) << int(type) << " warp " << warp;
       }
-      EXPECT_GT(outside, 50);
+      EXPECT_GT(outside, 30);
     }
 }
 

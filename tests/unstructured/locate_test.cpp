@@ -161,6 +161,7 @@ TEST(ElementLocator, NodesAndPointsOfElementsAreFoundAndLieWhereTheyAre) {
     for (Index e = 0; e < mesh.n_elements(); ++e)
       for (int k = 0; k < 10; ++k) points.push_back(random_mean(mesh, e, random));
     auto const found = locate(mesh, points);
+    double const size = mesh.size();
     Index outside = 0;
     for (std::size_t n = 0; n < points.size(); ++n) {
       ASSERT_GE(found[n].element, 0);
@@ -170,7 +171,7 @@ TEST(ElementLocator, NodesAndPointsOfElementsAreFoundAndLieWhereTheyAre) {
         EXPECT_GE(Index(n), mesh.n_nodes());
         EXPECT_LT(found[n].distance, 0.02 * size_of_element(mesh, found[n].element));
       }
-      EXPECT_NEAR(distance(position(mesh, found[n]), points[n]), found[n].distance, 3e-12 * mesh.size());
+      EXPECT_NEAR(distance(position(mesh, found[n]), points[n]), found[n].distance, 3e-12 * size);
     }
     EXPECT_LT(outside, Index(points.size()) / 20);
   }
@@ -192,8 +193,8 @@ TEST(ElementLocator, PlacesAreThoseOfASearchThroughAllElements) {
       for (Vec3& p : points) p.z = 0;
     auto const found = locate(mesh, points);
     int outside = 0;
+    double const tolerance = ElementLocator<Exec>(Exec(), mesh).tolerance();
     for (std::size_t n = 0; n < points.size(); ++n) {
-      double const tolerance = ElementLocator<Exec>(Exec(), mesh).tolerance();
       Number holding = -1, nearest = -1;
       double least = unbounded;
       for (Number e = 0; e < mesh.n_elements() && holding < 0; ++e) {
@@ -234,9 +235,10 @@ TEST(ElementLocator, OrderOfCandidatesAndOfPointsAndTheBackendChangeNothing) {
   for (auto const& [name, mesh] : cases()) {
     SCOPED_TRACE(name);
     std::vector<Vec3> points;
+    double const size = mesh.size();
     for (int n = 0; n < 3000; ++n)
       points.push_back(random_mean(mesh, random.below(int(mesh.n_elements())), random) +
-                       random.vector(n % 3 == 0 ? mesh.size() : 1e-3));
+                       random.vector(n % 3 == 0 ? size : 1e-3));
     std::vector<Number> candidates = all_of(mesh);
     auto const expected = locate_with<Exec>(mesh, points, candidates);
 #ifdef KOKKOS_ENABLE_SERIAL
@@ -371,6 +373,7 @@ TEST(InterpolationRows, LinearFieldsAndConstantsAreReproducedByAllElements) {
     GatherRows const rows = interpolation_rows(mesh, where, targets);
     ASSERT_EQ(rows.size(), Index(points.size()));
     EXPECT_EQ(rows.target, targets);
+    double const size = mesh.size();
     for (std::size_t n = 0; n < points.size(); ++n) {
       auto const exact = corner_weights(mesh, where[n]);
       auto const corners = mesh.elements.corners(where[n].element);
@@ -381,11 +384,11 @@ TEST(InterpolationRows, LinearFieldsAndConstantsAreReproducedByAllElements) {
         EXPECT_GE(exact[k], -1e-15);
       }
       EXPECT_NEAR(sum, 1, 1e-14);
-      EXPECT_NEAR(value, field(position(mesh, where[n])), 1e-11 * mesh.size());
+      EXPECT_NEAR(value, field(position(mesh, where[n])), 1e-11 * size);
       double row = 0;
       for (Index k = rows.first[n]; k < rows.first[n + 1]; ++k)
         row += double(rows.weight[std::size_t(k)]) * field(mesh.coordinates[rows.item[std::size_t(k)]]);
-      EXPECT_NEAR(row, value, 2e-6 * mesh.size());
+      EXPECT_NEAR(row, value, 2e-6 * size);
     }
   }
 }
@@ -423,7 +426,8 @@ TEST(InterpolationRows, NodesAreCopiesOfThemselvesAndOutsideNothingIsExtrapolate
     for (float const w : rows.weight) EXPECT_EQ(w, 1);
     Random random(8);
     std::vector<Vec3> away;
-    for (int n = 0; n < 300; ++n) away.push_back(mesh.coordinates[0] + random.vector(3 * mesh.size()));
+    double const size = mesh.size();
+    for (int n = 0; n < 300; ++n) away.push_back(mesh.coordinates[0] + random.vector(3 * size));
     targets.resize(away.size(), 0);
     GatherRows const outside =
         interpolation_rows(mesh, locate(mesh, away), std::span<Number const>(targets).first(away.size()));

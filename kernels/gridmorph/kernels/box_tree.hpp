@@ -29,35 +29,85 @@ struct Box {
   }
 };
 
-/// Place of a point on the Hilbert curve through the box from `low`; `steps`: 2^21 over the size of the box along each axis.
-/// Points outside count as those on its limit.
-KOKKOS_INLINE_FUNCTION std::uint64_t hilbert_code(Vec3 const& p, Vec3 const& low, Vec3 const& steps) {
-  constexpr int bits = 21;
-  constexpr double last = double((1 << bits) - 1);
-  auto const step = [](double at) { return std::uint32_t(at > 0 ? (at < last ? at : last) : 0.0); };
-  std::uint32_t const x = step((p.x - low.x) * steps.x), y = step((p.y - low.y) * steps.y),
-                      z = step((p.z - low.z) * steps.z);
-  // Of the eight parts of a cube in their order: the axis along which the curve leaves the part, and the corner it enters.
-  constexpr std::uint8_t axis_of[8] = {0, 1, 1, 2, 2, 1, 1, 0};
-  constexpr std::uint8_t entry_of[8] = {0, 0, 0, 3, 3, 6, 6, 5};
-  constexpr std::uint8_t number_of_gray[8] = {0, 1, 3, 2, 7, 6, 4, 5};
-  std::uint32_t entry = 0, axis = 0;
+/// Steps of a lattice of 2^21 to an axis: those of a point from `low`, `steps` of them to a unit of length. Points outside
+/// count as those on its limit.
+struct LatticePlace {
+  static constexpr int bits = 21;
+  std::uint32_t x, y, z;
+
+  KOKKOS_INLINE_FUNCTION LatticePlace(Vec3 const& p, Vec3 const& low, Vec3 const& steps)
+      : x(step((p.x - low.x) * steps.x)), y(step((p.y - low.y) * steps.y)), z(step((p.z - low.z) * steps.z)) {}
+
+ private:
+  KOKKOS_INLINE_FUNCTION static std::uint32_t step(double at) {
+    constexpr double last = double((1 << bits) - 1);
+    return std::uint32_t(at > 0 ? (at < last ? at : last) : 0.0);
+  }
+};
+
+/// Rules of the Hilbert curve. A state is the corner by which the curve enters a cube and the axis along which it leaves,
+/// entry + 8 * axis; next[state][part] is 8 * (state in that eighth) + its number along the curve.
+struct HilbertRules {
+  std::uint8_t next[24][8];
+};
+
+KOKKOS_INLINE_FUNCTION constexpr HilbertRules hilbert_rules() {
+  constexpr unsigned axis_of[8] = {0, 1, 1, 2, 2, 1, 1, 0};
+  constexpr unsigned entry_of[8] = {0, 0, 0, 3, 3, 6, 6, 5};
+  constexpr unsigned number_of_gray[8] = {0, 1, 3, 2, 7, 6, 4, 5};
+  HilbertRules rules{};
+  for (unsigned axis = 0; axis < 3; ++axis)
+    for (unsigned entry = 0; entry < 8; ++entry)
+      for (unsigned part = 0; part < 8; ++part) {
+        unsigned const turn = (axis + 1) % 3, seen = part ^ entry;
+        unsigned const number = number_of_gray[(seen >> turn | seen << (3 - turn)) & 7u];
+        unsigned const e = entry_of[number];
+        unsigned const next_entry = entry ^ ((e << turn | e >> (3 - turn)) & 7u);
+        unsigned const next_axis = (axis + axis_of[number] + 1) % 3;
+        rules.next[entry + 8 * axis][part] = std::uint8_t(8 * (next_entry + 8 * next_axis) + number);
+      }
+  return rules;
+}
+
+/// Place on the Hilbert curve through the lattice.
+KOKKOS_INLINE_FUNCTION std::uint64_t hilbert_code(LatticePlace const& p) {
+  constexpr HilbertRules rules = hilbert_rules();
+  unsigned state = 0;
   std::uint64_t code = 0;
-  for (int level = bits - 1; level >= 0; --level) {
-    std::uint32_t const part = (x >> level & 1u) | (y >> level & 1u) << 1 | (z >> level & 1u) << 2;
-    std::uint32_t const turn = axis == 2 ? 0 : axis + 1;
-    std::uint32_t const seen = part ^ entry;
-    std::uint32_t const gray = (seen >> turn | seen << (3 - turn)) & 7u;
-    std::uint32_t const number = number_of_gray[gray];
-    code = code << 3 | number;
-    std::uint32_t const e = entry_of[number];
-    entry ^= (e << turn | e >> (3 - turn)) & 7u;
-    axis += axis_of[number] + 1u;
-    axis -= axis >= 3 ? 3 : 0;
-    axis -= axis >= 3 ? 3 : 0;
+  for (int level = LatticePlace::bits - 1; level >= 0; --level) {
+    unsigned const part = (p.x >> level & 1u) | (p.y >> level & 1u) << 1 | (p.z >> level & 1u) << 2;
+    unsigned const next = rules.next[state][part];
+    code = code << 3 | (next & 7u);
+    state = next >> 3;
   }
   return code;
 }
+
+/// Place in Z order (G. Morton, 1966): the bits of x, y, z in turn. Cheaper, but neighbours along it can be far apart.
+KOKKOS_INLINE_FUNCTION std::uint64_t z_code(LatticePlace const& p) {
+  auto const spread = [](std::uint64_t a) {
+    a = (a | a << 32) & 0x1f00000000ffffull;
+    a = (a | a << 16) & 0x1f0000ff0000ffull;
+    a = (a | a << 8) & 0x100f00f00f00f00full;
+    a = (a | a << 4) & 0x10c30c30c30c30c3ull;
+    return (a | a << 2) & 0x1249249249249249ull;
+  };
+  return spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2;
+}
+
+/// A point in single precision, rounded down and up: what holds it holds both or lies between.
+struct RoundedPoint {
+  float low[3], high[3];
+
+  KOKKOS_INLINE_FUNCTION explicit RoundedPoint(Vec3 const& p)
+      : low{down(p.x), down(p.y), down(p.z)}, high{-down(-p.x), -down(-p.y), -down(-p.z)} {}
+  /// A step of single precision is at most 1.2e-7 of the number, and 1e-45 next to zero.
+  KOKKOS_INLINE_FUNCTION static float down(double a) {
+    constexpr double most = 3e38;
+    if (!(a > -most)) return -HUGE_VALF;
+    return float(a < most ? a - (1.3e-7 * (a < 0 ? -a : a) + 1e-44) : most);
+  }
+};
 
 /// Boxes of eight things or groups, side by side.
 struct BoxGroup {
@@ -65,14 +115,11 @@ struct BoxGroup {
   float low[3][width], high[3][width];
 
   KOKKOS_INLINE_FUNCTION void set(int k, Box const& box) {
-    // One step of single precision is at most 1.2e-7 of the number, and 1e-45 next to zero.
-    auto const down = [](double a) { return float(a - (1.3e-7 * (a < 0 ? -a : a) + 1e-44)); };
-    low[0][k] = down(box.low.x);
-    low[1][k] = down(box.low.y);
-    low[2][k] = down(box.low.z);
-    high[0][k] = -down(-box.high.x);
-    high[1][k] = -down(-box.high.y);
-    high[2][k] = -down(-box.high.z);
+    RoundedPoint const l(box.low), h(box.high);
+    for (int a = 0; a < 3; ++a) {
+      low[a][k] = l.low[a];
+      high[a][k] = h.high[a];
+    }
   }
   /// The box around all of a group's.
   KOKKOS_INLINE_FUNCTION void set(int k, BoxGroup const& of) {
@@ -93,22 +140,50 @@ struct BoxGroup {
     }
   }
 
-  /// Bit k: box k holds the point.
-  KOKKOS_INLINE_FUNCTION unsigned holding(Vec3 const& p) const {
+  /// Bit k: box k holds the point, or is next to it.
+  KOKKOS_INLINE_FUNCTION unsigned holding(RoundedPoint const& p) const {
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__HIPCC__)
+    // Four boxes at once, which compilers do not do on their own.
+    constexpr int n = 4;
+    using Floats [[gnu::vector_size(n * sizeof(float))]] = float;
+    using Bits [[gnu::vector_size(n * sizeof(float))]] = int;
+    auto const four = [&](int k, Bits const& bit) {
+      auto const between = [&](int a) {
+        Floats l, h;
+        __builtin_memcpy(&l, low[a] + k, sizeof l);
+        __builtin_memcpy(&h, high[a] + k, sizeof h);
+        return ((Floats{} + p.high[a]) >= l) & ((Floats{} + p.low[a]) <= h);
+      };
+      return between(0) & between(1) & between(2) & bit;
+    };
+    static_assert(width == 2 * n);
+    Bits const in = four(0, Bits{1, 2, 4, 8}) | four(n, Bits{16, 32, 64, 128});
+    return unsigned((in[0] | in[1]) | (in[2] | in[3]));
+#else
     unsigned bits = 0;
     for (int k = 0; k < width; ++k) {
-      unsigned const in = unsigned(p.x >= low[0][k]) & unsigned(p.x <= high[0][k]) & unsigned(p.y >= low[1][k]) &
-                          unsigned(p.y <= high[1][k]) & unsigned(p.z >= low[2][k]) & unsigned(p.z <= high[2][k]);
+      unsigned const in = unsigned(p.high[0] >= low[0][k]) & unsigned(p.low[0] <= high[0][k]) &
+                          unsigned(p.high[1] >= low[1][k]) & unsigned(p.low[1] <= high[1][k]) &
+                          unsigned(p.high[2] >= low[2][k]) & unsigned(p.low[2] <= high[2][k]);
       bits |= in << k;
     }
     return bits;
+#endif
   }
-  /// Square of the distance to box k; infinite to an empty one.
-  KOKKOS_INLINE_FUNCTION double distance2(int k, Vec3 const& p) const {
-    auto const outside = [](double l, double h, double at) { return at < l ? l - at : at > h ? at - h : 0.0; };
-    Vec3 const d{outside(low[0][k], high[0][k], p.x), outside(low[1][k], high[1][k], p.y),
-                 outside(low[2][k], high[2][k], p.z)};
-    return dot(d, d);
+  /// Squares of the distances to the boxes, never too large; infinite to empty ones.
+  KOKKOS_INLINE_FUNCTION void distances2(RoundedPoint const& p, float* out) const {
+    constexpr float safe = 1 - 1e-6f, most = 3e38f;
+    for (int k = 0; k < width; ++k) {
+      float sum = 0;
+      for (int a = 0; a < 3; ++a) {
+        float const before = low[a][k] - p.high[a], behind = p.low[a] - high[a][k];
+        float const away = before > behind ? before : behind;
+        sum += away > 0 ? away * away : 0.0f;
+      }
+      sum *= safe;
+      sum = sum < most ? sum : most;
+      out[k] = low[0][k] <= high[0][k] ? sum : HUGE_VALF;
+    }
   }
 };
 
@@ -124,10 +199,11 @@ struct BoxTreeView {
   template <class Visit>
   KOKKOS_INLINE_FUNCTION void for_each_holding(Vec3 const& p, Visit const& visit) const {
     if (n_levels == 0) return;
+    RoundedPoint const rounded(p);
     unsigned pending[max_levels];
     int level = n_levels - 1;
     std::int64_t group = 0;
-    pending[level] = groups[first[level]].holding(p);
+    pending[level] = groups[first[level]].holding(rounded);
     for (;;) {
       unsigned const bits = pending[level];
       if (bits == 0) {
@@ -145,31 +221,25 @@ struct BoxTreeView {
       }
       --level;
       group = child;
-      pending[level] = groups[first[level] + group].holding(p);
+      pending[level] = groups[first[level] + group].holding(rounded);
     }
   }
 
   /// Calls visit(thing) for things in about the order of the distance of their boxes, as long as that is not larger than
-  /// limit(), the square of the best distance so far.
+  /// limit(), the square of the best distance so far. Distances above 1e19 count as that.
   template <class Visit, class Limit>
   KOKKOS_INLINE_FUNCTION void for_each_nearer(Vec3 const& p, Visit const& visit, Limit const& limit) const {
     if (n_levels == 0) return;
-    float away[max_levels][BoxGroup::width];  // rounded down; below zero: done
+    RoundedPoint const rounded(p);
+    float away[max_levels][BoxGroup::width];  // infinite: empty or done
     int level = n_levels - 1;
     std::int64_t group = 0;
-    auto const look = [&] {
-      BoxGroup const& here = groups[first[level] + group];
-      for (int k = 0; k < BoxGroup::width; ++k) {
-        double const d2 = here.distance2(k, p) * (1 - 1e-6);
-        away[level][k] = here.low[0][k] > here.high[0][k] ? HUGE_VALF : float(smaller(d2, 3e38));
-      }
-    };
-    look();
+    groups[first[level]].distances2(rounded, away[level]);
     for (;;) {
       int nearest = -1;
       float least = HUGE_VALF;
       for (int k = 0; k < BoxGroup::width; ++k) {
-        if (away[level][k] < 0 || !(away[level][k] < least)) continue;
+        if (!(away[level][k] < least)) continue;
         nearest = k;
         least = away[level][k];
       }
@@ -178,7 +248,7 @@ struct BoxTreeView {
         group >>= BoxGroup::shift;
         continue;
       }
-      away[level][nearest] = -1;
+      away[level][nearest] = HUGE_VALF;
       std::int64_t const child = (group << BoxGroup::shift) + nearest;
       if (level == 0) {
         visit(child);
@@ -186,7 +256,7 @@ struct BoxTreeView {
       }
       --level;
       group = child;
-      look();
+      groups[first[level] + group].distances2(rounded, away[level]);
     }
   }
 };

@@ -241,8 +241,8 @@ KOKKOS_INLINE_FUNCTION NormalForm normal_form(ElementType type, CentredMap const
   NormalForm f;
   Vec3 a = cross(m.s, m.t), b = cross(m.t, m.r), c = cross(m.r, m.s);
   double const det = dot(m.r, a);
-  double const scale = norm(m.r) * norm(m.s) * norm(m.t);
-  f.sound = size_of(det) > flat * scale && is_finite(1 / det);
+  double const scale2 = dot(m.r, m.r) * dot(m.s, m.s) * dot(m.t, m.t);
+  f.sound = det * det > flat * flat * scale2 && is_finite(1 / det);
   if (!f.sound) return f;
   double const inverse = 1 / det;
   a = inverse * a;

@@ -23,6 +23,20 @@ struct ElementPlace {
 KOKKOS_INLINE_FUNCTION bool element_contains(ElementType type, ElementCorners const& c, Vec3 const& p, double tolerance,
                                              Vec3& local) {
   constexpr double reach = 0.01;  // round-off in coordinates may be so much of a flat element
+  if (type == ElementType::tetrahedron) {
+    // Most candidates are far from holding the point: no division before that is clear.
+    Vec3 const a = c.at[1] - c.at[0], b = c.at[2] - c.at[0], d = c.at[3] - c.at[0], q = p - c.at[0];
+    Vec3 const ab = cross(a, b), qd = cross(q, d);
+    double det = dot(ab, d), r = -dot(b, qd), s = dot(a, qd), t = dot(ab, q);
+    if (det < 0) {
+      det = -det;
+      r = -r;
+      s = -s;
+      t = -t;
+    }
+    double const low = -reach * det;
+    if (r < low || s < low || t < low || r + s + t > det - low) return false;
+  }
   ElementInverse const inverse = invert_element(type, c, p, reach);
   if (!inverse.converged) return false;
   double const outside = element::excess(type, inverse.local);
@@ -110,6 +124,32 @@ KOKKOS_INLINE_FUNCTION FlatFacePlace nearest_on_face(Vec3 const* x, int n) {
 }
 
 }  // namespace element
+
+/// False only when no place of the element is nearer to p than `limit`: its corners all lie beyond a plane that is so far
+/// away. Planes across the way from the point to the nearest corner, and across `towards` (both seen from p). 60 flops per
+/// corner at most.
+KOKKOS_INLINE_FUNCTION bool may_be_nearer(ElementType type, ElementCorners const& c, Vec3 const& p, Vec3 const& towards,
+                                          double limit) {
+  constexpr double safe = 1 - 1e-6;
+  int const corners = n_corners(type);
+  double const limit2 = limit * limit;
+  double least = unbounded;
+  Vec3 nearest;
+  double beyond = unbounded;
+  for (int k = 0; k < corners; ++k) {
+    Vec3 const d = c.at[k] - p;
+    double const d2 = dot(d, d);
+    if (d2 < least) {
+      least = d2;
+      nearest = d;
+    }
+    beyond = smaller(beyond, dot(towards, d));
+  }
+  if (beyond > 0 && beyond * beyond * safe > limit2 * dot(towards, towards)) return false;
+  beyond = unbounded;
+  for (int k = 0; k < corners; ++k) beyond = smaller(beyond, dot(nearest, c.at[k] - p));
+  return !(beyond > 0 && beyond * beyond * safe > limit2 * least);
+}
 
 /// The place of an element nearest to a point outside. `type`: no polyhedron.
 KOKKOS_INLINE_FUNCTION ElementPlace nearest_in_element(ElementType type, ElementCorners const& c, Vec3 const& p) {

@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/kernels/element_place.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/unstructured/locate.hpp>
 
 #include <algorithm>
@@ -47,6 +48,33 @@ void fill_weights(UnstructuredMesh const& mesh, Location const& where, std::vect
   std::copy_n(w.of, corners.size(), weight.begin());
 }
 
+/// Calls visit(node, weight) for the corner nodes of a place whose weights count, each node once: collapsed elements name
+/// some more than once.
+template <class Visit>
+void for_each_item(UnstructuredMesh const& mesh, Location const& where, Visit const& visit) {
+  constexpr double negligible = 1e-9;
+  auto const corners = mesh.elements.corners(where.element);
+  ElementType const type = mesh.elements.type[std::size_t(where.element)];
+  ElementWeights some;
+  std::vector<double> many;
+  double* weight = some.of;
+  if (type == ElementType::polyhedron) {
+    fill_weights(mesh, where, many);
+    weight = many.data();
+  } else {
+    some = element_weights(type, where.local);
+    for (std::size_t k = 1; k < corners.size(); ++k)
+      for (std::size_t earlier = 0; earlier < k; ++earlier) {
+        if (corners[earlier] != corners[k]) continue;
+        weight[earlier] += weight[k];
+        weight[k] = 0;
+        break;
+      }
+  }
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    if (weight[k] >= negligible) visit(corners[k], weight[k]);
+}
+
 void check(UnstructuredMesh const& mesh, Location const& where) {
   if (where.element >= 0 && where.element < mesh.n_elements()) return;
   throw MeshError(
@@ -74,36 +102,36 @@ Vec3 position(UnstructuredMesh const& mesh, Location const& location) {
 
 GatherRows interpolation_rows(UnstructuredMesh const& mesh, std::span<Location const> locations,
                               std::span<Number const> targets) {
-  constexpr double negligible = 1e-9;
   if (targets.size() != locations.size())
     throw MeshError("interpolation in '" + mesh.source + "': " + std::to_string(locations.size()) + " locations for " +
                     std::to_string(targets.size()) + " targets");
+  for (Location const& where : locations) check(mesh, where);
   GatherRows rows;
-  rows.target.reserve(locations.size());
-  rows.first.reserve(locations.size() + 1);
-  rows.item.reserve(8 * locations.size());
-  rows.weight.reserve(8 * locations.size());
-  std::vector<double> weight, kept;
-  std::vector<Number> items;
-  for (std::size_t n = 0; n < locations.size(); ++n) {
-    check(mesh, locations[n]);
-    fill_weights(mesh, locations[n], weight);
-    auto const corners = mesh.elements.corners(locations[n].element);
-    items.clear();
-    kept.clear();
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      if (weight[k] < negligible) continue;
-      // Collapsed elements name a node more than once.
-      auto const same = std::find(items.begin(), items.end(), corners[k]);
-      if (same != items.end()) {
-        kept[std::size_t(same - items.begin())] += weight[k];
-        continue;
-      }
-      items.push_back(corners[k]);
-      kept.push_back(weight[k]);
-    }
-    rows.add(targets[n], items, kept);
-  }
+  rows.target.assign(targets.begin(), targets.end());
+  rows.first.resize(locations.size() + 1);
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Exec const exec;
+  Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>> const all(exec, 0, Index(locations.size()));
+  Kokkos::parallel_for("gridmorph::interpolation_rows::count", all, [&](Index const n) {
+    Index count = 0;
+    for_each_item(mesh, locations[std::size_t(n)], [&](Number, double) { ++count; });
+    rows.first[std::size_t(n) + 1] = count;
+  });
+  compat::fence(exec, "gridmorph::interpolation_rows (counted)");
+  for (std::size_t n = 0; n < locations.size(); ++n) rows.first[n + 1] += rows.first[n];
+  rows.item.resize(std::size_t(rows.first.back()));
+  rows.weight.resize(std::size_t(rows.first.back()));
+  Kokkos::parallel_for("gridmorph::interpolation_rows::fill", all, [&](Index const n) {
+    Location const& where = locations[std::size_t(n)];
+    double sum = 0;
+    for_each_item(mesh, where, [&](Number, double w) { sum += w; });
+    auto at = std::size_t(rows.first[std::size_t(n)]);
+    for_each_item(mesh, where, [&](Number node, double w) {
+      rows.item[at] = node;
+      rows.weight[at++] = float(w / sum);
+    });
+  });
+  compat::fence(exec, "gridmorph::interpolation_rows (read by the host)");
   return rows;
 }
 

@@ -50,7 +50,7 @@ Kokkos::View<Number*, typename Exec::memory_space> order_candidates(
       KOKKOS_LAMBDA(Index const n) {
         Number const element = candidates(n);
         Box const box = box_of(tables, element);
-        list.key(n) = hilbert_code(0.5 * (box.low + box.high), tables.low, tables.steps);
+        list.key(n) = hilbert_code({0.5 * (box.low + box.high), tables.low, tables.steps});
         list.number(n) = element;
       });
   return sort_keys(exec, list).number;
@@ -105,7 +105,7 @@ void fill_tree(Exec const& exec, LocatorTables<typename Exec::memory_space>& tab
   }
 }
 
-/// Points in the order of the curve: neighbours look at the same boxes and elements.
+/// Points in Z order: neighbours look at the same boxes and elements.
 template <class Exec>
 Kokkos::View<Number*, typename Exec::memory_space> order_points(
     Exec const& exec, LocatorTables<typename Exec::memory_space> const& tables,
@@ -114,7 +114,7 @@ Kokkos::View<Number*, typename Exec::memory_space> order_points(
   Vec3 const low = tables.low, steps = tables.steps;
   Kokkos::parallel_for(
       "gridmorph::ElementLocator::codes", Range<Exec>(exec, 0, Index(points.extent(0))), KOKKOS_LAMBDA(Index const n) {
-        list.key(n) = hilbert_code(points(n), low, steps);
+        list.key(n) = z_code({points(n), low, steps});
         list.number(n) = Number(n);
       });
   return sort_keys(exec, list).number;
@@ -124,16 +124,20 @@ template <class Exec>
 void locate_points(Exec const& exec, LocatorTables<typename Exec::memory_space> const& tables,
                    Kokkos::View<Vec3 const*, typename Exec::memory_space> const& points,
                    Kokkos::View<Location*, typename Exec::memory_space> const& out) {
+  Index const n_points = Index(points.extent(0));
   auto const order = order_points(exec, tables, points);
+  // Side by side first: a search waits for its point, a copy does not.
+  Kokkos::View<Vec3*, typename Exec::memory_space> const sorted(
+      Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::ElementLocator::sorted"), points.extent(0));
+  Kokkos::parallel_for(
+      "gridmorph::ElementLocator::sorted", Range<Exec>(exec, 0, n_points),
+      KOKKOS_LAMBDA(Index const n) { sorted(n) = points(order(n)); });
   // In small parts: points outside take longer, and stand together.
   Kokkos::parallel_for(
       "gridmorph::locate",
-      Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Dynamic>>(
-          exec, 0, Index(points.extent(0)), Kokkos::ChunkSize(256)),
-      KOKKOS_LAMBDA(Index const n) {
-        Number const point = order(n);
-        out(point) = locate_point(tables, points(point));
-      });
+      Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Dynamic>>(exec, 0, n_points,
+                                                                                             Kokkos::ChunkSize(256)),
+      KOKKOS_LAMBDA(Index const n) { out(order(n)) = locate_point(tables, sorted(n)); });
 }
 
 template <class MemorySpace>

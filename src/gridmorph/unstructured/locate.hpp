@@ -43,7 +43,7 @@ struct LocatorTables {
   Kokkos::View<Number*, MemorySpace> element;   ///< (candidates) in tree order
   Kokkos::View<BoxGroup*, MemorySpace> groups;  ///< of the tree
   BoxTreeView tree;
-  Vec3 low, steps;           ///< of the curve, see hilbert_code()
+  Vec3 low, steps;           ///< of the lattice, see LatticePlace
   Vec3 plane_point, normal;  ///< of a 2-D mesh
   bool two_dimensional = false;
   double tolerance = 0;

@@ -57,6 +57,14 @@ KOKKOS_INLINE_FUNCTION void for_each_part(LocatorTables<MemorySpace> const& t, N
   }
 }
 
+/// Position of a place; that of the element's first corner in a polyhedron.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION Vec3 position_at(LocatorTables<MemorySpace> const& t, Location const& place) {
+  ElementType const type = t.elements.type(place.element);
+  if (type == ElementType::polyhedron) return node_at(t, t.elements.node(t.elements.first(place.element)));
+  return element_position(type, corners_at(t, type, place.element), place.local);
+}
+
 /// Whether an element contains the point; then the place in it.
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION bool contains(LocatorTables<MemorySpace> const& t, Number element, Vec3 const& p,
@@ -79,14 +87,18 @@ KOKKOS_INLINE_FUNCTION bool contains(LocatorTables<MemorySpace> const& t, Number
   return true;
 }
 
-/// The place of an element nearest to a point that it does not contain.
+/// The place of an element nearest to a point that it does not contain; nothing when that is further than `limit`. `towards`:
+/// from the point to the best place so far.
 template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION Location nearest(LocatorTables<MemorySpace> const& t, Number element, Vec3 const& p) {
+KOKKOS_INLINE_FUNCTION Location nearest(LocatorTables<MemorySpace> const& t, Number element, Vec3 const& p,
+                                        Vec3 const& towards, double limit) {
   Location place;
-  place.element = element;
   place.distance = unbounded;
-  auto const take = [&](ElementPlace const& found, Number part) {
+  auto const look = [&](ElementType type, ElementCorners const& c, Number part) {
+    if (!may_be_nearer(type, c, p, towards, limit)) return;
+    ElementPlace const found = nearest_in_element(type, c, p);
     if (!(found.distance < place.distance)) return;
+    place.element = element;
     place.part = part;
     place.local = found.local;
     place.distance = found.distance;
@@ -94,11 +106,11 @@ KOKKOS_INLINE_FUNCTION Location nearest(LocatorTables<MemorySpace> const& t, Num
   ElementType const type = t.elements.type(element);
   if (type == ElementType::polyhedron) {
     for_each_part(t, element, [&](Number part, ElementCorners const& c) {
-      take(nearest_in_element(ElementType::tetrahedron, c, p), part);
+      look(ElementType::tetrahedron, c, part);
       return false;
     });
   } else {
-    take(nearest_in_element(type, corners_at(t, type, element), p), 0);
+    look(type, corners_at(t, type, element), 0);
   }
   if (place.distance <= t.tolerance) place.distance = 0;
   return place;
@@ -122,11 +134,16 @@ KOKKOS_INLINE_FUNCTION Location locate_point(LocatorTables<MemorySpace> const& t
     contains(t, element, p, best);
   });
   if (best.element >= 0) return best;
+  // A plane across the way to the best place rules out most elements behind that.
+  Vec3 towards;
   t.tree.for_each_nearer(
       p,
       [&](Index thing) {
-        Location const place = nearest(t, t.element(thing), p);
-        if (place.distance < unbounded && (best.element < 0 || is_nearer(place, best))) best = place;
+        Location const place = nearest(t, t.element(thing), p, towards, best.distance);
+        if (place.element < 0 || !is_finite(place.distance)) return;
+        if (best.element >= 0 && !is_nearer(place, best)) return;
+        best = place;
+        towards = position_at(t, place) - p;
       },
       [&] { return best.distance * best.distance * (1 + 1e-6); });
   return best;
