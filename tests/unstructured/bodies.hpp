@@ -42,6 +42,20 @@ class Bodies {
       return from + (double(j) / n) * along + radius * std::cos(f) * u + radius * std::sin(f) * v;
     });
   }
+  /// n strips of m quadrilaterals, closed around.
+  template <class Position>
+  void grid(int n, int m, Position const& position) {
+    Number const first = Number(points_.size());
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i < m; ++i) points_.push_back(position(j, i));
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < m; ++i) {
+        int const next = (i + 1) % m;
+        std::array<Number, 4> const face{first + j * m + i, first + j * m + next, first + (j + 1) * m + next,
+                                         first + (j + 1) * m + i};
+        walls.front().add(face);
+      }
+  }
   /// A closed polygon in the plane z = 0, as edges.
   void polygon(std::vector<Vec3> const& corners) {
     std::vector<Number> numbers;
@@ -71,21 +85,6 @@ class Bodies {
     points_.push_back(p);
     return Number(points_.size()) - 1;
   }
-  /// n strips of m quadrilaterals, closed around.
-  template <class Position>
-  void grid(int n, int m, Position const& position) {
-    Number const first = Number(points_.size());
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i < m; ++i) points_.push_back(position(j, i));
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < m; ++i) {
-        int const next = (i + 1) % m;
-        std::array<Number, 4> const face{first + j * m + i, first + j * m + next, first + (j + 1) * m + next,
-                                         first + (j + 1) * m + i};
-        walls.front().add(face);
-      }
-  }
-
   std::vector<Vec3> points_;
 };
 

@@ -39,7 +39,8 @@ struct Background {
   std::vector<std::string> wrap{"wrap"}, outer{"outer"};  ///< selectors of the patches that move, that stay
 };
 
-/// The cells of the wrap's lattice outside the wrap, each `cells` cells wide where there are walls; from there cells grow by
+/// Around a tube: an O-type mesh, four blocks around the tube and nine beyond each of its ends (a butterfly in front of the flat
+/// end); throws MeshError where this would turn cells inside out. Else the cells of the wrap's lattice outside the wrap, each `cells` cells wide where there are walls; from there cells grow by
 /// `growth` each out to the outer box. Slabs of coarse cells that look alike are joined, so a wrap that is a box gives 26
 /// zones. Cost: linear in nodes.
 Background make_background(Wrap const& wrap, int cells = 4, double growth = 1.4);
@@ -70,5 +71,8 @@ struct FarRows {
 /// zero are left out. Row n is for nodes[n], which is its target. In parallel on the host; linear cost, but for points
 /// in the wrap, each of which looks at all zones.
 FarRows lattice_rows(Background const& background, Coordinates const& coordinates, std::span<Number const> nodes);
+
+/// The same for any background: lattice_rows() where it can, else in the cell that ElementLocator finds.
+FarRows background_rows(Background const& background, Coordinates const& coordinates, std::span<Number const> nodes);
 
 }  // namespace gridmorph

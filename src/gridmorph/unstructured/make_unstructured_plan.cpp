@@ -275,7 +275,10 @@ class Planner {
     WrapOptions wrap;
     wrap.offset = out_.report.offset;
     wrap.resolution = options_.resolution;
+    wrap.tube = options_.tube;
     out_.report.wrap = make_wrap(mesh_, {&faces, 1}, wrap);
+    if (std::string const& note = out_.report.wrap->note; !note.empty())
+      out_.notes.push_back("the wrap is made of lattice cells: " + note);
     out_.report.regions = classify(mesh_, *out_.report.wrap);
     near_ = mask();
     for (Number n = 0; n < Number(mesh_.n_nodes()); ++n)
@@ -412,7 +415,7 @@ class Planner {
       if (out_.graph.carries(n) && !out_.graph.neighbours[n].empty() && !column[std::size_t(n)] &&
           !out_.report.wrap->contains(mesh_.coordinates[n]))
         far.push_back(n);
-    FarRows rows = lattice_rows(*plan.background, mesh_.coordinates, far);
+    FarRows rows = background_rows(*plan.background, mesh_.coordinates, far);
     out_.report.far_nodes = Index(far.size());
     out_.report.far_outside = rows.n_outside;
     plan.far = std::move(rows.rows);

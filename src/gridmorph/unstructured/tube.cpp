@@ -75,7 +75,8 @@ bool Tube::meets(LatticeBox const& box) const {
   if (!close) return false;
   for (int n = 0; n < 27; ++n) {
     double const i = 0.5 * (n % 3), j = 0.5 * (n / 3 % 3), k = 0.5 * double(n / 9);
-    if (contains({low.x + i * (high.x - low.x), low.y + j * (high.y - low.y), low.z + k * (high.z - low.z)})) return true;
+    if (contains({low.x + i * (high.x - low.x), low.y + j * (high.y - low.y), low.z + k * (high.z - low.z)}))
+      return true;
   }
   auto in_box = [&](Vec3 const& p) {
     return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
@@ -145,8 +146,8 @@ class Fitter {
     find_rings();
     double const width = 2 * tube_.largest_radius();
     if (tube_.length() < 1.25 * width) {
-      note = "the walls with their offset are " + std::to_string(tube_.length()) + " long and " + std::to_string(width) +
-             " wide: no tube";
+      note = "the walls with their offset are " + std::to_string(tube_.length()) + " long and " +
+             std::to_string(width) + " wide: no tube";
       return std::nullopt;
     }
     return std::move(tube_);
@@ -323,7 +324,8 @@ class Fitter {
       hull[m] = 1e300;
       for (int step = -directions / 5; step <= directions / 5; ++step) {
         auto const other = std::size_t((int(m) + step + directions) % directions);
-        hull[m] = std::min(hull[m], (support[other] + shift[other]) / std::cos(2 * std::numbers::pi * step / directions));
+        hull[m] =
+            std::min(hull[m], (support[other] + shift[other]) / std::cos(2 * std::numbers::pi * step / directions));
       }
     }
     constexpr int per_side = directions / ring_points;

@@ -20,9 +20,9 @@ struct LatticeBox {
 /// Sections lie in planes across the axis. Between two of them the tube is ruled: the points of their rings are joined by
 /// straight lines, neighbouring lines by bilinear faces. Both ends are flat.
 struct Tube {
-  int box_axis = 2;     ///< coordinate axis nearest to the tube's
-  Vec3 u, v, axis;      ///< right-handed, orthonormal; u near coordinate axis box_axis + 1
-  int around = 0;       ///< points of a ring, a multiple of 4; ring point 0 lies towards -u -v, the next ones towards u
+  int box_axis = 2;  ///< coordinate axis nearest to the tube's
+  Vec3 u, v, axis;   ///< right-handed, orthonormal; u near coordinate axis box_axis + 1
+  int around = 0;    ///< points of a ring, a multiple of 4; ring point 0 lies towards -u -v, the next ones towards u
   /// Symmetric matrix (uu, uv, vv) that makes sections about round: the rings' points lie at equal angles after it.
   std::array<double, 3> rounding{1, 0, 1};
   std::vector<double> station;  ///< position of each section along the axis, ascending

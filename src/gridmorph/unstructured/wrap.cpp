@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/unstructured/background.hpp>
 #include <gridmorph/unstructured/detail/box_distance.hpp>
 #include <gridmorph/unstructured/detail/wrap_fill.hpp>
 #include <gridmorph/unstructured/detail/wrap_lattice.hpp>
@@ -131,8 +132,15 @@ Wrap make_wrap(UnstructuredMesh const& mesh, std::span<NumberLists const> walls,
   MeshExtent const domain = extent_of(mesh.coordinates);
   std::string note;
   if (options.tube)
-    if (auto tube = fit_tube(mesh, walls, options.offset, note))
-      return around(std::move(*tube), {array_of(domain.low), array_of(domain.high)}, options);
+    if (auto tube = fit_tube(mesh, walls, options.offset, note)) {
+      Wrap wrap = around(std::move(*tube), {array_of(domain.low), array_of(domain.high)}, options);
+      try {
+        (void)make_background(wrap);
+        return wrap;
+      } catch (MeshError const& e) {
+        note = e.what();
+      }
+    }
   Wrap wrap = detail::make_lattice(mesh, walls, {array_of(domain.low), array_of(domain.high)}, options);
   mark(mesh, walls, wrap);
   detail::fill(mesh, {array_of(domain.low), array_of(domain.high)}, wrap);
@@ -145,59 +153,6 @@ double suggest_offset(OffsetHints const& hints) {
   double offset = std::max({2 * hints.layer_height, 2 * hints.wall_edge, hints.motion / 8, hints.body / 25});
   if (hints.gap > 0) offset = std::min(offset, hints.gap / 3);
   return std::max(offset, hints.layer_height);
-}
-
-UnstructuredMesh wrap_mesh(Wrap const& wrap) {
-  UnstructuredMesh mesh;
-  mesh.dimension = wrap.dimension;
-  mesh.source = "wrap";
-  bool const flat = wrap.dimension == 2;
-  Index const ni = wrap.cells(0) + 1, nj = wrap.cells(1) + 1, nk = flat ? 1 : wrap.cells(2) + 1;
-  std::vector<Number> number(std::size_t(ni * nj * nk), -1);
-  std::vector<Vec3> points;
-  auto node = [&](int i, int j, int k) {
-    Number& n = number[std::size_t(i + ni * (j + nj * k))];
-    if (n < 0) {
-      n = Number(points.size());
-      points.push_back({wrap.planes[0][std::size_t(i)], wrap.planes[1][std::size_t(j)],
-                        flat ? 0.0 : wrap.planes[2][std::size_t(k)]});
-    }
-    return n;
-  };
-  UnstructuredPatch surface;
-  surface.name = "wrap";
-  surface.bc_type = "BCWall";
-  surface.kind = PatchKind::wall;
-  surface.zone = 0;
-  std::vector<std::array<Number, 8>> hexahedra;
-  for (Index c = 0; c < wrap.n_cells(); ++c) {
-    if (wrap.inside[std::size_t(c)] == 0) continue;
-    Index3 const at = wrap.index(c);
-    auto const [i, j, k] = at;
-    // Corner (a, b, c) of the cell at 4 c + 2 b + a.
-    std::array<Number, 8> corner{};
-    for (int n = 0; n < (flat ? 4 : 8); ++n) corner[std::size_t(n)] = node(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
-    hexahedra.push_back({corner[0], corner[1], corner[3], corner[2], corner[4], corner[5], corner[7], corner[6]});
-    for (int axis = 0; axis < wrap.dimension; ++axis)
-      for (int const side : {0, 1}) {
-        Index3 beyond = at;
-        beyond[std::size_t(axis)] += 2 * side - 1;
-        if (wrap.is_inside(beyond)) continue;
-        std::size_t const fixed = std::size_t(side) << axis, u = std::size_t(axis == 0 ? 2 : 1),
-                          v = std::size_t(axis == 2 ? 2 : 4);
-        std::array<Number, 4> const face{corner[fixed], corner[fixed + u], corner[flat ? fixed : fixed + u + v],
-                                         corner[flat ? fixed : fixed + v]};
-        surface.faces.add(std::span(face).first(flat ? 2 : 4));
-      }
-  }
-  mesh.add_zone("wrap", Index(points.size()));
-  for (auto const& corners : hexahedra)
-    mesh.add_element(flat ? ElementType::quadrilateral : ElementType::hexahedron,
-                     std::span(corners).first(flat ? 4 : 8));
-  mesh.patches.push_back(std::move(surface));
-  mesh.coordinates = Coordinates(Index(points.size()));
-  for (std::size_t n = 0; n < points.size(); ++n) mesh.coordinates.set(Index(n), points[n]);
-  return mesh;
 }
 
 }  // namespace gridmorph

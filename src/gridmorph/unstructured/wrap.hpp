@@ -23,7 +23,8 @@ struct WrapOptions {
   int resolution = 4;
   Index max_cells = 2000;  ///< of the lattice; coarser where the resolution asks for more
   double margin = 0;       ///< how far the outer box lies beyond the mesh; more where the wrap would touch it
-  /// A tube around walls that are long rather than wide, where one fits; else (see Wrap::note) cells of the lattice.
+  /// A tube around walls that are long rather than wide, where one fits and the mesh around it is sound; else (see Wrap::note)
+  /// cells of the lattice. Best for walls oblique to the axes: a swept wing, a diagonal rod.
   bool tube = false;
 };
 
@@ -34,9 +35,9 @@ struct Wrap {
   double layer = 0;                           ///< smallest
   std::array<std::vector<double>, 3> planes;  ///< of the lattice, the outer box included, ascending
   std::vector<std::uint8_t> inside;           ///< per cell, i fastest; never in the outermost cells (of x and y in 2-D)
-  std::optional<Tube> tube;  ///< the wrap, instead of cells: then the lattice is one cell, the outer box
-  std::string note;          ///< why it is not the tube that was asked for
-  std::vector<std::int32_t> sum;              ///< inside cells below each lattice node: what meets() looks up
+  std::optional<Tube> tube;       ///< the wrap, instead of cells: then the lattice is one cell, the outer box
+  std::string note;               ///< why it is not the tube that was asked for
+  std::vector<std::int32_t> sum;  ///< inside cells below each lattice node: what meets() looks up
 
   [[nodiscard]] int cells(int axis) const { return int(planes[std::size_t(axis)].size()) - 1; }
   [[nodiscard]] Index n_cells() const { return Index(cells(0)) * cells(1) * cells(2); }

@@ -27,6 +27,7 @@ void read_near_field(TableReader& root, UnstructuredOptions& out) {
     }
     if (auto const weight = near->choice("weights", {"uniform", "inverse-distance", "quality", "curvature"}))
       out.weight = LayerWeight(*weight);
+    if (auto const wrap = near->choice("wrap", {"lattice", "tube"})) out.tube = *wrap == 1;
     read_count(*near, "resolution", 1, 200, out.resolution);
     near->finish();
   }

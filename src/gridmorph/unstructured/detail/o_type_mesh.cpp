@@ -33,9 +33,8 @@ class OTypeMesh {
       int from, to;
       bool low, high;
     };
-    for (Segment const& s :
-         {Segment{0, ends, true, false}, Segment{ends, sheets - 1 - ends, false, false},
-          Segment{sheets - 1 - ends, sheets - 1, false, true}}) {
+    for (Segment const& s : {Segment{0, ends, true, false}, Segment{ends, sheets - 1 - ends, false, false},
+                             Segment{sheets - 1 - ends, sheets - 1, false, true}}) {
       bool const inner = s.low || s.high;
       for (int q = 0; q < 4; ++q) add_ring_zone(q, rings_inside_, int(radial_.size()) - 1, s.from, s.to, s.low, s.high);
       if (!inner) continue;
@@ -124,7 +123,8 @@ class OTypeMesh {
     Vec3 const &front = tube_.centre.front(), &back = tube_.centre.back();
     double const apart = along(back, axis_) - along(front, axis_);
     // A tenth of the box, or less where the tube ends closer to its end.
-    double const below = low_[axis_] + std::min(0.1 * height, axis_gap(0)), above = high_[axis_] - std::min(0.1 * height, axis_gap(1));
+    double const below = low_[axis_] + std::min(0.1 * height, axis_gap(0)),
+                 above = high_[axis_] - std::min(0.1 * height, axis_gap(1));
     double const kept = std::min(apart, 0.5 * (above - below));
     double const first = std::clamp(in_plane(front), below, above - kept);
     return {first, std::clamp(in_plane(back), first + kept, above)};
@@ -159,12 +159,26 @@ class OTypeMesh {
       Vec3 const middle = end_middle(end);
       Vec3 const corner = perimeter(k, along(middle, axis_));
       Frame const f = frame(section, k);
-      return {between(f.centre, middle, t), between(f.ring, between(middle, corner, 0.4), t), between(f.box, corner, t)};
+      return {between(f.centre, middle, t), between(f.ring, end_ring(f, middle, corner), t), between(f.box, corner, t)};
     }
     int const j = std::min(int(sheet), last - 1);
     double const t = sheet - j;
     return {between(tube_.centre[std::size_t(j)], tube_.centre[std::size_t(j) + 1], t),
             between(tube_.point(j, k), tube_.point(j + 1, k), t), between(side_point(j, k), side_point(j + 1, k), t)};
+  }
+  /// The tube's ring goes on along its axis and widens towards a ring in the middle of the end face, by no more than it is
+  /// far away: in front of an end close to the box lines would lie down otherwise.
+  [[nodiscard]] Vec3 end_ring(Frame const& section, Vec3 const& middle, Vec3 const& corner) const {
+    Vec3 const ahead = section.ring - section.centre;
+    Vec3 const across = ahead - (along(ahead, axis_) / along(tube_.axis, axis_)) * tube_.axis;
+    std::array<double, 3> from{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      double const rim = a == axis_ ? 0 : 0.1 * (high_[a] - low_[a]);
+      from[a] = std::clamp(along(middle + across, a), low_[a] + rim, high_[a] - rim);
+    }
+    Vec3 const straight{from[0], from[1], from[2]}, wide = between(middle, corner, 0.4);
+    double const reach = 0.7 * distance(section.centre, middle), way = distance(straight, wide);
+    return between(straight, wide, std::min(1.0, reach / std::max(way, 1e-300)));
   }
   /// Corner q of the core: half-way to the ring.
   [[nodiscard]] Vec3 core_corner(double sheet, int q) const {
@@ -322,8 +336,12 @@ class OTypeMesh {
   void add_patch(Face const& f) {
     bool const outer = zones_[std::size_t(f.zone)].limit[std::size_t(2 * f.axis + f.side)] == Limit::outer;
     std::string const family = outer ? "outer" : "wrap";
-    mesh_.patches.push_back({family + " " + std::string(face_name(f.axis, f.side)), outer ? "BCFarfield" : "BCWall",
-                             outer ? PatchKind::farfield : PatchKind::wall, {family}, f.zone, range(f)});
+    mesh_.patches.push_back({family + " " + std::string(face_name(f.axis, f.side)),
+                             outer ? "BCFarfield" : "BCWall",
+                             outer ? PatchKind::farfield : PatchKind::wall,
+                             {family},
+                             f.zone,
+                             range(f)});
   }
 
   void set_coordinates() {
