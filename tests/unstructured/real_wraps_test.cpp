@@ -80,8 +80,8 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   EXPECT_LT(seconds.topology + seconds.rules + seconds.plan, 10);
   WrapNodes const nodes = wrap_nodes(background, prepared);
   bool const flat = mesh.dimension == 2;
-  RigidTransform const turn = rotation_about({0, 0, lowest}, flat ? Vec3{0, 0, 1} : Vec3{1, 0, 0},
-                                             real.turn_deg * std::numbers::pi / 180);
+  RigidTransform const turn =
+      rotation_about({0, 0, lowest}, flat ? Vec3{0, 0, 1} : Vec3{1, 0, 0}, real.turn_deg * std::numbers::pi / 180);
   std::vector<Vec3> boundary(prepared.plan().boundary_nodes.size());
   for (std::size_t n = 0; n < nodes.position.size(); ++n)
     boundary[std::size_t(nodes.boundary_node[n])] = turn(nodes.position[n]) - nodes.position[n];
@@ -109,13 +109,13 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   EXPECT_GT(read_unstructured_mesh(folder.file("wrap.cgns")).n_elements(), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Walls, RealWrap,
-    testing::Values(Real{"HeatingCoil.cgns", "Default 1 Side FluidZone Part 1", 0.03, false, 5},
-                    Real{"mesh_vki_turbine.su2", "airfoil", 0.0015, false, 10},
-                    Real{"mdo_tutorial_000_vol.cgns", "wall", 1, false, 20},
-                    Real{"mdo_tutorial_000_vol.cgns", "wall", 1, true, 20},
-                    Real{"717_wl_L2.cgns", "wall", 1, false, 20}, Real{"717_wl_L2.cgns", "wall", 1, true, 20}));
+INSTANTIATE_TEST_SUITE_P(Walls, RealWrap,
+                         testing::Values(Real{"HeatingCoil.cgns", "Default 1 Side FluidZone Part 1", 0.03, false, 5},
+                                         Real{"mesh_vki_turbine.su2", "airfoil", 0.0015, false, 10},
+                                         Real{"mdo_tutorial_000_vol.cgns", "wall", 1, false, 20},
+                                         Real{"mdo_tutorial_000_vol.cgns", "wall", 1, true, 20},
+                                         Real{"717_wl_L2.cgns", "wall", 1, false, 20},
+                                         Real{"717_wl_L2.cgns", "wall", 1, true, 20}));
 
 }  // namespace
 }  // namespace gridmorph::test

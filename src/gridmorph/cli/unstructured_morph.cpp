@@ -11,6 +11,7 @@
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/report/step_times.hpp>
+#include <gridmorph/unstructured/guard.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
 
 #include <fmt/format.h>
@@ -94,6 +95,19 @@ UnstructuredQualityInput<Kokkos::HostSpace> quality_input(Result const& out) {
     if (out.loaded.mesh.patches[p].kind == PatchKind::wall) walls.insert(int(p));
   input.walls.assign(walls.begin(), walls.end());
   return input;
+}
+
+/// Smooths around elements that came out bad, and says so.
+void relax(Result& out, Terminal& terminal) {
+  terminal.progress("looking for bad elements");
+  Stopwatch watch;
+  RelaxReport const report = relax_bad_elements(out.loaded.mesh, out.loaded.topology, *out.prepared, out.morphed);
+  if (report.before > 0)
+    out.notes.push_back(fmt::format(
+        "{} elements had lost four fifths of their determinant or more; displacements around them are smoothed in {} "
+        "rounds, {} are left",
+        report.before, report.rounds, report.after));
+  out.times.push_back({"guard", watch.lap(), true});
 }
 
 void measure(CaseFile const& case_file, Result& out, Terminal& terminal) {
@@ -231,6 +245,7 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   Result out;
   read_and_plan(case_file, terminal, out);
   move_nodes(out, terminal, case_file.output_options.stages.has_value());
+  relax(out, terminal);
   measure(case_file, out, terminal);
   bool const written =
       out.after.near_field.newly_inverted + out.after.far_field.newly_inverted == 0 || case_file.guard.write_inverted;

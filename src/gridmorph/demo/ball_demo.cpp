@@ -86,7 +86,7 @@ std::string ball_case_file(BallOptions const& options, BallSwing const& swing, B
       "\n"
       "[boundary_layer]                    # the layers turn with their wall\n"
       "walls   = [\"ball\", \"rope\"]\n"
-      "mode    = \"blend\"\n"
+      "mode    = \"rotate\"\n"
       "\n"
       "[guard]                             # its flattest tetrahedra begin with 0.01 to 0.04\n"
       "min_determinant = 0.001\n"

@@ -27,8 +27,8 @@ struct UnstructuredOptions {
       -1;  ///< size of the displacements to come [length], for suggest_offset(); negative: what the rules give now
   /// Cells of the wrap's lattice along the longest extent of the walls; few are best (WrapOptions::resolution).
   int resolution = 4;
-  bool tube = false;      ///< a tube with an O-type background mesh around it instead, where one fits (WrapOptions::tube)
-  int cells = 4;          ///< of the background mesh along each cell of the wrap's lattice
+  bool tube = false;  ///< a tube with an O-type background mesh around it instead, where one fits (WrapOptions::tube)
+  int cells = 4;      ///< of the background mesh along each cell of the wrap's lattice
   Law law = Law::linear;  ///< along the grid lines of the background mesh
 };
 

@@ -151,7 +151,8 @@ Wrap make_wrap(UnstructuredMesh const& mesh, std::span<NumberLists const> walls,
 
 double suggest_offset(OffsetHints const& hints) {
   double offset = std::max({2 * hints.layer_height, 2 * hints.wall_edge, hints.motion / 8, hints.body / 25});
-  if (hints.gap > 0) offset = std::min(offset, hints.gap / 3);
+  // What is wrapped moves as a whole: enough of the gap must be left to take the motion up.
+  if (hints.gap > 0) offset = std::min({offset, hints.gap / 3, std::max(hints.gap - 2 * hints.motion, hints.gap / 10)});
   return std::max(offset, hints.layer_height);
 }
 

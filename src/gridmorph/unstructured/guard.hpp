@@ -1,0 +1,29 @@
+// After a morph: displacements smoothed where elements came out bad.
+#pragma once
+
+#include <gridmorph/unstructured/unstructured_plan.hpp>
+
+namespace gridmorph {
+
+struct RelaxOptions {
+  double share = 0.2;  ///< an element is bad when its determinant is not above this share of the baseline's
+  int rounds = 6;      ///< of finding bad elements and smoothing around them
+  int rings = 3;       ///< of nodes around a bad element that may move
+  int sweeps = 8;      ///< of Jacobi iterations per round
+};
+
+struct RelaxReport {
+  Index before = 0, after = 0;  ///< bad elements
+  int rounds = 0;
+};
+
+/// Where the 3x3x3 determinant of an element is not above share times the baseline's (or not positive), the displacements of the
+/// nodes around are smoothed: each becomes the value, at its node, of the affine function that fits its neighbours' best (weights
+/// 1 / length of the edge), so that a field that is affine already stays. A fixed number of Jacobi sweeps per round; nodes on
+/// boundaries that are held and in columns keep theirs. A round that leaves more bad elements than there were is taken back, and
+/// the next ones have half as many sweeps. Explicit, deterministic; cost per round: the quality of all elements, and the nodes around bad ones.
+RelaxReport relax_bad_elements(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                               PreparedUnstructured const& prepared, Coordinates const& morphed,
+                               RelaxOptions const& options = {});
+
+}  // namespace gridmorph
