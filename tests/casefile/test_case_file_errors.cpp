@@ -124,11 +124,9 @@ TEST(CaseFileErrors, MeshSettings) {
   EXPECT_TRUE(reported(problems_of("default = \"eror\"\n" + head + rule), "case.toml:1: ", {"default", "'error'"}));
 }
 
-TEST(CaseFileErrors, RulesOfLaterTimesAreKnownButNotAvailable) {
-  EXPECT_TRUE(
-      reported(rule_problems("rule = \"target\"\nanything = 3"), "case.toml:7: ", {"\"target\"", "not available yet"}));
+TEST(CaseFileErrors, MisspeltNearFieldModes) {
   EXPECT_TRUE(reported(problems_of(head + rule + "[boundary_layer]\nmode = \"rotated\"\n"),
-                       "case.toml:7: ", {"mode", "translate"}));
+                       "case.toml:7: ", {"mode", "'rotate'"}));
 }
 
 TEST(CaseFileErrors, RulesWithoutTheirKeys) {

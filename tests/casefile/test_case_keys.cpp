@@ -110,7 +110,7 @@ TEST(CaseKeys, EveryExampleIsValid) {
     std::string const text = case_with(k, rule_beside(k.table));
     // A motion table has keys without which no other key can stand.
     for (auto const& line : problems_of(text))
-      EXPECT_NE(line.find("does not exist"), std::string::npos)
+      EXPECT_TRUE(line.find("does not exist") != std::string::npos || line.find("no such file") != std::string::npos)
           << "[" << k.table << "] " << k.key << ": " << line << "\n"
           << text;
   }

@@ -134,6 +134,25 @@ TEST_F(ExampleTest, WingBendsAndTwistsAsItsFormulaSays) {
   for_patch("sym", "", [&](Index n) { EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n)); });
 }
 
+TEST_F(ExampleTest, WingReachesItsTargetSurface) {
+  GRIDMORPH_NEEDS("mdo_tutorial_000_vol.cgns");
+  ASSERT_NO_FATAL_FAILURE(morph("wing_target", "mdo_tutorial_000_vol.cgns"));
+  auto const report = nlohmann::json::parse(contents(path("wing_target/wing_target.json")));
+  ASSERT_EQ(report["targets"].size(), 1u);
+  EXPECT_EQ(report["targets"][0]["mapping"], "projection");
+  EXPECT_LT(report["targets"][0]["distance"]["max"], 1e-13 * 14);
+  // The root stays the root, the tip's trailing edge comes up with the target's.
+  double highest = 0;
+  for_patch("wall", "", [&](Index n) {
+    if (before.coordinates.z(n) == 0) {
+      EXPECT_LT(distance(after.coordinates[n], before.coordinates[n]), 1e-12);
+    }
+    highest = std::max(highest, after.coordinates.y(n) - before.coordinates.y(n));
+  });
+  EXPECT_NEAR(highest, 0.8, 0.02);
+  expect_fixed("far");
+}
+
 TEST_F(ExampleTest, WingletCantsAndTheWingInboardStays) {
   GRIDMORPH_NEEDS("717_wl_L2.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("winglet", "717_wl_L2.cgns"));
@@ -429,6 +448,17 @@ TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
     EXPECT_GT(tip, 0.002);
     EXPECT_LT(tip, 0.01);
   }
+}
+
+TEST_F(ExampleTest, HotToColdTurnsTheRotorBackAndKeepsItPeriodic) {
+  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
+  ASSERT_NO_FATAL_FAILURE(morph("turbine_hot_to_cold", "axial_turbine_stage_H.cgns"));
+  expect_periodic_copies_move_alike(0);
+  expect_fixed("BLADE1");
+  double tip = 0;
+  for_patch("BLADE2", "", [&](Index n) { tip = std::max(tip, distance(after.coordinates[n], before.coordinates[n])); });
+  EXPECT_GT(tip, 0.002);
+  EXPECT_LT(tip, 0.004);
 }
 
 TEST_F(ExampleTest, ScriptSaysSoWhenThereAreNoMeshes) {

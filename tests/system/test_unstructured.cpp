@@ -44,11 +44,11 @@ TEST_F(UnstructuredTest, QualityComparesAndFallsShortWhereElementsTurnOver) {
   EXPECT_EQ(gridmorph("quality mesh.su2 turned.su2").status, 1);
 }
 
-TEST_F(UnstructuredTest, MorphAndPlanRefuse) {
+TEST_F(UnstructuredTest, MorphAndPlanAskForAWallThatMoves) {
   write("case.toml",
         "[mesh]\ninput = \"mesh.su2\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n");
   for (auto const* command : {"morph case.toml", "plan case.toml"})
-    expect_bad_input(gridmorph(command), {"mesh.su2", "only structured ones can be morphed yet"});
+    expect_bad_input(gridmorph(command), {"no wall moves", "fixed"});
 }
 
 TEST_F(UnstructuredTest, OtherMeshesAreNoBaselines) {

@@ -12,7 +12,7 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "wheel", "demo"};
+std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "wheel", "surface", "demo"};
 
 constexpr char const* footer =
     "Exit status: 0 done; 1 the mesh falls short of the thresholds; 2 bad input; 3 failure of the machine.";
@@ -50,6 +50,17 @@ CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
       ->default_str("")
       ->excludes(json);
   return inspect;
+}
+
+CLI::App* add_surface(CLI::App& app, CommandLine& out) {
+  auto* surface = app.add_subcommand("surface", "Write patches of a mesh as an STL surface");
+  surface->add_option("mesh", out.input, "Mesh (CGNS or PLOT3D)")->required();
+  surface->add_option("-p,--patches", out.patches, "Patches, named as in case files (blade, type:wall, row1/per*)")
+      ->required();
+  surface->add_option("-o,--output", out.output, "STL file")->required();
+  surface->add_option("--split", out.split, "Cut each facet into N x N")->check(CLI::Range(1, 1000));
+  surface->add_flag("--ascii", out.ascii, "Text with all digits; binary STL has single precision");
+  return surface;
 }
 
 CLI::App* add_demo(CLI::App& app, CommandLine& out) {
@@ -95,6 +106,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   quality->add_flag("--json", out.json, "Print JSON");
   commands.emplace_back(quality, Command::quality);
   commands.emplace_back(add_wheel(app, out), Command::wheel);
+  commands.emplace_back(add_surface(app, out), Command::surface);
   commands.emplace_back(add_demo(app, out), Command::demo);
 
   // CLI11 takes a misspelt command for a stray argument; say what it is.

@@ -7,18 +7,19 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace gridmorph::cli {
 
 struct CommandLine {
-  enum class Command { morph, inspect, plan, quality, wheel, demo };
+  enum class Command { morph, inspect, plan, quality, wheel, surface, demo };
   Command command = Command::morph;
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
 
   std::filesystem::path input;                  ///< case file or mesh
   std::optional<std::filesystem::path> second;  ///< quality: morphed mesh
-  std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's
+  std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's; surface
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   bool dry_run = false;
   bool json = false;
@@ -27,6 +28,10 @@ struct CommandLine {
   std::optional<std::string> suggest;  ///< inspect: a case file to start from, to this file; empty: printed
   bool match = false;                  ///< inspect: look for interfaces
   double match_tolerance = 0.01;       ///< inspect: share of the smallest edge
+
+  std::vector<std::string> patches;  ///< surface: selectors
+  int split = 1;                     ///< surface: pieces along each side of a facet
+  bool ascii = false;                ///< surface: text, not binary
 
   std::string demo_name;
   std::optional<std::string> demo_motion;  ///< passage

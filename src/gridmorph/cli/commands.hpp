@@ -18,6 +18,7 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal);
 int run_plan_command(CommandLine const& options, Terminal& terminal);
 int run_quality_command(CommandLine const& options, Terminal& terminal);
 int run_wheel_command(CommandLine const& options, Terminal& terminal);
+int run_surface_command(CommandLine const& options, Terminal& terminal);
 int run_demo_command(CommandLine const& options, Terminal& terminal);
 
 }  // namespace gridmorph::cli

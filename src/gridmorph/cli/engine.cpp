@@ -87,6 +87,10 @@ std::vector<StageResult> Engine::stage_results(Coordinates const& morphed) const
   return out;
 }
 
+std::vector<TargetReach> Engine::target_reach(Coordinates const& morphed) const {
+  return impl_->prepared.surface.target_reach(impl_->mesh, morphed);
+}
+
 Coordinates Engine::morph(Terminal& terminal) const {
   Stopwatch watch;
   terminal.progress("moving the boundary");

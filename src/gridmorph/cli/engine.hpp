@@ -4,6 +4,7 @@
 #include <gridmorph/casefile/case_file.hpp>
 #include <gridmorph/cli/terminal.hpp>
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/motion/target_reach.hpp>
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/report/step_times.hpp>
 
@@ -42,6 +43,8 @@ class Engine {
   /// the displacements that they give may differ (another time of a sequence). Plan, tables and line parameters are kept.
   /// `morphed`: room for every node. Throws MotionError.
   void morph_into(Motion const& motion, Coordinates const& morphed) const;
+  /// How far the nodes of each target rule ended from their target.
+  [[nodiscard]] std::vector<TargetReach> target_reach(Coordinates const& morphed) const;
   /// The worst cell of every stage, in order.
   [[nodiscard]] std::vector<StageResult> stage_results(Coordinates const& morphed) const;
   /// How long each step so far took: topology, rules, plan, and boundary and morph once morph() has run.

@@ -11,6 +11,7 @@
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/report/step_times.hpp>
+#include <gridmorph/report/target_text.hpp>
 
 #include <fmt/format.h>
 #include <Kokkos_Core.hpp>
@@ -104,6 +105,7 @@ nlohmann::json report_json(CaseFile const& case_file, MorphResult const& result)
   json["times"] = times_json(result.times, result.mesh.n_nodes());
   json["notes"] = result.notes;
   json["stages"] = stages_json(result);
+  json["targets"] = targets_json(result.mesh, result.targets);
   json["fields"] = nlohmann::json::array();
   for (auto const& use : case_file.fields) {
     json["fields"].push_back(mapping_json(*use.field));

@@ -7,6 +7,7 @@
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/motion/motion.hpp>
+#include <gridmorph/report/target_text.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -21,8 +22,6 @@ namespace gridmorph::cli {
 namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
-
-Mesh read_structured(CaseFile const& case_file) { return load_mesh(case_file.input, case_file.side_file); }
 
 }  // namespace
 
@@ -80,7 +79,7 @@ QualityReport QualityMeter::morphed(Coordinates const& morphed) const {
 
 MorphResult read_baseline(CaseFile const& case_file) {
   MorphResult out;
-  out.mesh = read_structured(case_file);
+  out.mesh = load_mesh(case_file.input, case_file.side_file);
   auto const& wanted = case_file.output_options;
   if (!out.mesh.file_variant.empty() && (wanted.displacement || wanted.quality))
     throw ConfigError(
@@ -99,6 +98,9 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   out.notes = engine.notes();
   add_mapping_notes(case_file, out.notes);
 
+  out.targets = engine.target_reach(out.morphed);
+  for (auto const& target : out.targets) out.notes.push_back(describe_reach(out.mesh, target));
+
   out.times.insert(out.times.end(), engine.times().begin(), engine.times().end());
   watch.lap();
   terminal.progress("measuring quality");
@@ -114,7 +116,7 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
 std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
   if (mesh_kind(case_file.input.string()) == MeshKind::unstructured) return unstructured_plan_text(case_file, terminal);
   terminal.progress("reading " + case_file.input.string());
-  Mesh mesh = read_structured(case_file);
+  Mesh mesh = load_mesh(case_file.input, case_file.side_file);
   Engine const engine(mesh, case_file, terminal);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";

@@ -24,6 +24,7 @@ struct MorphResult {
   std::vector<Shortfall> shortfalls;  ///< against [guard]
   std::vector<StageResult> stages;    ///< smallest determinant of each
   std::vector<std::string> notes;     ///< defaults taken, mapping distances, facts found on the way
+  std::vector<TargetReach> targets;   ///< how far nodes of target rules ended from their target
   StepTimes times;                    ///< read to quality, in order
 };
 

@@ -1,12 +1,13 @@
 // Motion rules: how the boundary of the domain moves. Plain values; case files and solvers fill them alike.
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
-// `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections,
+// `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
 // circumferential slide, follow: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface).
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/motion/target_rule.hpp>
 
 #include <functional>
 #include <optional>
@@ -112,7 +113,7 @@ struct FreeRule {
 };
 
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
-                          SectionsRule>;
+                          SectionsRule, TargetRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").

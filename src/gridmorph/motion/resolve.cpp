@@ -25,7 +25,8 @@ bool is(Rule const& rule) {
 
 /// Displacements that need no other patch: what a blade must have for others to follow it.
 bool is_direct(Rule const& rule) {
-  return is<FixedRule>(rule) || is<RigidRule>(rule) || is<FunctionRule>(rule) || is<SectionsRule>(rule);
+  return is<FixedRule>(rule) || is<RigidRule>(rule) || is<FunctionRule>(rule) || is<SectionsRule>(rule) ||
+         is<TargetRule>(rule);
 }
 
 /// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
@@ -177,7 +178,7 @@ class Resolver {
     }
     Rule const& rule = motion_.rules[r].rule;
     auto const* free = std::get_if<FreeRule>(&rule);
-    if (is<SlipRule>(rule) || is<SectionsRule>(rule) ||
+    if (is<SlipRule>(rule) || is<SectionsRule>(rule) || is<TargetRule>(rule) ||
         (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
       problems_.add(label(r) + " names the periodic " + name +
                     "; periodic interfaces take free without constraint, "
@@ -291,7 +292,7 @@ class Resolver {
 
 std::string_view rule_name(Rule const& rule) {
   static constexpr std::array<std::string_view, std::variant_size_v<Rule>> names{
-      "fixed", "rigid", "function", "circumferential-slide", "follow", "slip", "free", "sections"};
+      "fixed", "rigid", "function", "circumferential-slide", "follow", "slip", "free", "sections", "target"};
   return names[rule.index()];
 }
 

@@ -4,6 +4,7 @@
 #include <gridmorph/motion/detail/row_motion.hpp>
 #include <gridmorph/motion/detail/section_motion.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
+#include <gridmorph/motion/detail/target_motion.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/selectors.hpp>
 
@@ -38,10 +39,12 @@ struct SurfaceMotion::Impl {
                                                ///< are
   std::vector<RowMotion const*> row_of_rule;   ///< per rule, null for rules without a blade
   std::vector<std::unique_ptr<SectionMotion>> sections_of_rule;  ///< per rule, null for other rules
+  std::map<int, TargetMotion> targets;                           ///< by rule
 
   Impl(Mesh const& mesh, ResolvedMotion const& motion)
       : rules(motion.rules), surfaces(mesh, motion, notes), row_of_rule(rules.size(), nullptr) {
     Problems problems;
+    make_targets(mesh, motion, problems);
     sections_of_rule.resize(rules.size());
     for (std::size_t r = 0; r < rules.size(); ++r) {
       auto const* sections = std::get_if<SectionsRule>(&rules[r].rule);
@@ -65,6 +68,20 @@ struct SurfaceMotion::Impl {
     problems.throw_if_any<MotionError>();
   }
 
+  /// Before the blade rows, which may follow a blade that has a target.
+  void make_targets(Mesh const& mesh, ResolvedMotion const& motion, Problems& problems) {
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      auto const* target = std::get_if<TargetRule>(&rules[r].rule);
+      if (target == nullptr) continue;
+      try {
+        targets.try_emplace(int(r), mesh, patches_of(motion, int(r)), *target, motion.axis, label(int(r)), notes);
+      } catch (MotionError const& e) {
+        problems.add(e.what());
+      }
+    }
+    problems.throw_if_any<MotionError>();
+  }
+
   RowMotion const& row(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades) {
     if (auto const known = rows.find(blades); known != rows.end()) return known->second;
     for (int p : blades)
@@ -82,7 +99,8 @@ struct SurfaceMotion::Impl {
 
   static bool is_direct(Rule const& rule) {
     return std::holds_alternative<FixedRule>(rule) || std::holds_alternative<RigidRule>(rule) ||
-           std::holds_alternative<FunctionRule>(rule) || std::holds_alternative<SectionsRule>(rule);
+           std::holds_alternative<FunctionRule>(rule) || std::holds_alternative<SectionsRule>(rule) ||
+           std::holds_alternative<TargetRule>(rule);
   }
 
   static std::vector<int> patches_of(ResolvedMotion const& motion, int r) {
@@ -98,6 +116,8 @@ struct SurfaceMotion::Impl {
     if (auto const* function = std::get_if<FunctionRule>(&rule.rule);
         function != nullptr && !function->description.empty())
       text += ": " + function->description;
+    if (auto const* target = std::get_if<TargetRule>(&rule.rule); target != nullptr && !target->description.empty())
+      text += ": " + target->description;
     return text + (rule.where.empty() ? "" : ", " + rule.where) + ")";
   }
 
@@ -113,6 +133,8 @@ struct SurfaceMotion::Impl {
     } else if (SectionMotion const* sections = sections_of_rule[r].get()) {
       std::transform(points.begin(), points.end(), out.begin(),
                      [sections](Vec3 const& p) { return sections->displacement(p); });
+    } else if (std::holds_alternative<TargetRule>(rule)) {
+      targets.at(r).displacement(points, out);
     } else {
       RowMotion const& row = *row_of_rule[r];
       bool const slides = std::holds_alternative<CircumferentialSlideRule>(rule);
@@ -150,6 +172,12 @@ std::optional<SlipSurface> SurfaceMotion::slip_surface(int patch) const {
   int const s = impl_->surfaces.of_patch[patch];
   if (s < 0) return std::nullopt;
   return impl_->surfaces.surfaces[s];
+}
+
+std::vector<TargetReach> SurfaceMotion::target_reach(Mesh const& mesh, Coordinates const& morphed) const {
+  std::vector<TargetReach> out;
+  for (auto const& [rule, target] : impl_->targets) out.push_back(target.reach(mesh, morphed));
+  return out;
 }
 
 std::vector<std::string> const& SurfaceMotion::notes() const { return impl_->notes; }

@@ -3,6 +3,7 @@
 
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/motion/slip_surface.hpp>
+#include <gridmorph/motion/target_reach.hpp>
 
 #include <memory>
 #include <span>
@@ -22,7 +23,7 @@ class SurfaceMotion {
   SurfaceMotion& operator=(SurfaceMotion&&) noexcept;
 
   /// Whether rule number r (in ResolvedMotion::rules) fixes displacements before the volume stage (fixed, rigid,
-  /// function, sections, circumferential-slide, follow).
+  /// function, sections, target, circumferential-slide, follow).
   [[nodiscard]] bool is_explicit(int rule) const;
 
   /// Displacement that rule number r gives to baseline points. Throws MotionError (rule, point and value) when a
@@ -31,6 +32,9 @@ class SurfaceMotion {
 
   /// The surface a slip (or constrained free) rule keeps the nodes of patch p on; nothing for other rules.
   [[nodiscard]] std::optional<SlipSurface> slip_surface(int patch) const;
+
+  /// How far the nodes of each target rule ended from their target, measured on the morphed mesh; rules in order.
+  [[nodiscard]] std::vector<TargetReach> target_reach(Mesh const& mesh, Coordinates const& morphed) const;
 
   /// Human-readable facts found on the way: blade sections, span range, profile deviation, mapping distances.
   [[nodiscard]] std::vector<std::string> const& notes() const;

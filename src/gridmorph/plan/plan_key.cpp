@@ -48,6 +48,7 @@ void add(ByteWriter&, FixedRule const&) {}
 void add(ByteWriter&, RigidRule const&) {}
 void add(ByteWriter&, FunctionRule const&) {}
 void add(ByteWriter&, SectionsRule const&) {}
+void add(ByteWriter&, TargetRule const&) {}
 void add(ByteWriter& to, CircumferentialSlideRule const& rule) { pass(to, rule.of); }
 void add(ByteWriter& to, FollowRule const& rule) { pass(to, rule.of); }
 void add(ByteWriter& to, FreeRule const& rule) { pass(to, rule.constraint); }

@@ -1,6 +1,7 @@
 #include <gridmorph/casefile/detail/field_reader.hpp>
 #include <gridmorph/casefile/detail/rule_reader.hpp>
 #include <gridmorph/casefile/detail/sections_reader.hpp>
+#include <gridmorph/casefile/detail/target_reader.hpp>
 #include <gridmorph/casefile/formula.hpp>
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/core/rigid_transform.hpp>
@@ -241,6 +242,7 @@ Rule read_rule(std::size_t number, TableReader& table, RuleContext const& shared
     case 6: return read_slip(table, shared);
     case 7: return read_free(table, shared);
     case 8: return read_sections(table, shared.axis.has_value());
+    case 9: return read_target_rule(table, shared);
     default: return FixedRule{};
   }
 }
@@ -297,12 +299,6 @@ void read_motion_rule(TableReader& table, RuleContext const& shared, CaseFile& o
   if (known == rule_names.end()) {
     table.problem("rule", fmt::format("\"{}\" is no rule{}", *name, suggestion(*name, rule_names)));
     return;  // its other keys cannot be judged
-  }
-  if (*name == "target") {
-    table.problem(
-        "rule",
-        fmt::format("\"{}\" is not available yet; use \"field\" with the displacement of the surface nodes", *name));
-    return;
   }
   motion.rule = read_rule(std::size_t(known - rule_names.begin()), table, shared, out);
   table.finish();

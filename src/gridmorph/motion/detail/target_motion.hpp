@@ -1,0 +1,42 @@
+// One target rule, evaluated: where each node of its patches goes.
+#pragma once
+
+#include <gridmorph/motion/detail/patch_surface.hpp>
+#include <gridmorph/motion/detail/target_tree.hpp>
+#include <gridmorph/motion/motion.hpp>
+#include <gridmorph/motion/target_reach.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+class TargetMotion {
+ public:
+  /// Throws MotionError when the target is not usable for these patches. `name` begins its messages and notes.
+  TargetMotion(Mesh const& mesh, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
+               std::string const& name, std::vector<std::string>& notes);
+
+  /// Displacement of nodes of the patches, found by their baseline position. Throws MotionError for other points.
+  void displacement(std::span<Vec3 const> points, std::span<Vec3> out) const;
+
+  /// How far the nodes of the patches ended from the target.
+  [[nodiscard]] TargetReach reach(Mesh const& mesh, Coordinates const& morphed) const;
+
+ private:
+  using Mapping = TargetRule::Mapping;
+
+  PatchSurface surface_;
+  std::string name_;
+  Mapping mapping_ = Mapping::nodes;
+  std::vector<Vec3> displacement_;  ///< per vertex
+  std::vector<char> reached_;       ///< per vertex: belongs to the target; empty: all do
+  TargetTree facets_;               ///< what distances are measured to, unless node for node
+};
+
+/// Grids and triangles of a target as one surface; points that coincide are one. Throws MotionError when the arrays are
+/// not consistent, not finite, or hold no facet.
+TargetTree target_facets(TargetGeometry const& target, std::string const& name);
+
+}  // namespace gridmorph
