@@ -29,7 +29,7 @@ struct BallOptions {
   double rope_radius = 0.15;
   double rope_length = 5;    ///< from the north pole of the ball to the jib
   double jib_height = 1.5;   ///< of the jib's section; it is as wide as the tube
-  double mast_distance = 7;  ///< from the rope's axis to the near side of the mast
+  double mast_distance = 12;  ///< from the rope's axis to the near side of the mast
   double mast_width = 2;     ///< along x
   double behind = 8;         ///< from the rope's axis to box_x_min
   double beyond = 4;         ///< from the far side of the mast to box_x_max
