@@ -48,8 +48,8 @@ void fill_weights(UnstructuredMesh const& mesh, Location const& where, std::vect
   std::copy_n(w.of, corners.size(), weight.begin());
 }
 
-/// Calls visit(node, weight) for the corner nodes of a place whose weights count, each node once: collapsed elements name
-/// some more than once.
+/// Calls visit(node, weight) for the corner nodes of a place whose weights count, each node once (collapsed elements name
+/// some more than once); these weights sum to one.
 template <class Visit>
 void for_each_item(UnstructuredMesh const& mesh, Location const& where, Visit const& visit) {
   constexpr double negligible = 1e-9;
@@ -71,8 +71,11 @@ void for_each_item(UnstructuredMesh const& mesh, Location const& where, Visit co
         break;
       }
   }
+  double sum = 0;
   for (std::size_t k = 0; k < corners.size(); ++k)
-    if (weight[k] >= negligible) visit(corners[k], weight[k]);
+    if (weight[k] >= negligible) sum += weight[k];
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    if (weight[k] >= negligible) visit(corners[k], weight[k] / sum);
 }
 
 void check(UnstructuredMesh const& mesh, Location const& where) {
@@ -122,13 +125,10 @@ GatherRows interpolation_rows(UnstructuredMesh const& mesh, std::span<Location c
   rows.item.resize(std::size_t(rows.first.back()));
   rows.weight.resize(std::size_t(rows.first.back()));
   Kokkos::parallel_for("gridmorph::interpolation_rows::fill", all, [&](Index const n) {
-    Location const& where = locations[std::size_t(n)];
-    double sum = 0;
-    for_each_item(mesh, where, [&](Number, double w) { sum += w; });
     auto at = std::size_t(rows.first[std::size_t(n)]);
-    for_each_item(mesh, where, [&](Number node, double w) {
+    for_each_item(mesh, locations[std::size_t(n)], [&](Number node, double w) {
       rows.item[at] = node;
-      rows.weight[at++] = float(w / sum);
+      rows.weight[at++] = float(w);
     });
   });
   compat::fence(exec, "gridmorph::interpolation_rows (read by the host)");

@@ -60,8 +60,9 @@ struct LocatorTables {
 /// are measured in it.
 ///
 /// Cost, linear: building sorts the candidates (a key of 8 and a number of 4 bytes each, moved eight times) and keeps 31
-/// bytes for each; a point costs about 0.5 microseconds on one core of 2020 where it is inside, some times that
-/// outside, and 52 bytes while it is being located.
+/// bytes for each, 0.2 microseconds; a point inside costs about 1 microsecond, a point far outside of flat elements 20 times
+/// that (one core of an AMD EPYC at 2.6 GHz, a million elements, points in no order). While they are being located, points
+/// take 48 bytes each.
 template <class Exec>
 class ElementLocator {
  public:
