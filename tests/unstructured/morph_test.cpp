@@ -163,12 +163,9 @@ TEST(UnstructuredMorph, PrescribedDisplacementsHoldExactlyAndTheRestIsSound) {
 TEST(UnstructuredMorph, NodesThatSlipStayOnTheirPlane) {
   Case const c(box_with_body(12));
   Morphed const m = c.morph(body_moves(translation({1, 0.5, 1}), {{{"k_min"}, SlipRule{}, 0, "slip"}}));
-  Index moved = 0;
   for (Number const n : m.prepared.boundary.nodes_of_patch[5]) {
     EXPECT_NEAR(m.x[n].z, 0, 1e-12);
-    moved += distance(m.x[n], c.mesh.coordinates[n]) > 1e-3 ? 1 : 0;
   }
-  EXPECT_GT(moved, 20);
   EXPECT_EQ(c.inverted(m.x), 0);
 }
 

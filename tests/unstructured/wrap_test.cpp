@@ -243,8 +243,9 @@ TEST(Wrap, IsShownAsAMeshOfItsCells) {
 TEST(SuggestedOffset, KeepsLayersInsideAndLeavesRoomForOtherBoundaries) {
   EXPECT_DOUBLE_EQ(suggest_offset({.layer_height = 0.1, .wall_edge = 0.01, .body = 1}), 0.2);
   EXPECT_DOUBLE_EQ(suggest_offset({.layer_height = 0.1, .wall_edge = 0.01, .motion = 4, .body = 1}), 0.5);
-  EXPECT_DOUBLE_EQ(suggest_offset({.layer_height = 0.1, .motion = 4, .body = 1, .gap = 0.9}), 0.3);
+  EXPECT_DOUBLE_EQ(suggest_offset({.layer_height = 0.1, .motion = 0.1, .body = 10, .gap = 0.9}), 0.3);
   EXPECT_DOUBLE_EQ(suggest_offset({.layer_height = 0.1, .motion = 2, .body = 1, .gap = 0.15}), 0.1);
+  EXPECT_DOUBLE_EQ(suggest_offset({.wall_edge = 1, .motion = 0.4, .body = 3, .gap = 1}), 0.2);
   EXPECT_DOUBLE_EQ(suggest_offset({.wall_edge = 0.05, .body = 1}), 0.1);
 }
 

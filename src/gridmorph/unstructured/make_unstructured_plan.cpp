@@ -264,7 +264,7 @@ class Planner {
     double gap = infinity;
     for (std::size_t n = 0; n < drives_.size(); ++n)
       if (drives_[n]) gap = std::min(gap, from_other_.distance[n]);
-    hints.gap = std::isfinite(gap) && gap > 3 * hints.wall_edge ? gap : 0;
+    hints.gap = std::isfinite(gap) && gap > hints.wall_edge ? gap : 0;
     return options_.offset > 0 ? options_.offset : suggest_offset(hints);
   }
 
