@@ -177,7 +177,8 @@ Kokkos::View<T const*, MemorySpace> view_of(std::vector<T> const& list, [[maybe_
   if constexpr (std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
     return host;
   } else {
-    Kokkos::View<T*, MemorySpace> device(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), list.size());
+    Kokkos::View<T*, MemorySpace> device(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
+                                         list.size());
     Kokkos::deep_copy(device, host);
     return device;
   }
