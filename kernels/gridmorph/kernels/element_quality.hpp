@@ -271,7 +271,8 @@ KOKKOS_INLINE_FUNCTION double element_relative_displacement(ElementType type, El
   for (int k = 0; k < max_edges; ++k) {
     if (members[k] == 0 || !whole[k]) continue;
     double const ratio = difference[k] * members[k] / length[k];
-    worst = larger(worst, is_finite(ratio) ? ratio : unbounded);
+    double const bounded = is_finite(ratio) ? ratio : unbounded;
+    worst = larger(worst, bounded);
   }
   return worst;
 }
