@@ -51,7 +51,6 @@ struct Front {
   Number element;
   int side;
   std::size_t face;  ///< number in the list of wall faces
-  double height;     ///< of the cells below, along the lowest of its edges
 };
 
 }  // namespace
@@ -73,7 +72,7 @@ Columns make_columns(UnstructuredMesh const& mesh, UnstructuredTopology const& t
       if (edge > 0) shortest[f] = std::min(shortest[f], edge);
     }
     front.push_back(
-        {topology.boundary.element[std::size_t(faces[f])], topology.boundary.side[std::size_t(faces[f])], f, 0});
+        {topology.boundary.element[std::size_t(faces[f])], topology.boundary.side[std::size_t(faces[f])], f});
   }
   std::vector<double> above_wall(std::size_t(mesh.n_nodes()), 0);
   std::vector<std::uint8_t> visited(std::size_t(mesh.n_elements()), 0);
@@ -117,10 +116,9 @@ Columns make_columns(UnstructuredMesh const& mesh, UnstructuredTopology const& t
                             return std::find(opposite.above.begin(), opposite.above.begin() + opposite.n, n) !=
                                    opposite.above.begin() + opposite.n;
                           });
-        if (same) next.push_back({behind, s, at.face, reach});
+        if (same) next.push_back({behind, s, at.face});
       }
     }
-    if (Index(out.node.size()) > out.layer.back()) out.layer.push_back(Index(out.node.size()));
     front = std::move(next);
   }
   for (Number const n : out.node) out.above_wall.push_back(above_wall[std::size_t(n)]);

@@ -13,7 +13,6 @@ struct Columns {
   std::vector<Number> node;
   std::vector<Number> root;        ///< the wall node below
   std::vector<double> above_wall;  ///< length of the column up to the node
-  std::vector<Index> layer{0};     ///< first entry of each layer, and the end
   std::vector<double> height;      ///< (n_nodes) of the mesh: of the column on a wall node, 0 where there is none
 
   [[nodiscard]] Index size() const { return Index(node.size()); }

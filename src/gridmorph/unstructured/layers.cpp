@@ -29,45 +29,9 @@ void add_row(Number node, std::vector<Source>& sources, int most_items, GatherRo
 
 }  // namespace
 
-LayerRows make_layers(NodeGraph const& graph, std::vector<std::uint8_t> const& seeds,
-                      std::vector<std::uint8_t> const& wanted, std::function<double(Number, Number)> const& weight,
-                      int most_layers, int most_items) {
-  LayerRows out;
-  std::size_t const n = std::size_t(graph.size());
-  constexpr int never = -1;
-  std::vector<int> layer(n, never);
-  std::vector<Number> front;
-  for (std::size_t k = 0; k < n; ++k)
-    if (seeds[k]) {
-      layer[k] = 0;
-      front.push_back(Number(k));
-    }
-  std::vector<Source> sources;
-  for (int l = 1; l <= most_layers && !front.empty(); ++l) {
-    std::vector<Number> next;
-    for (Number const at : front)
-      for (Number const m : graph.neighbours[at])
-        if (layer[std::size_t(m)] == never && wanted[std::size_t(m)]) {
-          layer[std::size_t(m)] = l;
-          next.push_back(m);
-        }
-    std::sort(next.begin(), next.end());
-    for (Number const node : next) {
-      sources.clear();
-      for (Number const m : graph.neighbours[node])
-        if (layer[std::size_t(m)] == l - 1) sources.push_back({weight(node, m), m});
-      add_row(node, sources, most_items, out.rows);
-    }
-    if (!next.empty()) out.level.push_back(out.rows.size());
-    front = std::move(next);
-  }
-  return out;
-}
-
-LayerRows make_layers_by_distance(NodeGraph const& graph, Coordinates const& coordinates,
-                                  std::vector<std::uint8_t> const& seeds, std::vector<std::uint8_t> const& wanted,
-                                  std::vector<double> const& distance,
-                                  std::function<double(Number, Number)> const& weight, int most_items) {
+LayerRows make_layers(NodeGraph const& graph, Coordinates const& coordinates, std::vector<std::uint8_t> const& seeds,
+                      std::vector<std::uint8_t> const& wanted, std::vector<double> const& distance,
+                      std::function<double(Number, Number)> const& weight, int most_items) {
   constexpr int never = -1;
   std::size_t const n = std::size_t(graph.size());
   std::vector<int> layer(n, never);

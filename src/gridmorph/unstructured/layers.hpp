@@ -17,21 +17,14 @@ struct LayerRows {
   [[nodiscard]] int n_layers() const { return int(level.size()) - 1; }
 };
 
-/// Layer 1 holds the nodes of `wanted` that an edge joins to a seed, layer 2 those joined to layer 1, and so on. A row gathers
-/// from the neighbours in the layer before. weight(node, source) must be positive.
-/// At most `most_items` sources, those of largest weight. Wanted nodes that nothing reaches get no row. Deterministic; O(edges).
-LayerRows make_layers(NodeGraph const& graph, std::vector<std::uint8_t> const& seeds,
-                      std::vector<std::uint8_t> const& wanted,
-                      std::function<double(Number node, Number source)> const& weight, int most_layers = 1 << 30,
-                      int most_items = 8);
-
-/// The same in the order of a distance from the seeds instead of a number of edges: a node gathers from the neighbours that are
-/// nearer to the seeds by at least a third of the edge between them, or else from the nearest of those that are nearer at all. So
-/// fronts that leave walls with fine and with coarse elements advance alike. A layer holds the nodes whose sources lie in
-/// layers before. Seeds need not be at distance zero; wanted nodes that no chain of edges joins to a seed get no row. O(n log n + edges).
-LayerRows make_layers_by_distance(NodeGraph const& graph, Coordinates const& coordinates,
-                                  std::vector<std::uint8_t> const& seeds, std::vector<std::uint8_t> const& wanted,
-                                  std::vector<double> const& distance,
-                                  std::function<double(Number node, Number source)> const& weight, int most_items = 8);
+/// Layers of the nodes of `wanted` around the seeds, in the order of a distance from them instead of a number of edges: a node
+/// gathers from the neighbours that are nearer to the seeds by at least a third of the edge between them, or else from the nearest of
+/// those that have a row already. So fronts that leave walls with fine and with coarse elements advance alike. A layer holds the
+/// nodes whose sources lie in layers before. weight(node, source) must be positive; at most `most_items` sources count, those of
+/// largest weight. Seeds need not be at distance zero; wanted nodes that no chain of edges joins to a seed get no row.
+/// Deterministic; O(n log n + edges).
+LayerRows make_layers(NodeGraph const& graph, Coordinates const& coordinates, std::vector<std::uint8_t> const& seeds,
+                      std::vector<std::uint8_t> const& wanted, std::vector<double> const& distance,
+                      std::function<double(Number node, Number source)> const& weight, int most_items = 8);
 
 }  // namespace gridmorph

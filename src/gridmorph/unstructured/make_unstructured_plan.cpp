@@ -319,8 +319,7 @@ class Planner {
     Mask wanted = near_;
     for (std::size_t n = 0; n < seeds.size(); ++n)
       if (seeds[n] || !out_.graph.carries(Number(n))) wanted[n] = 0;
-    plan.near =
-        make_layers_by_distance(out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
+    plan.near = make_layers(out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
     plan_smooth_walls();
     auto& layer = out_.report.layer;
     layer.assign(seeds.size(), -1);
@@ -474,8 +473,8 @@ class Planner {
     Mask wanted = mask();
     for (std::size_t n = 0; n < wanted.size(); ++n)
       wanted[n] = plan.fade[n] != 0 && from_other_.distance[n] < reach ? 1 : 0;
-    plan.residual_detail = make_layers_by_distance(out_.graph, mesh_.coordinates, is_other_, wanted,
-                                                   from_other_.distance, inverse_distance());
+    plan.residual_detail =
+        make_layers(out_.graph, mesh_.coordinates, is_other_, wanted, from_other_.distance, inverse_distance());
     for (Number const n : plan.residual_detail.rows.target) {
       double const s = from_other_.distance[std::size_t(n)] / reach;
       plan.detail_fade.push_back(float(plan.fade[std::size_t(n)] * (1 - s * s * (3 - 2 * s))));
