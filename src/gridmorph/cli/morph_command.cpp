@@ -28,15 +28,13 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// More than the digits of three numbers in JSON.
-constexpr std::size_t room_for_a_time = 128;
-
 /// The cell fields of the output mesh.
 constexpr std::array field_measures{Measure::aspect_ratio,       Measure::determinant_2x2x2,
                                     Measure::determinant_3x3x3,  Measure::minimum_angle_deg,
                                     Measure::equiangle_skewness, Measure::relative_displacement};
 
-/// "determinant_2x2x2" -> "Determinant2x2x2", as solution fields of CGNS files are called.
+}  // namespace
+
 std::string field_name(Measure measure) {
   std::string out;
   bool upper = true;
@@ -50,8 +48,6 @@ std::string field_name(Measure measure) {
   }
   return out;
 }
-
-}  // namespace
 
 OutputFields output_fields(CaseFile const& case_file, MorphResult const& result) {
   OutputFields fields;
@@ -136,13 +132,8 @@ Index newly_inverted(QualityReport const& quality) {
 }
 
 int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
-  check_output(case_file.output, "output", case_file.input);
   auto const& report = case_file.output_options.report;
-  if (report) {
-    check_output(*report, "report", case_file.input);
-    if (*report == case_file.output)
-      throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
-  }
+  check_outputs(case_file.output, report, case_file.input);
 
   MorphResult result = run_morph(case_file, terminal);
   bool const written = newly_inverted(result.after) == 0 || case_file.guard.write_inverted;

@@ -44,6 +44,15 @@ int write_text(std::filesystem::path const& path, char const* mode, std::string 
 
 }  // namespace
 
+void check_outputs(std::filesystem::path const& output, std::optional<std::filesystem::path> const& report,
+                   std::filesystem::path const& input) {
+  check_output(output, "output", input);
+  if (!report) return;
+  check_output(*report, "report", input);
+  if (*report == output)
+    throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
+}
+
 PendingFile::PendingFile(std::filesystem::path path, std::string const& text)
     : path_(std::move(path)), beside_(path_.string() + "." + std::to_string(getpid()) + ".part") {
   if (int const reason = write_text(beside_, "wb", text)) {

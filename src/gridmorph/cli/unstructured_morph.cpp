@@ -1,5 +1,6 @@
 #include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
 #include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/cli/unstructured_morph.hpp>
@@ -129,14 +130,13 @@ OutputFields fields_of(CaseFile const& case_file, Result const& out) {
   if (!case_file.output_options.quality) return fields;
   constexpr std::array measures{Measure::aspect_ratio, Measure::determinant_3x3x3, Measure::minimum_angle_deg,
                                 Measure::equiangle_skewness, Measure::relative_displacement};
-  constexpr std::array names{"AspectRatio", "Determinant3x3x3", "MinimumAngleDeg", "EquiangleSkewness",
-                             "RelativeDisplacement"};
   auto input = quality_input(out);
   input.baseline = input.coordinates;
   input.coordinates = views(out.morphed);
   auto const values = cell_fields(Exec(), out.loaded.mesh, out.loaded.topology, input, measures);
   for (std::size_t m = 0; m < measures.size(); ++m)
-    fields.cells.push_back({names[m], std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0))});
+    fields.cells.push_back(
+        {field_name(measures[m]), std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0))});
   return fields;
 }
 
@@ -235,22 +235,16 @@ std::string regions_text(PreparedUnstructured const& prepared) {
 }  // namespace
 
 int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
-  check_output(case_file.output, "output", case_file.input);
   auto const& report = case_file.output_options.report;
-  if (report) {
-    check_output(*report, "report", case_file.input);
-    if (*report == case_file.output)
-      throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
-  }
+  check_outputs(case_file.output, report, case_file.input);
   Result out;
   read_and_plan(case_file, terminal, out);
   move_nodes(out, terminal, case_file.output_options.stages.has_value());
   relax(out, terminal);
   measure(case_file, out, terminal);
-  bool const written =
-      out.after.near_field.newly_inverted + out.after.far_field.newly_inverted == 0 || case_file.guard.write_inverted;
+  bool const written = newly_inverted(out.after) == 0 || case_file.guard.write_inverted;
   std::optional<PendingFile> pending;
-  if (report) pending.emplace(*report, report_text(case_file, out, written) + std::string(128, '\n'));
+  if (report) pending.emplace(*report, report_text(case_file, out, written) + std::string(room_for_a_time, '\n'));
   if (written) {
     Stopwatch watch;
     terminal.progress("writing " + case_file.output.string());

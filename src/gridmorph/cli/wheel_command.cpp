@@ -213,12 +213,7 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   if (output.empty())
     throw ConfigError(options.input.string() +
                       ": no output; add output = \"wheel.cgns\" to [wheel] or give --output FILE");
-  check_output(output, "output", case_file.input);
-  if (report) {
-    check_output(*report, "report", case_file.input);
-    if (*report == output)
-      throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
-  }
+  check_outputs(output, report, case_file.input);
   if (case_file.output_options.displacement || case_file.output_options.quality)
     terminal.warn("[output] displacement and quality are not written into wheels");
 
