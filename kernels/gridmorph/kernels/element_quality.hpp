@@ -48,9 +48,10 @@ struct EdgeLengths {
   KOKKOS_INLINE_FUNCTION bool is_collapsed(int edge) const { return (collapsed >> edge & 1u) != 0; }
 };
 
-KOKKOS_INLINE_FUNCTION EdgeLengths edge_lengths(ElementType type, ElementCorners const& c) {
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION EdgeLengths edge_lengths(ElementCorners const& c) {
   EdgeLengths e;
-  int const n = n_edges(type);
+  constexpr int n = n_edges(type);
   for (int i = 0; i < n; ++i) {
     Vec3 const v = c.at[edge_corner(type, i, 1)] - c.at[edge_corner(type, i, 0)];
     e.square[i] = dot(v, v);
@@ -66,12 +67,13 @@ KOKKOS_INLINE_FUNCTION EdgeLengths edge_lengths(ElementType type, ElementCorners
   return e;
 }
 
-/// Angles of one polygon of `n` corners, as skewness and smallest angle of the element so far.
-KOKKOS_INLINE_FUNCTION void face_angles(ElementType type, ElementCorners const& c, int face, double limit,
-                                        double& smallest_angle, double& skewness) {
-  bool const self = is_surface(type);
+/// Takes the angles of one face; `triangles` and `quadrilaterals` gather those of all.
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION void face_angles(ElementCorners const& c, int face, double limit, FaceAngles& triangles,
+                                        FaceAngles& quadrilaterals) {
+  constexpr bool self = is_surface(type);
   int const n = self ? n_corners(type) : n_face_corners(type, face);
-  double cos_max = -2, cos_min = 2;
+  FaceAngles& angles = n == 3 ? triangles : quadrilaterals;
   for (int k = 0; k < n; ++k) {
     int const at = self ? k : face_corner(type, face, k);
     int const next = self ? (k + 1) % n : face_corner(type, face, (k + 1) % n);
@@ -79,14 +81,18 @@ KOKKOS_INLINE_FUNCTION void face_angles(ElementType type, ElementCorners const& 
     Vec3 const u = c.at[next] - c.at[at], v = c.at[previous] - c.at[at];
     double const uu = dot(u, u), vv = dot(v, v);
     if (uu <= limit || vv <= limit) continue;
-    double const cosine = dot(u, v) / (norm(u) * norm(v));
-    cos_max = larger(cos_max, cosine);
-    cos_min = smaller(cos_min, cosine);
+    double const cosine = dot(u, v) / (compat::math::sqrt(uu) * compat::math::sqrt(vv));
+    angles.cos_max = larger(angles.cos_max, cosine);
+    angles.cos_min = smaller(angles.cos_min, cosine);
   }
-  if (cos_max < cos_min) return;
+}
+
+/// Adds faces whose ideal angle is `ideal` degrees to smallest angle and skewness of the element.
+KOKKOS_INLINE_FUNCTION void add_angles(FaceAngles const& angles, double ideal, double& smallest_angle,
+                                       double& skewness) {
+  if (angles.cos_max < angles.cos_min) return;
   constexpr double degrees = 57.295779513082320877;
-  double const amin = degrees * arc_cosine(cos_max), amax = degrees * arc_cosine(cos_min);
-  double const ideal = n == 3 ? 60 : 90;
+  double const amin = degrees * arc_cosine(angles.cos_max), amax = degrees * arc_cosine(angles.cos_min);
   smallest_angle = smaller(smallest_angle, amin);
   skewness = larger(skewness, larger((amax - ideal) / (180 - ideal), (ideal - amin) / ideal));
 }
@@ -159,9 +165,10 @@ KOKKOS_INLINE_FUNCTION double prism_jacobians(ElementCorners const& c, EdgeLengt
   return volume;
 }
 
-/// Scaled Jacobian of a simplex of n corners (3 or 4) with Jacobian j.
-KOKKOS_INLINE_FUNCTION double scaled_simplex(ElementType type, EdgeLengths const& e, double j) {
-  double const scale = type == ElementType::triangle ? 1.1547005383792515290 : 1.4142135623730950488;
+/// Scaled Jacobian of a simplex with Jacobian j.
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION double scaled_simplex(EdgeLengths const& e, double j) {
+  constexpr double scale = type == ElementType::triangle ? 1.1547005383792515290 : 1.4142135623730950488;
   double largest = 0;
   for (int corner = 0; corner < n_corners(type); ++corner) {
     double product = 1;
@@ -174,58 +181,118 @@ KOKKOS_INLINE_FUNCTION double scaled_simplex(ElementType type, EdgeLengths const
   return smaller(1.0, larger(-1.0, ratio));
 }
 
+/// Jacobians of an element at all points where they are taken: volume and determinants.
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION void take_jacobians(ElementCorners const& c, EdgeLengths const& e, double sign,
+                                           Vec3 const& plane_normal, CellMeasures& m) {
+  if constexpr (type == ElementType::tetrahedron || type == ElementType::triangle) {
+    constexpr bool solid = type == ElementType::tetrahedron;
+    Vec3 const third = solid ? c.at[3] - c.at[0] : plane_normal;
+    double const j = sign * dot(cross(c.at[1] - c.at[0], c.at[2] - c.at[0]), third);
+    m.volume = j / (solid ? 6 : 2);
+    m.smallest_corner_jacobian = j;
+    m.determinant_2x2x2 = m.determinant_3x3x3 = scaled_simplex<type>(e, j);
+  } else {
+    Determinants d;
+    if constexpr (type == ElementType::quadrilateral)
+      m.volume = base_jacobians(
+          c, e.collapsed, sign, [&](Vec3 const&) { return plane_normal; }, d);
+    else if constexpr (type == ElementType::pyramid)
+      m.volume = pyramid_jacobians(c, e, sign, d);
+    else
+      m.volume = prism_jacobians(c, e, sign, d);
+    m.determinant_2x2x2 = determinant_ratio(d.corner_min, d.corner_max);
+    m.determinant_3x3x3 = determinant_ratio(d.all_min, d.all_max);
+    m.smallest_corner_jacobian = is_finite(d.corner_min) ? d.corner_min : 0;
+  }
+}
+
+/// All measures of an element of one type: a copy of this per type, whose loops unroll.
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION CellMeasures measures(ElementCorners const& c, double sign, Vec3 const& plane_normal) {
+  EdgeLengths const e = edge_lengths<type>(c);
+  CellMeasures m;
+  take_jacobians<type>(c, e, sign, plane_normal, m);
+  if (!is_finite(m.volume)) return invalid_cell();
+  m.collapsed = e.collapsed != 0;
+  if (is_finite(e.shortest) && e.shortest > 0)
+    m.aspect_ratio = compat::math::sqrt(e.longest) / compat::math::sqrt(e.shortest);
+  double const limit = collapsed_fraction * collapsed_fraction * e.longest;
+  FaceAngles triangles, quadrilaterals;
+  constexpr int faces = is_surface(type) ? 1 : n_faces(type);
+  for (int f = 0; f < faces; ++f) face_angles<type>(c, f, limit, triangles, quadrilaterals);
+  double angle = unbounded, skewness = -unbounded;
+  add_angles(triangles, 60, angle, skewness);
+  add_angles(quadrilaterals, 90, angle, skewness);
+  if (is_finite(angle)) {
+    m.minimum_angle_deg = angle;
+    m.equiangle_skewness = skewness;
+  }
+  return m;
+}
+
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION double determinant(ElementCorners const& c, double sign, Vec3 const& plane_normal) {
+  CellMeasures m;
+  take_jacobians<type>(c, edge_lengths<type>(c), sign, plane_normal, m);
+  return is_finite(m.volume) ? m.determinant_3x3x3 : -1;
+}
+
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION double relative_displacement_of(ElementCorners const& baseline, ElementCorners const& morphed) {
+  EdgeLengths const e = edge_lengths<type>(baseline);
+  double length[max_edges] = {}, difference[max_edges] = {};
+  int members[max_edges] = {};
+  bool whole[max_edges] = {};
+  for (int i = 0; i < n_edges(type); ++i) {
+    int const a = edge_corner(type, i, 0), b = edge_corner(type, i, 1), direction = edge_direction(type, i);
+    double const d = norm((morphed.at[b] - baseline.at[b]) - (morphed.at[a] - baseline.at[a]));
+    length[direction] += compat::math::sqrt(e.square[i]);
+    difference[direction] = is_finite(d) ? larger(difference[direction], d) : unbounded;
+    members[direction] += 1;
+    whole[direction] = whole[direction] || !e.is_collapsed(i);
+  }
+  double worst = 0;
+  for (int k = 0; k < n_edges(type); ++k) {
+    if (members[k] == 0 || !whole[k]) continue;
+    double const ratio = difference[k] * members[k] / length[k];
+    double const bounded = is_finite(ratio) ? ratio : unbounded;
+    worst = larger(worst, bounded);
+  }
+  return worst;
+}
+
 }  // namespace element
 
 /// All measures of one element that is no polyhedron. sign: +1, or -1 for elements of a zone that is numbered inside out.
 /// plane_normal: unit normal of a 2-D mesh, along which a counter-clockwise element is positive; not used in 3-D.
 KOKKOS_INLINE_FUNCTION CellMeasures element_measures(ElementType type, ElementCorners const& c, double sign,
                                                      Vec3 const& plane_normal) {
-  if (type == ElementType::hexahedron) return cell_measures(hex_cell(c), sign);
-  element::EdgeLengths const e = element::edge_lengths(type, c);
-  CellMeasures m;
-  element::Determinants d;
   switch (type) {
-    case ElementType::tetrahedron: {
-      double const j = sign * dot(cross(c.at[1] - c.at[0], c.at[2] - c.at[0]), c.at[3] - c.at[0]);
-      m.volume = j / 6;
-      m.smallest_corner_jacobian = j;
-      m.determinant_2x2x2 = m.determinant_3x3x3 = element::scaled_simplex(type, e, j);
-      break;
-    }
-    case ElementType::triangle: {
-      double const j = sign * dot(cross(c.at[1] - c.at[0], c.at[2] - c.at[0]), plane_normal);
-      m.volume = j / 2;
-      m.smallest_corner_jacobian = j;
-      m.determinant_2x2x2 = m.determinant_3x3x3 = element::scaled_simplex(type, e, j);
-      break;
-    }
-    case ElementType::quadrilateral:
-      m.volume = element::base_jacobians(
-          c, e.collapsed, sign, [&](Vec3 const&) { return plane_normal; }, d);
-      break;
-    case ElementType::pyramid: m.volume = element::pyramid_jacobians(c, e, sign, d); break;
-    case ElementType::prism: m.volume = element::prism_jacobians(c, e, sign, d); break;
-    case ElementType::hexahedron:
+    case ElementType::triangle: return element::measures<ElementType::triangle>(c, sign, plane_normal);
+    case ElementType::quadrilateral: return element::measures<ElementType::quadrilateral>(c, sign, plane_normal);
+    case ElementType::tetrahedron: return element::measures<ElementType::tetrahedron>(c, sign, plane_normal);
+    case ElementType::pyramid: return element::measures<ElementType::pyramid>(c, sign, plane_normal);
+    case ElementType::prism: return element::measures<ElementType::prism>(c, sign, plane_normal);
+    case ElementType::hexahedron: return cell_measures(hex_cell(c), sign);
     case ElementType::polyhedron: break;
   }
-  if (!is_finite(m.volume)) return invalid_cell();
-  if (type != ElementType::tetrahedron && type != ElementType::triangle) {
-    m.determinant_2x2x2 = determinant_ratio(d.corner_min, d.corner_max);
-    m.determinant_3x3x3 = determinant_ratio(d.all_min, d.all_max);
-    m.smallest_corner_jacobian = is_finite(d.corner_min) ? d.corner_min : 0;
+  return CellMeasures();
+}
+
+/// Measure determinant_3x3x3 alone; -1 where a corner is not finite.
+KOKKOS_INLINE_FUNCTION double element_determinant(ElementType type, ElementCorners const& c, double sign,
+                                                  Vec3 const& plane_normal) {
+  switch (type) {
+    case ElementType::triangle: return element::determinant<ElementType::triangle>(c, sign, plane_normal);
+    case ElementType::quadrilateral: return element::determinant<ElementType::quadrilateral>(c, sign, plane_normal);
+    case ElementType::tetrahedron: return element::determinant<ElementType::tetrahedron>(c, sign, plane_normal);
+    case ElementType::pyramid: return element::determinant<ElementType::pyramid>(c, sign, plane_normal);
+    case ElementType::prism: return element::determinant<ElementType::prism>(c, sign, plane_normal);
+    case ElementType::hexahedron: return determinant_3x3x3(hex_cell(c), sign);
+    case ElementType::polyhedron: break;
   }
-  m.collapsed = e.collapsed != 0;
-  if (is_finite(e.shortest) && e.shortest > 0)
-    m.aspect_ratio = compat::math::sqrt(e.longest) / compat::math::sqrt(e.shortest);
-  double angle = unbounded, skewness = -unbounded;
-  double const limit = collapsed_fraction * collapsed_fraction * e.longest;
-  int const faces = is_surface(type) ? 1 : n_faces(type);
-  for (int f = 0; f < faces; ++f) element::face_angles(type, c, f, limit, angle, skewness);
-  if (is_finite(angle)) {
-    m.minimum_angle_deg = angle;
-    m.equiangle_skewness = skewness;
-  }
-  return m;
+  return -1;
 }
 
 /// Volume alone (area in 2-D), negative for elements that are numbered inside out.
@@ -251,30 +318,20 @@ KOKKOS_INLINE_FUNCTION double element_volume(ElementType type, ElementCorners co
 /// Relative displacement of an element that moved from `baseline` to `morphed`; `unbounded` where a corner is not finite.
 KOKKOS_INLINE_FUNCTION double element_relative_displacement(ElementType type, ElementCorners const& baseline,
                                                             ElementCorners const& morphed) {
-  if (type == ElementType::hexahedron) {
-    Vec3 const r = relative_displacement(hex_cell(baseline), hex_cell(morphed));
-    return larger(r.x, larger(r.y, r.z));
+  using element::relative_displacement_of;
+  switch (type) {
+    case ElementType::triangle: return relative_displacement_of<ElementType::triangle>(baseline, morphed);
+    case ElementType::quadrilateral: return relative_displacement_of<ElementType::quadrilateral>(baseline, morphed);
+    case ElementType::tetrahedron: return relative_displacement_of<ElementType::tetrahedron>(baseline, morphed);
+    case ElementType::pyramid: return relative_displacement_of<ElementType::pyramid>(baseline, morphed);
+    case ElementType::prism: return relative_displacement_of<ElementType::prism>(baseline, morphed);
+    case ElementType::hexahedron: {
+      Vec3 const r = relative_displacement(hex_cell(baseline), hex_cell(morphed));
+      return larger(r.x, larger(r.y, r.z));
+    }
+    case ElementType::polyhedron: break;
   }
-  element::EdgeLengths const e = element::edge_lengths(type, baseline);
-  double length[max_edges] = {}, difference[max_edges] = {};
-  int members[max_edges] = {};
-  bool whole[max_edges] = {};
-  for (int i = 0; i < n_edges(type); ++i) {
-    int const a = edge_corner(type, i, 0), b = edge_corner(type, i, 1), direction = edge_direction(type, i);
-    double const d = norm((morphed.at[b] - baseline.at[b]) - (morphed.at[a] - baseline.at[a]));
-    length[direction] += compat::math::sqrt(e.square[i]);
-    difference[direction] = is_finite(d) ? larger(difference[direction], d) : unbounded;
-    members[direction] += 1;
-    whole[direction] = whole[direction] || !e.is_collapsed(i);
-  }
-  double worst = 0;
-  for (int k = 0; k < max_edges; ++k) {
-    if (members[k] == 0 || !whole[k]) continue;
-    double const ratio = difference[k] * members[k] / length[k];
-    double const bounded = is_finite(ratio) ? ratio : unbounded;
-    worst = larger(worst, bounded);
-  }
-  return worst;
+  return 0;
 }
 
 }  // namespace gridmorph

@@ -20,6 +20,7 @@ LoadedMesh load_unstructured(std::filesystem::path const& path) {
   out.topology = make_topology(out.mesh);
   out.claims = claim_boundary(out.mesh, out.topology);
   out.problems = out.claims.problems;
+  out.orientation = zone_orientation(out.mesh);
   for (auto const& negative : negative_elements(out.mesh))
     out.problems.push_back(out.mesh.source + ": " + describe(out.mesh, negative));
   constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
@@ -30,6 +31,7 @@ LoadedMesh load_unstructured(std::filesystem::path const& path) {
 
 QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed) {
   UnstructuredQualityInput<Kokkos::HostSpace> input;
+  input.orientation = loaded.orientation;
   input.coordinates = views(morphed ? *morphed : loaded.mesh.coordinates);
   if (morphed) input.baseline = views(loaded.mesh.coordinates);
   for (int p = 0; p < int(loaded.mesh.patches.size()); ++p)

@@ -18,6 +18,7 @@ struct LoadedMesh {
   UnstructuredMesh mesh;
   UnstructuredTopology topology;
   BoundaryClaims claims;
+  std::vector<int> orientation;       ///< zone_orientation() of the mesh
   std::vector<std::string> problems;  ///< open faces, elements that are numbered inside out, ...
 };
 

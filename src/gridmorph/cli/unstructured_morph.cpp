@@ -91,6 +91,7 @@ UnstructuredQualityInput<Kokkos::HostSpace> quality_input(Result const& out) {
   UnstructuredQualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(out.loaded.mesh.coordinates);
   input.near_field = near;
+  input.orientation = out.loaded.orientation;
   std::set<int> walls(out.prepared->boundary.driving_patches.begin(), out.prepared->boundary.driving_patches.end());
   for (std::size_t p = 0; p < out.loaded.mesh.patches.size(); ++p)
     if (out.loaded.mesh.patches[p].kind == PatchKind::wall) walls.insert(int(p));

@@ -1,8 +1,10 @@
 #include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/detail/number_buckets.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 namespace gridmorph {
 
@@ -18,28 +20,21 @@ void for_all(char const* label, Index count, Function const& f) {
   compat::fence(exec, "gridmorph::unstructured_topology (read by the host)");
 }
 
-/// Lists of the items that name a key, from the keys of each item: a counting sort, so that lists are ascending.
+/// Lists of the items that name a key, ascending, from the keys of each item; an item that names a key twice counts once.
 template <class KeysOf>
-NumberLists invert(Index n_keys, Index n_items, KeysOf const& keys_of) {
+NumberLists invert(char const* label, Index n_keys, Index n_items, KeysOf const& keys_of) {
+  detail::NumberBuckets<Number> const buckets(label, n_items, n_keys, [&](Index i, auto const& put) {
+    auto const keys = keys_of(i);
+    for (auto key = keys.begin(); key != keys.end(); ++key)
+      if (std::find(keys.begin(), key, *key) == key) put(*key, Number(i));
+  });
   NumberLists out;
-  out.first.assign(std::size_t(n_keys) + 1, 0);
-  // A collapsed item names a key more than once; it counts once.
-  std::vector<Number> last(std::size_t(n_keys), -1);
-  for (Index i = 0; i < n_items; ++i)
-    for (Number const key : keys_of(i)) {
-      if (last[std::size_t(key)] == Number(i)) continue;
-      last[std::size_t(key)] = Number(i);
-      ++out.first[std::size_t(key) + 1];
-    }
-  std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
-  out.item.resize(std::size_t(out.first.back()));
-  std::vector<Index> next(out.first.begin(), out.first.end() - 1);
-  for (Index i = 0; i < n_items; ++i)
-    for (Number const key : keys_of(i)) {
-      Index& at = next[std::size_t(key)];
-      if (at > out.first[std::size_t(key)] && out.item[std::size_t(at) - 1] == Number(i)) continue;
-      out.item[std::size_t(at++)] = Number(i);
-    }
+  out.first.resize(std::size_t(n_keys) + 1, 0);
+  out.item.resize(std::size_t(buckets.size()));
+  buckets.for_each_key([&](Number key, Index at, std::span<Number const> items) {
+    out.first[std::size_t(key) + 1] = at + Index(items.size());
+    std::copy(items.begin(), items.end(), out.item.begin() + at);
+  });
   return out;
 }
 
@@ -52,31 +47,39 @@ bool same_set(std::span<Number const> a, std::span<Number const> b) {
   return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Number n) { return contains(b, n); });
 }
 
-bool has_side(UnstructuredMesh const& mesh, Index element, std::span<Number const> nodes) {
-  auto const corners = mesh.elements.corners(element);
-  if (!std::all_of(nodes.begin(), nodes.end(), [&](Number n) { return contains(corners, n); })) return false;
-  std::array<Number, max_face_corners> room{};
-  int const sides = n_sides(mesh, element);
-  for (int s = 0; s < sides; ++s)
-    if (same_set(side_nodes(mesh, element, s, room), nodes)) return true;
-  return false;
-}
-
 /// The node that fewest elements share: the shortest list to search.
 Number rarest(NumberLists const& lists, std::span<Number const> nodes) {
   return *std::min_element(nodes.begin(), nodes.end(),
                            [&](Number a, Number b) { return lists[a].size() < lists[b].size(); });
 }
 
-Number behind(UnstructuredMesh const& mesh, NumberLists const& around, Index element, int side) {
-  std::array<Number, max_face_corners> room{};
-  auto const nodes = side_nodes(mesh, element, side, room);
-  if (int(nodes.size()) < mesh.dimension) return ElementSides::collapsed;
+/// A side of an element under the smallest of its nodes.
+struct KeyedSide {
+  /// The next larger nodes, ascending; -1 where there are fewer. Sides of polyhedra may have more: see `n_nodes`.
+  std::array<Number, max_face_corners - 1> nodes;
+  Number element;
+  Number side;
+  Number n_nodes;
+
+  [[nodiscard]] bool alike(KeyedSide const& other) const { return nodes == other.nodes && n_nodes == other.n_nodes; }
+  [[nodiscard]] bool operator<(KeyedSide const& other) const {
+    return std::tie(nodes, n_nodes, element, side) < std::tie(other.nodes, other.n_nodes, other.element, other.side);
+  }
+};
+
+bool same_side(UnstructuredMesh const& mesh, KeyedSide const& a, KeyedSide const& b) {
+  if (a.n_nodes <= max_face_corners) return true;
+  std::array<Number, max_face_corners> room_a{}, room_b{};
+  return same_set(side_nodes(mesh, a.element, a.side, room_a), side_nodes(mesh, b.element, b.side, room_b));
+}
+
+/// What is behind one of `alike`, sides that have the same smallest nodes and as many.
+Number behind(UnstructuredMesh const& mesh, KeyedSide const& own, std::span<KeyedSide const> alike) {
   Number found = ElementSides::boundary;
-  for (Number const other : around[rarest(around, nodes)]) {
-    if (other == element || !has_side(mesh, other, nodes)) continue;
+  for (KeyedSide const& other : alike) {
+    if (other.element == own.element || other.element == found || !same_side(mesh, own, other)) continue;
     if (found >= 0) return ElementSides::crowded;
-    found = other;
+    found = other.element;
   }
   return found;
 }
@@ -123,18 +126,37 @@ void cross_connections(UnstructuredMesh const& mesh, UnstructuredTopology& topol
 }  // namespace
 
 NumberLists elements_of_nodes(UnstructuredMesh const& mesh) {
-  return invert(mesh.n_nodes(), mesh.n_elements(), [&](Index e) { return mesh.elements.corners(e); });
+  return invert("gridmorph::elements_of_nodes", mesh.n_nodes(), mesh.n_elements(),
+                [&](Index e) { return mesh.elements.corners(e); });
 }
 
-ElementSides element_sides(UnstructuredMesh const& mesh, NumberLists const& around) {
+ElementSides element_sides(UnstructuredMesh const& mesh) {
   ElementSides out;
   Index const n = mesh.n_elements();
   out.first.resize(std::size_t(n) + 1, 0);
   for (Index e = 0; e < n; ++e) out.first[std::size_t(e) + 1] = out.first[std::size_t(e)] + n_sides(mesh, e);
-  out.neighbour.resize(std::size_t(out.first.back()));
-  for_all("gridmorph::element_sides", n, [&](Index e) {
-    Index const first = out.first[std::size_t(e)], end = out.first[std::size_t(e) + 1];
-    for (Index s = first; s < end; ++s) out.neighbour[std::size_t(s)] = behind(mesh, around, e, int(s - first));
+  out.neighbour.resize(std::size_t(out.first.back()), ElementSides::collapsed);
+  detail::NumberBuckets<
+      KeyedSide> const buckets("gridmorph::element_sides", n, mesh.n_nodes(), [&](Index e, auto const& put) {
+    std::array<Number, max_face_corners> room, smallest;
+    int const sides = int(out.of(e).size());
+    for (int s = 0; s < sides; ++s) {
+      auto const nodes = side_nodes(mesh, e, s, room);
+      if (int(nodes.size()) < mesh.dimension) continue;
+      smallest.fill(-1);
+      std::partial_sort_copy(nodes.begin(), nodes.end(), smallest.begin(),
+                             smallest.begin() + std::min<std::ptrdiff_t>(max_face_corners, std::ssize(nodes)));
+      put(smallest[0], KeyedSide{{smallest[1], smallest[2], smallest[3]}, Number(e), Number(s), Number(nodes.size())});
+    }
+  });
+  buckets.for_each_key([&](Number, Index, std::span<KeyedSide> sides) {
+    std::sort(sides.begin(), sides.end());
+    for (auto begin = sides.begin(); begin != sides.end();) {
+      auto const end = std::find_if_not(begin, sides.end(), [&](KeyedSide const& s) { return s.alike(*begin); });
+      for (KeyedSide const& own : std::span(begin, end))
+        out.neighbour[std::size_t(out.first[std::size_t(own.element)] + own.side)] = behind(mesh, own, {begin, end});
+      begin = end;
+    }
   });
   return out;
 }
@@ -142,10 +164,11 @@ ElementSides element_sides(UnstructuredMesh const& mesh, NumberLists const& arou
 UnstructuredTopology make_topology(UnstructuredMesh const& mesh) {
   UnstructuredTopology out;
   out.elements_of_nodes = elements_of_nodes(mesh);
-  out.sides = element_sides(mesh, out.elements_of_nodes);
+  out.sides = element_sides(mesh);
   out.crowded_sides = std::count(out.sides.neighbour.begin(), out.sides.neighbour.end(), ElementSides::crowded);
   out.boundary = boundary_faces(mesh, out.sides);
-  out.faces_of_nodes = invert(mesh.n_nodes(), out.boundary.size(), [&](Index f) { return out.boundary.nodes[f]; });
+  out.faces_of_nodes = invert("gridmorph::faces_of_nodes", mesh.n_nodes(), out.boundary.size(),
+                              [&](Index f) { return out.boundary.nodes[f]; });
   cross_connections(mesh, out);
   return out;
 }

@@ -28,7 +28,7 @@ struct ElementSides {
 };
 
 /// Two elements are neighbours when a side of one has the corner nodes of a side of the other.
-ElementSides element_sides(UnstructuredMesh const& mesh, NumberLists const& elements_of_nodes);
+ElementSides element_sides(UnstructuredMesh const& mesh);
 
 /// Sides with nothing behind them, in element order; normals point out of the mesh.
 struct BoundaryFaces {

@@ -20,7 +20,7 @@ std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
                      "coordinates of the mesh");
   std::vector<signed char> sign(std::size_t(mesh.n_elements()), 0);
   auto const tables = detail::element_tables<Kokkos::HostSpace>(mesh);
-  auto const coordinates = views(mesh.coordinates);
+  auto const coordinates = detail::pack(exec, views(mesh.coordinates), mesh.n_nodes());
   Kokkos::parallel_for("gridmorph::volume_signs",
                        Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, mesh.n_elements()), [&](Index e) {
                          ElementType const type = tables.type(e);
@@ -30,6 +30,10 @@ std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
                        });
   compat::fence(exec, "gridmorph::volume_signs (read by the host)");
   return sign;
+}
+
+std::vector<int> orientation_of(UnstructuredMesh const& mesh, std::vector<int> const& known) {
+  return known.size() == mesh.zones.size() ? known : zone_orientation(mesh);
 }
 
 }  // namespace
@@ -108,7 +112,7 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
     throw MeshError("near-field mask: it holds " + std::to_string(input.near_field.extent(0)) +
                     " elements, the mesh '" + mesh.source + "' has " + std::to_string(mesh.n_elements()));
 
-  std::vector<int> const orientation = zone_orientation(mesh);
+  std::vector<int> const orientation = orientation_of(mesh, input.orientation);
   std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
   auto const tables = detail::element_tables<MemorySpace>(mesh);
   auto const first_element = detail::upload(exec, "gridmorph::quality::zones", detail::first_elements(mesh));
@@ -120,8 +124,8 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volumes"), mesh.n_elements());
   Kokkos::View<detail::PartialSums*, MemorySpace> const sums(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::sums"), table.size());
-  auto const coordinates = input.coordinates;
-  auto const baseline = input.baseline;
+  auto const coordinates = detail::pack(exec, input.coordinates, mesh.n_nodes());
+  auto const baseline = detail::pack(exec, input.baseline, against_baseline ? mesh.n_nodes() : 0);
   auto const near_field = input.near_field;
   bool const has_near_field = near_field.extent(0) > 0;
   detail::visit_chunks(
@@ -216,13 +220,13 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
   }
   auto const tables = detail::element_tables<MemorySpace>(mesh);
   std::vector<Number> zone_of(std::size_t(n_elements), 0);
-  std::vector<int> const orientation = zone_orientation(mesh);
+  std::vector<int> const orientation = orientation_of(mesh, input.orientation);
   for (std::size_t z = 0; z < mesh.zones.size(); ++z)
     std::fill_n(zone_of.begin() + mesh.zones[z].first_element, mesh.zones[z].n_elements, Number(z));
   auto const zone = detail::view_of<MemorySpace>(zone_of, "gridmorph::quality::zone_of");
   auto const signs = detail::upload(exec, "gridmorph::quality::signs", orientation);
-  auto const coordinates = input.coordinates;
-  auto const baseline = input.baseline;
+  auto const coordinates = detail::pack(exec, input.coordinates, mesh.n_nodes());
+  auto const baseline = detail::pack(exec, input.baseline, against_baseline ? mesh.n_nodes() : 0);
   Field const aspect_ratio = fields[int(Measure::aspect_ratio)], det8 = fields[int(Measure::determinant_2x2x2)],
               det27 = fields[int(Measure::determinant_3x3x3)], angle = fields[int(Measure::minimum_angle_deg)],
               skewness = fields[int(Measure::equiangle_skewness)], volume = fields[int(Measure::volume)],

@@ -20,6 +20,8 @@ struct UnstructuredQualityInput {
   /// Numbers in UnstructuredMesh::patches. Heights are measured at their nodes that a column of prisms, hexahedra or (2-D)
   /// quadrilaterals leaves from.
   std::vector<int> walls;
+  /// zone_orientation() of the mesh; left empty, it is found again.
+  std::vector<int> orientation;
 };
 
 /// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the mean

@@ -1,23 +1,15 @@
+#include <gridmorph/kernels/element_quality.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/unstructured/guard.hpp>
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
 namespace gridmorph {
 
 namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
-using Values = Kokkos::View<double*, Kokkos::HostSpace>;
-
-Values determinants(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, Coordinates const& x) {
-  UnstructuredQualityInput<Kokkos::HostSpace> input;
-  input.coordinates = views(x);
-  constexpr std::array measure{Measure::determinant_3x3x3};
-  return cell_fields(Exec(), mesh, topology, input, measure).front();
-}
-
 class Relaxation {
  public:
   Relaxation(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, PreparedUnstructured const& prepared,
@@ -27,7 +19,7 @@ class Relaxation {
         prepared_(prepared),
         x_(morphed),
         options_(options),
-        baseline_(determinants(mesh, topology, mesh.coordinates)) {}
+        orientation_(zone_orientation(mesh)) {}
 
   RelaxReport run() {
     RelaxReport report;
@@ -41,7 +33,8 @@ class Relaxation {
       std::vector<Vec3> before;
       for (Number const n : nodes) before.push_back(x_[n]);
       smooth(nodes, sweeps);
-      std::vector<Number> now = find_bad();
+      std::vector<Number> now = touched(nodes, bad);
+      std::erase_if(now, [this](Number e) { return !is_bad(e); });
       if (now.size() > bad.size()) {
         for (std::size_t k = 0; k < nodes.size(); ++k) x_.set(nodes[k], before[k]);
         copy_coincident();
@@ -55,12 +48,47 @@ class Relaxation {
   }
 
  private:
-  std::vector<Number> find_bad() const {
-    Values const now = determinants(mesh_, topology_, x_);
+  [[nodiscard]] double determinant(Number e, double sign, Coordinates const& x) const {
+    ElementCorners c;
+    auto const nodes = mesh_.elements.corners(e);
+    for (std::size_t k = 0; k < nodes.size(); ++k) c.at[k] = x[nodes[k]];
+    return element_determinant(mesh_.elements.type[std::size_t(e)], c, sign, prepared_.plan.plane_normal);
+  }
+
+  [[nodiscard]] bool is_bad(Number e) const {
+    if (mesh_.elements.type[std::size_t(e)] == ElementType::polyhedron) return false;
+    double const sign = orientation_[std::size_t(mesh_.zone_of_element(e))];
+    double const before = determinant(e, sign, mesh_.coordinates);
+    return before > 0 && !(determinant(e, sign, x_) > options_.share * before);
+  }
+
+  [[nodiscard]] std::vector<Number> find_bad() const {
+    std::vector<std::uint8_t> mark(std::size_t(mesh_.n_elements()), 0);
+    Exec const exec;
+    Kokkos::parallel_for("gridmorph::find_bad_elements",
+                         Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, mesh_.n_elements()),
+                         [&](Index e) { mark[std::size_t(e)] = is_bad(Number(e)) ? 1 : 0; });
+    compat::fence(exec, "gridmorph::find_bad_elements (read by the host)");
     std::vector<Number> bad;
-    for (Index e = 0; e < mesh_.n_elements(); ++e)
-      if (baseline_(e) > 0 && !(now(e) > options_.share * baseline_(e))) bad.push_back(Number(e));
+    for (std::size_t e = 0; e < mark.size(); ++e)
+      if (mark[e] != 0) bad.push_back(Number(e));
     return bad;
+  }
+
+  /// Elements that change when `nodes` move, and those that were bad; ascending.
+  [[nodiscard]] std::vector<Number> touched(std::vector<Number> const& nodes, std::vector<Number> const& bad) const {
+    std::vector<Number> found = bad;
+    auto const add = [&](Number n) {
+      auto const around = topology_.elements_of_nodes[n];
+      found.insert(found.end(), around.begin(), around.end());
+    };
+    for (Number const n : nodes) add(n);
+    UnstructuredPlan const& plan = prepared_.plan;
+    for (std::size_t k = 0; k < plan.copies.size(); ++k)
+      if (std::binary_search(nodes.begin(), nodes.end(), plan.copied[k])) add(plan.copies[k]);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
   }
 
   void find_held() {
@@ -156,7 +184,7 @@ class Relaxation {
   PreparedUnstructured const& prepared_;
   Coordinates const& x_;
   RelaxOptions const& options_;
-  Values baseline_;
+  std::vector<int> orientation_;
   std::vector<std::uint8_t> held_;
 };
 

@@ -21,7 +21,8 @@ struct RelaxReport {
 /// nodes around are smoothed: each becomes the value, at its node, of the affine function that fits its neighbours' best (weights
 /// 1 / length of the edge), so that a field that is affine already stays. A fixed number of Jacobi sweeps per round; nodes on
 /// boundaries that are held and in columns keep theirs. A round that leaves more bad elements than there were is taken back, and
-/// the next ones have half as many sweeps. Explicit, deterministic; cost per round: the quality of all elements, and the nodes around bad ones.
+/// the next ones have half as many sweeps. Explicit, deterministic; cost: the determinants of all elements once,
+/// per round those around the nodes that move.
 RelaxReport relax_bad_elements(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                                PreparedUnstructured const& prepared, Coordinates const& morphed,
                                RelaxOptions const& options = {});

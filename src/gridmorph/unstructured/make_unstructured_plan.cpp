@@ -232,8 +232,14 @@ class Planner {
         others.push_back(n);
       }
     }
-    from_wall_ = nearest_source(mesh_.coordinates, out_.graph, walls);
-    from_other_ = nearest_source(mesh_.coordinates, out_.graph, others);
+    // Each is serial; side by side they take half the time.
+    Exec const exec;
+    Kokkos::parallel_for("gridmorph::nearest_source", Kokkos::RangePolicy<Exec>(exec, 0, 2, Kokkos::ChunkSize(1)),
+                         [&](int which) {
+                           (which == 0 ? from_wall_ : from_other_) =
+                               nearest_source(mesh_.coordinates, out_.graph, which == 0 ? walls : others);
+                         });
+    compat::fence(exec, "gridmorph::nearest_source (read by the host)");
   }
 
   [[nodiscard]] double largest_displacement() const {

@@ -17,7 +17,7 @@ struct NodeGraph {
   [[nodiscard]] bool carries(Number n) const { return representative[std::size_t(n)] == n; }
 };
 
-/// Edges of polyhedra are those of their faces. Cost O(corners of all elements); host, serial.
+/// Edges of polyhedra are those of their faces. Cost O(corners of all elements); host, on all cores.
 NodeGraph make_node_graph(UnstructuredMesh const& mesh);
 
 }  // namespace gridmorph

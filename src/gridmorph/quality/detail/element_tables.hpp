@@ -9,19 +9,40 @@
 
 namespace gridmorph::detail {
 
+/// A point in half a cache line: elements read their corners from all over the mesh, so x, y and z should come at once.
+struct alignas(32) PackedPoint {
+  double x, y, z;
+};
+
+template <class MemorySpace>
+using PackedPoints = Kokkos::View<PackedPoint const*, MemorySpace>;
+
+template <class Exec>
+PackedPoints<typename Exec::memory_space> pack(Exec const& exec, CoordinateViews<typename Exec::memory_space> const& c,
+                                               Index n_nodes) {
+  Kokkos::View<PackedPoint*, typename Exec::memory_space> const points(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::points"), std::size_t(n_nodes));
+  Kokkos::parallel_for(
+      "gridmorph::quality::pack", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n_nodes),
+      KOKKOS_LAMBDA(Index n) {
+        points(n) = PackedPoint{c.x(n), c.y(n), c.z(n)};
+      });
+  return points;
+}
+
 template <class MemorySpace>
 struct ElementTables {
   ElementViews<MemorySpace> elements;
   Vec3 plane_normal;
 
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
-  KOKKOS_INLINE_FUNCTION ElementCorners corners(CoordinateViews<MemorySpace> const& c, Index e) const {
+  KOKKOS_INLINE_FUNCTION ElementCorners corners(PackedPoints<MemorySpace> const& points, Index e) const {
     ElementCorners out;
     Index const first = elements.first(e);
     int const n = n_corners(elements.type(e));
     for (int k = 0; k < n; ++k) {
-      Number const node = elements.node(first + k);
-      out.at[k] = {c.x(node), c.y(node), c.z(node)};
+      PackedPoint const p = points(elements.node(first + k));
+      out.at[k] = {p.x, p.y, p.z};
     }
     return out;
   }

@@ -1,0 +1,105 @@
+// Smoothing where elements came out bad: what it repairs, what it must leave alone, and that it counts right although it
+// measures only around the nodes that it moves.
+#include "support/random.hpp"
+#include "support/unstructured_meshes.hpp"
+
+#include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/unstructured/guard.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gridmorph::test {
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+/// A box of prisms and tetrahedra whose wall k_min is lifted a little, with the mesh moved by `displacement` on top.
+struct Box {
+  UnstructuredMesh mesh = to_prisms_and_tetrahedra(unit_box({8, 8, 8}), 2);
+  UnstructuredTopology topology = make_topology(mesh);
+  BoundaryClaims claims = claim_boundary(mesh, topology);
+  PreparedUnstructured prepared;
+  Coordinates morphed;
+
+  Box() {
+    Motion motion;
+    motion.rules.push_back({{"k_min"}, RigidRule{{}, {0, 0, 0.1}}, 0, "test"});
+    motion.rules.push_back({{"i_min", "i_max", "j_min", "j_max"}, SlipRule{}, 0, "test"});
+    prepared = prepare(mesh, topology, claims, motion, {});
+    morphed = Coordinates(mesh.n_nodes());
+    for (Index n = 0; n < mesh.n_nodes(); ++n) morphed.set(n, mesh.coordinates[n]);
+  }
+
+  [[nodiscard]] Index bad(double share) const {
+    UnstructuredQualityInput<Kokkos::HostSpace> input;
+    Measure const measure[] = {Measure::determinant_3x3x3};
+    input.coordinates = views(mesh.coordinates);
+    auto const before = cell_fields(Exec(), mesh, topology, input, measure).front();
+    input.coordinates = views(morphed);
+    auto const now = cell_fields(Exec(), mesh, topology, input, measure).front();
+    Index count = 0;
+    for (Index e = 0; e < mesh.n_elements(); ++e) count += now(e) > share * before(e) ? 0 : 1;
+    return count;
+  }
+};
+
+bool inside(Vec3 const& p) { return p.x > 0 && p.x < 8 && p.y > 0 && p.y < 8 && p.z > 3 && p.z < 8; }
+
+TEST(Guard, AnAffineMotionIsLeftAlone) {
+  Box box;
+  for (Index n = 0; n < box.mesh.n_nodes(); ++n) {
+    Vec3 const x = box.mesh.coordinates[n];
+    box.morphed.set(n, {x.x + 0.2 * x.y, 1.1 * x.y, x.z + 0.1 * x.x});
+  }
+  Coordinates before(box.mesh.n_nodes());
+  for (Index n = 0; n < box.mesh.n_nodes(); ++n) before.set(n, box.morphed[n]);
+  RelaxReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed);
+  EXPECT_EQ(report.before, 0);
+  EXPECT_EQ(report.rounds, 0);
+  for (Index n = 0; n < box.mesh.n_nodes(); ++n) EXPECT_EQ(box.morphed[n], before[n]);
+}
+
+TEST(Guard, NodesThatWentAstrayAreBroughtBack) {
+  Box box;
+  Random random(11);
+  Index moved = 0;
+  for (Index n = 0; n < box.mesh.n_nodes(); ++n)
+    if (Vec3 const x = box.mesh.coordinates[n]; inside(x) && random.below(6) == 0) {
+      box.morphed.set(n, x + random.vector(1.2));
+      ++moved;
+    }
+  ASSERT_GT(moved, 20);
+  RelaxOptions const options;
+  Index const bad = box.bad(options.share);
+  ASSERT_GT(bad, 50);
+  RelaxReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed, options);
+  EXPECT_EQ(report.before, bad);
+  EXPECT_EQ(report.after, box.bad(options.share));
+  EXPECT_LT(report.after, bad / 10);
+}
+
+TEST(Guard, WhatIsHeldStays) {
+  Box box;
+  // The wall itself is pushed through the first layer: nothing that may move can repair that.
+  Index const n_nodes = box.mesh.n_nodes();
+  for (Index n = 0; n < n_nodes; ++n)
+    if (Vec3 const x = box.mesh.coordinates[n]; x.z == 0) box.morphed.set(n, x + Vec3{0, 0, 1.5});
+  Coordinates before(n_nodes);
+  for (Index n = 0; n < n_nodes; ++n) before.set(n, box.morphed[n]);
+  RelaxReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed);
+  EXPECT_GT(report.before, 0);
+  EXPECT_EQ(report.after, box.bad(RelaxOptions().share));
+  EXPECT_LE(report.after, report.before);
+  for (Index n = 0; n < n_nodes; ++n) {
+    Vec3 const x = box.mesh.coordinates[n];
+    bool const on_boundary = x.z == 0 || x.z == 8 || x.x == 0 || x.x == 8 || x.y == 0 || x.y == 8;
+    if (on_boundary) {
+      EXPECT_EQ(box.morphed[n], before[n]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gridmorph::test
