@@ -4,6 +4,7 @@
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/motion/selectors.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/unstructured/column_heights.hpp>
 #include <gridmorph/unstructured/detail/corner_means.hpp>
 #include <gridmorph/unstructured/detail/element_grades.hpp>
 #include <gridmorph/unstructured/detail/fans.hpp>
@@ -45,8 +46,8 @@ class Planner {
     if (mesh_.dimension == 2 && !(std::abs(out_.plan.plane_normal.z) == 1))
       throw MeshError("mesh " + mesh_.source + " is 2-D but does not lie in a plane z = constant; turn it into one");
     timed(out_.report.seconds.boundary, [&] { find_boundary(); });
-    timed(out_.report.seconds.columns, [&] { find_columns(); });
     timed(out_.report.seconds.distances, [&] { measure_distances(); });
+    timed(out_.report.seconds.columns, [&] { find_columns(); });
     timed(out_.report.seconds.wrap, [&] { find_regions(); });
     timed(out_.report.seconds.layers, [&] { plan_layers(); });
     timed(out_.report.seconds.background, [&] { plan_background(); });
@@ -97,6 +98,7 @@ class Planner {
         plan.copied.push_back(o);
       }
     plan.middle = detail::corner_means(mesh_, out_.graph);
+    reach_ = options_.motion >= 0 ? options_.motion : largest_displacement();
   }
 
   // ---- columns -------------------------------------------------------------------------------------------------------
@@ -144,48 +146,21 @@ class Planner {
     columns_ = make_columns(mesh_, topology_, out_.graph, driving_faces_, extents, is_known_);
     out_.report.n_columns =
         std::count_if(columns_.height.begin(), columns_.height.end(), [](double h) { return h > 0; });
+    columns_ = cut(columns_, smooth_heights(out_.graph, columns_, most_heights()));
     for (double const h : columns_.height) out_.report.layer_height = std::max(out_.report.layer_height, h);
-    smooth_heights();
-    cut_columns();
     plan_columns();
   }
 
-  /// Heights without the jumps between neighbours whose columns end in different layers: what varies with the share of the height,
-  /// and what begins at its end, must not jump. First the least of the neighbours, so that columns are hardly ever longer.
-  void smooth_heights() {
-    constexpr int sweeps_of_least = 3, sweeps_of_mean = 20;
-    std::vector<Number> walls;
-    for (std::size_t n = 0; n < drives_.size(); ++n)
-      if (columns_.height[n] > 0) walls.push_back(Number(n));
-    height_ = columns_.height;
-    std::vector<double> next = height_;
-    for (int s = 0; s < sweeps_of_least + sweeps_of_mean; ++s) {
-      for (Number const n : walls) {
-        double sum = height_[std::size_t(n)], least = sum;
-        int count = 1;
-        for (Number const m : out_.graph.neighbours[n])
-          if (drives_[std::size_t(m)] && height_[std::size_t(m)] > 0) {
-            sum += height_[std::size_t(m)];
-            least = std::min(least, height_[std::size_t(m)]);
-            ++count;
-          }
-        next[std::size_t(n)] = s < sweeps_of_least ? least : sum / count;
-      }
-      std::swap(height_, next);
-    }
-  }
-
-  /// Columns end at the smooth height; what is above belongs to the layers.
-  void cut_columns() {
-    Columns cut;
-    cut.height = columns_.height;
-    for (std::size_t k = 0; k < columns_.node.size(); ++k) {
-      if (columns_.above_wall[k] > height_[std::size_t(columns_.root[k])] * (1 + 1e-9)) continue;
-      cut.node.push_back(columns_.node[k]);
-      cut.root.push_back(columns_.root[k]);
-      cut.above_wall.push_back(columns_.above_wall[k]);
-    }
-    columns_ = std::move(cut);
+  /// Columns are as long as a user says; otherwise they leave room in gaps.
+  [[nodiscard]] std::vector<double> most_heights() const {
+    std::vector<double> most = gaps_ahead(mesh_.coordinates, columns_, from_other_);
+    for (double& m : most)
+      if (std::isfinite(m)) m = room_in_gap(m, reach_);
+    for (Number const f : driving_faces_)
+      if (int const l = layer_of_patch_[std::size_t(claims_.patch[std::size_t(f)])];
+          l >= 0 && options_.boundary_layers[std::size_t(l)].extent != BoundaryLayer::Extent::block)
+        for (Number const n : topology_.boundary.nodes[f]) most[std::size_t(owner(n))] = infinity;
+    return most;
   }
 
   void plan_columns() {
@@ -204,7 +179,7 @@ class Planner {
     plan.fans = detail::wall_fans(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
     for (std::size_t k = 0; k < columns_.node.size(); ++k) {
       Number const root = columns_.root[k];
-      double const s = std::min(1.0, columns_.above_wall[k] / height_[std::size_t(root)]);
+      double const s = std::min(1.0, columns_.above_wall[k] / columns_.height[std::size_t(root)]);
       Mode const m = mode[std::size_t(root)];
       // Smooth, and level at the wall: the first cells turn with it.
       double const turn = m == Mode::translate ? 0 : m == Mode::blend ? 1 - s * s * (3 - 2 * s) : 1;
@@ -251,7 +226,7 @@ class Planner {
   double offset() {
     OffsetHints hints;
     hints.layer_height = out_.report.layer_height;
-    hints.motion = options_.motion >= 0 ? options_.motion : largest_displacement();
+    hints.motion = reach_;
     double sum = 0;
     Index count = 0;
     Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
@@ -365,7 +340,7 @@ class Planner {
   /// Distance from the end of the column on the nearest wall node.
   [[nodiscard]] double beyond_column(std::size_t n) const {
     Number const wall = from_wall_.source[n];
-    return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - height_[std::size_t(wall)]);
+    return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - columns_.height[std::size_t(wall)]);
   }
 
   // ---- background ----------------------------------------------------------------------------------------------------
@@ -559,7 +534,7 @@ class Planner {
   Columns columns_;
   Mask is_known_, drives_, is_other_, near_;
   NearestSource from_wall_, from_other_;
-  std::vector<double> height_;
+  double reach_ = 0;  ///< largest displacement that the offset and columns reckon with
 };
 
 }  // namespace

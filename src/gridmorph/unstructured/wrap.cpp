@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/unstructured/background.hpp>
+#include <gridmorph/unstructured/column_heights.hpp>
 #include <gridmorph/unstructured/detail/box_distance.hpp>
 #include <gridmorph/unstructured/detail/wrap_fill.hpp>
 #include <gridmorph/unstructured/detail/wrap_lattice.hpp>
@@ -152,7 +153,7 @@ Wrap make_wrap(UnstructuredMesh const& mesh, std::span<NumberLists const> walls,
 double suggest_offset(OffsetHints const& hints) {
   double offset = std::max({2 * hints.layer_height, 2 * hints.wall_edge, hints.motion / 8, hints.body / 25});
   // What is wrapped moves as a whole: enough of the gap must be left to take the motion up.
-  if (hints.gap > 0) offset = std::min({offset, hints.gap / 3, std::max(hints.gap - 2 * hints.motion, hints.gap / 10)});
+  if (hints.gap > 0) offset = std::min(offset, room_in_gap(hints.gap, hints.motion));
   return std::max(offset, hints.layer_height);
 }
 

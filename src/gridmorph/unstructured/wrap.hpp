@@ -76,10 +76,9 @@ struct OffsetHints {
 
 /// An offset from the size of things,
 ///
-///     offset = max(layer_height, min(max(2 layer_height, 2 wall_edge, motion / 8, body / 25), limit)),
-///     limit  = min(gap / 3, max(gap - 2 motion, gap / 10)),
+///     offset = max(layer_height, min(max(2 layer_height, 2 wall_edge, motion / 8, body / 25), room)),
 ///
-/// a gap of 0 being no limit: the layers move with their wall, a few elements outside them damp details of its motion, and of
+/// `room` being room_in_gap(gap, motion), a gap of 0 no limit: the layers move with their wall, a few elements outside them damp details of its motion, and of
 /// the way to other boundaries enough is left to take the motion up.
 double suggest_offset(OffsetHints const& hints);
 

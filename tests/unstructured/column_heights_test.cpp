@@ -1,0 +1,89 @@
+// Where columns end, on a channel of unit squares, 8 by 6, above a wall at y = 0.
+#include "support/unstructured_meshes.hpp"
+
+#include <gridmorph/unstructured/column_heights.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace gridmorph::test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Columns from the line y = 0 of nodes up to y = height(x), and the sources beside and ahead.
+struct Channel {
+  UnstructuredMesh mesh = flat_box(8, 6, 6);
+  NodeGraph graph = make_node_graph(mesh);
+  Columns columns;
+
+  explicit Channel(double (*height)(double x)) {
+    columns.height.assign(std::size_t(mesh.n_nodes()), 0);
+    for (Number n = 0; n < mesh.n_nodes(); ++n) {
+      Vec3 const x = mesh.coordinates[n];
+      if (x.y == 0) columns.height[std::size_t(n)] = height(x.x);
+      if (x.y == 0 || x.y > height(x.x)) continue;
+      columns.node.push_back(n);
+      columns.root.push_back(at(x.x, 0));
+      columns.above_wall.push_back(x.y);
+    }
+  }
+  [[nodiscard]] Number at(double x, double y) const {
+    for (Number n = 0; n < mesh.n_nodes(); ++n)
+      if (mesh.coordinates[n].x == x && mesh.coordinates[n].y == y) return n;
+    return -1;
+  }
+};
+
+TEST(ColumnHeights, RoomIsLeftForTheMotion) {
+  EXPECT_DOUBLE_EQ(room_in_gap(3, 0), 1);
+  EXPECT_DOUBLE_EQ(room_in_gap(3, 1.1), 0.8);
+  EXPECT_DOUBLE_EQ(room_in_gap(3, 50), 0.3);
+}
+
+TEST(ColumnHeights, BoundariesAheadLeaveAGapAndBoundariesBesideDoNot) {
+  Channel const c([](double) { return 3.0; });
+  std::vector<Number> lid, side;
+  for (Number n = 0; n < c.mesh.n_nodes(); ++n) {
+    Vec3 const x = c.mesh.coordinates[n];
+    if (x.y == 6) lid.push_back(n);
+    if (x.x == 0) side.push_back(n);
+  }
+  auto const ahead = gaps_ahead(c.mesh.coordinates, c.columns, nearest_source(c.mesh.coordinates, c.graph, lid));
+  auto const beside = gaps_ahead(c.mesh.coordinates, c.columns, nearest_source(c.mesh.coordinates, c.graph, side));
+  for (double x = 0; x <= 8; ++x) {
+    EXPECT_DOUBLE_EQ(ahead[std::size_t(c.at(x, 0))], 6) << x;
+    EXPECT_EQ(beside[std::size_t(c.at(x, 0))], infinity) << x;
+  }
+}
+
+TEST(ColumnHeights, AreLevelAndWithinTheirBounds) {
+  Channel const c([](double x) { return x < 4 ? 1.0 : 5.0; });
+  std::vector<double> most(c.columns.height.size(), infinity);
+  most[std::size_t(c.at(7, 0))] = 2;
+  auto const height = smooth_heights(c.graph, c.columns, most);
+  for (double x = 0; x <= 8; ++x) {
+    double const h = height[std::size_t(c.at(x, 0))];
+    EXPECT_GE(h, 1) << x;
+    EXPECT_LE(h, 2) << x;  // the least of three neighbours reaches from 7 and from 3 over all of the higher part
+    if (x > 0) {
+      EXPECT_LT(std::abs(h - height[std::size_t(c.at(x - 1, 0))]), 0.25) << x;
+    }
+  }
+  Columns const ends = cut(c.columns, height);
+  EXPECT_LT(ends.size(), c.columns.size());
+  for (std::size_t k = 0; k < ends.node.size(); ++k)
+    EXPECT_LE(ends.above_wall[k], height[std::size_t(ends.root[k])] * (1 + 1e-8));
+}
+
+TEST(ColumnHeights, EvenColumnsStayAsTheyAre) {
+  Channel const c([](double) { return 4.0; });
+  auto const height = smooth_heights(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
+  EXPECT_EQ(height, c.columns.height);
+  EXPECT_EQ(cut(c.columns, height).node, c.columns.node);
+}
+
+}  // namespace
+}  // namespace gridmorph::test
