@@ -1,0 +1,225 @@
+// Cost of the stages of an unstructured morph: the ball demo (bench_rbf has the same mesh), its nodes and elements numbered at
+// random, which is the worst order there is; "nodes" are about 0.24 times the elements.
+//
+// Once per mesh, on the host:
+//   topology      neighbours, boundary faces, lists around nodes
+//   node_graph    which nodes are joined by edges
+//   prepare       all of planning: boundary, columns, wrap, layers, background mesh, point location
+//
+// Once per motion, all cores:
+//   layers        displacement from layer to layer of near field and fence
+//   project       far nodes in cells of the background mesh
+//   scatter       moving walls to the lattice between them
+//   background    the background mesh itself: the structured engine on some ten thousand nodes
+//   apply         all of it, from boundary displacements to new coordinates
+//   apply_in_order   the same on the mesh as its generator numbers it
+//
+// Model, bytes. Rows (layers, project): 12 per row, 8 and a source of 24 per item, 24 written. apply: those; 60 per node for
+// displacement and work array, 48 for coordinates in and out, and as much again for the residual's value, fade and
+// lattice cells (24 + 4 + 8 * 24, of which neighbours share most). Sources of items lie anywhere: a cache line (64) each, so that
+// randomly numbered meshes take up to 64 / 24 times as long as the model says.
+#include "bench.hpp"
+#include "last_made.hpp"
+#include "node_arrays.hpp"
+#include "roof.hpp"
+
+#include <gridmorph/demo/ball_demo.hpp>
+#include <gridmorph/unstructured/detail/scatter_views.hpp>
+#include <gridmorph/unstructured/unstructured_morpher.hpp>
+#include <gridmorph/volume/morpher.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::bench {
+
+constexpr double nodes_per_element = 0.24;
+
+/// The ball swings by 30 degrees, everything else stands.
+Motion swing(BallOptions const& options) {
+  FunctionRule rule;
+  rule.description = "ball demo";
+  rule.function = [options](std::span<Vec3 const> points, std::span<Vec3> displacement) {
+    for (std::size_t n = 0; n < points.size(); ++n) displacement[n] = ball_displacement(options, {}, points[n]);
+  };
+  Motion motion;
+  motion.rules.push_back({{"ball", "rope"}, rule, 0, "bench"});
+  return motion;
+}
+
+/// A ball mesh with what benchmarks need of it; planned when the first asks.
+struct BallCase {
+  BallOptions options;
+  UnstructuredMesh mesh;
+  UnstructuredTopology topology;
+  BoundaryClaims claims;
+
+  BallCase(Index nodes, bool shuffle) {
+    options.shuffle = shuffle;
+    options.elements = std::max(Index(50'000), Index(double(nodes) / nodes_per_element));
+    mesh = make_ball(options);
+    topology = make_topology(mesh);
+    claims = claim_boundary(mesh, topology);
+  }
+  [[nodiscard]] PreparedUnstructured prepare() const {
+    return gridmorph::prepare(mesh, topology, claims, swing(options), {});
+  }
+  [[nodiscard]] PreparedUnstructured const& prepared() const {
+    if (!prepared_) prepared_.emplace(prepare());
+    return *prepared_;
+  }
+  [[nodiscard]] UnstructuredPlan const& plan() const { return prepared().plan; }
+
+ private:
+  mutable std::optional<PreparedUnstructured> prepared_;
+};
+
+BallCase const& ball_case(Index nodes, bool shuffle = true) {
+  using Key = std::pair<Index, bool>;
+  static LastMade<Key, BallCase> last;
+  return last.get(Key(nodes, shuffle), [&] { return BallCase(nodes, shuffle); });
+}
+
+/// Rates per node and per element of the mesh; bytes of one iteration.
+template <class ExecutionSpace>
+void set_ball_rates(benchmark::State& state, ExecutionSpace const& exec, double mean, UnstructuredMesh const& mesh,
+                    double bytes) {
+  set_shares(state, exec, mean, mesh.n_nodes(), bytes / double(mesh.n_nodes()));
+  state.counters["elements"] = double(mesh.n_elements());
+  state.counters["elements/s"] = double(mesh.n_elements()) / mean;
+}
+
+double bytes_of(GatherRows const& rows) { return 36.0 * double(rows.size()) + 32.0 * double(rows.item.size()); }
+
+/// Work on the host, on the cores of the default host execution space whatever `exec` is.
+template <class Work>
+void time_host(benchmark::State& state, UnstructuredMesh const& mesh, Work const& work) {
+  Kokkos::DefaultHostExecutionSpace const exec;
+  double const mean = time_iterations(state, exec, work);
+  state.counters["nodes"] = double(mesh.n_nodes());
+  state.counters["nodes/s"] = double(mesh.n_nodes()) / mean;
+  state.counters["elements"] = double(mesh.n_elements());
+  state.counters["elements/s"] = double(mesh.n_elements()) / mean;
+}
+
+void topology(benchmark::State& state) {
+  BallCase const& ball = ball_case(state.range(0));
+  time_host(state, ball.mesh, [&] { benchmark::DoNotOptimize(make_topology(ball.mesh).boundary.size()); });
+}
+
+void node_graph(benchmark::State& state) {
+  BallCase const& ball = ball_case(state.range(0));
+  time_host(state, ball.mesh, [&] { benchmark::DoNotOptimize(make_node_graph(ball.mesh).size()); });
+}
+
+void prepare_all(benchmark::State& state) {
+  BallCase const& ball = ball_case(state.range(0));
+  time_host(state, ball.mesh, [&] { benchmark::DoNotOptimize(ball.prepare().report.far_nodes); });
+}
+
+struct Layers {
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    using Memory = typename ExecutionSpace::memory_space;
+    BallCase const& ball = ball_case(state.range(0));
+    detail::LayerViews<Memory> const near(ball.plan().near);
+    Kokkos::View<Vec3*, Memory> const u("gridmorph::bench::u", std::size_t(ball.mesh.n_nodes()));
+    double const mean = time_iterations(state, exec, [&] { near.run(exec, u); });
+    set_ball_rates(state, exec, mean, ball.mesh, bytes_of(ball.plan().near.rows));
+    state.counters["layers"] = ball.plan().near.n_layers();
+    state.counters["rows/s"] = double(near.rows.size()) / mean;
+  }
+};
+
+struct Project {
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    using Memory = typename ExecutionSpace::memory_space;
+    BallCase const& ball = ball_case(state.range(0));
+    GatherViews<Memory> const far(ball.plan().far);
+    NodeArrays<Memory> const background(ball.plan().background->mesh.coordinates);
+    Kokkos::View<Vec3*, Memory> const u("gridmorph::bench::u", std::size_t(ball.mesh.n_nodes()));
+    double const mean = time_iterations(state, exec, [&] { gather(exec, far, background.read(), u); });
+    set_ball_rates(state, exec, mean, ball.mesh, bytes_of(ball.plan().far));
+    state.counters["rows/s"] = double(far.size()) / mean;
+  }
+};
+
+struct Scatter {
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    using Memory = typename ExecutionSpace::memory_space;
+    BallCase const& ball = ball_case(state.range(0));
+    detail::ScatterViews<Memory, detail::AffineMotion> const walls(ball.plan().walls);
+    Kokkos::View<detail::AffineMotion*, Memory> const given("gridmorph::bench::given", ball.plan().driving.size());
+    double const mean = time_iterations(state, exec, [&] { walls.run(exec, given); });
+    auto const& plan = ball.plan().walls;
+    constexpr double item = 8 + sizeof(detail::AffineMotion);
+    set_ball_rates(state, exec, mean, ball.mesh,
+                   item * double(plan.leaves.item.size() + plan.groups.rows.item.size() + plan.lattice.item.size()));
+    state.counters["wall nodes"] = double(ball.plan().driving.size());
+    state.counters["lattice"] = double(walls.rows.size());
+  }
+};
+
+struct BackgroundMesh {
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    using Memory = typename ExecutionSpace::memory_space;
+    BallCase const& ball = ball_case(state.range(0));
+    auto const& plan = ball.plan().background_morph->plan();
+    NodeArrays<Memory> const x(ball.plan().background->mesh.coordinates), u(ball.plan().background->mesh.coordinates);
+    Kokkos::View<Vec3*, Memory> const boundary("gridmorph::bench::boundary", plan.boundary_nodes.size());
+    Morpher<ExecutionSpace> const morpher(exec, plan, x.read());
+    double const mean = time_iterations(state, exec, [&] { morpher.displace(exec, boundary, u.write()); });
+    set_rates(state, ball.plan().background->mesh.n_nodes(), 48);
+    state.counters["nodes of the mesh/s"] = double(ball.mesh.n_nodes()) / mean;
+  }
+};
+
+struct Apply {
+  bool shuffle = true;
+
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    using Memory = typename ExecutionSpace::memory_space;
+    BallCase const& ball = ball_case(state.range(0), shuffle);
+    UnstructuredPlan const& plan = ball.plan();
+    UnstructuredMorpher<ExecutionSpace> const morpher(exec, plan);
+    NodeArrays<Memory> const baseline(ball.mesh.coordinates), morphed(ball.mesh.coordinates);
+    auto const boundary =
+        detail::copy_of<Memory>(ball.prepared().boundary_displacement(ball.mesh), "gridmorph::bench::boundary");
+    double const mean =
+        time_iterations(state, exec, [&] { morpher.apply(exec, boundary, baseline.read(), morphed.write()); });
+    double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows);
+    set_ball_rates(state, exec, mean, ball.mesh, rows + (60 + 48 + 220) * double(ball.mesh.n_nodes()));
+  }
+};
+
+/// 0.05 to 10 million elements.
+std::vector<std::int64_t> const ball_sizes{smoke_nodes, 24'000, 120'000, 480'000, 1'200'000, 2'400'000};
+
+void register_host(char const* name, void (*run)(benchmark::State&)) {
+  auto* const registered = benchmark::RegisterBenchmark((std::string(name) + "/host").c_str(), run)
+                               ->ArgName("nodes")
+                               ->UseManualTime()
+                               ->Unit(benchmark::kMillisecond);
+  for (std::int64_t const n : ball_sizes) registered->Arg(n);
+}
+
+void register_all() {
+  register_host("topology", topology);
+  register_host("node_graph", node_graph);
+  register_host("prepare", prepare_all);
+  register_benchmark("layers", Layers(), ball_sizes);
+  register_benchmark("project", Project(), ball_sizes);
+  register_benchmark("scatter", Scatter(), ball_sizes);
+  register_benchmark("background", BackgroundMesh(), ball_sizes);
+  register_benchmark("apply", Apply(), ball_sizes);
+  register_benchmark("apply_in_order", Apply{false}, ball_sizes);
+}
+
+}  // namespace gridmorph::bench
