@@ -2,7 +2,7 @@
 # process per test takes longer than most tests; where split is on, one per test, or per value of a suite's parameter. Asking when ctest runs, not
 # when the program is built, lets machines build what they cannot run.
 #
-# Given are name, program, split and environment.
+# Given are name, program, split and threads, a list.
 cmake_policy(VERSION 3.25)
 if(NOT EXISTS "${program}")
   add_test("${name}.is_not_built" "${program}")
@@ -38,9 +38,15 @@ foreach(line IN LISTS lines)
   list(APPEND filters "${filter}")
   string(REGEX REPLACE "[.][*]/?" "." group "${filter}") # Suite.value, Suite.Test
   string(REGEX REPLACE "[.]$" "" group "${group}")
-  add_test("${name}.${group}" "${program}" "--gtest_filter=${filter}" --gtest_brief=1)
-  # Skipped: where no test passed and none failed. A program says so in its last lines.
-  set_tests_properties(
-    "${name}.${group}" PROPERTIES ENVIRONMENT "${environment}"
-                                  SKIP_REGULAR_EXPRESSION "PASSED  \\] 0 tests\\.\n(\\[  SKIPPED \\][^\n]*\n)+$")
+  foreach(n IN LISTS threads)
+    set(test "${name}.${group}")
+    if(NOT n STREQUAL threads)
+      set(test "${name}_threads_${n}.${group}")
+    endif()
+    add_test("${test}" "${program}" "--gtest_filter=${filter}" --gtest_brief=1)
+    # Skipped: where no test passed and none failed. A program says so in its last lines.
+    set_tests_properties(
+      "${test}" PROPERTIES ENVIRONMENT "OMP_NUM_THREADS=${n};OMP_PROC_BIND=false;OMP_WAIT_POLICY=passive"
+                           SKIP_REGULAR_EXPRESSION "PASSED  \\] 0 tests\\.\n(\\[  SKIPPED \\][^\n]*\n)+$")
+  endforeach()
 endforeach()
