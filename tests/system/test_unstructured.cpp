@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+
 namespace gridmorph::testing {
 namespace {
 
@@ -32,6 +34,16 @@ TEST_F(UnstructuredTest, InspectSaysWhatThereIs) {
   EXPECT_EQ(json["boundaries"][0]["faces"], 8);
   EXPECT_EQ(json["types"]["quadrilateral"], 4);
   EXPECT_TRUE(json["problems"].empty());
+}
+
+TEST_F(UnstructuredTest, TheCaseFileThatInspectSuggestsIsReadAndRuns) {
+  Outcome const run = gridmorph("inspect mesh.su2 --suggest suggested.toml");
+  EXPECT_EQ(run.status, 0) << run.err;
+  Outcome const morph = gridmorph("morph suggested.toml");
+  EXPECT_EQ(morph.status, 0) << morph.err;
+  EXPECT_TRUE(std::filesystem::exists(path("mesh_morphed.su2")));
+  auto const json = nlohmann::json::parse(gridmorph("inspect mesh.su2 --json --quiet").out);
+  EXPECT_NE(json["case_file"].get<std::string>().find("wall"), std::string::npos);
 }
 
 TEST_F(UnstructuredTest, QualityComparesAndFallsShortWhereElementsTurnOver) {

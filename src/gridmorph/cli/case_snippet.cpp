@@ -98,7 +98,7 @@ std::string case_snippet(MeshSummary const& s) {
   }
   auto const& moving = groups[std::size_t(Role::moving)];
   std::filesystem::path const input(s.source);
-  std::string const ending = s.file_variant.empty() ? ".cgns" : input.extension().string();
+  std::string const ending = s.file_variant.empty() && !s.unstructured ? ".cgns" : input.extension().string();
   std::string text = "[mesh]\n";
   text += "input  = " + toml_string(input.filename().string()) + "\n";
   text += "output = " + toml_string(input.stem().string() + "_morphed" + ending) + "\n";
@@ -119,7 +119,7 @@ std::string case_snippet(MeshSummary const& s) {
     add({wall}, "put the motion here; also \"formula\", \"field\", or \"fixed\"",
         "rule = \"rigid\"\ntranslation = [0, 0, 0]");
   add(groups[std::size_t(Role::end_wall)], "nodes slide on the wall", "rule = \"slip\"\nsurface = \"revolution\"");
-  bool const turns = s.axis && !moving.empty();
+  bool const turns = s.axis && !moving.empty() && !s.unstructured;
   add(groups[std::size_t(Role::through_flow)], "",
       turns && moving.size() == 1 ? "rule = \"circumferential-slide\"\nof = " + toml_string(moving.front())
                                   : std::string("rule = \"fixed\""));

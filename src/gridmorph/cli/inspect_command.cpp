@@ -25,18 +25,31 @@ namespace gridmorph::cli {
 
 namespace {
 
+/// A first case file, printed or written.
+int suggest(CommandLine const& options, MeshSummary const& summary, Terminal& terminal) {
+  std::string const text = case_snippet(summary);
+  if (options.suggest->empty()) {
+    terminal.result(text);
+  } else {
+    check_output(*options.suggest, "case file", options.input);
+    PendingFile(*options.suggest, text).commit();
+    terminal.say(fmt::format("wrote {}\n", *options.suggest));
+  }
+  return done;
+}
+
 int inspect_unstructured(CommandLine const& options, Terminal& terminal) {
-  if (options.match || options.side_file || options.write_side_file || options.suggest)
-    throw MeshError(
-        options.input.string() +
-        ": is an unstructured mesh; side files, matching points and suggested case files are for structured "
-        "ones");
+  if (options.match || options.side_file || options.write_side_file)
+    throw MeshError(options.input.string() +
+                    ": is an unstructured mesh; side files and matching points are for structured ones");
   terminal.progress("reading " + options.input.string());
   LoadedMesh const loaded = load_unstructured(options.input);
+  if (options.suggest) return suggest(options, summarize(loaded), terminal);
   terminal.progress("measuring quality");
   QualityReport const quality = measure_mesh(loaded);
   if (options.json) {
     nlohmann::json json = inspect_json(loaded);
+    json["case_file"] = case_snippet(summarize(loaded));
     json["quality"] = quality_json(quality, {}, {});
     terminal.result(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
@@ -79,17 +92,7 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   if (options.match || options.write_side_file) find_and_add(options, mesh, terminal);
   terminal.progress("looking at boundaries and connections");
   MeshSummary const summary = summarize(mesh);
-  if (options.suggest) {
-    std::string const text = case_snippet(summary);
-    if (options.suggest->empty()) {
-      terminal.result(text);
-    } else {
-      check_output(*options.suggest, "case file", options.input);
-      PendingFile(*options.suggest, text).commit();
-      terminal.say(fmt::format("wrote {}\n", *options.suggest));
-    }
-    return done;
-  }
+  if (options.suggest) return suggest(options, summary, terminal);
   terminal.progress("measuring quality");
   QualityReport const quality = measure_mesh(mesh);
   if (options.json) {

@@ -67,6 +67,7 @@ struct MeshSummary {
   Box box;
   Index nodes = 0, cells = 0;
   bool two_dimensional = false;
+  bool unstructured = false;            ///< then only what case_snippet() asks for is filled in
   std::vector<std::string> notes;       ///< of the reader
   std::vector<std::string> problems;    ///< what a morph would refuse
   double needed_tolerance = 0;          ///< matching_tolerance with which interfaces match; 0: the default does

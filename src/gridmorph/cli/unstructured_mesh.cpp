@@ -205,4 +205,74 @@ nlohmann::json inspect_json(LoadedMesh const& loaded) {
   return json;
 }
 
+namespace {
+
+/// Whether all nodes lie in the plane through the first of them, across the sum of the faces' areas.
+bool is_flat(LoadedMesh const& loaded, std::vector<int> const& patches) {
+  auto const& mesh = loaded.mesh;
+  std::vector<Vec3> points;
+  Vec3 normal;
+  for (Index f = 0; f < loaded.topology.boundary.size(); ++f) {
+    if (std::find(patches.begin(), patches.end(), loaded.claims.patch[std::size_t(f)]) == patches.end()) continue;
+    auto const face = loaded.topology.boundary.nodes[f];
+    Vec3 const origin = mesh.coordinates[face[0]];
+    for (Number const n : face) points.push_back(mesh.coordinates[n]);
+    if (mesh.dimension == 2) normal += cross(mesh.coordinates[face[1]] - origin, plane_normal(mesh));
+    for (std::size_t k = 2; k < face.size(); ++k)
+      normal += cross(mesh.coordinates[face[k - 1]] - origin, mesh.coordinates[face[k]] - origin);
+  }
+  double const length = norm(normal);
+  return length > 0 && std::all_of(points.begin(), points.end(), [&](Vec3 const& p) {
+           return std::fabs(dot(normal, p - points.front())) <= 1e-6 * mesh.size() * length;
+         });
+}
+
+/// The axis that all periodic rotations share, its largest component positive.
+std::optional<Axis> common_axis(UnstructuredMesh const& mesh) {
+  std::optional<Axis> axis;
+  for (auto const& c : mesh.connections) {
+    if (!c.periodic || !(norm(c.periodic->rotation_angle_rad) > 0)) continue;
+    Vec3 d = (1 / norm(c.periodic->rotation_angle_rad)) * c.periodic->rotation_angle_rad;
+    double const parts[3] = {d.x, d.y, d.z};
+    double const largest =
+        *std::max_element(parts, parts + 3, [](double a, double b) { return std::fabs(a) < std::fabs(b); });
+    if (largest < 0) d = -d;
+    if (axis && distance(axis->direction, d) > 1e-5) return {};
+    if (!axis) axis = Axis{c.periodic->rotation_center, d};
+  }
+  return axis;
+}
+
+}  // namespace
+
+MeshSummary summarize(LoadedMesh const& loaded) {
+  auto const& mesh = loaded.mesh;
+  MeshSummary out;
+  out.unstructured = true;
+  out.source = mesh.source;
+  out.two_dimensional = mesh.dimension == 2;
+  out.axis = common_axis(mesh);
+  auto const paired = periodic_nodes(mesh);
+  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+    auto const& patch = mesh.patches[std::size_t(p)];
+    std::string const& selector = patch.families.empty() ? patch.name : patch.families.front();
+    // Periodic patches move as one with their partner unless a rule names them.
+    auto const nodes = patch_nodes(patch);
+    if (std::all_of(nodes.begin(), nodes.end(), [&](Number n) { return paired[std::size_t(n)] != 0; })) continue;
+    auto found = std::find_if(out.boundaries.begin(), out.boundaries.end(),
+                              [&](BoundarySummary const& b) { return b.selector == selector; });
+    if (found == out.boundaries.end()) {
+      found = out.boundaries.insert(out.boundaries.end(), BoundarySummary{});
+      found->selector = selector;
+    }
+    if (std::find(found->kinds.begin(), found->kinds.end(), patch.kind) == found->kinds.end())
+      found->kinds.push_back(patch.kind);
+    found->names.push_back(patch.name);
+    found->patches.push_back(p);
+  }
+  for (auto& b : out.boundaries)
+    if (is_flat(loaded, b.patches)) b.guess = "plane";
+  return out;
+}
+
 }  // namespace gridmorph::cli

@@ -1,6 +1,7 @@
 // What inspect and quality do with unstructured meshes.
 #pragma once
 
+#include <gridmorph/cli/mesh_summary.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/quality/quality.hpp>
 
@@ -33,5 +34,8 @@ void check_same_mesh(UnstructuredMesh const& a, UnstructuredMesh const& b);
 /// Zones, boundaries, connections, notes and problems; `quality` is printed last.
 std::string inspect_text(LoadedMesh const& loaded, std::string const& quality);
 nlohmann::json inspect_json(LoadedMesh const& loaded);
+
+/// What a first case file needs to know: boundaries by the names that rules use, which of them are flat, the axis.
+MeshSummary summarize(LoadedMesh const& loaded);
 
 }  // namespace gridmorph::cli

@@ -201,6 +201,15 @@ std::vector<Number> coincident_nodes(UnstructuredMesh const& mesh) {
   return root;
 }
 
+std::vector<std::uint8_t> periodic_nodes(UnstructuredMesh const& mesh) {
+  std::vector<std::uint8_t> paired(std::size_t(mesh.n_nodes()), 0);
+  for (auto const& c : mesh.connections)
+    if (c.periodic)
+      for (auto const* list : {&c.nodes, &c.donor_nodes})
+        for (Number const n : *list) paired[std::size_t(n)] = 1;
+  return paired;
+}
+
 std::vector<Number> match_points(Coordinates const& coordinates, std::span<Number const> points,
                                  std::span<Number const> donors, double tolerance,
                                  std::optional<Periodic> const& periodic) {

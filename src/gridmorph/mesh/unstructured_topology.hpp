@@ -72,6 +72,9 @@ BoundaryClaims claim_boundary(UnstructuredMesh const& mesh, UnstructuredTopology
 /// its own number where there is none.
 std::vector<Number> coincident_nodes(UnstructuredMesh const& mesh);
 
+/// (n_nodes) 1 for nodes that a periodic connection pairs.
+std::vector<std::uint8_t> periodic_nodes(UnstructuredMesh const& mesh);
+
 /// For each of `points` the nearest of `donors` within `tolerance` (the first of equals), or -1. Both are node numbers;
 /// `periodic`: moves the points onto the donors first. n log n.
 std::vector<Number> match_points(Coordinates const& coordinates, std::span<Number const> points,

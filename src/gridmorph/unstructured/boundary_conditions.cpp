@@ -46,8 +46,8 @@ class Finder {
     refuse_blade_rules(motion);
     out_.nodes_of_patch = nodes_of_patches(mesh_, topology_, claims_);
     out_.outline = boundary_outline(mesh_, out_.nodes_of_patch);
-    out_.motion = resolve(out_.outline, motion);
-    out_.notes = out_.motion.notes;
+    out_.motion = resolve(out_.outline, with_periodic_patches(motion));
+    out_.notes.insert(out_.notes.end(), out_.motion.notes.begin(), out_.motion.notes.end());
     make_surfaces();
     find_driving_patches(walls);
     find_known();
@@ -58,6 +58,35 @@ class Finder {
 
  private:
   Number owner(Number n) const { return graph_.representative[std::size_t(n)]; }
+
+  /// Patches whose nodes are all paired by periodic connections (SU2 markers are, always) would be fixed by default, against what
+  /// the connection says: those that no rule names get the rule `free` instead, after all others.
+  Motion with_periodic_patches(Motion motion) {
+    if (motion.strict) return motion;
+    std::vector<std::uint8_t> named(mesh_.patches.size(), 0);
+    for (auto const& rule : motion.rules)
+      for (auto const& selector : rule.patches) {
+        if (selector == "type:periodic") continue;
+        try {
+          for (int const p : select(out_.outline, selector).patches) named[std::size_t(p)] = 1;
+        } catch (MotionError const&) {
+          return motion;  // resolve() says what is wrong, with all other problems
+        }
+      }
+    std::vector<std::uint8_t> const paired = periodic_nodes(mesh_);
+    std::vector<std::string> free;
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+      auto const& nodes = out_.nodes_of_patch[p];
+      if (named[p] != 0 || mesh_.patches[p].kind != PatchKind::other || nodes.empty()) continue;
+      if (!std::all_of(nodes.begin(), nodes.end(), [&](Number n) { return paired[std::size_t(n)] != 0; })) continue;
+      auto const& families = mesh_.patches[p].families;
+      free.push_back(families.empty() ? mesh_.patches[p].name : families.front());
+    }
+    if (free.empty()) return motion;
+    out_.notes.push_back("patches " + quote_list(free) + ": periodic, and no rule names them; default: free");
+    motion.rules.push_back({free, FreeRule{}, 0, "default of periodic patches"});
+    return motion;
+  }
 
   static void refuse_blade_rules(Motion const& motion) {
     Problems problems;
