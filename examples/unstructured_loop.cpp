@@ -1,0 +1,127 @@
+// A solver with an unstructured mesh: a body heaves in a box, the mesh follows time step by time step.
+//
+// Elements, boundary faces and coordinates are handed over as lists, the plan is made once, and every step enqueues kernels on the
+// solver's own execution space: no allocation, no fence, no host decision. Needs the core library (and so Kokkos) alone.
+#include <gridmorph/unstructured/unstructured_morpher.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+namespace {
+
+using gridmorph::ElementType;
+using gridmorph::Index;
+using gridmorph::Index3;
+using gridmorph::Number;
+using gridmorph::Vec3;
+
+constexpr int n = 18;  // unit cells along each side of the box; the body takes the middle third
+constexpr ElementType hexahedron = ElementType::hexahedron;
+
+enum class Cell { outside, body, fluid };
+
+Cell cell(Index3 const& c) {
+  bool inside = true, in_body = true;
+  for (int const i : c) {
+    inside = inside && i >= 0 && i < n;
+    in_body = in_body && i >= n / 3 && i < n - n / 3;
+  }
+  return !inside ? Cell::outside : in_body ? Cell::body : Cell::fluid;
+}
+
+/// Hexahedra between the box and the body, with patches "body" and "box".
+gridmorph::UnstructuredMesh box_around_a_body() {
+  constexpr std::array<Index3, 8> corner{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+  // What is behind the sides of a hexahedron, in the order of the CGNS standard.
+  constexpr std::array<Index3, 6> behind{{{0, 0, -1}, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
+  std::vector<Number> number(std::size_t((n + 1) * (n + 1) * (n + 1)), -1);
+  std::vector<Vec3> points;
+  std::vector<std::array<Number, 8>> elements;
+  gridmorph::UnstructuredPatch body, box;
+  body.name = "body";
+  body.kind = gridmorph::PatchKind::wall;
+  box.name = "box";
+  box.kind = gridmorph::PatchKind::farfield;
+  body.zone = box.zone = 0;
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        if (cell({i, j, k}) != Cell::fluid) continue;
+        auto& nodes = elements.emplace_back();
+        for (std::size_t c = 0; c < 8; ++c) {
+          Index3 const at{i + corner[c][0], j + corner[c][1], k + corner[c][2]};
+          Number& own = number[std::size_t(at[0] + (n + 1) * (at[1] + (n + 1) * at[2]))];
+          if (own < 0) {
+            own = Number(points.size());
+            points.push_back({double(at[0]), double(at[1]), double(at[2])});
+          }
+          nodes[c] = own;
+        }
+        for (int side = 0; side < 6; ++side) {
+          auto const& b = behind[std::size_t(side)];
+          Cell const there = cell({i + b[0], j + b[1], k + b[2]});
+          if (there == Cell::fluid) continue;
+          std::array<Number, 4> face;
+          for (int c = 0; c < 4; ++c)
+            face[std::size_t(c)] = nodes[std::size_t(gridmorph::face_corner(hexahedron, side, c))];
+          (there == Cell::body ? body : box).faces.add(face);
+        }
+      }
+  gridmorph::UnstructuredMesh mesh;
+  mesh.source = "box around a body";
+  mesh.add_zone("fluid", Index(points.size()));
+  mesh.coordinates = gridmorph::Coordinates(Index(points.size()));
+  for (std::size_t p = 0; p < points.size(); ++p) mesh.coordinates.set(Index(p), points[p]);
+  for (auto const& nodes : elements) mesh.add_element(hexahedron, nodes);
+  mesh.patches = {body, box};
+  return mesh;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Kokkos::ScopeGuard const kokkos(argc, argv);
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Exec const exec;  // the solver's own instance
+
+  // Once: what follows from the lists, and the plan, from which patches move and how far they will.
+  gridmorph::UnstructuredMesh const mesh = box_around_a_body();
+  gridmorph::check_mesh(mesh);
+  gridmorph::UnstructuredTopology const topology = gridmorph::make_topology(mesh);
+  gridmorph::BoundaryClaims const claims = gridmorph::claim_boundary(mesh, topology);
+  gridmorph::Motion motion;
+  motion.rules.push_back({{"body"}, gridmorph::RigidRule{{}, {0, 0, 1}}, 0, "unstructured_loop"});
+  gridmorph::UnstructuredOptions options;
+  options.motion = 2;  // the largest displacement there will be: the wrap leaves room for it
+  gridmorph::PreparedUnstructured const prepared = gridmorph::prepare(mesh, topology, claims, motion, options);
+  gridmorph::UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+
+  // Every step: displacement of the boundary nodes in, positions of all nodes out, always from the reference mesh.
+  auto const& nodes = prepared.plan.known;
+  Kokkos::View<Vec3*, Exec::memory_space> const boundary("boundary displacement", nodes.size());
+  gridmorph::Coordinates const& x = mesh.coordinates;
+  gridmorph::Coordinates const now(mesh.n_nodes());
+  std::vector<Vec3> const heave = prepared.boundary_displacement(mesh);  // unit heave of the body, none of the box
+  double worst = 0;
+  for (int step = 0; step <= 8; ++step) {
+    double const amplitude = 2 * std::sin(2 * std::numbers::pi * step / 8);
+    for (std::size_t k = 0; k < nodes.size(); ++k) boundary(k) = amplitude * heave[k];
+    morpher.apply(exec, boundary, {x.x.data(), x.y.data(), x.z.data()}, {now.x.data(), now.y.data(), now.z.data()});
+    exec.fence();  // the solver would go on with its own kernels instead
+
+    double largest = 0;
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      Vec3 const wanted = x[nodes[k]] + amplitude * heave[k];
+      worst = std::max(worst, gridmorph::distance(now[nodes[k]], wanted));
+      largest = std::max(largest, gridmorph::norm(amplitude * heave[k]));
+    }
+    std::printf("step %d: body moved by %.4f\n", step, largest);
+  }
+  return worst == 0 ? 0 : 1;
+}
