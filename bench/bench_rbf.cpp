@@ -1,7 +1,7 @@
 // What a morph by radial basis functions costs on the nodes of the ball demo: 1,000 centres picked from the boundary.
 //
-//   rbf_apply    displacement of all nodes from the weights    1,000 centres per node; 48 bytes per node
-//   rbf_solve    weights from the displacements of the centres  independent of the nodes
+//   unstructured/rbf_apply   displacement of all nodes from the weights    1,000 centres per node; 48 bytes per node
+//   unstructured/rbf_solve   weights from the displacements of the centres  independent of the nodes
 //
 // "elements/s" compares with the unstructured morph, which has no centres. "error": largest difference from the given displacement
 // over all nodes of ball and rope, in radii of the ball: what 1,000 centres leave of the boundary's shape.
@@ -101,8 +101,8 @@ struct Solve {
 };
 
 void register_all() {
-  register_benchmark("rbf_apply", Apply(), {smoke_nodes, cache_nodes, 400'000, 1'000'000});
-  register_benchmark("rbf_solve", Solve(), {smoke_nodes, cache_nodes});
+  register_benchmark("unstructured/rbf_apply", Apply(), {smoke_nodes, cache_nodes, 400'000, 1'000'000});
+  register_benchmark("unstructured/rbf_solve", Solve(), {smoke_nodes, cache_nodes});
 }
 
 }  // namespace gridmorph::bench

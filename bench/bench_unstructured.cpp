@@ -1,5 +1,5 @@
 // Cost of the stages of an unstructured morph: the ball demo (bench_rbf has the same mesh), its nodes and elements numbered at
-// random, which is the worst order there is; "nodes" are about 0.24 times the elements.
+// random, which is the worst order there is (names begin with unstructured/); "nodes" are about 0.24 times the elements.
 //
 // Once per mesh, on the host:
 //   topology      neighbours, boundary faces, lists around nodes
@@ -11,8 +11,7 @@
 //   project       far nodes in cells of the background mesh
 //   scatter       moving walls to the lattice between them
 //   background    the background mesh itself: the structured engine on some ten thousand nodes
-//   apply         all of it, from boundary displacements to new coordinates
-//   apply_in_order   the same on the mesh as its generator numbers it
+//   apply         all of it, from boundary displacements to new coordinates; apply_in_order: on the mesh as generated
 //
 // Model, bytes. Rows (layers, project): 12 per row, 8 and a source of 24 per item, 24 written. apply: those; 60 per node for
 // displacement and work array, 48 for coordinates in and out, and as much again for the residual's value, fade and
@@ -211,15 +210,15 @@ void register_host(char const* name, void (*run)(benchmark::State&)) {
 }
 
 void register_all() {
-  register_host("topology", topology);
-  register_host("node_graph", node_graph);
-  register_host("prepare", prepare_all);
-  register_benchmark("layers", Layers(), ball_sizes);
-  register_benchmark("project", Project(), ball_sizes);
-  register_benchmark("scatter", Scatter(), ball_sizes);
-  register_benchmark("background", BackgroundMesh(), ball_sizes);
-  register_benchmark("apply", Apply(), ball_sizes);
-  register_benchmark("apply_in_order", Apply{false}, ball_sizes);
+  register_host("unstructured/topology", topology);
+  register_host("unstructured/node_graph", node_graph);
+  register_host("unstructured/prepare", prepare_all);
+  register_benchmark("unstructured/layers", Layers(), ball_sizes);
+  register_benchmark("unstructured/project", Project(), ball_sizes);
+  register_benchmark("unstructured/scatter", Scatter(), ball_sizes);
+  register_benchmark("unstructured/background", BackgroundMesh(), ball_sizes);
+  register_benchmark("unstructured/apply", Apply(), ball_sizes);
+  register_benchmark("unstructured/apply_in_order", Apply{false}, ball_sizes);
 }
 
 }  // namespace gridmorph::bench

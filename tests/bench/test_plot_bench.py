@@ -71,6 +71,17 @@ class PlotBench(unittest.TestCase):
                                                         "k, 1 thread", "i, 4 threads", "j, 4 threads", "k, 4 threads"])
         self.assertEqual(self.rows(text, "volume c1 no side"), [["volume c1 no side", "0.0640", "48.0", "0.71", "–", "0.62", "–", "–", "0.53"]])
 
+    def test_stages_of_unstructured_morphs_stand_by_elements(self):
+        runs = [benchmark("unstructured/apply/OpenMP", nodes, ms, elements=elements)
+                for nodes, ms, elements in ((30_588, 7, 101_100), (129_670, 14, 499_102), (1_064_120, 106.412, 5_003_960))]
+        planning = benchmark("unstructured/prepare/host", 1_064_120, 5000, elements=5_003_960)
+        del planning["bytes/s"]
+        files, text = self.plot(self.report("unstructured.json", [*runs, planning]))
+        self.assertEqual(files, ["tables.md"])
+        self.assertEqual(self.rows(text, ""), [["", "0.1", "0.5", "5", "ns per node", "GB/s"]])
+        self.assertEqual(self.rows(text, "apply, 2 threads"), [["apply, 2 threads", "7.00", "14.0", "106", "100", "0.480"]])
+        self.assertEqual(self.rows(text, "prepare, 2 threads"), [["prepare, 2 threads", "–", "–", "5,000", "4,700", "–"]])
+
     def test_the_line_through_the_passage_is_that_of_its_times(self):
         # 2 ms and 40 ns per node
         runs = [benchmark("passage/workflow/Serial", n, 2 + 40e-6 * n, share=0.5, updates=3) for n in (100_000, 1_000_000, 25_000_000)]
