@@ -286,6 +286,29 @@ TEST(TargetSections, SidesThatNothingBringsTogetherAreAnError) {
   }
 }
 
+TEST(TargetSections, SidesInBlocksAboveAndBelowAreOneContour) {
+  // An H-grid with the wing between two zones; of the lower one i runs upstream.
+  MeshBuilder builder("above and below");
+  constexpr int along = 30, nj = 9;
+  for (bool const upper : {true, false}) {
+    int const zone = builder.zone(upper ? "above" : "below", {along + 1, nj, 3}, [=](Index3 const& p) {
+      int const m = upper ? p[0] : along - p[0];
+      Vec3 const x = wing(double(m == along ? 0
+                                 : upper    ? along - m
+                                            : along + m) /
+                              (2 * along),
+                          double(p[1]) / (nj - 1));
+      return x + Vec3{0, (upper ? 0.2 : -0.2) * p[2], 0};
+    });
+    builder.patch("blade", PatchKind::wall, zone, 2, 0);
+  }
+  std::vector<double> spans;
+  for (int j = 0; j < nj; ++j) spans.push_back(double(j) / (nj - 1));
+  TargetRun const run(builder.finish(), along_z(sections(spans, 61, twisted)));
+  EXPECT_LT(run.error(twisted), 1e-12);
+  EXPECT_LT(run.reach().max, 1e-12);
+}
+
 TEST(TargetSections, UnusableSectionsAreErrors) {
   Mesh const mesh = wing_mesh();
   EXPECT_THROW(TargetRun(mesh, along_z(sections({0.5, 0.5}, 61, same_place))), MotionError);
