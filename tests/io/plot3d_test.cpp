@@ -39,7 +39,11 @@ std::vector<Plot3dStorage> every_storage() {
               if (kind != 'u') continue;
               s.longest_record = 37;
               out.push_back(s);
+              s.planes = dimensions == 3;
+              if (s.planes) out.push_back(s);
               s.longest_record = 0;
+              if (s.planes) out.push_back(s);
+              s.planes = false;
               s.marker = 8;
               out.push_back(s);
             }
@@ -165,6 +169,41 @@ TEST(Plot3dFiles, ThatCouldBeSeveralThingsMustBeStated) {
   bytes[bytes.size() - 4] = 1;
   write_bytes(path, bytes);
   EXPECT_EQ(read_mesh(path).zones.front().extent, (Index3{3, 4, 2}));
+}
+
+TEST(Plot3dFiles, PlaneByPlaneWithoutRecordsMustBeStated) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("in.p3d"), out = folder.file("out.p3d");
+  for (char const kind : {'f', 'b'})
+    for (bool const multi : {false, true})
+      for (bool const blank : {false, true}) {
+        Plot3dStorage s;
+        s.kind = kind;
+        s.multi = multi;
+        s.blank = blank;
+        s.planes = true;
+        SCOPED_TRACE(s.name());
+        Mesh original = lattice(s);
+        write_bytes(path, Plot3dFile(s).bytes(original));
+        Mesh mesh = read_mesh(path, {.plot3d_format = "planes"});
+        expect_same_coordinates(mesh.coordinates, original.coordinates);
+        EXPECT_NE(mesh.file_variant.find("planes"), std::string::npos);
+        write_morphed(path, out, mesh, mesh.coordinates);
+        EXPECT_EQ(bytes_of(out), bytes_of(path));
+        for (Mesh* m : {&mesh, &original})
+          for (Index n = 0; n < m->n_nodes(); ++n) m->coordinates.set(n, 2.0 * m->coordinates[n]);
+        write_morphed(path, out, mesh, mesh.coordinates);
+        expect_same_coordinates(read_mesh(out, {.plot3d_format = "planes"}).coordinates, original.coordinates);
+      }
+}
+
+TEST(Plot3dFiles, OfPlanesThatAreStatedToBeWholeAreRefused) {
+  TemporaryFolder const folder;
+  Plot3dStorage s;
+  s.planes = true;
+  write_bytes(folder.file("in.p3d"), Plot3dFile(s).bytes(lattice(s)));
+  EXPECT_EQ(read_mesh(folder.file("in.p3d")).file_variant.substr(0, 11), "unformatted");
+  EXPECT_THROW(read_mesh(folder.file("in.p3d"), {.plot3d_format = "whole"}), IoError);
 }
 
 TEST(Plot3dText, IsReadAsFortranCompilersWriteIt) {

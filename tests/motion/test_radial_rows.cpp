@@ -244,6 +244,32 @@ TEST(RadialRow, FollowAndSlideMayNameTheSplitterOrNot) {
   for (std::size_t n = 0; n < points.size(); ++n) EXPECT_LT(distance(u[n], v[n]), 1e-12);
 }
 
+TEST_P(EveryImpeller, PeriodicsThroughTheSplitterGoFromItsEdgesToWhatTheMainBladeDoesToTheEnds) {
+  Mesh const mesh = impeller_mesh(GetParam());
+  for (Names const& ends : {Names{"main"}, Names{"main", "splitter"}}) {
+    Motion motion = redesigned({"splitter"});
+    std::get<CircumferentialSlideRule>(motion.rules[slide_number].rule).of = ends;
+    SurfaceMotion const surface = make(mesh, motion);
+    for (char const* end : {"inlet", "outlet"}) {
+      auto const points = points_of(mesh, end);
+      auto const u = evaluate(surface, slide_number, points), v = evaluate(surface, follow_number, points);
+      for (std::size_t n = 0; n < points.size(); ++n) EXPECT_LT(distance(u[n], v[n]), 1e-12) << end;
+    }
+    auto const points = points_of(mesh, "periodic");
+    auto const u = evaluate(surface, follow_number, points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      Place const p = place_of(points[n]);
+      impeller::BladeShape const& b = impeller::splitter;
+      double const le = b.leading(p.h), te = b.trailing(p.h), c = std::clamp(b.fraction(p), 0.0, 1.0);
+      double const share = p.s < le ? p.s / le : p.s > te ? (1 - p.s) / (1 - te) : 1;
+      double const angle =
+          share * other_redesign().angle(c, p.h) + (share < 1 ? (1 - share) * redesign().angle(c, p.h) : 0);
+      Vec3 const wanted = impeller::point({p.s, p.h, p.theta + angle}) - points[n];
+      EXPECT_LT(distance(u[n], wanted), 5e-6) << p.s << " " << p.h;
+    }
+  }
+}
+
 TEST(RadialRow, ItsWallsMayBeOfSeveralFamiliesThatFollowOneAnother) {
   auto const build = [](bool split) {
     RowMesh row;

@@ -1,5 +1,6 @@
 // Blade rows of meshes from outside: their end walls, and whether follow, slide and blade agree where patches meet.
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/motion/selectors.hpp>
 #include <gridmorph/motion/surface_motion.hpp>
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 
 namespace gridmorph {
 namespace {
@@ -151,6 +153,68 @@ TEST_P(RealRow, PeriodicCopiesMoveAlike) {
       EXPECT_NEAR(norm(off_axis(p + u - axis.origin)), norm(off_axis(p - axis.origin)), 1e-13);
     }
   }
+}
+
+/// The two sides of the blade in this mesh are a pitch apart. Its own sections, turned and pushed along the axis, are a target that
+/// says where every node goes.
+TEST_P(RealRow, SectionsOfTheBladeAsATargetMoveBothSidesOfIt) {
+  Axis const axis = GetParam().axis;
+  RigidTransform const moved = [&] {
+    RigidTransform t = rotation_about(axis.origin, axis.direction, 0.02);
+    t.translation += 1e-3 * mesh_.size() * axis.direction;
+    return t;
+  }();
+  // Each side as lines along the chord, from hub to case.
+  std::vector<std::vector<std::vector<Vec3>>> sides;
+  int zone = -1;
+  for (int const p : select_patches(mesh_, {GetParam().blade})) {
+    Patch const& patch = mesh_.patches[p];
+    zone = patch.zone;
+    std::array<int, 2> extent{};
+    for (int a = 0, d = 0; a < 3; ++a)
+      if (patch.range.extent(a) > 1) extent[d++] = patch.range.extent(a);
+    auto const nodes = points(patch.zone, patch.range);
+    auto const radius = [&](Vec3 const& x) { return norm(cross(axis.direction, x - axis.origin)); };
+    auto const at = [&](int a, int b) { return nodes[std::size_t(a + extent[0] * b)]; };
+    bool const rises = std::abs(radius(at(extent[0] - 1, 0)) - radius(at(0, 0))) >
+                       std::abs(radius(at(0, extent[1] - 1)) - radius(at(0, 0)));  // along direction 0
+    auto& side = sides.emplace_back();
+    for (int k = 0; k < extent[rises ? 0 : 1]; ++k) {
+      auto& line = side.emplace_back();
+      for (int n = 0; n < extent[rises ? 1 : 0]; ++n) line.push_back(rises ? at(k, n) : at(n, k));
+    }
+  }
+  ASSERT_EQ(sides.size(), 2u);
+  RigidTransform onto{};
+  double nearest = 1e300;
+  for (Interface1to1 const& interface : mesh_.interfaces) {
+    if (!interface.periodic) continue;
+    for (RigidTransform const& t : {interface.periodic->declared, interface.periodic->declared.inverse()})
+      if (double const d = distance(t(sides[1].front().front()), sides[0].front().front()); d < nearest) {
+        nearest = d;
+        onto = t;
+      }
+  }
+  ASSERT_LT(nearest, 1e-6 * mesh_.size()) << "of zone " << zone;
+  auto target = std::make_shared<TargetGeometry>();
+  for (std::size_t k = 0; k < sides[0].size(); ++k) {
+    TargetSection section{"row " + std::to_string(k), {}};
+    for (Vec3 const& x : sides[0][k]) section.points.push_back(moved(x));
+    auto const& back = sides[1][k];
+    for (std::size_t n = back.size() - 1; n-- > 1;) section.points.push_back(moved(onto(back[n])));
+    target->sections.push_back(std::move(section));
+  }
+  TargetRule rule;
+  rule.target = target;
+  rule.flow = axis.direction;
+  Motion motion;
+  motion.axis = axis;
+  motion.rules = {{{GetParam().blade}, rule, 0, "blade"}};
+  ResolvedMotion const resolved = resolve(mesh_, motion);
+  SurfaceMotion const surface(mesh_, resolved);
+  auto const at = points_of_rule(resolved, blade);
+  auto const u = evaluate(surface, blade, at);
+  for (std::size_t n = 0; n < at.size(); ++n) EXPECT_LT(distance(at[n] + u[n], moved(at[n])), 1e-8 * mesh_.size()) << n;
 }
 
 /// Both rows of a stage at once, each with its own motion: what a row gets is what it gets alone.

@@ -3,6 +3,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/rigid_transform.hpp>
 #include <gridmorph/motion/detail/feature_edges.hpp>
+#include <gridmorph/motion/detail/feature_path.hpp>
 #include <gridmorph/motion/detail/surface_pieces.hpp>
 #include <gridmorph/motion/detail/target_tree.hpp>
 
@@ -304,6 +305,71 @@ TEST(TargetProjection, NodesBesideSharpEdgesKeepTheirSideAndTheirOrder) {
   EXPECT_LT(run.error(twisted), 0.05);
   EXPECT_LT(run.reach().max, 1e-13 * mesh.size());
   EXPECT_GT(shortest, 0);
+}
+
+/// A lens cut off at the trailing edge: a from 0 in the middle of the base, 0.003 high, over its corner at 1/40, the upper
+/// side, the nose at 0.5 and the lower side to the other corner at 39/40. Beside `crowd` 0 nodes close up to both edges.
+Vec3 blunt(double a, double h, double crowd) {
+  constexpr double corner = 1.0 / 40;
+  double const side = a <= 0.5 ? 1 : -1, from_base = std::min(a, 1 - a);
+  double const even = std::max(0.0, (from_base - corner) / (0.5 - corner));
+  double const x = 1 - even + crowd * std::sin(2 * std::numbers::pi * even);
+  double const half_base = 0.0015 * x * std::min(1.0, from_base / corner);
+  double const y = side * (half_base + (side > 0 ? 0.2 : 0.16) * x * (1 - x));
+  return {0.4 * h + (1 - 0.5 * h) * x, (1 - 0.5 * h) * y, 4 * h};
+}
+
+TEST(TargetProjection, TheTwoLinesOfABluntTrailingEdgeStayApart) {
+  // They are nearer to one another than the bend of the span takes either of them off the way between its ends: the way of
+  // one may cross the base at root and tip and go along the other.
+  MeshBuilder builder("blunt");
+  int const zone = builder.zone("wing", {41, 9, 3}, [](Index3 const& p) {
+    double const a = double(p[0] % 40) / 40;
+    return blunt(a, double(p[1]) / 8, 0.06) + Vec3{0, (a <= 0.5 ? 0.2 : -0.2) * p[2], 0};
+  });
+  builder.patch("wing", PatchKind::wall, zone, 2, 0);
+  Mesh const mesh = builder.finish();
+  for (double const twist : {0.0, -0.09}) {
+    Map const map = [twist](Vec3 const& p) {
+      double const h = p.z / 4, c = std::cos(twist * h * h), s = std::sin(twist * h * h);
+      double const x = p.x - 0.4 * h - 0.25;
+      return Vec3{p.x - x + c * x - s * p.y, s * x + c * p.y + 0.6 * h * h, p.z};
+    };
+    TargetRun const run(
+        mesh, projection(triangles_of(121, 33, [&](double a, double b) { return map(blunt(a < 1 ? a : 0, b, 0)); })));
+    for (auto const& note : run.surface.notes()) EXPECT_EQ(note.find("fold"), std::string::npos) << note;
+    auto const points = nodes_of(mesh, 0);
+    auto const u = run.displacement(0);
+    for (int j = 0; j < 9; ++j) {
+      std::size_t const upper = 41 * std::size_t(j) + 1, lower = upper + 38;
+      Vec3 const base = map(points[upper]) - map(points[lower]);
+      Vec3 const found = points[upper] + u[upper] - points[lower] - u[lower];
+      EXPECT_LT(norm(found - base), 0.1 * norm(base)) << twist << " " << j;
+    }
+    EXPECT_LT(run.error(map), 0.05) << twist;
+    EXPECT_LT(run.reach().max, 1e-12 * mesh.size()) << "slivers of the base";
+  }
+}
+
+TEST(FeatureNetwork, NoWayLeadsThroughAClosedPlace) {
+  // A ladder of two rungs, 0-1-2 below 3-4-5, narrow: 0-3 and 2-5 join the two sides.
+  std::vector<Vec3> points;
+  for (double const y : {0.0, 0.1})
+    for (double const x : {0.0, 1.0, 2.0}) points.push_back({x, y, 0});
+  FeatureNetwork network(points, {{0, 1}, {1, 2}, {3, 4}, {4, 5}, {0, 3}, {2, 5}});
+  // Places are numbered as edges bring them: 0, 1, 2 and 3, 4, 5 again.
+  Polyline const beside_upper({{0, 0.5, 0}, {2, 0.5, 0}});
+  EXPECT_EQ(network.path(0, 2, beside_upper), (std::vector<int>{0, 3, 4, 5, 2}));
+  network.close(3);
+  EXPECT_EQ(network.path(0, 2, beside_upper), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(network.path(0, 3, beside_upper), (std::vector<int>{0, 3})) << "ways may end there";
+  network.close(5);
+  EXPECT_FALSE(network.path(0, 4, beside_upper));
+  EXPECT_EQ(network.nearest_place({1, 0.1, 0}), 4);
+  EXPECT_EQ(network.nearest_place({1, 0.1, 0}, 0), 1) << "of what ways from 0 lead to";
+  int const fresh = network.nearest_place({1.5, 0.2, 0}, 0);
+  EXPECT_EQ(fresh, 6);
+  EXPECT_EQ(network.path(0, fresh, beside_upper), (std::vector<int>{0, 1, fresh}));
 }
 
 TEST(TargetProjection, FacetsThatFoldAreSaidSo) {

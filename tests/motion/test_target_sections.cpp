@@ -187,6 +187,128 @@ TEST(TargetSections, SectionsAroundAnAxisGoByTheRadius) {
   for (std::size_t n = 0; n < u.size(); ++n) EXPECT_LT(distance(points[n] + u[n], moved(points[n])), 1e-11) << n;
 }
 
+TEST(SectionProfile, EdgesOfHMeshesAreThePointsFarthestAlongTheFlow) {
+  // An ellipse at 30 degrees: its ends along x are none of its vertices, and where they are is known.
+  std::vector<Vec3> points;
+  double const turn = std::numbers::pi / 6, c = std::cos(turn), s = std::sin(turn);
+  for (int k = 0; k < 200; ++k) {
+    double const a = 2 * std::numbers::pi * (k + 0.3) / 200;
+    Vec3 const p{2 * std::cos(a), 0.5 * std::sin(a), 0};
+    points.push_back({c * p.x - s * p.y, s * p.x + c * p.y, 0});
+  }
+  double const end = std::hypot(2 * c, 0.5 * s), across = (4 - 0.25) * c * s / end;
+  SectionProfile const extreme(points, {0, 0, 1}, {1, 0, 0}, "test", SectionProfile::Edges::extreme);
+  EXPECT_LT(distance(extreme.at({0, 1}), {-end, -across, 0}), 2e-3);
+  EXPECT_LT(distance(extreme.at({0, 0}), {end, across, 0}), 2e-3);
+  SectionProfile const farthest(points, {0, 0, 1}, {1, 0, 0}, "test");
+  EXPECT_LT(distance(farthest.at({0, 1}), {-2 * c, -2 * s, 0}), 2e-3);
+}
+
+/// The wing as a blade: z is the radius from 5, x the axis, y around it. Or, flat, as it is.
+struct Cascade {
+  bool flat;
+  double pitch;  ///< angle, or length along y
+
+  [[nodiscard]] Vec3 place(Vec3 const& x, double copy = 0) const {
+    if (flat) return {x.x, x.y + copy * pitch, x.z};
+    double const r = 5 + x.z, a = x.y / 5 + copy * pitch;
+    return {x.x, r * std::sin(a), r * std::cos(a)};
+  }
+  /// H mesh between the upper side of one blade and the lower side of the next.
+  [[nodiscard]] Mesh mesh(bool periodic = true) const {
+    constexpr int before = 4, along = 30, behind = 5, ni = before + along + behind + 1, nj = 9, nk = 5;
+    auto const side = [](int i, double h, bool upper) {
+      Vec3 const le = wing(0.5, h), te = wing(0, h);
+      if (i < before) return Vec3{le.x - 0.2 * (before - i), le.y, le.z};
+      if (i > before + along) return Vec3{te.x + 0.2 * (i - before - along), te.y, te.z};
+      int const m = i - before;
+      return i == before ? le : i == before + along ? te : wing(double(upper ? along - m : along + m) / (2 * along), h);
+    };
+    MeshBuilder builder("cascade");
+    int const zone = builder.zone("passage", {ni, nj, nk}, [=, this](Index3 const& p) {
+      double const h = double(p[1]) / (nj - 1), w = double(p[2]) / (nk - 1);
+      // Sides to the bit, so that the baseline's sections are exactly its nodes.
+      if (p[2] == 0) return place(side(p[0], h, true));
+      if (p[2] == nk - 1) return place(side(p[0], h, false), 1);
+      return place((1 - w) * side(p[0], h, true) + w * side(p[0], h, false), w);
+    });
+    std::optional<Periodic> const copy = flat ? translation({0, pitch, 0}) : rotation({0, 0, 0}, {1, 0, 0}, -pitch);
+    for (auto const& [lo, hi] : {std::pair(0, before + 1), std::pair(before + along, ni)}) {
+      IndexRange const own{{lo, 0, 0}, {hi, nj, 1}}, other{{lo, 0, nk - 1}, {hi, nj, nk}};
+      if (periodic) builder.join(zone, own, zone, other, {}, copy);
+    }
+    builder.patch("blade", PatchKind::wall, zone, {{before, 0, 0}, {before + along + 1, nj, 1}});
+    builder.patch("blade", PatchKind::wall, zone, {{before, 0, nk - 1}, {before + along + 1, nj, nk}});
+    return builder.finish();
+  }
+  [[nodiscard]] TargetRule rule(Map const& map, double copy, int n = 61) const {
+    std::vector<double> spans;
+    for (int j = 0; j < 9; ++j) spans.push_back(j / 8.0);
+    TargetRule out = rule_of(sections(spans, n, [&, this](Vec3 const& x) { return map(place(x, copy)); }));
+    if (flat) out.span = Vec3{0, 0, 1};
+    return out;
+  }
+};
+
+TEST(TargetSections, SidesAPitchApartAreOneBlade) {
+  // Sections turn about the axis, or rise along the pitch, and slide along the flow: what one copy does, all do.
+  auto const turned = [](Vec3 const& x) {
+    double const h = std::hypot(x.y, x.z) - 5, c = std::cos(0.03 * h), s = std::sin(0.03 * h);
+    return Vec3{x.x + 0.05 * h * h, c * x.y - s * x.z, s * x.y + c * x.z};
+  };
+  auto const raised = [](Vec3 const& x) { return Vec3{x.x + 0.05 * x.z * x.z, x.y + 0.1 * x.z, x.z}; };
+  for (bool const flat : {false, true}) {
+    Cascade const row{flat, flat ? 1.4 : 0.3};
+    Map const map = flat ? Map(raised) : Map(turned);
+    for (double const copy : {0.0, 1.0}) {  // the target is at the one blade or at the other
+      TargetRun const run(row.mesh(), row.rule(map, copy));
+      EXPECT_LT(run.error(map), 1e-11) << flat << copy;
+      EXPECT_LT(run.reach().max, 1e-11) << flat << copy;
+      EXPECT_NE(run.surface.notes().front().find("1 of 2 patches are a pitch away"), std::string::npos);
+    }
+  }
+}
+
+TEST(TargetSections, SidesAPitchApartThatAreTheTargetStandStill) {
+  Cascade const row{false, 0.3};
+  TargetRun const run(row.mesh(), row.rule(same_place, 0));
+  EXPECT_LT(run.error(same_place), 2e-15 * run.mesh.size());
+  for (Vec3 const& u : run.displacement(0)) EXPECT_TRUE(u == (Vec3{0, 0, 0})) << "the side at home, bit for bit";
+}
+
+TEST(TargetSections, SidesThatNothingBringsTogetherAreAnError) {
+  Cascade const row{false, 0.3};
+  try {
+    TargetRun const run(row.mesh(false), row.rule(same_place, 0));
+    FAIL() << "two sides a pitch apart, and no interface says so";
+  } catch (MotionError const& error) {
+    EXPECT_NE(std::string(error.what()).find("periodic interface"), std::string::npos) << error.what();
+  }
+}
+
+TEST(TargetSections, SidesInBlocksAboveAndBelowAreOneContour) {
+  // An H-grid with the wing between two zones; of the lower one i runs upstream.
+  MeshBuilder builder("above and below");
+  constexpr int along = 30, nj = 9;
+  for (bool const upper : {true, false}) {
+    int const zone = builder.zone(upper ? "above" : "below", {along + 1, nj, 3}, [=](Index3 const& p) {
+      int const m = upper ? p[0] : along - p[0];
+      Vec3 const x = wing(double(m == along ? 0
+                                 : upper    ? along - m
+                                            : along + m) /
+                              (2 * along),
+                          double(p[1]) / (nj - 1));
+      return x + Vec3{0, (upper ? 0.2 : -0.2) * p[2], 0};
+    });
+    builder.patch("blade", PatchKind::wall, zone, 2, 0);
+  }
+  std::vector<double> spans;
+  for (int j = 0; j < nj; ++j) spans.push_back(double(j) / (nj - 1));
+  TargetRun const run(builder.finish(), along_z(sections(spans, 61, twisted)));
+  EXPECT_LT(run.error(twisted), 1e-12);
+  EXPECT_LT(run.reach().max, 1e-12);
+}
+
 TEST(TargetSections, UnusableSectionsAreErrors) {
   Mesh const mesh = wing_mesh();
   EXPECT_THROW(TargetRun(mesh, along_z(sections({0.5, 0.5}, 61, same_place))), MotionError);

@@ -18,6 +18,7 @@ struct Plot3dStorage {
   int marker = 4;
   bool big = false, wide = true, multi = true, blank = false;
   int dimensions = 3;
+  bool planes = false;     ///< a record per plane k
   int longest_record = 0;  ///< bytes after which Fortran records are split; 0: never
   char const* number = "%.16e";
 
@@ -26,7 +27,8 @@ struct Plot3dStorage {
     if (kind != 'f') text += std::string(big ? "_big" : "_little") + (wide ? "_double" : "_single");
     if (marker == 8) text += "_marker8";
     if (longest_record > 0) text += "_split";
-    return text + (multi ? "_multi" : "_one") + (dimensions == 2 ? "_2d" : "_3d") + (blank ? "_iblank" : "");
+    return text + (multi ? "_multi" : "_one") + (dimensions == 2 ? "_2d" : "_3d") + (blank ? "_iblank" : "") +
+           (planes ? "_planes" : "");
   }
 };
 
@@ -45,16 +47,21 @@ class Plot3dFile {
     close_record();
     for (auto const& zone : mesh.zones) {
       Coordinates const& x = mesh.coordinates;
+      int const nk = s_.dimensions == 2 ? 1 : zone.extent[2];
+      int from = 0, to = nk;
       auto const each = [&](auto const& visit) {
-        for (int k = 0; k < (s_.dimensions == 2 ? 1 : zone.extent[2]); ++k)
+        for (int k = from; k < to; ++k)
           for (int j = 0; j < zone.extent[1]; ++j)
             for (int i = 0; i < zone.extent[0]; ++i) visit(zone.node({i, j, k}));
       };
-      each([&](Index n) { real(x.x(n)); });
-      each([&](Index n) { real(x.y(n)); });
-      if (s_.dimensions == 3) each([&](Index n) { real(x.z(n)); });
-      if (s_.blank) each([&](Index n) { integer(int(n % 3) - 1); });
-      close_record();
+      for (; from < nk; from = to) {
+        to = s_.planes ? from + 1 : nk;
+        each([&](Index n) { real(x.x(n)); });
+        each([&](Index n) { real(x.y(n)); });
+        if (s_.dimensions == 3) each([&](Index n) { real(x.z(n)); });
+        if (s_.blank) each([&](Index n) { integer(int(n % 3) - 1); });
+        close_record();
+      }
     }
     return out_;
   }

@@ -163,8 +163,11 @@ void read_coordinates(std::string const& path, File const& file, cgns::Layout co
         to = plane.data();
       }
       if (file.formatted()) {
-        std::copy_n(file.numbers.values.begin() + std::ptrdiff_t(value), data.nodes(), to);
-        value += std::size_t(data.nodes());
+        for_each_run(data, v, [&](Index in_file, Index in_zone, Index count) {
+          if (in_zone / data.nodes() == c)
+            std::copy_n(file.numbers.values.begin() + std::ptrdiff_t(value) + in_file, count,
+                        to + in_zone % data.nodes());
+        });
       } else {
         read_binary_component(*bytes, path, file.layout, data, c, to);
       }
@@ -177,7 +180,7 @@ void read_coordinates(std::string const& path, File const& file, cgns::Layout co
           dest[n] = dest[n + p.across] = *from++;
         }
     }
-    if (v.iblank) value += std::size_t(data.nodes());
+    value += std::size_t(data.nodes()) * std::size_t(v.dimensions + (v.iblank ? 1 : 0));
   }
 }
 

@@ -153,7 +153,29 @@ Records walk_records(Bytes& file, int marker, bool big_endian) {
   return out;
 }
 
-void try_unformatted(Bytes& file, int marker, bool big_endian, std::vector<Candidate>& out) {
+/// Bytes [begin, begin + count) of a record, split or not.
+void append_part(std::vector<Segment> const& record, std::uint64_t begin, std::uint64_t count,
+                 std::vector<Segment>& out) {
+  ZoneData whole;
+  whole.segments = record;
+  for_each_piece(whole, begin, count, [&](std::uint64_t at, std::uint64_t, std::uint64_t n) {
+    out.push_back({at, n});
+  });
+}
+
+/// The segments of a zone whose plane k is all of planes[k]: x of the plane, then y, (z), (iblank).
+std::vector<Segment> from_planes(std::vector<std::vector<Segment>> const& planes, std::uint64_t nodes,
+                                 Variant const& v) {
+  std::vector<Segment> out;
+  std::uint64_t const width = std::uint64_t(v.coordinate_bytes()), components = std::uint64_t(v.dimensions);
+  for (std::uint64_t c = 0; c < components; ++c)
+    for (auto const& plane : planes) append_part(plane, c * nodes * width, nodes * width, out);
+  for (auto const& plane : planes)
+    if (v.iblank) append_part(plane, components * nodes * width, nodes * 4, out);
+  return out;
+}
+
+void try_unformatted(Bytes& file, int marker, bool big_endian, Stated const& stated, std::vector<Candidate>& out) {
   Candidate c;
   auto& v = c.layout.variant;
   v.storage = Storage::unformatted;
@@ -201,12 +223,17 @@ void try_unformatted(Bytes& file, int marker, bool big_endian, std::vector<Candi
 
   if (records.broken) return give_up(3, *records.broken + " (" + extents_text(c.layout.zones) + ")");
   std::size_t const found = records.all.size() - header;
-  if (found != c.layout.zones.size())
+  std::size_t planes = 0;
+  for (auto const& zone : c.layout.zones) planes += std::size_t(zone.extent[2]);
+  v.planes = found == planes && (found != c.layout.zones.size() || stated.planes.value_or(false));
+  if (found != (v.planes ? planes : c.layout.zones.size()))
     return give_up(2, "it has " + std::to_string(found) + " records of coordinates for " +
-                          std::to_string(c.layout.zones.size()) +
-                          " zones; each zone must be one record (files written plane by plane are not supported)");
-  // The first zone says what a node has; the others must agree.
-  std::uint64_t const bytes = records.size(header), nodes = std::uint64_t(c.layout.zones.front().nodes());
+                          std::to_string(c.layout.zones.size()) + " zones with " + std::to_string(planes) +
+                          " planes k; each zone, or each of its planes, must be one record");
+  // The first record says what a node has; the others must agree.
+  auto const n_records = [&](ZoneData const& zone) { return std::size_t(v.planes ? zone.extent[2] : 1); };
+  auto const nodes_of = [&](ZoneData const& zone) { return std::uint64_t(zone.nodes()) / n_records(zone); };
+  std::uint64_t const bytes = records.size(header), nodes = nodes_of(c.layout.zones.front());
   bool known = false;
   for (bool const wide : {false, true})
     for (bool const blank : {false, true}) {
@@ -218,21 +245,28 @@ void try_unformatted(Bytes& file, int marker, bool big_endian, std::vector<Candi
         known = true;
       }
     }
+  std::size_t record = header;
   for (std::size_t z = 0; z < c.layout.zones.size(); ++z) {
     auto& zone = c.layout.zones[z];
-    std::uint64_t const wanted = std::uint64_t(zone.nodes()) * std::uint64_t(v.bytes_per_node());
-    if (!known || records.size(header + z) != wanted)
-      return give_up(3, "the record of zone " + std::to_string(z + 1) + " (" + std::to_string(zone.extent[0]) + " x " +
-                            std::to_string(zone.extent[1]) + " x " + std::to_string(zone.extent[2]) + " nodes) has " +
-                            std::to_string(records.size(header + z)) +
-                            " bytes, which is no whole set of coordinates, with or without iblank");
-    zone.segments = records.all[header + z];
+    std::uint64_t const wanted = nodes_of(zone) * std::uint64_t(v.bytes_per_node());
+    std::vector<std::vector<Segment>> parts;
+    for (std::size_t k = 0; k < n_records(zone); ++k, ++record) {
+      if (!known || records.size(record) != wanted)
+        return give_up(3, "the record of " +
+                              (v.planes ? "plane k = " + std::to_string(k + 1) + " of " : std::string()) + "zone " +
+                              std::to_string(z + 1) + " (" + std::to_string(zone.extent[0]) + " x " +
+                              std::to_string(zone.extent[1]) + " x " + std::to_string(zone.extent[2]) + " nodes) has " +
+                              std::to_string(records.size(record)) +
+                              " bytes, which is no whole set of coordinates, with or without iblank");
+      parts.push_back(records.all[record]);
+    }
+    zone.segments = v.planes ? from_planes(parts, nodes_of(zone), v) : std::move(parts.front());
   }
   c.fits = true;
   out.push_back(std::move(c));
 }
 
-void try_binary(Bytes& file, bool big_endian, std::vector<Candidate>& out) {
+void try_binary(Bytes& file, bool big_endian, Stated const& stated, std::vector<Candidate>& out) {
   for (bool const multi : {true, false})
     for (int const dimensions : {3, 2}) {
       Candidate c;
@@ -241,6 +275,7 @@ void try_binary(Bytes& file, bool big_endian, std::vector<Candidate>& out) {
       v.big_endian = big_endian;
       v.multi_block = multi;
       v.dimensions = dimensions;
+      v.planes = stated.planes.value_or(false);  // nothing in the file would tell
       std::uint64_t n = 1, at = 0;
       if (multi) {
         auto const count = integers(file, 0, 1, big_endian);
@@ -271,6 +306,12 @@ void try_binary(Bytes& file, bool big_endian, std::vector<Candidate>& out) {
           for (auto& zone : c.layout.zones) {
             std::uint64_t const count = std::uint64_t(zone.nodes()) * per_node;
             zone.segments = {{begin, count}};
+            if (v.planes && c.fits) {
+              std::vector<std::vector<Segment>> planes;
+              std::uint64_t const each = count / std::uint64_t(zone.extent[2]);
+              for (int k = 0; k < zone.extent[2]; ++k) planes.push_back({{begin + std::uint64_t(k) * each, each}});
+              zone.segments = from_planes(planes, std::uint64_t(zone.nodes() / zone.extent[2]), v);
+            }
             begin += count;
           }
           out.push_back(c);
@@ -287,28 +328,40 @@ double to_real(unsigned char const* bytes, Variant const& v) {
 
 constexpr std::int64_t largest_mark = 1'000'000;
 
+/// Bytes of a zone's data, wherever they are in the file.
+bool read_data(Bytes& file, ZoneData const& zone, std::uint64_t begin, std::vector<unsigned char>& to) {
+  bool good = true;
+  std::uint64_t found = 0;
+  for_each_piece(zone, begin, to.size(), [&](std::uint64_t at, std::uint64_t before, std::uint64_t n) {
+    good = good && file.read(at, to.data() + before, n);
+    found += n;
+  });
+  return good && found == to.size();
+}
+
 /// Whether the first thousands of numbers of every zone look like coordinates and the marks of iblank like marks.
 bool looks_sane(Bytes& file, FileLayout const& layout) {
   constexpr Index sample = 4096;
   constexpr double largest = 1e20, smallest = 1e-30;
   auto const& v = layout.variant;
   for (auto const& zone : layout.zones) {
-    std::uint64_t const at = zone.segments.front().at, nodes = std::uint64_t(zone.nodes());
-    std::uint64_t const count = std::uint64_t(std::min(zone.nodes(), sample)),
-                        width = std::uint64_t(v.coordinate_bytes());
+    std::uint64_t const nodes = std::uint64_t(zone.nodes()), width = std::uint64_t(v.coordinate_bytes());
+    std::uint64_t const count = std::uint64_t(std::min(zone.nodes(), sample));
     std::vector<unsigned char> bytes(count * width);
     for (int c = 0; c < v.dimensions; ++c) {
-      if (!file.read(at + std::uint64_t(c) * nodes * width, bytes.data(), bytes.size())) return false;
+      if (!read_data(file, zone, std::uint64_t(c) * nodes * width, bytes)) return false;
       for (std::uint64_t n = 0; n < count; ++n) {
         double const x = std::fabs(to_real(bytes.data() + n * width, v));
         if (!(x <= largest) || (x != 0 && x < smallest)) return false;
       }
     }
     if (!v.iblank) continue;
-    auto const marks = integers(file, at + nodes * width * std::uint64_t(v.dimensions), count, v.big_endian);
-    if (!marks ||
-        std::any_of(marks->begin(), marks->end(), [](std::int64_t m) { return m < -largest_mark || m > largest_mark; }))
-      return false;
+    bytes.resize(count * 4);
+    if (!read_data(file, zone, nodes * width * std::uint64_t(v.dimensions), bytes)) return false;
+    for (std::uint64_t n = 0; n < count; ++n)
+      if (std::int64_t const m = to_integer(bytes.data() + 4 * n, 4, v.big_endian);
+          m < -largest_mark || m > largest_mark)
+        return false;
   }
   return true;
 }
@@ -319,8 +372,8 @@ FileLayout detect_binary(std::string const& path, Stated const& stated) {
   Bytes file(path);
   std::vector<Candidate> tried;
   for (bool const big_endian : {false, true}) {
-    for (int const marker : {4, 8}) try_unformatted(file, marker, big_endian, tried);
-    try_binary(file, big_endian, tried);
+    for (int const marker : {4, 8}) try_unformatted(file, marker, big_endian, stated, tried);
+    try_binary(file, big_endian, stated, tried);
   }
   std::erase_if(tried, [&](Candidate const& c) { return !stated.allows(c.layout.variant); });
   // Record markers around a header that makes sense are no accident. Files without markers have nothing but their numbers to be

@@ -30,10 +30,13 @@ struct Segment {
   std::uint64_t at = 0, count = 0;  ///< bytes of the file
 };
 
-/// One zone: x of all nodes, then y, (z), (iblank); i fastest.
+/// One zone: x of all nodes, then y, (z), (iblank); i fastest. What a file holds plane by plane is put into this order by its
+/// segments.
 struct ZoneData {
-  Index3 extent{1, 1, 1};         ///< as in the file; k 1 in 2-D files
-  std::vector<Segment> segments;  ///< of binary files: one, or several where a Fortran record had to be split
+  Index3 extent{1, 1, 1};  ///< as in the file; k 1 in 2-D files
+  std::vector<Segment>
+      segments;  ///< of binary files, in the order of the data: one, or several where a Fortran record had to
+                 ///< be split or a file goes plane by plane
 
   [[nodiscard]] Index nodes() const { return Index(extent[0]) * extent[1] * extent[2]; }
 };
@@ -58,6 +61,17 @@ void for_each_piece(ZoneData const& zone, std::uint64_t begin, std::uint64_t cou
     if (from < to) visit(s.at + (from - start), from - begin, to - from);
     start += s.count;
   }
+}
+
+/// Calls visit(place in the file's order, place in the zone's order, count) for runs of coordinates of a zone that lie together in
+/// both, counted in numbers from the zone's first one: x, y, (z) of all nodes, or of one plane k after the other.
+template <class Visit>
+void for_each_run(ZoneData const& zone, Variant const& variant, Visit visit) {
+  Index const per_node = variant.dimensions + (variant.iblank ? 1 : 0);
+  int const planes = variant.planes ? zone.extent[2] : 1;
+  Index const plane = zone.nodes() / planes;
+  for (int k = 0; k < planes; ++k)
+    for (int c = 0; c < variant.dimensions; ++c) visit(plane * (k * per_node + c), c * zone.nodes() + k * plane, plane);
 }
 
 }  // namespace gridmorph::plot3d

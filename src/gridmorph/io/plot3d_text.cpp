@@ -198,6 +198,7 @@ TextLayout read_text(std::string_view text, std::string const& path, Stated cons
       v.storage = Storage::formatted;
       v.multi_block = multi;
       v.dimensions = dimensions;
+      v.planes = stated.planes.value_or(false);  // nothing in the file would tell
       if (all.empty() || (multi && !(whole(all[0]) && all[0] <= most_zones))) continue;
       std::size_t const n = multi ? std::size_t(all[0]) : 1;
       c.header = (multi ? 1 : 0) + n * std::size_t(dimensions);
@@ -264,7 +265,9 @@ std::string replace_coordinates(std::string_view text, std::string const& path, 
   std::size_t at = 0;
   auto const& v = layout.file.variant;
   for (std::size_t z = 0; z < layout.file.zones.size(); ++z) {
-    std::copy(coordinates[z].begin(), coordinates[z].end(), wanted.begin() + std::ptrdiff_t(at));
+    for_each_run(layout.file.zones[z], v, [&](Index in_file, Index in_zone, Index count) {
+      std::copy_n(coordinates[z].begin() + in_zone, count, wanted.begin() + std::ptrdiff_t(at) + in_file);
+    });
     at += std::size_t(layout.file.zones[z].nodes()) * std::size_t(v.dimensions + (v.iblank ? 1 : 0));
   }
 

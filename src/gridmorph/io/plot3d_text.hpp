@@ -46,7 +46,7 @@ struct NumberStyle {
 
 struct TextLayout {
   FileLayout file;
-  std::vector<double> values;      ///< all numbers after the extents
+  std::vector<double> values;      ///< all numbers after the extents, in the order of the file
   std::size_t first_value_at = 0;  ///< bytes before them
   NumberStyle style;
 };

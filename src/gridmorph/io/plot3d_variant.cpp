@@ -20,14 +20,15 @@ std::string to_string(Variant const& v) {
   }
   text += v.multi_block ? ", multi-block" : ", single-block";
   text += v.dimensions == 2 ? ", 2-D" : ", 3-D";
-  return text + (v.iblank ? ", iblank" : ", no-iblank");
+  text += v.iblank ? ", iblank" : ", no-iblank";
+  return text + (v.planes ? ", planes" : "");
 }
 
 bool Stated::allows(Variant const& v) const {
   auto const agrees = [](auto const& wanted, auto found) { return !wanted || *wanted == found; };
   bool const text = v.storage == Storage::formatted;
   return agrees(storage, v.storage) && agrees(multi_block, v.multi_block) && agrees(iblank, v.iblank) &&
-         agrees(dimensions, v.dimensions) &&
+         agrees(dimensions, v.dimensions) && agrees(planes, v.planes) &&
          (text || (agrees(big_endian, v.big_endian) && agrees(double_precision, v.double_precision))) &&
          (v.storage != Storage::unformatted || agrees(marker_bytes, v.marker_bytes));
 }
@@ -59,11 +60,13 @@ Stated parse_variant(std::string_view words, std::string const& where) {
       out.dimensions = word.front() - '0';
     else if (word == "iblank" || word == "no-iblank")
       out.iblank = word == "iblank";
+    else if (word == "planes" || word == "whole")
+      out.planes = word == "planes";
     else
-      throw IoError(
-          where + ": the word '" + word +
-          "' says nothing about a PLOT3D file; known are formatted, unformatted, binary, little-endian, "
-          "big-endian, single, double, multi-block, single-block, 2-D, 3-D, iblank, no-iblank, 8-byte-markers");
+      throw IoError(where + ": the word '" + word +
+                    "' says nothing about a PLOT3D file; known are formatted, unformatted, binary, little-endian, "
+                    "big-endian, single, double, multi-block, single-block, 2-D, 3-D, iblank, no-iblank, planes, "
+                    "whole, 8-byte-markers");
   }
   return out;
 }

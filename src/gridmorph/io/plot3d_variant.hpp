@@ -21,6 +21,7 @@ struct Variant {
   bool multi_block = true;       ///< begins with the number of zones
   int dimensions = 3;            ///< 2: ni, nj and x, y; 3: ni, nj, nk and x, y, z
   bool iblank = false;           ///< one 4-byte integer per node after the coordinates
+  bool planes = false;           ///< one plane k after the other, each with all of its coordinates and marks
 
   [[nodiscard]] int coordinate_bytes() const { return double_precision ? 8 : 4; }
   [[nodiscard]] int bytes_per_node() const { return dimensions * coordinate_bytes() + (iblank ? 4 : 0); }
@@ -33,7 +34,7 @@ std::string to_string(Variant const& variant);
 struct Stated {
   std::optional<Storage> storage;
   std::optional<int> marker_bytes;
-  std::optional<bool> big_endian, double_precision, multi_block, iblank;
+  std::optional<bool> big_endian, double_precision, multi_block, iblank, planes;
   std::optional<int> dimensions;
 
   [[nodiscard]] bool allows(Variant const& variant) const;

@@ -277,7 +277,7 @@ class Resolver {
       problems_.add(label(r) + ": of: " + quote_list(names_of(mesh_, patches)) + " has the rule '" +
                     std::string(rule_name(result_.rules[own].rule)) +
                     "', whose displacement is not known beforehand; give it "
-                    "fixed, rigid, formula, field or sections");
+                    "fixed, rigid, formula, field, sections or target");
   }
 
   Mesh const& mesh_;

@@ -89,7 +89,7 @@ struct SurfaceMotion::Impl {
         throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
                           std::string(rule_name(rule)) +
                           "', whose displacement is not known beforehand; give "
-                          "it fixed, rigid, formula, field or sections");
+                          "it fixed, rigid, formula, field, sections or target");
     if (blades.empty()) throw MotionError("of: names no patch");
     auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[p].rule, points, out);

@@ -1,7 +1,7 @@
 #include <gridmorph/motion/detail/baseline_facets.hpp>
 
 #include <gridmorph/motion/detail/facet_topology.hpp>
-#include <gridmorph/topology/links.hpp>
+#include <gridmorph/motion/detail/joined_sides.hpp>
 
 #include <algorithm>
 #include <map>
@@ -15,19 +15,6 @@ bool overlap(IndexRange const& a, IndexRange const& b) {
   for (int d = 0; d < 3; ++d)
     if (a.begin[d] >= b.end[d] || b.begin[d] >= a.end[d]) return false;
   return true;
-}
-
-RigidTransform fitted(Mesh const& mesh, Interface1to1 const& interface) {
-  Zone const &own = mesh.zones[interface.zone], &donor = mesh.zones[interface.donor_zone];
-  std::vector<Vec3> from, to;
-  IndexRange const& r = interface.range;
-  for (int k = r.begin[2]; k < r.end[2]; ++k)
-    for (int j = r.begin[1]; j < r.end[1]; ++j)
-      for (int i = r.begin[0]; i < r.end[0]; ++i) {
-        from.push_back(mesh.coordinates[own.node({i, j, k})]);
-        to.push_back(mesh.coordinates[donor.node(interface.to_donor(Index3{i, j, k}))]);
-      }
-  return fit_rigid_transform(from, to);
 }
 
 FacetList moved(FacetList list, RigidTransform const& transform) {
@@ -86,7 +73,7 @@ FacetList with_periodic_copies(Mesh const& mesh, std::vector<int> const& patches
              (patch.zone == interface.donor_zone && overlap(patch.range, donor));
     });
     if (!touched) continue;
-    RigidTransform const transform = fitted(mesh, interface);
+    RigidTransform const transform = fitted_transform(mesh, interface);
     add(transform);
     add(transform.inverse());
   }

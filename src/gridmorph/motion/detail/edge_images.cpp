@@ -41,6 +41,10 @@ class EdgeMapper {
     // A sharp turn without a partner is no corner: its two chains are one.
     for (int v = 0; v < int(points_.size()); ++v)
       if (neighbours_[v].size() == 2 && place_[v] < 0) corner_[v] = 0;
+    // Lines have no corners inside, and neither has what they go to: beside a thin base the line of the other corner is
+    // hardly longer and may be nearer.
+    for (int v = 0; v < int(points_.size()); ++v)
+      if (place_[v] >= 0) network_.close(place_[v]);
     // First the lines between corners; what they do says where those go that run out in the smooth surface. Lines that
     // run out at both ends are the facets' doing.
     std::vector<FeatureChain> loose;
@@ -157,10 +161,18 @@ class EdgeMapper {
     }
   }
 
-  /// Where the end of a chain goes: to its partner, or to the nearest point of an edge.
-  int place_of(int vertex) {
-    if (place_[vertex] < 0) place_[vertex] = network_.nearest_place(guess_(points_[vertex]));
+  /// Where the end of a chain goes: to its partner, or to the nearest point of an edge, of those that ways from the partner
+  /// of the other end lead to.
+  int place_of(int vertex, int other_end) {
+    if (place_[vertex] < 0) place_[vertex] = network_.nearest_place(guess_(points_[vertex]), place_[other_end]);
     return place_[vertex];
+  }
+
+  [[nodiscard]] std::optional<std::vector<int>> between(FeatureChain const& chain, Polyline const& guide) {
+    int const first = chain.vertices.front(), last = chain.vertices.back();
+    int const from = place_of(first, last), to = place_of(last, first);
+    if (from < 0 || to < 0) return std::nullopt;
+    return way_beside(from, to, guide.points());
   }
 
   [[nodiscard]] bool is_corner(int vertex) const { return neighbours_[vertex].size() != 2 || corner_[vertex] != 0; }
@@ -174,9 +186,7 @@ class EdgeMapper {
     }
     Polyline const line(own), guide(guessed);
     if (!(line.length() > 0) || !(guide.length() > 0)) return false;
-    auto const way =
-        chain.closed() ? around(chain, guide)
-                       : way_beside(place_of(chain.vertices.front()), place_of(chain.vertices.back()), guide.points());
+    auto const way = chain.closed() ? around(chain, guide) : between(chain, guide);
     if (!way) return false;
     std::vector<Vec3> way_points;
     for (int const place : *way) way_points.push_back(network_.point(place));
@@ -218,7 +228,8 @@ class EdgeMapper {
     std::size_t half = 1;
     while (half + 2 < chain.vertices.size() && guide.fraction(half) < 0.5) ++half;
     int const first_vertex = chain.vertices.front();
-    int const start = is_corner(first_vertex) ? place_of(first_vertex) : network_.nearest_place(points.front());
+    int const start =
+        is_corner(first_vertex) ? place_of(first_vertex, first_vertex) : network_.nearest_place(points.front());
     int const middle = network_.nearest_place(points[half] + network_.point(start) - points.front());
     if (start == middle) return std::nullopt;
     auto const at_half = points.begin() + std::ptrdiff_t(half);

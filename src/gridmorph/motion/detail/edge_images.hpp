@@ -22,8 +22,8 @@ struct EdgeImages {
 
 /// Maps every chain of feature edges of the surface that has a counterpart on the target. `guess` is a rough idea of where
 /// points of the surface go. Corners are where other than two edges meet, or two at more than 45 degrees; they are
-/// paired nearest first. A chain goes to the way between the images of its ends that stays beside it, with equal shares
-/// of arc length; a closed one to the loop beside it, turned so that its nodes move least. A chain whose image would be
+/// paired nearest first. A chain goes to the way between the images of its ends that stays beside it and leads through no
+/// other corner's image, with equal shares of arc length; a closed one to the loop beside it, turned so that its nodes move least. A chain whose image would be
 /// much farther than the target itself, or of another length (by more than half or double), has no counterpart.
 EdgeImages map_edges(std::vector<Vec3> const& points, std::vector<FeatureEdge> const& edges, TargetTree const& target,
                      std::vector<FeatureEdge> const& target_edges, double size,

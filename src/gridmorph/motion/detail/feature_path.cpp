@@ -55,6 +55,7 @@ FeatureNetwork::FeatureNetwork(std::vector<Vec3> const& points, std::vector<Feat
       points_.push_back(points[vertex]);
       neighbours_.emplace_back();
       on_.push_back({vertex, vertex});
+      closed_.push_back(0);
     }
     return at->second;
   };
@@ -65,13 +66,31 @@ FeatureNetwork::FeatureNetwork(std::vector<Vec3> const& points, std::vector<Feat
   }
 }
 
-int FeatureNetwork::nearest_place(Vec3 const& p) {
+/// Per place, whether ways from `place` lead on from there.
+std::vector<char> FeatureNetwork::reached_from(int place) const {
+  std::vector<char> reached(points_.size(), 0);
+  std::vector<int> waiting{place};
+  reached[place] = 1;
+  while (!waiting.empty()) {
+    int const v = waiting.back();
+    waiting.pop_back();
+    for (int const w : neighbours_[v])
+      if (reached[w] == 0 && closed_[w] == 0) {
+        reached[w] = 1;
+        waiting.push_back(w);
+      }
+  }
+  return reached;
+}
+
+int FeatureNetwork::nearest_place(Vec3 const& p, int start) {
+  auto const reached = start < 0 ? std::vector<char>(points_.size(), 1) : reached_from(start);
   int from = -1, to = -1;
   double nearest = infinite;
   Vec3 best;
   for (int a = 0; a < int(points_.size()); ++a)
     for (int const b : neighbours_[a]) {
-      if (b < a) continue;
+      if (b < a || (reached[a] == 0 && reached[b] == 0)) continue;
       Vec3 const q = closest_on_segment(p, points_[a], points_[b]);
       if (double const d = distance(p, q); d < nearest) {
         nearest = d;
@@ -87,6 +106,7 @@ int FeatureNetwork::nearest_place(Vec3 const& p) {
   int const fresh = int(points_.size());
   points_.push_back(best);
   neighbours_.push_back({from, to});
+  closed_.push_back(0);
   auto const [a, b] = edge_between(from, to);
   on_.push_back({a, b});
   std::replace(neighbours_[from].begin(), neighbours_[from].end(), to, fresh);
@@ -114,6 +134,7 @@ std::optional<std::vector<int>> FeatureNetwork::path(int from, int to, Polyline 
     waiting.pop();
     if (c > cost[v]) continue;
     if (v == to) break;
+    if (closed_[v] != 0 && v != from) continue;
     for (int const w : neighbours_[v]) {
       double const aside = guide.distance_to(0.5 * (points_[v] + points_[w])) / reach;
       double const next = c + distance(points_[v], points_[w]) * (1 + aside * aside);

@@ -36,8 +36,11 @@ class FeatureNetwork {
   [[nodiscard]] Vec3 const& point(int place) const { return points_[place]; }
   [[nodiscard]] std::vector<std::vector<int>> const& neighbours() const { return neighbours_; }
   [[nodiscard]] std::vector<Vec3> const& points() const { return points_; }
-  /// The place nearest to p: a vertex, or a point inside an edge, which becomes a vertex. Cost O(edges).
-  int nearest_place(Vec3 const& p);
+  /// From here on no way leads through the place; ways may begin and end there.
+  void close(int place) { closed_[place] = 1; }
+  /// The place nearest to p: a vertex, or a point inside an edge, which becomes a vertex; of those that ways from `start` lead
+  /// to, where it is given. -1 if there is none. Cost O(edges).
+  int nearest_place(Vec3 const& p, int start = -1);
   /// The shortest way from one place to the other, where going far from the guide makes a way longer: at a tenth of the
   /// guide's length beside it twice as long. Nothing if there is no way. Cost O(edges (log edges + points of guide)).
   [[nodiscard]] std::optional<std::vector<int>> path(int from, int to, Polyline const& guide) const;
@@ -45,9 +48,12 @@ class FeatureNetwork {
   [[nodiscard]] std::pair<int, int> edge_between(int place, int neighbour) const;
 
  private:
+  [[nodiscard]] std::vector<char> reached_from(int place) const;
+
   std::vector<Vec3> points_;
   std::vector<std::vector<int>> neighbours_;
   std::vector<std::array<int, 2>> on_;  ///< per place: its vertex, twice, or the ends of the edge it is inside of
+  std::vector<char> closed_;            ///< per place
 };
 
 }  // namespace gridmorph

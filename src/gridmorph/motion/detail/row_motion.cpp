@@ -46,12 +46,6 @@ std::vector<int> surfaces_of_row(Mesh const& mesh, SlipSurfaces const& surfaces,
   return {found.begin(), found.end()};
 }
 
-/// Rules may name a row by its main blade alone, or with its splitter.
-bool is_same_row(std::vector<int> const& blades, std::vector<int> const& others) {
-  return std::any_of(blades.begin(), blades.end(),
-                     [&](int p) { return std::binary_search(others.begin(), others.end(), p); });
-}
-
 BladeSections make_sections(Mesh const& mesh, std::vector<int> const& blades, CylindricalFrame const& frame,
                             Annulus const& annulus, RowMotion::PatchDisplacement const& displacement,
                             std::vector<std::string>& notes) {
@@ -97,11 +91,25 @@ RowMotion::RowMotion(Mesh const& mesh, ResolvedMotion const& motion, std::vector
                [&] { return walls_of_row(mesh, surfaces, row_zones_, frame_); }),
       sections_(make_sections(mesh, blades, frame_, annulus_, displacement, notes)),
       middle_(0.5 * (sections_.most_upstream() + sections_.most_downstream())),
-      inlet_(find_end(mesh, motion, blades, -1)),
-      exit_(find_end(mesh, motion, blades, +1)) {}
+      inlet_(find_end(mesh, motion, blades, -1, displacement)),
+      exit_(find_end(mesh, motion, blades, +1, displacement)) {}
+
+bool RowMotion::is_same_row(Mesh const& mesh, std::vector<int> const& blades, std::vector<int> const& others) const {
+  if (std::any_of(blades.begin(), blades.end(),
+                  [&](int p) { return std::binary_search(others.begin(), others.end(), p); }))
+    return true;
+  if (!std::all_of(others.begin(), others.end(), [&](int p) { return row_zones_[mesh.patches[p].zone]; })) return false;
+  double lo = inf, hi = -inf;
+  for (MeridionalPoint const& p : meridional_points(mesh, frame_, others)) {
+    double const m = annulus_.along(p);
+    lo = std::min(lo, m);
+    hi = std::max(hi, m);
+  }
+  return lo < sections_.most_downstream() && hi > sections_.most_upstream();
+}
 
 RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,
-                                   int side) const {
+                                   int side, PatchDisplacement const& displacement) const {
   double const edge = side < 0 ? sections_.most_upstream() : sections_.most_downstream();
   auto const beyond = [&](std::vector<MeridionalPoint> const& points, double limit) {
     return std::all_of(points.begin(), points.end(),
@@ -113,7 +121,7 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     Patch const& patch = mesh.patches[p];
     auto const* slide = std::get_if<CircumferentialSlideRule>(&motion.patch_rule(int(p)));
-    if (slide != nullptr && is_same_row(select_patches(mesh, slide->of), blades)) {
+    if (slide != nullptr && is_same_row(mesh, blades, select_patches(mesh, slide->of))) {
       auto const points = meridional_points(mesh, frame_, {int(p)});
       if (beyond(points, middle_)) {
         sliding.insert(sliding.end(), points.begin(), points.end());
@@ -135,6 +143,13 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
 
   End end;
   end.slides = first_sliding >= 0;
+  if (end.slides) {
+    auto const with = select_patches(mesh, std::get<CircumferentialSlideRule>(motion.patch_rule(first_sliding)).of);
+    std::vector<std::string> known;  // the slide's own row says all this
+    if (with != blades)
+      end.slides_with =
+          std::make_shared<BladeSections const>(make_sections(mesh, with, frame_, annulus_, displacement, known));
+  }
   std::vector<std::pair<double, double>> nodes;
   for (MeridionalPoint const& p : end.slides ? sliding : others) {
     FlowPosition const at = annulus_.position(p);
@@ -169,8 +184,8 @@ double RowMotion::outermost(Mesh const& mesh, int side) const {
   return m;
 }
 
-CylindricalMotion RowMotion::taper(End const& end, FlowPosition const& at, double edge_m,
-                                   CylindricalMotion const& edge) const {
+CylindricalMotion RowMotion::taper(End const& end, FlowPosition const& at, double edge_m, double chord_fraction) const {
+  CylindricalMotion const edge = sections_.motion(at.h, chord_fraction);
   // Nodes of the end itself scatter about its fitted shape by `deviation`: within it, they are at the end.
   double const margin = end.m_of_span ? end.m_of_span->deviation : 0;
   double const x = end.at(at.h);
@@ -178,13 +193,16 @@ CylindricalMotion RowMotion::taper(End const& end, FlowPosition const& at, doubl
   double const w = length > 0 ? std::clamp((std::abs(at.m - x) - margin) / length, 0.0, 1.0) : 1.0;
   bool const outside = (at.m - x) * (edge_m - x) <= 0;
   double const share = outside ? 0.0 : w;
-  return {share * edge.axial, share * edge.radial, end.slides ? edge.angle_rad : share * edge.angle_rad};
+  double const end_angle = !end.slides       ? 0
+                           : end.slides_with ? end.slides_with->motion(at.h, chord_fraction).angle_rad
+                                             : edge.angle_rad;
+  return {share * edge.axial, share * edge.radial, end_angle + share * (edge.angle_rad - end_angle)};
 }
 
 CylindricalMotion RowMotion::follow_motion(FlowPosition const& at) const {
   double const leading = sections_.leading(at.h), trailing = sections_.trailing(at.h);
-  if (at.m < leading) return taper(inlet_, at, leading, sections_.motion(at.h, 0));
-  if (at.m > trailing) return taper(exit_, at, trailing, sections_.motion(at.h, 1));
+  if (at.m < leading) return taper(inlet_, at, leading, 0);
+  if (at.m > trailing) return taper(exit_, at, trailing, 1);
   return sections_.motion(at.h, (at.m - leading) / (trailing - leading));
 }
 

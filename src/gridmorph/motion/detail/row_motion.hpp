@@ -7,6 +7,7 @@
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,15 +44,19 @@ class RowMotion {
     std::optional<RevolutionProfile> m_of_span;  ///< "radius" is the position along the flow, "axial" the span fraction
     double m = 0;                                ///< when there is no such function
     bool slides = false;
+    std::shared_ptr<BladeSections const> slides_with;  ///< another blade of the row; null: this one
     [[nodiscard]] double at(double span) const { return m_of_span ? (*m_of_span)(span) : m; }
   };
 
-  [[nodiscard]] End find_end(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,
-                             int side) const;
+  [[nodiscard]] End find_end(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades, int side,
+                             PatchDisplacement const& displacement) const;
+  /// Whether blades belong to the row: the same patches or some of them, or others beside them (splitters).
+  [[nodiscard]] bool is_same_row(Mesh const& mesh, std::vector<int> const& blades,
+                                 std::vector<int> const& others) const;
   /// The outermost position along the flow of any node of the row.
   [[nodiscard]] double outermost(Mesh const& mesh, int side) const;
   [[nodiscard]] CylindricalMotion taper(End const& end, FlowPosition const& at, double edge_m,
-                                        CylindricalMotion const& edge) const;
+                                        double chord_fraction) const;
   /// Components of the motion (see Annulus::components).
   [[nodiscard]] CylindricalMotion follow_motion(FlowPosition const& at) const;
 

@@ -20,7 +20,8 @@ Vec3 parabola_slope(Vec3 const& a, Vec3 const& b, Vec3 const& c, double h, doubl
 
 }  // namespace
 
-SectionProfile::SectionProfile(std::vector<Vec3> points, Vec3 const& span, Vec3 const& flow, std::string const& name) {
+SectionProfile::SectionProfile(std::vector<Vec3> points, Vec3 const& span, Vec3 const& flow, std::string const& name,
+                               Edges edges) {
   double around = 0;
   for (std::size_t n = 1; n < points.size(); ++n) around += distance(points[n - 1], points[n]);
   if (!(around > 0) || !std::isfinite(around))
@@ -48,7 +49,7 @@ SectionProfile::SectionProfile(std::vector<Vec3> points, Vec3 const& span, Vec3 
   }
   length_ = {0};
   for (int n = 0; n < size(); ++n) length_.push_back(length_.back() + distance(points_[n], points_[wrap(n + 1)]));
-  find_edges(flow, name);
+  find_edges(flow, name, edges);
 }
 
 bool SectionProfile::is_corner(int n) const {
@@ -56,24 +57,25 @@ bool SectionProfile::is_corner(int n) const {
   return dot(in, out) < corner_turn * norm(in) * norm(out);
 }
 
-double SectionProfile::farthest_length(int n, Vec3 const& q) const {
+double SectionProfile::extreme_length(int n, std::function<double(Vec3 const&)> const& measure) const {
   if (is_corner(n)) return length_[n];
   double const h = distance(points_[wrap(n - 1)], points_[n]), k = distance(points_[n], points_[wrap(n + 1)]);
-  double const a = distance(points_[wrap(n - 1)], q), b = distance(points_[n], q),
-               c = distance(points_[wrap(n + 1)], q);
+  double const a = measure(points_[wrap(n - 1)]), b = measure(points_[n]), c = measure(points_[wrap(n + 1)]);
   double const slope = (h * (c - b) / k + k * (b - a) / h) / (h + k);
   double const bend = 2 * ((c - b) / k - (b - a) / h) / (h + k);
   if (!(bend < 0)) return length_[n];
   return length_[n] + std::clamp(-slope / bend, -0.5 * h, 0.5 * k);
 }
 
-void SectionProfile::find_edges(Vec3 const& flow, std::string const& name) {
-  auto const farthest = [&](Vec3 const& q) {
+void SectionProfile::find_edges(Vec3 const& flow, std::string const& name, Edges edges) {
+  auto const most = [&](auto const& measure) {
     int best = 0;
     for (int n = 1; n < size(); ++n)
-      if (distance(points_[n], q) > distance(points_[best], q)) best = n;
+      if (measure(points_[n]) > measure(points_[best])) best = n;
     return best;
   };
+  auto const from = [](Vec3 const& q) { return [q](Vec3 const& p) { return distance(p, q); }; };
+  auto const farthest = [&](Vec3 const& q) { return most(from(q)); };
   int a = farthest(points_[0]), b = farthest(points_[a]);
   for (int turn = 0; turn < 8; ++turn) {
     int const next = farthest(points_[b]);
@@ -91,7 +93,10 @@ void SectionProfile::find_edges(Vec3 const& flow, std::string const& name) {
     throw MotionError(name +
                       ": the section's chord lies across the flow direction, so that its leading edge cannot be "
                       "told from its trailing edge; give the flow direction");
-  int const trailing = downstream > 0 ? b : a, leading = downstream > 0 ? a : b;
+  int trailing = downstream > 0 ? b : a;
+  Vec3 const opposite = points_[downstream > 0 ? a : b];
+  bool const extreme = edges == Edges::extreme;
+  auto const along = [&](double sign) { return [=](Vec3 const& p) { return sign * dot(p, flow); }; };
   // Corners of the trailing edge, in order around it.
   int first = 0, last = 0;
   bool corner = false;
@@ -111,11 +116,12 @@ void SectionProfile::find_edges(Vec3 const& flow, std::string const& name) {
     end = length_[wrap(last)];
     edge = 0.5 * (points_[wrap(first)] + points_[wrap(last)]);
   } else {
-    begin = end = farthest_length(trailing, points_[leading]);
+    if (extreme) trailing = most(along(1));
+    begin = end = extreme ? extreme_length(trailing, along(1)) : extreme_length(trailing, from(opposite));
     edge = at_length(begin);
   }
   double const whole = length_.back();
-  double lead = farthest_length(farthest(edge), edge);
+  double lead = extreme ? extreme_length(most(along(-1)), along(-1)) : extreme_length(farthest(edge), from(edge));
   while (lead <= end) lead += whole;
   while (begin < end || begin <= lead) begin += whole;
   while (begin - end > whole * (1 + 1e-12)) begin -= whole;

@@ -4,6 +4,7 @@
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,17 @@ struct SectionPosition {
 /// (one of a sharp edge, two of a blunt base), otherwise the point farthest from the other end, found between points by
 /// a parabola. The leading edge is the point farthest from there. Both stay where they are when the section is moved
 /// rigidly, run through backwards, or started elsewhere.
+///
+/// Edges::extreme is for H meshes, whose lines across the flow touch the blade in a round edge: there the edges without
+/// corners are the points farthest up- and downstream, on the mesh as on the target.
 class SectionProfile {
  public:
+  enum class Edges { farthest, extreme };
+
   /// Points once around, the first one again at the end or not, or (open) from one side of the trailing edge to the
   /// other. `span`: direction the section is seen along; `flow`: downstream. Throws MotionError beginning with `name`.
-  SectionProfile(std::vector<Vec3> points, Vec3 const& span, Vec3 const& flow, std::string const& name);
+  SectionProfile(std::vector<Vec3> points, Vec3 const& span, Vec3 const& flow, std::string const& name,
+                 Edges edges = Edges::farthest);
 
   /// Of the points that were given, in their order.
   [[nodiscard]] std::vector<SectionPosition> positions() const;
@@ -40,11 +47,11 @@ class SectionProfile {
   [[nodiscard]] int size() const { return int(points_.size()); }
   [[nodiscard]] int wrap(int n) const { return ((n % size()) + size()) % size(); }
   [[nodiscard]] bool is_corner(int n) const;
-  /// The length at which the point farthest from q near point n lies.
-  [[nodiscard]] double farthest_length(int n, Vec3 const& q) const;
+  /// The length at which the measure is greatest near point n.
+  [[nodiscard]] double extreme_length(int n, std::function<double(Vec3 const&)> const& measure) const;
   [[nodiscard]] Vec3 at_length(double s) const;
   [[nodiscard]] Vec3 slope(int n, int side) const;
-  void find_edges(Vec3 const& flow, std::string const& name);
+  void find_edges(Vec3 const& flow, std::string const& name, Edges edges);
 
   std::vector<Vec3> points_;         ///< right-handed about the span
   std::vector<int> given_;           ///< number in points_ of every point that was given

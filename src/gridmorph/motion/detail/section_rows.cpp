@@ -139,10 +139,11 @@ class RowFinder {
       at = next;
     }
     if (order.size() != lines_.size())
-      throw MotionError(name_ + ": the patches are " + (ends > 2 ? "several surfaces" : "more than one surface") +
-                        " around sections, one of which holds " + where(lines_[order.front()].front()) +
-                        "; a target of sections moves one blade or wing that is whole (in an H mesh the sides of a "
-                        "blade are apart: give each side a surface as target)");
+      throw MotionError(
+          name_ + ": the patches are " + (ends > 2 ? "several surfaces" : "more than one surface") +
+          " around sections, one of which holds " + where(lines_[order.front()].front()) +
+          "; a target of sections moves one blade or wing that is whole; sides of a blade that lie a pitch apart "
+          "(H mesh) are put together where a periodic interface of the mesh takes an edge of one to the other");
     if (closed) order.push_back(order.front());
     return order;
   }

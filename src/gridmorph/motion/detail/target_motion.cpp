@@ -129,6 +129,7 @@ TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, Ta
     displacement_ = std::move(mapped.displacement);
     reached_ = std::move(mapped.mapped);
     facets_ = std::move(mapped.facets);
+    to_target_ = std::move(mapped.to_target);
     return;
   }
   mapping_ = Mapping::projection;
@@ -154,14 +155,15 @@ TargetReach TargetMotion::reach(Mesh const& mesh, Coordinates const& morphed) co
   out.description = name_;
   out.mapping = mapping_;
   double sum = 0;
-  for (PatchGrid const& grid : surface_.grids) {
+  for (std::size_t g = 0; g < surface_.grids.size(); ++g) {
+    PatchGrid const& grid = surface_.grids[g];
     std::size_t at = 0;
     for_each_node(mesh.zones[mesh.patches[grid.patch].zone], mesh.patches[grid.patch].range, [&](Index node) {
       int const v = grid.vertex[at++];
       if (!reached_.empty() && reached_[v] == 0) return;
       Vec3 const x = morphed[node];
-      double const d =
-          facets_.empty() ? distance(x, surface_.points[v] + displacement_[v]) : facets_.closest(x).distance;
+      double const d = facets_.empty() ? distance(x, surface_.points[v] + displacement_[v])
+                                       : facets_.closest(to_target_.empty() ? x : to_target_[g](x)).distance;
       sum += d * d;
       ++out.nodes;
       if (out.worst_node < 0 || d > out.max) {

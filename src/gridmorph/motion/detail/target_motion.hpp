@@ -1,6 +1,7 @@
 // One target rule, evaluated: where each node of its patches goes.
 #pragma once
 
+#include <gridmorph/core/rigid_transform.hpp>
 #include <gridmorph/motion/detail/patch_surface.hpp>
 #include <gridmorph/motion/detail/target_tree.hpp>
 #include <gridmorph/motion/motion.hpp>
@@ -30,9 +31,10 @@ class TargetMotion {
   PatchSurface surface_;
   std::string name_;
   Mapping mapping_ = Mapping::nodes;
-  std::vector<Vec3> displacement_;  ///< per vertex
-  std::vector<char> reached_;       ///< per vertex: belongs to the target; empty: all do
-  TargetTree facets_;               ///< what distances are measured to, unless node for node
+  std::vector<Vec3> displacement_;         ///< per vertex
+  std::vector<char> reached_;              ///< per vertex: belongs to the target; empty: all do
+  TargetTree facets_;                      ///< what distances are measured to, unless node for node
+  std::vector<RigidTransform> to_target_;  ///< per grid, before that; empty: as they are
 };
 
 /// Grids and triangles of a target as one surface; points that coincide are one. Throws MotionError when the arrays are

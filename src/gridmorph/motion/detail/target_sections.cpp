@@ -1,6 +1,7 @@
 #include <gridmorph/motion/detail/target_sections.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/detail/joined_sides.hpp>
 #include <gridmorph/motion/detail/section_profile.hpp>
 #include <gridmorph/motion/detail/section_rows.hpp>
 #include <gridmorph/motion/detail/surface_spread.hpp>
@@ -110,8 +111,8 @@ class Loft {
   SpanCoordinate const& span_;
 };
 
-std::vector<SectionProfile> target_profiles(TargetRule const& rule, SpanCoordinate const& span, Vec3 const& flow,
-                                            std::string const& name) {
+std::vector<SectionProfile> target_profiles(TargetRule const& rule, SpanCoordinate const& span,
+                                            SectionProfile::Edges edges, std::string const& name) {
   std::vector<std::pair<double, TargetSection const*>> order;
   for (TargetSection const& s : rule.target->sections) {
     if (s.points.empty()) throw MotionError(name + ": section '" + s.name + "' of the target has no points");
@@ -126,22 +127,29 @@ std::vector<SectionProfile> target_profiles(TargetRule const& rule, SpanCoordina
                         "' are at the same span " + std::to_string(order[k].first) + "; check the span direction");
   std::vector<SectionProfile> out;
   for (auto const& [w, section] : order)
-    out.emplace_back(section->points, span.direction(middle(section->points)), flow,
-                     name + ", section '" + section->name + "'");
+    out.emplace_back(section->points, span.direction(middle(section->points)), rule.flow,
+                     name + ", section '" + section->name + "'", edges);
   return out;
 }
 
 }  // namespace
 
-SectionMapping map_sections(Mesh const& mesh, PatchSurface const& surface, TargetRule const& rule, Axis const& axis,
+SectionMapping map_sections(Mesh const& mesh, PatchSurface const& given, TargetRule const& rule, Axis const& axis,
                             std::string const& name, std::vector<std::string>& notes) {
   if (rule.span && !(norm(*rule.span) > 0)) throw MotionError(name + ": the span direction has no length");
   if (!(norm(rule.flow) > 0)) throw MotionError(name + ": the flow direction has no length");
   SpanCoordinate const span(rule, axis);
+  std::vector<Vec3> middles;
+  for (TargetSection const& s : rule.target->sections)
+    if (!s.points.empty()) middles.push_back(middle(s.points));
+  JoinedSides const joined = join_sides(mesh, given, middles.empty() ? Vec3{} : middle(middles));
+  PatchSurface const& surface = joined.surface;
   SectionRows const found = find_section_rows(
       surface, [&span](Vec3 const& p) { return span(p); }, name);
   auto const& rows = found.rows;
-  Loft const loft(target_profiles(rule, span, rule.flow, name), span);
+  auto const n_turned = std::count(joined.turned.begin(), joined.turned.end(), 1);
+  auto const edges = n_turned > 0 ? SectionProfile::Edges::extreme : SectionProfile::Edges::farthest;
+  Loft const loft(target_profiles(rule, span, edges, name), span);
   bool const single = loft.size() == 1;
   if (single && !span.straight())
     throw MotionError(name + ": one section makes no surface around an axis; give two or more, or a span direction");
@@ -150,7 +158,7 @@ SectionMapping map_sections(Mesh const& mesh, PatchSurface const& surface, Targe
   for (auto const& row : rows) {
     std::vector<Vec3> points;
     for (int const v : row) points.push_back(surface.points[v]);
-    own.emplace_back(points, span.direction(middle(points)), rule.flow, name + ", section of the mesh");
+    own.emplace_back(points, span.direction(middle(points)), rule.flow, name + ", section of the mesh", edges);
   }
 
   std::vector<char> mapped(surface.points.size(), 0);
@@ -192,13 +200,24 @@ SectionMapping map_sections(Mesh const& mesh, PatchSurface const& surface, Targe
   if (beyond > 1e-9) note += "; extended by " + std::to_string(100 * beyond) + " % of the span beyond them";
   for (int const p : found.left_out)
     note += "; patch " + describe_patch(mesh, mesh.patches[p]) + " has no sections and goes along with its edges";
+  if (n_turned > 0)
+    note += "; " + std::to_string(n_turned) + " of " + std::to_string(joined.turned.size()) +
+            " patches are a pitch away and go as their copies there";
   notes.push_back(note);
 
   SurfaceSpread::Edges const none;
   image = SurfaceSpread(surface, mapped, image, none).run([](int, Vec3 const& wanted) { return wanted; });
   SectionMapping out;
-  for (std::size_t v = 0; v < image.size(); ++v) out.displacement.push_back(image[v] - surface.points[v]);
-  out.mapped = std::move(mapped);
+  out.displacement.resize(given.points.size());
+  out.mapped.resize(given.points.size());
+  for (std::size_t g = 0; g < given.grids.size(); ++g)
+    for (int const v : given.grids[g].vertex) {
+      int const w = joined.vertex[v];
+      Vec3 const u = image[w] - surface.points[w];
+      out.displacement[v] = joined.turned[g] != 0 ? transpose(joined.turn[g].rotation) * u : u;
+      out.mapped[v] = mapped[w];
+    }
+  out.to_target = joined.turn;
   if (!single) out.facets = loft.facets();
   return out;
 }

@@ -1,6 +1,7 @@
 // Mapping onto section profiles: the same place around the section, the same place along the span.
 #pragma once
 
+#include <gridmorph/core/rigid_transform.hpp>
 #include <gridmorph/motion/detail/patch_surface.hpp>
 #include <gridmorph/motion/detail/target_tree.hpp>
 #include <gridmorph/motion/motion.hpp>
@@ -14,9 +15,11 @@ struct SectionMapping {
   std::vector<Vec3> displacement;  ///< per vertex of the surface
   std::vector<char> mapped;  ///< per vertex: on a section; the others (tip faces) are carried along by their edges
   TargetTree facets;         ///< flat facets between the points of the sections
+  std::vector<RigidTransform> to_target;  ///< per grid: onto the copy of the blade that the target is
 };
 
-/// Stitches the spanwise grid lines of the patches into one closed contour; its rows are the sections of the mesh.
+/// Sides that lie a pitch apart (H mesh) are brought together by the periodic transforms of the mesh, at the copy of the blade
+/// that is nearest to the target. Stitches the spanwise grid lines of the patches into one closed contour; its rows are the sections of the mesh.
 /// A node at SectionPosition p and span coordinate w goes to the target's surface at p and the same share of the span
 /// between the ends of the column p, or the same w (TargetRule::SpanMatch). Between target sections: cubic Hermite
 /// pieces over w with slopes from parabolas; positions that agree with a section to 1e-9 take its point exactly. One

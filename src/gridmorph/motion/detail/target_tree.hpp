@@ -1,7 +1,7 @@
 // Closest points on a surface of triangles, on the host.
 #pragma once
 
-#include <gridmorph/kernels/vec3.hpp>
+#include <gridmorph/kernels/facet_tree.hpp>
 
 #include <array>
 #include <functional>
@@ -9,11 +9,11 @@
 
 namespace gridmorph {
 
-/// The point of the triangle a, b, c nearest to p; exactly a corner where that is nearest.
-/// C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+/// The point of the triangle a, b, c nearest to p (nearest_on_triangle of the kernels); exactly a corner where that is nearest.
 Vec3 closest_on_triangle(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c);
 
-/// A tree of boxes around triangles. Cost O(n log n) to build, O(log n) per query near the surface.
+/// The tree of boxes of surfaces of facets (FacetBoxes), around triangles, for searches among some of them too. Cost
+/// O(n log n) to build, O(log n) per query near the surface.
 class TargetTree {
  public:
   struct Hit {
@@ -40,19 +40,13 @@ class TargetTree {
   [[nodiscard]] Hit closest_facing(Vec3 const& p, Vec3 const& direction) const;
 
  private:
-  struct Box {
-    Vec3 lo, hi;
-    int begin = 0, end = 0;  ///< triangles, in order_
-    int right = -1;          ///< of the two boxes inside the first follows its parent; -1: none inside
-  };
-  int build(int begin, int end, std::vector<Vec3> const& centres);
   template <class Accept>
   [[nodiscard]] Hit search(Vec3 const& p, Accept const& accept) const;
 
   std::vector<Vec3> points_;
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<int> order_;
-  std::vector<Box> boxes_;
+  std::vector<FacetBox> boxes_;
+  std::vector<int> order_;  ///< triangles as the leaves list them
 };
 
 }  // namespace gridmorph
