@@ -1,4 +1,4 @@
-// Unstructured meshes on the command line: inspected and measured, not morphed yet.
+// Unstructured meshes on the command line: inspected, measured, morphed, and refused where something is missing.
 #include "run_command.hpp"
 
 #include <nlohmann/json.hpp>

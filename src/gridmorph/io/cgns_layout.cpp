@@ -24,7 +24,7 @@ bool read_extent(File const& file, ZoneLayout& zone, std::string const& where, P
   std::string const type = zone_type(file, *zone.node);
   if (type != "Structured") {
     problems.add(where + ": is of type " + (type.empty() ? "(none)" : type) +
-                 "; only structured zones can be morphed yet, unstructured meshes can be inspected and measured");
+                 "; a structured mesh is needed here (gridmorph morph, plan, quality and inspect take unstructured ones)");
     return false;
   }
   auto const dimensions = file.dimensions(*zone.node);
