@@ -167,9 +167,9 @@ TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
   EXPECT_GE(record.allocations.size(), 20u);
   expect_labels(record.kernels);
   expect_labels(record.allocations);
-  for (char const* kernel : {"gridmorph::moving_walls", "gridmorph::wall_turn", "gridmorph::columns", "gridmorph::near",
-                             "gridmorph::volume", "gridmorph::others", "gridmorph::residual", "gridmorph::copies",
-                             "gridmorph::move"})
+  for (char const* kernel :
+       {"gridmorph::moving_walls", "gridmorph::wall_turn", "gridmorph::columns", "gridmorph::near", "gridmorph::volume",
+        "gridmorph::others", "gridmorph::residual", "gridmorph::copies", "gridmorph::move"})
     EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
 }
 
