@@ -36,6 +36,15 @@ TEST(CaseFileErrors, SyntaxErrorsComeInOneLineWithTheirPlace) {
   }
 }
 
+TEST(CaseFileErrors, ABackgroundFromAFileHasItsOwnWrap) {
+  std::string const near = "[near_field]\noffset = 0.1\n", file = "[background]\nfile = \"b.cgns\"\n";
+  EXPECT_TRUE(reported(problems_of(head + rule + near + file), "case.toml:7: ", {"offset", "read from a file"}));
+  EXPECT_TRUE(reported(problems_of(head + rule + file + "cells = 3\n"), "case.toml:8: ", {"cells", "remove it"}));
+  EXPECT_TRUE(reported(problems_of(head + rule + "[background]\nouter = \"box\"\n"),
+                       "case.toml:7: ", {"outer", "add file = "}));
+  EXPECT_TRUE(problems_of(head + rule + file + "wrap = [\"inner\"]\nouter = \"box\"\nlaw = \"c1\"\n").empty());
+}
+
 TEST(CaseFileErrors, ValuesThatCannotBeReadAreShown) {
   for (std::string const& value : std::vector<std::string>{"-.01", "5.", "+.5", "x.cgns"})
     for (std::string const& text :

@@ -1,6 +1,9 @@
 // How the library behaves inside a program that profiles it: labels, allocations, fences, instances.
+#include "support/made_bodies.hpp"
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
+
+#include <gridmorph/unstructured/unstructured_morpher.hpp>
 
 #include <gtest/gtest.h>
 
@@ -137,6 +140,63 @@ TEST_F(Manners, PlanningLaunchesOnTheHostOnlyWhatReadsTheWholeMesh) {
   EXPECT_FALSE(p.boundary_displacement(again).empty());
   for (auto const& kernel : record.kernels)
     EXPECT_TRUE(kernel == "gridmorph::extent_of" || kernel == "gridmorph::largest_cosines") << kernel;
+}
+
+/// An unstructured morph with every kind of kernel: columns, layers, background mesh, other boundaries, nodes of two zones.
+class UnstructuredManners : public ::testing::Test {
+ protected:
+  static bool in_body(Vec3 const& x) { return x.x > 4 && x.x < 8 && x.y > 4 && x.y < 8 && x.z > 4 && x.z < 8; }
+  UnstructuredMesh mesh = in_two_zones(box_around({12, 12, 12}, in_body), [](Vec3 const& x) { return x.x < 6; });
+  PreparedUnstructured prepared = [this] {
+    UnstructuredTopology const topology = make_topology(mesh);
+    UnstructuredOptions options;
+    options.boundary_layers.push_back({.walls = {"body"}, .extent = BoundaryLayer::Extent::layers, .layers = 1});
+    return prepare(mesh, topology, claim_boundary(mesh, topology),
+                   motion({rule({"body"}, RigidRule{{}, {1, 0.5, 0}}), rule({"k_min"}, SlipRule{})}), options);
+  }();
+  Exec exec;
+  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
+  DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
+};
+
+TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
+  Listener const listener;
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  morpher.apply(exec, boundary, x.read(), u.write());
+  exec.fence();
+  EXPECT_GE(record.allocations.size(), 20u);
+  expect_labels(record.kernels);
+  expect_labels(record.allocations);
+  for (char const* kernel :
+       {"gridmorph::moving_walls", "gridmorph::wall_turn", "gridmorph::columns", "gridmorph::near", "gridmorph::volume",
+        "gridmorph::others", "gridmorph::residual", "gridmorph::copies", "gridmorph::move"})
+    EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
+}
+
+TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  exec.fence();
+  {
+    Listener const listener;
+    morpher.displace(exec, boundary, x.read(), u.write());
+    morpher.apply(exec, boundary, x.read(), u.write());
+  }
+  EXPECT_EQ(record.allocations, std::vector<std::string>());
+  EXPECT_EQ(record.copies, std::vector<std::string>());
+  for (auto const& fence : record.fences) EXPECT_TRUE(is_profiling_fence(fence)) << fence;
+  EXPECT_FALSE(record.kernels.empty());
+}
+
+TEST_F(UnstructuredManners, EveryMorphRunsTheSameKernels) {
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  std::vector<std::string> first;
+  for (int n = 0; n < 3; ++n) {
+    Listener const listener;
+    morpher.displace(exec, boundary, x.read(), u.write());
+    if (n == 0) first = record.kernels;
+    EXPECT_EQ(record.kernels, first);
+    Kokkos::deep_copy(boundary, Vec3{});
+  }
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
-// Unstructured meshes on the command line: inspected and measured, not morphed yet.
+// Unstructured meshes on the command line: inspected, measured, morphed, and refused where something is missing.
 #include "run_command.hpp"
 
+#include <gridmorph/io/unstructured_io.hpp>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <filesystem>
 
 namespace gridmorph::testing {
@@ -61,6 +65,79 @@ TEST_F(UnstructuredTest, MorphAndPlanAskForAWallThatMoves) {
         "[mesh]\ninput = \"mesh.su2\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n");
   for (auto const* command : {"morph case.toml", "plan case.toml"})
     expect_bad_input(gridmorph(command), {"no wall moves", "fixed"});
+}
+
+/// A ring of quadrilaterals around a body, and a mode shape of the body.
+class UnstructuredSequence : public CommandTest {
+ protected:
+  static constexpr int around = 24, rows = 10;
+
+  void SetUp() override {
+    CommandTest::SetUp();
+    std::string mesh = fmt::format("NDIME= 2\nNELEM= {}\n", around * rows);
+    for (int j = 0; j < rows; ++j)
+      for (int i = 0; i < around; ++i)
+        mesh += fmt::format("9 {} {} {} {}\n", i + around * j, i + around * (j + 1),
+                            (i + 1) % around + around * (j + 1), (i + 1) % around + around * j);
+    mesh += fmt::format("NPOIN= {}\n", around * (rows + 1));
+    std::string mode = "x,y,z,dx,dy,dz\n";
+    for (int j = 0; j <= rows; ++j)
+      for (int i = 0; i < around; ++i) {
+        double const angle = 2 * std::acos(-1.0) * i / around, r = 0.5 * std::pow(1.3, j);
+        double const x = r * std::cos(angle), y = r * std::sin(angle);
+        mesh += fmt::format("{:.17g} {:.17g}\n", x, y);
+        if (j == 0) mode += fmt::format("{:.17g},{:.17g},0,{:.17g},{:.17g},0\n", x, y, 0.1 * x * y, 0.3 * x);
+      }
+    mesh += "NMARK= 2\n" + marker("body", 0) + marker("farfield", around * rows);
+    write("ring.su2", mesh);
+    write("mode.csv", mode);
+  }
+  static std::string marker(std::string const& name, int first) {
+    std::string text = fmt::format("MARKER_TAG= {}\nMARKER_ELEMS= {}\n", name, around);
+    for (int i = 0; i < around; ++i) text += fmt::format("3 {} {}\n", first + i, first + (i + 1) % around);
+    return text;
+  }
+  void write_case(std::string const& output, double amplitude) const {
+    write("case.toml", "[mesh]\ninput = \"ring.su2\"\n[sequence]\nsteps = 4\noutput = \"" + output +
+                           "\"\n[[motion]]\npatches = [\"body\"]\nrule = \"field\"\nmodes = [ { file = \"mode.csv\", "
+                           "amplitude = " +
+                           fmt::format("{}", amplitude) + ", phase_deg = 60 } ]\n");
+  }
+  [[nodiscard]] Coordinates coordinates(std::string const& name) const {
+    return read_unstructured_mesh(path(name).string()).coordinates;
+  }
+};
+
+TEST_F(UnstructuredSequence, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
+  write_case("out_{step}.su2", 0.5);
+  Outcome const run = gridmorph("morph case.toml --report out.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  auto const json = nlohmann::json::parse(contents(path("out.json")));
+  ASSERT_EQ(json["sequence"]["steps"].size(), 4u);
+  double const offset = json["plan"]["offset"];
+  for (int step = 0; step < 4; ++step) {
+    // The same wrap: a sequence reckons with its largest step.
+    double const factor = 0.5 * std::cos(std::acos(-1.0) * (step / 2.0 + 1 / 3.0));
+    write("single.toml", fmt::format("[mesh]\ninput = \"ring.su2\"\noutput = \"single.su2\"\n[[motion]]\npatches = "
+                                     "[\"body\"]\nrule = \"field\"\nfile = \"mode.csv\"\nfactor = {:.17g}\n"
+                                     "[near_field]\noffset = {:.17g}\n",
+                                     factor, offset));
+    ASSERT_EQ(gridmorph("morph single.toml").status, 0);
+    auto const alone = coordinates("single.su2"), together = coordinates(fmt::format("out_{}.su2", step + 1));
+    for (Index n = 0; n < alone.size(); ++n) EXPECT_LT(distance(alone[n], together[n]), 1e-6) << step << " " << n;
+    double const largest = json["sequence"]["steps"][std::size_t(step)]["largest_displacement"];
+    EXPECT_NEAR(largest, std::abs(factor) * 0.15, 0.02 * std::abs(factor)) << step;
+  }
+}
+
+TEST_F(UnstructuredSequence, AStepThatInvertsOrASeriesInOneFileLeavesNothing) {
+  write_case("out_{step}.su2", 30);
+  Outcome const run = gridmorph("morph case.toml");
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_NE(run.err.find("is not written"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(path("out_1.su2")));
+  write_case("out.su2", 0.1);
+  expect_bad_input(gridmorph("morph case.toml"), {"one file per step", "step_{step}.su2"});
 }
 
 TEST_F(UnstructuredTest, OtherMeshesAreNoBaselines) {

@@ -305,7 +305,7 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   read_sequence(root, out);
   read_motion(root, out);
   read_plan(root, out);
-  casefile::read_near_field(root, out.unstructured);
+  casefile::read_near_field(root, out);
   read_results(root, out);
   root.finish();
   context.problems.throw_if_any<ConfigError>();

@@ -59,6 +59,12 @@ struct SequenceOptions {
   [[nodiscard]] double time_at(int step) const { return period * periods_at(step); }
 };
 
+/// [background] file: a background mesh of the user's.
+struct BackgroundFile {
+  std::filesystem::path path;
+  std::vector<std::string> wrap{"wrap"}, outer{"outer"};  ///< selectors of its patches
+};
+
 struct CaseFile {
   std::filesystem::path source;  ///< the case file itself, as given
   std::filesystem::path input;   ///< relative paths are already joined with the directory of the case file
@@ -68,6 +74,7 @@ struct CaseFile {
   Motion motion;
   PlanOptions plan;
   UnstructuredOptions unstructured;  ///< [near_field] and [background]; boundary layers and law are those of `plan`
+  std::optional<BackgroundFile> background;  ///< read and made part of `unstructured` by whoever morphs
   GuardOptions guard;
   OutputOptions output_options;
   std::vector<FieldUse> fields;

@@ -207,6 +207,12 @@ plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "Across the plane, of any l
      "Cells of the wrap along the longest extent of the walls: how closely it follows them"},
 
     {"background", "cells", "whole number, 1 to 32", "cells", "4", "cells = 6", "Cells of the background mesh along each cell of the wrap"},
+    {"background", "file", "file", "", "made here", "file = \"background.cgns\"",
+     "A structured mesh (CGNS or PLOT3D) to carry displacements instead: its hole, bounded by the patches `wrap`, goes around the moving walls; `offset`, "
+     "`wrap`, `resolution` and `cells` do not apply then"},
+    {"background", "wrap", "string or list", "", R"("wrap")", "file = \"background.cgns\"\nwrap = [\"inner\"]", "With `file`: its patches around the moving walls"},
+    {"background", "outer", "string or list", "", R"("outer")", "file = \"background.cgns\"\nouter = [\"box_*\"]",
+     "With `file`: its patches that stay, or move as the nearest prescribed boundary; others slide"},
     {"background", "law", R"("linear", "c1" or "c2")", "", R"("linear")", R"(law = "c1")",
      "How displacements fall off along the grid lines of the background mesh, as `law` in [volume]"},
 

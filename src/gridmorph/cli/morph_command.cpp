@@ -186,10 +186,8 @@ int run_morph_command(CommandLine const& options, Terminal& terminal) {
     return done;
   }
   bool const unstructured = mesh_kind(case_file.input.string()) == MeshKind::unstructured;
-  if (unstructured && case_file.sequence)
-    throw ConfigError(fmt::format("{}: [sequence] is for structured meshes, and '{}' is unstructured; remove it",
-                                  options.input.string(), case_file.input.string()));
-  if (case_file.sequence) return morph_sequence(case_file, terminal);
+  if (case_file.sequence)
+    return unstructured ? morph_unstructured_sequence(case_file, terminal) : morph_sequence(case_file, terminal);
   if (case_file.output.empty())
     throw ConfigError(fmt::format("{}: no output; add output = \"morphed.cgns\" to [mesh] or give --output FILE",
                                   options.input.string()));

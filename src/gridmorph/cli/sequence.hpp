@@ -11,5 +11,7 @@ namespace gridmorph::cli {
 /// unless the case file says so. Returns done or falls_short; throws ConfigError before any work when an output cannot be
 /// written where it should.
 int morph_sequence(CaseFile const& case_file, Terminal& terminal);
+/// The same for an unstructured mesh, with one file per step.
+int morph_unstructured_sequence(CaseFile const& case_file, Terminal& terminal);
 
 }  // namespace gridmorph::cli

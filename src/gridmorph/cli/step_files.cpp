@@ -1,5 +1,6 @@
 #include <gridmorph/cli/step_files.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
 
 #include <fmt/format.h>
 
@@ -37,10 +38,19 @@ std::filesystem::path step_path(SequenceOptions const& options, int step) {
   return options.output.parent_path() / name;
 }
 
-StepFiles::StepFiles(CaseFile const& case_file, Mesh const& mesh) : case_file_(case_file), mesh_(mesh) {
+StepFiles::StepFiles(CaseFile const& case_file, Mesh const& mesh) : case_file_(case_file), structured_(&mesh) {
   auto const& options = *case_file.sequence;
   if (!one_file_per_step(options))
     series_.emplace(case_file.input.string(), options.output.string(), mesh, times_of(options));
+}
+
+StepFiles::StepFiles(CaseFile const& case_file, UnstructuredMesh const& mesh)
+    : case_file_(case_file), unstructured_(&mesh) {
+  if (!one_file_per_step(*case_file.sequence))
+    throw ConfigError(
+        fmt::format("{}: a series in one file is for structured meshes, and '{}' is unstructured; write one file per "
+                    "step, output = \"step_{{step}}{}\" in [sequence]",
+                    case_file.source.string(), case_file.input.string(), case_file.input.extension().string()));
 }
 
 StepFiles::~StepFiles() {
@@ -56,8 +66,10 @@ std::filesystem::path StepFiles::beside(int step) const {
 void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
   if (series_)
     series_->add(morphed);
+  else if (unstructured_ != nullptr)
+    write_morphed(case_file_.input.string(), beside(written_).string(), *unstructured_, morphed, fields);
   else
-    write_morphed(case_file_.input.string(), beside(written_).string(), mesh_, morphed, fields);
+    write_morphed(case_file_.input.string(), beside(written_).string(), *structured_, morphed, fields);
   ++written_;
 }
 

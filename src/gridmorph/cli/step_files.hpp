@@ -5,6 +5,7 @@
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -23,6 +24,8 @@ class StepFiles {
  public:
   /// `mesh` must outlive the files.
   StepFiles(CaseFile const& case_file, Mesh const& mesh);
+  /// One file per step; throws ConfigError for a series in one file.
+  StepFiles(CaseFile const& case_file, UnstructuredMesh const& mesh);
   ~StepFiles();
   StepFiles(StepFiles const&) = delete;
   StepFiles& operator=(StepFiles const&) = delete;
@@ -37,7 +40,8 @@ class StepFiles {
   [[nodiscard]] std::filesystem::path beside(int step) const;
 
   CaseFile const& case_file_;
-  Mesh const& mesh_;
+  Mesh const* structured_ = nullptr;
+  UnstructuredMesh const* unstructured_ = nullptr;  ///< one of both
   int written_ = 0;
   bool committed_ = false;
   std::optional<SeriesWriter> series_;

@@ -1,17 +1,12 @@
-#include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
-#include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/cli/unstructured_morph.hpp>
+#include <gridmorph/cli/unstructured_run.hpp>
 #include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
-#include <gridmorph/quality/unstructured_quality.hpp>
-#include <gridmorph/report/quality_json.hpp>
-#include <gridmorph/report/quality_table.hpp>
-#include <gridmorph/report/step_times.hpp>
 #include <gridmorph/unstructured/guard.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
 
@@ -19,11 +14,8 @@
 #include <Kokkos_Core.hpp>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -36,34 +28,7 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 kernels::Field<double const> field(Coordinates const& c) { return {c.x.data(), c.y.data(), c.z.data()}; }
 kernels::Field<double> writable(Coordinates const& c) { return {c.x.data(), c.y.data(), c.z.data()}; }
 
-struct Result {
-  LoadedMesh loaded;
-  std::optional<PreparedUnstructured> prepared;
-  Coordinates morphed;
-  std::optional<Coordinates> background;  ///< morphed
-  QualityReport before, after;
-  std::vector<Shortfall> shortfalls;
-  std::vector<std::string> notes;
-  StepTimes times;
-};
-
-void read_and_plan(CaseFile const& case_file, Terminal& terminal, Result& out) {
-  Stopwatch watch;
-  terminal.progress("reading " + case_file.input.string());
-  out.loaded = load_unstructured(case_file.input);
-  out.times.push_back({"read", watch.lap(), true});
-  terminal.progress("finding wrap and layers, making the background mesh, locating nodes");
-  UnstructuredOptions options = case_file.unstructured;
-  options.boundary_layers = case_file.plan.boundary_layers;
-  out.prepared = prepare(out.loaded.mesh, out.loaded.topology, out.loaded.claims, case_file.motion, options);
-  out.times.push_back({"plan", watch.lap(), true});
-  out.notes = out.loaded.mesh.notes;
-  for (auto const* more : {&out.loaded.claims.notes, &out.prepared->notes})
-    out.notes.insert(out.notes.end(), more->begin(), more->end());
-  add_mapping_notes(case_file, out.notes);
-}
-
-void move_nodes(Result& out, Terminal& terminal, bool keep_background) {
+void move_nodes(UnstructuredRun& out, Terminal& terminal, bool keep_background) {
   Stopwatch watch;
   auto const boundary = out.prepared->boundary_displacement(out.loaded.mesh);
   out.times.push_back({"boundary", watch.lap(), false});
@@ -84,23 +49,8 @@ void move_nodes(Result& out, Terminal& terminal, bool keep_background) {
   for (Index n = 0; n < x.size(); ++n) out.background->set(n, x[n] + u[n]);
 }
 
-UnstructuredQualityInput<Kokkos::HostSpace> quality_input(Result const& out) {
-  auto const& regions = out.prepared->report.regions.element;
-  Kokkos::View<std::uint8_t*, Kokkos::HostSpace> near("gridmorph::cli::near_field", regions.size());
-  for (std::size_t e = 0; e < regions.size(); ++e) near(e) = regions[e] == Region::far ? 0 : 1;
-  UnstructuredQualityInput<Kokkos::HostSpace> input;
-  input.coordinates = views(out.loaded.mesh.coordinates);
-  input.near_field = near;
-  input.orientation = out.loaded.orientation;
-  std::set<int> walls(out.prepared->boundary.driving_patches.begin(), out.prepared->boundary.driving_patches.end());
-  for (std::size_t p = 0; p < out.loaded.mesh.patches.size(); ++p)
-    if (out.loaded.mesh.patches[p].kind == PatchKind::wall) walls.insert(int(p));
-  input.walls.assign(walls.begin(), walls.end());
-  return input;
-}
-
 /// Smooths around elements that came out bad, and says so.
-void relax(Result& out, Terminal& terminal) {
+void relax(UnstructuredRun& out, Terminal& terminal) {
   terminal.progress("looking for bad elements");
   Stopwatch watch;
   RelaxReport const report = relax_bad_elements(out.loaded.mesh, out.loaded.topology, *out.prepared, out.morphed);
@@ -112,37 +62,8 @@ void relax(Result& out, Terminal& terminal) {
   out.times.push_back({"guard", watch.lap(), true});
 }
 
-void measure(CaseFile const& case_file, Result& out, Terminal& terminal) {
-  terminal.progress("measuring quality");
-  Stopwatch watch;
-  auto input = quality_input(out);
-  auto const& l = out.loaded;
-  out.before = measure_quality(Exec(), l.mesh, l.topology, l.claims, input);
-  input.baseline = input.coordinates;
-  input.coordinates = views(out.morphed);
-  out.after = measure_quality(Exec(), l.mesh, l.topology, l.claims, input);
-  out.shortfalls = shortfalls(out.before, out.after, thresholds_of(case_file));
-  out.times.push_back({"quality", watch.lap(), true});
-}
-
-OutputFields fields_of(CaseFile const& case_file, Result const& out) {
-  OutputFields fields;
-  fields.displacement = case_file.output_options.displacement;
-  if (!case_file.output_options.quality) return fields;
-  constexpr std::array measures{Measure::aspect_ratio, Measure::determinant_3x3x3, Measure::minimum_angle_deg,
-                                Measure::equiangle_skewness, Measure::relative_displacement};
-  auto input = quality_input(out);
-  input.baseline = input.coordinates;
-  input.coordinates = views(out.morphed);
-  auto const values = cell_fields(Exec(), out.loaded.mesh, out.loaded.topology, input, measures);
-  for (std::size_t m = 0; m < measures.size(); ++m)
-    fields.cells.push_back(
-        {field_name(measures[m]), std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0))});
-  return fields;
-}
-
 /// The morphed mesh with its regions (0 near, 1 fence, 2 far), layers and displacements.
-void write_regions(std::string const& path, Result const& out) {
+void write_regions(std::string const& path, UnstructuredRun const& out) {
   UnstructuredMesh const& mesh = out.loaded.mesh;
   if (mesh.polyhedra.element.size() > 0) return;  // they cannot be written anew
   auto const& report = out.prepared->report;
@@ -156,7 +77,7 @@ void write_regions(std::string const& path, Result const& out) {
   write_morphed(path, path, mesh, out.morphed, fields);
 }
 
-void write_stages(std::filesystem::path const& folder, Result const& out) {
+void write_stages(std::filesystem::path const& folder, UnstructuredRun const& out) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
@@ -173,64 +94,10 @@ void write_stages(std::filesystem::path const& folder, Result const& out) {
   write_mesh((folder / "background_morphed.cgns").string(), background);
 }
 
-nlohmann::json plan_json(PreparedUnstructured const& prepared) {
-  auto const& r = prepared.report;
-  auto const& p = prepared.plan;
-  return {{"offset", r.offset},
-          {"columns", r.n_columns},
-          {"layer_height", r.layer_height},
-          {"elements", {{"near", r.regions.n_near}, {"fence", r.regions.n_fence}, {"far", r.regions.n_far}}},
-          {"layers", p.near.n_layers()},
-          {"background",
-           {{"zones", p.background ? p.background->mesh.zones.size() : 0},
-            {"nodes", p.background ? p.background->mesh.n_nodes() : 0}}},
-          {"wrap_nodes", r.wrap_nodes},
-          {"wrap_nodes_outside", r.wrap_outside},
-          {"wrap_largest_distance", r.wrap_distance},
-          {"far_nodes", r.far_nodes},
-          {"far_nodes_outside", r.far_outside},
-          {"unreached_nodes", r.unreached},
-          {"seconds",
-           {{"boundary", r.seconds.boundary},
-            {"columns", r.seconds.columns},
-            {"distances", r.seconds.distances},
-            {"wrap", r.seconds.wrap},
-            {"layers", r.seconds.layers},
-            {"background", r.seconds.background},
-            {"location", r.seconds.location},
-            {"residual", r.seconds.residual}}}};
-}
-
-std::string report_text(CaseFile const& case_file, Result const& out, bool written) {
-  nlohmann::json json = quality_json(out.before, out.after, thresholds_of(case_file));
-  json["gridmorph"] = GRIDMORPH_VERSION;
-  json["case_file"] = case_file.source.string();
-  json["input"] = case_file.input.string();
-  json["nodes"] = out.loaded.mesh.n_nodes();
-  json["elements"] = out.loaded.mesh.n_elements();
-  json["times"] = times_json(out.times, out.loaded.mesh.n_nodes());
-  json["notes"] = out.notes;
-  json["plan"] = plan_json(*out.prepared);
+std::string report_text(CaseFile const& case_file, UnstructuredRun const& out, bool written) {
+  nlohmann::json json = report_json(case_file, out);
   json["output"] = written ? nlohmann::json(case_file.output.string()) : nlohmann::json(nullptr);
-  json["fields"] = nlohmann::json::array();
-  for (auto const& use : case_file.fields) {
-    json["fields"].push_back(mapping_json(*use.field));
-    json["fields"].back()["rule"] = use.where;
-  }
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
-std::string regions_text(PreparedUnstructured const& prepared) {
-  auto const& r = prepared.report;
-  auto const& p = prepared.plan;
-  std::string text = fmt::format(
-      "near field: offset {:.4g}, {} columns up to {:.4g} high, {} near elements, {} on the fence, {} far; {} layers\n",
-      r.offset, r.n_columns, r.layer_height, r.regions.n_near, r.regions.n_fence, r.regions.n_far, p.near.n_layers());
-  if (p.background)
-    text += fmt::format(
-        "background mesh: {} zones, {} nodes; {} on the wrap; {} nodes of the mesh take their displacement from it\n",
-        p.background->mesh.zones.size(), p.background->mesh.n_nodes(), r.wrap_nodes, r.far_nodes);
-  return text;
 }
 
 }  // namespace
@@ -238,11 +105,14 @@ std::string regions_text(PreparedUnstructured const& prepared) {
 int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   auto const& report = case_file.output_options.report;
   check_outputs(case_file.output, report, case_file.input);
-  Result out;
+  UnstructuredRun out;
   read_and_plan(case_file, terminal, out);
   move_nodes(out, terminal, case_file.output_options.stages.has_value());
   relax(out, terminal);
-  measure(case_file, out, terminal);
+  terminal.progress("measuring quality");
+  Stopwatch quality;
+  measure(case_file, out);
+  out.times.push_back({"quality", quality.lap(), true});
   bool const written = newly_inverted(out.after) == 0 || case_file.guard.write_inverted;
   std::optional<PendingFile> pending;
   if (report) pending.emplace(*report, report_text(case_file, out, written) + std::string(room_for_a_time, '\n'));
@@ -250,7 +120,7 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
     Stopwatch watch;
     terminal.progress("writing " + case_file.output.string());
     write_morphed(case_file.input.string(), case_file.output.string(), out.loaded.mesh, out.morphed,
-                  fields_of(case_file, out));
+                  output_fields(case_file, out));
     out.times.push_back({"write", watch.lap(), true});
   }
   if (case_file.output_options.stages) write_stages(*case_file.output_options.stages, out);
@@ -261,9 +131,7 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   std::string text;
   for (auto const& note : out.notes) text += "note: " + note + "\n";
   text += regions_text(*out.prepared);
-  text += "\n" + format_table(out.before, out.after, thresholds_of(case_file));
-  text += "\n" + format_short_table(out.before, out.after);
-  text += "\n" + format_times(out.times, out.loaded.mesh.n_nodes());
+  text += "\n" + format_result(case_file, out);
   if (written) text += fmt::format("\nwrote {}\n", case_file.output.string());
   if (report) text += fmt::format("wrote {}\n", report->string());
   if (auto const& stages = case_file.output_options.stages)
@@ -280,7 +148,7 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
 }
 
 std::string unstructured_plan_text(CaseFile const& case_file, Terminal& terminal) {
-  Result out;
+  UnstructuredRun out;
   read_and_plan(case_file, terminal, out);
   std::string text;
   for (auto const& note : out.notes) text += "note: " + note + "\n";

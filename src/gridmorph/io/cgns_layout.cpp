@@ -23,8 +23,9 @@ std::string list_names(std::vector<Node> const& nodes, std::string_view label) {
 bool read_extent(File const& file, ZoneLayout& zone, std::string const& where, Problems& problems) {
   std::string const type = zone_type(file, *zone.node);
   if (type != "Structured") {
-    problems.add(where + ": is of type " + (type.empty() ? "(none)" : type) +
-                 "; only structured zones can be morphed yet, unstructured meshes can be inspected and measured");
+    problems.add(
+        where + ": is of type " + (type.empty() ? "(none)" : type) +
+        "; a structured mesh is needed here (gridmorph morph, plan, quality and inspect take unstructured ones)");
     return false;
   }
   auto const dimensions = file.dimensions(*zone.node);

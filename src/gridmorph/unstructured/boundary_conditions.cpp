@@ -36,6 +36,13 @@ bool slips_on_baseline(Rule const& rule) {
   return slip != nullptr && slip->surface == SlipRule::Surface::baseline;
 }
 
+/// What follows from the positions of a patch's nodes alone.
+ResolvedMotion by_position(ResolvedMotion motion) {
+  for (auto& rule : motion.rules)
+    if (slips_on_baseline(rule.rule)) rule.rule = FreeRule{};
+  return motion;
+}
+
 class Finder {
  public:
   Finder(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, BoundaryClaims const& claims,
@@ -104,10 +111,7 @@ class Finder {
 
   /// Slip surfaces from the positions of the patches' nodes; those that are the patch itself need its faces.
   void make_surfaces() {
-    ResolvedMotion by_position = out_.motion;
-    for (auto& rule : by_position.rules)
-      if (slips_on_baseline(rule.rule)) rule.rule = FreeRule{};
-    out_.surface = std::make_shared<SurfaceMotion const>(out_.outline, by_position);
+    out_.surface = std::make_shared<SurfaceMotion const>(out_.outline, by_position(out_.motion));
     out_.notes.insert(out_.notes.end(), out_.surface->notes().begin(), out_.surface->notes().end());
     surface_of_patch_.assign(mesh_.patches.size(), -1);
     std::map<std::vector<double>, int> seen;
@@ -349,6 +353,9 @@ std::string requester(UnstructuredMesh const& mesh, BoundaryConditions::Request 
                       : "'" + mesh.connections[std::size_t(r.interface)].name + "' (periodic)";
 }
 
+std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions const& boundary,
+                            SurfaceMotion const& surface);
+
 }  // namespace
 
 BoundaryConditions boundary_conditions(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
@@ -358,6 +365,19 @@ BoundaryConditions boundary_conditions(UnstructuredMesh const& mesh, Unstructure
 }
 
 std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary) {
+  return values_of(mesh, boundary, *boundary.surface);
+}
+
+std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary, Motion const& motion) {
+  ResolvedMotion now = boundary.motion;
+  for (std::size_t r = 0; r < motion.rules.size(); ++r) now.rules[r].rule = motion.rules[r].rule;
+  return values_of(mesh, boundary, SurfaceMotion(boundary.outline, by_position(now)));
+}
+
+namespace {
+
+std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions const& boundary,
+                            SurfaceMotion const& surface) {
   auto const& requests = boundary.requests;
   std::vector<Vec3> values(boundary.known.size());
   std::vector<Index> given_by(boundary.known.size(), -1);
@@ -373,7 +393,7 @@ std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions cons
     while (end < requests.size() && requests[end].rule == requests[begin].rule) ++end;
     std::vector<Vec3> points(end - begin), u(end - begin);
     for (std::size_t n = begin; n < end; ++n) points[n - begin] = mesh.coordinates[requests[n].node];
-    boundary.surface->displacement(requests[begin].rule, points, u);
+    surface.displacement(requests[begin].rule, points, u);
     for (std::size_t n = begin; n < end; ++n) {
       auto const& r = requests[n];
       std::size_t const slot = std::size_t(r.slot);
@@ -405,5 +425,7 @@ std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions cons
   problems.throw_if_any<MotionError>();
   return values;
 }
+
+}  // namespace
 
 }  // namespace gridmorph

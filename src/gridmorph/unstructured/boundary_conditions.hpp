@@ -61,5 +61,7 @@ BoundaryConditions boundary_conditions(UnstructuredMesh const& mesh, Unstructure
 /// Displacement of every known node. Throws MotionError that lists every pair of patches whose displacements disagree on
 /// common nodes by more than the conformity tolerance.
 std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary);
+/// The same by another motion: one with the same rules for the same patches, whose displacements alone differ.
+std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary, Motion const& motion);
 
 }  // namespace gridmorph

@@ -6,13 +6,20 @@
 
 namespace gridmorph {
 
+void Classification::count() {
+  n_near = n_fence = n_far = n_near_nodes = 0;
+  for (Region const region : element) ++(region == Region::near ? n_near : region == Region::fence ? n_fence : n_far);
+  for (std::uint8_t const n : near) n_near_nodes += n;
+}
+
 template <class AnyWrap>
 Classification classify(UnstructuredMesh const& mesh, AnyWrap const& wrap) {
   using Host = Kokkos::DefaultHostExecutionSpace;
   using Range = Kokkos::RangePolicy<Host, Kokkos::IndexType<Index>>;
   Host const exec;
   Classification out;
-  std::vector<std::uint8_t> inside(std::size_t(mesh.n_nodes()));
+  std::vector<std::uint8_t>& inside = out.inside;
+  inside.resize(std::size_t(mesh.n_nodes()));
   out.near.assign(std::size_t(mesh.n_nodes()), 0);
   out.element.resize(std::size_t(mesh.n_elements()));
   Kokkos::parallel_for("gridmorph::classify::nodes", Range(exec, 0, mesh.n_nodes()),
@@ -40,9 +47,7 @@ Classification classify(UnstructuredMesh const& mesh, AnyWrap const& wrap) {
       std::atomic_ref<std::uint8_t>(out.near[std::size_t(n)]).store(1, std::memory_order_relaxed);
   });
   compat::fence(exec, "gridmorph::classify (read by the host)");
-  for (Region const region : out.element)
-    ++(region == Region::near ? out.n_near : region == Region::fence ? out.n_fence : out.n_far);
-  for (std::uint8_t const near : out.near) out.n_near_nodes += near;
+  out.count();
   return out;
 }
 

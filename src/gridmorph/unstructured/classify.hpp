@@ -13,10 +13,14 @@ enum class Region : std::uint8_t {
 
 struct Classification {
   std::vector<Region> element;
-  std::vector<std::uint8_t> near;  ///< per node: 1 when it belongs to a near or fence element
+  std::vector<std::uint8_t> near;    ///< per node: 1 when it belongs to a near or fence element
+  std::vector<std::uint8_t> inside;  ///< per node: 1 when it lies in the wrap
 
   Index n_near = 0, n_fence = 0, n_far = 0;  ///< elements
   Index n_near_nodes = 0;
+
+  /// Sets the numbers from the lists.
+  void count();
 };
 
 /// Looks at the corners of each element; its further nodes go with it. In parallel on the host; linear cost.

@@ -4,6 +4,7 @@
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/motion/selectors.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/unstructured/background_hole.hpp>
 #include <gridmorph/unstructured/column_heights.hpp>
 #include <gridmorph/unstructured/detail/corner_means.hpp>
 #include <gridmorph/unstructured/detail/element_grades.hpp>
@@ -250,6 +251,18 @@ class Planner {
   }
 
   void find_regions() {
+    if (options_.background)
+      classify_by_background();
+    else
+      classify_by_wrap();
+    near_ = mask();
+    for (Number n = 0; n < Number(mesh_.n_nodes()); ++n)
+      if (out_.report.regions.near[std::size_t(n)]) near_[std::size_t(owner(n))] = 1;
+    // Columns are kept whole, wherever the wrap ends.
+    for (Number const n : columns_.node) near_[std::size_t(n)] = 1;
+  }
+
+  void classify_by_wrap() {
     out_.report.offset = offset();
     NumberLists faces;
     for (Number const f : driving_faces_) faces.add(topology_.boundary.nodes[f]);
@@ -261,11 +274,28 @@ class Planner {
     if (std::string const& note = out_.report.wrap->note; !note.empty())
       out_.notes.push_back("the wrap is made of lattice cells: " + note);
     out_.report.regions = classify(mesh_, *out_.report.wrap);
-    near_ = mask();
-    for (Number n = 0; n < Number(mesh_.n_nodes()); ++n)
-      if (out_.report.regions.near[std::size_t(n)]) near_[std::size_t(owner(n))] = 1;
-    // Columns are kept whole, wherever the wrap ends.
-    for (Number const n : columns_.node) near_[std::size_t(n)] = 1;
+  }
+
+  /// The user's background mesh says where the wrap is; the moving walls must be in it.
+  void classify_by_background() {
+    take_background(*options_.background);
+    Background const& background = *out_.plan.background;
+    out_.report.regions =
+        classify_by_hole(mesh_, background, wrap_nodes(background, *out_.plan.background_morph).position);
+    Index astray = 0;
+    Number first = -1;
+    for (Number const n : out_.plan.driving)
+      if (!out_.report.regions.inside[std::size_t(n)] && astray++ == 0) first = n;
+    if (astray > 0)
+      throw MeshError("background mesh " + background.mesh.source + " does not go around the moving walls: " +
+                      std::to_string(astray) + " of their " + std::to_string(out_.plan.driving.size()) +
+                      " nodes lie in its cells or beyond its wrap, such as " + describe_node(mesh_, first) +
+                      "; leave a hole in it that holds them, its faces being the wrap");
+  }
+
+  void take_background(Background background) {
+    out_.plan.background = std::move(background);
+    out_.plan.background_morph = prepare_background(*out_.plan.background, options_.law);
   }
 
   // ---- layers --------------------------------------------------------------------------------------------------------
@@ -347,9 +377,10 @@ class Planner {
 
   void plan_background() {
     UnstructuredPlan& plan = out_.plan;
-    if (out_.report.regions.n_far == 0) return;
-    plan.background = make_background(*out_.report.wrap, options_.cells);
-    plan.background_morph = prepare_background(*plan.background, options_.law);
+    if (!plan.background) {
+      if (out_.report.regions.n_far == 0) return;
+      take_background(make_background(*out_.report.wrap, options_.cells));
+    }
     plan_outer_box();
   }
 
@@ -393,7 +424,7 @@ class Planner {
     std::vector<Number> far;
     for (Number n = 0; n < Number(mesh_.n_nodes()); ++n)
       if (out_.graph.carries(n) && !out_.graph.neighbours[n].empty() && !column[std::size_t(n)] &&
-          !out_.report.wrap->contains(mesh_.coordinates[n]))
+          !out_.report.regions.inside[std::size_t(n)])
         far.push_back(n);
     FarRows rows = background_rows(*plan.background, mesh_.coordinates, far);
     out_.report.far_nodes = Index(far.size());

@@ -3,10 +3,13 @@
 
 #include <gridmorph/plan/options.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace gridmorph {
+
+struct Background;
 
 /// How much each node of the layers before counts when displacements pass on.
 enum class LayerWeight {
@@ -29,6 +32,9 @@ struct UnstructuredOptions {
   int resolution = 4;
   bool tube = false;  ///< a tube with an O-type background mesh around it instead, where one fits (WrapOptions::tube)
   int cells = 4;      ///< of the background mesh along each cell of the wrap's lattice
+  /// A background mesh of the user's instead of one around a wrap made here, which `offset`, `resolution`, `tube` and `cells` are
+  /// for; its hole is the wrap.
+  std::shared_ptr<Background const> background;
   Law law = Law::linear;  ///< along the grid lines of the background mesh
 };
 

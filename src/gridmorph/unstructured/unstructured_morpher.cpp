@@ -100,8 +100,8 @@ struct UnstructuredMorpher<Exec>::State {
   }
 
   void displacement(Exec const& exec, Boundary const& boundary, kernels::Field<double const> const& x) const {
-    // Nodes that nothing reaches stay; whatever is read is written before in every call.
-    Kokkos::deep_copy(exec, u, Vec3{});
+    // Whatever is read is written before in every call.
+    launch("gridmorph::rest", exec, u.extent(0), RestNodes<Space>{u});
     launch("gridmorph::moving_walls", exec, driving_slots.extent(0),
            ScatterSlots<Space>{driving_slots, known, boundary, u});
     launch("gridmorph::wall_turn", exec, turn.extent(0),

@@ -1,12 +1,12 @@
 // [near_field] and [background] of case files: what is particular to unstructured meshes. Internal to casefile.
 #pragma once
 
+#include <gridmorph/casefile/case_file.hpp>
 #include <gridmorph/casefile/detail/table_reader.hpp>
-#include <gridmorph/unstructured/options.hpp>
 
 namespace gridmorph::casefile {
 
 /// Reads both tables where they are; notes every problem.
-void read_near_field(TableReader& root, UnstructuredOptions& out);
+void read_near_field(TableReader& root, CaseFile& out);
 
 }  // namespace gridmorph::casefile

@@ -238,6 +238,13 @@ struct PickNodes {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { to(k) = from(node(k)); }
 };
 
+/// Nodes that nothing reaches stay.
+template <class MemorySpace>
+struct RestNodes {
+  View<MemorySpace, Vec3> u;
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u(n) = Vec3{}; }
+};
+
 template <class MemorySpace>
 struct CopyNodes {
   View<MemorySpace, Number> to, from;

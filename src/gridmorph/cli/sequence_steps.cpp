@@ -1,0 +1,132 @@
+#include <gridmorph/cli/morph_command.hpp>
+#include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/cli/sequence_steps.hpp>
+#include <gridmorph/cli/step_files.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/report/measure_text.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+/// Rows of the table; of longer sequences evenly spaced steps and the worst one are shown.
+constexpr int most_rows = 100;
+
+double largest_displacement(Coordinates const& before, Coordinates const& after) {
+  double squared = 0;
+  for (Index n = 0; n < before.size(); ++n) {
+    Vec3 const u = after[n] - before[n];
+    squared = std::max(squared, dot(u, u));
+  }
+  return std::sqrt(squared);
+}
+
+}  // namespace
+
+StepResult step_result(double time, Coordinates const& before, Coordinates const& after, QualityReport const& quality) {
+  StepResult out;
+  out.time = time;
+  out.largest_displacement = largest_displacement(before, after);
+  out.newly_inverted = newly_inverted(quality);
+  MeasureStatistics const* worst = nullptr;
+  for (auto const* region : {&quality.near_field, &quality.far_field}) {
+    auto const& measure = (*region)[Measure::determinant_3x3x3];
+    if (measure.worst_zone >= 0 && (worst == nullptr || measure.worst < worst->worst)) worst = &measure;
+  }
+  if (worst == nullptr) return out;
+  out.determinant = worst->worst;
+  out.place = worst_place(quality, *worst);
+  out.zone = quality.zone_names.at(std::size_t(worst->worst_zone));
+  for (int const index : worst->worst_cell) out.cell.push_back(index + 1);
+  if (quality.unstructured) out.cell.resize(1);
+  return out;
+}
+
+std::size_t worst_of(std::vector<StepResult> const& steps) {
+  auto const worst = std::min_element(steps.begin(), steps.end(), [](StepResult const& a, StepResult const& b) {
+    return a.determinant < b.determinant;
+  });
+  return std::size_t(worst - steps.begin());
+}
+
+void check_sequence_outputs(CaseFile const& case_file) {
+  auto const& options = *case_file.sequence;
+  if (options.output.empty())
+    throw ConfigError(
+        fmt::format("{}: no output; add output = \"series.cgns\" or output = \"step_{{step}}.cgns\" to [sequence] or "
+                    "give --output FILE",
+                    case_file.source.string()));
+  int const files = one_file_per_step(options) ? options.steps : 1;
+  for (int step = 0; step < files; ++step) check_output(step_path(options, step), "output", case_file.input);
+  if (files == 1 && !one_file_per_step(options) &&
+      (case_file.output_options.displacement || case_file.output_options.quality))
+    throw ConfigError(
+        fmt::format("{}: [output] displacement and quality need one file per step; write output = "
+                    "\"step_{{step}}.cgns\" in [sequence]",
+                    case_file.source.string()));
+  auto const& report = case_file.output_options.report;
+  if (!report) return;
+  check_output(*report, "report", case_file.input);
+  for (int step = 0; step < files; ++step)
+    if (*report == step_path(options, step))
+      throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
+}
+
+std::string steps_table(std::vector<StepResult> const& steps, std::size_t worst) {
+  std::string text = fmt::format("{:>6}  {:>12}  {:>20}  {:>20}  {:>14}  {}\n", "step", "time", "largest displacement",
+                                 "smallest determinant", "newly inverted", "at");
+  std::size_t const stride = (steps.size() + most_rows - 1) / most_rows;
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    if (s % stride != 0 && s != worst) continue;
+    auto const& step = steps[s];
+    text += fmt::format("{:>6}  {:>12.6g}  {:>20.6g}  {:>20.4f}  {:>14}  {}{}\n", s + 1, step.time,
+                        step.largest_displacement, step.determinant, step.newly_inverted, step.place,
+                        s == worst ? "  <- worst" : "");
+  }
+  return text;
+}
+
+nlohmann::json steps_json(std::vector<StepResult> const& steps, std::size_t worst, SequenceOptions const& options) {
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    auto const& step = steps[s];
+    nlohmann::json json{{"step", s + 1},
+                        {"time", step.time},
+                        {"largest_displacement", step.largest_displacement},
+                        {"newly_inverted", step.newly_inverted},
+                        {"min_determinant", nullptr}};
+    if (!step.place.empty()) {
+      json["min_determinant"] = {{"value", step.determinant}, {"zone", step.zone}};
+      if (step.cell.size() == 1)
+        json["min_determinant"]["element"] = step.cell[0];
+      else
+        json["min_determinant"]["cell"] = step.cell;
+    }
+    if (one_file_per_step(options)) json["file"] = step_path(options, int(s)).string();
+    list.push_back(std::move(json));
+  }
+  return {
+      {"period", options.period}, {"periods", options.periods}, {"worst_step", worst + 1}, {"steps", std::move(list)}};
+}
+
+std::string wrote_text(SequenceOptions const& options) {
+  return one_file_per_step(options) ? fmt::format("\nwrote {} ... {}\n", step_path(options, 0).string(),
+                                                  step_path(options, options.steps - 1).string())
+                                    : fmt::format("\nwrote {} ({} steps)\n", options.output.string(), options.steps);
+}
+
+std::string refusal_text(SequenceOptions const& options, std::string const& what_to_change) {
+  return fmt::format(
+      "'{}' is not written, because steps have cells inverted that were not in the baseline; lower the amplitudes, "
+      "change {}, or set write_inverted = true in [guard]",
+      options.output.string(), what_to_change);
+}
+
+}  // namespace gridmorph::cli

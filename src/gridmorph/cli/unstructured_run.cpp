@@ -1,0 +1,168 @@
+#include <gridmorph/casefile/mapping_report.hpp>
+#include <gridmorph/cli/morph_command.hpp>
+#include <gridmorph/cli/unstructured_run.hpp>
+#include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/report/quality_json.hpp>
+#include <gridmorph/report/quality_table.hpp>
+
+#include <fmt/format.h>
+#include <Kokkos_Core.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <set>
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+/// Size of the largest displacement in any step.
+double largest_motion(CaseFile const& case_file, LoadedMesh const& loaded, UnstructuredOptions const& options) {
+  auto const boundary = boundary_conditions(loaded.mesh, loaded.topology, loaded.claims, make_node_graph(loaded.mesh),
+                                            case_file.motion, options.walls);
+  double largest = 0;
+  auto const& sequence = *case_file.sequence;
+  for (int step = 0; step < sequence.steps; ++step)
+    for (Vec3 const& u : evaluate(loaded.mesh, boundary, motion_at(case_file, sequence.periods_at(step))))
+      largest = std::max(largest, norm(u));
+  return largest;
+}
+
+nlohmann::json plan_json(PreparedUnstructured const& prepared) {
+  auto const& r = prepared.report;
+  auto const& p = prepared.plan;
+  return {{"offset", r.offset},
+          {"columns", r.n_columns},
+          {"layer_height", r.layer_height},
+          {"elements", {{"near", r.regions.n_near}, {"fence", r.regions.n_fence}, {"far", r.regions.n_far}}},
+          {"layers", p.near.n_layers()},
+          {"background",
+           {{"zones", p.background ? p.background->mesh.zones.size() : 0},
+            {"nodes", p.background ? p.background->mesh.n_nodes() : 0}}},
+          {"wrap_nodes", r.wrap_nodes},
+          {"wrap_nodes_outside", r.wrap_outside},
+          {"wrap_largest_distance", r.wrap_distance},
+          {"far_nodes", r.far_nodes},
+          {"far_nodes_outside", r.far_outside},
+          {"unreached_nodes", r.unreached},
+          {"seconds",
+           {{"boundary", r.seconds.boundary},
+            {"columns", r.seconds.columns},
+            {"distances", r.seconds.distances},
+            {"wrap", r.seconds.wrap},
+            {"layers", r.seconds.layers},
+            {"background", r.seconds.background},
+            {"location", r.seconds.location},
+            {"residual", r.seconds.residual}}}};
+}
+
+}  // namespace
+
+void read_and_plan(CaseFile const& case_file, Terminal& terminal, UnstructuredRun& out) {
+  Stopwatch watch;
+  terminal.progress("reading " + case_file.input.string());
+  out.loaded = load_unstructured(case_file.input);
+  out.times.push_back({"read", watch.lap(), true});
+  terminal.progress("finding wrap and layers, making the background mesh, locating nodes");
+  UnstructuredOptions options = case_file.unstructured;
+  options.boundary_layers = case_file.plan.boundary_layers;
+  if (auto const& own = case_file.background)
+    options.background =
+        std::make_shared<Background const>(make_background(read_mesh(own->path.string()), own->wrap, own->outer));
+  if (case_file.sequence) options.motion = largest_motion(case_file, out.loaded, options);
+  out.prepared = prepare(out.loaded.mesh, out.loaded.topology, out.loaded.claims, case_file.motion, options);
+  out.times.push_back({"plan", watch.lap(), true});
+  out.notes = out.loaded.mesh.notes;
+  for (auto const* more : {&out.loaded.claims.notes, &out.prepared->notes})
+    out.notes.insert(out.notes.end(), more->begin(), more->end());
+  add_mapping_notes(case_file, out.notes);
+}
+
+UnstructuredQualityInput<Kokkos::HostSpace> quality_of_baseline(UnstructuredRun const& out) {
+  auto const& regions = out.prepared->report.regions.element;
+  Kokkos::View<std::uint8_t*, Kokkos::HostSpace> near("gridmorph::cli::near_field", regions.size());
+  for (std::size_t e = 0; e < regions.size(); ++e) near(e) = regions[e] == Region::far ? 0 : 1;
+  UnstructuredQualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(out.loaded.mesh.coordinates);
+  input.near_field = near;
+  input.orientation = out.loaded.orientation;
+  std::set<int> walls(out.prepared->boundary.driving_patches.begin(), out.prepared->boundary.driving_patches.end());
+  for (std::size_t p = 0; p < out.loaded.mesh.patches.size(); ++p)
+    if (out.loaded.mesh.patches[p].kind == PatchKind::wall) walls.insert(int(p));
+  input.walls.assign(walls.begin(), walls.end());
+  return input;
+}
+
+UnstructuredQualityInput<Kokkos::HostSpace> quality_of_morphed(UnstructuredRun const& out) {
+  auto input = quality_of_baseline(out);
+  input.baseline = input.coordinates;
+  input.coordinates = views(out.morphed);
+  return input;
+}
+
+void measure(CaseFile const& case_file, UnstructuredRun& out) {
+  auto const& l = out.loaded;
+  out.before = measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_baseline(out));
+  out.after = measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_morphed(out));
+  out.shortfalls = shortfalls(out.before, out.after, thresholds_of(case_file));
+}
+
+OutputFields output_fields(CaseFile const& case_file, UnstructuredRun const& out) {
+  OutputFields fields;
+  fields.displacement = case_file.output_options.displacement;
+  if (!case_file.output_options.quality) return fields;
+  constexpr std::array measures{Measure::aspect_ratio, Measure::determinant_3x3x3, Measure::minimum_angle_deg,
+                                Measure::equiangle_skewness, Measure::relative_displacement};
+  auto const values = cell_fields(Exec(), out.loaded.mesh, out.loaded.topology, quality_of_morphed(out), measures);
+  for (std::size_t m = 0; m < measures.size(); ++m)
+    fields.cells.push_back(
+        {field_name(measures[m]), std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0))});
+  return fields;
+}
+
+nlohmann::json report_json(CaseFile const& case_file, UnstructuredRun const& out) {
+  nlohmann::json json = quality_json(out.before, out.after, thresholds_of(case_file));
+  json["gridmorph"] = GRIDMORPH_VERSION;
+  json["case_file"] = case_file.source.string();
+  json["input"] = case_file.input.string();
+  json["nodes"] = out.loaded.mesh.n_nodes();
+  json["elements"] = out.loaded.mesh.n_elements();
+  json["times"] = times_json(out.times, out.loaded.mesh.n_nodes());
+  json["notes"] = out.notes;
+  json["plan"] = plan_json(*out.prepared);
+  json["fields"] = nlohmann::json::array();
+  for (auto const& use : case_file.fields) {
+    json["fields"].push_back(mapping_json(*use.field));
+    json["fields"].back()["rule"] = use.where;
+  }
+  return json;
+}
+
+std::string regions_text(PreparedUnstructured const& prepared) {
+  auto const& r = prepared.report;
+  auto const& p = prepared.plan;
+  std::string text = fmt::format(
+      "near field: {}, {} columns up to {:.4g} high, {} near elements, {} on the fence, {} far; {} layers\n",
+      r.wrap ? fmt::format("offset {:.4g}", r.offset) : std::string("the hole of the background mesh"), r.n_columns,
+      r.layer_height, r.regions.n_near, r.regions.n_fence, r.regions.n_far, p.near.n_layers());
+  if (p.background)
+    text += fmt::format(
+        "background mesh: {} zones, {} nodes; {} on the wrap; {} nodes of the mesh take their displacement from it\n",
+        p.background->mesh.zones.size(), p.background->mesh.n_nodes(), r.wrap_nodes, r.far_nodes);
+  return text;
+}
+
+std::string format_result(CaseFile const& case_file, UnstructuredRun const& out) {
+  std::string text = format_table(out.before, out.after, thresholds_of(case_file));
+  text += "\n" + format_short_table(out.before, out.after);
+  return text + "\n" + format_times(out.times, out.loaded.mesh.n_nodes());
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,223 @@
+#include "support/made_bodies.hpp"
+
+#include "support/unstructured_meshes.hpp"
+
+#include <gridmorph/mesh/unstructured_topology.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::test {
+namespace {
+
+Vec3 centre_of(UnstructuredMesh const& mesh, Index e) {
+  Vec3 sum;
+  auto const corners = mesh.elements.corners(e);
+  for (Number const n : corners) sum += mesh.coordinates[n];
+  return (1.0 / double(corners.size())) * sum;
+}
+
+/// Elements of one zone after another with nodes of their own; `number` of a zone: old node -> new one, -1 where it has none.
+class Copier {
+ public:
+  explicit Copier(UnstructuredMesh const& from) : from_(from) {
+    out.dimension = from.dimension;
+    out.source = from.source;
+    out.families = from.families;
+  }
+
+  void add_zone(std::string const& name, std::vector<Index> const& elements) {
+    auto& number = numbers.emplace_back(std::size_t(from_.n_nodes()), -1);
+    for (Index const e : elements)
+      for (Number const n : from_.elements.nodes[e]) number[std::size_t(n)] = 0;
+    Number next = Number(points_.size());
+    Number const first = next;
+    for (std::size_t n = 0; n < number.size(); ++n)
+      if (number[n] == 0) {
+        number[n] = next++;
+        points_.push_back(from_.coordinates[Index(n)]);
+      }
+    out.add_zone(name, next - first);
+    for (Index const e : elements) {
+      std::vector<Number> nodes;
+      for (Number const n : from_.elements.nodes[e]) nodes.push_back(number[std::size_t(n)]);
+      out.add_element(from_.elements.type[std::size_t(e)], nodes);
+    }
+    for (auto const& patch : from_.patches) {
+      UnstructuredPatch mine = patch;
+      mine.zone = int(out.zones.size()) - 1;
+      mine.faces = {};
+      for (Index f = 0; f < patch.faces.size(); ++f) {
+        std::vector<Number> face;
+        for (Number const n : patch.faces[f])
+          if (number[std::size_t(n)] >= 0) face.push_back(number[std::size_t(n)]);
+        if (face.size() == patch.faces[f].size()) mine.faces.add(face);
+      }
+      if (mine.faces.size() > 0) out.patches.push_back(std::move(mine));
+    }
+  }
+
+  UnstructuredMesh finish() {
+    out.coordinates = Coordinates(Index(points_.size()));
+    for (std::size_t n = 0; n < points_.size(); ++n) out.coordinates.set(Index(n), points_[n]);
+    return std::move(out);
+  }
+
+  UnstructuredMesh out;
+  std::vector<std::vector<Number>> numbers;
+
+ private:
+  UnstructuredMesh const& from_;
+  std::vector<Vec3> points_;
+};
+
+}  // namespace
+
+UnstructuredMesh part_of(UnstructuredMesh const& mesh, std::function<bool(Vec3 const&)> const& keep,
+                         std::string const& cut, PatchKind kind) {
+  std::vector<Index> elements;
+  for (Index e = 0; e < mesh.n_elements(); ++e)
+    if (keep(centre_of(mesh, e))) elements.push_back(e);
+  Copier copier(mesh);
+  copier.add_zone("zone", elements);
+  UnstructuredMesh out = copier.finish();
+  auto const topology = make_topology(out);
+  auto const claims = claim_boundary(out, topology);
+  UnstructuredPatch patch;
+  patch.name = cut;
+  patch.kind = kind;
+  patch.bc_type = kind == PatchKind::wall ? "BCWall" : kind == PatchKind::symmetry ? "BCSymmetryPlane" : "BCFarfield";
+  patch.zone = 0;
+  for (Index f = 0; f < topology.boundary.size(); ++f)
+    if (claims.patch[std::size_t(f)] < 0) patch.faces.add(topology.boundary.nodes[f]);
+  if (patch.faces.size() > 0) out.patches.push_back(std::move(patch));
+  return out;
+}
+
+UnstructuredMesh in_two_zones(UnstructuredMesh const& mesh, std::function<bool(Vec3 const&)> const& first) {
+  std::array<std::vector<Index>, 2> elements;
+  for (Index e = 0; e < mesh.n_elements(); ++e) elements[first(centre_of(mesh, e)) ? 0 : 1].push_back(e);
+  Copier copier(mesh);
+  copier.add_zone("first", elements[0]);
+  copier.add_zone("second", elements[1]);
+  UnstructuredMesh out = copier.finish();
+  for (int const zone : {0, 1}) {
+    UnstructuredConnection connection;
+    connection.name = zone == 0 ? "to second" : "to first";
+    connection.zone = zone;
+    connection.donor_zone = 1 - zone;
+    for (std::size_t n = 0; n < copier.numbers[0].size(); ++n) {
+      Number const a = copier.numbers[std::size_t(zone)][n], b = copier.numbers[std::size_t(1 - zone)][n];
+      if (a < 0 || b < 0) continue;
+      connection.nodes.push_back(a);
+      connection.donor_nodes.push_back(b);
+    }
+    out.connections.push_back(std::move(connection));
+  }
+  return out;
+}
+
+UnstructuredMesh second_order(UnstructuredMesh const& tetrahedra) {
+  constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  std::map<std::pair<Number, Number>, Number> middle;
+  std::vector<Vec3> points;
+  for (Index n = 0; n < tetrahedra.n_nodes(); ++n) points.push_back(tetrahedra.coordinates[n]);
+  std::vector<std::vector<Number>> nodes;
+  for (Index e = 0; e < tetrahedra.n_elements(); ++e) {
+    auto const corners = tetrahedra.elements.corners(e);
+    auto& list = nodes.emplace_back(corners.begin(), corners.end());
+    for (auto const& edge : edges) {
+      std::pair<Number, Number> const ends = std::minmax(corners[edge[0]], corners[edge[1]]);
+      auto const [at, fresh] = middle.try_emplace(ends, Number(points.size()));
+      if (fresh) points.push_back(0.5 * (points[std::size_t(ends.first)] + points[std::size_t(ends.second)]));
+      list.push_back(at->second);
+    }
+  }
+  UnstructuredMesh out;
+  out.source = tetrahedra.source;
+  out.add_zone("zone", Index(points.size()));
+  for (auto const& list : nodes) out.add_element(ElementType::tetrahedron, list);
+  out.patches = tetrahedra.patches;
+  out.coordinates = Coordinates(Index(points.size()));
+  for (std::size_t n = 0; n < points.size(); ++n) out.coordinates.set(Index(n), points[n]);
+  return out;
+}
+
+UnstructuredMesh as_polyhedra(UnstructuredMesh const& mesh) {
+  UnstructuredMesh out;
+  out.source = mesh.source;
+  out.add_zone("zone", mesh.n_nodes());
+  std::array<Number, max_face_corners> room{};
+  out.polyhedra.first_face.push_back(0);
+  for (Index e = 0; e < mesh.n_elements(); ++e) {
+    out.add_element(ElementType::polyhedron, mesh.elements.corners(e));
+    for (int s = 0; s < n_sides(mesh, e); ++s) out.polyhedra.faces.add(side_nodes(mesh, e, s, room));
+    out.polyhedra.element.push_back(Number(e));
+    out.polyhedra.first_face.push_back(out.polyhedra.faces.size());
+  }
+  out.patches = mesh.patches;
+  out.coordinates = mesh.coordinates;
+  return out;
+}
+
+UnstructuredMesh box_around(Index3 n, std::function<bool(Vec3 const&)> const& body, bool tetrahedra) {
+  UnstructuredMesh full = tetrahedra ? to_prisms_and_tetrahedra(unit_box(n), 0) : to_hexahedra(unit_box(n));
+  for (auto& patch : full.patches) patch.kind = PatchKind::farfield;
+  return part_of(
+      full, [&](Vec3 const& c) { return !body(c); }, "body", PatchKind::wall);
+}
+
+UnstructuredMesh airfoil(int around, int layers, double first, double growth, double far) {
+  std::vector<double> heights{0};
+  double height = first;
+  while (heights.back() + height < 0.8 * far) {
+    heights.push_back(heights.back() + height);
+    height *= growth;
+  }
+  heights.push_back(far);
+  int const rows = int(heights.size());
+  UnstructuredMesh mesh;
+  mesh.dimension = 2;
+  mesh.source = "airfoil";
+  mesh.add_zone("zone", Index(around) * rows);
+  mesh.coordinates = Coordinates(mesh.n_nodes());
+  auto const node = [&](int i, int j) { return Number((i % around) + around * j); };
+  for (int i = 0; i < around; ++i) {
+    // Clockwise from the trailing edge would turn elements inside out: upper side first.
+    double const angle = 2 * std::numbers::pi * i / around, x = 0.5 * (1 + std::cos(angle));
+    double const half =
+        0.6 * (0.2969 * std::sqrt(x) - 0.126 * x - 0.3516 * x * x + 0.2843 * x * x * x - 0.1036 * x * x * x * x);
+    Vec3 const wall{x, std::sin(angle) >= 0 ? half : -half, 0};
+    Vec3 const outer{0.5 + far * std::cos(angle), far * std::sin(angle), 0};
+    for (int j = 0; j < rows; ++j)
+      mesh.coordinates.set(node(i, j), wall + (heights[std::size_t(j)] / far) * (outer - wall));
+  }
+  for (int j = 0; j + 1 < rows; ++j)
+    for (int i = 0; i < around; ++i) {
+      Number const a = node(i, j), b = node(i, j + 1), c = node(i + 1, j + 1), d = node(i + 1, j);
+      if (j < layers) {
+        mesh.add_element(ElementType::quadrilateral, std::array{a, b, c, d});
+      } else {
+        mesh.add_element(ElementType::triangle, std::array{a, b, c});
+        mesh.add_element(ElementType::triangle, std::array{a, c, d});
+      }
+    }
+  for (int const p : {0, 1}) {
+    UnstructuredPatch patch;
+    patch.name = p == 0 ? "airfoil" : "farfield";
+    patch.kind = p == 0 ? PatchKind::wall : PatchKind::farfield;
+    patch.bc_type = p == 0 ? "BCWall" : "BCFarfield";
+    patch.zone = 0;
+    for (int i = 0; i < around; ++i)
+      patch.faces.add(std::array{node(i, p == 0 ? 0 : rows - 1), node(i + 1, p == 0 ? 0 : rows - 1)});
+    mesh.patches.push_back(std::move(patch));
+  }
+  return mesh;
+}
+
+}  // namespace gridmorph::test

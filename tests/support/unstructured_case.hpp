@@ -1,0 +1,95 @@
+// An unstructured mesh with what follows from it, ready to be morphed and measured.
+#pragma once
+
+#include <gridmorph/core/rigid_transform.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/unstructured/guard.hpp>
+#include <gridmorph/unstructured/unstructured_morpher.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::test {
+
+struct UnstructuredMorphed {
+  PreparedUnstructured prepared;
+  std::vector<Vec3> boundary;
+  Coordinates x;
+};
+
+struct UnstructuredCase {
+  using Host = Kokkos::DefaultHostExecutionSpace;
+
+  UnstructuredMesh mesh;
+  UnstructuredTopology topology;
+  BoundaryClaims claims;
+
+  explicit UnstructuredCase(UnstructuredMesh m)
+      : mesh(std::move(m)), topology(make_topology(mesh)), claims(claim_boundary(mesh, topology)) {}
+
+  [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
+    UnstructuredMorphed out{prepare(mesh, topology, claims, motion, options), {}, Coordinates(mesh.n_nodes())};
+    out.boundary = out.prepared.boundary_displacement(mesh);
+    Host const exec;
+    UnstructuredMorpher<Host> const morpher(exec, out.prepared.plan);
+    Kokkos::View<Vec3*, Kokkos::HostSpace> given("boundary", out.boundary.size());
+    std::copy(out.boundary.begin(), out.boundary.end(), given.data());
+    Coordinates const& c = mesh.coordinates;
+    morpher.apply(exec, given, {c.x.data(), c.y.data(), c.z.data()}, {out.x.x.data(), out.x.y.data(), out.x.z.data()});
+    exec.fence();
+    return out;
+  }
+
+  /// The same with displacements smoothed around bad elements, as the command line does.
+  [[nodiscard]] UnstructuredMorphed guarded_morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
+    UnstructuredMorphed out = morph(motion, options);
+    (void)relax_bad_elements(mesh, topology, out.prepared, out.x);
+    return out;
+  }
+
+  /// Near and far field as one.
+  [[nodiscard]] QualityRegion quality(Coordinates const& x) const {
+    UnstructuredQualityInput<Kokkos::HostSpace> input;
+    input.baseline = views(mesh.coordinates);
+    input.coordinates = views(x);
+    return measure_quality(Host(), mesh, topology, claims, input).far_field;
+  }
+  [[nodiscard]] Index inverted(Coordinates const& x) const { return quality(x).newly_inverted; }
+
+  [[nodiscard]] int patch(std::string const& name) const {
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+      if (mesh.patches[p].name == name) return int(p);
+    return -1;
+  }
+  /// Nodes of a patch, those of its faces where it lists faces.
+  [[nodiscard]] std::vector<Number> nodes_of(std::string const& name) const {
+    int const p = patch(name);
+    return p < 0 ? std::vector<Number>() : patch_nodes(mesh.patches[std::size_t(p)]);
+  }
+  /// Largest deviation of known nodes from what their rules ask for: 0 bit for bit.
+  [[nodiscard]] double largest_miss(UnstructuredMorphed const& m) const {
+    double largest = 0;
+    auto const& known = m.prepared.plan.known;
+    for (std::size_t k = 0; k < known.size(); ++k)
+      largest = std::max(largest, distance(m.x[known[k]], mesh.coordinates[known[k]] + m.boundary[k]));
+    return largest;
+  }
+};
+
+inline MotionRule rule_for(std::vector<std::string> patches, Rule rule) {
+  return {std::move(patches), std::move(rule), 0, "test"};
+}
+inline Motion motion_of(std::vector<MotionRule> rules) {
+  Motion motion;
+  motion.rules = std::move(rules);
+  return motion;
+}
+inline Rule translation(Vec3 const& t) { return RigidRule{{}, t}; }
+inline Rule rotation(Vec3 const& centre, Vec3 const& axis, double angle, Vec3 const& shift = {}) {
+  RigidTransform const r = rotation_about(centre, axis, angle);
+  return RigidRule{r.rotation, r.translation + shift};
+}
+
+}  // namespace gridmorph::test

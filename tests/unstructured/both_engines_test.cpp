@@ -1,0 +1,78 @@
+// Structured meshes from outside, through both engines: as blocks, and as hexahedra. The boundary must move alike; the volume
+// is carried in different ways, and neither may turn a cell over.
+#include "support/morph_run.hpp"
+#include "support/unstructured_case.hpp"
+
+#include "../io/io_support.hpp"
+
+#include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/mesh/as_hexahedra.hpp>
+#include <gridmorph/quality/quality.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+namespace gridmorph::test {
+namespace {
+
+struct Pair {
+  char const* case_file;  ///< of the examples
+  char const* mesh;
+};
+
+class BothEngines : public testing::TestWithParam<Pair> {};
+INSTANTIATE_TEST_SUITE_P(Examples, BothEngines,
+                         testing::Values(Pair{"wing_38_blocks.toml", "mdo_tutorial_000_vol.cgns"},
+                                         Pair{"winglet.toml", "717_wl_L2.cgns"}),
+                         [](auto const& info) {
+                           std::string const name = info.param.case_file;
+                           return name.substr(0, name.find('.'));
+                         });
+
+QualityRegion all_cells(Mesh const& mesh, Coordinates const& x) {
+  QualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(x);
+  input.baseline = views(mesh.coordinates);
+  return measure_quality(Kokkos::DefaultHostExecutionSpace(), mesh, input).far_field;
+}
+
+TEST_P(BothEngines, MoveTheBoundaryAlikeAndTurnNothingOver) {
+  auto const path = shared_mesh(GetParam().mesh);
+  if (path.empty()) GTEST_SKIP() << "no " << GetParam().mesh << " in the folder of shared meshes";
+  CaseFile const file = read_case_file(std::string(GRIDMORPH_EXAMPLES "/") + GetParam().case_file);
+  Mesh blocks = read_mesh(path);
+  UnstructuredCase const hexahedra(as_hexahedra(blocks));
+  PreparedMorph const prepared = prepare(blocks, file.motion, file.plan);
+  Coordinates const structured =
+      run_plan(Kokkos::DefaultHostExecutionSpace(), blocks, prepared.plan(), prepared.boundary_displacement(blocks))
+          .position;
+  UnstructuredOptions options = file.unstructured;
+  options.boundary_layers = file.plan.boundary_layers;
+  UnstructuredMorphed const other = hexahedra.guarded_morph(file.motion, options);
+  EXPECT_EQ(hexahedra.largest_miss(other), 0);
+
+  double wall = 0, largest = 0, farthest = 0;
+  for (std::size_t k = 0; k < other.boundary.size(); ++k) {
+    Number const n = other.prepared.plan.known[k];
+    wall = std::max(wall, distance(structured[n], other.x[n]));
+    largest = std::max(largest, norm(other.boundary[k]));
+  }
+  for (Index n = 0; n < blocks.n_nodes(); ++n)
+    farthest = std::max(farthest, distance(other.x[n], blocks.coordinates[n]));
+  EXPECT_LT(wall, 1e-12 * blocks.size());
+  // What is near a wall that turns moves farther than the wall.
+  EXPECT_LT(farthest, 1.3 * largest);
+  double const sound = all_cells(blocks, blocks.coordinates)[Measure::determinant_3x3x3].min;
+  for (Coordinates const& x : {structured, other.x}) {
+    QualityRegion const quality = all_cells(blocks, x);
+    EXPECT_EQ(quality.newly_inverted, 0);
+    EXPECT_GT(quality[Measure::determinant_3x3x3].min, 0.3 * sound);
+  }
+}
+
+}  // namespace
+}  // namespace gridmorph::test
