@@ -64,7 +64,7 @@ TEST_P(BothEngines, MoveTheBoundaryAlikeAndTurnNothingOver) {
   for (Index n = 0; n < blocks.n_nodes(); ++n)
     farthest = std::max(farthest, distance(other.x[n], blocks.coordinates[n]));
   EXPECT_LT(wall, 1e-12 * blocks.size());
-  // What is near a wall that turns moves farther than the wall, by as much as it is away from it.
+  // What is near a wall that turns moves farther than the wall.
   EXPECT_LT(farthest, 1.5 * largest);
   double const sound = all_cells(blocks, blocks.coordinates)[Measure::determinant_3x3x3].min;
   for (Coordinates const& x : {structured, other.x}) {
