@@ -1,0 +1,101 @@
+#include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/unstructured/detail/unstructured_planner.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gridmorph::detail {
+
+void UnstructuredPlanner::plan_residual() {
+  UnstructuredPlan& plan = out_.plan;
+  plan_other_nodes();
+  plan.fade.assign(is_other_.size(), 0);
+  for (std::size_t n = 0; n < is_other_.size(); ++n)
+    if (out_.graph.carries(Number(n)) && !drives_[n] && !is_other_[n]) plan.fade[n] = float(fade(n));
+  // Columns are as rigid as their walls ask for.
+  for (Number const n : columns_.node) plan.fade[std::size_t(n)] = 0;
+  MeshExtent const box = extent_of(mesh_.coordinates);
+  plan.residual =
+      make_scatter_lattice(mesh_.coordinates, plan.other, areas(plan.other), mesh_.dimension, box.low, box.high);
+  if (plan.residual.empty()) return;
+  double const reach = 2 * plan.residual.shape.spacing;
+  Mask wanted = mask();
+  for (std::size_t n = 0; n < wanted.size(); ++n)
+    wanted[n] = plan.fade[n] != 0 && from_other_.distance[n] < reach ? 1 : 0;
+  plan.residual_detail =
+      make_layers(out_.graph, mesh_.coordinates, is_other_, wanted, from_other_.distance, inverse_distance());
+  for (Number const n : plan.residual_detail.rows.target) {
+    double const s = from_other_.distance[std::size_t(n)] / reach;
+    plan.detail_fade.push_back(float(plan.fade[std::size_t(n)] * (1 - s * s * (3 - 2 * s))));
+  }
+}
+
+std::vector<double> UnstructuredPlanner::areas(std::vector<Number> const& nodes) const {
+  std::vector<double> area(std::size_t(mesh_.n_nodes()), 0);
+  for (Index f = 0; f < topology_.boundary.size(); ++f) {
+    auto const face = topology_.boundary.nodes[f];
+    Vec3 const a = mesh_.coordinates[face[0]];
+    double size = 0;
+    if (mesh_.dimension == 2) size = distance(a, mesh_.coordinates[face[1]]);
+    for (std::size_t k = 1; mesh_.dimension == 3 && k + 1 < face.size(); ++k)
+      size += 0.5 * norm(cross(mesh_.coordinates[face[k]] - a, mesh_.coordinates[face[k + 1]] - a));
+    for (Number const n : face) area[std::size_t(owner(n))] += size / double(face.size());
+  }
+  double sum = 0;
+  Index count = 0;
+  for (double const a : area)
+    if (a > 0) {
+      sum += a;
+      ++count;
+    }
+  double const mean = count > 0 ? sum / double(count) : 1;
+  std::vector<double> out;
+  for (Number const n : nodes) out.push_back(area[std::size_t(n)] > 0 ? area[std::size_t(n)] : mean);
+  return out;
+}
+
+double UnstructuredPlanner::fade(std::size_t n) const {
+  double const other = from_other_.distance[n];
+  if (!std::isfinite(other)) return 0;
+  double const d = beyond_column(n);
+  if (!std::isfinite(d)) return 1;
+  return d + other > 0 ? d / (d + other) : 0;
+}
+
+void UnstructuredPlanner::plan_other_nodes() {
+  UnstructuredPlan& plan = out_.plan;
+  BoundaryConditions const& b = out_.boundary;
+  std::vector<Number> slot(std::size_t(mesh_.n_nodes()), -1), slip(std::size_t(mesh_.n_nodes()), -1);
+  for (std::size_t k = 0; k < b.known.size(); ++k) slot[std::size_t(b.known[k])] = Number(k);
+  for (std::size_t k = 0; k < b.slip_nodes.size(); ++k) slip[std::size_t(b.slip_nodes[k])] = Number(k);
+  for (Number n = 0; n < Number(mesh_.n_nodes()); ++n) {
+    if (!is_other_[std::size_t(n)]) continue;
+    plan.other.push_back(n);
+    plan.other_slot.push_back(slot[std::size_t(n)]);
+    if (slip[std::size_t(n)] >= 0) {
+      plan.other_surfaces.add(b.slip_surfaces[slip[std::size_t(n)]]);
+    } else {
+      plan.other_surfaces.add({});
+    }
+  }
+  std::vector<std::pair<Number, Number>> by_owner;
+  for (std::size_t k = 0; k < b.images.size(); ++k) by_owner.emplace_back(b.images[k].owner, Number(k));
+  std::sort(by_owner.begin(), by_owner.end());
+  for (std::size_t k = 0; k < by_owner.size();) {
+    std::vector<Number> images;
+    Number const o = by_owner[k].first;
+    for (; k < by_owner.size() && by_owner[k].first == o; ++k) images.push_back(by_owner[k].second);
+    plan.image_owners.push_back(o);
+    plan.images_of_owner.add(images);
+  }
+}
+
+std::function<double(Number, Number)> UnstructuredPlanner::inverse_distance() const {
+  return [this](Number a, Number b) {
+    double const d = distance(mesh_.coordinates[a], mesh_.coordinates[b]);
+    return 1 / std::max(d, std::numeric_limits<double>::min());
+  };
+}
+
+}  // namespace gridmorph::detail

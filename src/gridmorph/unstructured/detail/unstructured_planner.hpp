@@ -1,0 +1,100 @@
+// The steps from an unstructured mesh to its plan, one file per step: make_unstructured_plan.cpp, then plan_columns.cpp,
+// plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
+#pragma once
+
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/unstructured/columns.hpp>
+#include <gridmorph/unstructured/unstructured_plan.hpp>
+#include <gridmorph/unstructured/wall_distance.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace gridmorph::detail {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// What the steps share; run() calls them in their order.
+class UnstructuredPlanner {
+ public:
+  UnstructuredPlanner(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, BoundaryClaims const& claims,
+                      Motion const& motion, UnstructuredOptions const& options)
+      : mesh_(mesh), topology_(topology), claims_(claims), motion_(motion), options_(options) {}
+  PreparedUnstructured run();
+
+ private:
+  using Mask = std::vector<std::uint8_t>;
+
+  template <class Step>
+  static void timed(double& seconds, Step&& step) {
+    Stopwatch watch;
+    step();
+    seconds = watch.lap();
+  }
+
+  [[nodiscard]] Mask mask() const { return Mask(std::size_t(mesh_.n_nodes()), 0); }
+  [[nodiscard]] Number owner(Number n) const { return out_.graph.representative[std::size_t(n)]; }
+
+  // make_unstructured_plan.cpp
+  void refuse_open_faces() const;
+  void find_boundary();
+  void measure_distances();
+  [[nodiscard]] double largest_displacement() const;
+
+  // plan_columns.cpp
+  /// Faces of moving walls with the boundary layer that a user gave their patch.
+  void find_driving_faces();
+  void find_columns();
+  /// Columns are as long as a user says; otherwise they leave room in gaps.
+  [[nodiscard]] std::vector<double> most_heights() const;
+  void plan_columns();
+
+  // plan_regions.cpp
+  double offset();
+  void find_regions();
+  void classify_by_wrap();
+  /// The user's background mesh says where the wrap is; the moving walls must be in it.
+  void classify_by_background();
+  void take_background(Background background);
+
+  // plan_layers.cpp
+  std::function<double(Number, Number)> layer_weight();
+  void plan_layers();
+  /// The smooth part covers the wrap; what it misses fades over a few of its cells.
+  void plan_smooth_walls();
+  /// Distance from the end of the column on the nearest wall node.
+  [[nodiscard]] double beyond_column(std::size_t n) const;
+
+  // plan_background.cpp
+  void plan_background();
+  /// The outer box moves as the prescribed boundary nearest to it: a mesh that is shifted as a whole is shifted exactly.
+  void plan_outer_box();
+  void plan_projections();
+  /// Wrap nodes in the elements that hold them; rows name representatives, so that layers reach their nodes.
+  void project_wrap();
+
+  // plan_residual.cpp
+  void plan_residual();
+  /// Share of each node in the area of the boundary; nodes that are on no boundary face have a mean one.
+  [[nodiscard]] std::vector<double> areas(std::vector<Number> const& nodes) const;
+  [[nodiscard]] double fade(std::size_t n) const;
+  std::function<double(Number, Number)> inverse_distance() const;
+  void plan_other_nodes();
+
+  UnstructuredMesh const& mesh_;
+  UnstructuredTopology const& topology_;
+  BoundaryClaims const& claims_;
+  Motion const& motion_;
+  UnstructuredOptions const& options_;
+  PreparedUnstructured out_;
+  std::vector<int> layer_of_patch_;
+  std::vector<Number> driving_faces_;
+  Columns columns_;
+  Mask is_known_, drives_, is_other_, near_;
+  NearestSource from_wall_, from_other_;
+  double reach_ = 0;  ///< largest displacement that the offset and columns reckon with
+};
+
+}  // namespace gridmorph::detail
