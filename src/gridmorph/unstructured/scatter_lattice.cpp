@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace gridmorph {
@@ -25,11 +26,18 @@ class Tree {
   Tree(Coordinates const& x, std::vector<Number> const& nodes, std::vector<double> const& area)
       : x_(x), nodes_(nodes), area_(area), order_(nodes.size()) {
     std::iota(order_.begin(), order_.end(), Number(0));
+    // By position: how nodes are numbered must not matter.
+    std::sort(order_.begin(), order_.end(), [&](Number a, Number b) {
+      Vec3 const p = x_[nodes_[std::size_t(a)]], q = x_[nodes_[std::size_t(b)]];
+      return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+    });
+    place_.resize(order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) place_[std::size_t(order_[k])] = Number(k);
     if (!nodes.empty()) make(0, Number(nodes.size()));
   }
   std::vector<Group> groups;  ///< the root first
 
-  [[nodiscard]] Number place(Number k) const { return order_[std::size_t(k)]; }
+  [[nodiscard]] Number item(Number k) const { return order_[std::size_t(k)]; }
   [[nodiscard]] Number node(Number k) const { return nodes_[std::size_t(order_[std::size_t(k)])]; }
   [[nodiscard]] double area(Number k) const { return area_[std::size_t(order_[std::size_t(k)])]; }
 
@@ -59,7 +67,7 @@ class Tree {
       Number const middle = (begin + end) / 2;
       std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](Number a, Number b) {
         double const p = component(x_[nodes_[std::size_t(a)]], axis), q = component(x_[nodes_[std::size_t(b)]], axis);
-        return p < q || (p == q && a < b);
+        return p < q || (p == q && place_[std::size_t(a)] < place_[std::size_t(b)]);
       });
       group.part[0] = make(begin, middle);
       group.part[1] = make(middle, end);
@@ -72,7 +80,7 @@ class Tree {
   Coordinates const& x_;
   std::vector<Number> const& nodes_;
   std::vector<double> const& area_;
-  std::vector<Number> order_;
+  std::vector<Number> order_, place_;  ///< by position, and where each is in that order
 };
 
 UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dimension, Index most_nodes) {
@@ -111,7 +119,7 @@ ScatterLattice make_scatter_lattice(Coordinates const& coordinates, std::vector<
     items.clear();
     weights.clear();
     for (Number k = tree.groups[std::size_t(g)].begin; k < tree.groups[std::size_t(g)].end; ++k) {
-      items.push_back(tree.place(k));
+      items.push_back(tree.item(k));
       weights.push_back(tree.area(k));
     }
     out.leaves.add(g, items, weights);
@@ -127,6 +135,8 @@ ScatterLattice make_scatter_lattice(Coordinates const& coordinates, std::vector<
   }
 
   double const nearest = 0.05 * out.shape.spacing;
+  // About a half, but no ratio of lengths in a lattice: round-off would break such ties.
+  constexpr double opening = 0.4917;
   std::vector<Number> open;
   for (Number n = 0; n < Number(out.shape.size()); ++n) {
     Vec3 const x = out.shape.position(n);
@@ -138,7 +148,7 @@ ScatterLattice make_scatter_lattice(Coordinates const& coordinates, std::vector<
       open.pop_back();
       Group const& group = tree.groups[std::size_t(g)];
       double const d = std::max(distance(x, group.centre), nearest);
-      if (group.part[0] >= 0 && group.radius > 0.5 * d) {
+      if (group.part[0] >= 0 && group.radius > opening * d) {
         open.push_back(group.part[1]);
         open.push_back(group.part[0]);
         continue;

@@ -14,7 +14,7 @@ namespace gridmorph {
 ///     w_n = A_n / |x - x_n|^p,   p = 4 (3-D), 3 (2-D),   A_n: the node's share of the boundary's area,
 ///
 /// inverse distance weighting (Shepard 1968; with areas and for meshes: Luke, Collins and Blades 2012), where far groups of nodes
-/// count as one, at their centre with their mean (a tree, opened where a group's radius exceeds half its distance). In the
+/// count as one, at their centre with their mean (a tree by position, opened where a group's radius exceeds about half its distance). In the
 /// cells the field is trilinear. So it is smooth, reaches a place by means over boundary parts as large as their distance, and
 /// reproduces constants to round-off.
 ///

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace gridmorph::detail {
@@ -38,6 +39,11 @@ void UnstructuredPlanner::plan_outer_box() {
   for (std::size_t k = 0; k < plan.known.size(); ++k)
     if (!out_.boundary.drives[k]) slots.push_back(Number(k));
   if (slots.empty()) return;
+  // By position: how nodes are numbered must not matter.
+  std::sort(slots.begin(), slots.end(), [&](Number a, Number b) {
+    Vec3 const p = mesh_.coordinates[plan.known[std::size_t(a)]], q = mesh_.coordinates[plan.known[std::size_t(b)]];
+    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+  });
   std::size_t const step = slots.size() / most + 1;
   WrapNodes const wrap = wrap_nodes(*plan.background, *plan.background_morph);
   auto const& nodes = plan.background_morph->plan().boundary_nodes;
