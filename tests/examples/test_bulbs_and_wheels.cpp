@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <map>
 
 namespace gridmorph::testing {
@@ -45,6 +46,7 @@ TEST_F(ExampleTest, BulbSwellsTheNoseOfThePassagesBlade) {
 }
 
 TEST_F(ExampleTest, BulbSwellsTheNosesOfTheVanesAndOfNothingElse) {
+  if (std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr) GTEST_SKIP() << "the stage takes long, and other tests have it";
   GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("bulb_vane", "axial_turbine_stage_H.cgns"));
   expect_periodic_copies_move_alike(0);

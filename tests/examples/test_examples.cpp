@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <map>
 #include <vector>
 
@@ -437,6 +438,7 @@ TEST_F(ExampleTest, WingFlutterFollowsTheBeamThatItsPlateWasMadeBy) {
 }
 
 TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
+  if (std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr) GTEST_SKIP() << "the stage takes long, and other tests have it";
   GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_flutter", "axial_turbine_stage_H.cgns"));
   ASSERT_EQ(shell("cd '" + path("turbine_flutter") +
@@ -456,6 +458,7 @@ TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
 }
 
 TEST_F(ExampleTest, HotToColdTurnsTheRotorBackAndKeepsItPeriodic) {
+  if (std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr) GTEST_SKIP() << "the stage takes long, and other tests have it";
   GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_hot_to_cold", "axial_turbine_stage_H.cgns"));
   expect_periodic_copies_move_alike(0);
