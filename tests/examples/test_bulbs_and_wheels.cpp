@@ -1,18 +1,15 @@
 // Leading-edge bulbs and a wheel of different blades: the examples of local and of system changes.
 #include "example_run.hpp"
+#include "support/reduced.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <map>
 
 namespace gridmorph::testing {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-#define GRIDMORPH_NEEDS(mesh) \
-  if (!mesh_is_there(mesh)) GTEST_SKIP() << "no " << mesh << " in " << meshes_ << "; set GRIDMORPH_MESHES to its folder"
 
 struct Bulb {
   double swell, size, height, hub, centre, angle, twist;
@@ -46,7 +43,7 @@ TEST_F(ExampleTest, BulbSwellsTheNoseOfThePassagesBlade) {
 }
 
 TEST_F(ExampleTest, BulbSwellsTheNosesOfTheVanesAndOfNothingElse) {
-  if (std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr) GTEST_SKIP() << "the stage takes long, and other tests have it";
+  if (test::reduced()) GTEST_SKIP() << "the stage takes long, and other tests have it";
   GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("bulb_vane", "axial_turbine_stage_H.cgns"));
   expect_periodic_copies_move_alike(0);

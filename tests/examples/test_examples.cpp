@@ -1,11 +1,11 @@
 // Every example runs through and does what its case file says, measured with the formulas of the case files written anew.
 #include "example_run.hpp"
+#include "support/reduced.hpp"
 
 #include <gridmorph/motion/motion.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <map>
 #include <vector>
 
@@ -13,9 +13,6 @@ namespace gridmorph::testing {
 namespace {
 
 constexpr double deg = 0.017453292519943295;
-
-#define GRIDMORPH_NEEDS(mesh) \
-  if (!mesh_is_there(mesh)) GTEST_SKIP() << "no " << mesh << " in " << meshes_ << "; set GRIDMORPH_MESHES to its folder"
 
 TEST_F(ExampleTest, TurbineStageTurnsEachRowByItsOwnAngle) {
   GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
@@ -438,7 +435,7 @@ TEST_F(ExampleTest, WingFlutterFollowsTheBeamThatItsPlateWasMadeBy) {
 }
 
 TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
-  if (std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr) GTEST_SKIP() << "the stage takes long, and other tests have it";
+  if (test::reduced()) GTEST_SKIP() << "the stage takes long, and other tests have it";
   GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_flutter", "axial_turbine_stage_H.cgns"));
   ASSERT_EQ(shell("cd '" + path("turbine_flutter") +
@@ -458,7 +455,7 @@ TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
 }
 
 TEST_F(ExampleTest, HotToColdTurnsTheRotorBackAndKeepsItPeriodic) {
-  if (std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr) GTEST_SKIP() << "the stage takes long, and other tests have it";
+  if (test::reduced()) GTEST_SKIP() << "the stage takes long, and other tests have it";
   GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_hot_to_cold", "axial_turbine_stage_H.cgns"));
   expect_periodic_copies_move_alike(0);

@@ -11,18 +11,11 @@
 namespace gridmorph::testing {
 namespace {
 
-#define GRIDMORPH_NEEDS(mesh) \
-  if (!mesh_is_there(mesh)) GTEST_SKIP() << "no " << mesh << " in " << meshes_ << "; set GRIDMORPH_MESHES to its folder"
-
 class UnstructuredExampleTest : public ExampleTest {
  protected:
   /// Runs the example; nothing may be inverted.
   void run(std::string const& name, std::string const& mesh_file, std::string const& morphed_file) {
-    int const status = shell(run_command(meshes_.string(), name));
-    ASSERT_EQ(status, 0) << contents(path("out")) << contents(path("err")) << contents(path(name + "/log.txt"));
-    auto const report = nlohmann::json::parse(contents(path(name + "/" + name + ".json")));
-    for (auto const* region : {"near_field", "far_field"})
-      EXPECT_EQ(report["morphed"][region]["inverted"], 0) << region;
+    ASSERT_NO_FATAL_FAILURE(ExampleTest::run(name));
     mesh = read_unstructured_mesh(path(name + "/" + mesh_file));
     moved = read_unstructured_mesh(path(name + "/" + morphed_file)).coordinates;
     ASSERT_EQ(mesh.n_nodes(), moved.size());

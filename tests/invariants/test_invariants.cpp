@@ -6,12 +6,12 @@
 #include <gridmorph/quality/quality.hpp>
 
 #include "support/random.hpp"
+#include "support/reduced.hpp"
 #include "support/scramble.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -19,8 +19,6 @@
 
 namespace gridmorph::test {
 namespace {
-
-bool reduced() { return std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr; }
 
 class Invariants : public ::testing::TestWithParam<Case> {
  protected:

@@ -3,6 +3,7 @@
 #include "support/file_size_limit.hpp"
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
+#include "support/reduced.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <gridmorph/plan/detail/hash64.hpp>
@@ -14,14 +15,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <random>
 
 namespace gridmorph::test {
 namespace {
-
-bool reduced() { return std::getenv("GRIDMORPH_TEST_REDUCED") != nullptr; }
 
 std::uint64_t hash_of(std::string_view text) { return detail::hash64(std::as_bytes(std::span(text))); }
 

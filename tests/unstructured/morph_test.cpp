@@ -1,10 +1,9 @@
 // Whole morphs of unstructured meshes: what must hold whatever the mesh, on made meshes of all element types.
-#include "../support/unstructured_meshes.hpp"
+#include "support/made_bodies.hpp"
+#include "support/unstructured_case.hpp"
+#include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/rigid_transform.hpp>
-#include <gridmorph/quality/unstructured_quality.hpp>
-#include <gridmorph/unstructured/unstructured_morpher.hpp>
 
 #include <gtest/gtest.h>
 
@@ -14,102 +13,17 @@
 namespace gridmorph {
 namespace {
 
-using Exec = Kokkos::DefaultExecutionSpace;
-using Host = Kokkos::DefaultHostExecutionSpace;
+using test::rotation;
+using test::translation;
+using Case = test::UnstructuredCase;
+using Morphed = test::UnstructuredMorphed;
 
-struct Morphed {
-  PreparedUnstructured prepared;
-  std::vector<Vec3> boundary;
-  Coordinates x;
-};
-
-/// A mesh with what follows from it.
-struct Case {
-  UnstructuredMesh mesh;
-  UnstructuredTopology topology;
-  BoundaryClaims claims;
-
-  explicit Case(UnstructuredMesh m)
-      : mesh(std::move(m)), topology(make_topology(mesh)), claims(claim_boundary(mesh, topology)) {}
-
-  [[nodiscard]] Morphed morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
-    Morphed out{prepare(mesh, topology, claims, motion, options), {}, Coordinates(mesh.n_nodes())};
-    out.boundary = out.prepared.boundary_displacement(mesh);
-    Host const exec;
-    UnstructuredMorpher<Host> const morpher(exec, out.prepared.plan);
-    Kokkos::View<Vec3*, Kokkos::HostSpace> given("boundary", out.boundary.size());
-    std::copy(out.boundary.begin(), out.boundary.end(), given.data());
-    Coordinates const& c = mesh.coordinates;
-    morpher.apply(exec, given, {c.x.data(), c.y.data(), c.z.data()}, {out.x.x.data(), out.x.y.data(), out.x.z.data()});
-    exec.fence();
-    return out;
-  }
-
-  [[nodiscard]] Index inverted(Coordinates const& x) const {
-    UnstructuredQualityInput<Kokkos::HostSpace> input;
-    input.baseline = views(mesh.coordinates);
-    input.coordinates = views(x);
-    auto const report = measure_quality(Host(), mesh, topology, claims, input);
-    return report.near_field.newly_inverted + report.far_field.newly_inverted;
-  }
-};
-
-/// A box of cells with a box-shaped body cut out: n cells along each side of the domain, the body takes the middle third. The body's
-/// faces are the wall "body", the six sides of the domain "i_min" ... "k_max".
+/// n unit cells along each side of the domain, patches "i_min" ... "k_max"; the wall "body" takes the middle third.
 UnstructuredMesh box_with_body(int n) {
-  UnstructuredMesh const full = test::to_hexahedra(test::unit_box({n, n, n}));
-  UnstructuredMesh mesh;
-  mesh.source = "box with a body";
-  auto const in_body = [&](Vec3 const& p) {
-    double const low = n / 3, high = n - n / 3;
+  double const low = n / 3, high = n - n / 3;
+  return test::box_around({n, n, n}, [=](Vec3 const& p) {
     return p.x > low && p.x < high && p.y > low && p.y < high && p.z > low && p.z < high;
-  };
-  std::vector<Index> kept;
-  std::vector<Number> number(std::size_t(full.n_nodes()), -1);
-  std::vector<Vec3> points;
-  for (Index e = 0; e < full.n_elements(); ++e) {
-    Vec3 centre;
-    for (Number const c : full.elements.corners(e)) centre += 0.125 * full.coordinates[c];
-    if (in_body(centre)) continue;
-    kept.push_back(e);
-    for (Number const c : full.elements.corners(e))
-      if (number[std::size_t(c)] < 0) {
-        number[std::size_t(c)] = Number(points.size());
-        points.push_back(full.coordinates[c]);
-      }
-  }
-  mesh.add_zone("zone", Index(points.size()));
-  mesh.coordinates = Coordinates(Index(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k) mesh.coordinates.set(Index(k), points[k]);
-  for (Index const e : kept) {
-    std::vector<Number> nodes;
-    for (Number const c : full.elements.corners(e)) nodes.push_back(number[std::size_t(c)]);
-    mesh.add_element(full.elements.type[std::size_t(e)], nodes);
-  }
-  auto const topology = make_topology(mesh);
-  std::array<std::string, 7> const names{"body", "i_min", "i_max", "j_min", "j_max", "k_min", "k_max"};
-  for (auto const& name : names) {
-    UnstructuredPatch patch;
-    patch.name = name;
-    patch.kind = name == "body" ? PatchKind::wall : PatchKind::farfield;
-    patch.bc_type = name == "body" ? "BCWall" : "BCFarfield";
-    patch.zone = 0;
-    mesh.patches.push_back(patch);
-  }
-  for (Index f = 0; f < topology.boundary.size(); ++f) {
-    auto const face = topology.boundary.nodes[f];
-    Vec3 centre;
-    for (Number const c : face) centre += 0.25 * mesh.coordinates[c];
-    int const side = centre.x == 0   ? 1
-                     : centre.x == n ? 2
-                     : centre.y == 0 ? 3
-                     : centre.y == n ? 4
-                     : centre.z == 0 ? 5
-                     : centre.z == n ? 6
-                                     : 0;
-    mesh.patches[std::size_t(side)].faces.add(face);
-  }
-  return mesh;
+  });
 }
 
 Motion body_moves(Rule rule, std::vector<MotionRule> more = {}) {
@@ -117,12 +31,6 @@ Motion body_moves(Rule rule, std::vector<MotionRule> more = {}) {
   motion.rules.push_back({{"body"}, std::move(rule), 0, "test"});
   for (auto& rule_of : more) motion.rules.push_back(std::move(rule_of));
   return motion;
-}
-
-Rule translation(Vec3 const& t) { return RigidRule{{}, t}; }
-Rule rotation(Vec3 const& centre, Vec3 const& axis, double angle) {
-  RigidTransform const r = rotation_about(centre, axis, angle);
-  return RigidRule{r.rotation, r.translation};
 }
 
 TEST(UnstructuredMorph, WithoutMotionNothingChangesBitForBit) {
@@ -163,7 +71,7 @@ TEST(UnstructuredMorph, PrescribedDisplacementsHoldExactlyAndTheRestIsSound) {
 TEST(UnstructuredMorph, NodesThatSlipStayOnTheirPlane) {
   Case const c(box_with_body(12));
   Morphed const m = c.morph(body_moves(translation({1, 0.5, 1}), {{{"k_min"}, SlipRule{}, 0, "slip"}}));
-  for (Number const n : m.prepared.boundary.nodes_of_patch[5]) {
+  for (Number const n : m.prepared.boundary.nodes_of_patch[std::size_t(c.patch("k_min"))]) {
     EXPECT_NEAR(m.x[n].z, 0, 1e-12);
   }
   EXPECT_EQ(c.inverted(m.x), 0);
