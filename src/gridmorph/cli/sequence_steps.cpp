@@ -1,8 +1,10 @@
+#include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
 #include <gridmorph/cli/sequence_steps.hpp>
 #include <gridmorph/cli/step_files.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/report/measure_text.hpp>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -28,57 +31,7 @@ double largest_displacement(Coordinates const& before, Coordinates const& after)
   return std::sqrt(squared);
 }
 
-}  // namespace
-
-StepResult step_result(double time, Coordinates const& before, Coordinates const& after, QualityReport const& quality) {
-  StepResult out;
-  out.time = time;
-  out.largest_displacement = largest_displacement(before, after);
-  out.newly_inverted = newly_inverted(quality);
-  MeasureStatistics const* worst = nullptr;
-  for (auto const* region : {&quality.near_field, &quality.far_field}) {
-    auto const& measure = (*region)[Measure::determinant_3x3x3];
-    if (measure.worst_zone >= 0 && (worst == nullptr || measure.worst < worst->worst)) worst = &measure;
-  }
-  if (worst == nullptr) return out;
-  out.determinant = worst->worst;
-  out.place = worst_place(quality, *worst);
-  out.zone = quality.zone_names.at(std::size_t(worst->worst_zone));
-  for (int const index : worst->worst_cell) out.cell.push_back(index + 1);
-  if (quality.unstructured) out.cell.resize(1);
-  return out;
-}
-
-std::size_t worst_of(std::vector<StepResult> const& steps) {
-  auto const worst = std::min_element(steps.begin(), steps.end(), [](StepResult const& a, StepResult const& b) {
-    return a.determinant < b.determinant;
-  });
-  return std::size_t(worst - steps.begin());
-}
-
-void check_sequence_outputs(CaseFile const& case_file) {
-  auto const& options = *case_file.sequence;
-  if (options.output.empty())
-    throw ConfigError(
-        fmt::format("{}: no output; add output = \"series.cgns\" or output = \"step_{{step}}.cgns\" to [sequence] or "
-                    "give --output FILE",
-                    case_file.source.string()));
-  int const files = one_file_per_step(options) ? options.steps : 1;
-  for (int step = 0; step < files; ++step) check_output(step_path(options, step), "output", case_file.input);
-  if (files == 1 && !one_file_per_step(options) &&
-      (case_file.output_options.displacement || case_file.output_options.quality))
-    throw ConfigError(
-        fmt::format("{}: [output] displacement and quality need one file per step; write output = "
-                    "\"step_{{step}}.cgns\" in [sequence]",
-                    case_file.source.string()));
-  auto const& report = case_file.output_options.report;
-  if (!report) return;
-  check_output(*report, "report", case_file.input);
-  for (int step = 0; step < files; ++step)
-    if (*report == step_path(options, step))
-      throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
-}
-
+/// One row per step, of long sequences evenly spaced ones and the worst.
 std::string steps_table(std::vector<StepResult> const& steps, std::size_t worst) {
   std::string text = fmt::format("{:>6}  {:>12}  {:>20}  {:>20}  {:>14}  {}\n", "step", "time", "largest displacement",
                                  "smallest determinant", "newly inverted", "at");
@@ -116,17 +69,124 @@ nlohmann::json steps_json(std::vector<StepResult> const& steps, std::size_t wors
       {"period", options.period}, {"periods", options.periods}, {"worst_step", worst + 1}, {"steps", std::move(list)}};
 }
 
+/// "wrote step_1.cgns ... step_8.cgns" or "wrote series.cgns (8 steps)".
 std::string wrote_text(SequenceOptions const& options) {
   return one_file_per_step(options) ? fmt::format("\nwrote {} ... {}\n", step_path(options, 0).string(),
                                                   step_path(options, options.steps - 1).string())
                                     : fmt::format("\nwrote {} ({} steps)\n", options.output.string(), options.steps);
 }
 
+/// Why nothing was written.
 std::string refusal_text(SequenceOptions const& options, std::string const& what_to_change) {
   return fmt::format(
       "'{}' is not written, because steps have cells inverted that were not in the baseline; lower the amplitudes, "
       "change {}, or set write_inverted = true in [guard]",
       options.output.string(), what_to_change);
+}
+
+}  // namespace
+
+StepResult step_result(double time, Coordinates const& before, Coordinates const& after, QualityReport const& quality) {
+  StepResult out;
+  out.time = time;
+  out.largest_displacement = largest_displacement(before, after);
+  out.newly_inverted = newly_inverted(quality);
+  MeasureStatistics const* worst = nullptr;
+  for (auto const* region : {&quality.near_field, &quality.far_field}) {
+    auto const& measure = (*region)[Measure::determinant_3x3x3];
+    if (measure.worst_zone >= 0 && (worst == nullptr || measure.worst < worst->worst)) worst = &measure;
+  }
+  if (worst == nullptr) return out;
+  out.determinant = worst->worst;
+  out.place = worst_place(quality, *worst);
+  out.zone = quality.zone_names.at(std::size_t(worst->worst_zone));
+  for (int const index : worst->worst_cell) out.cell.push_back(index + 1);
+  if (quality.unstructured) out.cell.resize(1);
+  return out;
+}
+
+void check_sequence_outputs(CaseFile const& case_file) {
+  auto const& options = *case_file.sequence;
+  if (options.output.empty())
+    throw ConfigError(
+        fmt::format("{}: no output; add output = \"series.cgns\" or output = \"step_{{step}}.cgns\" to [sequence] or "
+                    "give --output FILE",
+                    case_file.source.string()));
+  int const files = one_file_per_step(options) ? options.steps : 1;
+  for (int step = 0; step < files; ++step) check_output(step_path(options, step), "output", case_file.input);
+  if (files == 1 && !one_file_per_step(options) &&
+      (case_file.output_options.displacement || case_file.output_options.quality))
+    throw ConfigError(
+        fmt::format("{}: [output] displacement and quality need one file per step; write output = "
+                    "\"step_{{step}}.cgns\" in [sequence]",
+                    case_file.source.string()));
+  auto const& report = case_file.output_options.report;
+  if (!report) return;
+  check_output(*report, "report", case_file.input);
+  for (int step = 0; step < files; ++step)
+    if (*report == step_path(options, step))
+      throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
+}
+
+std::size_t Steps::worst() const {
+  auto const found = std::min_element(results.begin(), results.end(), [](StepResult const& a, StepResult const& b) {
+    return a.determinant < b.determinant;
+  });
+  return std::size_t(found - results.begin());
+}
+
+Steps run_steps(CaseFile const& case_file, Terminal& terminal, StepFiles& files, StepWork const& work) {
+  auto const& options = *case_file.sequence;
+  Steps out;
+  Stopwatch part;
+  double morphing = 0, measuring = 0, writing = 0;
+  for (int step = 0; step < options.steps; ++step) {
+    terminal.progress(fmt::format("step {} of {}", step + 1, options.steps));
+    part.lap();
+    work.morph(step);
+    morphing += part.lap();
+    QualityReport const quality = work.measure();
+    measuring += part.lap();
+    out.results.push_back(step_result(options.time_at(step), work.before, work.after, quality));
+    out.inverted = out.inverted || out.results.back().newly_inverted > 0;
+    part.lap();
+    // Once a step cannot be used the files are not needed; the table still says how the others fare.
+    if (!out.inverted || case_file.guard.write_inverted) files.add(work.after, work.fields());
+    writing += part.lap();
+  }
+  std::string const count = fmt::format(", {} steps", options.steps);
+  out.times = {{"morph" + count, morphing}, {"quality" + count, measuring}, {"write" + count, writing}};
+  return out;
+}
+
+int finish_sequence(CaseFile const& case_file, Terminal& terminal, StepFiles& files, Steps const& steps,
+                    SequenceReport const& report) {
+  auto const& options = *case_file.sequence;
+  std::size_t const worst = steps.worst();
+  bool const written = !steps.inverted || case_file.guard.write_inverted;
+  auto const& report_file = case_file.output_options.report;
+  std::optional<PendingFile> pending;
+  if (report_file) {
+    nlohmann::json json = report.json();
+    json["output"] = written ? nlohmann::json(options.output.string()) : nlohmann::json(nullptr);
+    json["sequence"] = steps_json(steps.results, worst, options);
+    pending.emplace(*report_file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+  if (written) {
+    terminal.progress("writing " + options.output.string());
+    files.commit();
+  }
+  if (pending) pending->commit();
+
+  std::string text = report.head + steps_table(steps.results, worst);
+  text += fmt::format("\nstep {}, the worst one\n\n", worst + 1) + report.worst;
+  if (written) text += wrote_text(options);
+  if (report_file) text += fmt::format("wrote {}\n", report_file->string());
+  terminal.say(text);
+  if (terminal.quiet())
+    for (auto const& s : report.shortfalls) terminal.warn(s.message);
+  if (!written) terminal.error(refusal_text(options, report.what_to_change));
+  return any_failure(report.shortfalls) || !written ? falls_short : done;
 }
 
 }  // namespace gridmorph::cli

@@ -1,12 +1,18 @@
-// What sequences of structured and of unstructured meshes say of their steps.
+// What sequences of structured and of unstructured meshes have in common: the loop over the steps, and what is said and written
+// of them.
 #pragma once
 
 #include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/cli/step_files.hpp>
+#include <gridmorph/cli/terminal.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/quality/quality.hpp>
+#include <gridmorph/report/shortfalls.hpp>
+#include <gridmorph/report/step_times.hpp>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,19 +30,42 @@ struct StepResult {
 
 StepResult step_result(double time, Coordinates const& before, Coordinates const& after, QualityReport const& quality);
 
-/// The step with the smallest determinant.
-std::size_t worst_of(std::vector<StepResult> const& steps);
-
 /// Throws ConfigError when an output or the report cannot be written where it should.
 void check_sequence_outputs(CaseFile const& case_file);
 
-/// One row per step, of long sequences evenly spaced ones and the worst.
-std::string steps_table(std::vector<StepResult> const& steps, std::size_t worst);
-nlohmann::json steps_json(std::vector<StepResult> const& steps, std::size_t worst, SequenceOptions const& options);
+/// What an engine does in a step.
+struct StepWork {
+  std::function<void(int step)> morph;
+  std::function<QualityReport()> measure;
+  std::function<OutputFields()> fields;  ///< what [output] adds to the step's file
+  Coordinates const& before;
+  Coordinates const& after;  ///< where morph() leaves the step
+};
 
-/// "wrote step_1.cgns ... step_8.cgns" or "wrote series.cgns (8 steps)".
-std::string wrote_text(SequenceOptions const& options);
-/// Why nothing was written.
-std::string refusal_text(SequenceOptions const& options, std::string const& what_to_change);
+struct Steps {
+  std::vector<StepResult> results;
+  bool inverted = false;  ///< an element in some step that was not in the baseline
+  StepTimes times;        ///< of all steps together
+
+  /// The step with the smallest determinant.
+  [[nodiscard]] std::size_t worst() const;
+};
+
+/// Morphs, measures and writes step after step; the files become visible with finish_sequence().
+Steps run_steps(CaseFile const& case_file, Terminal& terminal, StepFiles& files, StepWork const& work);
+
+/// What is said of a sequence around its table of steps.
+struct SequenceReport {
+  std::function<nlohmann::json()> json;  ///< of the worst step; called when a report is wanted
+  std::string head;                      ///< above the table
+  std::string worst;                     ///< below it: quality of the worst step, times
+  std::vector<Shortfall> const& shortfalls;
+  std::string what_to_change;  ///< tables of the case file that may help where elements are inverted
+};
+
+/// Writes report and files, unless steps have inverted elements and the case file does not want those; says what was done. Returns
+/// the exit status.
+int finish_sequence(CaseFile const& case_file, Terminal& terminal, StepFiles& files, Steps const& steps,
+                    SequenceReport const& report);
 
 }  // namespace gridmorph::cli

@@ -1,11 +1,9 @@
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
-#include <gridmorph/cli/output_files.hpp>
 #include <gridmorph/cli/sequence.hpp>
 #include <gridmorph/cli/sequence_steps.hpp>
 #include <gridmorph/cli/step_files.hpp>
 #include <gridmorph/cli/unstructured_run.hpp>
-#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/unstructured/guard.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
@@ -15,9 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <optional>
 #include <string>
-#include <vector>
 
 namespace gridmorph::cli {
 
@@ -60,70 +56,31 @@ class Stepper {
 
 int morph_unstructured_sequence(CaseFile const& case_file, Terminal& terminal) {
   check_sequence_outputs(case_file);
-  auto const& options = *case_file.sequence;
   UnstructuredRun run;
   read_and_plan(case_file, terminal, run);
-  StepFiles files(case_file, run.loaded.mesh);
+  auto const& l = run.loaded;
+  StepFiles files(case_file, l.mesh);
   Stepper stepper(case_file, run);
-  Stopwatch part;
-  std::vector<StepResult> steps;
-  double morphing = 0, measuring = 0, writing = 0;
-  bool inverted = false;
-  for (int step = 0; step < options.steps; ++step) {
-    terminal.progress(fmt::format("step {} of {}", step + 1, options.steps));
-    part.lap();
-    stepper.morph(step);
-    morphing += part.lap();
-    auto const& l = run.loaded;
-    QualityReport const quality = measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_morphed(run));
-    measuring += part.lap();
-    steps.push_back(step_result(options.time_at(step), l.mesh.coordinates, run.morphed, quality));
-    inverted = inverted || steps.back().newly_inverted > 0;
-    part.lap();
-    // Once a step cannot be used the files are not needed; the table still says how the others fare.
-    if (!inverted || case_file.guard.write_inverted) files.add(run.morphed, output_fields(case_file, run));
-    writing += part.lap();
-  }
-  std::size_t const worst = worst_of(steps);
-  stepper.morph(int(worst));
+  Steps const steps =
+      run_steps(case_file, terminal, files,
+                {[&](int step) { stepper.morph(step); },
+                 [&] { return measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_morphed(run)); },
+                 [&] { return output_fields(case_file, run); }, l.mesh.coordinates, run.morphed});
+  stepper.morph(int(steps.worst()));
   measure(case_file, run);
   if (stepper.relaxed() > 0)
     run.notes.push_back(
         fmt::format("in a step up to {} elements had lost four fifths of their determinant or more; "
                     "displacements around them are smoothed",
                     stepper.relaxed()));
-  std::string const count = fmt::format(", {} steps", options.steps);
-  run.times.push_back({"morph" + count, morphing});
-  run.times.push_back({"quality" + count, measuring});
-  run.times.push_back({"write" + count, writing});
+  run.times.insert(run.times.end(), steps.times.begin(), steps.times.end());
 
-  bool const written = !inverted || case_file.guard.write_inverted;
-  auto const& report = case_file.output_options.report;
-  std::optional<PendingFile> pending;
-  if (report) {
-    nlohmann::json json = report_json(case_file, run);
-    json["output"] = written ? nlohmann::json(options.output.string()) : nlohmann::json(nullptr);
-    json["sequence"] = steps_json(steps, worst, options);
-    pending.emplace(*report, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  }
-  if (written) {
-    terminal.progress("writing " + options.output.string());
-    files.commit();
-  }
-  if (pending) pending->commit();
-
-  std::string text;
-  for (auto const& note : run.notes) text += "note: " + note + "\n";
-  text += regions_text(*run.prepared) + "\n" + steps_table(steps, worst);
-  text += fmt::format("\nstep {}, the worst one\n\n", worst + 1);
-  text += format_result(case_file, run);
-  if (written) text += wrote_text(options);
-  if (report) text += fmt::format("wrote {}\n", report->string());
-  terminal.say(text);
-  if (terminal.quiet())
-    for (auto const& s : run.shortfalls) terminal.warn(s.message);
-  if (!written) terminal.error(refusal_text(options, "[near_field] or [boundary_layer]"));
-  return any_failure(run.shortfalls) || !written ? falls_short : done;
+  std::string head;
+  for (auto const& note : run.notes) head += "note: " + note + "\n";
+  head += regions_text(*run.prepared) + "\n";
+  return finish_sequence(case_file, terminal, files, steps,
+                         {[&] { return report_json(case_file, run); }, head, format_result(case_file, run),
+                          run.shortfalls, "[near_field] or [boundary_layer]"});
 }
 
 }  // namespace gridmorph::cli
