@@ -97,12 +97,7 @@ PeriodicSummary describe_periodic(Interface1to1 const& interface) {
   double const angle = norm(w);
   out.angle_deg = angle * 180 / std::numbers::pi;
   if (angle > 0) {
-    // One axis for both directions of the pair: the dominant component counts positive.
-    double const parts[3] = {w.x, w.y, w.z};
-    double const dominant =
-        *std::max_element(parts, parts + 3, [](double a, double b) { return std::fabs(a) < std::fabs(b); });
-    Vec3 const d = ((dominant > 0 ? 1.0 : -1.0) / angle) * w;
-    out.axis = {periodic.rotation_center, {d.x + 0.0, d.y + 0.0, d.z + 0.0}};  // no negative zeros
+    out.axis = rotation_axis(periodic);
     double const sectors = 2 * std::numbers::pi / angle;
     if (std::fabs(sectors - std::round(sectors)) < 1e-3 * sectors) out.sectors = int(std::lround(sectors));
   } else {
@@ -203,6 +198,15 @@ void Box::add(Vec3 const& p) {
 void Box::add(Box const& other) {
   add(other.low);
   add(other.high);
+}
+
+Axis rotation_axis(Periodic const& periodic) {
+  Vec3 const w = periodic.rotation_angle_rad;
+  double const parts[3] = {w.x, w.y, w.z};
+  double const dominant =
+      *std::max_element(parts, parts + 3, [](double a, double b) { return std::fabs(a) < std::fabs(b); });
+  Vec3 const d = ((dominant > 0 ? 1.0 : -1.0) / norm(w)) * w;
+  return {periodic.rotation_center, {d.x + 0.0, d.y + 0.0, d.z + 0.0}};  // no negative zeros
 }
 
 MeshSummary summarize(Mesh const& mesh) {

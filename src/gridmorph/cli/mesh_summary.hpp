@@ -75,6 +75,9 @@ struct MeshSummary {
   std::optional<BlocksSummary> blocks;  ///< only without problems
 };
 
+/// Of a periodic rotation, one for both of its directions: the dominant component counts positive.
+Axis rotation_axis(Periodic const& periodic);
+
 /// Cost: O(nodes) for extents, O(boundary nodes) for the rest.
 MeshSummary summarize(Mesh const& mesh);
 

@@ -3,6 +3,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
+#include <gridmorph/motion/detail/plane_fit.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <fmt/format.h>
@@ -20,8 +21,9 @@ LoadedMesh load_unstructured(std::filesystem::path const& path) {
   out.topology = make_topology(out.mesh);
   out.claims = claim_boundary(out.mesh, out.topology);
   out.problems = out.claims.problems;
-  out.orientation = zone_orientation(out.mesh);
-  for (auto const& negative : negative_elements(out.mesh))
+  auto const signs = volume_signs(out.mesh);
+  out.orientation = zone_orientation(out.mesh, signs);
+  for (auto const& negative : negative_elements(out.mesh, signs))
     out.problems.push_back(out.mesh.source + ": " + describe(out.mesh, negative));
   constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
   for (auto const& pair : undeclared_connections(out.mesh, tolerance * out.mesh.size()))
@@ -210,6 +212,7 @@ namespace {
 /// Whether all nodes lie in the plane through the first of them, across the sum of the faces' areas.
 bool is_flat(LoadedMesh const& loaded, std::vector<int> const& patches) {
   auto const& mesh = loaded.mesh;
+  Vec3 const across = plane_normal(mesh);
   std::vector<Vec3> points;
   Vec3 normal;
   for (Index f = 0; f < loaded.topology.boundary.size(); ++f) {
@@ -217,14 +220,12 @@ bool is_flat(LoadedMesh const& loaded, std::vector<int> const& patches) {
     auto const face = loaded.topology.boundary.nodes[f];
     Vec3 const origin = mesh.coordinates[face[0]];
     for (Number const n : face) points.push_back(mesh.coordinates[n]);
-    if (mesh.dimension == 2) normal += cross(mesh.coordinates[face[1]] - origin, plane_normal(mesh));
+    if (mesh.dimension == 2) normal += cross(mesh.coordinates[face[1]] - origin, across);
     for (std::size_t k = 2; k < face.size(); ++k)
       normal += cross(mesh.coordinates[face[k - 1]] - origin, mesh.coordinates[face[k]] - origin);
   }
   double const length = norm(normal);
-  return length > 0 && std::all_of(points.begin(), points.end(), [&](Vec3 const& p) {
-           return std::fabs(dot(normal, p - points.front())) <= 1e-6 * mesh.size() * length;
-         });
+  return length > 0 && deviation_from_plane(points, points.front(), (1 / length) * normal) <= 1e-6 * mesh.size();
 }
 
 /// The axis that all periodic rotations share, its largest component positive.
@@ -232,13 +233,9 @@ std::optional<Axis> common_axis(UnstructuredMesh const& mesh) {
   std::optional<Axis> axis;
   for (auto const& c : mesh.connections) {
     if (!c.periodic || !(norm(c.periodic->rotation_angle_rad) > 0)) continue;
-    Vec3 d = (1 / norm(c.periodic->rotation_angle_rad)) * c.periodic->rotation_angle_rad;
-    double const parts[3] = {d.x, d.y, d.z};
-    double const largest =
-        *std::max_element(parts, parts + 3, [](double a, double b) { return std::fabs(a) < std::fabs(b); });
-    if (largest < 0) d = -d;
-    if (axis && distance(axis->direction, d) > 1e-5) return {};
-    if (!axis) axis = Axis{c.periodic->rotation_center, d};
+    Axis const own = rotation_axis(*c.periodic);
+    if (axis && distance(axis->direction, own.direction) > 1e-5) return {};
+    if (!axis) axis = own;
   }
   return axis;
 }

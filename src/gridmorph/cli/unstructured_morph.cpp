@@ -53,7 +53,8 @@ void move_nodes(UnstructuredRun& out, Terminal& terminal, bool keep_background) 
 void relax(UnstructuredRun& out, Terminal& terminal) {
   terminal.progress("looking for bad elements");
   Stopwatch watch;
-  RelaxReport const report = relax_bad_elements(out.loaded.mesh, out.loaded.topology, *out.prepared, out.morphed);
+  RelaxReport const report = relax_bad_elements(out.loaded.mesh, out.loaded.topology, *out.prepared, out.morphed,
+                                                {.orientation = out.loaded.orientation});
   if (report.before > 0)
     out.notes.push_back(fmt::format(
         "{} elements had lost four fifths of their determinant or more; displacements around them are smoothed in {} "

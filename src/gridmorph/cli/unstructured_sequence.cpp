@@ -39,7 +39,8 @@ class Stepper {
                    {moved.x.data(), moved.y.data(), moved.z.data()});
     compat::fence(exec_, "gridmorph::cli (step read by the host)");
     auto const& l = run_.loaded;
-    relaxed_ = std::max(relaxed_, relax_bad_elements(l.mesh, l.topology, *run_.prepared, moved).before);
+    RelaxOptions const options{.orientation = l.orientation};
+    relaxed_ = std::max(relaxed_, relax_bad_elements(l.mesh, l.topology, *run_.prepared, moved, options).before);
   }
   /// Most elements that were bad in a step.
   [[nodiscard]] Index relaxed() const { return relaxed_; }

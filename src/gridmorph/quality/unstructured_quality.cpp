@@ -10,9 +10,6 @@
 
 namespace gridmorph {
 
-namespace {
-
-/// Sign of an element's volume: all that its numbering decides.
 std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
   using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;
@@ -32,11 +29,9 @@ std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
   return sign;
 }
 
-std::vector<int> orientation_of(UnstructuredMesh const& mesh, std::vector<int> const& known) {
+std::vector<int> detail::orientation_of(UnstructuredMesh const& mesh, std::vector<int> const& known) {
   return known.size() == mesh.zones.size() ? known : zone_orientation(mesh);
 }
-
-}  // namespace
 
 Vec3 plane_normal(UnstructuredMesh const& mesh) {
   Vec3 const up{0, 0, 1};
@@ -58,8 +53,9 @@ Vec3 plane_normal(UnstructuredMesh const& mesh) {
   return length > 0 ? (1 / length) * sum : up;
 }
 
-std::vector<int> zone_orientation(UnstructuredMesh const& mesh) {
-  auto const sign = volume_signs(mesh);
+std::vector<int> zone_orientation(UnstructuredMesh const& mesh) { return zone_orientation(mesh, volume_signs(mesh)); }
+
+std::vector<int> zone_orientation(UnstructuredMesh const& mesh, std::vector<signed char> const& sign) {
   std::vector<int> out;
   for (auto const& zone : mesh.zones) {
     Index balance = 0;
@@ -70,7 +66,10 @@ std::vector<int> zone_orientation(UnstructuredMesh const& mesh) {
 }
 
 std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh) {
-  auto const sign = volume_signs(mesh);
+  return negative_elements(mesh, volume_signs(mesh));
+}
+
+std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh, std::vector<signed char> const& sign) {
   std::vector<NegativeElements> out;
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
     auto const& zone = mesh.zones[std::size_t(z)];
@@ -112,7 +111,7 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
     throw MeshError("near-field mask: it holds " + std::to_string(input.near_field.extent(0)) +
                     " elements, the mesh '" + mesh.source + "' has " + std::to_string(mesh.n_elements()));
 
-  std::vector<int> const orientation = orientation_of(mesh, input.orientation);
+  std::vector<int> const orientation = detail::orientation_of(mesh, input.orientation);
   std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
   auto const tables = detail::element_tables<MemorySpace>(mesh);
   auto const first_element = detail::upload(exec, "gridmorph::quality::zones", detail::first_elements(mesh));
@@ -220,7 +219,7 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
   }
   auto const tables = detail::element_tables<MemorySpace>(mesh);
   std::vector<Number> zone_of(std::size_t(n_elements), 0);
-  std::vector<int> const orientation = orientation_of(mesh, input.orientation);
+  std::vector<int> const orientation = detail::orientation_of(mesh, input.orientation);
   for (std::size_t z = 0; z < mesh.zones.size(); ++z)
     std::fill_n(zone_of.begin() + mesh.zones[z].first_element, mesh.zones[z].n_elements, Number(z));
   auto const zone = detail::view_of<MemorySpace>(zone_of, "gridmorph::quality::zone_of");

@@ -28,7 +28,11 @@ struct UnstructuredQualityInput {
 /// normal of its elements. (0, 0, 1) for a 3-D mesh.
 Vec3 plane_normal(UnstructuredMesh const& mesh);
 
-/// +1, or -1 for a zone most of whose elements are numbered inside out (negative volume in SIDS order). Host, parallel.
+/// (n_elements) Signs of the elements' volumes in SIDS order, 0 for polyhedra: all that their numbering decides. Host, parallel.
+std::vector<signed char> volume_signs(UnstructuredMesh const& mesh);
+
+/// +1, or -1 for a zone most of whose elements are numbered inside out (negative volume in SIDS order).
+std::vector<int> zone_orientation(UnstructuredMesh const& mesh, std::vector<signed char> const& volume_signs);
 std::vector<int> zone_orientation(UnstructuredMesh const& mesh);
 
 /// Elements of one type in one zone whose volume is negative as they are numbered.
@@ -39,7 +43,9 @@ struct NegativeElements {
   Index first = -1;  ///< number in the mesh
 };
 
-/// Only where there are any; host, parallel.
+/// Only where there are any.
+std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh,
+                                                std::vector<signed char> const& volume_signs);
 std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh);
 
 /// "zone 'Fluid': 12 of 400 prisms are numbered inside out (negative volume), the first is prism 17".

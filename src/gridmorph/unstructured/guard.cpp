@@ -1,5 +1,5 @@
 #include <gridmorph/kernels/element_quality.hpp>
-#include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/quality/detail/element_tables.hpp>
 #include <gridmorph/unstructured/guard.hpp>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ class Relaxation {
         prepared_(prepared),
         x_(morphed),
         options_(options),
-        orientation_(zone_orientation(mesh)) {}
+        orientation_(detail::orientation_of(mesh, options.orientation)) {}
 
   RelaxReport run() {
     RelaxReport report;

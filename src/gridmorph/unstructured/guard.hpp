@@ -3,13 +3,16 @@
 
 #include <gridmorph/unstructured/unstructured_plan.hpp>
 
+#include <vector>
+
 namespace gridmorph {
 
 struct RelaxOptions {
-  double share = 0.2;  ///< an element is bad when its determinant is not above this share of the baseline's
-  int rounds = 6;      ///< of finding bad elements and smoothing around them
-  int rings = 3;       ///< of nodes around a bad element that may move
-  int sweeps = 8;      ///< of Jacobi iterations per round
+  double share = 0.2;            ///< an element is bad when its determinant is not above this share of the baseline's
+  int rounds = 6;                ///< of finding bad elements and smoothing around them
+  int rings = 3;                 ///< of nodes around a bad element that may move
+  int sweeps = 8;                ///< of Jacobi iterations per round
+  std::vector<int> orientation;  ///< zone_orientation() of the mesh; left empty, it is found again
 };
 
 struct RelaxReport {

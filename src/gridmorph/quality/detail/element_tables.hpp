@@ -90,6 +90,9 @@ KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, ElementView
 /// Elements on the other side of each side of each element, through connections too, where there is one.
 NumberLists neighbour_lists(UnstructuredMesh const& mesh, UnstructuredTopology const& topology);
 
+/// `known` where it has an entry per zone, else zone_orientation().
+std::vector<int> orientation_of(UnstructuredMesh const& mesh, std::vector<int> const& known);
+
 /// Throws MeshError unless each of the Views holds every node of the mesh.
 void check_size(UnstructuredMesh const& mesh, std::size_t nx, std::size_t ny, std::size_t nz, std::string const& what);
 
