@@ -56,7 +56,8 @@ TEST_F(UnstructuredTest, QualityComparesAndFallsShortWhereElementsTurnOver) {
   EXPECT_EQ(moved.status, 0) << moved.err;
   auto const region = nlohmann::json::parse(moved.out)["morphed"]["far_field"];
   EXPECT_NEAR(region["measures"]["relative_displacement"]["max"].get<double>(), 0.2, 1e-12);
-  EXPECT_EQ(region["measures"]["volume"]["worst"]["element"], 1);
+  int const smallest = region["measures"]["volume"]["worst"]["element"];
+  EXPECT_TRUE(smallest == 1 || smallest == 3) << smallest;  // they are of one size
   EXPECT_EQ(gridmorph("quality mesh.su2 turned.su2").status, 1);
 }
 

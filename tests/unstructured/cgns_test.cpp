@@ -5,6 +5,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <cgnslib.h>
@@ -94,6 +95,36 @@ TEST_P(UnstructuredCgns, PeriodicConnectionsComeThrough) {
   EXPECT_EQ(
       std::count_if(topology.boundary.across.begin(), topology.boundary.across.end(), [](Number e) { return e >= 0; }),
       2 * 4);
+}
+
+TEST_P(UnstructuredCgns, FilesOfAnOrderedMeshAreInTheOrderOfTheFile) {
+  for (auto const& mesh : {mixed_box(), to_hexahedra(two_zones({}, true))}) {
+    auto ordered = mesh;
+    reorder(ordered, order_by_position(mesh));
+    ASSERT_NE(ordered.elements.nodes.item, mesh.elements.nodes.item);
+    Coordinates after(mesh.n_nodes()), ordered_after(mesh.n_nodes());
+    OutputFields fields{true, {{"number", {}}}, {{"element", {}}}}, ordered_fields = fields;
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      after.set(n, wavy(mesh.coordinates[n], 0.1));
+      ordered_after.set(n, wavy(ordered.coordinates[n], 0.1));
+      fields.nodes[0].values.push_back(double(n));
+      ordered_fields.nodes[0].values.push_back(ordered.file_order.node[std::size_t(n)]);
+    }
+    for (Index e = 0; e < mesh.n_elements(); ++e) {
+      fields.cells[0].values.push_back(double(e));
+      ordered_fields.cells[0].values.push_back(ordered.file_order.element[std::size_t(e)]);
+    }
+    auto const input = folder_.file("in.cgns"), one = folder_.file("one.cgns"), two = folder_.file("two.cgns");
+    write_mesh(input, mesh, {.format = GetParam()});
+    write_mesh(two, ordered, {.format = GetParam()});
+    EXPECT_EQ(dump_tree(input), dump_tree(two));
+    write_morphed(input, one, mesh, after, fields);
+    write_morphed(input, two, ordered, ordered_after, ordered_fields);
+    auto const expected = dump_tree(one);
+    EXPECT_EQ(dump_tree(two), expected);
+    write_mesh(two, ordered, ordered_after, ordered_fields, {.format = GetParam()});
+    EXPECT_EQ(dump_tree(two), expected);
+  }
 }
 
 TEST_P(UnstructuredCgns, MorphedFilesDifferInTheirCoordinatesAlone) {

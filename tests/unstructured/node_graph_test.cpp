@@ -90,7 +90,7 @@ TEST(NodeGraph, NeighboursAreTheOtherEndsOfAllEdges) {
       expected[b].insert(a);
     }
   }
-  auto const graph = make_node_graph(mesh);
+  auto const graph = make_node_graph(mesh, elements_of_nodes(mesh));
   ASSERT_EQ(graph.neighbours.size(), mesh.n_nodes());
   for (Number n = 0; n < mesh.n_nodes(); ++n) {
     auto const found = graph.neighbours[n];

@@ -35,7 +35,8 @@ struct Channel {
   }
   [[nodiscard]] BoundaryConditions conditions() const {
     auto const topology = make_topology(mesh);
-    return boundary_conditions(mesh, topology, claim_boundary(mesh, topology), make_node_graph(mesh), motion, {});
+    return boundary_conditions(mesh, topology, claim_boundary(mesh, topology),
+                               make_node_graph(mesh, topology.elements_of_nodes), motion, {});
   }
   [[nodiscard]] bool holds(BoundaryConditions const& b, double x, double y) const {
     return std::binary_search(b.known.begin(), b.known.end(), at(x, y));

@@ -58,9 +58,7 @@ int quality_of_unstructured(CommandLine const& options, Terminal& terminal) {
     if (mesh_kind(options.second->string()) != MeshKind::unstructured)
       throw MeshError(fmt::format("'{}' is unstructured and '{}' is not; compare a mesh with its own baseline",
                                   options.input.string(), options.second->string()));
-    UnstructuredMesh const other = read_unstructured_mesh(options.second->string());
-    check_same_mesh(loaded.mesh, other);
-    morphed = other.coordinates;
+    morphed = coordinates_of_same_mesh(loaded.mesh, read_unstructured_mesh(options.second->string()));
   }
   terminal.progress("measuring quality");
   QualityReport const before = measure_mesh(loaded);

@@ -2,6 +2,7 @@
 #include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/motion/detail/plane_fit.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
@@ -18,6 +19,7 @@ namespace gridmorph::cli {
 LoadedMesh load_unstructured(std::filesystem::path const& path) {
   LoadedMesh out;
   out.mesh = read_unstructured_mesh(path.string());
+  reorder(out.mesh, order_by_position(out.mesh));
   out.topology = make_topology(out.mesh);
   out.claims = claim_boundary(out.mesh, out.topology);
   out.problems = out.claims.problems;
@@ -41,16 +43,20 @@ QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> 
   return measure_quality(Kokkos::DefaultHostExecutionSpace(), loaded.mesh, loaded.topology, loaded.claims, input);
 }
 
-void check_same_mesh(UnstructuredMesh const& a, UnstructuredMesh const& b) {
-  bool same = a.zones.size() == b.zones.size() && a.elements.type == b.elements.type &&
-              a.elements.nodes.item == b.elements.nodes.item;
+Coordinates coordinates_of_same_mesh(UnstructuredMesh const& a, UnstructuredMesh b) {
+  bool same = a.zones.size() == b.zones.size();
   for (std::size_t z = 0; same && z < a.zones.size(); ++z)
     same = a.zones[z].n_nodes == b.zones[z].n_nodes && a.zones[z].n_elements == b.zones[z].n_elements;
+  if (same) {
+    reorder(b, a.file_order);
+    same = a.elements.type == b.elements.type && a.elements.nodes.item == b.elements.nodes.item;
+  }
   if (!same)
     throw MeshError(
         fmt::format("'{}' ({} nodes, {} elements) and '{}' ({} nodes, {} elements) are not the same mesh; "
                     "compare a mesh with its own baseline",
                     a.source, a.n_nodes(), a.n_elements(), b.source, b.n_nodes(), b.n_elements()));
+  return b.coordinates;
 }
 
 namespace {

@@ -14,7 +14,7 @@
 
 namespace gridmorph::cli {
 
-/// A mesh with what follows from it.
+/// A mesh, ordered by position, with what follows from it.
 struct LoadedMesh {
   UnstructuredMesh mesh;
   UnstructuredTopology topology;
@@ -28,8 +28,9 @@ LoadedMesh load_unstructured(std::filesystem::path const& path);
 /// Quality at all wall patches; of `morphed` against the mesh itself where it is given.
 QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed = {});
 
-/// Throws MeshError unless both meshes have the same zones, nodes and elements.
-void check_same_mesh(UnstructuredMesh const& a, UnstructuredMesh const& b);
+/// Coordinates of b, as it was read, in the order of the loaded mesh a. Throws MeshError unless both have the same zones,
+/// nodes and elements.
+Coordinates coordinates_of_same_mesh(UnstructuredMesh const& a, UnstructuredMesh b);
 
 /// Zones, boundaries, connections, notes and problems; `quality` is printed last.
 std::string inspect_text(LoadedMesh const& loaded, std::string const& quality);

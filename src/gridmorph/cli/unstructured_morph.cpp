@@ -74,8 +74,7 @@ void write_regions(std::string const& path, UnstructuredRun const& out) {
   for (Region const r : report.regions.element) region.values.push_back(double(2 - int(r)));
   fields.cells.push_back(std::move(region));
   fields.nodes.push_back({"Layer", std::vector<double>(report.layer.begin(), report.layer.end())});
-  write_mesh(path, mesh);
-  write_morphed(path, path, mesh, out.morphed, fields);
+  write_mesh(path, mesh, out.morphed, fields);
 }
 
 void write_stages(std::filesystem::path const& folder, UnstructuredRun const& out) {

@@ -25,7 +25,8 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 
 /// Size of the largest displacement in any step.
 double largest_motion(CaseFile const& case_file, LoadedMesh const& loaded, UnstructuredOptions const& options) {
-  auto const boundary = boundary_conditions(loaded.mesh, loaded.topology, loaded.claims, make_node_graph(loaded.mesh),
+  auto const boundary = boundary_conditions(loaded.mesh, loaded.topology, loaded.claims,
+                                            make_node_graph(loaded.mesh, loaded.topology.elements_of_nodes),
                                             case_file.motion, options.walls);
   double largest = 0;
   auto const& sequence = *case_file.sequence;
@@ -110,21 +111,21 @@ UnstructuredQualityInput<Kokkos::HostSpace> quality_of_morphed(UnstructuredRun c
 void measure(CaseFile const& case_file, UnstructuredRun& out) {
   auto const& l = out.loaded;
   out.before = measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_baseline(out));
-  out.after = measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_morphed(out));
+  auto morphed = quality_of_morphed(out);
+  out.quality_fields.clear();
+  if (case_file.output_options.quality)
+    for (Measure const m : {Measure::aspect_ratio, Measure::determinant_3x3x3, Measure::minimum_angle_deg,
+                            Measure::equiangle_skewness, Measure::relative_displacement}) {
+      auto& values = out.quality_fields.emplace_back(field_name(m), std::vector<double>()).values;
+      values.resize(std::size_t(l.mesh.n_elements()));
+      morphed.fields[m] = Kokkos::View<double*, Kokkos::HostSpace>(values.data(), values.size());
+    }
+  out.after = measure_quality(Exec(), l.mesh, l.topology, l.claims, morphed);
   out.shortfalls = shortfalls(out.before, out.after, thresholds_of(case_file));
 }
 
 OutputFields output_fields(CaseFile const& case_file, UnstructuredRun const& out) {
-  OutputFields fields;
-  fields.displacement = case_file.output_options.displacement;
-  if (!case_file.output_options.quality) return fields;
-  constexpr std::array measures{Measure::aspect_ratio, Measure::determinant_3x3x3, Measure::minimum_angle_deg,
-                                Measure::equiangle_skewness, Measure::relative_displacement};
-  auto const values = cell_fields(Exec(), out.loaded.mesh, out.loaded.topology, quality_of_morphed(out), measures);
-  for (std::size_t m = 0; m < measures.size(); ++m)
-    fields.cells.push_back(
-        {field_name(measures[m]), std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0))});
-  return fields;
+  return {case_file.output_options.displacement, {}, out.quality_fields};
 }
 
 nlohmann::json report_json(CaseFile const& case_file, UnstructuredRun const& out) {

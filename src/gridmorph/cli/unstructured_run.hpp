@@ -24,6 +24,7 @@ struct UnstructuredRun {
   Coordinates morphed;
   std::optional<Coordinates> background;  ///< morphed
   QualityReport before, after;
+  std::vector<CellField> quality_fields;  ///< of the morphed mesh, where [output] asks for them
   std::vector<Shortfall> shortfalls;
   std::vector<std::string> notes;
   StepTimes times;
@@ -38,7 +39,7 @@ UnstructuredQualityInput<Kokkos::HostSpace> quality_of_morphed(UnstructuredRun c
 /// Measures before and after, and what falls short.
 void measure(CaseFile const& case_file, UnstructuredRun& out);
 
-/// What [output] adds to the output mesh.
+/// What [output] adds to the output mesh; quality as measure() found it.
 OutputFields output_fields(CaseFile const& case_file, UnstructuredRun const& run);
 /// The report, less the name of the output.
 nlohmann::json report_json(CaseFile const& case_file, UnstructuredRun const& run);

@@ -20,8 +20,13 @@ MeshKind mesh_kind(std::string const& path);
 UnstructuredMesh read_unstructured_mesh(std::string const& path);
 
 /// Writes a mesh as a new CGNS file: zones, elements, coordinates, families, boundary conditions (faces as sections of their
-/// own), connections as Abutting1to1 point lists with Periodic_t. Polyhedra are refused. The file appears whole or not at all.
+/// own), connections as Abutting1to1 point lists with Periodic_t; in the order of the file that the mesh came from. Polyhedra are
+/// refused. The file appears whole or not at all.
 void write_mesh(std::string const& path, UnstructuredMesh const& mesh, WriteOptions const& options = {});
+
+/// The same with other coordinates than the mesh's own, and with fields.
+void write_mesh(std::string const& path, UnstructuredMesh const& mesh, Coordinates const& morphed,
+                OutputFields const& fields, WriteOptions const& options = {});
 
 /// Copies the file that `mesh` was read from and replaces its node coordinates; everything else comes through unchanged.
 /// CGNS: in the precision they are stored in. SU2: as text, byte for byte the same where a coordinate did not change; it

@@ -1,7 +1,10 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
+#include <gridmorph/io/unstructured_fields.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 
 #include <algorithm>
 #include <array>
@@ -56,7 +59,7 @@ std::string bc_type_of(UnstructuredPatch const& patch) {
 
 class Writer {
  public:
-  Writer(cgns::File& file, UnstructuredMesh const& mesh) : file_(file), mesh_(mesh) {}
+  Writer(cgns::File& file, UnstructuredMesh const& mesh, Coordinates const& x) : file_(file), mesh_(mesh), x_(x) {}
 
   void run() {
     file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &library_version);
@@ -97,8 +100,7 @@ class Writer {
 
   void coordinates(UnstructuredZone const& zone, double zone_id) {
     double const grid = file_.create(zone_id, "GridCoordinates", "GridCoordinates_t");
-    std::array<double const*, 3> const arrays{mesh_.coordinates.x.data(), mesh_.coordinates.y.data(),
-                                              mesh_.coordinates.z.data()};
+    std::array<double const*, 3> const arrays{x_.x.data(), x_.y.data(), x_.z.data()};
     static constexpr std::array names{"CoordinateX", "CoordinateY", "CoordinateZ"};
     for (std::size_t c = 0; c < 3; ++c) {
       double const* source = arrays[c] + zone.first_node;
@@ -226,6 +228,7 @@ class Writer {
 
   cgns::File& file_;
   UnstructuredMesh const& mesh_;
+  Coordinates x_;
   std::map<std::string, double> bases_;
 };
 
@@ -244,15 +247,36 @@ std::uint64_t bytes_needed(UnstructuredMesh const& mesh) {
 }  // namespace
 
 void write_mesh(std::string const& path, UnstructuredMesh const& mesh, WriteOptions const& options) {
+  write_mesh(path, mesh, mesh.coordinates, {}, options);
+}
+
+void write_mesh(std::string const& path, UnstructuredMesh const& mesh, Coordinates const& morphed,
+                OutputFields const& fields, WriteOptions const& options) {
   check_mesh(mesh);
-  if (mesh.coordinates.size() != mesh.n_nodes())
+  if (morphed.size() != mesh.n_nodes())
     throw MeshError(path + ": the mesh has " + std::to_string(mesh.n_nodes()) + " nodes, but coordinates of " +
-                    std::to_string(mesh.coordinates.size()));
+                    std::to_string(morphed.size()));
+  io::check_fields(mesh.n_nodes(), mesh.n_elements(), mesh.coordinates, morphed, fields);
   io::OutputFile target(path);
-  target.reserve(bytes_needed(mesh));
-  cgns::File file(target.path(), cgns::File::Mode::create, options.format);
-  Writer(file, mesh).run();
-  file.close();
+  target.reserve(bytes_needed(mesh) +
+                 io::bytes_of_fields(fields, mesh.zones.size(), mesh.n_nodes(), mesh.n_elements()));
+  {
+    cgns::File file(target.path(), cgns::File::Mode::create, options.format);
+    if (mesh.file_order.node.empty())
+      Writer(file, mesh, morphed).run();
+    else
+      Writer(file, in_file_order(mesh), in_file_order(mesh, morphed)).run();
+    file.close();
+  }
+  if (!fields.empty()) {
+    cgns::File file(target.path(), cgns::File::Mode::modify);
+    auto const tree = file.tree();
+    Problems problems;
+    auto const layout = find_unstructured_zones(file, tree, problems);
+    problems.throw_if_any<IoError>();
+    write_fields(file, layout, mesh, morphed, fields);
+    file.close();
+  }
   target.commit();
 }
 

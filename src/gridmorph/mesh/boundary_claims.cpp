@@ -110,7 +110,7 @@ class Claims {
       if (open == 0) continue;
       std::string nodes;
       for (Number const n : topology_.boundary.nodes[first])
-        nodes += (nodes.empty() ? "" : ", ") + std::to_string(n - zone.first_node + mesh_.first_number);
+        nodes += (nodes.empty() ? "" : ", ") + std::to_string(node_number_in_file(mesh_, n));
       out_.problems.push_back(mesh_.source + ": zone '" + zone.name + "': " + std::to_string(open) +
                               (open == 1 ? " boundary face belongs" : " boundary faces belong") +
                               " to no patch and no connection, the first is that of " +

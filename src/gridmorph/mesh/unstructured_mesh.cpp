@@ -97,14 +97,22 @@ std::array<Index, n_element_types> count_types(UnstructuredMesh const& mesh, int
   return count;
 }
 
+Index node_number_in_file(UnstructuredMesh const& mesh, Index node) {
+  auto const& order = mesh.file_order.node;
+  Index const place = order.empty() ? node : order[std::size_t(node)];
+  return place - mesh.zones[std::size_t(mesh.zone_of_node(node))].first_node + mesh.first_number;
+}
+
 std::string describe_node(UnstructuredMesh const& mesh, Index node) {
-  auto const& zone = mesh.zones[std::size_t(mesh.zone_of_node(node))];
-  return "zone '" + zone.name + "' node " + std::to_string(node - zone.first_node + mesh.first_number);
+  return "zone '" + mesh.zones[std::size_t(mesh.zone_of_node(node))].name + "' node " +
+         std::to_string(node_number_in_file(mesh, node));
 }
 
 Index number_in_file(UnstructuredMesh const& mesh, Index element) {
   if (!mesh.elements.number.empty()) return mesh.elements.number[std::size_t(element)];
-  return element - mesh.zones[std::size_t(mesh.zone_of_element(element))].first_element + mesh.first_number;
+  auto const& order = mesh.file_order.element;
+  Index const place = order.empty() ? element : order[std::size_t(element)];
+  return place - mesh.zones[std::size_t(mesh.zone_of_element(element))].first_element + mesh.first_number;
 }
 
 std::string describe_element(UnstructuredMesh const& mesh, Index element) {

@@ -51,7 +51,8 @@ struct UnstructuredZone {
 struct Elements {
   std::vector<ElementType> type;  ///< (n_elements)
   NumberLists nodes;              ///< SIDS order: corners first, then the further nodes of second-order elements
-  std::vector<Number> number;     ///< as the file counts them, for messages; empty: first_number + place in its zone
+  std::vector<Number>
+      number;  ///< as the file counts them, for messages; empty: first_number + place in the file's zone
 
   [[nodiscard]] Index size() const { return Index(type.size()); }
   /// Corner nodes of element e.
@@ -91,6 +92,13 @@ struct Polyhedra {
   NumberLists faces;              ///< nodes in order around each face, the normal pointing outwards
 };
 
+/// Where in its file each node and element stands, counted from 0 through all zones; empty: where it stands in the mesh. See
+/// file_order.hpp.
+struct FileOrder {
+  std::vector<Number> node;     ///< (n_nodes) or empty
+  std::vector<Number> element;  ///< (n_elements) or empty
+};
+
 struct UnstructuredMesh {
   int dimension = 3;  ///< of the elements: 3 (volumes) or 2 (surfaces)
   std::vector<UnstructuredZone> zones;
@@ -103,6 +111,7 @@ struct UnstructuredMesh {
   std::string source;                               ///< file name or what made it, for messages
   std::vector<std::string> notes;                   ///< what the reader skipped or assumed, for `inspect` and logs
   int first_number = 1;                             ///< of nodes in messages: 1 in CGNS, 0 in SU2 files
+  FileOrder file_order;                             ///< set by reorder(); readers leave it empty
 
   [[nodiscard]] Index n_nodes() const { return zones.empty() ? 0 : zones.back().first_node + zones.back().n_nodes; }
   [[nodiscard]] Index n_elements() const { return elements.size(); }
@@ -134,7 +143,8 @@ std::array<Index, n_element_types> count_types(UnstructuredMesh const& mesh, int
 std::string describe_node(UnstructuredMesh const& mesh, Index node);
 /// "zone 'Fluid' tetrahedron 4711", as the file counts.
 std::string describe_element(UnstructuredMesh const& mesh, Index element);
-/// The number by which the file knows an element of its zone.
+/// The numbers by which the file knows a node and an element of its zone.
+Index node_number_in_file(UnstructuredMesh const& mesh, Index node);
 Index number_in_file(UnstructuredMesh const& mesh, Index element);
 /// Patch name for messages: "'blade' (BC 'blade_ss', zone 'Zone 1')".
 std::string describe_patch(UnstructuredMesh const& mesh, UnstructuredPatch const& patch);

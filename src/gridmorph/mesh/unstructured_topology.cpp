@@ -1,4 +1,4 @@
-#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/mesh/detail/number_buckets.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
@@ -9,16 +9,6 @@
 namespace gridmorph {
 
 namespace {
-
-using HostExec = Kokkos::DefaultHostExecutionSpace;
-
-/// Calls f(n) for 0 <= n < count on all cores; f writes nothing that another n writes.
-template <class Function>
-void for_all(char const* label, Index count, Function const& f) {
-  HostExec const exec;
-  Kokkos::parallel_for(label, Kokkos::RangePolicy<HostExec, Kokkos::IndexType<Index>>(exec, 0, count), f);
-  compat::fence(exec, "gridmorph::unstructured_topology (read by the host)");
-}
 
 /// Lists of the items that name a key, ascending, from the keys of each item; an item that names a key twice counts once.
 template <class KeysOf>
@@ -71,6 +61,34 @@ bool same_side(UnstructuredMesh const& mesh, KeyedSide const& a, KeyedSide const
   if (a.n_nodes <= max_face_corners) return true;
   std::array<Number, max_face_corners> room_a{}, room_b{};
   return same_set(side_nodes(mesh, a.element, a.side, room_a), side_nodes(mesh, b.element, b.side, room_b));
+}
+
+/// Corner nodes of a side of an element with tables, ascending, each once. Returns how many there are.
+inline int sort_side(ElementType type, Number const* node, int side, std::array<Number, max_face_corners>& sorted) {
+  int n = 0;
+  for (int c = 0; c < n_face_corners(type, side); ++c) {
+    Number const corner = node[face_corner(type, side, c)];
+    int at = n;
+    while (at > 0 && sorted[std::size_t(at) - 1] > corner) --at;
+    if (at > 0 && sorted[std::size_t(at) - 1] == corner) continue;
+    for (int k = n; k > at; --k) sorted[std::size_t(k)] = sorted[std::size_t(k) - 1];
+    sorted[std::size_t(at)] = corner;
+    ++n;
+  }
+  return n;
+}
+
+template <class Put>
+void put_polyhedron(UnstructuredMesh const& mesh, Index e, Put const& put) {
+  std::array<Number, max_face_corners> room, smallest;
+  for (int s = 0; s < n_sides(mesh, e); ++s) {
+    auto const nodes = side_nodes(mesh, e, s, room);
+    if (int(nodes.size()) < mesh.dimension) continue;
+    smallest.fill(-1);
+    std::partial_sort_copy(nodes.begin(), nodes.end(), smallest.begin(),
+                           smallest.begin() + std::min<std::ptrdiff_t>(max_face_corners, std::ssize(nodes)));
+    put(smallest[0], KeyedSide{{smallest[1], smallest[2], smallest[3]}, Number(e), Number(s), Number(nodes.size())});
+  }
 }
 
 /// What is behind one of `alike`, sides that have the same smallest nodes and as many.
@@ -136,19 +154,18 @@ ElementSides element_sides(UnstructuredMesh const& mesh) {
   out.first.resize(std::size_t(n) + 1, 0);
   for (Index e = 0; e < n; ++e) out.first[std::size_t(e) + 1] = out.first[std::size_t(e)] + n_sides(mesh, e);
   out.neighbour.resize(std::size_t(out.first.back()), ElementSides::collapsed);
-  detail::NumberBuckets<
-      KeyedSide> const buckets("gridmorph::element_sides", n, mesh.n_nodes(), [&](Index e, auto const& put) {
-    std::array<Number, max_face_corners> room, smallest;
-    int const sides = int(out.of(e).size());
-    for (int s = 0; s < sides; ++s) {
-      auto const nodes = side_nodes(mesh, e, s, room);
-      if (int(nodes.size()) < mesh.dimension) continue;
-      smallest.fill(-1);
-      std::partial_sort_copy(nodes.begin(), nodes.end(), smallest.begin(),
-                             smallest.begin() + std::min<std::ptrdiff_t>(max_face_corners, std::ssize(nodes)));
-      put(smallest[0], KeyedSide{{smallest[1], smallest[2], smallest[3]}, Number(e), Number(s), Number(nodes.size())});
-    }
-  });
+  detail::NumberBuckets<KeyedSide> const buckets(
+      "gridmorph::element_sides", n, mesh.n_nodes(), [&](Index e, auto const& put) {
+        ElementType const type = mesh.elements.type[std::size_t(e)];
+        if (type == ElementType::polyhedron) return put_polyhedron(mesh, e, put);
+        Number const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(e)];
+        for (int s = 0; s < n_faces(type); ++s) {
+          std::array<Number, max_face_corners> sorted{-1, -1, -1, -1};
+          int const corners = sort_side(type, node, s, sorted);
+          if (corners >= mesh.dimension)
+            put(sorted[0], KeyedSide{{sorted[1], sorted[2], sorted[3]}, Number(e), Number(s), Number(corners)});
+        }
+      });
   buckets.for_each_key([&](Number, Index, std::span<KeyedSide> sides) {
     std::sort(sides.begin(), sides.end());
     for (auto begin = sides.begin(); begin != sides.end();) {
@@ -227,7 +244,7 @@ std::vector<Number> match_points(Coordinates const& coordinates, std::span<Numbe
   };
   std::sort(sorted.begin(), sorted.end(), before);
   std::vector<Number> out(points.size(), -1);
-  for_all("gridmorph::match_points", Index(points.size()), [&](Index p) {
+  detail::for_all("gridmorph::match_points", Index(points.size()), [&](Index p) {
     Vec3 x = coordinates[points[std::size_t(p)]];
     if (periodic) x = periodic->declared(x);
     double const along = dot(line, x);

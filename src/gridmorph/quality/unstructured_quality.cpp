@@ -97,21 +97,32 @@ std::string describe(UnstructuredMesh const& mesh, NegativeElements const& n) {
          std::to_string(number_in_file(mesh, n.first));
 }
 
-template <class Exec>
-QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                              BoundaryClaims const& claims,
-                              UnstructuredQualityInput<typename Exec::memory_space> const& input) {
-  using MemorySpace = typename Exec::memory_space;
+namespace {
+
+template <class MemorySpace>
+void check_sizes(UnstructuredMesh const& mesh, UnstructuredQualityInput<MemorySpace> const& input) {
   auto const& c = input.coordinates;
   auto const& b = input.baseline;
-  bool const against_baseline = b.x.extent(0) > 0;
   detail::check_size(mesh, c.x.extent(0), c.y.extent(0), c.z.extent(0), "coordinates to measure");
-  if (against_baseline) detail::check_size(mesh, b.x.extent(0), b.y.extent(0), b.z.extent(0), "baseline coordinates");
-  if (input.near_field.extent(0) > 0 && Index(input.near_field.extent(0)) < mesh.n_elements())
-    throw MeshError("near-field mask: it holds " + std::to_string(input.near_field.extent(0)) +
-                    " elements, the mesh '" + mesh.source + "' has " + std::to_string(mesh.n_elements()));
+  if (b.x.extent(0) > 0) detail::check_size(mesh, b.x.extent(0), b.y.extent(0), b.z.extent(0), "baseline coordinates");
+  auto const refuse_shorter = [&](std::size_t found, std::string const& what) {
+    if (found > 0 && Index(found) < mesh.n_elements())
+      throw MeshError(what + ": it holds " + std::to_string(found) + " elements, the mesh '" + mesh.source + "' has " +
+                      std::to_string(mesh.n_elements()));
+  };
+  refuse_shorter(input.near_field.extent(0), "near-field mask");
+  for (std::size_t m = 0; m < n_measures; ++m)
+    refuse_shorter(input.fields.of[m].extent(0), "field of " + std::string(to_string(Measure(m))));
+}
 
-  std::vector<int> const orientation = detail::orientation_of(mesh, input.orientation);
+/// Measures and sums of all elements, chunk after chunk of detail::chunks_of().
+template <class Exec>
+std::vector<detail::PartialSums> measure_elements(Exec const& exec, UnstructuredMesh const& mesh,
+                                                  UnstructuredTopology const& topology,
+                                                  UnstructuredQualityInput<typename Exec::memory_space> const& input,
+                                                  std::vector<int> const& orientation) {
+  using MemorySpace = typename Exec::memory_space;
+  bool const against_baseline = input.baseline.x.extent(0) > 0;
   std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
   auto const tables = detail::element_tables<MemorySpace>(mesh);
   auto const first_element = detail::upload(exec, "gridmorph::quality::zones", detail::first_elements(mesh));
@@ -119,22 +130,29 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
   NumberLists const neighbours_h = detail::neighbour_lists(mesh, topology);
   auto const neighbours = views<MemorySpace>(neighbours_h);
-  Kokkos::View<double*, MemorySpace> volumes(
-      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volumes"), mesh.n_elements());
+  Kokkos::View<double*, MemorySpace> volumes = input.fields.of[int(Measure::volume)];
+  if (volumes.extent(0) == 0)
+    volumes = Kokkos::View<double*, MemorySpace>(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volumes"), mesh.n_elements());
   Kokkos::View<detail::PartialSums*, MemorySpace> const sums(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::sums"), table.size());
   auto const coordinates = detail::pack(exec, input.coordinates, mesh.n_nodes());
   auto const baseline = detail::pack(exec, input.baseline, against_baseline ? mesh.n_nodes() : 0);
   auto const near_field = input.near_field;
   bool const has_near_field = near_field.extent(0) > 0;
+  auto const fields = input.fields;
   detail::visit_chunks(
       exec, "gridmorph::measure_quality::elements", chunks, sums,
       KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::PartialSums& s) {
         for (int n = 0; n < row.count; ++n) {
           Index const e = first_element(row.zone) + row.i + n;
+          auto const keep = [&](Measure measure, double value) {
+            if (fields.of[int(measure)].extent(0) > 0) fields.of[int(measure)](e) = value;
+          };
           ElementType const type = tables.type(e);
           if (type == ElementType::polyhedron) {
             volumes(e) = 0;
+            for (int m = 0; m < int(n_measures); ++m) keep(Measure(m), 0);
             continue;
           }
           double const sign = signs(row.zone);
@@ -142,7 +160,10 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
           CellMeasures const m = element_measures(type, now, sign, tables.plane_normal);
           volumes(e) = m.volume;
           auto& region = s.region[has_near_field && near_field(e) != 0 ? 0 : 1];
-          auto const add = [&](Measure measure, double value) { region.template add<1>(measure, &value, 1, e); };
+          auto const add = [&](Measure measure, double value) {
+            region.template add<1>(measure, &value, 1, e);
+            keep(measure, value);
+          };
           add(Measure::aspect_ratio, m.aspect_ratio);
           add(Measure::determinant_2x2x2, m.determinant_2x2x2);
           add(Measure::determinant_3x3x3, m.determinant_3x3x3);
@@ -164,6 +185,7 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
   Kokkos::View<double const*, MemorySpace> const all_volumes = volumes;
   Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());
+  auto const ratio_field = fields.of[int(Measure::volume_ratio)];
   detail::visit_chunks(
       exec, "gridmorph::measure_quality::volume_ratio", chunks, ratios,
       KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::VolumeRatios& s) {
@@ -171,17 +193,30 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
           Index const e = first_element(row.zone) + row.i + n;
           if (tables.type(e) == ElementType::polyhedron) continue;
           double const ratio = detail::worst_ratio(all_volumes, tables.elements, neighbours, e);
+          if (ratio_field.extent(0) > 0) ratio_field(e) = ratio;
           s.region[has_near_field && near_field(e) != 0 ? 0 : 1].template add<1>(
               &ratio, 1, e, larger_is_worse(Measure::volume_ratio));
         }
       });
   auto const sums_h = detail::download(exec, sums);
   auto const ratios_h = detail::download(exec, ratios);
+  std::vector<detail::PartialSums> out(sums_h.data(), sums_h.data() + table.size());
   for (std::size_t k = 0; k < table.size(); ++k)
-    for (int r = 0; r < 2; ++r) sums_h(k).region[r].measure[int(Measure::volume_ratio)] = ratios_h(k).region[r];
+    for (int r = 0; r < 2; ++r) out[k].region[r].measure[int(Measure::volume_ratio)] = ratios_h(k).region[r];
+  return out;
+}
 
+}  // namespace
+
+template <class Exec>
+QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                              BoundaryClaims const& claims,
+                              UnstructuredQualityInput<typename Exec::memory_space> const& input) {
+  check_sizes(mesh, input);
+  std::vector<int> const orientation = detail::orientation_of(mesh, input.orientation);
+  auto const sums = measure_elements(exec, mesh, topology, input, orientation);
   QualityReport report;
-  detail::combine(table.size(), sums_h.data(), report.near_field, report.far_field,
+  detail::combine(sums.size(), sums.data(), report.near_field, report.far_field,
                   [&](Index element, MeasureStatistics& s) {
                     s.worst_zone = mesh.zone_of_element(element);
                     s.worst_cell = {int(number_in_file(mesh, element) - 1), 0, 0};
@@ -191,7 +226,7 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
   report.wall_groups = std::move(walls.groups);
   for (auto const& zone : mesh.zones) report.zone_names.push_back(zone.name);
   report.left_handed_zones = int(std::count(orientation.begin(), orientation.end(), -1));
-  report.against_baseline = against_baseline;
+  report.against_baseline = input.baseline.x.extent(0) > 0;
   report.unstructured = true;
   return report;
 }
@@ -200,68 +235,17 @@ template <class Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
     UnstructuredQualityInput<typename Exec::memory_space> const& input, std::span<Measure const> measures) {
-  using MemorySpace = typename Exec::memory_space;
-  using Field = Kokkos::View<double*, MemorySpace>;
-  auto const& c = input.coordinates;
-  auto const& b = input.baseline;
-  bool const against_baseline = b.x.extent(0) > 0;
-  detail::check_size(mesh, c.x.extent(0), c.y.extent(0), c.z.extent(0), "coordinates to measure");
-  if (against_baseline) detail::check_size(mesh, b.x.extent(0), b.y.extent(0), b.z.extent(0), "baseline coordinates");
-  Index const n_elements = mesh.n_elements();
-  Field fields[n_measures];
-  for (std::size_t m = 0; m < n_measures; ++m) {
-    auto const wanted = [&](Measure which) {
-      return std::find(measures.begin(), measures.end(), which) != measures.end();
-    };
-    bool const needed = wanted(Measure(m)) || (Measure(m) == Measure::volume && wanted(Measure::volume_ratio));
-    fields[m] = Field(Kokkos::view_alloc(exec, "gridmorph::cell_fields::" + std::string(to_string(Measure(m)))),
-                      needed ? n_elements : 0);
+  auto with_fields = input;
+  std::vector<Kokkos::View<double*, typename Exec::memory_space>> result;
+  for (Measure const m : measures) {
+    auto& field = with_fields.fields[m];
+    if (field.extent(0) == 0)
+      field = Kokkos::View<double*, typename Exec::memory_space>(
+          Kokkos::view_alloc(exec, "gridmorph::cell_fields::" + std::string(to_string(m))), mesh.n_elements());
+    result.push_back(field);
   }
-  auto const tables = detail::element_tables<MemorySpace>(mesh);
-  std::vector<Number> zone_of(std::size_t(n_elements), 0);
-  std::vector<int> const orientation = detail::orientation_of(mesh, input.orientation);
-  for (std::size_t z = 0; z < mesh.zones.size(); ++z)
-    std::fill_n(zone_of.begin() + mesh.zones[z].first_element, mesh.zones[z].n_elements, Number(z));
-  auto const zone = detail::view_of<MemorySpace>(zone_of, "gridmorph::quality::zone_of");
-  auto const signs = detail::upload(exec, "gridmorph::quality::signs", orientation);
-  auto const coordinates = detail::pack(exec, input.coordinates, mesh.n_nodes());
-  auto const baseline = detail::pack(exec, input.baseline, against_baseline ? mesh.n_nodes() : 0);
-  Field const aspect_ratio = fields[int(Measure::aspect_ratio)], det8 = fields[int(Measure::determinant_2x2x2)],
-              det27 = fields[int(Measure::determinant_3x3x3)], angle = fields[int(Measure::minimum_angle_deg)],
-              skewness = fields[int(Measure::equiangle_skewness)], volume = fields[int(Measure::volume)],
-              ratio = fields[int(Measure::volume_ratio)], relative = fields[int(Measure::relative_displacement)];
-  using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>;
-  Kokkos::parallel_for(
-      "gridmorph::cell_fields", Policy(exec, 0, n_elements), KOKKOS_LAMBDA(Index e) {
-        ElementType const type = tables.type(e);
-        if (type == ElementType::polyhedron) return;
-        auto const write = [&](Field const& field, double value) {
-          if (field.extent(0) > 0) field(e) = value;
-        };
-        ElementCorners const now = tables.corners(coordinates, e);
-        CellMeasures const m = element_measures(type, now, signs(zone(e)), tables.plane_normal);
-        write(aspect_ratio, m.aspect_ratio);
-        write(det8, m.determinant_2x2x2);
-        write(det27, m.determinant_3x3x3);
-        write(angle, m.minimum_angle_deg);
-        write(skewness, m.equiangle_skewness);
-        write(volume, m.volume);
-        if (against_baseline && relative.extent(0) > 0)
-          relative(e) = element_relative_displacement(type, tables.corners(baseline, e), now);
-      });
-  NumberLists lists;
-  if (ratio.extent(0) > 0) {
-    lists = detail::neighbour_lists(mesh, topology);
-    auto const neighbours = views<MemorySpace>(lists);
-    Kokkos::parallel_for(
-        "gridmorph::cell_fields::volume_ratio", Policy(exec, 0, n_elements), KOKKOS_LAMBDA(Index e) {
-          if (tables.type(e) == ElementType::polyhedron) return;
-          ratio(e) = detail::worst_ratio(volume, tables.elements, neighbours, e);
-        });
-  }
-  compat::fence(exec, "gridmorph::cell_fields (temporary lists go away)");
-  std::vector<Field> result;
-  for (Measure const m : measures) result.push_back(fields[int(m)]);
+  check_sizes(mesh, with_fields);
+  measure_elements(exec, mesh, topology, with_fields, detail::orientation_of(mesh, input.orientation));
   return result;
 }
 

@@ -9,6 +9,15 @@
 
 namespace gridmorph {
 
+/// Values in single elements, written on the way: (n_elements) for each measure that is wanted, empty Views for the others.
+/// Zero for polyhedra; the relative displacement is left alone where there is no baseline.
+template <class MemorySpace>
+struct ElementFields {
+  Kokkos::View<double*, MemorySpace> of[n_measures];
+
+  [[nodiscard]] Kokkos::View<double*, MemorySpace>& operator[](Measure m) { return of[int(m)]; }
+};
+
 /// What is measured.
 template <class MemorySpace>
 struct UnstructuredQualityInput {
@@ -22,6 +31,7 @@ struct UnstructuredQualityInput {
   std::vector<int> walls;
   /// zone_orientation() of the mesh; left empty, it is found again.
   std::vector<int> orientation;
+  ElementFields<MemorySpace> fields;
 };
 
 /// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the mean

@@ -1,9 +1,9 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/mesh/detail/sort_keys.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/unstructured/detail/locate_point.hpp>
-#include <gridmorph/unstructured/detail/sort_keys.hpp>
 #include <gridmorph/unstructured/locate.hpp>
 
 #include <algorithm>

@@ -41,7 +41,7 @@ void UnstructuredPlanner::refuse_open_faces() const {
 }
 
 void UnstructuredPlanner::find_boundary() {
-  out_.graph = make_node_graph(mesh_);
+  out_.graph = make_node_graph(mesh_, topology_.elements_of_nodes);
   out_.boundary = boundary_conditions(mesh_, topology_, claims_, out_.graph, motion_, options_.walls);
   BoundaryConditions const& b = out_.boundary;
   UnstructuredPlan& plan = out_.plan;

@@ -1,63 +1,114 @@
-#include <gridmorph/mesh/detail/number_buckets.hpp>
+#include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/unstructured/node_graph.hpp>
 
 #include <algorithm>
-#include <memory>
+#include <compare>
+#include <iterator>
 #include <numeric>
 
 namespace gridmorph {
 
 namespace {
 
-/// Calls visit(a, b) for every edge of an element, or of a face of a polyhedron: those come after all elements.
-template <class Visit>
-void for_each_edge(UnstructuredMesh const& mesh, Index item, Visit&& visit) {
-  if (item >= mesh.n_elements()) {
-    auto const face = mesh.polyhedra.faces[item - mesh.n_elements()];
-    for (std::size_t k = 0; k < face.size(); ++k) visit(face[k], face[(k + 1) % face.size()]);
-    return;
+class GraphMaker {
+ public:
+  GraphMaker(UnstructuredMesh const& mesh, NumberLists const& elements_of_nodes)
+      : mesh_(mesh), elements_of_nodes_(elements_of_nodes), owner_(coincident_nodes(mesh)) {
+    for (Number n = 0; n < Number(owner_.size()); ++n)
+      if (owner_[std::size_t(n)] != n) others_.push_back({owner_[std::size_t(n)], n});
+    std::sort(others_.begin(), others_.end());
   }
-  ElementType const type = mesh.elements.type[std::size_t(item)];
-  if (type == ElementType::polyhedron) return;
-  auto const nodes = mesh.elements.corners(item);
-  for (int k = 0; k < n_edges(type); ++k)
-    visit(nodes[std::size_t(edge_corner(type, k, 0))], nodes[std::size_t(edge_corner(type, k, 1))]);
-}
+
+  NodeGraph run() && {
+    Index const n = mesh_.n_nodes();
+    NumberLists lists;
+    lists.first.assign(std::size_t(n) + 1, 0);
+    // Every part keeps its lists to itself until it is known where they go.
+    constexpr Index part = 4096;
+    std::vector<std::vector<Number>> found(std::size_t((n + part - 1) / part));
+    detail::for_all_parts("gridmorph::node_graph::find", Index(found.size()), [&](Index p) {
+      std::vector<Number> ends;
+      for (Index node = p * part; node < std::min(n, (p + 1) * part); ++node) {
+        neighbours(Number(node), ends);
+        lists.first[std::size_t(node) + 1] = std::ssize(ends);
+        found[std::size_t(p)].insert(found[std::size_t(p)].end(), ends.begin(), ends.end());
+      }
+    });
+    std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
+    lists.item.resize(std::size_t(lists.first.back()));
+    detail::for_all_parts("gridmorph::node_graph::join", Index(found.size()), [&](Index p) {
+      auto const& own = found[std::size_t(p)];
+      std::copy(own.begin(), own.end(), lists.item.begin() + lists.first[std::size_t(p * part)]);
+    });
+    return {std::move(owner_), std::move(lists)};
+  }
+
+ private:
+  struct Other {
+    Number owner, node;
+    auto operator<=>(Other const&) const = default;
+  };
+
+  /// Neighbours of a representative, ascending; none of another node.
+  void neighbours(Number node, std::vector<Number>& ends) const {
+    ends.clear();
+    if (owner_[std::size_t(node)] != node) return;
+    add_ends(node, node, ends);
+    for (auto at = std::lower_bound(others_.begin(), others_.end(), Other{node, 0});
+         at != others_.end() && at->owner == node; ++at)
+      add_ends(at->node, node, ends);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  }
+
+  /// Owners of the other ends of all edges at a node; most of them once.
+  void add_ends(Number node, Number own, std::vector<Number>& ends) const {
+    auto const add = [&](Number end) {
+      Number const other = owner_[std::size_t(end)];
+      // Lists are short as a rule; where they are long, the sort removes what stands there twice.
+      constexpr std::size_t short_list = 48;
+      if (other != own && (ends.size() > short_list || std::find(ends.begin(), ends.end(), other) == ends.end()))
+        ends.push_back(other);
+    };
+    for (Number const e : elements_of_nodes_[node]) {
+      ElementType const type = mesh_.elements.type[std::size_t(e)];
+      auto const nodes = mesh_.elements.corners(e);
+      if (type == ElementType::polyhedron) {
+        add_polyhedron(node, e, add);
+      } else if (type == ElementType::tetrahedron) {
+        for (std::size_t k = 0; k < 4; ++k) add(nodes[k]);
+      } else {
+        for (int k = 0; k < n_edges(type); ++k) {
+          Number const a = nodes[std::size_t(edge_corner(type, k, 0))], b = nodes[std::size_t(edge_corner(type, k, 1))];
+          if (a == node || b == node) add(a == node ? b : a);
+        }
+      }
+    }
+  }
+
+  template <class Add>
+  void add_polyhedron(Number node, Index element, Add const& add) const {
+    for (int s = 0; s < n_sides(mesh_, element); ++s) {
+      std::array<Number, max_face_corners> room{};
+      auto const face = side_nodes(mesh_, element, s, room);
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        Number const next = face[(k + 1) % face.size()];
+        if (face[k] == node) add(next);
+        if (next == node) add(face[k]);
+      }
+    }
+  }
+
+  UnstructuredMesh const& mesh_;
+  NumberLists const& elements_of_nodes_;
+  std::vector<Number> owner_;
+  std::vector<Other> others_;  ///< nodes that are not their own owner
+};
 
 }  // namespace
 
-NodeGraph make_node_graph(UnstructuredMesh const& mesh) {
-  NodeGraph graph;
-  graph.representative = coincident_nodes(mesh);
-  auto const& owner = graph.representative;
-  // Every edge occurs once per element around it; what is kept of a node's neighbours stays where all of them were.
-  detail::NumberBuckets<Number> const buckets("gridmorph::node_graph", mesh.n_elements() + mesh.polyhedra.faces.size(),
-                                              mesh.n_nodes(), [&](Index item, auto const& put) {
-                                                for_each_edge(mesh, item, [&](Number a, Number b) {
-                                                  Number const p = owner[std::size_t(a)], q = owner[std::size_t(b)];
-                                                  if (p == q) return;
-                                                  put(p, q);
-                                                  put(q, p);
-                                                });
-                                              });
-  std::size_t const n = std::size_t(mesh.n_nodes());
-  std::vector<Index> from(n);
-  auto& first = graph.neighbours.first;
-  first.assign(n + 1, 0);
-  auto const kept = std::make_unique_for_overwrite<Number[]>(std::size_t(buckets.size()));
-  buckets.for_each_key([&](Number node, Index at, std::span<Number> ends) {
-    std::sort(ends.begin(), ends.end());
-    auto const end = std::unique_copy(ends.begin(), ends.end(), kept.get() + at);
-    from[std::size_t(node)] = at;
-    first[std::size_t(node) + 1] = end - (kept.get() + at);
-  });
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  graph.neighbours.item.reserve(std::size_t(first.back()));
-  for (std::size_t k = 0; k < n; ++k) {
-    Number const* const begin = kept.get() + from[k];
-    graph.neighbours.item.insert(graph.neighbours.item.end(), begin, begin + (first[k + 1] - first[k]));
-  }
-  return graph;
+NodeGraph make_node_graph(UnstructuredMesh const& mesh, NumberLists const& elements_of_nodes) {
+  return GraphMaker(mesh, elements_of_nodes).run();
 }
 
 }  // namespace gridmorph

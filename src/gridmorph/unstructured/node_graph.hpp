@@ -17,7 +17,8 @@ struct NodeGraph {
   [[nodiscard]] bool carries(Number n) const { return representative[std::size_t(n)] == n; }
 };
 
-/// Edges of polyhedra are those of their faces. Cost O(corners of all elements); host, on all cores.
-NodeGraph make_node_graph(UnstructuredMesh const& mesh);
+/// Edges of polyhedra are those of their faces. The lists are those of UnstructuredTopology. Cost O(corners of all
+/// elements); host, on all cores.
+NodeGraph make_node_graph(UnstructuredMesh const& mesh, NumberLists const& elements_of_nodes);
 
 }  // namespace gridmorph

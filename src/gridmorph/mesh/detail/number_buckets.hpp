@@ -2,7 +2,7 @@
 // around a node" when the numbers of neighbours are far apart: no list is written in the order of the file.
 #pragma once
 
-#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -35,7 +35,7 @@ class NumberBuckets {
     auto const first_item = [&](Index chunk) { return chunk * n_items / n_chunks; };
     // Bucket after bucket, chunk after chunk in each: the running sum is where the records of a chunk go.
     std::vector<Index> place(std::size_t(n_buckets_ * n_chunks), 0);
-    for_all("::count", n_chunks, [&](Index c) {
+    for_all_parts(label_ + "::count", n_chunks, [&](Index c) {
       std::vector<Index> count(std::size_t(n_buckets_), 0);
       for (Index i = first_item(c); i < first_item(c + 1); ++i)
         emit(i, [&](Number key, Record const&) { ++count[std::size_t(key / keys_per_bucket_)]; });
@@ -48,7 +48,7 @@ class NumberBuckets {
     }
     begin_[std::size_t(n_buckets_)] = sum;
     entry_ = std::make_unique_for_overwrite<Entry[]>(std::size_t(sum));
-    for_all("::place", n_chunks, [&](Index c) {
+    for_all_parts(label_ + "::place", n_chunks, [&](Index c) {
       std::vector<Index> at(std::size_t(n_buckets_), 0);
       for (Index b = 0; b < n_buckets_; ++b) at[std::size_t(b)] = place[std::size_t(b * n_chunks + c)];
       for (Index i = first_item(c); i < first_item(c + 1); ++i)
@@ -65,7 +65,7 @@ class NumberBuckets {
   /// changed and is gone after the call.
   template <class Visit>
   void for_each_key(Visit const& visit) const {
-    for_all("::group", n_buckets_, [&](Index b) {
+    for_all_parts(label_ + "::group", n_buckets_, [&](Index b) {
       Index const first_key = b * keys_per_bucket_, end_key = std::min(first_key + keys_per_bucket_, n_keys_);
       Index const begin = begin_[std::size_t(b)], end = begin_[std::size_t(b) + 1];
       std::vector<Index> first(std::size_t(end_key - first_key) + 1, 0);
@@ -93,14 +93,6 @@ class NumberBuckets {
     Number key;
     Record record;
   };
-
-  template <class Function>
-  void for_all(char const* phase, Index count, Function const& f) const {
-    Exec const exec;
-    using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Dynamic>>;
-    Kokkos::parallel_for(label_ + phase, Policy(exec, 0, count, Kokkos::ChunkSize(1)), f);
-    compat::fence(exec, (label_ + phase + " (read by the host)").c_str());
-  }
 
   std::string label_;
   Index n_keys_, keys_per_bucket_, n_buckets_;

@@ -128,9 +128,7 @@ WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, Unstr
     WallSums sums;
     for (Index m = 0; m < n; ++m) {
       Index const node = table.node[std::size_t(m)];
-      int const zone = mesh.zone_of_node(node);
-      NodeLocation const where{zone,
-                               {int(node - mesh.zones[std::size_t(zone)].first_node) + mesh.first_number - 1, 0, 0}};
+      NodeLocation const where{mesh.zone_of_node(node), {int(node_number_in_file(mesh, node)) - 1, 0, 0}};
       all.add(nodes_h(m), where, against_baseline);
       sums.add(nodes_h(m), where, against_baseline);
     }

@@ -1,0 +1,200 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/detail/for_all.hpp>
+#include <gridmorph/mesh/detail/number_buckets.hpp>
+#include <gridmorph/mesh/detail/sort_keys.hpp>
+#include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/mesh/file_order.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+using HostExec = Kokkos::DefaultHostExecutionSpace;
+
+using detail::for_all;
+
+std::vector<Number> inverse_of(std::vector<Number> const& order) {
+  std::vector<Number> inverse(order.size());
+  for_all("gridmorph::inverse_of", Index(order.size()),
+          [&](Index n) { inverse[std::size_t(order[std::size_t(n)])] = Number(n); });
+  return inverse;
+}
+
+/// The values at the places that `order` names, one after another.
+template <class T>
+std::vector<T> gather(std::vector<T> const& values, std::vector<Number> const& order) {
+  std::vector<T> out(values.size());
+  for_all("gridmorph::gather", Index(values.size()),
+          [&](Index n) { out[std::size_t(n)] = values[std::size_t(order[std::size_t(n)])]; });
+  return out;
+}
+
+Coordinates gather(Coordinates const& values, std::vector<Number> const& order) {
+  Coordinates out(values.size());
+  for_all("gridmorph::gather_coordinates", values.size(), [&](Index n) { out.set(n, values[order[std::size_t(n)]]); });
+  return out;
+}
+
+/// The lists that `order` names, one after another, the numbers in them translated.
+NumberLists gather(NumberLists const& lists, std::vector<Number> const& order, std::vector<Number> const& translation) {
+  NumberLists out;
+  out.first.resize(std::size_t(lists.size()) + 1);
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    auto const from = std::size_t(order[n]);
+    out.first[n + 1] = out.first[n] + lists.first[from + 1] - lists.first[from];
+  }
+  out.item.resize(lists.item.size());
+  for_all("gridmorph::gather_lists", lists.size(), [&](Index n) {
+    auto const list = lists[order[std::size_t(n)]];
+    std::transform(list.begin(), list.end(), out.item.begin() + out.first[std::size_t(n)],
+                   [&](Number item) { return translation[std::size_t(item)]; });
+  });
+  return out;
+}
+
+void translate(std::vector<Number>& numbers, std::vector<Number> const& translation) {
+  for (Number& n : numbers) n = translation[std::size_t(n)];
+}
+
+/// Polyhedra in the order of their elements, their nodes translated.
+Polyhedra gather(Polyhedra const& polyhedra, std::vector<Number> const& new_element,
+                 std::vector<Number> const& new_node) {
+  std::vector<std::pair<Number, std::size_t>> moved;  // new number, old place
+  for (std::size_t p = 0; p < polyhedra.element.size(); ++p)
+    moved.emplace_back(new_element[std::size_t(polyhedra.element[p])], p);
+  std::sort(moved.begin(), moved.end());
+  Polyhedra out;
+  if (!polyhedra.first_face.empty()) out.first_face.push_back(0);
+  std::vector<Number> nodes;
+  for (auto const& [element, p] : moved) {
+    out.element.push_back(element);
+    for (Index f = polyhedra.first_face[p]; f < polyhedra.first_face[p + 1]; ++f) {
+      nodes.assign(polyhedra.faces[f].begin(), polyhedra.faces[f].end());
+      translate(nodes, new_node);
+      out.faces.add(nodes);
+    }
+    out.first_face.push_back(out.faces.size());
+  }
+  return out;
+}
+
+/// What stands at place order.node[n] and order.element[e] comes to places n and e.
+UnstructuredMesh permuted(UnstructuredMesh const& mesh, FileOrder const& order) {
+  auto const new_node = inverse_of(order.node);
+  UnstructuredMesh out;
+  out.dimension = mesh.dimension;
+  out.zones = mesh.zones;
+  out.elements.type = gather(mesh.elements.type, order.element);
+  out.elements.nodes = gather(mesh.elements.nodes, order.element, new_node);
+  if (!mesh.elements.number.empty()) out.elements.number = gather(mesh.elements.number, order.element);
+  if (!mesh.polyhedra.element.empty()) out.polyhedra = gather(mesh.polyhedra, inverse_of(order.element), new_node);
+  out.patches = mesh.patches;
+  for (auto& patch : out.patches) {
+    translate(patch.faces.item, new_node);
+    translate(patch.nodes, new_node);
+    std::sort(patch.nodes.begin(), patch.nodes.end());
+  }
+  out.connections = mesh.connections;
+  for (auto& connection : out.connections) {
+    translate(connection.nodes, new_node);
+    translate(connection.donor_nodes, new_node);
+  }
+  out.families = mesh.families;
+  if (mesh.coordinates.size() > 0) out.coordinates = gather(mesh.coordinates, order.node);
+  out.source = mesh.source;
+  out.notes = mesh.notes;
+  out.first_number = mesh.first_number;
+  return out;
+}
+
+std::vector<Number> order_nodes(UnstructuredMesh const& mesh) {
+  MeshExtent const box = extent_of(mesh.coordinates);
+  Vec3 const size = box.high - box.low;
+  double const longest = std::max({size.x, size.y, size.z});
+  double const steps = longest > 0 ? double(1 << LatticePlace::bits) / longest : 0;
+  std::vector<Number> order(std::size_t(mesh.n_nodes()));
+  HostExec const exec;
+  for (auto const& zone : mesh.zones) {
+    detail::KeyedNumbers<Kokkos::HostSpace> const list(std::size_t(zone.n_nodes), "gridmorph::order_by_position");
+    for_all("gridmorph::order_by_position::codes", zone.n_nodes, [&](Index n) {
+      list.key(n) = hilbert_code({mesh.coordinates[zone.first_node + n], box.low, {steps, steps, steps}});
+      list.number(n) = Number(zone.first_node + n);
+    });
+    auto const sorted = detail::sort_keys(exec, list);
+    compat::fence(exec, "gridmorph::order_by_position (read by the host)");
+    std::copy_n(sorted.number.data(), zone.n_nodes, order.begin() + zone.first_node);
+  }
+  return order;
+}
+
+/// By the smallest new number among their nodes.
+std::vector<Number> order_elements(UnstructuredMesh const& mesh, std::vector<Number> const& new_node) {
+  detail::NumberBuckets<Number> const buckets("gridmorph::order_elements", mesh.n_elements(), mesh.n_nodes(),
+                                              [&](Index e, auto const& put) {
+                                                Number first = new_node[std::size_t(mesh.elements.nodes[e].front())];
+                                                for (Number const n : mesh.elements.corners(e))
+                                                  first = std::min(first, new_node[std::size_t(n)]);
+                                                put(first, Number(e));
+                                              });
+  std::vector<Number> order(std::size_t(mesh.n_elements()));
+  buckets.for_each_key([&](Number, Index at, std::span<Number const> elements) {
+    std::copy(elements.begin(), elements.end(), order.begin() + at);
+  });
+  return order;
+}
+
+std::vector<Number> unchanged(std::size_t n) {
+  std::vector<Number> order(n);
+  for (std::size_t k = 0; k < n; ++k) order[k] = Number(k);
+  return order;
+}
+
+}  // namespace
+
+FileOrder order_by_position(UnstructuredMesh const& mesh) {
+  if (mesh.coordinates.size() != mesh.n_nodes())
+    throw MeshError("order by position: '" + mesh.source + "' has " + std::to_string(mesh.n_nodes()) +
+                    " nodes, but coordinates of " + std::to_string(mesh.coordinates.size()));
+  FileOrder order;
+  order.node = order_nodes(mesh);
+  bool const has_empty = std::adjacent_find(mesh.elements.nodes.first.begin(), mesh.elements.nodes.first.end()) !=
+                         mesh.elements.nodes.first.end();
+  order.element = has_empty ? unchanged(std::size_t(mesh.n_elements())) : order_elements(mesh, inverse_of(order.node));
+  return order;
+}
+
+void reorder(UnstructuredMesh& mesh, FileOrder order) {
+  if (!mesh.file_order.node.empty())
+    throw MeshError("reorder: '" + mesh.source + "' is not in the order of its file; put it back with in_file_order()");
+  if (Index(order.node.size()) != mesh.n_nodes() || Index(order.element.size()) != mesh.n_elements())
+    throw MeshError("reorder: the order is one of " + std::to_string(order.node.size()) + " nodes and " +
+                    std::to_string(order.element.size()) + " elements, but '" + mesh.source + "' has " +
+                    std::to_string(mesh.n_nodes()) + " and " + std::to_string(mesh.n_elements()));
+  mesh = permuted(mesh, order);
+  mesh.file_order = std::move(order);
+}
+
+UnstructuredMesh in_file_order(UnstructuredMesh const& mesh) {
+  if (mesh.file_order.node.empty()) return mesh;
+  return permuted(mesh, {inverse_of(mesh.file_order.node), inverse_of(mesh.file_order.element)});
+}
+
+Coordinates in_file_order(UnstructuredMesh const& mesh, Coordinates const& coordinates) {
+  if (mesh.file_order.node.empty()) return coordinates;
+  return gather(coordinates, inverse_of(mesh.file_order.node));
+}
+
+std::vector<double> in_file_order(std::span<Number const> place, std::span<double const> values) {
+  std::vector<double> out(values.begin(), values.end());
+  for_all("gridmorph::in_file_order", Index(place.size()),
+          [&](Index n) { out[std::size_t(place[std::size_t(n)])] = values[std::size_t(n)]; });
+  return out;
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,31 @@
+// Nodes and elements along a curve through space, and back in the order of the file.
+//
+// Meshers number as they go, and files may be in any order. What belongs together is then far apart in memory, and every
+// stage of an unstructured morph waits for it: twice as long in all with numbers at random.
+#pragma once
+
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+
+#include <span>
+#include <vector>
+
+namespace gridmorph {
+
+/// Nodes of each zone along a Hilbert curve through the bounding box, nodes at the same place in the order they have;
+/// elements of each zone by the first of their nodes along it. Linear cost: a sort by counting, a few streams over the
+/// elements; host, on all cores.
+FileOrder order_by_position(UnstructuredMesh const& mesh);
+
+/// Renumbers the nodes and elements inside their zones: what stands at place order.node[n] comes to place n. Zones, patches
+/// and connections stay in order, and so do the faces of each patch. The mesh knows its way back (file_order). The mesh must
+/// be in the order of its file; throws MeshError for one that is not, and for an order of other sizes.
+void reorder(UnstructuredMesh& mesh, FileOrder order);
+
+/// The mesh as its file numbers it.
+UnstructuredMesh in_file_order(UnstructuredMesh const& mesh);
+/// Coordinates as the file of the mesh numbers them.
+Coordinates in_file_order(UnstructuredMesh const& mesh, Coordinates const& coordinates);
+/// A value for each node or each element of the mesh, as its file numbers them. `place` is file_order.node or .element.
+std::vector<double> in_file_order(std::span<Number const> place, std::span<double const> values);
+
+}  // namespace gridmorph
