@@ -22,6 +22,10 @@
 #include <string>
 #include <variant>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace {
 
 using namespace gridmorph::cli;
@@ -67,9 +71,20 @@ int run_and_report(CommandLine const& options, Terminal& terminal) {
   }
 }
 
+/// Memory that was freed is kept and used again. Large arrays come and go from stage to stage; fresh pages, which the system
+/// clears first, cost as much as most stages do (a quarter of the time with 10 million elements, for an eighth more memory).
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_MAX, 0);  // what is mapped on its own goes back to the system at once
+  mallopt(M_TRIM_THRESHOLD, -1);
+  mallopt(M_TOP_PAD, 1 << 26);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
+  keep_freed_memory();
   // A reader that goes away, or a file that may not grow, is an error to report, not a reason to die.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

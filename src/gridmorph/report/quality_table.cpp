@@ -107,11 +107,11 @@ void wall_groups(std::string& out, QualityReport const& baseline, std::optional<
   };
   out += fmt::format("\n{:<24}{:>9}", "By wall", "nodes");
   if (morphed) {
-    cells({"first height, min", "line to normal, max", "largest change"}, 22);
+    cells({"first height, min", "line to normal, max", "largest change"}, 26);
     out += fmt::format("{:33}", "");
-    cells({"baseline", "morphed", "baseline", "morphed", "height", "angle"}, 11);
+    cells({"baseline", "morphed", "baseline", "morphed", "height", "angle"}, 13);
   } else {
-    cells({"first height, min", "line to normal, max"}, 22);
+    cells({"first height, min", "line to normal, max"}, 26);
   }
   for (std::size_t const g : shown_groups(now, limit)) {
     WallQuality const &b = before[g].quality, &m = now[g].quality;
@@ -123,9 +123,9 @@ void wall_groups(std::string& out, QualityReport const& baseline, std::optional<
       cells({format_value(b.first_height_min), format_value(m.first_height_min), degrees(b.orthogonality_deg_max),
              degrees(m.orthogonality_deg_max), fmt::format("{:.3g} %", 100 * m.height_change_max),
              degrees(m.orthogonality_change_deg_max)},
-            11);
+            13);
     else
-      cells({format_value(m.first_height_min), degrees(m.orthogonality_deg_max)}, 22);
+      cells({format_value(m.first_height_min), degrees(m.orthogonality_deg_max)}, 26);
   }
   if (now.size() > limit) out += fmt::format("and {} more, in the JSON report\n", now.size() - limit);
 }
