@@ -5,13 +5,16 @@
 //   topology      neighbours, boundary faces, lists around nodes
 //   node_graph    which nodes are joined by edges
 //   prepare       all of planning: boundary, columns, wrap, layers, background mesh, point location
+//   order         nodes and elements brought in order by position, as the command line does after reading
 //
 // Once per motion, all cores:
 //   layers        displacement from layer to layer of near field and fence
 //   project       far nodes in cells of the background mesh
 //   scatter       moving walls to the lattice between them
 //   background    the background mesh itself: the structured engine on some ten thousand nodes
-//   apply         all of it, from boundary displacements to new coordinates; apply_in_order: on the mesh as generated
+//   apply         all of it, from boundary displacements to new coordinates
+//
+// topology, prepare and apply also on the mesh in order by position (..._in_order).
 //
 // Model, bytes. Rows (layers, project): 12 per row, 8 and a source of 24 per item, 24 written. apply: those; 60 per node for
 // displacement and work array, 48 for coordinates in and out, and as much again for the residual's value, fade and
@@ -23,6 +26,7 @@
 #include "roof.hpp"
 
 #include <gridmorph/demo/ball_demo.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/unstructured/detail/scatter_views.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
 #include <gridmorph/volume/morpher.hpp>
@@ -56,10 +60,11 @@ struct BallCase {
   UnstructuredTopology topology;
   BoundaryClaims claims;
 
-  BallCase(Index nodes, bool shuffle) {
-    options.shuffle = shuffle;
+  BallCase(Index nodes, bool in_order) {
+    options.shuffle = true;
     options.elements = std::max(Index(50'000), Index(double(nodes) / nodes_per_element));
     mesh = make_ball(options);
+    if (in_order) reorder(mesh, order_by_position(mesh));
     topology = make_topology(mesh);
     claims = claim_boundary(mesh, topology);
   }
@@ -76,10 +81,10 @@ struct BallCase {
   mutable std::optional<PreparedUnstructured> prepared_;
 };
 
-BallCase const& ball_case(Index nodes, bool shuffle = true) {
+BallCase const& ball_case(Index nodes, bool in_order = false) {
   using Key = std::pair<Index, bool>;
   static LastMade<Key, BallCase> last;
-  return last.get(Key(nodes, shuffle), [&] { return BallCase(nodes, shuffle); });
+  return last.get(Key(nodes, in_order), [&] { return BallCase(nodes, in_order); });
 }
 
 /// Rates per node and per element of the mesh; bytes of one iteration.
@@ -104,8 +109,18 @@ void time_host(benchmark::State& state, UnstructuredMesh const& mesh, Work const
   state.counters["elements/s"] = double(mesh.n_elements()) / mean;
 }
 
-void topology(benchmark::State& state) {
+void order(benchmark::State& state) {
   BallCase const& ball = ball_case(state.range(0));
+  time_host(state, ball.mesh, [&] {
+    UnstructuredMesh mesh = ball.mesh;
+    reorder(mesh, order_by_position(mesh));
+    benchmark::DoNotOptimize(mesh.elements.nodes.item.data());
+  });
+}
+
+template <bool in_order>
+void topology(benchmark::State& state) {
+  BallCase const& ball = ball_case(state.range(0), in_order);
   time_host(state, ball.mesh, [&] { benchmark::DoNotOptimize(make_topology(ball.mesh).boundary.size()); });
 }
 
@@ -115,8 +130,9 @@ void node_graph(benchmark::State& state) {
   time_host(state, ball.mesh, [&] { benchmark::DoNotOptimize(make_node_graph(ball.mesh, around).size()); });
 }
 
+template <bool in_order>
 void prepare_all(benchmark::State& state) {
-  BallCase const& ball = ball_case(state.range(0));
+  BallCase const& ball = ball_case(state.range(0), in_order);
   time_host(state, ball.mesh, [&] { benchmark::DoNotOptimize(ball.prepare().report.far_nodes); });
 }
 
@@ -181,12 +197,12 @@ struct BackgroundMesh {
 };
 
 struct Apply {
-  bool shuffle = true;
+  bool in_order = false;
 
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
     using Memory = typename ExecutionSpace::memory_space;
-    BallCase const& ball = ball_case(state.range(0), shuffle);
+    BallCase const& ball = ball_case(state.range(0), in_order);
     UnstructuredPlan const& plan = ball.plan();
     UnstructuredMorpher<ExecutionSpace> const morpher(exec, plan);
     NodeArrays<Memory> const baseline(ball.mesh.coordinates), morphed(ball.mesh.coordinates);
@@ -211,15 +227,18 @@ void register_host(char const* name, void (*run)(benchmark::State&)) {
 }
 
 void register_all() {
-  register_host("unstructured/topology", topology);
+  register_host("unstructured/order", order);
+  register_host("unstructured/topology", topology<false>);
   register_host("unstructured/node_graph", node_graph);
-  register_host("unstructured/prepare", prepare_all);
+  register_host("unstructured/prepare", prepare_all<false>);
   register_benchmark("unstructured/layers", Layers(), ball_sizes);
   register_benchmark("unstructured/project", Project(), ball_sizes);
   register_benchmark("unstructured/scatter", Scatter(), ball_sizes);
   register_benchmark("unstructured/background", BackgroundMesh(), ball_sizes);
   register_benchmark("unstructured/apply", Apply(), ball_sizes);
-  register_benchmark("unstructured/apply_in_order", Apply{false}, ball_sizes);
+  register_host("unstructured/topology_in_order", topology<true>);
+  register_host("unstructured/prepare_in_order", prepare_all<true>);
+  register_benchmark("unstructured/apply_in_order", Apply{true}, ball_sizes);
 }
 
 }  // namespace gridmorph::bench
