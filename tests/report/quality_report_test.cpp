@@ -112,9 +112,9 @@ TEST(QualityTable, ShowsEachWallBaselineAndMorphed) {
   after.wall_groups = {group("blade", 1.5e-5, 0.2), group("hub", 3.5e-4, 0.07)};
   after.wall_groups[1].quality.orthogonality_change_deg_max = 4.25;
   std::string const table = format_table(before, after);
-  EXPECT_TRUE(has_line_with(table, {"blade", "5", "1.25e-05", "1.5e-05", "33.5 deg", "20 %"}));
-  EXPECT_TRUE(has_line_with(table, {"hub", "0.0003", "0.00035", "7 %", "4.25 deg"}));
-  EXPECT_TRUE(has_line_with(format_table(before), {"hub", "0.0003", "33.5 deg"}));
+  EXPECT_TRUE(has_line_with(table, {"blade", "5", "1.25e-05", "1.5e-05", "33.5", "20"}));
+  EXPECT_TRUE(has_line_with(table, {"hub", "0.0003", "0.00035", "7", "4.25"}));
+  EXPECT_TRUE(has_line_with(format_table(before), {"hub", "0.0003", "33.5"}));
 }
 
 TEST(QualityTable, ShowsTheWorstWallsWhereThereAreMany) {
@@ -125,8 +125,8 @@ TEST(QualityTable, ShowsTheWorstWallsWhereThereAreMany) {
     after.wall_groups.push_back(group("wall" + std::to_string(n) + " of a very long name", 1, 0.01 * n));
   }
   std::string const table = format_table(before, after);
-  EXPECT_TRUE(has_line_with(table, {"wall19", "19 %"}));
-  EXPECT_TRUE(has_line_with(table, {"wall8", "8 %"}));
+  EXPECT_TRUE(has_line_with(table, {"wall19", " 19 "}));
+  EXPECT_TRUE(has_line_with(table, {"wall8", " 8 "}));
   EXPECT_FALSE(has_line_with(table, {"wall7"}));
   EXPECT_LT(table.find("wall19"), table.find("wall18"));
   EXPECT_TRUE(has_line_with(table, {"8 more", "JSON"}));

@@ -280,6 +280,12 @@ void read_results(TableReader& root, CaseFile& out) {
                        fmt::format("is the smallest 3x3x3 determinant that passes, -1 <= value < 1, found {}", *d));
     }
     out.guard.write_inverted = guard->boolean("write_inverted").value_or(false);
+    if (auto const steps = guard->integer("steps")) {
+      constexpr int most = 64;
+      out.guard.steps = std::clamp(*steps, 1, most);
+      if (*steps < 1 || *steps > most)
+        guard->problem("steps", fmt::format("is the number of steps to try at most, 1 to {}, found {}", most, *steps));
+    }
     guard->finish();
   }
   if (auto output = root.table("output")) {

@@ -24,6 +24,7 @@ namespace gridmorph {
 struct GuardOptions {
   double min_determinant = 0.05;  ///< smallest 3x3x3 determinant that passes, -1 <= value < 1; dimensionless
   bool write_inverted = false;    ///< write a mesh with inverted cells all the same
+  int steps = 4;  ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
 };
 
 /// [output]: what comes with the coordinates.

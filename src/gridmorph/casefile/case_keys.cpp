@@ -224,6 +224,7 @@ plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "Across the plane, of any l
      "With `boundary`: kinds from first to last, of wall, periodic, inflow, outflow, symmetry, farfield, degenerate, connection, other"},
 
     {"guard", "min_determinant", "-1 <= number < 1", "1", "0.05", "min_determinant = 0.1", "Smallest 3x3x3 determinant that passes; below it the exit status is 1"},
+    {"guard", "steps", "1 to 64", "1", "4", "steps = 8", "Unstructured meshes: where elements are inverted after one step, the motion is made in 2, 3, ... steps up to this number, each planned on the mesh before it, until none is"},
     {"guard", "write_inverted", "true or false", "", "false", "write_inverted = true", "Write the mesh even if cells are inverted that were not in the baseline"},
 
     {"output", "displacement", "true or false", "", "false", "displacement = true", "Displacement of the nodes as a solution of the output mesh (CGNS)"},

@@ -8,6 +8,7 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/unstructured/guard.hpp>
+#include <gridmorph/unstructured/stepped_morph.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
 
 #include <fmt/format.h>
@@ -63,6 +64,37 @@ void relax(UnstructuredRun& out, Terminal& terminal) {
   out.times.push_back({"guard", watch.lap(), true});
 }
 
+/// Where elements are inverted: the same motion in 2, 3, ... steps, until none is; the best is kept.
+void try_steps(CaseFile const& case_file, UnstructuredRun& out, Terminal& terminal) {
+  Index const in_one = newly_inverted(out.after);
+  if (in_one == 0 || case_file.guard.steps < 2 || out.options.background) return;
+  Stopwatch watch;
+  auto const displacement = out.prepared->boundary_displacement(out.loaded.mesh);
+  int best = 1;
+  for (int steps = 2; steps <= case_file.guard.steps && newly_inverted(out.after) > 0; ++steps) {
+    auto const progress = [&](int step) {
+      terminal.progress(fmt::format("elements are inverted; morphing in steps, {} of {}", step, steps));
+    };
+    UnstructuredRun::Morphed const before = out.result();
+    auto& l = out.loaded;
+    out.morphed = morph_in_steps(l.mesh, l.topology, l.claims, *out.prepared, displacement,
+                                 {steps, out.options, {.orientation = l.orientation}, progress});
+    measure_morphed(case_file, out);
+    if (newly_inverted(out.after) < newly_inverted(before.after))
+      best = steps;
+    else
+      out.take(before);
+  }
+  Index const left = newly_inverted(out.after);
+  out.notes.push_back(
+      best == 1
+          ? fmt::format("{} elements are inverted, and up to {} steps leave no fewer", in_one, case_file.guard.steps)
+          : fmt::format("{} elements were inverted in one step; in {} steps, each planned on the "
+                        "mesh before it, {} {}",
+                        in_one, best, left == 0 ? "none" : std::to_string(left), left <= 1 ? "is" : "are"));
+  out.times.push_back({"steps", watch.lap(), true});
+}
+
 /// The morphed mesh with its regions (0 near, 1 fence, 2 far), layers and displacements.
 void write_regions(std::string const& path, UnstructuredRun const& out) {
   UnstructuredMesh const& mesh = out.loaded.mesh;
@@ -113,6 +145,7 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   Stopwatch quality;
   measure(case_file, out);
   out.times.push_back({"quality", quality.lap(), true});
+  try_steps(case_file, out, terminal);
   bool const written = newly_inverted(out.after) == 0 || case_file.guard.write_inverted;
   std::optional<PendingFile> pending;
   if (report) pending.emplace(*report, report_text(case_file, out, written) + std::string(room_for_a_time, '\n'));

@@ -24,16 +24,20 @@ namespace {
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
 /// Size of the largest displacement in any step.
-double largest_motion(CaseFile const& case_file, LoadedMesh const& loaded, UnstructuredOptions const& options) {
-  auto const boundary = boundary_conditions(loaded.mesh, loaded.topology, loaded.claims,
-                                            make_node_graph(loaded.mesh, loaded.topology.elements_of_nodes),
-                                            case_file.motion, options.walls);
+double largest_motion(CaseFile const& case_file, LoadedMesh const& loaded, BoundaryConditions const& boundary) {
   double largest = 0;
   auto const& sequence = *case_file.sequence;
   for (int step = 0; step < sequence.steps; ++step)
     for (Vec3 const& u : evaluate(loaded.mesh, boundary, motion_at(case_file, sequence.periods_at(step))))
       largest = std::max(largest, norm(u));
   return largest;
+}
+
+PreparedUnstructured plan_sequence(CaseFile const& case_file, LoadedMesh const& l, UnstructuredOptions options) {
+  NodeGraph graph = make_node_graph(l.mesh, l.topology.elements_of_nodes);
+  auto boundary = boundary_conditions(l.mesh, l.topology, l.claims, graph, case_file.motion, options.walls);
+  options.motion = largest_motion(case_file, l, boundary);
+  return prepare(l.mesh, l.topology, l.claims, std::move(graph), std::move(boundary), options);
 }
 
 nlohmann::json plan_json(PreparedUnstructured const& prepared) {
@@ -77,8 +81,10 @@ void read_and_plan(CaseFile const& case_file, Terminal& terminal, UnstructuredRu
   if (auto const& own = case_file.background)
     options.background =
         std::make_shared<Background const>(make_background(read_mesh(own->path.string()), own->wrap, own->outer));
-  if (case_file.sequence) options.motion = largest_motion(case_file, out.loaded, options);
-  out.prepared = prepare(out.loaded.mesh, out.loaded.topology, out.loaded.claims, case_file.motion, options);
+  auto const& l = out.loaded;
+  out.prepared = case_file.sequence ? plan_sequence(case_file, l, options)
+                                    : prepare(l.mesh, l.topology, l.claims, case_file.motion, options);
+  out.options = std::move(options);
   out.times.push_back({"plan", watch.lap(), true});
   out.notes = out.loaded.mesh.notes;
   for (auto const* more : {&out.loaded.claims.notes, &out.prepared->notes})
@@ -111,6 +117,11 @@ UnstructuredQualityInput<Kokkos::HostSpace> quality_of_morphed(UnstructuredRun c
 void measure(CaseFile const& case_file, UnstructuredRun& out) {
   auto const& l = out.loaded;
   out.before = measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_baseline(out));
+  measure_morphed(case_file, out);
+}
+
+void measure_morphed(CaseFile const& case_file, UnstructuredRun& out) {
+  auto const& l = out.loaded;
   auto morphed = quality_of_morphed(out);
   out.quality_fields.clear();
   if (case_file.output_options.quality)

@@ -14,12 +14,14 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::cli {
 
 struct UnstructuredRun {
   LoadedMesh loaded;
+  UnstructuredOptions options;
   std::optional<PreparedUnstructured> prepared;
   Coordinates morphed;
   std::optional<Coordinates> background;  ///< morphed
@@ -28,6 +30,21 @@ struct UnstructuredRun {
   std::vector<Shortfall> shortfalls;
   std::vector<std::string> notes;
   StepTimes times;
+
+  /// What depends on the morphed coordinates.
+  struct Morphed {
+    Coordinates morphed;
+    QualityReport after;
+    std::vector<CellField> quality_fields;
+    std::vector<Shortfall> shortfalls;
+  };
+  [[nodiscard]] Morphed result() const { return {morphed, after, quality_fields, shortfalls}; }
+  void take(Morphed r) {
+    morphed = std::move(r.morphed);
+    after = std::move(r.after);
+    quality_fields = std::move(r.quality_fields);
+    shortfalls = std::move(r.shortfalls);
+  }
 };
 
 /// Reads and plans; the offset of the wrap reckons with all steps of a sequence.
@@ -38,6 +55,8 @@ UnstructuredQualityInput<Kokkos::HostSpace> quality_of_baseline(UnstructuredRun 
 UnstructuredQualityInput<Kokkos::HostSpace> quality_of_morphed(UnstructuredRun const& run);
 /// Measures before and after, and what falls short.
 void measure(CaseFile const& case_file, UnstructuredRun& out);
+/// The second half, for other coordinates of the same mesh.
+void measure_morphed(CaseFile const& case_file, UnstructuredRun& out);
 
 /// What [output] adds to the output mesh; quality as measure() found it.
 OutputFields output_fields(CaseFile const& case_file, UnstructuredRun const& run);

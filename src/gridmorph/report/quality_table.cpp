@@ -107,25 +107,25 @@ void wall_groups(std::string& out, QualityReport const& baseline, std::optional<
   };
   out += fmt::format("\n{:<24}{:>9}", "By wall", "nodes");
   if (morphed) {
-    cells({"first height, min", "line to normal, max", "largest change"}, 26);
+    cells({"first height, min", "to normal, max [deg]", "largest change"}, 22);
     out += fmt::format("{:33}", "");
-    cells({"baseline", "morphed", "baseline", "morphed", "height", "angle"}, 13);
+    cells({"baseline", "morphed", "baseline", "morphed", "height, %", "angle, deg"}, 11);
   } else {
-    cells({"first height, min", "line to normal, max"}, 26);
+    cells({"first height, min", "to normal, max [deg]"}, 22);
   }
   for (std::size_t const g : shown_groups(now, limit)) {
     WallQuality const &b = before[g].quality, &m = now[g].quality;
     std::string name = now[g].name;
     if (name.size() > name_width) name = name.substr(0, name_width - 3) + "...";
     out += fmt::format("{:<24}{:>9}", name, m.nodes);
-    auto const degrees = [](double angle) { return fmt::format("{:.3g} deg", angle); };
+    auto const degrees = [](double angle) { return fmt::format("{:.3g}", angle); };
     if (morphed)
       cells({format_value(b.first_height_min), format_value(m.first_height_min), degrees(b.orthogonality_deg_max),
-             degrees(m.orthogonality_deg_max), fmt::format("{:.3g} %", 100 * m.height_change_max),
+             degrees(m.orthogonality_deg_max), fmt::format("{:.3g}", 100 * m.height_change_max),
              degrees(m.orthogonality_change_deg_max)},
-            13);
+            11);
     else
-      cells({format_value(m.first_height_min), degrees(m.orthogonality_deg_max)}, 26);
+      cells({format_value(m.first_height_min), degrees(m.orthogonality_deg_max)}, 22);
   }
   if (now.size() > limit) out += fmt::format("and {} more, in the JSON report\n", now.size() - limit);
 }

@@ -14,16 +14,21 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
+void refuse_open_faces(BoundaryClaims const& claims) {
+  Problems problems;
+  for (auto const& problem : claims.problems) problems.add(problem);
+  problems.throw_if_any<MeshError>();
+}
+
 }  // namespace
 
 PreparedUnstructured UnstructuredPlanner::run() {
-  refuse_open_faces();
   out_.plan.n_nodes = mesh_.n_nodes();
   out_.plan.dimension = mesh_.dimension;
   out_.plan.plane_normal = plane_normal(mesh_);
   if (mesh_.dimension == 2 && !(std::abs(out_.plan.plane_normal.z) == 1))
     throw MeshError("mesh " + mesh_.source + " is 2-D but does not lie in a plane z = constant; turn it into one");
-  timed(out_.report.seconds.boundary, [&] { find_boundary(); });
+  timed(out_.report.seconds.boundary, [&] { take_boundary(); });
   timed(out_.report.seconds.distances, [&] { measure_distances(); });
   timed(out_.report.seconds.columns, [&] { find_columns(); });
   timed(out_.report.seconds.wrap, [&] { find_regions(); });
@@ -34,15 +39,7 @@ PreparedUnstructured UnstructuredPlanner::run() {
   return std::move(out_);
 }
 
-void UnstructuredPlanner::refuse_open_faces() const {
-  Problems problems;
-  for (auto const& problem : claims_.problems) problems.add(problem);
-  problems.throw_if_any<MeshError>();
-}
-
-void UnstructuredPlanner::find_boundary() {
-  out_.graph = make_node_graph(mesh_, topology_.elements_of_nodes);
-  out_.boundary = boundary_conditions(mesh_, topology_, claims_, out_.graph, motion_, options_.walls);
+void UnstructuredPlanner::take_boundary() {
   BoundaryConditions const& b = out_.boundary;
   UnstructuredPlan& plan = out_.plan;
   out_.notes = b.notes;
@@ -106,7 +103,21 @@ namespace gridmorph {
 
 PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryClaims const& claims, Motion const& motion, UnstructuredOptions const& options) {
-  return detail::UnstructuredPlanner(mesh, topology, claims, motion, options).run();
+  detail::refuse_open_faces(claims);
+  Stopwatch watch;
+  NodeGraph graph = make_node_graph(mesh, topology.elements_of_nodes);
+  BoundaryConditions boundary = boundary_conditions(mesh, topology, claims, graph, motion, options.walls);
+  double const seconds = watch.lap();
+  auto out = prepare(mesh, topology, claims, std::move(graph), std::move(boundary), options);
+  out.report.seconds.boundary += seconds;
+  return out;
+}
+
+PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                             BoundaryClaims const& claims, NodeGraph graph, BoundaryConditions boundary,
+                             UnstructuredOptions const& options) {
+  detail::refuse_open_faces(claims);
+  return detail::UnstructuredPlanner(mesh, topology, claims, std::move(graph), std::move(boundary), options).run();
 }
 
 }  // namespace gridmorph

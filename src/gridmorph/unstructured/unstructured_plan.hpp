@@ -105,5 +105,10 @@ struct PreparedUnstructured {
 /// nodes and elements (n log n in those of boundaries and fences); about 1 kB of working memory per node.
 PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryClaims const& claims, Motion const& motion, UnstructuredOptions const& options);
+/// The same for rules that are resolved already, make_node_graph() and boundary_conditions() of the mesh: for several plans of
+/// one mesh.
+PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                             BoundaryClaims const& claims, NodeGraph graph, BoundaryConditions boundary,
+                             UnstructuredOptions const& options);
 
 }  // namespace gridmorph

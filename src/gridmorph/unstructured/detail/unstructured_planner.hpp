@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::detail {
@@ -20,8 +21,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 class UnstructuredPlanner {
  public:
   UnstructuredPlanner(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, BoundaryClaims const& claims,
-                      Motion const& motion, UnstructuredOptions const& options)
-      : mesh_(mesh), topology_(topology), claims_(claims), motion_(motion), options_(options) {}
+                      NodeGraph graph, BoundaryConditions boundary, UnstructuredOptions const& options)
+      : mesh_(mesh), topology_(topology), claims_(claims), options_(options) {
+    out_.graph = std::move(graph);
+    out_.boundary = std::move(boundary);
+  }
   PreparedUnstructured run();
 
  private:
@@ -38,8 +42,7 @@ class UnstructuredPlanner {
   [[nodiscard]] Number owner(Number n) const { return out_.graph.representative[std::size_t(n)]; }
 
   // make_unstructured_plan.cpp
-  void refuse_open_faces() const;
-  void find_boundary();
+  void take_boundary();
   void measure_distances();
   [[nodiscard]] double largest_displacement() const;
 
@@ -86,7 +89,6 @@ class UnstructuredPlanner {
   UnstructuredMesh const& mesh_;
   UnstructuredTopology const& topology_;
   BoundaryClaims const& claims_;
-  Motion const& motion_;
   UnstructuredOptions const& options_;
   PreparedUnstructured out_;
   std::vector<int> layer_of_patch_;

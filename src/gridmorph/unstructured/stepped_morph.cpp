@@ -1,0 +1,79 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/unstructured/motion_path.hpp>
+#include <gridmorph/unstructured/stepped_morph.hpp>
+#include <gridmorph/unstructured/unstructured_morpher.hpp>
+
+#include <algorithm>
+
+namespace gridmorph {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+/// Gives a mesh its coordinates back.
+class KeepCoordinates {
+ public:
+  explicit KeepCoordinates(UnstructuredMesh& mesh) : mesh_(mesh), kept_(mesh.coordinates) {}
+  ~KeepCoordinates() { mesh_.coordinates = kept_; }
+  KeepCoordinates(KeepCoordinates const&) = delete;
+  KeepCoordinates& operator=(KeepCoordinates const&) = delete;
+  [[nodiscard]] Coordinates const& kept() const { return kept_; }
+
+ private:
+  UnstructuredMesh& mesh_;
+  Coordinates kept_;
+};
+
+Coordinates apply_plan(UnstructuredMesh const& mesh, UnstructuredPlan const& plan, std::vector<Vec3> const& boundary) {
+  Exec const exec;
+  UnstructuredMorpher<Exec> const morpher(exec, plan);
+  Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
+                                                                                                     boundary.size());
+  Coordinates const& x = mesh.coordinates;
+  Coordinates moved(mesh.n_nodes());
+  morpher.apply(exec, given, {x.x.data(), x.y.data(), x.z.data()}, {moved.x.data(), moved.y.data(), moved.z.data()});
+  compat::fence(exec, "gridmorph::morph_in_steps (step read by the host)");
+  return moved;
+}
+
+}  // namespace
+
+Coordinates morph_in_steps(UnstructuredMesh& mesh, UnstructuredTopology const& topology, BoundaryClaims const& claims,
+                           PreparedUnstructured const& prepared, std::vector<Vec3> const& displacement,
+                           StepOptions const& options) {
+  if (options.plan.background)
+    throw PlanError(
+        "a background mesh of your own stands still while the walls move: it serves one step alone; leave it out to "
+        "morph in "
+        "steps");
+  KeepCoordinates const baseline(mesh);
+  MotionPath const path(mesh.coordinates, prepared.graph, prepared.boundary, displacement);
+  auto const& known = prepared.plan.known;
+  UnstructuredOptions plan = options.plan;
+  for (int step = 1; step <= options.steps; ++step) {
+    if (options.progress) options.progress(step);
+    auto given = path.at(double(step) / options.steps);
+    plan.motion = 0;
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      given[k] = baseline.kept()[known[k]] + given[k] - mesh.coordinates[known[k]];
+      plan.motion = std::max(plan.motion, norm(given[k]));
+    }
+    auto const now = prepare(mesh, topology, claims, prepared.graph, prepared.boundary, plan);
+    Coordinates const moved = apply_plan(mesh, now.plan, given);
+    // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more bad
+    // elements.
+    (void)relax_bad_elements(mesh, topology, now, moved, options.relax);
+    mesh.coordinates = moved;
+  }
+  Coordinates const moved = mesh.coordinates;
+  // Steps round, their sum is given.
+  for (std::size_t k = 0; k < known.size(); ++k) moved.set(known[k], baseline.kept()[known[k]] + displacement[k]);
+  for (std::size_t k = 0; k < prepared.plan.copies.size(); ++k)
+    if (std::binary_search(known.begin(), known.end(), prepared.plan.copied[k]))
+      moved.set(prepared.plan.copies[k], moved[prepared.plan.copied[k]]);
+  return moved;
+}
+
+}  // namespace gridmorph
