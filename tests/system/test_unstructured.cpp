@@ -141,6 +141,52 @@ TEST_F(UnstructuredSequence, AStepThatInvertsOrASeriesInOneFileLeavesNothing) {
   expect_bad_input(gridmorph("morph case.toml"), {"one file per step", "step_{step}.su2"});
 }
 
+/// The same ring, its body turned.
+class UnstructuredTurn : public UnstructuredSequence {
+ protected:
+  [[nodiscard]] Outcome turn(double degrees, int steps) const {
+    std::filesystem::remove(path("turned.su2"));
+    write("case.toml",
+          fmt::format("[mesh]\ninput = \"ring.su2\"\noutput = \"turned.su2\"\n[[motion]]\npatches = [\"body\"]\n"
+                      "rule = \"rigid\"\nrotation = {{ axis = [0, 0, 1], origin = [0, 0, 0], angle_deg = {} }}\n"
+                      "[guard]\nmin_determinant = 0.001\nsteps = {}\n",
+                      degrees, steps));
+    return gridmorph("morph case.toml");
+  }
+};
+
+TEST_F(UnstructuredTurn, WhatOneStepCannotMakeIsMadeInSteps) {
+  Outcome const one = turn(120, 1);
+  EXPECT_EQ(one.status, 1);
+  EXPECT_FALSE(std::filesystem::exists(path("turned.su2")));
+  Outcome const two = turn(120, 4);
+  EXPECT_EQ(two.status, 0) << two.err;
+  EXPECT_NE((two.out + two.err).find("in 2 steps, each planned on the mesh before it, none is"), std::string::npos)
+      << two.out << two.err;
+  auto const before = coordinates("ring.su2"), after = coordinates("turned.su2");
+  for (int i = 0; i < around; ++i) {
+    double const c = std::cos(2 * std::acos(-1.0) / 3), s = std::sin(2 * std::acos(-1.0) / 3);
+    Vec3 const x = before[i];
+    EXPECT_LT(distance(after[i], {c * x.x - s * x.y, s * x.x + c * x.y, 0}), 1e-15);
+    EXPECT_EQ(distance(after[i + around * rows], before[i + around * rows]), 0);
+  }
+  // No more than it takes: a turn that one step makes knows nothing of others.
+  Outcome const small = turn(60, 4);
+  EXPECT_EQ(small.status, 0) << small.err;
+  EXPECT_EQ((small.out + small.err).find("steps"), std::string::npos);
+}
+
+TEST_F(UnstructuredTurn, WhereStepsDoNotHelpNothingIsWritten) {
+  Outcome const run = turn(180, 2);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("is not written"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(path("turned.su2")));
+  write("case.toml",
+        "[mesh]\ninput = \"ring.su2\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"body\"]\nrule = "
+        "\"fixed\"\n[guard]\nsteps = 65\n");
+  expect_bad_input(gridmorph("morph case.toml"), {"steps", "1 to 64, found 65"});
+}
+
 TEST_F(UnstructuredTest, OtherMeshesAreNoBaselines) {
   expect_bad_input(gridmorph("quality mesh.su2 passage.cgns"), {"is unstructured and 'passage.cgns' is not"});
   write("other.su2", "NDIME= 2\nNELEM= 1\n5 0 1 2\nNPOIN= 3\n0 0\n1 0\n0 1\n");

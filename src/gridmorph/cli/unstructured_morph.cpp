@@ -77,8 +77,14 @@ void try_steps(CaseFile const& case_file, UnstructuredRun& out, Terminal& termin
     };
     UnstructuredRun::Morphed const before = out.result();
     auto& l = out.loaded;
-    out.morphed = morph_in_steps(l.mesh, l.topology, l.claims, *out.prepared, displacement,
-                                 {steps, out.options, {.orientation = l.orientation}, progress});
+    try {
+      out.morphed = morph_in_steps(l.mesh, l.topology, l.claims, *out.prepared, displacement,
+                                   {steps, out.options, {.orientation = l.orientation}, progress});
+    } catch (Error const& e) {
+      // There is a result: a mesh on the way that cannot be planned on is no reason to lose it.
+      out.notes.push_back(fmt::format("in {} steps the motion cannot be planned: {}", steps, e.what()));
+      continue;
+    }
     measure_morphed(case_file, out);
     if (newly_inverted(out.after) < newly_inverted(before.after))
       best = steps;
@@ -175,7 +181,7 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   if (!written)
     terminal.error(fmt::format(
         "'{}' is not written, because elements are inverted that were not in the baseline; move the boundary less, "
-        "change [near_field], or set write_inverted = true in [guard]",
+        "change [near_field], or set steps or write_inverted = true in [guard]",
         case_file.output.string()));
   return any_failure(out.shortfalls) || !written ? falls_short : done;
 }
