@@ -32,13 +32,7 @@ struct UnstructuredCase {
   [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
     UnstructuredMorphed out{prepare(mesh, topology, claims, motion, options), {}, Coordinates(mesh.n_nodes())};
     out.boundary = out.prepared.boundary_displacement(mesh);
-    Host const exec;
-    UnstructuredMorpher<Host> const morpher(exec, out.prepared.plan);
-    Kokkos::View<Vec3*, Kokkos::HostSpace> given("boundary", out.boundary.size());
-    std::copy(out.boundary.begin(), out.boundary.end(), given.data());
-    Coordinates const& c = mesh.coordinates;
-    morpher.apply(exec, given, {c.x.data(), c.y.data(), c.z.data()}, {out.x.x.data(), out.x.y.data(), out.x.z.data()});
-    exec.fence();
+    apply_on_host(UnstructuredMorpher<Host>(Host(), out.prepared.plan), out.boundary, mesh.coordinates, out.x);
     return out;
   }
 

@@ -1,5 +1,7 @@
 #include "support/unstructured_meshes.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 
@@ -155,6 +157,44 @@ UnstructuredMesh flat_box(int ni, int nj, int layers) {
     mesh.patches.push_back(std::move(patch));
   }
   return mesh;
+}
+
+void expect_same_mesh(UnstructuredMesh const& a, UnstructuredMesh const& b) {
+  ASSERT_EQ(a.zones.size(), b.zones.size());
+  EXPECT_EQ(a.dimension, b.dimension);
+  for (std::size_t z = 0; z < a.zones.size(); ++z) {
+    EXPECT_EQ(a.zones[z].name, b.zones[z].name);
+    EXPECT_EQ(a.zones[z].n_nodes, b.zones[z].n_nodes);
+    EXPECT_EQ(a.zones[z].n_elements, b.zones[z].n_elements);
+  }
+  EXPECT_EQ(a.elements.type, b.elements.type);
+  EXPECT_EQ(a.elements.nodes.first, b.elements.nodes.first);
+  EXPECT_EQ(a.elements.nodes.item, b.elements.nodes.item);
+  EXPECT_EQ(a.polyhedra.element, b.polyhedra.element);
+  EXPECT_EQ(a.polyhedra.first_face, b.polyhedra.first_face);
+  EXPECT_EQ(a.polyhedra.faces.first, b.polyhedra.faces.first);
+  EXPECT_EQ(a.polyhedra.faces.item, b.polyhedra.faces.item);
+  ASSERT_EQ(a.patches.size(), b.patches.size());
+  for (std::size_t p = 0; p < a.patches.size(); ++p) {
+    EXPECT_EQ(a.patches[p].name, b.patches[p].name);
+    EXPECT_EQ(a.patches[p].kind, b.patches[p].kind);
+    EXPECT_EQ(a.patches[p].families, b.patches[p].families);
+    EXPECT_EQ(a.patches[p].faces.first, b.patches[p].faces.first);
+    EXPECT_EQ(a.patches[p].faces.item, b.patches[p].faces.item);
+    EXPECT_EQ(a.patches[p].nodes, b.patches[p].nodes);
+  }
+  ASSERT_EQ(a.connections.size(), b.connections.size());
+  for (std::size_t c = 0; c < a.connections.size(); ++c) {
+    EXPECT_EQ(a.connections[c].nodes, b.connections[c].nodes);
+    EXPECT_EQ(a.connections[c].donor_nodes, b.connections[c].donor_nodes);
+    EXPECT_EQ(a.connections[c].periodic.has_value(), b.connections[c].periodic.has_value());
+  }
+  ASSERT_EQ(a.coordinates.size(), b.coordinates.size());
+  for (Index n = 0; n < a.coordinates.size(); ++n) {
+    EXPECT_EQ(a.coordinates.x(n), b.coordinates.x(n)) << n;
+    EXPECT_EQ(a.coordinates.y(n), b.coordinates.y(n)) << n;
+    EXPECT_EQ(a.coordinates.z(n), b.coordinates.z(n)) << n;
+  }
 }
 
 }  // namespace gridmorph::test

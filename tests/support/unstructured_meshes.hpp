@@ -20,4 +20,7 @@ Mesh unit_box(Index3 cells);
 /// "i_min" ... "j_max", j_min a wall.
 UnstructuredMesh flat_box(int ni, int nj, int layers);
 
+/// Zones, elements, polyhedra, patches, connections and, bit for bit, coordinates; numbers of elements in messages aside.
+void expect_same_mesh(UnstructuredMesh const& a, UnstructuredMesh const& b);
+
 }  // namespace gridmorph::test

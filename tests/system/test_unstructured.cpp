@@ -131,6 +131,25 @@ TEST_F(UnstructuredSequence, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
   }
 }
 
+TEST_F(UnstructuredSequence, EveryStepHasTheFieldsThatAreAskedFor) {
+  write_mesh(path("ring.cgns").string(), read_unstructured_mesh(path("ring.su2").string()));
+  write_case("out_{step}.cgns", 0.5);
+  std::string text = contents(path("case.toml"));
+  text.replace(text.find("ring.su2"), 8, "ring.cgns");
+  for (bool const quality : {true, false}) {
+    write("case.toml", text + fmt::format("[output]\ndisplacement = true\nquality = {}\n", quality));
+    Outcome const run = gridmorph("morph case.toml");
+    ASSERT_EQ(run.status, 0) << run.err;
+    for (int step = 1; step <= 4; ++step) {
+      std::string const bytes = contents(path(fmt::format("out_{}.cgns", step)));
+      for (auto const* name : {"DisplacementX", "DisplacementY"})
+        EXPECT_NE(bytes.find(name), std::string::npos) << step;
+      for (auto const* name : {"MorphCells", "AspectRatio"})
+        EXPECT_EQ(bytes.find(name) != std::string::npos, quality) << name << " in step " << step;
+    }
+  }
+}
+
 TEST_F(UnstructuredSequence, AStepThatInvertsOrASeriesInOneFileLeavesNothing) {
   write_case("out_{step}.su2", 30);
   Outcome const run = gridmorph("morph case.toml");

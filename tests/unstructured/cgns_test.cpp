@@ -19,34 +19,6 @@ void check(int status) {
   if (status != CG_OK) throw std::runtime_error(cg_get_error());
 }
 
-void expect_same(UnstructuredMesh const& a, UnstructuredMesh const& b) {
-  ASSERT_EQ(a.zones.size(), b.zones.size());
-  EXPECT_EQ(a.dimension, b.dimension);
-  for (std::size_t z = 0; z < a.zones.size(); ++z) {
-    EXPECT_EQ(a.zones[z].name, b.zones[z].name);
-    EXPECT_EQ(a.zones[z].n_nodes, b.zones[z].n_nodes);
-    EXPECT_EQ(a.zones[z].n_elements, b.zones[z].n_elements);
-  }
-  EXPECT_EQ(a.elements.type, b.elements.type);
-  EXPECT_EQ(a.elements.nodes.first, b.elements.nodes.first);
-  EXPECT_EQ(a.elements.nodes.item, b.elements.nodes.item);
-  ASSERT_EQ(a.patches.size(), b.patches.size());
-  for (std::size_t p = 0; p < a.patches.size(); ++p) {
-    EXPECT_EQ(a.patches[p].name, b.patches[p].name);
-    EXPECT_EQ(a.patches[p].kind, b.patches[p].kind);
-    EXPECT_EQ(a.patches[p].families, b.patches[p].families);
-    EXPECT_EQ(a.patches[p].faces.item, b.patches[p].faces.item);
-    EXPECT_EQ(a.patches[p].nodes, b.patches[p].nodes);
-  }
-  ASSERT_EQ(a.connections.size(), b.connections.size());
-  for (std::size_t c = 0; c < a.connections.size(); ++c) {
-    EXPECT_EQ(a.connections[c].nodes, b.connections[c].nodes);
-    EXPECT_EQ(a.connections[c].donor_nodes, b.connections[c].donor_nodes);
-    EXPECT_EQ(a.connections[c].periodic.has_value(), b.connections[c].periodic.has_value());
-  }
-  expect_same_coordinates(a.coordinates, b.coordinates);
-}
-
 UnstructuredMesh mixed_box() {
   auto mesh = to_prisms_and_tetrahedra(unit_box({4, 3, 5}), 2);
   mesh.patches[4].families = {"bottom", "walls"};
@@ -70,7 +42,7 @@ TEST_P(UnstructuredCgns, WhatIsWrittenReadsBackTheSame) {
     mesh.zones[0].single_precision = false;
     write_mesh(file, mesh, {.format = GetParam()});
     EXPECT_EQ(mesh_kind(file), MeshKind::unstructured);
-    expect_same(read_unstructured_mesh(file), mesh);
+    expect_same_mesh(read_unstructured_mesh(file), mesh);
   }
 }
 
@@ -88,7 +60,7 @@ TEST_P(UnstructuredCgns, PeriodicConnectionsComeThrough) {
   mesh.patches.erase(mesh.patches.begin(), mesh.patches.begin() + 2);
   write_mesh(folder_.file("mesh.cgns"), mesh, {.format = GetParam()});
   auto const read = read_unstructured_mesh(folder_.file("mesh.cgns"));
-  expect_same(read, mesh);
+  expect_same_mesh(read, mesh);
   EXPECT_LT(largest_mismatch(read, read.connections[0]), 1e-12);
   auto const topology = make_topology(read);
   EXPECT_TRUE(claim_boundary(read, topology).problems.empty());

@@ -26,22 +26,15 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-kernels::Field<double const> field(Coordinates const& c) { return {c.x.data(), c.y.data(), c.z.data()}; }
-kernels::Field<double> writable(Coordinates const& c) { return {c.x.data(), c.y.data(), c.z.data()}; }
-
 void move_nodes(UnstructuredRun& out, Terminal& terminal, bool keep_background) {
   Stopwatch watch;
   auto const boundary = out.prepared->boundary_displacement(out.loaded.mesh);
   out.times.push_back({"boundary", watch.lap(), false});
   terminal.progress("morphing");
-  Exec const exec;
-  UnstructuredMorpher<Exec> const morpher(exec, out.prepared->plan);
-  out.morphed = Coordinates(out.loaded.mesh.n_nodes());
-  Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
-                                                                                                     boundary.size());
+  UnstructuredMorpher<Exec> const morpher(Exec(), out.prepared->plan);
+  out.result.morphed = Coordinates(out.loaded.mesh.n_nodes());
   out.times.push_back({"upload", watch.lap(), true});
-  morpher.apply(exec, given, field(out.loaded.mesh.coordinates), writable(out.morphed));
-  exec.fence();
+  apply_on_host(morpher, boundary, out.loaded.mesh.coordinates, out.result.morphed);
   out.times.push_back({"morph", watch.lap(), true});
   if (!keep_background || !out.prepared->plan.background) return;
   Coordinates const& x = out.prepared->plan.background->mesh.coordinates;
@@ -54,7 +47,7 @@ void move_nodes(UnstructuredRun& out, Terminal& terminal, bool keep_background) 
 void relax(UnstructuredRun& out, Terminal& terminal) {
   terminal.progress("looking for bad elements");
   Stopwatch watch;
-  RelaxReport const report = relax_bad_elements(out.loaded.mesh, out.loaded.topology, *out.prepared, out.morphed,
+  RelaxReport const report = relax_bad_elements(out.loaded.mesh, out.loaded.topology, *out.prepared, out.result.morphed,
                                                 {.orientation = out.loaded.orientation});
   if (report.before > 0)
     out.notes.push_back(fmt::format(
@@ -66,38 +59,38 @@ void relax(UnstructuredRun& out, Terminal& terminal) {
 
 /// Where elements are inverted: the same motion in 2, 3, ... steps, until none is; the best is kept.
 void try_steps(CaseFile const& case_file, UnstructuredRun& out, Terminal& terminal) {
-  Index const in_one = newly_inverted(out.after);
+  Index const in_one = newly_inverted(out.result.after);
   if (in_one == 0 || case_file.guard.steps < 2 || out.options.background) return;
   Stopwatch watch;
-  auto const displacement = out.prepared->boundary_displacement(out.loaded.mesh);
-  int best = 1;
-  for (int steps = 2; steps <= case_file.guard.steps && newly_inverted(out.after) > 0; ++steps) {
+  auto& l = out.loaded;
+  auto const displacement = out.prepared->boundary_displacement(l.mesh);
+  UnstructuredRun::Result best = std::move(out.result);
+  int best_steps = 1;
+  for (int steps = 2; steps <= case_file.guard.steps && newly_inverted(best.after) > 0; ++steps) {
     auto const progress = [&](int step) {
       terminal.progress(fmt::format("elements are inverted; morphing in steps, {} of {}", step, steps));
     };
-    UnstructuredRun::Morphed const before = out.result();
-    auto& l = out.loaded;
     try {
-      out.morphed = morph_in_steps(l.mesh, l.topology, l.claims, *out.prepared, displacement,
-                                   {steps, out.options, {.orientation = l.orientation}, progress});
+      out.result.morphed = morph_in_steps(l.mesh, l.topology, l.claims, *out.prepared, displacement,
+                                          {steps, out.options, {.orientation = l.orientation}, progress});
     } catch (Error const& e) {
       // There is a result: a mesh on the way that cannot be planned on is no reason to lose it.
       out.notes.push_back(fmt::format("in {} steps the motion cannot be planned: {}", steps, e.what()));
       continue;
     }
-    measure_morphed(case_file, out);
-    if (newly_inverted(out.after) < newly_inverted(before.after))
-      best = steps;
-    else
-      out.take(before);
+    measure_result(case_file, out);
+    if (newly_inverted(out.result.after) >= newly_inverted(best.after)) continue;
+    best = std::move(out.result);
+    best_steps = steps;
   }
-  Index const left = newly_inverted(out.after);
+  out.result = std::move(best);
+  Index const left = newly_inverted(out.result.after);
   out.notes.push_back(
-      best == 1
+      best_steps == 1
           ? fmt::format("{} elements are inverted, and up to {} steps leave no fewer", in_one, case_file.guard.steps)
           : fmt::format("{} elements were inverted in one step; in {} steps, each planned on the "
                         "mesh before it, {} {}",
-                        in_one, best, left == 0 ? "none" : std::to_string(left), left <= 1 ? "is" : "are"));
+                        in_one, best_steps, left == 0 ? "none" : std::to_string(left), left <= 1 ? "is" : "are"));
   out.times.push_back({"steps", watch.lap(), true});
 }
 
@@ -112,7 +105,7 @@ void write_regions(std::string const& path, UnstructuredRun const& out) {
   for (Region const r : report.regions.element) region.values.push_back(double(2 - int(r)));
   fields.cells.push_back(std::move(region));
   fields.nodes.push_back({"Layer", std::vector<double>(report.layer.begin(), report.layer.end())});
-  write_mesh(path, mesh, out.morphed, fields);
+  write_mesh(path, mesh, out.result.morphed, fields);
 }
 
 void write_stages(std::filesystem::path const& folder, UnstructuredRun const& out) {
@@ -149,17 +142,18 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   relax(out, terminal);
   terminal.progress("measuring quality");
   Stopwatch quality;
-  measure(case_file, out);
+  measure_baseline(out);
+  measure_result(case_file, out);
   out.times.push_back({"quality", quality.lap(), true});
   try_steps(case_file, out, terminal);
-  bool const written = newly_inverted(out.after) == 0 || case_file.guard.write_inverted;
+  bool const written = newly_inverted(out.result.after) == 0 || case_file.guard.write_inverted;
   std::optional<PendingFile> pending;
   if (report) pending.emplace(*report, report_text(case_file, out, written) + std::string(room_for_a_time, '\n'));
   if (written) {
     Stopwatch watch;
     terminal.progress("writing " + case_file.output.string());
-    write_morphed(case_file.input.string(), case_file.output.string(), out.loaded.mesh, out.morphed,
-                  output_fields(case_file, out));
+    write_morphed(case_file.input.string(), case_file.output.string(), out.loaded.mesh, out.result.morphed,
+                  out.result.fields);
     out.times.push_back({"write", watch.lap(), true});
   }
   if (case_file.output_options.stages) write_stages(*case_file.output_options.stages, out);
@@ -177,13 +171,13 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
     text += fmt::format("wrote wrap and background mesh to {}\n", stages->string());
   terminal.say(text);
   if (terminal.quiet())
-    for (auto const& s : out.shortfalls) terminal.warn(s.message);
+    for (auto const& s : out.result.shortfalls) terminal.warn(s.message);
   if (!written)
     terminal.error(fmt::format(
         "'{}' is not written, because elements are inverted that were not in the baseline; move the boundary less, "
         "change [near_field], or set steps or write_inverted = true in [guard]",
         case_file.output.string()));
-  return any_failure(out.shortfalls) || !written ? falls_short : done;
+  return any_failure(out.result.shortfalls) || !written ? falls_short : done;
 }
 
 std::string unstructured_plan_text(CaseFile const& case_file, Terminal& terminal) {

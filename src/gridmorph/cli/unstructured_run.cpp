@@ -110,37 +110,33 @@ UnstructuredQualityInput<Kokkos::HostSpace> quality_of_baseline(UnstructuredRun 
 UnstructuredQualityInput<Kokkos::HostSpace> quality_of_morphed(UnstructuredRun const& out) {
   auto input = quality_of_baseline(out);
   input.baseline = input.coordinates;
-  input.coordinates = views(out.morphed);
+  input.coordinates = views(out.result.morphed);
   return input;
 }
 
-void measure(CaseFile const& case_file, UnstructuredRun& out) {
+void measure_baseline(UnstructuredRun& out) {
   auto const& l = out.loaded;
   out.before = measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_baseline(out));
-  measure_morphed(case_file, out);
 }
 
-void measure_morphed(CaseFile const& case_file, UnstructuredRun& out) {
+void measure_result(CaseFile const& case_file, UnstructuredRun& out) {
   auto const& l = out.loaded;
-  auto morphed = quality_of_morphed(out);
-  out.quality_fields.clear();
+  auto& result = out.result;
+  auto input = quality_of_morphed(out);
+  result.fields = {case_file.output_options.displacement, {}, {}};
   if (case_file.output_options.quality)
     for (Measure const m : {Measure::aspect_ratio, Measure::determinant_3x3x3, Measure::minimum_angle_deg,
                             Measure::equiangle_skewness, Measure::relative_displacement}) {
-      auto& values = out.quality_fields.emplace_back(field_name(m), std::vector<double>()).values;
+      auto& values = result.fields.cells.emplace_back(field_name(m), std::vector<double>()).values;
       values.resize(std::size_t(l.mesh.n_elements()));
-      morphed.fields[m] = Kokkos::View<double*, Kokkos::HostSpace>(values.data(), values.size());
+      input.fields[m] = Kokkos::View<double*, Kokkos::HostSpace>(values.data(), values.size());
     }
-  out.after = measure_quality(Exec(), l.mesh, l.topology, l.claims, morphed);
-  out.shortfalls = shortfalls(out.before, out.after, thresholds_of(case_file));
-}
-
-OutputFields output_fields(CaseFile const& case_file, UnstructuredRun const& out) {
-  return {case_file.output_options.displacement, {}, out.quality_fields};
+  result.after = measure_quality(Exec(), l.mesh, l.topology, l.claims, input);
+  result.shortfalls = shortfalls(out.before, result.after, thresholds_of(case_file));
 }
 
 nlohmann::json report_json(CaseFile const& case_file, UnstructuredRun const& out) {
-  nlohmann::json json = quality_json(out.before, out.after, thresholds_of(case_file));
+  nlohmann::json json = quality_json(out.before, out.result.after, thresholds_of(case_file));
   json["gridmorph"] = GRIDMORPH_VERSION;
   json["case_file"] = case_file.source.string();
   json["input"] = case_file.input.string();
@@ -172,8 +168,8 @@ std::string regions_text(PreparedUnstructured const& prepared) {
 }
 
 std::string format_result(CaseFile const& case_file, UnstructuredRun const& out) {
-  std::string text = format_table(out.before, out.after, thresholds_of(case_file));
-  text += "\n" + format_short_table(out.before, out.after);
+  std::string text = format_table(out.before, out.result.after, thresholds_of(case_file));
+  text += "\n" + format_short_table(out.before, out.result.after);
   return text + "\n" + format_times(out.times, out.loaded.mesh.n_nodes());
 }
 

@@ -14,7 +14,6 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace gridmorph::cli {
@@ -23,28 +22,18 @@ struct UnstructuredRun {
   LoadedMesh loaded;
   UnstructuredOptions options;
   std::optional<PreparedUnstructured> prepared;
-  Coordinates morphed;
   std::optional<Coordinates> background;  ///< morphed
-  QualityReport before, after;
-  std::vector<CellField> quality_fields;  ///< of the morphed mesh, where [output] asks for them
-  std::vector<Shortfall> shortfalls;
+  QualityReport before;
   std::vector<std::string> notes;
   StepTimes times;
 
   /// What depends on the morphed coordinates.
-  struct Morphed {
+  struct Result {
     Coordinates morphed;
     QualityReport after;
-    std::vector<CellField> quality_fields;
+    OutputFields fields;  ///< what [output] adds to the output mesh
     std::vector<Shortfall> shortfalls;
-  };
-  [[nodiscard]] Morphed result() const { return {morphed, after, quality_fields, shortfalls}; }
-  void take(Morphed r) {
-    morphed = std::move(r.morphed);
-    after = std::move(r.after);
-    quality_fields = std::move(r.quality_fields);
-    shortfalls = std::move(r.shortfalls);
-  }
+  } result;
 };
 
 /// Reads and plans; the offset of the wrap reckons with all steps of a sequence.
@@ -53,13 +42,10 @@ void read_and_plan(CaseFile const& case_file, Terminal& terminal, UnstructuredRu
 /// Regions and walls, for the morphed mesh or the baseline.
 UnstructuredQualityInput<Kokkos::HostSpace> quality_of_baseline(UnstructuredRun const& run);
 UnstructuredQualityInput<Kokkos::HostSpace> quality_of_morphed(UnstructuredRun const& run);
-/// Measures before and after, and what falls short.
-void measure(CaseFile const& case_file, UnstructuredRun& out);
-/// The second half, for other coordinates of the same mesh.
-void measure_morphed(CaseFile const& case_file, UnstructuredRun& out);
+void measure_baseline(UnstructuredRun& out);
+/// Measures what the morphed coordinates give: quality, fields and what falls short of it, against the baseline measured before.
+void measure_result(CaseFile const& case_file, UnstructuredRun& out);
 
-/// What [output] adds to the output mesh; quality as measure() found it.
-OutputFields output_fields(CaseFile const& case_file, UnstructuredRun const& run);
 /// The report, less the name of the output.
 nlohmann::json report_json(CaseFile const& case_file, UnstructuredRun const& run);
 /// Near field, layers and background mesh in two lines.

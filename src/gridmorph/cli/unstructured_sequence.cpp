@@ -4,7 +4,6 @@
 #include <gridmorph/cli/sequence_steps.hpp>
 #include <gridmorph/cli/step_files.hpp>
 #include <gridmorph/cli/unstructured_run.hpp>
-#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/unstructured/guard.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
 
@@ -26,18 +25,14 @@ class Stepper {
  public:
   Stepper(CaseFile const& case_file, UnstructuredRun& run)
       : case_file_(case_file), run_(run), morpher_(exec_, run.prepared->plan) {
-    run_.morphed = Coordinates(run_.loaded.mesh.n_nodes());
+    run_.result.morphed = Coordinates(run_.loaded.mesh.n_nodes());
   }
 
   void morph(int step) {
     auto const motion = motion_at(case_file_, case_file_.sequence->periods_at(step));
     auto const boundary = evaluate(run_.loaded.mesh, run_.prepared->boundary, motion);
-    Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
-                                                                                                       boundary.size());
-    Coordinates const &x = run_.loaded.mesh.coordinates, &moved = run_.morphed;
-    morpher_.apply(exec_, given, {x.x.data(), x.y.data(), x.z.data()},
-                   {moved.x.data(), moved.y.data(), moved.z.data()});
-    compat::fence(exec_, "gridmorph::cli (step read by the host)");
+    Coordinates const& moved = run_.result.morphed;
+    apply_on_host(morpher_, boundary, run_.loaded.mesh.coordinates, moved);
     auto const& l = run_.loaded;
     RelaxOptions const options{.orientation = l.orientation};
     relaxed_ = std::max(relaxed_, relax_bad_elements(l.mesh, l.topology, *run_.prepared, moved, options).before);
@@ -60,15 +55,18 @@ int morph_unstructured_sequence(CaseFile const& case_file, Terminal& terminal) {
   UnstructuredRun run;
   read_and_plan(case_file, terminal, run);
   auto const& l = run.loaded;
+  measure_baseline(run);
   StepFiles files(case_file, l.mesh);
   Stepper stepper(case_file, run);
-  Steps const steps =
-      run_steps(case_file, terminal, files,
-                {[&](int step) { stepper.morph(step); },
-                 [&] { return measure_quality(Exec(), l.mesh, l.topology, l.claims, quality_of_morphed(run)); },
-                 [&] { return output_fields(case_file, run); }, l.mesh.coordinates, run.morphed});
+  Steps const steps = run_steps(case_file, terminal, files,
+                                {[&](int step) { stepper.morph(step); },
+                                 [&] {
+                                   measure_result(case_file, run);
+                                   return run.result.after;
+                                 },
+                                 [&] { return run.result.fields; }, l.mesh.coordinates, run.result.morphed});
   stepper.morph(int(steps.worst()));
-  measure(case_file, run);
+  measure_result(case_file, run);
   if (stepper.relaxed() > 0)
     run.notes.push_back(
         fmt::format("in a step up to {} elements had lost four fifths of their determinant or more; "
@@ -81,7 +79,7 @@ int morph_unstructured_sequence(CaseFile const& case_file, Terminal& terminal) {
   head += regions_text(*run.prepared) + "\n";
   return finish_sequence(case_file, terminal, files, steps,
                          {[&] { return report_json(case_file, run); }, head, format_result(case_file, run),
-                          run.shortfalls, "[near_field] or [boundary_layer]"});
+                          run.result.shortfalls, "[near_field] or [boundary_layer]"});
 }
 
 }  // namespace gridmorph::cli

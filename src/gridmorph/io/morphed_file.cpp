@@ -30,4 +30,11 @@ Layout zones_of(File const& file, Node const& tree) {
   return layout;
 }
 
+Layout unstructured_zones_of(File const& file, Node const& tree) {
+  Problems problems;
+  auto layout = find_unstructured_zones(file, tree, problems);
+  problems.throw_if_any<IoError>();
+  return layout;
+}
+
 }  // namespace gridmorph::cgns

@@ -15,6 +15,8 @@ void check_same_mesh(File const& file, Layout const& layout, Mesh const& mesh);
 
 /// find_zones, with its problems thrown as IoError.
 Layout zones_of(File const& file, Node const& tree);
+/// find_unstructured_zones, likewise.
+Layout unstructured_zones_of(File const& file, Node const& tree);
 
 /// Calls put(values) with those of a zone's node values that the file has: all of them, or plane 0 of a 2-D zone.
 template <class Put>

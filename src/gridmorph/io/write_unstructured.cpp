@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/unstructured_fields.hpp>
@@ -271,10 +272,7 @@ void write_mesh(std::string const& path, UnstructuredMesh const& mesh, Coordinat
   if (!fields.empty()) {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree();
-    Problems problems;
-    auto const layout = find_unstructured_zones(file, tree, problems);
-    problems.throw_if_any<IoError>();
-    write_fields(file, layout, mesh, morphed, fields);
+    write_fields(file, cgns::unstructured_zones_of(file, tree), mesh, morphed, fields);
     file.close();
   }
   target.commit();

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns_layout.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/su2_file.hpp>
@@ -14,13 +15,6 @@
 namespace gridmorph {
 
 namespace {
-
-cgns::Layout zones_of(cgns::File const& file, cgns::Node const& tree) {
-  Problems problems;
-  auto layout = find_unstructured_zones(file, tree, problems);
-  problems.throw_if_any<IoError>();
-  return layout;
-}
 
 /// The file must hold the mesh it is said to hold; also refuses coordinates that live in another file.
 void check_same_mesh(cgns::File const& file, cgns::Layout const& layout, UnstructuredMesh const& mesh) {
@@ -43,7 +37,7 @@ void write_cgns(std::string const& input, std::string const& output, Unstructure
   {
     cgns::File const file(input, cgns::File::Mode::read);
     auto const tree = file.tree();
-    check_same_mesh(file, zones_of(file, tree), mesh);
+    check_same_mesh(file, cgns::unstructured_zones_of(file, tree), mesh);
   }
   io::OutputFile target(output);
   target.copy_from(input);
@@ -51,7 +45,7 @@ void write_cgns(std::string const& input, std::string const& output, Unstructure
   {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree();
-    auto const layout = zones_of(file, tree);
+    auto const layout = cgns::unstructured_zones_of(file, tree);
     Coordinates const ordered = in_file_order(mesh, morphed);
     auto const arrays = io::components(ordered);
     for (std::size_t z = 0; z < mesh.zones.size(); ++z)

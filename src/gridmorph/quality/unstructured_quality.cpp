@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/quality/detail/element_tables.hpp>
 #include <gridmorph/quality/detail/partial_sums.hpp>
@@ -18,14 +19,12 @@ std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
   std::vector<signed char> sign(std::size_t(mesh.n_elements()), 0);
   auto const tables = detail::element_tables<Kokkos::HostSpace>(mesh);
   auto const coordinates = detail::pack(exec, views(mesh.coordinates), mesh.n_nodes());
-  Kokkos::parallel_for("gridmorph::volume_signs",
-                       Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, mesh.n_elements()), [&](Index e) {
-                         ElementType const type = tables.type(e);
-                         if (type == ElementType::polyhedron) return;
-                         double const v = element_volume(type, tables.corners(coordinates, e), 1, tables.plane_normal);
-                         sign[std::size_t(e)] = v > 0 ? 1 : v < 0 ? -1 : 0;
-                       });
-  compat::fence(exec, "gridmorph::volume_signs (read by the host)");
+  detail::for_all("gridmorph::volume_signs", mesh.n_elements(), [&](Index e) {
+    ElementType const type = tables.type(e);
+    if (type == ElementType::polyhedron) return;
+    double const v = element_volume(type, tables.corners(coordinates, e), 1, tables.plane_normal);
+    sign[std::size_t(e)] = v > 0 ? 1 : v < 0 ? -1 : 0;
+  });
   return sign;
 }
 

@@ -1,4 +1,5 @@
 #include <gridmorph/kernels/element_quality.hpp>
+#include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/quality/detail/element_tables.hpp>
 #include <gridmorph/unstructured/guard.hpp>
 
@@ -9,7 +10,6 @@ namespace gridmorph {
 
 namespace {
 
-using Exec = Kokkos::DefaultHostExecutionSpace;
 class Relaxation {
  public:
   Relaxation(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, PreparedUnstructured const& prepared,
@@ -64,11 +64,8 @@ class Relaxation {
 
   [[nodiscard]] std::vector<Number> find_bad() const {
     std::vector<std::uint8_t> mark(std::size_t(mesh_.n_elements()), 0);
-    Exec const exec;
-    Kokkos::parallel_for("gridmorph::find_bad_elements",
-                         Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, mesh_.n_elements()),
-                         [&](Index e) { mark[std::size_t(e)] = is_bad(Number(e)) ? 1 : 0; });
-    compat::fence(exec, "gridmorph::find_bad_elements (read by the host)");
+    detail::for_all("gridmorph::find_bad_elements", mesh_.n_elements(),
+                    [&](Index e) { mark[std::size_t(e)] = is_bad(Number(e)) ? 1 : 0; });
     std::vector<Number> bad;
     for (std::size_t e = 0; e < mark.size(); ++e)
       if (mark[e] != 0) bad.push_back(Number(e));

@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/unstructured/detail/corner_means.hpp>
 #include <gridmorph/unstructured/detail/unstructured_planner.hpp>
@@ -11,8 +11,6 @@
 namespace gridmorph::detail {
 
 namespace {
-
-using Exec = Kokkos::DefaultHostExecutionSpace;
 
 void refuse_open_faces(BoundaryClaims const& claims) {
   Problems problems;
@@ -82,13 +80,10 @@ void UnstructuredPlanner::measure_distances() {
     }
   }
   // Each is serial; side by side they take half the time.
-  Exec const exec;
-  Kokkos::parallel_for("gridmorph::nearest_source", Kokkos::RangePolicy<Exec>(exec, 0, 2, Kokkos::ChunkSize(1)),
-                       [&](int which) {
-                         (which == 0 ? from_wall_ : from_other_) =
-                             nearest_source(mesh_.coordinates, out_.graph, which == 0 ? walls : others);
-                       });
-  compat::fence(exec, "gridmorph::nearest_source (read by the host)");
+  for_all_parts("gridmorph::nearest_source", 2, [&](Index which) {
+    (which == 0 ? from_wall_ : from_other_) =
+        nearest_source(mesh_.coordinates, out_.graph, which == 0 ? walls : others);
+  });
 }
 
 double UnstructuredPlanner::largest_displacement() const {

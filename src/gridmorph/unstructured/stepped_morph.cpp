@@ -1,5 +1,4 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/unstructured/motion_path.hpp>
 #include <gridmorph/unstructured/stepped_morph.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
@@ -26,18 +25,6 @@ class KeepCoordinates {
   Coordinates kept_;
 };
 
-Coordinates apply_plan(UnstructuredMesh const& mesh, UnstructuredPlan const& plan, std::vector<Vec3> const& boundary) {
-  Exec const exec;
-  UnstructuredMorpher<Exec> const morpher(exec, plan);
-  Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
-                                                                                                     boundary.size());
-  Coordinates const& x = mesh.coordinates;
-  Coordinates moved(mesh.n_nodes());
-  morpher.apply(exec, given, {x.x.data(), x.y.data(), x.z.data()}, {moved.x.data(), moved.y.data(), moved.z.data()});
-  compat::fence(exec, "gridmorph::morph_in_steps (step read by the host)");
-  return moved;
-}
-
 }  // namespace
 
 Coordinates morph_in_steps(UnstructuredMesh& mesh, UnstructuredTopology const& topology, BoundaryClaims const& claims,
@@ -61,7 +48,8 @@ Coordinates morph_in_steps(UnstructuredMesh& mesh, UnstructuredTopology const& t
       plan.motion = std::max(plan.motion, norm(given[k]));
     }
     auto const now = prepare(mesh, topology, claims, prepared.graph, prepared.boundary, plan);
-    Coordinates const moved = apply_plan(mesh, now.plan, given);
+    Coordinates const moved(mesh.n_nodes());
+    apply_on_host(UnstructuredMorpher<Exec>(Exec(), now.plan), given, mesh.coordinates, moved);
     // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more bad
     // elements.
     (void)relax_bad_elements(mesh, topology, now, moved, options.relax);

@@ -213,6 +213,14 @@ kernels::Field<double const> UnstructuredMorpher<Exec>::background_displacement(
   return state_->read(state_->background_u);
 }
 
+void apply_on_host(UnstructuredMorpher<Kokkos::DefaultHostExecutionSpace> const& morpher,
+                   std::span<Vec3 const> boundary, Coordinates const& x, Coordinates const& moved) {
+  Kokkos::DefaultHostExecutionSpace const exec;
+  Kokkos::View<Vec3 const*, Kokkos::HostSpace> const given(boundary.data(), boundary.size());
+  morpher.apply(exec, given, {x.x.data(), x.y.data(), x.z.data()}, {moved.x.data(), moved.y.data(), moved.z.data()});
+  compat::fence(exec, "gridmorph::apply_on_host (read by the host)");
+}
+
 #define GRIDMORPH_INSTANTIATE(Exec) template class UnstructuredMorpher<Exec>;
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE

@@ -7,6 +7,7 @@
 #include <Kokkos_Core.hpp>
 
 #include <memory>
+#include <span>
 
 namespace gridmorph {
 
@@ -40,5 +41,9 @@ class UnstructuredMorpher {
   struct State;
   std::shared_ptr<State const> state_;
 };
+
+/// apply() on lists and coordinates of the host; waits. moved: as many nodes as the mesh.
+void apply_on_host(UnstructuredMorpher<Kokkos::DefaultHostExecutionSpace> const& morpher,
+                   std::span<Vec3 const> boundary, Coordinates const& x, Coordinates const& moved);
 
 }  // namespace gridmorph
