@@ -73,37 +73,15 @@ UnstructuredMesh two_boxes() {
   return mesh;
 }
 
-void expect_same(UnstructuredMesh const& a, UnstructuredMesh const& b) {
-  EXPECT_EQ(a.elements.type, b.elements.type);
-  EXPECT_EQ(a.elements.nodes.first, b.elements.nodes.first);
-  EXPECT_EQ(a.elements.nodes.item, b.elements.nodes.item);
-  EXPECT_EQ(a.elements.number, b.elements.number);
-  EXPECT_EQ(a.polyhedra.element, b.polyhedra.element);
-  EXPECT_EQ(a.polyhedra.first_face, b.polyhedra.first_face);
-  EXPECT_EQ(a.polyhedra.faces.first, b.polyhedra.faces.first);
-  EXPECT_EQ(a.polyhedra.faces.item, b.polyhedra.faces.item);
-  ASSERT_EQ(a.patches.size(), b.patches.size());
-  for (std::size_t p = 0; p < a.patches.size(); ++p) {
-    EXPECT_EQ(a.patches[p].faces.first, b.patches[p].faces.first);
-    EXPECT_EQ(a.patches[p].faces.item, b.patches[p].faces.item);
-    EXPECT_EQ(a.patches[p].nodes, b.patches[p].nodes);
-  }
-  ASSERT_EQ(a.connections.size(), b.connections.size());
-  for (std::size_t c = 0; c < a.connections.size(); ++c) {
-    EXPECT_EQ(a.connections[c].nodes, b.connections[c].nodes);
-    EXPECT_EQ(a.connections[c].donor_nodes, b.connections[c].donor_nodes);
-  }
-  ASSERT_EQ(a.coordinates.size(), b.coordinates.size());
-  for (Index n = 0; n < a.coordinates.size(); ++n) EXPECT_EQ(norm(a.coordinates[n] - b.coordinates[n]), 0) << n;
-}
-
 TEST(FileOrder, TheWayBackIsExact) {
   auto const mesh = shuffle(two_boxes(), 3);
   auto ordered = mesh;
   reorder(ordered, order_by_position(mesh));
   check_mesh(ordered);
   EXPECT_NE(ordered.elements.nodes.item, mesh.elements.nodes.item);
-  expect_same(in_file_order(ordered), mesh);
+  auto const back_again = in_file_order(ordered);
+  expect_same_mesh(back_again, mesh);
+  EXPECT_EQ(back_again.elements.number, mesh.elements.number);
   auto const x = in_file_order(ordered, ordered.coordinates);
   for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(norm(x[n] - mesh.coordinates[n]), 0);
   std::vector<double> along;
@@ -174,6 +152,18 @@ TEST(FileOrder, NeighboursComeTogether) {
       last = first;
     }
   }
+}
+
+TEST(FileOrder, OnlyNumbersAtRandomAreScattered) {
+  for (int const n : {8, 18}) {
+    auto mesh = to_prisms_and_tetrahedra(unit_box({n, n, n}), 2);
+    EXPECT_FALSE(is_scattered(mesh));
+    mesh = shuffle(mesh, 9);
+    EXPECT_EQ(is_scattered(mesh), mesh.n_nodes() >= 4096) << n;
+    reorder(mesh, order_by_position(mesh));
+    EXPECT_FALSE(is_scattered(mesh));
+  }
+  EXPECT_FALSE(is_scattered({}));
 }
 
 TEST(FileOrder, OneSizeOrOrderTooManyIsRefused) {

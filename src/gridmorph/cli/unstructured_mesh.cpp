@@ -19,7 +19,7 @@ namespace gridmorph::cli {
 LoadedMesh load_unstructured(std::filesystem::path const& path) {
   LoadedMesh out;
   out.mesh = read_unstructured_mesh(path.string());
-  reorder(out.mesh, order_by_position(out.mesh));
+  if (is_scattered(out.mesh)) reorder(out.mesh, order_by_position(out.mesh));
   out.topology = make_topology(out.mesh);
   out.claims = claim_boundary(out.mesh, out.topology);
   out.problems = out.claims.problems;
@@ -48,7 +48,7 @@ Coordinates coordinates_of_same_mesh(UnstructuredMesh const& a, UnstructuredMesh
   for (std::size_t z = 0; same && z < a.zones.size(); ++z)
     same = a.zones[z].n_nodes == b.zones[z].n_nodes && a.zones[z].n_elements == b.zones[z].n_elements;
   if (same) {
-    reorder(b, a.file_order);
+    if (!a.file_order.node.empty()) reorder(b, a.file_order);
     same = a.elements.type == b.elements.type && a.elements.nodes.item == b.elements.nodes.item;
   }
   if (!same)

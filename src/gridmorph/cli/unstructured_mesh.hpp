@@ -14,7 +14,7 @@
 
 namespace gridmorph::cli {
 
-/// A mesh, ordered by position, with what follows from it.
+/// A mesh, in order by position where its file scatters it, with what follows from it.
 struct LoadedMesh {
   UnstructuredMesh mesh;
   UnstructuredTopology topology;

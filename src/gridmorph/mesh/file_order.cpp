@@ -8,6 +8,7 @@
 #include <gridmorph/mesh/file_order.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -149,13 +150,24 @@ std::vector<Number> order_elements(UnstructuredMesh const& mesh, std::vector<Num
   return order;
 }
 
-std::vector<Number> unchanged(std::size_t n) {
-  std::vector<Number> order(n);
-  for (std::size_t k = 0; k < n; ++k) order[k] = Number(k);
-  return order;
-}
-
 }  // namespace
+
+bool is_scattered(UnstructuredMesh const& mesh) {
+  constexpr Index smallest = 4096, parts = 16;
+  if (mesh.n_nodes() < smallest) return false;
+  Index const near = mesh.n_nodes() / parts;
+  Index wide = 0;
+  Kokkos::parallel_reduce(
+      "gridmorph::is_scattered", Kokkos::RangePolicy<HostExec, Kokkos::IndexType<Index>>(0, mesh.n_elements()),
+      [&](Index e, Index& sum) {
+        auto const corners = mesh.elements.corners(e);
+        if (corners.empty()) return;
+        auto const [first, last] = std::minmax_element(corners.begin(), corners.end());
+        sum += *last - *first > near ? 1 : 0;
+      },
+      wide);
+  return 2 * wide > mesh.n_elements();
+}
 
 FileOrder order_by_position(UnstructuredMesh const& mesh) {
   if (mesh.coordinates.size() != mesh.n_nodes())
@@ -165,7 +177,12 @@ FileOrder order_by_position(UnstructuredMesh const& mesh) {
   order.node = order_nodes(mesh);
   bool const has_empty = std::adjacent_find(mesh.elements.nodes.first.begin(), mesh.elements.nodes.first.end()) !=
                          mesh.elements.nodes.first.end();
-  order.element = has_empty ? unchanged(std::size_t(mesh.n_elements())) : order_elements(mesh, inverse_of(order.node));
+  if (has_empty) {
+    order.element.resize(std::size_t(mesh.n_elements()));
+    std::iota(order.element.begin(), order.element.end(), 0);
+  } else {
+    order.element = order_elements(mesh, inverse_of(order.node));
+  }
   return order;
 }
 

@@ -11,6 +11,10 @@
 
 namespace gridmorph {
 
+/// Whether the numbers of most elements' corners are further apart than a sixteenth of all nodes: what order_by_position() is
+/// for. Never for less than 4,096 nodes, which fit in a cache in any order. Cost: one stream over the elements.
+bool is_scattered(UnstructuredMesh const& mesh);
+
 /// Nodes of each zone along a Hilbert curve through the bounding box, nodes at the same place in the order they have;
 /// elements of each zone by the first of their nodes along it. Linear cost: a sort by counting, a few streams over the
 /// elements; host, on all cores.
