@@ -32,3 +32,4 @@ install(
   FILES "${PROJECT_BINARY_DIR}/gridmorphConfig.cmake" "${PROJECT_BINARY_DIR}/gridmorphConfigVersion.cmake"
         "${PROJECT_SOURCE_DIR}/cmake/gridmorphCheckKokkos.cmake"
   DESTINATION "${package_folder}")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
