@@ -315,6 +315,7 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   read_results(root, out);
   root.finish();
   context.problems.throw_if_any<ConfigError>();
+  out.files = std::move(context.files);
   return out;
 }
 

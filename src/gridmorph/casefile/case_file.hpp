@@ -82,6 +82,7 @@ struct CaseFile {
   std::optional<WheelCase> wheel;  ///< [wheel], for `gridmorph wheel`
   std::vector<ModalUse> modal;
   std::optional<SequenceOptions> sequence;
+  std::vector<std::filesystem::path> files;  ///< tables, targets, models, ... that its keys name and that are read
 };
 
 /// The rules of the case file at a time: those with modes as they are then, all others as they stand.

@@ -1,6 +1,7 @@
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
+#include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/demo/ball_demo.hpp>
@@ -17,11 +18,20 @@ namespace gridmorph::cli {
 
 namespace {
 
+/// The report of a demo, beside the morphed mesh.
+std::filesystem::path report_of(std::filesystem::path morphed) { return morphed.replace_extension(".json"); }
+
+/// A folder that is there may hold links, devices, ... of the names that the demo writes.
+void check_demo_files(std::vector<std::filesystem::path> const& paths) {
+  RunFiles files;
+  for (auto const& path : paths) files.push_back({"demo file", path, true});
+  check_run_files({}, files);
+}
+
 /// The case file of a demo; its report goes beside the morphed mesh.
 CaseFile with_report(std::filesystem::path const& path, std::filesystem::path const& morphed) {
   CaseFile case_file = read_case_file(path);
-  auto report = morphed;
-  case_file.output_options.report = report.replace_extension(".json");
+  case_file.output_options.report = report_of(morphed);
   return case_file;
 }
 
@@ -33,6 +43,12 @@ int demo_passage(CommandLine const& options, std::filesystem::path const& folder
   else
     motions = {passage_motion(motion)};
 
+  std::vector<std::filesystem::path> outputs{folder / "passage.cgns"};
+  for (auto const& m : motions) {
+    PassageFiles const f = passage_files(folder, m);
+    outputs.insert(outputs.end(), {f.displacement, f.case_file, f.morphed, report_of(f.morphed)});
+  }
+  check_demo_files(outputs);
   PassageOptions passage;
   passage.nodes = options.demo_nodes.value_or(passage.nodes);
   int status = done;
@@ -50,6 +66,8 @@ int demo_passage(CommandLine const& options, std::filesystem::path const& folder
 }
 
 int demo_ball(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  BallFiles const places = ball_files(folder);
+  check_demo_files({places.mesh, places.case_file, places.morphed, report_of(places.morphed)});
   BallOptions ball;
   ball.elements = options.demo_elements.value_or(ball.elements);
   BallSwing swing;

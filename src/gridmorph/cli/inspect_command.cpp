@@ -2,6 +2,7 @@
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/inspect_text.hpp>
 #include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/core/error.hpp>
@@ -31,7 +32,6 @@ int suggest(CommandLine const& options, MeshSummary const& summary, Terminal& te
   if (options.suggest->empty()) {
     terminal.result(text);
   } else {
-    check_output(*options.suggest, "case file", options.input);
     PendingFile(*options.suggest, text).commit();
     terminal.say(fmt::format("wrote {}\n", *options.suggest));
   }
@@ -64,6 +64,17 @@ std::string contents(std::filesystem::path const& path) {
   return std::move(text).str();
 }
 
+void check_files(CommandLine const& options) {
+  RunFiles outputs;
+  if (options.suggest && !options.suggest->empty()) outputs.push_back({"case file", *options.suggest});
+  if (outputs.empty() && !options.write_side_file) return;
+  check_run_files(inputs_of_mesh(options.input, options.side_file), outputs);
+  if (!options.write_side_file) return;
+  // A new side file begins with all of the present one, whose place it may take.
+  outputs.push_back({"side file", *options.write_side_file});
+  check_run_files({{"input mesh", options.input}}, outputs);
+}
+
 /// What the points say: added to the mesh, and to its side file where one is to be written.
 void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
   terminal.progress("matching points");
@@ -75,7 +86,6 @@ void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
                   found.interfaces.size(), periodic, found.mismatch));
   mesh.notes.insert(mesh.notes.end(), found.notes.begin(), found.notes.end());
   if (options.write_side_file) {
-    check_output(*options.write_side_file, "side file", options.input);
     auto const present = options.side_file ? options.side_file : find_side_file(options.input);
     PendingFile(*options.write_side_file, side_file_text(mesh, found, present ? contents(*present) : std::string()))
         .commit();
@@ -86,6 +96,7 @@ void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
 }  // namespace
 
 int run_inspect_command(CommandLine const& options, Terminal& terminal) {
+  check_files(options);
   if (mesh_kind(options.input.string()) == MeshKind::unstructured) return inspect_unstructured(options, terminal);
   terminal.progress("reading " + options.input.string());
   Mesh mesh = load_mesh(options.input, options.side_file);

@@ -13,6 +13,7 @@
 #include <gridmorph/cli/kokkos_session.hpp>
 #include <gridmorph/cli/terminal.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/output_file.hpp>
 
 #include <csignal>
 #include <cstdio>
@@ -44,10 +45,11 @@ int run(CommandLine const& options, Terminal& terminal) {
   return bad_input;
 }
 
-int run_and_report(CommandLine const& options, Terminal& terminal) {
+/// The exit status of work that prints through the terminal; errors become messages.
+template <class Work>
+int report_errors(Terminal& terminal, Work const& work) {
   try {
-    KokkosSession const session(options.threads);
-    int const status = run(options, terminal);
+    int const status = work();
     terminal.finish();
     return status;
   } catch (gridmorph::MachineError const& e) {
@@ -88,18 +90,25 @@ int main(int argc, char** argv) try {
   // A reader that goes away, or a file that may not grow, is an error to report, not a reason to die.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  gridmorph::io::remove_pending_on_signals();
   auto const parsed = parse_command_line(argc, argv);
   if (auto const* stop = std::get_if<Stop>(&parsed)) {
     Terminal terminal(false);
-    if (stop->status == 0)
-      terminal.result(stop->text);
-    else
+    if (stop->status != 0) {
       terminal.error(stop->text);
-    return stop->status;
+      return stop->status;
+    }
+    return report_errors(terminal, [&] {
+      terminal.result(stop->text);
+      return int(done);
+    });
   }
   auto const& options = std::get<CommandLine>(parsed);
   Terminal terminal(options.quiet);
-  return run_and_report(options, terminal);
+  return report_errors(terminal, [&] {
+    KokkosSession const session(options.threads);
+    return run(options, terminal);
+  });
 } catch (...) {  // what fails in reporting a failure, when memory has run out
   std::fputs("gridmorph: error: internal failure\n", stderr);
   return machine_failure;

@@ -2,6 +2,7 @@
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/cli/sequence.hpp>
 #include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/core/error.hpp>
@@ -133,7 +134,7 @@ Index newly_inverted(QualityReport const& quality) {
 
 int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
   auto const& report = case_file.output_options.report;
-  check_outputs(case_file.output, report, case_file.input);
+  check_run_files(inputs_of(case_file), outputs_of(case_file.output, report));
 
   MorphResult result = run_morph(case_file, terminal);
   bool const written = newly_inverted(result.after) == 0 || case_file.guard.write_inverted;

@@ -1,6 +1,7 @@
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/cli/sequence_steps.hpp>
 #include <gridmorph/cli/step_files.hpp>
 #include <gridmorph/core/error.hpp>
@@ -113,19 +114,16 @@ void check_sequence_outputs(CaseFile const& case_file) {
                     "give --output FILE",
                     case_file.source.string()));
   int const files = one_file_per_step(options) ? options.steps : 1;
-  for (int step = 0; step < files; ++step) check_output(step_path(options, step), "output", case_file.input);
   if (files == 1 && !one_file_per_step(options) &&
       (case_file.output_options.displacement || case_file.output_options.quality))
     throw ConfigError(
         fmt::format("{}: [output] displacement and quality need one file per step; write output = "
                     "\"step_{{step}}.cgns\" in [sequence]",
                     case_file.source.string()));
-  auto const& report = case_file.output_options.report;
-  if (!report) return;
-  check_output(*report, "report", case_file.input);
-  for (int step = 0; step < files; ++step)
-    if (*report == step_path(options, step))
-      throw ConfigError(fmt::format("output and report are the same file '{}'; give two names", report->string()));
+  RunFiles outputs;
+  for (int step = 0; step < files; ++step) outputs.push_back({"output", step_path(options, step)});
+  if (auto const& report = case_file.output_options.report) outputs.push_back({"report", *report});
+  check_run_files(inputs_of(case_file), outputs);
 }
 
 std::size_t Steps::worst() const {

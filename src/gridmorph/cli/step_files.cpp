@@ -4,13 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <string_view>
-
-#include <unistd.h>
 
 namespace gridmorph::cli {
 
@@ -53,24 +49,17 @@ StepFiles::StepFiles(CaseFile const& case_file, UnstructuredMesh const& mesh)
                     case_file.source.string(), case_file.input.string(), case_file.input.extension().string()));
 }
 
-StepFiles::~StepFiles() {
-  if (series_ || committed_) return;
-  // The last one too: a write that failed leaves nothing, and then there is nothing to remove.
-  for (int step = 0; step < written_; ++step) std::remove(beside(step).c_str());
-}
-
-std::filesystem::path StepFiles::beside(int step) const {
-  return step_path(*case_file_.sequence, step).string() + fmt::format(".{}.part", getpid());
+std::string const& StepFiles::next_file() {
+  return files_.emplace_back(step_path(*case_file_.sequence, int(files_.size())).string()).path();
 }
 
 void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
   if (series_)
     series_->add(morphed);
   else if (unstructured_ != nullptr)
-    write_morphed(case_file_.input.string(), beside(written_).string(), *unstructured_, morphed, fields);
+    write_morphed(case_file_.input.string(), next_file(), *unstructured_, morphed, fields);
   else
-    write_morphed(case_file_.input.string(), beside(written_).string(), *structured_, morphed, fields);
-  ++written_;
+    write_morphed(case_file_.input.string(), next_file(), *structured_, morphed, fields);
 }
 
 void StepFiles::commit() {
@@ -78,14 +67,13 @@ void StepFiles::commit() {
     series_->commit();
     return;
   }
-  for (int step = 0; step < written_; ++step) {
-    auto const to = step_path(*case_file_.sequence, step);
-    if (std::rename(beside(step).c_str(), to.c_str()) == 0) continue;
-    std::string const reason = std::strerror(errno);
-    for (int done = 0; done < step; ++done) std::remove(step_path(*case_file_.sequence, done).c_str());
-    throw MachineError(fmt::format("'{}' cannot be put in place: {}", to.string(), reason));
+  int done = 0;
+  try {
+    for (; done < int(files_.size()); ++done) files_[std::size_t(done)].commit();
+  } catch (MachineError const&) {
+    for (int step = 0; step < done; ++step) std::remove(step_path(*case_file_.sequence, step).c_str());
+    throw;
   }
-  committed_ = true;
 }
 
 }  // namespace gridmorph::cli

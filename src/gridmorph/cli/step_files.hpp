@@ -3,12 +3,15 @@
 
 #include <gridmorph/casefile/case_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
+#include <deque>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace gridmorph::cli {
@@ -26,7 +29,6 @@ class StepFiles {
   StepFiles(CaseFile const& case_file, Mesh const& mesh);
   /// One file per step; throws ConfigError for a series in one file.
   StepFiles(CaseFile const& case_file, UnstructuredMesh const& mesh);
-  ~StepFiles();
   StepFiles(StepFiles const&) = delete;
   StepFiles& operator=(StepFiles const&) = delete;
 
@@ -37,13 +39,13 @@ class StepFiles {
   void commit();
 
  private:
-  [[nodiscard]] std::filesystem::path beside(int step) const;
+  /// A file beside the next step's place; its name.
+  std::string const& next_file();
 
   CaseFile const& case_file_;
   Mesh const* structured_ = nullptr;
   UnstructuredMesh const* unstructured_ = nullptr;  ///< one of both
-  int written_ = 0;
-  bool committed_ = false;
+  std::deque<io::OutputFile> files_;                ///< of the steps so far
   std::optional<SeriesWriter> series_;
 };
 

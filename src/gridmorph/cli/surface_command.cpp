@@ -1,6 +1,6 @@
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/commands.hpp>
-#include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/surface_io.hpp>
@@ -15,7 +15,7 @@
 namespace gridmorph::cli {
 
 int run_surface_command(CommandLine const& options, Terminal& terminal) {
-  check_output(*options.output, "output", options.input);
+  check_run_files(inputs_of_mesh(options.input), {{"output", *options.output}});
   terminal.progress("reading " + options.input.string());
   Mesh const mesh = load_mesh(options.input);
   std::vector<int> const patches = select_patches(mesh, options.patches);

@@ -1,6 +1,7 @@
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/cli/unstructured_run.hpp>
 #include <gridmorph/cli/workflow.hpp>
@@ -15,6 +16,7 @@
 #include <Kokkos_Core.hpp>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -108,6 +110,9 @@ void write_regions(std::string const& path, UnstructuredRun const& out) {
   write_mesh(path, mesh, out.result.morphed, fields);
 }
 
+/// What write_stages() may put into its folder.
+constexpr std::array stage_names{"regions.cgns", "wrap.cgns", "background.cgns", "background_morphed.cgns"};
+
 void write_stages(std::filesystem::path const& folder, UnstructuredRun const& out) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -115,14 +120,14 @@ void write_stages(std::filesystem::path const& folder, UnstructuredRun const& ou
     throw MachineError(
         fmt::format("the folder '{}' for the stages cannot be made: {}", folder.string(), error.message()));
   auto const& prepared = *out.prepared;
-  write_regions((folder / "regions.cgns").string(), out);
-  if (prepared.report.wrap) write_mesh((folder / "wrap.cgns").string(), wrap_mesh(*prepared.report.wrap));
+  write_regions((folder / stage_names[0]).string(), out);
+  if (prepared.report.wrap) write_mesh((folder / stage_names[1]).string(), wrap_mesh(*prepared.report.wrap));
   if (!prepared.plan.background) return;
   Mesh background = prepared.plan.background->mesh;
-  write_mesh((folder / "background.cgns").string(), background);
+  write_mesh((folder / stage_names[2]).string(), background);
   if (!out.background) return;
   background.coordinates = *out.background;
-  write_mesh((folder / "background_morphed.cgns").string(), background);
+  write_mesh((folder / stage_names[3]).string(), background);
 }
 
 std::string report_text(CaseFile const& case_file, UnstructuredRun const& out, bool written) {
@@ -135,7 +140,10 @@ std::string report_text(CaseFile const& case_file, UnstructuredRun const& out, b
 
 int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   auto const& report = case_file.output_options.report;
-  check_outputs(case_file.output, report, case_file.input);
+  RunFiles outputs = outputs_of(case_file.output, report);
+  if (auto const& folder = case_file.output_options.stages)
+    for (char const* name : stage_names) outputs.push_back({"stage", *folder / name, true});
+  check_run_files(inputs_of(case_file), outputs);
   UnstructuredRun out;
   read_and_plan(case_file, terminal, out);
   move_nodes(out, terminal, case_file.output_options.stages.has_value());

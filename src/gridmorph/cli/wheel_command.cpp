@@ -3,6 +3,7 @@
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/near_field_mask.hpp>
 #include <gridmorph/cli/output_files.hpp>
+#include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/cli/wheel_setup.hpp>
 #include <gridmorph/cli/wheel_text.hpp>
 #include <gridmorph/cli/workflow.hpp>
@@ -213,7 +214,7 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   if (output.empty())
     throw ConfigError(options.input.string() +
                       ": no output; add output = \"wheel.cgns\" to [wheel] or give --output FILE");
-  check_outputs(output, report, case_file.input);
+  check_run_files(inputs_of(case_file), outputs_of(output, report));
   if (case_file.output_options.displacement || case_file.output_options.quality)
     terminal.warn("[output] displacement and quality are not written into wheels");
 

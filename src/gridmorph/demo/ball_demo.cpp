@@ -98,11 +98,15 @@ std::string ball_case_file(BallOptions const& options, BallSwing const& swing, B
   return text;
 }
 
+BallFiles ball_files(std::filesystem::path const& folder) {
+  return {folder / "ball.cgns", folder / "swing.toml", folder / "ball_swing.cgns"};
+}
+
 BallFiles write_ball_demo(std::filesystem::path const& folder, BallOptions const& options, BallSwing const& swing) {
   check_swing(options, swing);
   UnstructuredMesh const mesh = make_ball(options);
   make_folder(folder);
-  BallFiles files{folder / "ball.cgns", folder / "swing.toml", folder / "ball_swing.cgns"};
+  BallFiles files = ball_files(folder);
   write_mesh(files.mesh.string(), mesh);
   write_text_file(files.case_file, ball_case_file(options, swing, files), "case file");
   return files;

@@ -38,6 +38,9 @@ struct BallFiles {
 /// nodes slide on the ground.
 std::string ball_case_file(BallOptions const& options, BallSwing const& swing, BallFiles const& files);
 
+/// Where the demo puts its files.
+BallFiles ball_files(std::filesystem::path const& folder);
+
 /// Makes the folder if it is missing and writes ball.cgns and swing.toml into it; paths inside the case file are relative to it.
 /// Throws ConfigError (options), IoError or MachineError (writing).
 BallFiles write_ball_demo(std::filesystem::path const& folder, BallOptions const& options, BallSwing const& swing);

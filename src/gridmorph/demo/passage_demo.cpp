@@ -69,6 +69,11 @@ std::string passage_case_file(PassageOptions const& options, PassageFiles const&
          "             { rule = \"aspect-ratio\" } ]\n";
 }
 
+PassageFiles passage_files(std::filesystem::path const& folder, PassageMotion const& motion) {
+  return {folder / "passage.cgns", folder / (motion.name + ".csv"), folder / (motion.name + ".toml"),
+          folder / ("passage_" + motion.name + ".cgns")};
+}
+
 PassageFiles write_passage_demo(std::filesystem::path const& folder, PassageOptions const& options,
                                 PassageMotion const& motion) {
   return write_passage_demo(folder, options, motion, make_passage(options), MeshFile::write);
@@ -77,8 +82,7 @@ PassageFiles write_passage_demo(std::filesystem::path const& folder, PassageOpti
 PassageFiles write_passage_demo(std::filesystem::path const& folder, PassageOptions const& options,
                                 PassageMotion const& motion, Mesh const& mesh, MeshFile mesh_file) {
   make_folder(folder);
-  PassageFiles files{folder / "passage.cgns", folder / (motion.name + ".csv"), folder / (motion.name + ".toml"),
-                     folder / ("passage_" + motion.name + ".cgns")};
+  PassageFiles files = passage_files(folder, motion);
   if (mesh_file == MeshFile::write) write_mesh(files.mesh.string(), mesh);
   write_displacement_csv(files.displacement.string(), mesh, "blade",
                          [&](Vec3 const& p) { return passage_displacement(options, motion, p); });

@@ -15,6 +15,9 @@ struct PassageFiles {
   std::filesystem::path morphed;       ///< CGNS that the case file will write; not there yet
 };
 
+/// Where the demo puts its files.
+PassageFiles passage_files(std::filesystem::path const& folder, PassageMotion const& motion);
+
 /// Makes the folder if it is missing and writes passage.cgns, <motion>.csv and <motion>.toml into it. Paths inside the
 /// case file are relative to it. Throws ConfigError (options), IoError or MachineError (writing).
 PassageFiles write_passage_demo(std::filesystem::path const& folder, PassageOptions const& options,

@@ -2,15 +2,24 @@
 #include <gridmorph/io/output_file.hpp>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #ifdef __linux__
@@ -75,6 +84,95 @@ bool allocate([[maybe_unused]] int fd, [[maybe_unused]] std::uintmax_t bytes) {
 
 }  // namespace
 
+/// A temporary file that is there, as a signal handler can read it. Never freed; used again once its name is taken out.
+struct PendingName {
+  std::string name;
+  std::atomic<char const*> shown{nullptr};  ///< name, or nothing
+  PendingName* next = nullptr;
+};
+
+namespace {
+
+std::atomic<PendingName*> all_pending{nullptr};
+static_assert(std::atomic<char const*>::is_always_lock_free);
+
+PendingName* show(std::string name) {
+  static std::mutex one_at_a_time;
+  std::lock_guard const lock(one_at_a_time);
+  PendingName* free = all_pending.load();
+  while (free != nullptr && free->shown.load() != nullptr) free = free->next;
+  if (free == nullptr) {
+    free = new PendingName;
+    free->next = all_pending.load();
+    all_pending.store(free);
+  }
+  free->name = std::move(name);
+  free->shown.store(free->name.c_str());
+  return free;
+}
+
+/// Only what signal handlers may do.
+void remove_pending(int signal) {
+  for (PendingName const* p = all_pending.load(); p != nullptr; p = p->next)
+    if (char const* const name = p->shown.load()) ::unlink(name);
+  ::raise(signal);  // the default action again, once this handler has returned
+}
+
+/// FNV-1a: the same in every process, unlike std::hash.
+std::string short_hash(std::string const& text) {
+  std::uint32_t h = 2166136261u;
+  for (char const c : text) h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
+  std::array<char, 9> digits{};
+  std::snprintf(digits.data(), digits.size(), "%08x", unsigned(h));
+  return digits.data();
+}
+
+/// What the names of temporary files begin with that this machine makes for an output; the number of the process follows.
+std::string temporary_prefix(fs::path const& output) {
+  std::array<char, 256> host{};
+  static_cast<void>(::gethostname(host.data(), host.size() - 1));
+  return ".gridmorph-" + short_hash(output.filename().string()) + "-" + short_hash(host.data()) + "-";
+}
+
+/// Temporary files that were in a folder when it was first looked at.
+std::vector<std::string> const& left_in(fs::path const& folder) {
+  static std::map<std::string, std::vector<std::string>> known;
+  auto const [at, added] = known.try_emplace(folder.string());
+  if (added) {
+    std::error_code failure;
+    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure))
+      if (auto name = entry->path().filename().string(); name.starts_with(".gridmorph-") && name.ends_with(".part"))
+        at->second.push_back(std::move(name));
+  }
+  return at->second;
+}
+
+void remove_stale(fs::path const& folder, std::string const& prefix) {
+  static std::mutex one_at_a_time;
+  std::lock_guard const lock(one_at_a_time);
+  for (auto const& name : left_in(folder)) {
+    if (!name.starts_with(prefix)) continue;
+    char* end = nullptr;
+    long const process = std::strtol(name.c_str() + prefix.size(), &end, 10);
+    if (process <= 0 || *end != '-' || ::kill(pid_t(process), 0) == 0 || errno != ESRCH) continue;
+    ::unlink((folder / name).c_str());
+  }
+}
+
+}  // namespace
+
+void remove_pending_on_signals() {
+  for (int const signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction present {};
+    if (::sigaction(signal, nullptr, &present) != 0 || present.sa_handler == SIG_IGN) continue;
+    struct sigaction action {};
+    action.sa_handler = remove_pending;
+    action.sa_flags = int(SA_RESETHAND);
+    sigfillset(&action.sa_mask);
+    ::sigaction(signal, &action, nullptr);
+  }
+}
+
 OutputFile::OutputFile(std::string const& output) : output_(output) {
   std::error_code failure;
   if (fs::is_symlink(output, failure)) {
@@ -82,14 +180,22 @@ OutputFile::OutputFile(std::string const& output) : output_(output) {
     if (!failure) output_ = target.string();
   }
   if (fs::is_directory(output_, failure)) throw IoError(output + ": is a folder; name the file to write");
+  if (auto const found = fs::status(output_, failure); fs::exists(found) && !fs::is_regular_file(found))
+    throw IoError(output + ": is no ordinary file (a device, a pipe or a socket); name the file to write");
   fs::path const folder = fs::path(output_).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, failure))
     throw IoError(output + ": there is no folder '" + folder.string() + "'; create it first");
+  std::string const prefix = temporary_prefix(output_);
+  remove_stale(folder.empty() ? fs::path(".") : folder, prefix);
+  static std::atomic<int> made{0};
   constexpr int attempts = 1000;
   for (int n = 0; n < attempts; ++n) {
-    temporary_ = output_ + ".part-" + std::to_string(::getpid()) + (n == 0 ? "" : "-" + std::to_string(n));
+    temporary_ = (folder / (prefix + std::to_string(::getpid()) + "-" + std::to_string(made++) + ".part")).string();
     Descriptor file(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.get() >= 0) return;
+    if (file.get() >= 0) {
+      pending_ = show(temporary_);
+      return;
+    }
     if (errno != EEXIST) break;
   }
   throw MachineError(output + ": cannot be written: " + system_reason() +
@@ -97,7 +203,9 @@ OutputFile::OutputFile(std::string const& output) : output_(output) {
 }
 
 OutputFile::~OutputFile() {
-  if (!committed_) ::unlink(temporary_.c_str());
+  if (pending_ == nullptr) return;
+  ::unlink(temporary_.c_str());
+  pending_->shown.store(nullptr);
 }
 
 void OutputFile::copy_from(std::string const& input) const {
@@ -134,9 +242,18 @@ void OutputFile::reserve(std::uint64_t bytes) const {
 }
 
 void OutputFile::commit() {
+  struct stat present {
+  }, own{};
+  if (::stat(output_.c_str(), &present) == 0 && ::stat(temporary_.c_str(), &own) == 0) {
+    // Giving a file away may be forbidden; it then stays with who writes it. The mode comes last: a change of owner takes bits of it away.
+    bool const kept = (present.st_uid == own.st_uid && present.st_gid == own.st_gid) ||
+                      ::chown(temporary_.c_str(), present.st_uid, present.st_gid) == 0;
+    constexpr mode_t permissions = 0777, all_bits = 07777;
+    ::chmod(temporary_.c_str(), present.st_mode & (kept ? all_bits : permissions));
+  }
   if (::rename(temporary_.c_str(), output_.c_str()) != 0)
     throw MachineError(output_ + ": cannot be put in place: " + system_reason() + "; check permissions of the folder");
-  committed_ = true;
+  std::exchange(pending_, nullptr)->shown.store(nullptr);
 }
 
 }  // namespace gridmorph::io

@@ -6,13 +6,21 @@
 
 namespace gridmorph::io {
 
+struct PendingName;
+
 /// A temporary file beside the output, renamed onto it by commit() and removed otherwise.
 ///
 /// The temporary file is in the same folder, so that the rename is one step of the file system. An output that is a
-/// symbolic link is followed. Nothing is forced to the disk's surface: after a power failure either file may be there.
+/// symbolic link is followed; one that is there already passes on its permissions and, where that is allowed, its owner. Nothing is
+/// forced to the disk's surface: after a power failure either file may be there.
+///
+/// Temporary names are short (".gridmorph-<output>-<host>-<process>-<number>.part", the first two as hexadecimal digits), so that
+/// outputs may have names of any length. Those that processes of this machine left behind for the same output, killed before
+/// they could remove them, are removed.
 class OutputFile {
  public:
-  /// Creates the temporary file, empty. Throws IoError when there is no such folder, MachineError when it cannot be written.
+  /// Creates the temporary file, empty. Throws IoError when there is no such folder or the output is there and no ordinary
+  /// file, MachineError when it cannot be written.
   explicit OutputFile(std::string const& output);
   ~OutputFile();
   OutputFile(OutputFile const&) = delete;
@@ -32,7 +40,11 @@ class OutputFile {
  private:
   std::string output_;
   std::string temporary_;
-  bool committed_ = false;
+  PendingName* pending_ = nullptr;
 };
+
+/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of all outputs that are not committed, and then end the process
+/// as they would have without. For programs, not for libraries; a signal that is ignored stays ignored.
+void remove_pending_on_signals();
 
 }  // namespace gridmorph::io

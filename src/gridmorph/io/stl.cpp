@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/surface_io.hpp>
 
 #include <array>
@@ -11,10 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <optional>
-
-#include <unistd.h>
 
 namespace gridmorph {
 
@@ -230,21 +228,12 @@ void write_stl(std::string const& path, SurfaceTriangles const& surface, StlForm
     }
   }
   if (format == StlFormat::ascii) bytes += "endsolid gridmorph\n";
-  std::string const beside = path + "." + std::to_string(getpid()) + ".part";
+  io::OutputFile target(path);
   errno = 0;
-  struct Close {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
-  std::unique_ptr<std::FILE, Close> file(std::fopen(beside.c_str(), "wb"));
-  bool good = file && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-  good = good && std::fflush(file.get()) == 0;
-  if (file) good = std::fclose(file.release()) == 0 && good;
-  good = good && std::rename(beside.c_str(), path.c_str()) == 0;
-  if (!good) {
-    std::string const reason = std::strerror(errno);
-    std::remove(beside.c_str());
-    throw MachineError(path + ": cannot be written: " + reason);
-  }
+  std::ofstream file(target.path(), std::ios::binary);
+  if (!file.write(bytes.data(), std::streamsize(bytes.size())) || !file.flush())
+    throw MachineError(path + ": cannot be written: " + std::strerror(errno));
+  target.commit();
 }
 
 }  // namespace gridmorph

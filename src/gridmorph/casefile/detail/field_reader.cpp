@@ -37,7 +37,7 @@ std::optional<StructuralModel> read_model(TableReader& table, std::optional<std:
                                           std::optional<std::string> const& solution) {
   auto const file = table.string("file");
   if (!file) return std::nullopt;
-  auto const path = [&](std::string const& name) { return (table.context().directory / name).lexically_normal(); };
+  auto const path = [&](std::string const& name) { return table.context().input(name); };
   ModelFiles files{path(*file), std::nullopt, solution};
   if (elements) files.elements = path(*elements);
   try {

@@ -26,7 +26,7 @@ void read_background_file(TableReader& root, TableReader& background, CaseFile& 
     return;
   }
   BackgroundFile& own = out.background.emplace();
-  own.path = (background.context().directory / *file).lexically_normal();
+  own.path = background.context().input(*file);
   if (wrap) own.wrap = *wrap;
   if (outer) own.outer = *outer;
   std::string const why = "is for a background mesh that is made here, and this one is read from a file; remove it";

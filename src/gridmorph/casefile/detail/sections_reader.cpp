@@ -220,7 +220,7 @@ SectionsRule read_sections(TableReader& table, bool has_axis) {
   std::vector<SpanwiseColumn> columns;
   if (auto const file = table.string("file")) {
     try {
-      columns = read_columns((table.context().directory / *file).lexically_normal());
+      columns = read_columns(table.context().input(*file));
     } catch (ConfigError const& e) {
       table.problem("file", e.what());
     }

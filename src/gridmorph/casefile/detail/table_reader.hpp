@@ -21,7 +21,13 @@ struct Context {
   std::string file;                 ///< as the user named it
   std::filesystem::path directory;  ///< relative paths in the case file start here
   Problems problems;
-  CaseKeyUse* asked = nullptr;  ///< every key that is asked for, where somebody wants to know
+  CaseKeyUse* asked = nullptr;                 ///< every key that is asked for, where somebody wants to know
+  std::vector<std::filesystem::path> files{};  ///< that have been named as inputs
+
+  /// A file as a key names it, to be read; noted, so that no output takes its place.
+  std::filesystem::path input(std::string const& name) {
+    return files.emplace_back((directory / name).lexically_normal());
+  }
 
   void problem(unsigned line, std::string const& text) { problems.add(where(line) + ": " + text); }
   [[nodiscard]] std::string where(unsigned line) const { return file + ":" + std::to_string(line); }

@@ -71,7 +71,7 @@ Rule read_target_rule(TableReader& table, RuleContext const& shared) {
   std::shared_ptr<TargetGeometry> target = std::make_shared<TargetGeometry>();
   if (file) {
     rule.description = *file;
-    source.file = (table.context().directory / *file).lexically_normal();
+    source.file = table.context().input(*file);
     try {
       *target = read_target(source);
     } catch (ConfigError const& e) {
