@@ -1,5 +1,6 @@
 // Interfaces: matched nodes, fitted periodic transforms, refusals.
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/topology/periodic_axis.hpp>
 #include <gridmorph/topology/topology.hpp>
 
 #include "support/expect_error.hpp"
@@ -34,6 +35,35 @@ TEST(Links, StoredFromOneSideOrBothAreTheSame) {
   Mesh const twice = scramble(once, {1, 0, false, false, false}).mesh;
   ASSERT_EQ(twice.interfaces.size(), 2 * once.interfaces.size());
   EXPECT_EQ(connect(once, {}).all.size(), connect(twice, {}).all.size());
+}
+
+/// CGNS angles are about x, then y, then z: for an oblique axis they are no rotation vector.
+TEST(PeriodicAxis, IsThatOfTheTransformForObliqueAxesHalfTurnsAndFullAnglesAlike) {
+  Vec3 const centre{0.3, -0.2, 0.5};
+  for (Vec3 const& direction : {Vec3{1, 2, -0.5}, Vec3{-0.4, 0.3, 0.8}, Vec3{1, 1, 1}, Vec3{0, 0, 1}})
+    for (double const angle : {0.1, 2.0, 3.14159265358979312}) {
+      Vec3 const unit = (1 / norm(direction)) * direction;
+      Periodic const periodic = periodic_rotation(centre, direction, angle);
+      auto const turn = as_turn(periodic.declared, 1e-12);
+      ASSERT_TRUE(turn);
+      EXPECT_NEAR(turn->angle_rad, angle, 1e-12);
+      double const sense = angle > 3 && dot(turn->direction, unit) < 0 ? -1 : 1;  // half a turn has no sense
+      EXPECT_LT(distance(sense * turn->direction, unit), 1e-7);
+      EXPECT_LT(norm(cross(turn->origin - centre, unit)), 1e-7);
+    }
+  EXPECT_FALSE(as_turn(rotation_about(centre, {1, 0, 0}, 0.5).then({Mat3{}, {1, 0, 0}}), 1e-6)) << "a screw";
+  EXPECT_FALSE(as_turn({Mat3{}, {1, 2, 3}}, 1e-6));
+}
+
+TEST(PeriodicAxis, PointsOnALineLeaveTheTurnAboutItAsDeclared) {
+  Periodic const periodic = periodic_rotation({}, {0, 0, 1}, 0.5);
+  std::vector<Vec3> from, to;
+  for (double const r : {1.0, 1.3, 2.0}) {  // the periodic edge of a 2-D mesh
+    from.push_back({r, 0, 0});
+    to.push_back(periodic.declared(from.back()));
+  }
+  RigidTransform const fit = fit_periodic(periodic, from, to, 4);
+  for (Vec3 const& p : {Vec3{1, 2, 3}, Vec3{-1, 0.5, 0}}) EXPECT_LT(distance(fit(p), periodic.declared(p)), 1e-14);
 }
 
 TEST(Links, PeriodicRotationIsFittedToTheNodesNotTakenFromTheFile) {

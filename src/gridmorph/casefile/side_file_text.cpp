@@ -1,9 +1,11 @@
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/topology/coverage.hpp>
+#include <gridmorph/topology/periodic_axis.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -50,12 +52,10 @@ bool same(Periodic const& a, Periodic const& b) {
 /// Axis and angle of a declared rotation, whatever the axis.
 std::string periodic_text(Periodic const& p, std::string const& name) {
   std::string out = fmt::format("\n[[periodic]]\nname = {}\n", quoted(name));
-  auto const& m = p.declared.rotation.m;
-  Vec3 const twice{m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
-  double const sine = 0.5 * norm(twice), cosine = 0.5 * (m[0][0] + m[1][1] + m[2][2] - 1);
-  if (norm(p.rotation_angle_rad) == 0) return out + "translation = " + vector_text(p.translation) + "\n";
-  double angle = std::atan2(sine, cosine);
-  Vec3 direction = sine > 0 ? (1 / (2 * sine)) * twice : (1 / norm(p.rotation_angle_rad)) * p.rotation_angle_rad;
+  auto const turn = as_turn(p.declared, std::numeric_limits<double>::infinity());
+  if (!turn) return out + "translation = " + vector_text(p.translation) + "\n";
+  double angle = turn->angle_rad;
+  Vec3 direction = turn->direction;
   // About x, y or z the angles say it without the round-off of the matrix.
   Vec3 const w = p.rotation_angle_rad;
   if (double const plain = norm(w); std::fabs(plain - angle) < 1e-9) {

@@ -3,6 +3,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/topology/coverage.hpp>
 #include <gridmorph/topology/links.hpp>
+#include <gridmorph/topology/periodic_axis.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,8 @@
 namespace gridmorph::cli {
 
 namespace {
+
+constexpr double gross = 1e-3;  // of the mesh size: larger gaps of an interface are no inaccuracy
 
 template <class T>
 void add_once(std::vector<T>& list, T const& value) {
@@ -90,23 +93,6 @@ void measure(Mesh const& mesh, BoundarySummary& b) {
   b.first_height_mean = sum / double(count);
 }
 
-PeriodicSummary describe_periodic(Interface1to1 const& interface) {
-  PeriodicSummary out;
-  Periodic const& periodic = *interface.periodic;
-  Vec3 const w = periodic.rotation_angle_rad;
-  double const angle = norm(w);
-  out.angle_deg = angle * 180 / std::numbers::pi;
-  if (angle > 0) {
-    out.axis = rotation_axis(periodic);
-    double const sectors = 2 * std::numbers::pi / angle;
-    if (std::fabs(sectors - std::round(sectors)) < 1e-3 * sectors) out.sectors = int(std::lround(sectors));
-  } else {
-    Vec3 const t = periodic.translation;
-    out.translation = {t.x + 0.0, t.y + 0.0, t.z + 0.0};
-  }
-  return out;
-}
-
 bool same_transform(PeriodicSummary const& a, PeriodicSummary const& b, double size) {
   // File angles are in single precision; the two directions of a translation are one and the same pair.
   return std::fabs(a.angle_deg - b.angle_deg) < 1e-4 && distance(a.axis.direction, b.axis.direction) < 1e-5 &&
@@ -116,12 +102,24 @@ bool same_transform(PeriodicSummary const& a, PeriodicSummary const& b, double s
 
 void collect_interfaces(Mesh const& mesh, double size, MeshSummary& out) {
   out.interfaces = int(mesh.interfaces.size());
-  for (auto const& interface : mesh.interfaces) {
+  TopologyOptions any;
+  any.matching_tolerance = size;
+  Problems ignored;
+  Links const links = connect(mesh, any, ignored);
+  auto const describe = [&](int number) {
+    auto const& interface = mesh.interfaces[std::size_t(number)];
+    for (auto const& link : links.all)
+      if (link.interface == number && link.zone == interface.zone && link.range == interface.range)
+        return describe_periodic(*interface.periodic, link.mismatch < gross * size ? &link.transform : nullptr, size);
+    return describe_periodic(*interface.periodic, nullptr, size);
+  };
+  for (int n = 0; n < out.interfaces; ++n) {
+    auto const& interface = mesh.interfaces[std::size_t(n)];
     if (!interface.periodic) {
       if (interface.zone == interface.donor_zone) ++out.self_interfaces;
       continue;
     }
-    auto described = describe_periodic(interface);
+    auto described = describe(n);
     auto found = std::find_if(out.periodics.begin(), out.periodics.end(),
                               [&](PeriodicSummary const& p) { return same_transform(p, described, size); });
     if (found == out.periodics.end()) found = out.periodics.insert(out.periodics.end(), std::move(described));
@@ -149,8 +147,7 @@ void look_for_remedies(Mesh const& mesh, MeshSummary& summary) {
   Problems ignored;
   double worst = 0;
   for (auto const& link : connect(mesh, options, ignored).all) worst = std::max(worst, link.mismatch);
-  // Larger gaps are no inaccuracy.
-  if (worst > 1e-8 * mesh.size() && worst < 1e-3 * mesh.size()) summary.needed_tolerance = 1.1 * worst;
+  if (worst > 1e-8 * mesh.size() && worst < gross * mesh.size()) summary.needed_tolerance = 1.1 * worst;
   options.matching_tolerance = summary.needed_tolerance;
   for (bool const open : {false, true}) {
     options.open_faces = open ? "open" : "";
@@ -200,13 +197,32 @@ void Box::add(Box const& other) {
   add(other.high);
 }
 
-Axis rotation_axis(Periodic const& periodic) {
-  Vec3 const w = periodic.rotation_angle_rad;
-  double const parts[3] = {w.x, w.y, w.z};
+PeriodicSummary describe_periodic(Periodic const& declared, RigidTransform const* fitted, double size) {
+  PeriodicSummary out;
+  auto const turn = as_turn(fitted ? *fitted : declared.declared, fitted ? gross * size : Box::inf);
+  if (!turn) {
+    Vec3 const t = fitted ? fitted->translation : declared.translation;
+    out.translation = {t.x + 0.0, t.y + 0.0, t.z + 0.0};
+    return out;
+  }
+  out.angle_deg = turn->angle_rad * 180 / std::numbers::pi;
+  double const sectors = 2 * std::numbers::pi / turn->angle_rad;
+  if (std::fabs(sectors - std::round(sectors)) < 1e-3 * sectors) out.sectors = int(std::lround(sectors));
+  auto const without_round_off = [](Vec3 const& v, double scale) {
+    auto const tidy = [&](double c) { return std::fabs(c) < 1e-9 * scale ? 0.0 : c; };
+    return Vec3{tidy(v.x), tidy(v.y), tidy(v.z)};
+  };
+  Vec3 const direction = without_round_off(turn->direction, 1);
+  double const parts[3] = {direction.x, direction.y, direction.z};
   double const dominant =
       *std::max_element(parts, parts + 3, [](double a, double b) { return std::fabs(a) < std::fabs(b); });
-  Vec3 const d = ((dominant > 0 ? 1.0 : -1.0) / norm(w)) * w;
-  return {periodic.rotation_center, {d.x + 0.0, d.y + 0.0, d.z + 0.0}};  // no negative zeros
+  Vec3 const unit = ((dominant > 0 ? 1.0 : -1.0) / norm(direction)) * direction;
+  // The centre that the file names is the better number where it is on the axis.
+  Vec3 const off_axis = cross(declared.rotation_center - turn->origin, turn->direction);
+  bool const named = norm(off_axis) < 1e-6 * size;
+  Vec3 const origin = named ? declared.rotation_center : without_round_off(turn->origin, size);
+  out.axis = {{origin.x + 0.0, origin.y + 0.0, origin.z + 0.0}, {unit.x + 0.0, unit.y + 0.0, unit.z + 0.0}};
+  return out;
 }
 
 MeshSummary summarize(Mesh const& mesh) {

@@ -75,8 +75,9 @@ struct MeshSummary {
   std::optional<BlocksSummary> blocks;  ///< only without problems
 };
 
-/// Of a periodic rotation, one for both of its directions: the dominant component counts positive.
-Axis rotation_axis(Periodic const& periodic);
+/// Axis, angle and sectors, or the translation, without names. `fitted`: what matched nodes say, where there are any; it counts
+/// before what the file declares. The dominant component of the direction is positive, so that both sides of a pair have one axis.
+PeriodicSummary describe_periodic(Periodic const& declared, RigidTransform const* fitted, double size);
 
 /// Cost: O(nodes) for extents, O(boundary nodes) for the rest.
 MeshSummary summarize(Mesh const& mesh);

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/topology/links.hpp>
+#include <gridmorph/topology/periodic_axis.hpp>
 
 #include <algorithm>
 #include <array>
@@ -119,16 +120,7 @@ RigidTransform fitted_periodic(Mesh const& mesh, Interface1to1 const& face, doub
     own.push_back(mesh.coordinates[p]);
     donor.push_back(mesh.coordinates[q]);
   });
-  Periodic const& declared = *face.periodic;
-  if (norm(declared.rotation_angle_rad) > 0) {
-    RigidTransform fit = fit_rigid_transform(own, donor);
-    // An axis through the origin is the rule; drop the round-off of the fit there.
-    if (norm(fit.translation) < 1e-13 * size) fit.translation = {};
-    return fit;
-  }
-  Vec3 mean;
-  for (std::size_t n = 0; n < own.size(); ++n) mean += donor[n] - own[n];
-  return {Mat3{}, (1 / double(own.size())) * mean};
+  return fit_periodic(*face.periodic, own, donor, size);
 }
 
 struct WorstPair {

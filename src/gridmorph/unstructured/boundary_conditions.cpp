@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/detail/plane_fit.hpp>
 #include <gridmorph/motion/selectors.hpp>
-#include <gridmorph/topology/links.hpp>
+#include <gridmorph/topology/periodic_axis.hpp>
 #include <gridmorph/unstructured/boundary_conditions.hpp>
 #include <gridmorph/unstructured/boundary_outline.hpp>
 
@@ -288,12 +288,10 @@ class Finder {
         to.push_back(mesh_.coordinates[connection.donor_nodes[n]]);
       }
       if (from.empty()) continue;
-      // Files carry the angle in single precision; a plane of nodes leaves the rotation undetermined only where it is none.
-      Vec3 const angle = connection.periodic->rotation_angle_rad;
-      bool const turns = norm(angle) > 0;
+      bool const turns = norm(connection.periodic->rotation_angle_rad) > 0;
       std::int32_t there = -1, back = -1;
       if (turns) {
-        Mat3 const rotation = fit_rigid_transform(from, to).rotation;
+        Mat3 const rotation = fit_periodic(*connection.periodic, from, to, mesh_.size()).rotation;
         there = std::int32_t(out_.rotations.size());
         out_.rotations.push_back(rotation);
         back = std::int32_t(out_.rotations.size());

@@ -1,5 +1,6 @@
 #include <gridmorph/topology/detail/find_periodic.hpp>
 #include <gridmorph/topology/links.hpp>
+#include <gridmorph/topology/periodic_axis.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,6 @@ constexpr std::size_t most_seeds = 4000;
 constexpr std::size_t most_proposals = 4096;
 constexpr int most_trials = 48;
 constexpr int most_fits = 5;
-constexpr double smallest_angle = 1e-4;  // rad; a smaller turn is a translation
 constexpr double tidy_direction = 1e-6, tidy_angle = 1e-6;
 
 /// A corner of what is open, as the place to start comparing from.
@@ -289,31 +289,13 @@ void bounds(SurfaceCells const& cells, Vec3& low, Vec3& high) {
 }  // namespace
 
 std::optional<PeriodicMatch> as_rotation(RigidTransform const& t, double tolerance) {
-  auto const& m = t.rotation.m;
-  // R - R^T gives sin(angle) times the axis; its trace the cosine. Near half a turn the symmetric part gives the axis.
-  Vec3 const twice{m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
-  double const cosine = 0.5 * (m[0][0] + m[1][1] + m[2][2] - 1), sine = 0.5 * norm(twice);
+  auto const turn = as_turn(t, tolerance);
+  if (!turn) return std::nullopt;
   PeriodicMatch out;
   out.rotation = true;
-  out.angle_rad = std::atan2(sine, cosine);
-  if (out.angle_rad < smallest_angle) return std::nullopt;
-  if (sine > 1e-3) {
-    out.direction = (1 / norm(twice)) * twice;
-  } else {
-    int largest = 0;
-    for (int a = 1; a < 3; ++a)
-      if (m[a][a] > m[largest][largest]) largest = a;
-    Vec3 column{m[0][largest] + m[largest][0], m[1][largest] + m[largest][1], m[2][largest] + m[largest][2]};
-    (largest == 0 ? column.x : largest == 1 ? column.y : column.z) += 2 * (0 - cosine);
-    if (norm(column) == 0) return std::nullopt;
-    out.direction = (1 / norm(column)) * column;
-    if (dot(out.direction, twice) < 0) out.direction = -out.direction;
-  }
-  double const along = dot(t.translation, out.direction);
-  if (std::fabs(along) > tolerance) return std::nullopt;
-  Vec3 const across = t.translation - along * out.direction;
-  double const half = 0.5 * out.angle_rad;
-  out.origin = 0.5 * (across + (std::cos(half) / std::sin(half)) * cross(out.direction, across));
+  out.angle_rad = turn->angle_rad;
+  out.direction = turn->direction;
+  out.origin = turn->origin;
   out.transform = rotation_about(out.origin, out.direction, out.angle_rad);
   return out;
 }
