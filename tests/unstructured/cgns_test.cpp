@@ -1,9 +1,11 @@
 // Unstructured CGNS files: written by this library and by the CGNS mid-level library.
 #include "io/io_support.hpp"
 #include "quality/test_meshes.hpp"
+#include "support/made_bodies.hpp"
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/cgns_file.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
@@ -11,6 +13,8 @@
 #include <cgnslib.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 namespace gridmorph::test {
 namespace {
@@ -248,6 +252,95 @@ TEST(UnstructuredBoundary, ANodeListTakesTheFacesOfTheSectionOfItsName) {
   ASSERT_EQ(mesh.patches.size(), 1u);
   EXPECT_EQ(mesh.patches[0].faces.size(), 2);
   EXPECT_TRUE(mesh.patches[0].nodes.empty());
+}
+
+/// As meshers write them: the family, the condition on nodes and the section have one name; nodes on the edge between two conditions
+/// are listed by one of them only.
+TEST(UnstructuredBoundary, AConditionOnNodesItsFamilyAndItsSectionOfOneNameAreOnePatch) {
+  TemporaryFolder const folder;
+  for (auto const& nodes : {std::vector<cgsize_t>{1, 3, 4, 6, 7, 9, 10, 12}, std::vector<cgsize_t>{1, 3, 4, 6, 7, 9}}) {
+    auto const path = folder.file("bc.cgns");
+    {
+      HandMadeFile file(path);
+      file.family("sides", CGNS_ENUMV(BCInflow));
+      file.bc("sides", CGNS_ENUMV(PointList), nodes);
+    }
+    auto const mesh = read_unstructured_mesh(path);
+    ASSERT_EQ(mesh.patches.size(), 1u);
+    EXPECT_EQ(mesh.patches[0].families, (std::vector<std::string>{"sides"}));
+    EXPECT_EQ(mesh.patches[0].faces.size(), 2);
+    EXPECT_TRUE(mesh.patches[0].nodes.empty());
+  }
+}
+
+std::int32_t type_in_3_0(std::int32_t type) { return type == 21 ? 13 : type >= 13 && type <= 20 ? type + 1 : type; }
+
+/// A MIXED list with the types of CGNS 3.0, as its integers are stored; returns how many changed.
+template <class Integer>
+int rewrite_mixed(cgns::File& file, cgns::Node const& list) {
+  std::map<std::int64_t, int> const nodes{{5, 3}, {7, 4}, {10, 4}, {12, 5}, {14, 6}, {17, 8}};
+  auto const now = file.integers(list);
+  std::vector<Integer> old(now.begin(), now.end());
+  int changed = 0;
+  for (std::size_t at = 0; at < now.size(); at += 1 + std::size_t(nodes.at(now[at]))) {
+    old[at] = type_in_3_0(std::int32_t(now[at]));
+    changed += old[at] != now[at] ? 1 : 0;
+  }
+  file.write(list, old.data());
+  return changed;
+}
+
+TEST(UnstructuredFiles, ElementNumbersOfCgns30AreThoseOfThatVersion) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("old.cgns");
+  auto const mesh = mixed_box();
+  write_mesh(path, mesh);
+  int changed = 0;
+  {
+    cgns::File file(path, cgns::File::Mode::modify);
+    auto const tree = file.tree();
+    float const version = 3.0F;
+    file.write(*tree.labelled("CGNSLibraryVersion_t"), &version);
+    for (auto const* node : tree.labelled("CGNSBase_t")->labelled("Zone_t")->all("Elements_t")) {
+      auto const head = file.integers(*node);
+      std::array<std::int32_t, 2> const stored{type_in_3_0(std::int32_t(head[0])), std::int32_t(head[1])};
+      file.write(*node, stored.data());
+      if (head[0] != 20) continue;
+      auto const& list = *node->child("ElementConnectivity");
+      changed +=
+          file.type(list) == "I8" ? rewrite_mixed<std::int64_t>(file, list) : rewrite_mixed<std::int32_t>(file, list);
+    }
+    file.close();
+  }
+  ASSERT_GT(changed, 0) << "the mesh is meant to have prisms";
+  expect_same_mesh(read_unstructured_mesh(path), mesh);
+}
+
+TEST(UnstructuredFiles, ZonesThatAreLeftOutByNameAreNoPartOfTheMeshAndStayAsTheyAre) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("two.cgns"), out = folder.file("out.cgns");
+  auto const box = to_hexahedra(unit_box({2, 2, 2}));
+  write_mesh(path, in_two_zones(box, [](Vec3 const& c) { return c.x < 1; }));
+  auto const whole = read_unstructured_mesh(path);
+  ASSERT_EQ(whole.zones.size(), 2u);
+  ReadOptions options;
+  options.leave_out = {whole.zones[0].name};
+  auto const mesh = read_unstructured_mesh(path, options);
+  ASSERT_EQ(mesh.zones.size(), 1u);
+  EXPECT_EQ(mesh.n_elements(), 4);
+  EXPECT_TRUE(mesh.connections.empty());
+  EXPECT_TRUE(claim_boundary(mesh, make_topology(mesh)).problems.empty()) << "the connection is a patch";
+  Coordinates moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.125, 0, 0});
+  write_morphed(path, out, mesh, moved);
+  auto const after = read_unstructured_mesh(out);
+  Index const first = whole.zones[1].first_node;
+  for (Index n = 0; n < after.n_nodes(); ++n)
+    EXPECT_EQ(after.coordinates[n], n < first ? whole.coordinates[n] : moved[n - first]);
+  options.leave_out = {"nothing"};
+  EXPECT_NE(message_of<IoError>([&] { read_unstructured_mesh(path, options); }).find("'nothing'"), std::string::npos);
+  options.leave_out = {"*"};
+  EXPECT_THROW(read_unstructured_mesh(path, options), IoError);
 }
 
 TEST(UnstructuredBoundary, NumbersThatAreNotThereAreProblemsThatNameThem) {

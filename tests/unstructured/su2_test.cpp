@@ -173,5 +173,18 @@ TEST_F(Su2, SeveralZonesAreKeptApart) {
   EXPECT_EQ(bytes_of(out), bytes_of(path_));
 }
 
+TEST_F(Su2, TheDimensionMayStandOnceBeforeTheNumberOfZones) {
+  std::string const body = replaced(square, "NDIME= 2\n", "");
+  for (std::string const& own : {std::string(), std::string("NDIME= 2\n")}) {
+    auto const mesh = read("NDIME= 2\nNZONE= 2\nIZONE= 1\n" + own + body + "IZONE= 2\n" + own + body);
+    ASSERT_EQ(mesh.zones.size(), 2u);
+    EXPECT_EQ(mesh.zones[0].name, "zone 1");
+    EXPECT_EQ(mesh.n_elements(), 6);
+    EXPECT_EQ(mesh.patches.size(), 4u);
+  }
+  EXPECT_EQ(read("NDIME= 2\nNZONE= 1\n" + body).n_elements(), 3);
+  EXPECT_NE(error(square + "NDIME= 3\n").find(":23: NDIME= comes after"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace gridmorph::test

@@ -71,6 +71,7 @@ struct CaseFile {
   std::filesystem::path input;   ///< relative paths are already joined with the directory of the case file
   std::filesystem::path output;  ///< empty when the case file names none
   std::optional<std::filesystem::path> side_file;  ///< patches and interfaces of the mesh (side_file.hpp)
+  std::vector<std::string> leave_out;              ///< bases and zones of the file that are no part of the mesh
   std::optional<Axis> axis;                        ///< [mesh] axis as given; Motion::axis holds it too
   Motion motion;
   PlanOptions plan;

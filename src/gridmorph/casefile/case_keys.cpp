@@ -29,6 +29,8 @@ constexpr auto list = std::to_array<CaseKey>({
      "The morphed mesh, in the format of the input; `--output` overrides it. Never the input"},
     {"mesh", "side_file", "file", "", "the mesh's name with .toml, if there", R"(side_file = "passage_sides.toml")",
      "Patches, interfaces and periodicity that the mesh file does not say ([formats.md](formats.md))"},
+    {"mesh", "leave_out", "string or list", "", "none", R"(leave_out = ["Base 2", "Base/probe line"])",
+     "Bases and zones of a CGNS file that are no part of the mesh (globs). They stay as they are; connections that lead to them become patches"},
     {"mesh", "axis", R"(table, or "x", "y", "z")", "", "none", "axis = { origin = [0, 0, 0], direction = [1, 0, 0] }",
      "The machine axis. Rules that need an axis are an error without one"},
     {"mesh", "matching_tolerance", "number > 0", "length", "1e-8 of the mesh size, 1e-6 for single precision",

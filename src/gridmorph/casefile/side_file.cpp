@@ -1,18 +1,16 @@
-#include <gridmorph/casefile/detail/rule_reader.hpp>
+#include <gridmorph/casefile/detail/side_tables.hpp>
 #include <gridmorph/casefile/detail/table_reader.hpp>
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
 
 #include <fmt/format.h>
 #include <toml.hpp>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
-#include <map>
-#include <numbers>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -41,12 +39,6 @@ std::string read_text(std::filesystem::path const& path) {
   return std::move(text).str();
 }
 
-std::vector<std::string> const kind_words{"wall",     "inflow",     "outflow",    "symmetry",
-                                          "farfield", "degenerate", "connection", "other"};
-/// In the order of PatchKind.
-constexpr std::array<char const*, 8> bc_types{"BCWall",     "BCInflow",         "BCOutflow", "BCSymmetryPlane",
-                                              "BCFarfield", "BCDegenerateLine", "",          ""};
-
 class Reader {
  public:
   Reader(Context& context, Mesh& mesh) : context_(context), mesh_(mesh) {}
@@ -55,7 +47,7 @@ class Reader {
     TableReader root(context_, document, "");
     (void)root.string("format");  // was for the reader of the mesh
     if (auto const names = root.strings("zone_names")) rename(root, *names);
-    for (auto& table : root.tables("periodic")) periodic(table);
+    for (auto& table : root.tables("periodic")) periodic_.read(table);
     for (auto& table : root.tables("patch")) patch(table);
     for (auto& table : root.tables("interface")) interface(table);
     root.finish();
@@ -160,37 +152,14 @@ class Reader {
     return out;
   }
 
-  void periodic(TableReader& table) {
-    Periodic out;
-    auto const name = table.string("name");
-    table.require("name", "name = \"pitch\", which interfaces refer to");
-    auto const axis = casefile::read_axis(table, "axis");
-    auto const angle = table.number("angle_deg");
-    auto const shift = table.vector("translation");
-    if (table.has("translation") == (table.has("axis") || table.has("angle_deg")) ||
-        table.has("axis") != table.has("angle_deg"))
-      context_.problem(table.line(), "[[periodic]] needs axis and angle_deg, or translation = [x, y, z]");
-    else if (angle && *angle == 0)
-      table.problem("angle_deg", "is zero; give the angle from the interface's own side to its donor");
-    else if (shift && norm(*shift) == 0)
-      table.problem("translation", "is zero; give the way from the interface's own side to its donor");
-    if (axis && angle)
-      out = periodic_rotation(axis->origin, axis->direction, *angle * std::numbers::pi / 180);
-    else if (shift)
-      out = periodic_translation(*shift);
-    table.finish();
-    if (name && !periodic_.emplace(*name, out).second)
-      table.problem("name", fmt::format("'{}' is used twice; give each its own", *name));
-  }
-
   void patch(TableReader& table) {
     Patch out;
     auto const name = table.string("name");
     table.require("name", "name = \"blade\"");
     if (auto const family = table.strings("family")) out.families = *family;
-    if (auto const kind = table.choice("kind", kind_words)) {
+    if (auto const kind = table.choice("kind", casefile::side_file_kinds)) {
       out.kind = PatchKind(*kind);
-      out.bc_type = bc_types[*kind];
+      out.bc_type = casefile::bc_type_of(out.kind);
     }
     auto const on = zone(table, "zone");
     auto const where = on ? range(table, *on, "face", "range") : std::nullopt;
@@ -237,16 +206,7 @@ class Reader {
     auto const own_range = own ? range(table, *own, "face", "range") : std::nullopt;
     auto const donor_range = donor ? range(table, *donor, "donor_face", "donor_range") : std::nullopt;
     auto o = transform(table, mesh_.two_dimensional);
-    if (auto const name = table.string("periodic")) {
-      auto const found = periodic_.find(*name);
-      std::vector<std::string> names;
-      for (auto const& [word, value] : periodic_) names.push_back(word);
-      if (found == periodic_.end())
-        table.problem("periodic",
-                      fmt::format("there is no [[periodic]] named '{}'{}", *name, suggestion(*name, names)));
-      else
-        out.periodic = found->second;
-    }
+    out.periodic = periodic_.of(table);
     if (own && donor) table.finish();
     if (!own_range || !donor_range || !o) return;
     int normal = 0, donor_normal = 0;
@@ -272,7 +232,7 @@ class Reader {
 
   Context& context_;
   Mesh& mesh_;
-  std::map<std::string, Periodic> periodic_;
+  casefile::SidePeriodics periodic_;
 };
 
 }  // namespace
@@ -294,17 +254,32 @@ void add_side_file(std::string const& text, std::filesystem::path const& path, M
   context.problems.throw_if_any<ConfigError>();
 }
 
-Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem::path> const& side_file) {
-  auto const side = side_file ? side_file : find_side_file(mesh);
-  if (!side) return read_mesh(mesh.string());
-  std::string const text = read_text(*side);
+Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem::path> const& side_file,
+               std::vector<std::string> const& leave_out) {
   ReadOptions options;
+  options.leave_out = leave_out;
+  auto const side = side_file ? side_file : find_side_file(mesh);
+  if (!side) return read_mesh(mesh.string(), options);
+  std::string const text = read_text(*side);
   auto const document = casefile::parse_toml_text(text, side->string());
   if (document.is_table() && document.contains("format") && document.at("format").is_string())
     options.plot3d_format = document.at("format").as_string().str;
   Mesh out = read_mesh(mesh.string(), options);
   add_side_file(text, *side, out);
   out.notes.push_back(fmt::format("patches and interfaces of '{}' added", side->string()));
+  return out;
+}
+
+UnstructuredMesh load_unstructured_mesh(std::filesystem::path const& mesh,
+                                        std::optional<std::filesystem::path> const& side_file,
+                                        std::vector<std::string> const& leave_out) {
+  ReadOptions options;
+  options.leave_out = leave_out;
+  auto const side = side_file ? side_file : find_side_file(mesh);
+  UnstructuredMesh out = read_unstructured_mesh(mesh.string(), options);
+  if (!side) return out;
+  add_side_file(read_text(*side), *side, out);
+  out.notes.push_back(fmt::format("what '{}' says is taken", side->string()));
   return out;
 }
 

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/topology/find_interfaces.hpp>
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace gridmorph {
 
@@ -19,10 +21,18 @@ std::optional<std::filesystem::path> find_side_file(std::filesystem::path const&
 /// Reads a mesh of any format and adds what its side file says. `side_file`: the one to use; otherwise that of
 /// find_side_file(), if any. Throws the errors of read_mesh, and one ConfigError that lists every problem of the side file as
 /// "file:line: what, found, what to do".
-Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem::path> const& side_file = {});
+/// `leave_out`: as in ReadOptions.
+Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem::path> const& side_file = {},
+               std::vector<std::string> const& leave_out = {});
+
+/// The same for an unstructured mesh, whose side file says what markers are and which of them are periodic.
+UnstructuredMesh load_unstructured_mesh(std::filesystem::path const& mesh,
+                                        std::optional<std::filesystem::path> const& side_file = {},
+                                        std::vector<std::string> const& leave_out = {});
 
 /// Adds patches and interfaces of a side file's text to a mesh. `path` names it in messages.
 void add_side_file(std::string const& text, std::filesystem::path const& path, Mesh& mesh);
+void add_side_file(std::string const& text, std::filesystem::path const& path, UnstructuredMesh& mesh);
 
 /// A side file for a mesh: the interfaces that were found, and one patch for every rectangle of a zone face that is left,
 /// named by zone and face, for the user to rename. `existing`: text of the mesh's present side file, which comes first as it is.

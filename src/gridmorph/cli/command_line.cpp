@@ -34,12 +34,20 @@ CLI::App* add_wheel(CLI::App& app, CommandLine& out) {
   return wheel;
 }
 
+void add_leave_out(CLI::App& command, CommandLine& out) {
+  command
+      .add_option("--leave-out", out.leave_out,
+                  "A base or zone of a CGNS file that is no part of the mesh; may be repeated")
+      ->allow_extra_args(false);
+}
+
 CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
   auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
   inspect->add_option("mesh", out.input, "Mesh (CGNS or PLOT3D)")->required();
   auto* json = inspect->add_flag("--json", out.json, "Print JSON");
   inspect->add_option("--side-file", out.side_file,
                       "Patches and interfaces (TOML), instead of the file beside the mesh");
+  add_leave_out(*inspect, out);
   inspect->add_flag("--match", out.match, "Look for interfaces and periodicity where nothing is declared");
   inspect->add_option("--match-tolerance", out.match_tolerance, "Distance of points that match, of the smallest edge")
       ->check(CLI::Range(1e-9, 0.25));
@@ -59,6 +67,7 @@ CLI::App* add_surface(CLI::App& app, CommandLine& out) {
       ->required();
   surface->add_option("-o,--output", out.output, "STL file")->required();
   surface->add_option("--split", out.split, "Cut each facet into N x N")->check(CLI::Range(1, 1000));
+  add_leave_out(*surface, out);
   surface->add_flag("--ascii", out.ascii, "Text with all digits; binary STL has single precision");
   return surface;
 }
@@ -104,6 +113,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS or PLOT3D)")->required();
   quality->add_option("morphed", out.second, "Morphed mesh");
   quality->add_flag("--json", out.json, "Print JSON");
+  add_leave_out(*quality, out);
   commands.emplace_back(quality, Command::quality);
   commands.emplace_back(add_wheel(app, out), Command::wheel);
   commands.emplace_back(add_surface(app, out), Command::surface);

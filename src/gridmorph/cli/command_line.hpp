@@ -26,6 +26,7 @@ struct CommandLine {
   std::optional<std::filesystem::path> side_file;        ///< inspect: of the mesh, instead of the one beside it
   std::optional<std::filesystem::path> write_side_file;  ///< inspect: what was found goes there
   std::optional<std::string> suggest;  ///< inspect: a case file to start from, to this file; empty: printed
+  std::vector<std::string> leave_out;  ///< inspect, quality, surface: bases and zones that are no part of the mesh
   bool match = false;                  ///< inspect: look for interfaces
   double match_tolerance = 0.01;       ///< inspect: share of the smallest edge
 

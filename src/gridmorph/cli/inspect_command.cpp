@@ -39,11 +39,11 @@ int suggest(CommandLine const& options, MeshSummary const& summary, Terminal& te
 }
 
 int inspect_unstructured(CommandLine const& options, Terminal& terminal) {
-  if (options.match || options.side_file || options.write_side_file)
+  if (options.match || options.write_side_file)
     throw MeshError(options.input.string() +
-                    ": is an unstructured mesh; side files and matching points are for structured ones");
+                    ": is an unstructured mesh; --match and --write-side-file are for structured ones");
   terminal.progress("reading " + options.input.string());
-  LoadedMesh const loaded = load_unstructured(options.input);
+  LoadedMesh const loaded = load_unstructured(options.input, options.side_file, options.leave_out);
   if (options.suggest) return suggest(options, summarize(loaded), terminal);
   terminal.progress("measuring quality");
   QualityReport const quality = measure_mesh(loaded);
@@ -97,9 +97,10 @@ void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
 
 int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   check_files(options);
-  if (mesh_kind(options.input.string()) == MeshKind::unstructured) return inspect_unstructured(options, terminal);
+  if (mesh_kind(options.input.string(), options.leave_out) == MeshKind::unstructured)
+    return inspect_unstructured(options, terminal);
   terminal.progress("reading " + options.input.string());
-  Mesh mesh = load_mesh(options.input, options.side_file);
+  Mesh mesh = load_mesh(options.input, options.side_file, options.leave_out);
   if (options.match || options.write_side_file) find_and_add(options, mesh, terminal);
   terminal.progress("looking at boundaries and connections");
   MeshSummary const summary = summarize(mesh);

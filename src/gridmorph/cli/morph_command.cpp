@@ -186,7 +186,7 @@ int run_morph_command(CommandLine const& options, Terminal& terminal) {
     terminal.result(run_plan(case_file, terminal));
     return done;
   }
-  bool const unstructured = mesh_kind(case_file.input.string()) == MeshKind::unstructured;
+  bool const unstructured = mesh_kind(case_file.input.string(), case_file.leave_out) == MeshKind::unstructured;
   if (case_file.sequence)
     return unstructured ? morph_unstructured_sequence(case_file, terminal) : morph_sequence(case_file, terminal);
   if (case_file.output.empty())

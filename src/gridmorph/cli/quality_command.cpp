@@ -49,16 +49,23 @@ int show(QualityReport const& before, std::optional<QualityReport> const& after,
   return after && any_failure(shortfalls(before, after, thresholds)) ? falls_short : done;
 }
 
+ReadOptions second_options(CommandLine const& options) {
+  ReadOptions out;
+  out.leave_out = options.leave_out;
+  return out;
+}
+
 int quality_of_unstructured(CommandLine const& options, Terminal& terminal) {
   terminal.progress("reading " + options.input.string());
-  LoadedMesh const loaded = load_unstructured(options.input);
+  LoadedMesh const loaded = load_unstructured(options.input, {}, options.leave_out);
   std::optional<Coordinates> morphed;
   if (options.second) {
     terminal.progress("reading " + options.second->string());
-    if (mesh_kind(options.second->string()) != MeshKind::unstructured)
+    if (mesh_kind(options.second->string(), options.leave_out) != MeshKind::unstructured)
       throw MeshError(fmt::format("'{}' is unstructured and '{}' is not; compare a mesh with its own baseline",
                                   options.input.string(), options.second->string()));
-    morphed = coordinates_of_same_mesh(loaded.mesh, read_unstructured_mesh(options.second->string()));
+    morphed = coordinates_of_same_mesh(loaded.mesh,
+                                       read_unstructured_mesh(options.second->string(), second_options(options)));
   }
   terminal.progress("measuring quality");
   QualityReport const before = measure_mesh(loaded);
@@ -70,13 +77,14 @@ int quality_of_unstructured(CommandLine const& options, Terminal& terminal) {
 }  // namespace
 
 int run_quality_command(CommandLine const& options, Terminal& terminal) {
-  if (mesh_kind(options.input.string()) == MeshKind::unstructured) return quality_of_unstructured(options, terminal);
+  if (mesh_kind(options.input.string(), options.leave_out) == MeshKind::unstructured)
+    return quality_of_unstructured(options, terminal);
   terminal.progress("reading " + options.input.string());
-  Mesh const mesh = load_mesh(options.input);
+  Mesh const mesh = load_mesh(options.input, {}, options.leave_out);
   std::optional<Mesh> morphed;
   if (options.second) {
     terminal.progress("reading " + options.second->string());
-    morphed = read_mesh(options.second->string());
+    morphed = read_mesh(options.second->string(), second_options(options));
     check_same_zones(mesh, *morphed);
   }
 

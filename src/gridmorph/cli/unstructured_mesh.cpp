@@ -1,24 +1,25 @@
+#include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/mesh_summary.hpp>
 #include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/motion/detail/plane_fit.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/topology/periodic_axis.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace gridmorph::cli {
 
-LoadedMesh load_unstructured(std::filesystem::path const& path) {
+LoadedMesh load_unstructured(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
+                             std::vector<std::string> const& leave_out) {
   LoadedMesh out;
-  out.mesh = read_unstructured_mesh(path.string());
+  out.mesh = load_unstructured_mesh(path, side_file, leave_out);
   if (is_scattered(out.mesh)) reorder(out.mesh, order_by_position(out.mesh));
   out.topology = make_topology(out.mesh);
   out.claims = claim_boundary(out.mesh, out.topology);
@@ -104,11 +105,23 @@ std::string list_text(std::string const& title, std::vector<std::string> const& 
   return text;
 }
 
-std::string periodic_text(Periodic const& p) {
-  double const angle = norm(p.rotation_angle_rad) * 180 / std::numbers::pi;
-  if (angle > 0)
-    return fmt::format("periodic by a rotation of {:.6g} degrees about ({:.4g}, {:.4g}, {:.4g})", angle,
-                       p.rotation_center.x, p.rotation_center.y, p.rotation_center.z);
+PeriodicSummary describe_connection(UnstructuredMesh const& mesh, UnstructuredConnection const& c) {
+  double const size = mesh.size();
+  std::vector<Vec3> from, to;
+  for (std::size_t n = 0; n < c.nodes.size(); ++n) {
+    from.push_back(mesh.coordinates[c.nodes[n]]);
+    to.push_back(mesh.coordinates[c.donor_nodes[n]]);
+  }
+  RigidTransform const fitted = fit_periodic(*c.periodic, from, to, size);
+  return describe_periodic(*c.periodic, &fitted, size);
+}
+
+std::string periodic_text(PeriodicSummary const& p) {
+  if (p.angle_deg > 0)
+    return fmt::format(
+        "periodic by a rotation of {:.6g} degrees about ({:.4g}, {:.4g}, {:.4g}) through ({:.4g}, {:.4g}, {:.4g})",
+        p.angle_deg, p.axis.direction.x, p.axis.direction.y, p.axis.direction.z, p.axis.origin.x, p.axis.origin.y,
+        p.axis.origin.z);
   return fmt::format("periodic by the translation ({:.6g}, {:.6g}, {:.6g})", p.translation.x, p.translation.y,
                      p.translation.z);
 }
@@ -152,9 +165,10 @@ std::string inspect_text(LoadedMesh const& loaded, std::string const& quality) {
   text += "\nConnections\n";
   if (mesh.connections.empty()) text += "  none\n";
   for (auto const& c : mesh.connections)
-    text += fmt::format("  {} (zone {} to zone {}): {} pairs of nodes, at most {:.3g} apart{}\n", c.name,
-                        mesh.zones[std::size_t(c.zone)].name, mesh.zones[std::size_t(c.donor_zone)].name,
-                        c.nodes.size(), largest_mismatch(mesh, c), c.periodic ? "; " + periodic_text(*c.periodic) : "");
+    text +=
+        fmt::format("  {} (zone {} to zone {}): {} pairs of nodes, at most {:.3g} apart{}\n", c.name,
+                    mesh.zones[std::size_t(c.zone)].name, mesh.zones[std::size_t(c.donor_zone)].name, c.nodes.size(),
+                    largest_mismatch(mesh, c), c.periodic ? "; " + periodic_text(describe_connection(mesh, c)) : "");
   text += list_text("Notes of the reader", all_notes(loaded));
   text += list_text("Problems that stop a morph", loaded.problems);
   return text + "\n" + quality;
@@ -239,8 +253,10 @@ std::optional<Axis> common_axis(UnstructuredMesh const& mesh) {
   std::optional<Axis> axis;
   for (auto const& c : mesh.connections) {
     if (!c.periodic || !(norm(c.periodic->rotation_angle_rad) > 0)) continue;
-    Axis const own = rotation_axis(*c.periodic);
-    if (axis && distance(axis->direction, own.direction) > 1e-5) return {};
+    Axis const own = describe_connection(mesh, c).axis;
+    if (axis && (distance(axis->direction, own.direction) > 1e-5 ||
+                 norm(cross(own.origin - axis->origin, own.direction)) > 1e-6 * mesh.size()))
+      return {};
     if (!axis) axis = own;
   }
   return axis;

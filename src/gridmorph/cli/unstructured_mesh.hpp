@@ -23,7 +23,10 @@ struct LoadedMesh {
   std::vector<std::string> problems;  ///< open faces, elements that are numbered inside out, ...
 };
 
-LoadedMesh load_unstructured(std::filesystem::path const& path);
+/// As load_unstructured_mesh() of side_file.hpp.
+LoadedMesh load_unstructured(std::filesystem::path const& path,
+                             std::optional<std::filesystem::path> const& side_file = {},
+                             std::vector<std::string> const& leave_out = {});
 
 /// Quality at all wall patches; of `morphed` against the mesh itself where it is given.
 QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed = {});

@@ -73,7 +73,7 @@ nlohmann::json plan_json(PreparedUnstructured const& prepared) {
 void read_and_plan(CaseFile const& case_file, Terminal& terminal, UnstructuredRun& out) {
   Stopwatch watch;
   terminal.progress("reading " + case_file.input.string());
-  out.loaded = load_unstructured(case_file.input);
+  out.loaded = load_unstructured(case_file.input, case_file.side_file, case_file.leave_out);
   out.times.push_back({"read", watch.lap(), true});
   terminal.progress("finding wrap and layers, making the background mesh, locating nodes");
   UnstructuredOptions options = case_file.unstructured;

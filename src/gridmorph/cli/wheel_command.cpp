@@ -112,7 +112,7 @@ class WheelRun {
  private:
   static Mesh read(CaseFile const& case_file, Terminal& terminal) {
     terminal.progress("reading " + case_file.input.string());
-    return load_mesh(case_file.input, case_file.side_file);
+    return load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
   }
 
   void time(std::string const& step) {

@@ -79,7 +79,7 @@ QualityReport QualityMeter::morphed(Coordinates const& morphed) const {
 
 MorphResult read_baseline(CaseFile const& case_file) {
   MorphResult out;
-  out.mesh = load_mesh(case_file.input, case_file.side_file);
+  out.mesh = load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
   auto const& wanted = case_file.output_options;
   if (!out.mesh.file_variant.empty() && (wanted.displacement || wanted.quality))
     throw ConfigError(
@@ -114,9 +114,10 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
 }
 
 std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
-  if (mesh_kind(case_file.input.string()) == MeshKind::unstructured) return unstructured_plan_text(case_file, terminal);
+  if (mesh_kind(case_file.input.string(), case_file.leave_out) == MeshKind::unstructured)
+    return unstructured_plan_text(case_file, terminal);
   terminal.progress("reading " + case_file.input.string());
-  Mesh mesh = load_mesh(case_file.input, case_file.side_file);
+  Mesh mesh = load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
   Engine const engine(mesh, case_file, terminal);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";

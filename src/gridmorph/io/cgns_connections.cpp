@@ -22,6 +22,7 @@ class ConnectionReader {
     auto const own = corners(node, "PointRange", zone);
     if (!own) return;
     if (!inside(zone, *own)) return outside(zone, *own, "range");
+    if (leads_out(zone, file_.text(node))) return one_sided(z, node, *own);
     face.donor_zone = donor_zone(zone, file_.text(node), *own);
     if (face.donor_zone < 0) return;
     auto const& donor = layout_.zones[face.donor_zone];
@@ -97,6 +98,23 @@ class ConnectionReader {
     return -1;
   }
 
+  /// Whether a donor is one of the zones that are left out.
+  bool leads_out(ZoneLayout const& zone, std::string const& donor) const {
+    if (find_donor(zone, donor) >= 0) return false;
+    auto const slash = donor.find('/');
+    bool const whole = slash != std::string::npos;
+    return is_left_out(layout_.leave_out, whole ? donor.substr(0, slash) : zone.base->name,
+                       whole ? donor.substr(slash + 1) : donor);
+  }
+
+  void one_sided(int z, Node const& node, Corners const& own) {
+    auto const& zone = layout_.zones[z];
+    IndexRange const range = node_range(zone, own);
+    if (!face_normal(zone, range)) return note("skipped, it leads to a zone that is left out and is on no face");
+    note("leads to zone '" + file_.text(node) + "', which is left out; taken as a patch");
+    mesh_.patches.push_back({node.name, "Abutting1to1", PatchKind::connection, families_of(file_, node), z, range});
+  }
+
   int donor_zone(ZoneLayout const& zone, std::string const& name, Corners const& range) {
     int const donor = find_donor(zone, name);
     if (donor < 0) {
@@ -104,7 +122,9 @@ class ConnectionReader {
       for (auto const& z : layout_.zones)
         if (there.size() < 200) there += (there.empty() ? "'" : ", '") + z.name + "'";
       problem("range " + to_string(range, zone.index_dimension) + " names donor zone '" + name +
-              "', which the file does not have (zones: " + there + ")");
+              "', which the file does not have (zones: " + there +
+              "); correct the connection, or name the donor in leave_out "
+              "to have this face as a patch");
     }
     return donor;
   }

@@ -1,4 +1,5 @@
 #include <gridmorph/io/cgns_layout.hpp>
+#include <gridmorph/motion/selectors.hpp>
 
 #include <algorithm>
 #include <cstring>
@@ -32,8 +33,10 @@ bool read_extent(File const& file, ZoneLayout& zone, std::string const& where, P
   auto const sizes = file.integers(*zone.node);
   int const n = dimensions.empty() ? 0 : int(std::min<Index>(dimensions[0], 4));
   if (n == 1) {
-    problems.add(where +
-                 ": has one index dimension; only surfaces (2) and volumes (3) of structured nodes can be morphed");
+    problems.add(
+        where +
+        ": has one index dimension; only surfaces (2) and volumes (3) of structured nodes can be morphed; name "
+        "the zone in leave_out if the others are the mesh");
     return false;
   }
   if ((n != 2 && n != 3) || Index(sizes.size()) < n) {
@@ -163,60 +166,120 @@ Index ZoneLayout::stored_line(int j, int k) const {
   return rind_low[0] + ni * (j + rind_low[1] + nj * Index(k + rind_low[2]));
 }
 
-Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems) {
-  Layout layout;
+namespace {
+
+/// The zones of all bases, named, those that are left out too.
+std::vector<ZoneLayout> named_zones(Node const& tree) {
   auto const bases = tree.all("CGNSBase_t");
   auto const with_zones =
       std::count_if(bases.begin(), bases.end(), [](Node const* b) { return b->labelled("Zone_t") != nullptr; });
-  if (with_zones == 0) problems.add(file.path() + ": holds no Zone_t node; there is no mesh in it");
+  std::vector<ZoneLayout> out;
   for (auto const* base : bases)
     for (auto const* node : base->all("Zone_t")) {
       ZoneLayout zone;
       zone.base = base;
       zone.node = node;
       zone.name = with_zones > 1 ? base->name + "/" + node->name : node->name;
-      zone.index_dimension = 1;
-      std::string const where = file.path() + ": zone '" + zone.name + "'";
-      auto const sizes = file.integers(*node);
-      if (sizes.size() < 2 || sizes[0] < 1 || sizes[0] >= std::numeric_limits<int>::max()) {
-        problems.add(where + ": its size is not that of an unstructured zone" +
-                     (sizes.empty() ? std::string() : " (" + std::to_string(sizes[0]) + " nodes)"));
-        continue;
-      }
-      zone.extent = {int(sizes[0]), 1, 1};
-      auto const* grid = node->labelled("GridCoordinates_t");
-      if (grid && !grid->child(coordinate_names[2]) && grid->child(coordinate_names[0]) &&
-          grid->child(coordinate_names[1]))
-        zone.flat_axis = 2;
-      find_coordinates(file, zone, where, problems, layout.notes);
-      layout.zones.push_back(std::move(zone));
+      out.push_back(std::move(zone));
     }
+  return out;
+}
+
+/// Donors that connections of the zone name.
+std::vector<std::string> donors_of(File const& file, Node const& zone) {
+  std::vector<std::string> out;
+  for (auto const* connectivity : zone.all("ZoneGridConnectivity_t"))
+    for (auto const& node : connectivity->children)
+      if (node.label == "GridConnectivity1to1_t" || node.label == "GridConnectivity_t") out.push_back(file.text(node));
+  return out;
+}
+
+/// The zones that are wanted. Adds to problems: names of `leave_out` that the file does not know, and nothing left.
+std::vector<ZoneLayout> wanted_zones(File const& file, Node const& tree, Problems& problems,
+                                     std::vector<std::string> const& leave_out) {
+  auto zones = named_zones(tree);
+  if (zones.empty()) problems.add(file.path() + ": holds no Zone_t node; there is no mesh in it");
+  for (auto const& name : leave_out) {
+    bool known = std::any_of(zones.begin(), zones.end(),
+                             [&](ZoneLayout const& z) { return is_left_out({name}, z.base->name, z.node->name); });
+    // A zone that connections lead to and the file does not have can be left out as well.
+    for (std::size_t z = 0; z < zones.size() && !known; ++z) {
+      auto const donors = donors_of(file, *zones[z].node);
+      known = std::find(donors.begin(), donors.end(), name) != donors.end();
+    }
+    if (known) continue;
+    std::string there;
+    for (auto const& z : zones)
+      if (there.size() < 200) there += (there.empty() ? "'" : ", '") + z.base->name + "/" + z.node->name + "'";
+    problems.add(file.path() + ": leave_out names '" + name +
+                 "', which is no base or zone of the file (base/zone: " + there + ")");
+  }
+  bool const any = !zones.empty();
+  std::erase_if(zones, [&](ZoneLayout const& z) { return is_left_out(leave_out, z.base->name, z.node->name); });
+  if (any && zones.empty()) problems.add(file.path() + ": leave_out names every zone; leave one in");
+  return zones;
+}
+
+}  // namespace
+
+bool is_left_out(std::vector<std::string> const& leave_out, std::string const& base, std::string const& zone) {
+  return std::any_of(leave_out.begin(), leave_out.end(), [&](std::string const& name) {
+    return glob_match(name, base) || glob_match(name, zone) || glob_match(name, base + "/" + zone);
+  });
+}
+
+std::vector<std::string> all_but(Node const& tree, std::vector<std::string> const& zones) {
+  auto const there = named_zones(tree);
+  auto const has = [](auto const& list, auto const& test) { return std::any_of(list.begin(), list.end(), test); };
+  for (auto const& wanted : zones)
+    if (!has(there, [&](ZoneLayout const& z) { return z.name == wanted; })) return {};
+  std::vector<std::string> out;
+  for (auto const& z : there)
+    if (!has(zones, [&](std::string const& name) { return name == z.name; }))
+      out.push_back(z.base->name + "/" + z.node->name);
+  return out;
+}
+
+Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems,
+                               std::vector<std::string> const& leave_out) {
+  Layout layout;
+  layout.leave_out = leave_out;
+  for (auto& zone : wanted_zones(file, tree, problems, leave_out)) {
+    auto const* node = zone.node;
+    zone.index_dimension = 1;
+    std::string const where = file.path() + ": zone '" + zone.name + "'";
+    auto const sizes = file.integers(*node);
+    if (sizes.size() < 2 || sizes[0] < 1 || sizes[0] >= std::numeric_limits<int>::max()) {
+      problems.add(where + ": its size is not that of an unstructured zone" +
+                   (sizes.empty() ? std::string() : " (" + std::to_string(sizes[0]) + " nodes)"));
+      continue;
+    }
+    zone.extent = {int(sizes[0]), 1, 1};
+    auto const* grid = node->labelled("GridCoordinates_t");
+    if (grid && !grid->child(coordinate_names[2]) && grid->child(coordinate_names[0]) &&
+        grid->child(coordinate_names[1]))
+      zone.flat_axis = 2;
+    find_coordinates(file, zone, where, problems, layout.notes);
+    layout.zones.push_back(std::move(zone));
+  }
   return layout;
 }
 
-Layout find_zones(File const& file, Node const& tree, Problems& problems) {
+Layout find_zones(File const& file, Node const& tree, Problems& problems, std::vector<std::string> const& leave_out) {
   Layout layout;
-  auto const bases = tree.all("CGNSBase_t");
-  if (bases.empty()) {
+  if (tree.labelled("CGNSBase_t") == nullptr) {
     problems.add(file.path() + ": holds no CGNSBase_t node; it is not a CGNS mesh");
     return layout;
   }
-  auto const with_zones =
-      std::count_if(bases.begin(), bases.end(), [](Node const* b) { return b->labelled("Zone_t") != nullptr; });
-  if (with_zones == 0) problems.add(file.path() + ": holds no Zone_t node; there is no mesh in it");
   int flat = 0;
-  for (auto const* base : bases)
-    for (auto const* node : base->all("Zone_t")) {
-      ZoneLayout zone;
-      zone.base = base;
-      zone.node = node;
-      zone.name = with_zones > 1 ? base->name + "/" + node->name : node->name;
-      std::string const where = file.path() + ": zone '" + zone.name + "'";
-      if (!read_extent(file, zone, where, problems)) continue;
-      find_coordinates(file, zone, where, problems, layout.notes);
-      flat += zone.flat_axis >= 0;
-      layout.zones.push_back(std::move(zone));
-    }
+  layout.leave_out = leave_out;
+  for (auto& zone : wanted_zones(file, tree, problems, leave_out)) {
+    std::string const where = file.path() + ": zone '" + zone.name + "'";
+    if (!read_extent(file, zone, where, problems)) continue;
+    find_coordinates(file, zone, where, problems, layout.notes);
+    flat += zone.flat_axis >= 0;
+    layout.zones.push_back(std::move(zone));
+  }
   if (flat > 0 && flat < int(layout.zones.size())) {
     std::string names;
     for (auto const& z : layout.zones)

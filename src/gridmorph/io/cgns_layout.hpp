@@ -41,15 +41,25 @@ struct ZoneLayout {
 struct Layout {
   std::vector<ZoneLayout> zones;
   std::vector<std::string> notes;
+  std::vector<std::string> leave_out;  ///< as it was asked for
 };
 
 /// Finds zones and coordinate arrays in the tree of a file. Adds to problems what makes the file unusable as a structured
 /// mesh: unstructured zones, missing or misfitting coordinate arrays, cylindrical coordinates, ...
-Layout find_zones(File const& file, Node const& tree, Problems& problems);
+/// `leave_out`: bases and zones to pass over, as is_left_out() takes them; a name that means nothing in the file is a problem.
+Layout find_zones(File const& file, Node const& tree, Problems& problems,
+                  std::vector<std::string> const& leave_out = {});
 
 /// The same for unstructured meshes: every zone is a line of nodes, extent {nodes, 1, 1}; flat_axis is 2 where the file has no
 /// CoordinateZ.
-Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems);
+Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems,
+                               std::vector<std::string> const& leave_out = {});
+
+/// Whether one of the names (globs) is that of the base, of the zone, or "Base/Zone".
+bool is_left_out(std::vector<std::string> const& leave_out, std::string const& base, std::string const& zone);
+
+/// What to leave out to find the zones with these names alone; nothing where the file lacks one of them.
+std::vector<std::string> all_but(Node const& tree, std::vector<std::string> const& zones);
 
 /// ZoneType_t of a zone; "Structured" where it has none.
 std::string zone_type(File const& file, Node const& zone);

@@ -77,14 +77,15 @@ constexpr std::array<ElementKind, 57> kinds{{
 
 class SectionReader {
  public:
-  SectionReader(File const& file, ZoneLayout const& zone, Problems& problems)
-      : file_(file), zone_(zone), problems_(problems) {}
+  SectionReader(File const& file, ElementTypes const& types, ZoneLayout const& zone, Problems& problems)
+      : file_(file), types_(types), zone_(zone), problems_(problems) {}
 
   std::optional<Section> read(Node const& node) {
     where_ = file_.path() + ": zone '" + zone_.name + "', elements '" + node.name + "'";
     Section out;
     out.name = node.name;
-    auto const type = file_.integers(node);
+    auto type = file_.integers(node);
+    if (!type.empty()) type[0] = types_(type[0]);
     auto const* range_node = node.child("ElementRange");
     auto const range = range_node ? file_.integers(*range_node) : std::vector<std::int64_t>{};
     auto const* connectivity = node.child("ElementConnectivity");
@@ -143,7 +144,7 @@ class SectionReader {
     Index const size = Index(s.list.size());
     s.start.push_back(0);
     for (Index e = 0; e < n; ++e) {
-      auto const type = at < size ? s.list[std::size_t(at)] : 0;
+      auto const type = at < size ? types_(s.list[std::size_t(at)]) : 0;
       auto const kind = element_kind(type);
       if (!kind || at + 1 + kind->nodes > size)
         return wrong("its element " + std::to_string(s.first + e) + " has " +
@@ -203,6 +204,7 @@ class SectionReader {
   }
 
   File const& file_;
+  ElementTypes const& types_;
   ZoneLayout const& zone_;
   Problems& problems_;
   std::string where_;
@@ -216,8 +218,21 @@ std::optional<ElementKind> element_kind(std::int64_t cgns_type) {
   return kinds[std::size_t(cgns_type)];
 }
 
-std::vector<Section> read_sections(File const& file, ZoneLayout const& zone, Problems& problems) {
-  SectionReader reader(file, zone, problems);
+ElementTypes::ElementTypes(File const& file, Node const& tree) {
+  auto const* node = tree.labelled("CGNSLibraryVersion_t");
+  auto const version = node ? file.reals(*node) : std::vector<double>{};
+  version_3_0_ = !version.empty() && version.front() > 2.995 && version.front() < 3.095;
+}
+
+std::int64_t ElementTypes::operator()(std::int64_t stored) const {
+  constexpr std::int64_t pyramid_13 = 21, pyramid_13_in_3_0 = 13;
+  if (!version_3_0_ || stored < pyramid_13_in_3_0 || stored > pyramid_13) return stored;
+  return stored == pyramid_13_in_3_0 ? pyramid_13 : stored - 1;
+}
+
+std::vector<Section> read_sections(File const& file, ElementTypes const& types, ZoneLayout const& zone,
+                                   Problems& problems) {
+  SectionReader reader(file, types, zone, problems);
   std::vector<Section> out;
   for (auto const* node : zone.node->all("Elements_t"))
     if (auto section = reader.read(*node)) out.push_back(std::move(*section));

@@ -35,8 +35,21 @@ struct Section {
   }
 };
 
+/// ElementType_t numbers as they have been since CGNS 3.1. Version 3.0 counted PYRA_13 as 13, before PYRA_14; 3.1 moved it to 21,
+/// behind MIXED, so that the numbers of 2.x hold again.
+class ElementTypes {
+ public:
+  /// tree: of the whole file, which names the version that wrote it.
+  ElementTypes(File const& file, Node const& tree);
+  [[nodiscard]] std::int64_t operator()(std::int64_t stored) const;
+
+ private:
+  bool version_3_0_;
+};
+
 /// All sections of a zone. Adds to problems what cannot be read, and nodes outside the zone.
-std::vector<Section> read_sections(File const& file, ZoneLayout const& zone, Problems& problems);
+std::vector<Section> read_sections(File const& file, ElementTypes const& types, ZoneLayout const& zone,
+                                   Problems& problems);
 
 /// Highest dimension of the elements of some sections: 3 or 2, or less where there are none.
 int dimension_of(std::vector<Section> const& sections);

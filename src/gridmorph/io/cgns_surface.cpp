@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/cgns_sections.hpp>
 #include <gridmorph/io/surface_io.hpp>
 
 #include <algorithm>
@@ -26,7 +27,8 @@ constexpr std::array<ElementKind, 22> element_kinds{
 
 class SurfaceReader {
  public:
-  explicit SurfaceReader(std::string const& path) : file_(path, File::Mode::read), tree_(file_.tree()) {}
+  explicit SurfaceReader(std::string const& path)
+      : file_(path, File::Mode::read), tree_(file_.tree()), types_(file_, tree_) {}
 
   TargetGeometry run() {
     bool any = false;
@@ -111,7 +113,8 @@ class SurfaceReader {
 
   void read_section(Node& section) {
     file_.load_children(section);
-    auto const header = file_.integers(section);
+    auto header = file_.integers(section);
+    if (!header.empty()) header[0] = types_(header[0]);
     int const type = header.empty() || header[0] < 0 || header[0] > 100 ? -1 : int(header[0]);
     bool const known = type == mixed || type == ngon || (type >= 0 && type < int(element_kinds.size()));
     if (!known) return;  // kinds of volume elements that came later
@@ -123,7 +126,7 @@ class SurfaceReader {
     if (type == ngon) return read_polygons(section, nodes);
     std::size_t at = 0;
     while (at < nodes.size()) {
-      std::int64_t const own = type == mixed ? nodes[at++] : type;
+      std::int64_t const own = type == mixed ? types_(nodes[at++]) : type;
       if (own < 0 || own >= std::int64_t(element_kinds.size()) || element_kinds[own].nodes == 0)
         fail(section, "names the element type " + std::to_string(own) + ", which is not supported in mixed sections");
       ElementKind const& kind = element_kinds[own];
@@ -157,6 +160,7 @@ class SurfaceReader {
 
   File file_;
   Node tree_;
+  cgns::ElementTypes types_;
   int cell_dimension_ = 3;
   Index first_ = 0, count_ = 0;  ///< points of the zone at hand
   TargetGeometry out_;

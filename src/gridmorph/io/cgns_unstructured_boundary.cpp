@@ -41,6 +41,10 @@ class BoundaryReader {
     patch.zone = z;
     patch.families = families_of(file_, bc);
     patch.bc_type = file_.text(bc);
+    // Meshers that call condition and family alike may leave out the name of the family.
+    bool const alike = patch.families.empty() &&
+                       std::find(mesh_.families.begin(), mesh_.families.end(), bc.name) != mesh_.families.end();
+    if (alike) patch.families.push_back(bc.name);
     if (patch.bc_type == "FamilySpecified") {
       auto const type =
           patch.families.empty() ? std::nullopt : family_bc_type(file_, tree_, *zone.base, patch.families.front());
@@ -56,12 +60,11 @@ class BoundaryReader {
     std::string why;
     auto const set = read_number_set(file_, bc, largest, why);
     if (!set) {
-      if (!take_section(z, bc.name, patch)) return note("skipped, " + why);
-      note("has no point set; the elements '" + bc.name + "' are taken");
+      if (!take_section(z, patch)) return note("skipped, " + why);
+      note("has no point set; the elements '" + taken_ + "' are taken");
     } else if (set->nodes) {
       if (!add_nodes(z, set->numbers, patch)) return;
-      if (take_section(z, bc.name, patch))
-        note("is a list of nodes; its faces are those of the elements '" + bc.name + "'");
+      if (take_section(z, patch)) note("is a list of nodes; its faces are those of the elements '" + taken_ + "'");
     } else if (!add_faces(z, set->numbers, patch)) {
       return;
     }
@@ -113,17 +116,25 @@ class BoundaryReader {
     return false;
   }
 
-  /// The faces of the section called `name`, if they have no other nodes than the patch (or the patch has none).
-  bool take_section(int z, std::string const& name, UnstructuredPatch& patch) {
+  /// The faces of the section that has the name of the patch, or of its family. Where the patch lists nodes, they must be those of
+  /// the section: all of the patch's, because each node may be listed by one condition only where several meet, or all of the section's.
+  bool take_section(int z, UnstructuredPatch& patch) {
     auto& faces = faces_[std::size_t(z)];
     for (auto const& group : faces.groups) {
-      if (group.name != name || group.begin == group.end) continue;
+      bool const own = group.name == patch.name;
+      bool const of_family = !patch.families.empty() && group.name == patch.families.front();
+      bool const claimed = std::any_of(faces.claimed.begin() + group.begin, faces.claimed.begin() + group.end,
+                                       [](char c) { return c != 0; });
+      if (!(own || of_family) || group.begin == group.end || claimed) continue;
       NumberLists list;
       for (Index f = group.begin; f < group.end; ++f) list.add(faces.nodes[f]);
-      bool const fits = patch.nodes.empty() || std::all_of(list.item.begin(), list.item.end(), [&](Number n) {
-                          return std::binary_search(patch.nodes.begin(), patch.nodes.end(), n);
-                        });
-      if (!fits) continue;
+      auto nodes = list.item;
+      std::sort(nodes.begin(), nodes.end());
+      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+      bool const whole = std::includes(patch.nodes.begin(), patch.nodes.end(), nodes.begin(), nodes.end());
+      bool const part = own && std::includes(nodes.begin(), nodes.end(), patch.nodes.begin(), patch.nodes.end());
+      if (!whole && !part) continue;
+      taken_ = group.name;
       std::fill(faces.claimed.begin() + group.begin, faces.claimed.begin() + group.end, char(1));
       patch.faces = std::move(list);
       patch.nodes.clear();
@@ -162,6 +173,7 @@ class BoundaryReader {
   UnstructuredMesh& mesh_;
   Problems& problems_;
   std::string where_;  ///< the boundary condition being read
+  std::string taken_;  ///< the section whose faces it got
 };
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/cgns_sections.hpp>
 #include <gridmorph/io/element_faces.hpp>
 #include <gridmorph/io/element_model.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace gridmorph {
@@ -24,6 +26,7 @@ class ModelReader {
 
   ElementModel read() {
     cgns::Node const tree = file_.tree();
+    types_.emplace(file_, tree);
     for (auto const* base : tree.all("CGNSBase_t"))
       for (auto const* zone : base->all("Zone_t")) read_zone(*zone);
     if (zones_ == 0) throw IoError(file_.path() + ": holds no Zone_t node; there is no model in it");
@@ -152,7 +155,7 @@ class ModelReader {
     auto const numbers = file_.integers(*list);
     std::vector<std::int32_t> nodes;
     for (std::size_t at = 0; at < numbers.size();) {
-      std::int64_t const type = head[0] == mixed ? numbers[at++] : head[0];
+      std::int64_t const type = (*types_)((*types_)(head[0]) == mixed ? numbers[at++] : head[0]);
       auto const* shape = cgns::element_shape(type);
       if (shape == nullptr)
         fail(section, "holds elements of type number " + std::to_string(type) +
@@ -176,6 +179,7 @@ class ModelReader {
   }
 
   cgns::File file_;
+  std::optional<cgns::ElementTypes> types_;
   std::string wanted_;
   ElementModel out_;
   Problems problems_;

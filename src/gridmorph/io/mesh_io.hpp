@@ -26,6 +26,9 @@ struct ReadOptions {
   bool coordinates = true;
   /// What a PLOT3D file is, for files that could be several things: "unformatted", "big-endian", "single", ... (docs/formats.md).
   std::string plot3d_format = {};
+  /// Bases and zones of a CGNS file that are no part of the mesh, by name ("Base", "Zone", "Base/Zone"; globs). Connections that lead
+  /// to them become patches of kind `connection`. write_morphed() and SeriesWriter leave them as they are.
+  std::vector<std::string> leave_out = {};
 };
 
 /// Reads a multi-block structured mesh. All problems of the mesh are reported in one error; what was skipped or assumed

@@ -23,16 +23,26 @@ void check_same_mesh(File const& file, Layout const& layout, Mesh const& mesh) {
   problems.throw_if_any<IoError>();
 }
 
-Layout zones_of(File const& file, Node const& tree) {
+namespace {
+
+std::vector<std::string> names_of(auto const& zones) {
+  std::vector<std::string> out;
+  for (auto const& zone : zones) out.push_back(zone.name);
+  return out;
+}
+
+}  // namespace
+
+Layout zones_of(File const& file, Node const& tree, Mesh const& mesh) {
   Problems problems;
-  auto layout = find_zones(file, tree, problems);
+  auto layout = find_zones(file, tree, problems, all_but(tree, names_of(mesh.zones)));
   problems.throw_if_any<IoError>();
   return layout;
 }
 
-Layout unstructured_zones_of(File const& file, Node const& tree) {
+Layout unstructured_zones_of(File const& file, Node const& tree, UnstructuredMesh const& mesh) {
   Problems problems;
-  auto layout = find_unstructured_zones(file, tree, problems);
+  auto layout = find_unstructured_zones(file, tree, problems, all_but(tree, names_of(mesh.zones)));
   problems.throw_if_any<IoError>();
   return layout;
 }

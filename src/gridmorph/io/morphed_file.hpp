@@ -5,6 +5,7 @@
 #include <gridmorph/io/cgns_layout.hpp>
 #include <gridmorph/io/extrude.hpp>
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <vector>
 
@@ -13,10 +14,10 @@ namespace gridmorph::cgns {
 /// Throws IoError unless the file holds the mesh it is said to hold; also for coordinates that live in another file.
 void check_same_mesh(File const& file, Layout const& layout, Mesh const& mesh);
 
-/// find_zones, with its problems thrown as IoError.
-Layout zones_of(File const& file, Node const& tree);
+/// find_zones for the zones of the mesh, with its problems thrown as IoError; what the mesh left out is passed over.
+Layout zones_of(File const& file, Node const& tree, Mesh const& mesh);
 /// find_unstructured_zones, likewise.
-Layout unstructured_zones_of(File const& file, Node const& tree);
+Layout unstructured_zones_of(File const& file, Node const& tree, UnstructuredMesh const& mesh);
 
 /// Calls put(values) with those of a zone's node values that the file has: all of them, or plane 0 of a 2-D zone.
 template <class Put>

@@ -44,12 +44,16 @@ void read_coordinates(cgns::File const& file, cgns::Layout const& layout, Mesh& 
 }  // namespace
 
 Mesh read_mesh(std::string const& path, ReadOptions const& options) {
-  if (!cgns::is_cgns(path)) return plot3d::read(path, options);
+  if (!cgns::is_cgns(path)) {
+    if (!options.leave_out.empty())
+      throw IoError(path + ": leave_out is for CGNS files, which name bases and zones; remove it for a PLOT3D mesh");
+    return plot3d::read(path, options);
+  }
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
 
   Problems unreadable;
-  auto layout = find_zones(file, tree, unreadable);
+  auto layout = find_zones(file, tree, unreadable, options.leave_out);
   unreadable.throw_if_any<IoError>();
 
   Mesh mesh;

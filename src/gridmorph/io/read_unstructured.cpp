@@ -33,20 +33,21 @@ void check_finite(UnstructuredMesh const& mesh, Coordinates const& coordinates, 
 
 namespace {
 
-UnstructuredMesh read_cgns(std::string const& path) {
+UnstructuredMesh read_cgns(std::string const& path, std::vector<std::string> const& leave_out) {
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
   Problems unreadable;
-  auto layout = find_unstructured_zones(file, tree, unreadable);
+  auto layout = find_unstructured_zones(file, tree, unreadable, leave_out);
   for (auto const& zone : layout.zones)
     if (zone_type(file, *zone.node) != "Unstructured")
       unreadable.add(path + ": zone '" + zone.name + "' is not unstructured");
   unreadable.throw_if_any<IoError>();
 
+  cgns::ElementTypes const types(file, tree);
   std::vector<std::vector<cgns::Section>> sections;
   int dimension = 0;
   for (auto const& zone : layout.zones) {
-    sections.push_back(read_sections(file, zone, unreadable));
+    sections.push_back(read_sections(file, types, zone, unreadable));
     dimension = std::max(dimension, cgns::dimension_of(sections.back()));
   }
   if (dimension < 2 && unreadable.empty())
@@ -98,24 +99,31 @@ bool is_cgns(std::string const& path) {
 
 }  // namespace
 
-MeshKind mesh_kind(std::string const& path) {
+MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leave_out) {
   if (su2::is_su2(path)) return MeshKind::unstructured;
   if (!is_cgns(path)) return MeshKind::structured;
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
   std::string structured, unstructured;
   for (auto const* base : tree.all("CGNSBase_t"))
-    for (auto const* zone : base->all("Zone_t"))
+    for (auto const* zone : base->all("Zone_t")) {
+      if (cgns::is_left_out(leave_out, base->name, zone->name)) continue;
       (zone_type(file, *zone) == "Unstructured" ? unstructured : structured) += " '" + zone->name + "'";
+    }
   if (!structured.empty() && !unstructured.empty())
-    throw IoError(path + ": mixes structured zones (" + structured.substr(1, 200) + ") with unstructured ones (" +
-                  unstructured.substr(1, 200) +
-                  "); such hybrid files cannot be handled, write the two kinds into files of their own");
+    throw IoError(
+        path + ": mixes structured zones (" + structured.substr(1, 200) + ") with unstructured ones (" +
+        unstructured.substr(1, 200) +
+        "); such hybrid files cannot be handled, write the two kinds into files of their own, or name the zones "
+        "or the base of one kind in leave_out");
   return unstructured.empty() ? MeshKind::structured : MeshKind::unstructured;
 }
 
-UnstructuredMesh read_unstructured_mesh(std::string const& path) {
-  return su2::is_su2(path) ? su2::read(path) : read_cgns(path);
+UnstructuredMesh read_unstructured_mesh(std::string const& path, ReadOptions const& options) {
+  if (!su2::is_su2(path)) return read_cgns(path, options.leave_out);
+  if (!options.leave_out.empty())
+    throw IoError(path + ": leave_out is for CGNS files, which name bases and zones; remove it for an SU2 mesh");
+  return su2::read(path);
 }
 
 }  // namespace gridmorph

@@ -117,13 +117,21 @@ class Parser {
     if (key == "NZONE") return;
     if (key == "IZONE") {
       auto const n = count(value, key);
-      if (zones_.empty() || zones_.back().dimension != 0) zones_.emplace_back();
+      // What comes before the first IZONE= (NDIME= among it) holds for all zones.
+      bool const begun = !zones_.empty() && (zones_.back().numbered || zones_.back().has_elements ||
+                                             zones_.back().has_points || !zones_.back().markers.empty());
+      if (zones_.empty() || begun) zones_.emplace_back();
+      zones_.back().numbered = true;
+      if (zones_.back().dimension == 0) zones_.back().dimension = dimension_of_all_;
       zones_.back().name = "zone " + std::to_string(n);
       zones_.back().line = line_number_;
     } else if (key == "NDIME") {
       auto const n = count(value, key);
       if (n != 2 && n != 3) wrong("NDIME= " + std::to_string(n) + "; a mesh has 2 or 3 dimensions");
-      zone().dimension = int(n);
+      auto& z = zone();
+      if (z.has_elements || z.has_points) wrong("NDIME= comes after NELEM= or NPOIN=; put it first");
+      z.dimension = int(n);
+      if (!z.numbered) dimension_of_all_ = int(n);
     } else if (key == "NELEM") {
       elements(count(value, key));
     } else if (key == "NPOIN") {
@@ -255,7 +263,8 @@ class Parser {
   std::string_view line_, rest_;
   std::size_t at_ = 0;
   Index line_number_ = 0;
-  bool skipping_ = false;  ///< lines of a keyword that is not known
+  bool skipping_ = false;     ///< lines of a keyword that is not known
+  int dimension_of_all_ = 0;  ///< NDIME before the first IZONE
 };
 
 }  // namespace

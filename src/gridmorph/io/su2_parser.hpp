@@ -32,6 +32,7 @@ struct ZoneText {
   Index line = 0;
   int dimension = 0;
   bool has_elements = false, has_points = false;
+  bool numbered = false;  ///< has an IZONE
   std::vector<int> vtk;
   std::vector<Index> start{0};
   std::vector<std::int64_t> nodes;

@@ -13,11 +13,13 @@ enum class MeshKind { structured, unstructured };
 
 /// What a file holds, from its first bytes and its zone types. Files that are neither CGNS nor SU2 count as structured, so
 /// that read_mesh() says what it makes of them. Throws IoError for a file that mixes structured and unstructured zones.
-MeshKind mesh_kind(std::string const& path);
+/// `leave_out`: as in ReadOptions.
+MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leave_out = {});
 
 /// Reads an unstructured mesh. All problems of the mesh are reported in one error; what was skipped or assumed is in
 /// UnstructuredMesh::notes. Elements are taken as they are numbered, inside out or not.
-UnstructuredMesh read_unstructured_mesh(std::string const& path);
+/// ReadOptions::leave_out counts for CGNS files; the other options do not.
+UnstructuredMesh read_unstructured_mesh(std::string const& path, ReadOptions const& options = {});
 
 /// Writes a mesh as a new CGNS file: zones, elements, coordinates, families, boundary conditions (faces as sections of their
 /// own), connections as Abutting1to1 point lists with Periodic_t; in the order of the file that the mesh came from. Polyhedra are

@@ -64,7 +64,7 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   {
     cgns::File const file(input, cgns::File::Mode::read);
     auto const tree = file.tree();
-    cgns::check_same_mesh(file, cgns::zones_of(file, tree), mesh);
+    cgns::check_same_mesh(file, cgns::zones_of(file, tree, mesh), mesh);
   }
 
   io::OutputFile target(output);
@@ -73,7 +73,7 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree();
-    auto const layout = cgns::zones_of(file, tree);
+    auto const layout = cgns::zones_of(file, tree, mesh);
     std::vector<double> plane;
     Index first_cell = 0;
     for (std::size_t z = 0; z < mesh.zones.size(); ++z) {

@@ -64,7 +64,7 @@ struct SeriesWriter::Impl {
     target.reserve(bytes_needed());
     file.emplace(target.path(), cgns::File::Mode::modify);
     tree = file->tree();
-    layout = cgns::zones_of(*file, tree);
+    layout = cgns::zones_of(*file, tree, mesh);
     add_iterative_data(times);
   }
 
@@ -138,7 +138,7 @@ SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, 
   {
     cgns::File const file(input, cgns::File::Mode::read);
     auto const tree = file.tree();
-    auto const layout = cgns::zones_of(file, tree);
+    auto const layout = cgns::zones_of(file, tree, mesh);
     cgns::check_same_mesh(file, layout, mesh);
     refuse_series(file, layout, times.size());
   }

@@ -272,7 +272,7 @@ void write_mesh(std::string const& path, UnstructuredMesh const& mesh, Coordinat
   if (!fields.empty()) {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree();
-    write_fields(file, cgns::unstructured_zones_of(file, tree), mesh, morphed, fields);
+    write_fields(file, cgns::unstructured_zones_of(file, tree, mesh), mesh, morphed, fields);
     file.close();
   }
   target.commit();

@@ -37,7 +37,7 @@ void write_cgns(std::string const& input, std::string const& output, Unstructure
   {
     cgns::File const file(input, cgns::File::Mode::read);
     auto const tree = file.tree();
-    check_same_mesh(file, cgns::unstructured_zones_of(file, tree), mesh);
+    check_same_mesh(file, cgns::unstructured_zones_of(file, tree, mesh), mesh);
   }
   io::OutputFile target(output);
   target.copy_from(input);
@@ -45,7 +45,7 @@ void write_cgns(std::string const& input, std::string const& output, Unstructure
   {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree();
-    auto const layout = cgns::unstructured_zones_of(file, tree);
+    auto const layout = cgns::unstructured_zones_of(file, tree, mesh);
     Coordinates const ordered = in_file_order(mesh, morphed);
     auto const arrays = io::components(ordered);
     for (std::size_t z = 0; z < mesh.zones.size(); ++z)
