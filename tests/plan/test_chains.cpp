@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace gridmorph::test {
 namespace {
@@ -76,6 +77,92 @@ TEST(Priority, TheChainWithTheWorstCellsComesFirst) {
   }
 }
 
+/// Three blocks, the one along +x skewed; its chains end on a far field, those of the others at walls.
+Mesh skewed_branch() {
+  Bricks b;
+  b.name = "L";
+  b.extent = {8, 7, 5};
+  b.zones = {{{0, 0, 0}, {4, 4, 5}}, {{3, 0, 0}, {8, 4, 5}}, {{0, 3, 0}, {4, 7, 5}}};
+  b.position = [](Vec3 const& q) { return Vec3{2 * q.x, 1.1 * q.y, q.z + (q.x > 0.5 ? 0.8 * (q.x - 0.5) : 0)}; };
+  b.kind = {wall, far, far, wall, far, far};
+  return make(b);
+}
+
+TEST(Priority, WhatTheUserPutsFirstRanksAllChains) {
+  Mesh mesh = skewed_branch();
+  Motion const all = motion({rule({"*"}, FixedRule{})});
+  auto const first = [&](std::vector<PriorityRule> priority) {
+    PlanOptions options;
+    options.volume.priority = std::move(priority);
+    return first_description(prepare(mesh, all, options).plan());
+  };
+  PriorityRule const boundary{PriorityRule::Kind::boundary, {"wall"}}, quality{PriorityRule::Kind::quality, {}},
+      aspect_ratio{PriorityRule::Kind::aspect_ratio, {}};
+  for (auto const& priority : {std::vector{boundary}, {boundary, quality}}) {
+    std::string const text = first(priority);
+    EXPECT_NE(text.find("'L3'"), std::string::npos) << text;
+    EXPECT_NE(text.find("wall to wall"), std::string::npos) << text;
+  }
+  for (auto const& priority : {std::vector{quality}, {quality, boundary}, {quality, aspect_ratio}}) {
+    std::string const text = first(priority);
+    EXPECT_NE(text.find("'L2'"), std::string::npos) << "the worst cells first: " << text;
+    EXPECT_EQ(text.find("wall to wall"), std::string::npos) << text;
+  }
+  for (auto const& priority : {std::vector{aspect_ratio}, {aspect_ratio, boundary}})
+    EXPECT_EQ(first(priority).find("wall to wall"), std::string::npos)
+        << "the shortest way: " << first(priority);
+}
+
+/// A box without any type in its file, of n cells along each direction, whose cells are clustered at both ends in w.
+Mesh nameless_box(Index3 const& n, bool clustered) {
+  Bricks b;
+  b.name = "box";
+  b.extent = {n[0] + 1, n[1] + 1, n[2] + 1};
+  b.position = [clustered](Vec3 const& q) {
+    double const w = clustered ? 0.5 * (1 + std::tanh(2.5 * (2 * q.z - 1)) / std::tanh(2.5)) : q.z;
+    return Vec3{2 * q.x, q.y, 1.2 * w};
+  };
+  b.kind.fill(PatchKind::other);
+  return make(b);
+}
+
+TEST(Priority, APatchWithoutATypeIsAWallWhereARuleMovesIt) {
+  Mesh mesh = nameless_box({8, 6, 4}, false);
+  auto const first = [&](std::vector<std::string> moving, std::vector<std::string> fixed) {
+    return first_description(
+        prepare(mesh,
+                motion({rule(std::move(moving), function_rule(waves(0.01))), rule(std::move(fixed), FixedRule{})}), {})
+            .plan());
+  };
+  std::string const u = first({"u_*"}, {"v_*", "w_*"}), w = first({"w_*"}, {"u_*", "v_*"});
+  EXPECT_EQ(u.find("zone 'box1' [1:9, 1:7, 1:5]: wall to wall, aspect ratio 1.82"), 0u) << u;
+  EXPECT_EQ(w.find("zone 'box1' [1:9, 1:7, 1:5]: wall to wall, aspect ratio 0.8"), 0u) << w;
+
+  PlanOptions options;
+  options.boundary_layers = {{{}, BoundaryLayer::Extent::layers, 1, 0, BoundaryLayer::Mode::translate}};
+  Plan const plan = prepare(mesh, motion({rule({"v_min"}, function_rule(waves(0.01)))}), options).plan();
+  EXPECT_EQ(plan.stages.at(0).name, "near field");
+  EXPECT_EQ(plan.near_field.size(), 1u) << "walls of a boundary layer that names none";
+}
+
+TEST(Priority, APatchWithoutATypeIsAWallWhereItsCellsSaySo) {
+  Motion const fixed = motion({rule({"*"}, FixedRule{})});
+  Mesh even = nameless_box({8, 6, 16}, false), clustered = nameless_box({8, 6, 16}, true);
+  EXPECT_NE(first_description(prepare(even, fixed, {}).plan()).find("other to other"), std::string::npos);
+  std::string const across = first_description(prepare(clustered, fixed, {}).plan());
+  EXPECT_NE(across.find("wall to wall, aspect ratio 0.8"), std::string::npos) << across;
+  for (Patch& p : clustered.patches) p.kind = inflow;
+  EXPECT_NE(first_description(prepare(clustered, fixed, {}).plan()).find("inflow to inflow"), std::string::npos)
+      << "what the file says holds";
+
+  Mesh const plain = nameless_box({8, 6, 16}, true);
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    Mesh cut = scramble(plain, {seed, 3}).mesh;
+    Plan const plan = prepare(cut, fixed, {}).plan();
+    EXPECT_EQ(plan.stages.at(0).lines.chains.at(0).n_s, 17) << "cuts hide no clustering; seed " << seed;
+  }
+}
+
 TEST(Chains, RunThroughBlocksFromKnownFaceToKnownFace) {
   Mesh mesh = bricks_with_t_junctions(1);
   Plan const plan =
@@ -129,9 +216,10 @@ TEST(Plan, DependsOnWhichFacesMoveNotOnHowFar) {
 TEST(Plan, OrderOfStagesDoesNotDependOnNumbering) {
   for (Mesh const& plain : {bricks_with_t_junctions(1), around_a_box(1), l_shape(1), c_grid(1)}) {
     Motion const m = motion({rule({"*"}, FixedRule{})});
+    PlanOptions options;
     auto const shape = [&](Mesh mesh) {
       std::vector<std::vector<std::array<int, 3>>> stages;
-      Plan const plan = prepare(mesh, m, {}).plan();
+      Plan const plan = prepare(mesh, m, options).plan();
       for (Stage const& stage : plan.stages) {
         stages.emplace_back();
         for (auto const& c : stage.lines.chains)
@@ -140,8 +228,11 @@ TEST(Plan, OrderOfStagesDoesNotDependOnNumbering) {
       }
       return stages;
     };
-    for (unsigned seed = 1; seed <= 6; ++seed)
-      EXPECT_EQ(shape(plain), shape(scramble(plain, {seed, 3}).mesh)) << plain.source << ", seed " << seed;
+    for (auto const leads : {PriorityRule::Kind::boundary, PriorityRule::Kind::quality}) {
+      if (leads == PriorityRule::Kind::quality) options.volume.priority = {{leads, {}}};
+      for (unsigned seed = 1; seed <= 6; ++seed)
+        EXPECT_EQ(shape(plain), shape(scramble(plain, {seed, 3}).mesh)) << plain.source << ", seed " << seed;
+    }
   }
 }
 

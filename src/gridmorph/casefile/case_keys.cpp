@@ -197,7 +197,7 @@ plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "Across the plane, of any l
     {"boundary_layer extent", "layers", "whole number > 0", "cells", "none", "extent = { layers = 30 }", "Reach in cells; this or `thickness`"},
     {"boundary_layer extent", "thickness", "number > 0", "length", "none", "extent = { thickness = 2e-3 }", "Reach as a distance; this or `layers`"},
 
-    {"near_field", "walls", "string or list", "", "walls with an explicit rule other than `fixed`", R"(walls = ["ball", "rope"])",
+    {"near_field", "walls", "string or list", "", "walls that a rule displaces", R"(walls = ["ball", "rope"])",
      "The walls whose displacement the near field carries"},
     {"near_field", "offset", "number > 0", "length", "from the boundary layer, the wall's edges, the motion and the size of the walls", "offset = 0.02",
      "Everything nearer to the moving walls than this is wrapped and follows them element layer by element layer"},

@@ -174,6 +174,13 @@ std::optional<SlipSurface> SurfaceMotion::slip_surface(int patch) const {
   return impl_->surfaces.surfaces[s];
 }
 
+int SurfaceMotion::slip_surface_number(int patch) const { return impl_->surfaces.of_patch[patch]; }
+
+bool SurfaceMotion::slides_upstream(int rule, Vec3 const& point) const {
+  RowMotion const* row = impl_->row_of_rule[rule];
+  return row != nullptr && row->is_upstream(point);
+}
+
 std::vector<TargetReach> SurfaceMotion::target_reach(Mesh const& mesh, Coordinates const& morphed) const {
   std::vector<TargetReach> out;
   for (auto const& [rule, target] : impl_->targets) out.push_back(target.reach(mesh, morphed));

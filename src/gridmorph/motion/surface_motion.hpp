@@ -33,6 +33,12 @@ class SurfaceMotion {
   /// The surface a slip (or constrained free) rule keeps the nodes of patch p on; nothing for other rules.
   [[nodiscard]] std::optional<SlipSurface> slip_surface(int patch) const;
 
+  /// The number of that surface, the same for patches that share it; -1 for other rules.
+  [[nodiscard]] int slip_surface_number(int patch) const;
+
+  /// Whether a point lies upstream of the middle of the blade that circumferential-slide rule number r names.
+  [[nodiscard]] bool slides_upstream(int rule, Vec3 const& point) const;
+
   /// How far the nodes of each target rule ended from their target, measured on the morphed mesh; rules in order.
   [[nodiscard]] std::vector<TargetReach> target_reach(Mesh const& mesh, Coordinates const& morphed) const;
 

@@ -14,6 +14,7 @@ struct PlanContext {
   Skeleton const& skeleton;
   RotationTable& rotations;
   std::vector<int> const& box_of_piece;  ///< in Plan::boxes, -1 for pieces without inner nodes
+  std::vector<PatchKind> const& kinds;   ///< what patches rank as, see ranked_kinds()
 };
 
 /// A box of zone nodes and where it lies on a chain.

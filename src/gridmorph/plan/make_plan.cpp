@@ -4,6 +4,7 @@
 #include <gridmorph/plan/near_field.hpp>
 #include <gridmorph/plan/poles.hpp>
 #include <gridmorph/plan/priority.hpp>
+#include <gridmorph/plan/ranked_kinds.hpp>
 #include <gridmorph/plan/spread_plan.hpp>
 #include <gridmorph/plan/stage_builder.hpp>
 
@@ -16,8 +17,8 @@ namespace gridmorph {
 namespace {
 
 /// Patches that must not share a block face: other rules, other kinds, other near fields.
-MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::vector<NearField> const& fields,
-                         std::vector<CutPlane> planes) {
+MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::vector<PatchKind> const& kinds,
+                         std::vector<NearField> const& fields, std::vector<CutPlane> planes) {
   MergeLimits limits;
   std::map<std::tuple<int, int, int>, int> labels;
   for (int p = 0; p < int(mesh.patches.size()); ++p) {
@@ -25,7 +26,7 @@ MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::ve
     for (std::size_t f = 0; f < fields.size(); ++f)
       if (std::count(fields[f].walls.begin(), fields[f].walls.end(), p) > 0) field = int(f);
     limits.patch_label.push_back(
-        labels.try_emplace({motion.patch[p].rule, int(mesh.patches[p].kind), field}, int(labels.size())).first->second);
+        labels.try_emplace({motion.patch[p].rule, int(kinds[p]), field}, int(labels.size())).first->second);
   }
   for (Resolution const& r : motion.interface) limits.interface_label.push_back(1 + r.rule);
   limits.kept_planes = std::move(planes);
@@ -123,12 +124,15 @@ class Scheduler {
         chains = collect(open);
       }
       if (chains.empty()) throw PlanError(unreachable());
+      // A measure that comes first ranks all chains; one that breaks ties is found where there are some.
+      bool const ranked = priority_.quality_leads();
+      if (ranked) priority_.add_quality(chains);
       priority_.sort(chains);
       chains.erase(std::find_if(chains.begin(), chains.end(),
                                 [&](RankedChain const& c) { return !priority_.same_rank(c, chains.front()); }),
                    chains.end());
       // Chains that do not get in each other's way need no order among them.
-      if (!independent(chains)) {
+      if (!ranked && !independent(chains)) {
         priority_.add_quality(chains);
         priority_.sort(chains);
       }
@@ -240,12 +244,13 @@ Index LineTables::n_lines() const {
 
 PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion const& motion, SurfaceMotion const& surface,
                        PlanOptions const& options) {
-  std::vector<NearField> const fields = near_fields(mesh, links, motion, surface, options.boundary_layers);
-  MergeLimits const limits = merge_limits(mesh, motion, fields, near_field_limits(mesh, links, fields));
-  Topology const topology = build_topology(mesh, links, limits);
-
   PlannedMorph planned;
   Plan& plan = planned.plan;
+  std::vector<PatchKind> const kinds = ranked_kinds(mesh, links, motion, surface, options.boundary_layers, plan.notes);
+  std::vector<NearField> const fields = near_fields(mesh, links, motion, surface, kinds, options.boundary_layers);
+  MergeLimits const limits = merge_limits(mesh, motion, kinds, fields, near_field_limits(mesh, links, fields));
+  Topology const topology = build_topology(mesh, links, limits);
+
   plan.n_nodes = mesh.n_nodes();
   plan.mesh_size = links.mesh_size;
   plan.notes.push_back(std::to_string(mesh.zones.size()) + " zones, " +
@@ -256,7 +261,7 @@ PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion cons
   plan.n_slots = skeleton.size();
   RotationTable rotations(plan.rotations);
   std::vector<int> const box_of_piece = inner_boxes(mesh, topology.lattice, plan.boxes);
-  PlanContext const context{mesh, topology, skeleton, rotations, box_of_piece};
+  PlanContext const context{mesh, topology, skeleton, rotations, box_of_piece, kinds};
 
   Known known(topology.lattice.n_classes());
   Scheduler scheduler(context, options, plan, known);

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/plan/line_walk.hpp>
 #include <gridmorph/plan/near_field.hpp>
 
 #include <algorithm>
@@ -8,38 +9,12 @@
 namespace gridmorph {
 namespace {
 
-int normal_axis(IndexRange const& r) {
-  for (int a = 0; a < 3; ++a)
-    if (r.extent(a) == 1) return a;
-  return 0;
-}
-
 /// Cells from a wall node along its grid line until the arc length reaches `thickness`; runs through interfaces.
-int layers_to(Mesh const& mesh, Links const& links, int zone, Index3 at, int axis, int step, double thickness) {
+int layers_to(Mesh const& mesh, Links const& links, LinePlace place, double thickness) {
   double length = 0;
   int layers = 0;
   Index const limit = mesh.n_nodes();
-  while (length < thickness && layers < limit) {
-    int const next = at[axis] + step;
-    if (next >= 0 && next < mesh.zones[zone].extent[axis]) {
-      Vec3 const here = mesh.coordinates[mesh.zones[zone].node(at)];
-      at[axis] = next;
-      length += distance(here, mesh.coordinates[mesh.zones[zone].node(at)]);
-      ++layers;
-      continue;
-    }
-    int through = -1;
-    for (int l : links.of_zone[zone]) {
-      Link const& link = links.all[l];
-      if (link.range.extent(axis) == 1 && link.range.contains(at)) through = l;
-    }
-    if (through < 0) break;
-    Link const& link = links.all[through];
-    zone = link.donor_zone;
-    at = link.to_donor(at);
-    step *= link.to_donor.orientation.sign[axis];
-    axis = link.to_donor.orientation.axis[axis];
-  }
+  while (length < thickness && layers < limit && advance(mesh, links, place, length)) ++layers;
   return layers;
 }
 
@@ -52,7 +27,7 @@ int median_layers(Mesh const& mesh, Links const& links, std::vector<int> const& 
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i)
-          counts.push_back(layers_to(mesh, links, patch.zone, {i, j, k}, axis, step, thickness));
+          counts.push_back(layers_to(mesh, links, {patch.zone, {i, j, k}, axis, step}, thickness));
   }
   std::nth_element(counts.begin(), counts.begin() + counts.size() / 2, counts.end());
   return std::max(1, counts[counts.size() / 2]);
@@ -61,7 +36,8 @@ int median_layers(Mesh const& mesh, Links const& links, std::vector<int> const& 
 }  // namespace
 
 std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                   SurfaceMotion const& surface, std::vector<BoundaryLayer> const& options) {
+                                   SurfaceMotion const& surface, std::vector<PatchKind> const& kinds,
+                                   std::vector<BoundaryLayer> const& options) {
   std::vector<NearField> fields;
   for (BoundaryLayer const& option : options) {
     if (option.mode != BoundaryLayer::Mode::translate && option.mode != BoundaryLayer::Mode::standard)
@@ -72,7 +48,7 @@ std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, Resolve
     if (option.walls.empty()) {
       for (int p = 0; p < int(mesh.patches.size()); ++p) {
         int const rule = motion.patch[p].rule;
-        if (mesh.patches[p].kind == PatchKind::wall && rule >= 0 && surface.is_explicit(rule) &&
+        if (kinds[p] == PatchKind::wall && rule >= 0 && surface.is_explicit(rule) &&
             !std::holds_alternative<FixedRule>(motion.rules[rule].rule))
           field.walls.push_back(p);
       }

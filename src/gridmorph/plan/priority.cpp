@@ -105,6 +105,17 @@ RankedChain Priority::rank(Chain chain) const {
   return ranked;
 }
 
+bool Priority::quality_leads() const {
+  return !options_.priority.empty() && options_.priority.front().kind == PriorityRule::Kind::quality;
+}
+
+bool Priority::same_rank(RankedChain const& a, RankedChain const& b) const {
+  if (quality_leads()) return a.quality == b.quality;
+  if (!options_.priority.empty() && options_.priority.front().kind == PriorityRule::Kind::aspect_ratio)
+    return a.aspect_ratio == b.aspect_ratio;
+  return a.boundary == b.boundary;
+}
+
 void Priority::sort(std::vector<RankedChain>& chains) const {
   std::stable_sort(chains.begin(), chains.end(), [&](RankedChain const& a, RankedChain const& b) {
     for (PriorityRule const& rule : options_.priority) switch (rule.kind) {

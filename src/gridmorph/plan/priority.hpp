@@ -28,14 +28,16 @@ class Priority {
  public:
   Priority(Mesh const& mesh, Topology const& topology, VolumeOptions const& options, double mesh_size);
 
-  /// Boundary rank and geometry; the quality only once it has to break a tie.
+  /// Boundary rank and geometry; the quality is added where it comes first or has to break a tie.
   [[nodiscard]] RankedChain rank(Chain chain) const;
   void add_quality(std::span<RankedChain> chains);
   void add_quality(RankedChain& chain) { add_quality(std::span(&chain, 1)); }
   /// Best first, by the rule groups in the user's order, then by place.
   void sort(std::vector<RankedChain>& chains) const;
-  /// Equal in the boundary group (chains of one stage).
-  [[nodiscard]] bool same_rank(RankedChain const& a, RankedChain const& b) const { return a.boundary == b.boundary; }
+  /// Equal in the first group (chains of one stage).
+  [[nodiscard]] bool same_rank(RankedChain const& a, RankedChain const& b) const;
+  /// Whether the quality is what chains are ranked by first: then all of them need it.
+  [[nodiscard]] bool quality_leads() const;
   [[nodiscard]] std::string reason(RankedChain const& chain) const;
   [[nodiscard]] std::vector<std::string> const& kind_order() const { return kind_order_; }
 

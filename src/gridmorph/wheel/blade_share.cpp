@@ -74,7 +74,7 @@ class Row {
     if (!out.empty()) return {out.begin(), out.end()};
     for (int p = 0; p < int(mesh_.patches.size()); ++p) {
       Rule const& rule = motion_.patch_rule(p);
-      if (mesh_.patches[p].kind == PatchKind::wall &&
+      if ((mesh_.patches[p].kind == PatchKind::wall || mesh_.patches[p].kind == PatchKind::other) &&
           (std::holds_alternative<RigidRule>(rule) || std::holds_alternative<FunctionRule>(rule)))
         add(p);
     }

@@ -206,6 +206,10 @@ CylindricalMotion RowMotion::follow_motion(FlowPosition const& at) const {
   return sections_.motion(at.h, (at.m - leading) / (trailing - leading));
 }
 
+bool RowMotion::is_upstream(Vec3 const& point) const {
+  return annulus_.position(frame_.meridional(point)).m < middle_;
+}
+
 Vec3 RowMotion::slide(Vec3 const& point) const {
   FlowPosition const at = annulus_.position(frame_.meridional(point));
   CylindricalMotion const edge = sections_.motion(at.h, at.m < middle_ ? 0 : 1);

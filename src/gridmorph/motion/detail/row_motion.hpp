@@ -33,6 +33,8 @@ class RowMotion {
 
   /// Inlet and exit: turned by the angle of the leading edge (upstream of mid-chord) or trailing edge at this span.
   [[nodiscard]] Vec3 slide(Vec3 const& point) const;
+  /// Before mid-chord, along the flow.
+  [[nodiscard]] bool is_upstream(Vec3 const& point) const;
   /// Periodics: mid-camber motion between the edges, linear taper along the flow path to the ends of the row. Between
   /// known end walls the span fraction is kept as far as the blade keeps its own; where the blade leaves the walls, so do
   /// nodes on the walls, and finalize puts both back alike.
