@@ -109,8 +109,7 @@ TEST(Priority, WhatTheUserPutsFirstRanksAllChains) {
     EXPECT_EQ(text.find("wall to wall"), std::string::npos) << text;
   }
   for (auto const& priority : {std::vector{aspect_ratio}, {aspect_ratio, boundary}})
-    EXPECT_EQ(first(priority).find("wall to wall"), std::string::npos)
-        << "the shortest way: " << first(priority);
+    EXPECT_EQ(first(priority).find("wall to wall"), std::string::npos) << "the shortest way: " << first(priority);
 }
 
 /// A box without any type in its file, of n cells along each direction, whose cells are clustered at both ends in w.

@@ -77,6 +77,62 @@ TEST(UnstructuredMorph, NodesThatSlipStayOnTheirPlane) {
   EXPECT_EQ(c.inverted(m.x), 0);
 }
 
+TEST(UnstructuredMorph, ProfilesThatDifferInTheMiddleOnlyAreTwoSurfaces) {
+  // Half an annulus along x; two parts of its case slip, on profiles with the same ends.
+  auto const radius = [](double x, bool bulged) {
+    return 2 + (bulged ? 0.3 * std::pow(std::sin(std::clamp(x, 0.0, std::numbers::pi)), 2) : 0.0);
+  };
+  auto const profile = [&](bool bulged) {
+    std::vector<std::pair<double, double>> points;
+    for (int k = 0; k <= 32; ++k)
+      points.emplace_back(k * std::numbers::pi / 32, radius(k * std::numbers::pi / 32, bulged));
+    return points;
+  };
+  UnstructuredMesh mesh = test::to_hexahedra(test::unit_box({16, 6, 12}));
+  auto const part_of_case = [](double k) { return k <= 4 ? 0 : k >= 8 ? 1 : 2; };
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const q = mesh.coordinates[n];
+    double const x = q.x * std::numbers::pi / 16, angle = q.z * std::numbers::pi / 12;
+    double const share = std::clamp((q.z - 4) / 4, 0.0, 1.0);
+    double const outer = (1 - share) * radius(x, false) + share * radius(x, true), r = 1 + (outer - 1) * q.y / 6;
+    mesh.coordinates.set(n, {x, r * std::cos(angle), r * std::sin(angle)});
+  }
+  UnstructuredPatch parts[3];
+  for (auto& patch : mesh.patches)
+    if (patch.name == "j_max")
+      for (Index f = 0; f < patch.faces.size(); ++f) {
+        double angle = 0;
+        for (Number const n : patch.faces[f])
+          angle += 0.25 * std::atan2(mesh.coordinates.z(n), mesh.coordinates.y(n)) * 12 / std::numbers::pi;
+        parts[part_of_case(angle)].faces.add(patch.faces[f]);
+      }
+  std::erase_if(mesh.patches, [](auto const& patch) { return patch.name == "j_max"; });
+  for (int p = 0; p < 3; ++p) {
+    parts[p].name = "part" + std::to_string(p);
+    parts[p].zone = 0;
+    mesh.patches.push_back(parts[p]);
+  }
+  Case const c(mesh);
+  Motion motion;
+  motion.rules.push_back({{"j_min"}, translation({0.15, 0, 0}), 0, "hub"});
+  for (bool const bulged : {false, true})
+    motion.rules.push_back({{bulged ? "part1" : "part0"},
+                            SlipRule{.surface = SlipRule::Surface::revolution, .profile = profile(bulged)},
+                            0,
+                            "case"});
+  motion.rules.push_back({{"part2", "i_min", "i_max", "k_min", "k_max"}, FreeRule{}, 0, "rest"});
+  Morphed const m = c.morph(motion);
+  EXPECT_EQ(m.prepared.plan.surfaces.size(), 2u);
+  double largest = 0;
+  for (bool const bulged : {false, true})
+    for (Number const n : c.nodes_of(bulged ? "part1" : "part0")) {
+      Vec3 const x = m.x[n];
+      largest = std::max(largest, distance(x, c.mesh.coordinates[n]));
+      EXPECT_NEAR(std::hypot(x.y, x.z), radius(x.x, bulged), 1e-5) << describe_node(c.mesh, n);
+    }
+  EXPECT_GT(largest, 0.01) << "nodes slide";
+}
+
 TEST(UnstructuredMorph, AroundARigidWallTheNearFieldIsTheSameRigidMotion) {
   Case const c(box_with_body(18));
   RigidTransform const r = rotation_about({9, 9, 9}, {0, 0, 1}, 0.3);

@@ -35,7 +35,8 @@ double largest_motion(CaseFile const& case_file, LoadedMesh const& loaded, Bound
 
 PreparedUnstructured plan_sequence(CaseFile const& case_file, LoadedMesh const& l, UnstructuredOptions options) {
   NodeGraph graph = make_node_graph(l.mesh, l.topology.elements_of_nodes);
-  auto boundary = boundary_conditions(l.mesh, l.topology, l.claims, graph, case_file.motion, options.walls);
+  auto boundary =
+      boundary_conditions(l.mesh, l.topology, l.claims, graph, case_file.motion, options.walls, Displacements::any);
   options.motion = largest_motion(case_file, l, boundary);
   return prepare(l.mesh, l.topology, l.claims, std::move(graph), std::move(boundary), options);
 }

@@ -49,14 +49,14 @@ class Finder {
          NodeGraph const& graph)
       : mesh_(mesh), topology_(topology), claims_(claims), graph_(graph) {}
 
-  BoundaryConditions run(Motion const& motion, std::vector<std::string> const& walls) {
+  BoundaryConditions run(Motion const& motion, std::vector<std::string> const& walls, Displacements displacements) {
     refuse_blade_rules(motion);
     out_.nodes_of_patch = nodes_of_patches(mesh_, topology_, claims_);
     out_.outline = boundary_outline(mesh_, out_.nodes_of_patch);
     out_.motion = resolve(out_.outline, with_periodic_patches(motion));
     out_.notes.insert(out_.notes.end(), out_.motion.notes.begin(), out_.motion.notes.end());
     make_surfaces();
-    find_driving_patches(walls);
+    find_driving_patches(walls, displacements);
     find_known();
     find_slip_nodes();
     find_images();
@@ -114,23 +114,14 @@ class Finder {
     out_.surface = std::make_shared<SurfaceMotion const>(out_.outline, by_position(out_.motion));
     out_.notes.insert(out_.notes.end(), out_.surface->notes().begin(), out_.surface->notes().end());
     surface_of_patch_.assign(mesh_.patches.size(), -1);
-    std::map<std::vector<double>, int> seen;
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
-      if (auto surface = out_.surface->slip_surface(int(p))) {
-        std::vector<double> const key{double(surface->kind),
-                                      surface->origin.x,
-                                      surface->origin.y,
-                                      surface->origin.z,
-                                      surface->direction.x,
-                                      surface->direction.y,
-                                      surface->direction.z,
-                                      surface->size,
-                                      double(surface->profile.knots.size()),
-                                      surface->profile.knots.empty() ? 0.0 : surface->profile.knots.front().radius};
-        auto const [at, fresh] = seen.try_emplace(key, int(out_.surfaces.size()));
-        if (fresh) out_.surfaces.push_back(std::move(*surface));
-        surface_of_patch_[p] = at->second;
-      }
+    std::map<int, int> seen;  // numbers of SurfaceMotion: nothing else tells surfaces apart for sure
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+      int const number = out_.surface->slip_surface_number(int(p));
+      if (number < 0) continue;
+      auto const [at, fresh] = seen.try_emplace(number, int(out_.surfaces.size()));
+      if (fresh) out_.surfaces.push_back(*out_.surface->slip_surface(int(p)));
+      surface_of_patch_[p] = at->second;
+    }
     for (std::size_t r = 0; r < out_.motion.rules.size(); ++r)
       if (slips_on_baseline(out_.motion.rules[r].rule)) baseline_surface(int(r));
   }
@@ -189,7 +180,46 @@ class Finder {
     out_.surfaces.push_back(std::move(surface));
   }
 
-  void find_driving_patches(std::vector<std::string> const& walls) {
+  /// Whether a rule could move a patch, whatever it gives now.
+  [[nodiscard]] bool could_move(int p) const {
+    int const r = out_.motion.patch[std::size_t(p)].rule;
+    return out_.surface->is_explicit(r) && !std::holds_alternative<FixedRule>(out_.motion.rules[std::size_t(r)].rule);
+  }
+
+  /// Whether a rule displaces any node of a patch now.
+  [[nodiscard]] bool moves_now(int p) const {
+    if (!could_move(p)) return false;
+    auto const& nodes = out_.nodes_of_patch[std::size_t(p)];
+    // Most that move do so at their first node.
+    for (std::size_t begin = 0, end = 1; begin < nodes.size(); begin = end, end = nodes.size()) {
+      std::vector<Vec3> points, u(end - begin);
+      for (std::size_t n = begin; n < end; ++n) points.push_back(mesh_.coordinates[nodes[n]]);
+      out_.surface->displacement(out_.motion.patch[std::size_t(p)].rule, points, u);
+      if (std::any_of(u.begin(), u.end(), [](Vec3 const& v) { return !(v == Vec3{}); })) return true;
+    }
+    return false;
+  }
+
+  void find_driving_patches(std::vector<std::string> const& walls, Displacements displacements) {
+    std::vector<std::uint8_t> moves;
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+      moves.push_back((displacements == Displacements::any ? could_move(int(p)) : moves_now(int(p))) ? 1 : 0);
+    if (std::find(moves.begin(), moves.end(), 1) == moves.end())
+      for (std::size_t p = 0; p < mesh_.patches.size(); ++p) moves[p] = could_move(int(p)) ? 1 : 0;
+    choose_driving_patches(walls, moves);
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+      if (moves[p] == 0 && is_wall(int(p)) && out_.surface->is_explicit(out_.motion.patch[p].rule) &&
+          !std::binary_search(out_.driving_patches.begin(), out_.driving_patches.end(), int(p)))
+        out_.standing_patches.push_back(int(p));
+  }
+
+  /// Patches of no kind are walls as far as anyone knows.
+  [[nodiscard]] bool is_wall(int p) const {
+    PatchKind const kind = mesh_.patches[std::size_t(p)].kind;
+    return kind == PatchKind::wall || kind == PatchKind::other;
+  }
+
+  void choose_driving_patches(std::vector<std::string> const& walls, std::vector<std::uint8_t> const& moves) {
     if (!walls.empty()) {
       for (int const p : select_patches(out_.outline, walls)) {
         if (!out_.surface->is_explicit(out_.motion.patch[std::size_t(p)].rule))
@@ -199,14 +229,8 @@ class Finder {
       }
       return;
     }
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
-      PatchKind const kind = mesh_.patches[p].kind;
-      int const r = out_.motion.patch[p].rule;
-      bool const wall = kind == PatchKind::wall || kind == PatchKind::other;
-      if (wall && out_.surface->is_explicit(r) &&
-          !std::holds_alternative<FixedRule>(out_.motion.rules[std::size_t(r)].rule))
-        out_.driving_patches.push_back(int(p));
-    }
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+      if (moves[p] != 0 && is_wall(int(p))) out_.driving_patches.push_back(int(p));
     if (out_.driving_patches.empty())
       throw MotionError(
           "no wall moves: every rule is fixed, slip or free, or names inflow, outflow, farfield and symmetry patches "
@@ -358,8 +382,8 @@ std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions con
 
 BoundaryConditions boundary_conditions(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryClaims const& claims, NodeGraph const& graph, Motion const& motion,
-                                       std::vector<std::string> const& walls) {
-  return Finder(mesh, topology, claims, graph).run(motion, walls);
+                                       std::vector<std::string> const& walls, Displacements displacements) {
+  return Finder(mesh, topology, claims, graph).run(motion, walls, displacements);
 }
 
 std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary) {

@@ -46,17 +46,25 @@ struct BoundaryConditions {
   std::vector<PeriodicImage> images;  ///< by node
   std::vector<Mat3> rotations;
 
-  std::vector<int> driving_patches;  ///< numbers of the patches that move walls, ascending
+  std::vector<int> driving_patches;   ///< numbers of the patches that move walls, ascending
+  std::vector<int> standing_patches;  ///< of walls, and patches of no kind, that their rule holds in place, ascending
   std::vector<std::string> notes;
 };
 
+/// What a plan reckons with.
+enum class Displacements {
+  of_the_rules,  ///< what the rules give now: a wall that they displace by zero stands, whichever rule says so
+  any            ///< others to come: every rule but `fixed` moves its walls
+};
+
 /// Resolves the rules and finds what each boundary node is. `walls`: selectors of the walls that drive the near field; empty:
-/// every patch with an explicit rule other than `fixed` that is no inflow, outflow, farfield or symmetry.
+/// every patch that moves and is no inflow, outflow, farfield or symmetry. Where no rule displaces anything now, all that could do.
 /// Throws MotionError for rules that need a structured blade surface (sections, circumferential-slide, follow), when no
 /// wall moves, and the errors of resolve() and SurfaceMotion.
 BoundaryConditions boundary_conditions(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryClaims const& claims, NodeGraph const& graph, Motion const& motion,
-                                       std::vector<std::string> const& walls);
+                                       std::vector<std::string> const& walls,
+                                       Displacements displacements = Displacements::of_the_rules);
 
 /// Displacement of every known node. Throws MotionError that lists every pair of patches whose displacements disagree on
 /// common nodes by more than the conformity tolerance.

@@ -84,6 +84,8 @@ void UnstructuredPlanner::measure_distances() {
     (which == 0 ? from_wall_ : from_other_) =
         nearest_source(mesh_.coordinates, out_.graph, which == 0 ? walls : others);
   });
+  // A wall that ends on another boundary has no gap to it.
+  for (Number const n : walls) gap_ = std::min(gap_, from_other_.distance[std::size_t(n)]);
 }
 
 double UnstructuredPlanner::largest_displacement() const {
@@ -101,7 +103,9 @@ PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology 
   detail::refuse_open_faces(claims);
   Stopwatch watch;
   NodeGraph graph = make_node_graph(mesh, topology.elements_of_nodes);
-  BoundaryConditions boundary = boundary_conditions(mesh, topology, claims, graph, motion, options.walls);
+  BoundaryConditions boundary =
+      boundary_conditions(mesh, topology, claims, graph, motion, options.walls,
+                          options.motion >= 0 ? Displacements::any : Displacements::of_the_rules);
   double const seconds = watch.lap();
   auto out = prepare(mesh, topology, claims, std::move(graph), std::move(boundary), options);
   out.report.seconds.boundary += seconds;

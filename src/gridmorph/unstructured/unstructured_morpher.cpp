@@ -40,6 +40,14 @@ struct UnstructuredMorpher<Exec>::State {
         other_slot(list(plan.other_slot, "other_slot")),
         other_surfaces(plan.other_surfaces, "gridmorph::other_surfaces"),
         surfaces(exec, plan.surfaces),
+        given(list(plan.start.given, "given")),
+        given_slot(list(plan.start.given_slot, "given_slot")),
+        given_residual(plan.start.residual),
+        given_missing("gridmorph::UnstructuredMorpher::given_missing", plan.start.given.size()),
+        given_detail(plan.start.detail),
+        start(list(plan.start.node, "start")),
+        start_fade(list(plan.start.fade, "start_fade")),
+        start_detail_fade(list(plan.start.detail_fade, "start_detail_fade")),
         image_owners(list(plan.image_owners, "image_owners")),
         images_of_owner(plan.images_of_owner, "gridmorph::images_of_owner"),
         rotations(list(plan.rotations, "rotations")),
@@ -135,9 +143,25 @@ struct UnstructuredMorpher<Exec>::State {
     gather(exec, far, read(background_u), u);
   }
 
+  /// Where nodes that slide or have images begin.
+  void start_others(Exec const& exec, Boundary const& boundary, kernels::Field<double const> const& x) const {
+    if (!given_residual.empty()) {
+      launch("gridmorph::start::given", exec, given.extent(0),
+             GivenMisses<Space>{given, given_slot, boundary, u, work, given_missing});
+      given_residual.run(exec, given_missing);
+      launch("gridmorph::start::missing", exec, given.extent(0),
+             SmoothMisses<Space>{given, given_residual.shape, given_residual.value, x, work, work});
+      given_detail.run(exec, work);
+    }
+    launch("gridmorph::start", exec, start.extent(0),
+           StartOthers<Space>{start, start_fade, start_detail_fade, given_residual.shape, given_residual.value, x, u,
+                              work});
+  }
+
   void others(Exec const& exec, Boundary const& boundary, kernels::Field<double const> const& x) const {
+    start_others(exec, boundary, x);
     launch("gridmorph::others", exec, other.extent(0),
-           AskOthers<Space>{other, other_slot, other_surfaces, surfaces.surfaces, boundary, x, u, work});
+           AskOthers<Space>{other, other_slot, other_surfaces, surfaces.surfaces, boundary, x, work});
     launch(
         "gridmorph::periodic", exec, image_owners.extent(0),
         PeriodicMean<Space>{image_owners, image_node, image_rotation, owner_known, images_of_owner, rotations, work});
@@ -169,6 +193,12 @@ struct UnstructuredMorpher<Exec>::State {
   View<Space, Number> other, other_slot;
   Lists<Space> other_surfaces;
   SlipSurfaceTable<Space> surfaces;
+  View<Space, Number> given, given_slot;
+  ScatterViews<Space, Vec3> given_residual;
+  View<Space, Vec3> given_missing;
+  LayerViews<Space> given_detail;
+  View<Space, Number> start;
+  View<Space, float> start_fade, start_detail_fade;
   View<Space, Number> image_owners, image_node;
   View<Space, std::int32_t> image_rotation;
   View<Space, std::uint8_t> owner_known;

@@ -52,10 +52,21 @@ struct UnstructuredPlan {
   GatherRows outer;  ///< `known` slots -> Plan::boundary_nodes of the background: what the outer box does
   GatherRows far;    ///< background nodes -> nodes outside the wrap
 
-  /// Boundary nodes beyond the moving walls: their residual (what is asked for minus the field so far) spreads over all nodes.
+  /// Boundary nodes beyond the moving walls: their residual (what is asked for minus the field so far) spreads over all nodes. After
+  /// them the nodes of columns on walls that stand, which ask for what their wall does.
   std::vector<Number> other;
   std::vector<Number> other_slot;  ///< in `known`, or -1
   NumberLists other_surfaces;      ///< slip surfaces, where not known
+  /// Nodes of `other` that slide or have images begin with the field so far and what the residual of those with a slot adds there:
+  /// beside a wall that stands they stand.
+  struct Start {
+    std::vector<Number> given;       ///< nodes with a slot, boundary nodes first
+    std::vector<Number> given_slot;  ///< in `known`
+    ScatterLattice residual;         ///< of the boundary nodes among them
+    LayerRows detail;                ///< what the lattice misses, out along the nodes that begin
+    std::vector<Number> node;        ///< those
+    std::vector<float> fade, detail_fade;
+  } start;
   std::vector<SlipSurface> surfaces;
   std::vector<PeriodicImage> images;  ///< their owners and they are in `other`
   std::vector<Number> image_owners;   ///< ascending; known ones have no mean

@@ -206,9 +206,7 @@ CylindricalMotion RowMotion::follow_motion(FlowPosition const& at) const {
   return sections_.motion(at.h, (at.m - leading) / (trailing - leading));
 }
 
-bool RowMotion::is_upstream(Vec3 const& point) const {
-  return annulus_.position(frame_.meridional(point)).m < middle_;
-}
+bool RowMotion::is_upstream(Vec3 const& point) const { return annulus_.position(frame_.meridional(point)).m < middle_; }
 
 Vec3 RowMotion::slide(Vec3 const& point) const {
   FlowPosition const at = annulus_.position(frame_.meridional(point));

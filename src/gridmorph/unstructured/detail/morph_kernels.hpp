@@ -120,6 +120,37 @@ struct AddFaded {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u(node(k)) += double(fade(k)) * add(node(k)); }
 };
 
+/// What the field so far lacks at nodes whose displacement is given.
+template <class MemorySpace>
+struct GivenMisses {
+  View<MemorySpace, Number> node, slot;
+  Kokkos::View<Vec3 const*, MemorySpace> boundary;
+  View<MemorySpace, Vec3> u, left, listed;
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
+    Vec3 const r = boundary(slot(k)) - u(node(k));
+    left(node(k)) = r;
+    listed(k) = r;
+  }
+};
+
+/// What nodes that slide or have images begin with: the field so far and the faded residual of given nodes.
+template <class MemorySpace>
+struct StartOthers {
+  View<MemorySpace, Number> node;
+  View<MemorySpace, float> fade, detail_fade;
+  UniformLattice shape;
+  View<MemorySpace, Vec3> lattice;
+  kernels::Field<double const> x;
+  View<MemorySpace, Vec3> u, start;  ///< in `start` what the lattice misses, where detail_fade is not zero
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
+    Number const n = node(k);
+    Vec3 v = u(n);
+    if (fade(k) != 0) v += double(fade(k)) * shape.at(lattice.data(), x[n]);
+    if (detail_fade(k) != 0) v += double(detail_fade(k)) * start(n);
+    start(n) = v;
+  }
+};
+
 /// What boundaries beyond the moving walls ask for, by rule or by the surface they slide on.
 template <class MemorySpace>
 struct AskOthers {
@@ -128,17 +159,13 @@ struct AskOthers {
   View<MemorySpace, SlipSurfaceView> surfaces;
   Kokkos::View<Vec3 const*, MemorySpace> boundary;
   kernels::Field<double const> x;
-  View<MemorySpace, Vec3> u, asked;
+  View<MemorySpace, Vec3> asked;  ///< with what nodes without a slot begin with
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Number const n = node(k);
-    if (slot(k) >= 0) {
-      asked(n) = boundary(slot(k));
-      return;
-    }
     Index const from = surfaces_of.first(k), to = surfaces_of.first(k + 1);
     // Alternating corrections come to the edge where surfaces meet; planes at right angles need one round.
     int const rounds = to - from > 1 ? 20 : 1;
-    Vec3 v = u(n);
+    Vec3 v = slot(k) >= 0 ? boundary(slot(k)) : asked(n);
     Vec3 const p = x[n];
     for (int round = 0; round < rounds; ++round)
       for (Index s = from; s < to; ++s) v = surfaces(surfaces_of.item(s)).constrain(p, v);

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/motion/selectors.hpp>
 #include <gridmorph/unstructured/column_heights.hpp>
 #include <gridmorph/unstructured/detail/fans.hpp>
@@ -21,7 +22,8 @@ void UnstructuredPlanner::find_driving_faces() {
         throw MotionError("two boundary layers name patch " + describe_patch(mesh_, mesh_.patches[std::size_t(p)]) +
                           "; give each wall one");
       own = int(l);
-      if (!std::binary_search(b.driving_patches.begin(), b.driving_patches.end(), p))
+      if (!std::binary_search(b.driving_patches.begin(), b.driving_patches.end(), p) &&
+          !std::binary_search(b.standing_patches.begin(), b.standing_patches.end(), p))
         out_.notes.push_back("patch " + describe_patch(mesh_, mesh_.patches[std::size_t(p)]) +
                              " has a boundary layer but drives no near field; its columns are not held");
     }
@@ -39,20 +41,55 @@ void UnstructuredPlanner::find_driving_faces() {
 void UnstructuredPlanner::find_columns() {
   find_driving_faces();
   std::vector<ColumnExtent> extents;
-  for (Number const f : driving_faces_) {
-    int const l = layer_of_patch_[std::size_t(claims_.patch[std::size_t(f)])];
-    if (l < 0) {
-      extents.emplace_back();
-    } else {
-      auto const& layer = options_.boundary_layers[std::size_t(l)];
-      extents.push_back({layer.extent, layer.layers, layer.thickness});
-    }
-  }
+  for (Number const f : driving_faces_) extents.push_back(extent_of_face(f));
   columns_ = make_columns(mesh_, topology_, out_.graph, driving_faces_, extents, is_known_);
   out_.report.n_columns = std::count_if(columns_.height.begin(), columns_.height.end(), [](double h) { return h > 0; });
   columns_ = cut(columns_, smooth_heights(out_.graph, columns_, most_heights()));
   for (double const h : columns_.height) out_.report.layer_height = std::max(out_.report.layer_height, h);
   plan_columns();
+  find_standing_columns();
+}
+
+ColumnExtent UnstructuredPlanner::extent_of_face(Number face) const {
+  int const l = layer_of_patch_[std::size_t(claims_.patch[std::size_t(face)])];
+  if (l < 0) return {};
+  auto const& layer = options_.boundary_layers[std::size_t(l)];
+  return {layer.extent, layer.layers, layer.thickness};
+}
+
+void UnstructuredPlanner::find_standing_columns() {
+  auto const& patches = out_.boundary.standing_patches;
+  std::vector<Number> faces;
+  std::vector<ColumnExtent> extents;
+  for (Index f = 0; f < topology_.boundary.size(); ++f)
+    if (std::binary_search(patches.begin(), patches.end(), claims_.patch[std::size_t(f)])) {
+      faces.push_back(Number(f));
+      extents.push_back(extent_of_face(Number(f)));
+    }
+  Mask taken = is_known_;
+  for (Number const n : columns_.node) taken[std::size_t(n)] = 1;
+  standing_ = make_columns(mesh_, topology_, out_.graph, faces, extents, taken);
+  // Where a moving wall ends on one that stands, and across gaps, what stands gives way.
+  std::vector<double> most(std::size_t(mesh_.n_nodes()), infinity);
+  for (std::size_t n = 0; n < most.size(); ++n)
+    if (standing_.height[n] > 0 && std::isfinite(from_wall_.distance[n]))
+      most[n] = room_in_gap(from_wall_.distance[n], reach_);
+  standing_ = cut(standing_, smooth_heights(out_.graph, standing_, most));
+  std::vector<Number> others, given;
+  for (Number const n : standing_.node) is_other_[std::size_t(n)] = 1;
+  Mask stands = mask();
+  for (Number const n : standing_.node) stands[std::size_t(n)] = 1;
+  for (Number n = 0; n < Number(mesh_.n_nodes()); ++n) {
+    if (!is_other_[std::size_t(n)]) continue;
+    others.push_back(n);
+    if (is_known_[std::size_t(n)] || stands[std::size_t(n)]) given.push_back(n);
+  }
+  // What is free to slide begins where these end.
+  bool const sliding = given.size() < others.size() && !given.empty();
+  for_all_parts("gridmorph::nearest_source", 2, [&](Index which) {
+    if (which == 0 && standing_.size() > 0) from_other_ = nearest_source(mesh_.coordinates, out_.graph, others);
+    if (which == 1 && sliding) from_given_ = nearest_source(mesh_.coordinates, out_.graph, given);
+  });
 }
 
 std::vector<double> UnstructuredPlanner::most_heights() const {

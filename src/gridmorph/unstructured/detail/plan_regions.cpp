@@ -27,11 +27,8 @@ double UnstructuredPlanner::offset() {
   }
   hints.wall_edge = sum / double(count);
   hints.body = norm(high - low);
-  // A wall that ends on another boundary has no gap to it that could limit the wrap.
-  double gap = infinity;
-  for (std::size_t n = 0; n < drives_.size(); ++n)
-    if (drives_[n]) gap = std::min(gap, from_other_.distance[n]);
-  hints.gap = std::isfinite(gap) && gap > hints.wall_edge ? gap : 0;
+  // No gap at all cannot limit the wrap.
+  hints.gap = std::isfinite(gap_) && gap_ > hints.wall_edge ? gap_ : 0;
   return options_.offset > 0 ? options_.offset : suggest_offset(hints);
 }
 

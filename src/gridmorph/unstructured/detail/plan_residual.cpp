@@ -12,12 +12,14 @@ void UnstructuredPlanner::plan_residual() {
   plan_other_nodes();
   plan.fade.assign(is_other_.size(), 0);
   for (std::size_t n = 0; n < is_other_.size(); ++n)
-    if (out_.graph.carries(Number(n)) && !drives_[n] && !is_other_[n]) plan.fade[n] = float(fade(n));
+    if (out_.graph.carries(Number(n)) && !drives_[n] && !is_other_[n]) plan.fade[n] = float(fade(n, from_other_));
   // Columns are as rigid as their walls ask for.
   for (Number const n : columns_.node) plan.fade[std::size_t(n)] = 0;
+  plan_start();
   MeshExtent const box = extent_of(mesh_.coordinates);
+  std::vector<Number> const boundary(plan.other.begin(), plan.other.end() - std::ptrdiff_t(standing_.node.size()));
   plan.residual =
-      make_scatter_lattice(mesh_.coordinates, plan.other, areas(plan.other), mesh_.dimension, box.low, box.high);
+      make_scatter_lattice(mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low, box.high);
   if (plan.residual.empty()) return;
   double const reach = 2 * plan.residual.shape.spacing;
   Mask wanted = mask();
@@ -28,6 +30,45 @@ void UnstructuredPlanner::plan_residual() {
   for (Number const n : plan.residual_detail.rows.target) {
     double const s = from_other_.distance[std::size_t(n)] / reach;
     plan.detail_fade.push_back(float(plan.fade[std::size_t(n)] * (1 - s * s * (3 - 2 * s))));
+  }
+}
+
+void UnstructuredPlanner::plan_start() {
+  UnstructuredPlan& plan = out_.plan;
+  auto& start = plan.start;
+  Mask seeds = mask(), wanted = mask();
+  Index n_boundary = 0;
+  for (std::size_t k = 0; k < plan.other.size(); ++k) {
+    Number const n = plan.other[k];
+    bool const given = plan.other_slot[k] >= 0;
+    (given ? start.given : start.node).push_back(n);
+    (given ? seeds : wanted)[std::size_t(n)] = 1;
+    if (!given) continue;
+    start.given_slot.push_back(plan.other_slot[k]);
+    n_boundary += k + standing_.node.size() < plan.other.size() ? 1 : 0;
+  }
+  start.fade.assign(start.node.size(), 0);
+  start.detail_fade.assign(start.node.size(), 0);
+  if (start.node.empty() || n_boundary == 0) return;
+  MeshExtent const box = extent_of(mesh_.coordinates);
+  std::vector<Number> const boundary(start.given.begin(), start.given.begin() + n_boundary);
+  // It is needed on surfaces alone, and what it misses passes along them.
+  constexpr Index most_nodes = 20'000;
+  start.residual = make_scatter_lattice(mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low,
+                                        box.high, most_nodes);
+  double const reach = 2 * start.residual.shape.spacing;
+  std::vector<Number> place(std::size_t(mesh_.n_nodes()), -1);
+  for (std::size_t k = 0; k < start.node.size(); ++k) {
+    Number const n = start.node[k];
+    place[std::size_t(n)] = Number(k);
+    start.fade[k] = drives_[std::size_t(n)] ? 0 : float(fade(std::size_t(n), from_given_));
+    if (!(from_given_.distance[std::size_t(n)] < reach)) wanted[std::size_t(n)] = 0;
+  }
+  start.detail = make_layers(out_.graph, mesh_.coordinates, seeds, wanted, from_given_.distance, inverse_distance());
+  for (Number const n : start.detail.rows.target) {
+    double const s = from_given_.distance[std::size_t(n)] / reach;
+    std::size_t const k = std::size_t(place[std::size_t(n)]);
+    start.detail_fade[k] = float(start.fade[k] * (1 - s * s * (3 - 2 * s)));
   }
 }
 
@@ -55,8 +96,8 @@ std::vector<double> UnstructuredPlanner::areas(std::vector<Number> const& nodes)
   return out;
 }
 
-double UnstructuredPlanner::fade(std::size_t n) const {
-  double const other = from_other_.distance[n];
+double UnstructuredPlanner::fade(std::size_t n, NearestSource const& from) const {
+  double const other = from.distance[n];
   if (!std::isfinite(other)) return 0;
   double const d = beyond_column(n);
   if (!std::isfinite(d)) return 1;
@@ -69,8 +110,10 @@ void UnstructuredPlanner::plan_other_nodes() {
   std::vector<Number> slot(std::size_t(mesh_.n_nodes()), -1), slip(std::size_t(mesh_.n_nodes()), -1);
   for (std::size_t k = 0; k < b.known.size(); ++k) slot[std::size_t(b.known[k])] = Number(k);
   for (std::size_t k = 0; k < b.slip_nodes.size(); ++k) slip[std::size_t(b.slip_nodes[k])] = Number(k);
+  Mask stands = mask();
+  for (Number const n : standing_.node) stands[std::size_t(n)] = 1;
   for (Number n = 0; n < Number(mesh_.n_nodes()); ++n) {
-    if (!is_other_[std::size_t(n)]) continue;
+    if (!is_other_[std::size_t(n)] || stands[std::size_t(n)]) continue;
     plan.other.push_back(n);
     plan.other_slot.push_back(slot[std::size_t(n)]);
     if (slip[std::size_t(n)] >= 0) {
@@ -78,6 +121,13 @@ void UnstructuredPlanner::plan_other_nodes() {
     } else {
       plan.other_surfaces.add({});
     }
+  }
+  for (std::size_t k = 0; k < standing_.node.size(); ++k) {
+    plan.other.push_back(standing_.node[k]);
+    plan.other_slot.push_back(slot[std::size_t(standing_.root[k])]);
+    plan.other_surfaces.add(slip[std::size_t(standing_.node[k])] >= 0
+                                ? b.slip_surfaces[slip[std::size_t(standing_.node[k])]]
+                                : std::span<Number const>{});
   }
   std::vector<std::pair<Number, Number>> by_owner;
   for (std::size_t k = 0; k < b.images.size(); ++k) by_owner.emplace_back(b.images[k].owner, Number(k));

@@ -53,6 +53,10 @@ class UnstructuredPlanner {
   /// Columns are as long as a user says; otherwise they leave room in gaps.
   [[nodiscard]] std::vector<double> most_heights() const;
   void plan_columns();
+  /// Columns of walls that stand: they are held in place, as far as moving walls leave room.
+  void find_standing_columns();
+  /// The extent that a user gave the boundary layer on a face's patch, or the default one.
+  [[nodiscard]] ColumnExtent extent_of_face(Number face) const;
 
   // plan_regions.cpp
   double offset();
@@ -82,9 +86,12 @@ class UnstructuredPlanner {
   void plan_residual();
   /// Share of each node in the area of the boundary; nodes that are on no boundary face have a mean one.
   [[nodiscard]] std::vector<double> areas(std::vector<Number> const& nodes) const;
-  [[nodiscard]] double fade(std::size_t n) const;
+  /// d / (d + distance from `from`), d being the distance from the end of the moving wall's column.
+  [[nodiscard]] double fade(std::size_t n, NearestSource const& from) const;
   std::function<double(Number, Number)> inverse_distance() const;
   void plan_other_nodes();
+  /// What boundaries with a rule ask for, at nodes that slide or have images.
+  void plan_start();
 
   UnstructuredMesh const& mesh_;
   UnstructuredTopology const& topology_;
@@ -93,10 +100,12 @@ class UnstructuredPlanner {
   PreparedUnstructured out_;
   std::vector<int> layer_of_patch_;
   std::vector<Number> driving_faces_;
-  Columns columns_;
+  Columns columns_, standing_;
   Mask is_known_, drives_, is_other_, near_;
   NearestSource from_wall_, from_other_;
-  double reach_ = 0;  ///< largest displacement that the offset and columns reckon with
+  NearestSource from_given_;  ///< boundaries beyond the moving walls that a rule displaces, and their columns
+  double gap_ = infinity;     ///< smallest one between moving walls and other boundaries
+  double reach_ = 0;          ///< largest displacement that the offset and columns reckon with
 };
 
 }  // namespace gridmorph::detail
