@@ -1,6 +1,6 @@
 # Finds CGNS 3.4 or 4.x, with or without a CMake package of its own, and defines one target for it.
 #
-#   CGNS::CGNS      headers and library, and what a static CGNS needs
+#   CGNS::CGNS      headers and library, with the HDF5 that both CGNS and gridmorph use, and what a static CGNS needs
 #   CGNS_VERSION    e.g. 4.5.0
 #   CGNS_FOUND
 #
@@ -48,15 +48,21 @@ else()
     if(_cgns_config MATCHES "#define +(CG_BUILD_PARALLEL|HDF5_NEED_MPI) +1")
       set(HDF5_PREFER_PARALLEL TRUE)
     endif()
-    # A shared CGNS brings its own HDF5; naming one here could load a second, different copy.
     if(CGNS_LIBRARY MATCHES "\\${CMAKE_STATIC_LIBRARY_SUFFIX}$")
-      enable_language(C)  # FindHDF5 compiles a C program
-      find_package(HDF5 QUIET COMPONENTS C)
       find_package(ZLIB QUIET)
-      list(APPEND _cgns_required HDF5_FOUND ZLIB_FOUND)
-      set(_cgns_links HDF5::HDF5 ZLIB::ZLIB ${CMAKE_DL_LIBS})
+      list(APPEND _cgns_required ZLIB_FOUND)
+      set(_cgns_links ZLIB::ZLIB ${CMAKE_DL_LIBS})
     endif()
   endif()
+endif()
+
+# It must be the one that CGNS was built with: HDF5 ends programs whose headers and library differ.
+if(NOT TARGET HDF5::HDF5)
+  enable_language(C)  # FindHDF5 compiles a C program
+  find_package(HDF5 QUIET COMPONENTS C)
+endif()
+if(NOT TARGET HDF5::HDF5)
+  list(APPEND _cgns_required HDF5_FOUND)
 endif()
 
 find_package_handle_standard_args(
@@ -67,12 +73,12 @@ find_package_handle_standard_args(
 if(CGNS_FOUND AND NOT TARGET CGNS::CGNS)
   if(_cgns_target)
     add_library(CGNS::CGNS INTERFACE IMPORTED)
-    target_link_libraries(CGNS::CGNS INTERFACE ${_cgns_target})
+    target_link_libraries(CGNS::CGNS INTERFACE ${_cgns_target} HDF5::HDF5)
   else()
     add_library(CGNS::CGNS UNKNOWN IMPORTED)
     set_target_properties(
       CGNS::CGNS PROPERTIES IMPORTED_LOCATION "${CGNS_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${CGNS_INCLUDE_DIR}"
-                            INTERFACE_LINK_LIBRARIES "${_cgns_links}")
+                            INTERFACE_LINK_LIBRARIES "HDF5::HDF5;${_cgns_links}")
     if(HDF5_PREFER_PARALLEL)
       find_package(MPI QUIET COMPONENTS C)
       if(MPI_C_FOUND)

@@ -107,7 +107,7 @@ TEST_F(Boundary, ElementRangesOfOldFilesAreFacesUnlessTheyReachTheLastNode) {
     // The library writes ElementRange no more, so the nodes are put into the tree one by one.
     cgns::File file(path_, cgns::File::Mode::modify);
     auto const tree = file.tree();
-    double const zone_bc = file.create(tree.child("Base")->child("Zone")->id, "ZoneBC", "ZoneBC_t");
+    double const zone_bc = file.create(file.id(*tree.child("Base")->child("Zone")), "ZoneBC", "ZoneBC_t");
     auto const add = [&](char const* name, std::array<std::int32_t, 6> const& range) {
       file.create(file.create_text(zone_bc, name, "BC_t", "BCWall"), "ElementRange", "IndexRange_t", "I4", {3, 2},
                   range.data());
@@ -164,13 +164,13 @@ TEST_F(Boundary, FamilyTreesAreFollowedByTheirPaths) {
     cgns::File file(path_, cgns::File::Mode::modify);
     auto const tree = file.tree();
     auto const& base = *tree.child("Base");
-    double const row = file.create(base.id, "Row 1", "Family_t");
+    double const row = file.create(file.id(base), "Row 1", "Family_t");
     file.create_text(row, "FamilyBC", "FamilyBC_t", "BCWall");
     double const blade = file.create(row, "Blade", "Family_t");
     file.create_text(file.create(blade, "Inlet", "Family_t"), "FamilyBC", "FamilyBC_t", "BCInflow");
     auto const& bcs = *base.child("Zone")->child("ZoneBC");
-    file.create_text(bcs.child("leaf")->id, "FamilyName", "FamilyName_t", "Row 1/Blade");
-    file.create_text(bcs.child("with base")->id, "FamilyName", "FamilyName_t", "Base/Row 1/Blade/Inlet");
+    file.create_text(file.id(*bcs.child("leaf")), "FamilyName", "FamilyName_t", "Row 1/Blade");
+    file.create_text(file.id(*bcs.child("with base")), "FamilyName", "FamilyName_t", "Base/Row 1/Blade/Inlet");
     file.close();
   }
   mesh = read_mesh(path_);

@@ -103,6 +103,44 @@ TEST_F(RunFilesTest, OutputsAreOrdinaryFiles) {
   EXPECT_TRUE(std::filesystem::is_fifo(path("pipe")));
 }
 
+TEST_F(RunFilesTest, InputsThatArePipesAreRefusedAtOnce) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  ASSERT_EQ(shell("ln -s pipe pipe.toml && ln -s pipe pipe.stl").status, 0);
+  auto const refused = [&](std::string const& arguments) {
+    Outcome const run = shell("timeout 20 $G " + arguments);
+    EXPECT_EQ(run.status, 2) << arguments << "\n" << run.err;
+    EXPECT_NE(run.err.find("ordinary file"), std::string::npos) << run.err;
+  };
+  refused("morph pipe");
+  refused("inspect pipe");
+  refused("quality passage.cgns pipe");
+  refused("inspect passage.cgns --side-file pipe.toml");
+  for (std::string const rule :
+       {"rule = \"field\"\nfile = \"pipe\"\n", "rule = \"target\"\nfile = \"pipe\"\n",
+        "rule = \"target\"\nfile = \"pipe.stl\"\n", "rule = \"field\"\nfile = \"rotation.csv\"\nelements = \"pipe\"\n",
+        "rule = \"sections\"\nfile = \"pipe\"\n"}) {
+    write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\n" + rule);
+    refused("morph case.toml");
+  }
+}
+
+TEST_F(RunFilesTest, TablesAndCaseFilesWithoutEndAreRefusedAtOnce) {
+  std::string keys = "[mesh]\ninput = \"passage.cgns\"\n", columns = "x";
+  for (int k = 0; k < 30'000; ++k) keys += "key_" + std::to_string(k) + " = 1\n";
+  for (int c = 0; c < 1'000'000; ++c) columns += ",c" + std::to_string(c);
+  write("case.toml", keys);
+  Outcome const run = shell("timeout 20 $G plan case.toml");
+  EXPECT_EQ(run.status, 2) << run.err;
+  EXPECT_NE(run.err.find("29980 more unknown keys"), std::string::npos) << run.err;
+  write("wide.csv", columns + "\n");
+  for (std::string const rule : {"field", "sections"}) {
+    write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"" + rule + "\"\nfile = \"wide.csv\"\n");
+    Outcome const wide = shell("timeout 20 $G plan case.toml");
+    EXPECT_EQ(wide.status, 2) << wide.err;
+    EXPECT_NE(wide.err.find("more than 1000 columns"), std::string::npos) << wide.err;
+  }
+}
+
 TEST_F(RunFilesTest, AFileThatIsReplacedKeepsItsPermissions) {
   write_case("case.toml", still);
   write("out.cgns", "old");

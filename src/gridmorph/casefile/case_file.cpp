@@ -2,6 +2,7 @@
 #include <gridmorph/casefile/detail/near_field_reader.hpp>
 #include <gridmorph/casefile/detail/rule_reader.hpp>
 #include <gridmorph/casefile/detail/table_reader.hpp>
+#include <gridmorph/casefile/detail/text_table.hpp>
 #include <gridmorph/casefile/detail/wheel_reader.hpp>
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
@@ -12,11 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace gridmorph {
@@ -32,24 +31,6 @@ constexpr std::uintmax_t largest_case_file = 4u << 20;
 constexpr int deepest_nesting = 64;
 /// Steps are numbered with up to five digits.
 constexpr int largest_sequence = 99999;
-
-std::string read_text(std::filesystem::path const& path) {
-  std::error_code error;
-  auto const status = std::filesystem::status(path, error);
-  std::string const name = path.string();
-  if (!std::filesystem::exists(status))
-    throw ConfigError(fmt::format("case file '{}' does not exist; check the path", name));
-  if (std::filesystem::is_directory(status))
-    throw ConfigError(fmt::format("case file '{}' is a directory; give a file", name));
-  if (auto const size = std::filesystem::file_size(path, error); !error && size > largest_case_file)
-    throw ConfigError(fmt::format("case file '{}' has {} bytes, too many for a case file; is it a mesh?", name, size));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ConfigError(fmt::format("case file '{}' cannot be opened; check its permissions", name));
-  std::ostringstream text;
-  if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
-  if (in.bad()) throw ConfigError(fmt::format("case file '{}' cannot be read", name));
-  return std::move(text).str();
-}
 
 /// Refuses what is no text at all, and brackets nested so deep that a recursive parser would run out of stack.
 void check_text(std::string const& text, std::string const& file) {
@@ -330,6 +311,8 @@ Motion motion_at(CaseFile const& case_file, double periods) {
   return motion;
 }
 
-CaseFile read_case_file(std::filesystem::path const& path) { return parse_case_file(read_text(path), path); }
+CaseFile read_case_file(std::filesystem::path const& path) {
+  return parse_case_file(casefile::read_text_file(path, "case file", largest_case_file), path);
+}
 
 }  // namespace gridmorph

@@ -61,6 +61,9 @@ bool read_layout(std::vector<std::string_view>& fields, std::string_view line, s
   layout.separator = casefile::separator_of(line);
   split(line, layout.separator, fields);
   layout.n_columns = fields.size();
+  if (fields.size() > casefile::most_columns)
+    throw ConfigError(
+        fmt::format("{}: more than {} columns; expected x, y, z, dx, dy, dz", where, casefile::most_columns));
   bool const any_number = std::any_of(fields.begin(), fields.end(), [](auto f) { return to_number(f).has_value(); });
   if (any_number) {
     if (fields.size() != n_required)

@@ -1,5 +1,6 @@
 #include <gridmorph/casefile/detail/side_tables.hpp>
 #include <gridmorph/casefile/detail/table_reader.hpp>
+#include <gridmorph/casefile/detail/text_table.hpp>
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
@@ -10,8 +11,6 @@
 #include <toml.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -26,17 +25,7 @@ using casefile::TableReader;
 constexpr std::uintmax_t largest_side_file = 256u << 20;
 
 std::string read_text(std::filesystem::path const& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    throw ConfigError(
-        fmt::format("side file '{}' does not exist or is no file; check side_file in [mesh]", path.string()));
-  if (std::filesystem::file_size(path, error) > largest_side_file)
-    throw ConfigError(fmt::format("side file '{}' is too large for one; is it a mesh?", path.string()));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ConfigError(fmt::format("side file '{}' cannot be opened; check its permissions", path.string()));
-  std::ostringstream text;
-  if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
-  return std::move(text).str();
+  return casefile::read_text_file(path, "side file", largest_side_file);
 }
 
 class Reader {

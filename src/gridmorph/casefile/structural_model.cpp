@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <unordered_map>
 
 namespace gridmorph {
@@ -20,6 +22,8 @@ using casefile::most_problems_per_file;
 
 /// HDF5 and ADF files say what they are in their first bytes.
 bool is_cgns(std::filesystem::path const& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // the reader of texts says why
   std::ifstream in(path, std::ios::binary);
   std::array<char, 8> head{};
   in.read(head.data(), head.size());

@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/detail/text_table.hpp>
 #include <gridmorph/casefile/target_file.hpp>
 
 #include <gridmorph/core/error.hpp>
@@ -12,8 +13,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <system_error>
 
@@ -122,15 +121,7 @@ class PointLines {
 };
 
 std::string text_of(std::filesystem::path const& path) {
-  std::error_code error;
-  auto const status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status))
-    throw ConfigError(fmt::format("target file '{}' does not exist; check the path", path.string()));
-  if (std::filesystem::is_directory(status))
-    throw ConfigError(fmt::format("target file '{}' is a directory; give a file", path.string()));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ConfigError(fmt::format("target file '{}' cannot be opened; check its permissions", path.string()));
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text = casefile::read_text_file(path, "target file");
   if (text.find('\0') != std::string::npos)
     throw ConfigError(fmt::format(
         "target file '{}' is no text file; surfaces must have names that end in .stl or .cgns", path.string()));

@@ -1,6 +1,7 @@
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/linked_files.hpp>
 
 #include <fmt/format.h>
 
@@ -46,9 +47,12 @@ std::string unwritable(RunFile const& file) {
 RunFiles inputs_of_mesh(fs::path const& mesh, std::optional<fs::path> const& side_file) {
   RunFiles files{{"input mesh", mesh}};
   std::error_code error;
+  bool const there = fs::is_regular_file(mesh, error);
+  if (there)
+    for (auto const& file : linked_files(mesh.string())) files.push_back({"file that the mesh links to", file});
   if (side_file)
     files.push_back({"side file", *side_file});
-  else if (fs::is_regular_file(mesh, error))
+  else if (there)
     if (auto const found = find_side_file(mesh)) files.push_back({"side file", *found});
   return files;
 }

@@ -3,10 +3,14 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_check.hpp>
 
+#include <cgns_io.h>
+
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -32,7 +36,8 @@ class AdfWalk {
   explicit AdfWalk(std::string const& path)
       : path_(path), file_(path, std::ios::binary), size_(std::filesystem::file_size(path)) {}
 
-  void run() {
+  /// Names of the files that its links lead to, as they stand there.
+  std::vector<std::string> run() {
     if (size_ < file_header_size) damaged("it ends inside the file header", 0);
     std::string const header = bytes(0, file_header_size);
     for (auto const& [tag, at] :
@@ -58,6 +63,7 @@ class AdfWalk {
       if (!visited_.insert(node).second) damaged("a node is listed twice", node);
       visit(node, to_visit);
     }
+    return std::move(linked_files_);
   }
 
  private:
@@ -148,6 +154,7 @@ class AdfWalk {
     Offset const chunks = hexadecimal(header, 226, 4);
     if (chunks == 0) return;
     Offset const first = pointer(header, 230);
+    if (!data_.insert(first).second) damaged("two nodes have the same data", at);
     Offset held = 0;
     if (chunks == 1) {
       held = payload(first, "DaTa", "dEnD");
@@ -157,6 +164,18 @@ class AdfWalk {
       for (Offset c = 0; c < chunks; ++c) held += payload(pointer(table, c * 2 * pointer_size), "DaTa", "dEnD");
     }
     if (rank > 0 && held < needed) damaged("an array is longer than the data it has", at);
+    if (header.compare(96, 2, "LK") == 0) check_link(first, chunks, needed, at);
+  }
+
+  /// "file>path" or ">path"; the library has buffers of fixed size for both.
+  void check_link(Offset data, Offset chunks, Offset length, Offset at) {
+    constexpr Offset longest_file = 1024, longest_path = 4096;
+    if (chunks != 1 || length > longest_file + longest_path) damaged("a link is too long", at);
+    std::string const text = bytes(data + tag_size + pointer_size, length);
+    auto const separator = text.find('>');
+    if (separator == std::string::npos || separator > longest_file || text.size() - separator > longest_path)
+      damaged("a link has no file and path of allowed lengths", at);
+    if (separator > 0) linked_files_.push_back(text.substr(0, separator));
   }
 
   /// Bytes per element on disk; nothing for compound types, and for long integers, whose size depends on the writer.
@@ -174,10 +193,25 @@ class AdfWalk {
   bool text_pointers_ = true;
   bool big_endian_ = false;
   std::unordered_set<Offset> visited_;
+  std::unordered_set<Offset> data_;
+  std::vector<std::string> linked_files_;
 };
 
 }  // namespace
 
-void check_adf(std::string const& path) { AdfWalk(path).run(); }
+void check_adf(std::string const& path) {
+  std::set<std::string> known{path};
+  std::vector<std::string> to_check{path};
+  while (!to_check.empty()) {
+    std::string const file = to_check.back();
+    to_check.pop_back();
+    for (auto const& name : AdfWalk(file).run()) {
+      std::array<char, CGIO_MAX_FILE_LENGTH + 1> found{};
+      bool const there =
+          cgio_find_file(file.c_str(), name.c_str(), CGIO_FILE_NONE, int(found.size()), found.data()) == CGIO_ERR_NONE;
+      if (there && known.insert(found.data()).second) to_check.emplace_back(found.data());
+    }
+  }
+}
 
 }  // namespace gridmorph::cgns

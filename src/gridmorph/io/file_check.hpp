@@ -14,7 +14,7 @@ FileFormat check_file(std::string const& path);
 bool is_cgns(std::string const& path);
 
 /// Walks an ADF file: every pointer inside the file, every tag in place, no loops, data as long as its dimensions say.
-/// Throws IoError where not. Cost: reads the node headers only.
+/// Throws IoError where not. The files that its links lead to are walked too. Cost: reads the node headers only.
 void check_adf(std::string const& path);
 
 }  // namespace gridmorph::cgns

@@ -30,7 +30,7 @@ SolutionWriter::SolutionWriter(cgns::File& file, cgns::Node const& zone, std::st
     : file_(file), dimensions_(std::move(dimensions)) {
   std::string name = wanted_name;
   for (int n = 2; zone.child(name); ++n) name = wanted_name + std::to_string(n);
-  id_ = file.create(zone.id, name, "FlowSolution_t");
+  id_ = file.create(file.id(zone), name, "FlowSolution_t");
   file.create_text(id_, "GridLocation", "GridLocation_t", location);
 }
 

@@ -22,6 +22,8 @@ namespace gridmorph::su2 {
 namespace {
 
 std::string contents(std::string const& path) {
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(path, failure)) throw IoError(path + ": is not an ordinary file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError(path + ": cannot be opened for reading: " + std::strerror(errno));
   std::string text(std::size_t(std::filesystem::file_size(path)), '\0');

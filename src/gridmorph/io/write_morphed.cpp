@@ -48,6 +48,20 @@ void write_cell_fields(cgns::File& file, cgns::ZoneLayout const& layout, Index f
   for (auto const& field : fields.cells) solution.add(field.name, field.values.data() + first_cell);
 }
 
+/// The coordinates of a file that has been written.
+void check_coordinates(std::string const& path, cgns::Node const& original, Mesh const& mesh,
+                       Coordinates const& morphed) {
+  cgns::File const file(path, cgns::File::Mode::read);
+  auto const tree = file.tree_of_copy(original);
+  auto const layout = cgns::zones_of(file, tree, mesh);
+  auto const arrays = io::components(morphed);
+  std::vector<double> plane;
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z)
+    for (int c = 0; c < 3; ++c)
+      cgns::with_file_nodes(layout.zones[z], mesh.zones[z], arrays[c] + mesh.zones[z].first_node, plane,
+                            [&](double const* v) { check_written(file, layout.zones[z], c, v); });
+}
+
 }  // namespace
 
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
@@ -61,10 +75,11 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
       throw IoError(output + ": PLOT3D grid files have no place for solutions; write the mesh without fields");
     return plot3d::write(input, output, mesh, morphed);
   }
+  cgns::Node original;
   {
     cgns::File const file(input, cgns::File::Mode::read);
-    auto const tree = file.tree();
-    cgns::check_same_mesh(file, cgns::zones_of(file, tree, mesh), mesh);
+    original = file.tree();
+    cgns::check_same_mesh(file, cgns::zones_of(file, original, mesh), mesh);
   }
 
   io::OutputFile target(output);
@@ -72,7 +87,7 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   target.reserve(io::bytes_of_fields(fields, mesh.zones.size(), mesh.n_nodes(), mesh.n_cells()));
   {
     cgns::File file(target.path(), cgns::File::Mode::modify);
-    auto const tree = file.tree();
+    auto const tree = file.tree_of_copy(original);
     auto const layout = cgns::zones_of(file, tree, mesh);
     std::vector<double> plane;
     Index first_cell = 0;
@@ -88,7 +103,7 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
     }
     file.close();
   }
-  cgns::check_file(target.path());
+  check_coordinates(target.path(), original, mesh, morphed);
   target.commit();
 }
 

@@ -88,13 +88,14 @@ struct SeriesWriter::Impl {
       for (auto const* old : zone.node->all("ZoneIterativeData_t")) file->remove(*zone.node, *old);
       if (done.insert(zone.base).second) {
         for (auto const* old : zone.base->all("BaseIterativeData_t")) file->remove(*zone.base, *old);
-        double const base = file->create(zone.base->id, "BaseIterativeData", "BaseIterativeData_t", "I4", {1}, &count);
+        double const base_id = file->id(*zone.base);
+        double const base = file->create(base_id, "BaseIterativeData", "BaseIterativeData_t", "I4", {1}, &count);
         file->create(base, "TimeValues", "DataArray_t", "R8", {Index(steps)}, times.data());
         file->create(base, "IterationValues", "DataArray_t", "I4", {Index(steps)}, number.data());
         if (zone.base->labelled("SimulationType_t") == nullptr)
-          file->create_text(zone.base->id, "SimulationType", "SimulationType_t", "TimeAccurate");
+          file->create_text(base_id, "SimulationType", "SimulationType_t", "TimeAccurate");
       }
-      double const iterative = file->create(zone.node->id, "ZoneIterativeData", "ZoneIterativeData_t");
+      double const iterative = file->create(file->id(*zone.node), "ZoneIterativeData", "ZoneIterativeData_t");
       file->create(iterative, "GridCoordinatesPointers", "DataArray_t", "C1", {Index(name_length), Index(steps)},
                    names.data());
     }
@@ -112,7 +113,7 @@ struct SeriesWriter::Impl {
     std::array<double const*, 3> const arrays{morphed.x.data(), morphed.y.data(), morphed.z.data()};
     for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
       auto const& place = layout.zones[z];
-      double const grid = file->create(place.node->id, grid_name(written, steps), "GridCoordinates_t");
+      double const grid = file->create(file->id(*place.node), grid_name(written, steps), "GridCoordinates_t");
       std::vector<Index> sizes(place.extent.begin(), place.extent.begin() + place.index_dimension);
       for (int c = 0; c < 3; ++c) {
         if (place.array[c] == nullptr) continue;

@@ -23,38 +23,41 @@ void check_same_mesh(cgns::File const& file, cgns::Layout const& layout, Unstruc
   for (std::size_t z = 0; same && z < mesh.zones.size(); ++z)
     same = layout.zones[z].name == mesh.zones[z].name && layout.zones[z].nodes_in_file() == mesh.zones[z].n_nodes;
   if (!same) problems.add(file.path() + ": holds other zones than the mesh; give the file that the mesh was read from");
-  for (auto const& zone : layout.zones)
-    for (auto const* array : zone.array)
-      if (array && array->linked)
-        problems.add(file.path() + ", node " + array->path +
-                     ": is a link to another place, which must not be changed; write the mesh into one file without "
-                     "links first");
+  cgns::check_own_coordinates(file, layout, problems);
   problems.throw_if_any<IoError>();
 }
 
 void write_cgns(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
                 Coordinates const& morphed, OutputFields const& fields) {
+  cgns::Node original;
   {
     cgns::File const file(input, cgns::File::Mode::read);
-    auto const tree = file.tree();
-    check_same_mesh(file, cgns::unstructured_zones_of(file, tree, mesh), mesh);
+    original = file.tree();
+    check_same_mesh(file, cgns::unstructured_zones_of(file, original, mesh), mesh);
   }
   io::OutputFile target(output);
   target.copy_from(input);
   target.reserve(io::bytes_of_fields(fields, mesh.zones.size(), mesh.n_nodes(), mesh.n_elements()));
+  Coordinates const ordered = in_file_order(mesh, morphed);
+  auto const arrays = io::components(ordered);
   {
     cgns::File file(target.path(), cgns::File::Mode::modify);
-    auto const tree = file.tree();
+    auto const tree = file.tree_of_copy(original);
     auto const layout = cgns::unstructured_zones_of(file, tree, mesh);
-    Coordinates const ordered = in_file_order(mesh, morphed);
-    auto const arrays = io::components(ordered);
     for (std::size_t z = 0; z < mesh.zones.size(); ++z)
       for (int c = 0; c < 3; ++c)
         write_component(file, layout.zones[z], c, arrays[std::size_t(c)] + mesh.zones[z].first_node);
     write_fields(file, layout, mesh, morphed, fields);
     file.close();
   }
-  cgns::check_file(target.path());
+  {
+    cgns::File const file(target.path(), cgns::File::Mode::read);
+    auto const tree = file.tree_of_copy(original);
+    auto const layout = cgns::unstructured_zones_of(file, tree, mesh);
+    for (std::size_t z = 0; z < mesh.zones.size(); ++z)
+      for (int c = 0; c < 3; ++c)
+        check_written(file, layout.zones[z], c, arrays[std::size_t(c)] + mesh.zones[z].first_node);
+  }
   target.commit();
 }
 

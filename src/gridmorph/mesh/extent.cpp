@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -53,6 +54,14 @@ MeshExtent extent_of(Coordinates const& c, Index begin, Index end) {
 }
 
 }  // namespace
+
+bool is_usable(Vec3 const& p) {
+  // Not-a-number is no larger, and no smaller, than anything.
+  return std::fabs(p.x) <= largest_coordinate && std::fabs(p.y) <= largest_coordinate &&
+         std::fabs(p.z) <= largest_coordinate;
+}
+
+bool MeshExtent::usable() const { return finite && (low.x > high.x || (is_usable(low) && is_usable(high))); }
 
 double MeshExtent::size() const { return low.x <= high.x ? distance(low, high) : 0.0; }
 

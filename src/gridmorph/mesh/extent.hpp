@@ -5,13 +5,21 @@
 
 namespace gridmorph {
 
+/// Larger coordinates are damage, or marks of nodes that were left out: squares of their distances leave the range of numbers.
+inline constexpr double largest_coordinate = 1e100;
+
 struct MeshExtent {
   Vec3 low, high;      ///< corners of the bounding box; of the finite values only
   bool finite = true;  ///< every x + y + z is finite (coordinates so large that their sum is not are of no use either)
 
+  /// Whether every coordinate can be computed with: finite, and no larger than largest_coordinate.
+  [[nodiscard]] bool usable() const;
   /// Diagonal of the box; 0 for a mesh without nodes.
   [[nodiscard]] double size() const;
 };
+
+/// Whether a point can be computed with, as MeshExtent::usable() says it.
+bool is_usable(Vec3 const& p);
 
 /// One pass at memory speed (24 bytes per node) on the default host space; the result does not depend on the number of
 /// threads.

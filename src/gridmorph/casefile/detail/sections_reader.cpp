@@ -1,4 +1,5 @@
 #include <gridmorph/casefile/detail/sections_reader.hpp>
+#include <gridmorph/casefile/detail/text_table.hpp>
 #include <gridmorph/casefile/suggest.hpp>
 
 #include <fmt/format.h>
@@ -7,10 +8,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <optional>
-#include <sstream>
 
 namespace gridmorph::casefile {
 
@@ -40,7 +39,7 @@ std::vector<std::string> parameter_keys() {
   return keys;
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view unquoted(std::string_view text) {
   constexpr char const* blanks = " \t\r\"";
   auto const first = text.find_first_not_of(blanks);
   return first == std::string_view::npos ? std::string_view()
@@ -53,12 +52,12 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   if (line.find(separator) != std::string_view::npos) {
     for (std::size_t end = 0; end != std::string_view::npos; line.remove_prefix(end + 1)) {
       end = line.find(separator);
-      cells.push_back(trimmed(line.substr(0, end)));
+      cells.push_back(unquoted(line.substr(0, end)));
       if (end == std::string_view::npos) break;
     }
     return cells;
   }
-  for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
+  for (line = unquoted(line); !line.empty(); line = unquoted(line)) {
     std::size_t const end = std::min(line.find_first_of(" \t"), line.size());
     cells.push_back(line.substr(0, end));
     line.remove_prefix(end);
@@ -66,7 +65,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   return cells;
 }
 
-std::optional<double> to_number(std::string_view cell) {
+std::optional<double> finite_number(std::string_view cell) {
   if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
   double value = 0;
   auto const [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -122,17 +121,7 @@ void check(TableReader& table, std::string const& where, Parameter const& p,
 }
 
 std::vector<SpanwiseColumn> read_columns(std::filesystem::path const& path) {
-  std::error_code error;
-  auto const status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status))
-    throw ConfigError(fmt::format("table '{}' does not exist; check the path", path.string()));
-  if (!std::filesystem::is_regular_file(status)) throw ConfigError(fmt::format("table '{}' is no file", path.string()));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ConfigError(fmt::format("table '{}' cannot be opened; check its permissions", path.string()));
-  std::ostringstream text;
-  if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
-  if (in.bad()) throw ConfigError(fmt::format("table '{}' cannot be read", path.string()));
-  return parse_spanwise_columns(text.str(), path.string(), parameter_keys());
+  return parse_spanwise_columns(read_text_file(path, "table"), path.string(), parameter_keys());
 }
 
 }  // namespace
@@ -146,12 +135,14 @@ std::vector<SpanwiseColumn> parse_spanwise_columns(std::string_view text, std::s
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // byte order mark of spreadsheet programs
   for (std::int64_t number = 1; !text.empty() && problems.messages().size() < most_problems; ++number) {
     std::size_t const end = std::min(text.find('\n'), text.size());
-    std::string_view const line = trimmed(text.substr(0, end));
+    std::string_view const line = unquoted(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.empty() || line.front() == '#') continue;
     std::string const where = fmt::format("{}:{}", source, number);
     auto const cells = cells_of(line);
     if (columns.empty()) {
+      if (cells.size() > most_columns)
+        throw ConfigError(fmt::format("{}: more than {} columns; is it a table?", where, most_columns));
       for (auto const& cell : cells) {
         std::string const name(cell);
         bool const twice = std::any_of(columns.begin(), columns.end(), [&](auto const& c) { return c.name == name; });
@@ -173,11 +164,11 @@ std::vector<SpanwiseColumn> parse_spanwise_columns(std::string_view text, std::s
       problems.add(fmt::format("{}: expected {} columns, found {}", where, columns.size(), cells.size()));
       continue;
     }
-    auto const span = to_number(cells[span_column]);
+    auto const span = finite_number(cells[span_column]);
     if (!span) problems.add(fmt::format("{}: span = \"{}\" is not a number", where, cells[span_column].substr(0, 40)));
     for (std::size_t c = 0; c < cells.size() && span; ++c) {
       if (c == span_column || cells[c].empty()) continue;
-      auto const value = to_number(cells[c]);
+      auto const value = finite_number(cells[c]);
       if (!value)
         problems.add(fmt::format("{}: {} = \"{}\" is not a number (decimal point, not comma)", where, columns[c].name,
                                  cells[c].substr(0, 40)));

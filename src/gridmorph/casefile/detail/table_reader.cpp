@@ -10,6 +10,9 @@
 
 namespace gridmorph::casefile {
 
+/// Unknown keys of one table that are listed.
+constexpr std::size_t most_unknown_keys = 20;
+
 unsigned line_of(toml::value const& value) { return value.location().line(); }
 
 std::string describe_value(toml::value const& value) {
@@ -26,14 +29,14 @@ std::string describe_value(toml::value const& value) {
 }
 
 TableReader::TableReader(Context& context, toml::value const& table, std::string name)
-    : context_(&context), table_(&table), name_(std::move(name)), line_(line_of(table)) {}
+    : context_(&context), table_(&table), name_(std::move(name)) {}
 
 bool TableReader::has(std::string const& key) const { return table_->as_table().count(key) > 0; }
 
 unsigned TableReader::line(std::string const& key) const {
   auto const& table = table_->as_table();
   auto const found = table.find(key);
-  return found == table.end() ? line_ : line_of(found->second);
+  return found == table.end() ? line() : line_of(found->second);
 }
 
 toml::value const* TableReader::find(std::string const& key) {
@@ -55,7 +58,7 @@ void TableReader::problem(std::string const& key, std::string const& text) {
 void TableReader::require(std::string const& key, std::string_view what_to_write) {
   if (find(key) == nullptr)
     context_->problem(
-        line_, fmt::format("{}{}key '{}' is missing; add {}", name_, name_.empty() ? "" : ": ", key, what_to_write));
+        line(), fmt::format("{}{}key '{}' is missing; add {}", name_, name_.empty() ? "" : ": ", key, what_to_write));
 }
 
 std::optional<std::string> TableReader::string(std::string const& key) {
@@ -216,12 +219,21 @@ std::optional<std::size_t> TableReader::choice(std::string const& key, std::vect
 
 void TableReader::finish() {
   std::vector<std::pair<unsigned, std::string>> unknown;  // toml11 keeps keys in no order: report them by line
-  for (auto const& [key, value] : table_->as_table())
-    if (std::find(known_.begin(), known_.end(), key) == known_.end()) unknown.emplace_back(line_of(value), key);
+  std::size_t left_out = 0;                               // finding a line takes time as the file is long
+  for (auto const& [key, value] : table_->as_table()) {
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (unknown.size() < most_unknown_keys)
+      unknown.emplace_back(line_of(value), key);
+    else
+      ++left_out;
+  }
   std::sort(unknown.begin(), unknown.end());
   for (auto const& [line, key] : unknown)
     context_->problem(
         line, fmt::format("{}{}unknown key '{}'{}", name_, name_.empty() ? "" : ": ", key, suggestion(key, known_)));
+  if (left_out > 0)
+    context_->problem(
+        line(), fmt::format("{}{}{} more unknown keys are not listed", name_, name_.empty() ? "" : ": ", left_out));
 }
 
 }  // namespace gridmorph::casefile

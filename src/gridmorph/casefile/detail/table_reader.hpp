@@ -16,6 +16,9 @@
 
 namespace gridmorph::casefile {
 
+/// Line of a value in the case file. Cost: the text before it is read.
+unsigned line_of(toml::value const& value);
+
 /// Where problems of one case file go.
 struct Context {
   std::string file;                 ///< as the user named it
@@ -40,7 +43,7 @@ class TableReader {
   TableReader(Context& context, toml::value const& table, std::string name);
 
   [[nodiscard]] bool has(std::string const& key) const;
-  [[nodiscard]] unsigned line() const { return line_; }
+  [[nodiscard]] unsigned line() const { return line_of(*table_); }
   [[nodiscard]] unsigned line(std::string const& key) const;
   [[nodiscard]] std::string where(std::string const& key) const { return context_->where(line(key)); }
   [[nodiscard]] Context& context() const { return *context_; }
@@ -75,15 +78,11 @@ class TableReader {
   Context* context_;
   toml::value const* table_;
   std::string name_;
-  unsigned line_;
   std::vector<std::string> known_;
 };
 
 /// "a string", "an array", ... for messages, with the value if it is short.
 std::string describe_value(toml::value const& value);
-
-/// Line of a value in the case file.
-unsigned line_of(toml::value const& value);
 
 /// The tables of a TOML text; ConfigError with file and line when it is none.
 toml::value parse_toml_text(std::string const& text, std::string const& file);

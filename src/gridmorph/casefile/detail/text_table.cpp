@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
 void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   if (separator == ' ') {
-    while (!(line = trimmed(line)).empty()) {
+    while (!(line = trimmed(line)).empty() && fields.size() <= most_columns) {
       std::size_t const end = std::min(line.find_first_of(" \t"), line.size());
       fields.push_back(line.substr(0, end));
       line.remove_prefix(end);
@@ -32,7 +32,7 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
   for (;;) {
     std::size_t const end = line.find(separator);
     fields.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return;
+    if (end == std::string_view::npos || fields.size() > most_columns) return;
     line.remove_prefix(end + 1);
   }
 }
@@ -79,13 +79,18 @@ bool Lines::next() {
   return false;
 }
 
-std::string read_text_file(std::filesystem::path const& path, std::string_view what) {
+std::string read_text_file(std::filesystem::path const& path, std::string_view what, std::uintmax_t most) {
   std::error_code error;
   auto const status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
     throw ConfigError(fmt::format("{} '{}' does not exist; check the path", what, path.string()));
   if (std::filesystem::is_directory(status))
     throw ConfigError(fmt::format("{} '{}' is a directory; give a file", what, path.string()));
+  if (!std::filesystem::is_regular_file(status))
+    throw ConfigError(
+        fmt::format("{} '{}' is no ordinary file (a device, a pipe or a socket); give a file", what, path.string()));
+  if (auto const size = std::filesystem::file_size(path, error); !error && size > most)
+    throw ConfigError(fmt::format("{} '{}' has {} bytes, too many for one; is it a mesh?", what, path.string(), size));
   std::ifstream in(path, std::ios::binary);
   if (!in) throw ConfigError(fmt::format("{} '{}' cannot be opened; check its permissions", what, path.string()));
   std::string text;
