@@ -76,7 +76,9 @@ CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   auto* demo = app.add_subcommand("demo", "Write a built-in mesh and its case files, and morph it");
   demo->add_option(
           "name", out.demo_name,
-          "passage: one airfoil passage of a turbomachine (O4H); ball: a ball on a rope under a crane (hybrid)")
+          "passage: one airfoil passage of a turbomachine (O4H); ball: a ball on a rope under a crane (hybrid); "
+          "turbine, slat, coil: "
+          "only the mesh of an example (water turbine in 7 zones, airfoil with slat and flap, heated tube in a duct)")
       ->required();
   demo->add_option("-n,--nodes", out.demo_nodes, "passage: nodes of the mesh (default 200000)")
       ->check(CLI::Range(Index(10'000), Index(400'000'000)));

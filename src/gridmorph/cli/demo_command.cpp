@@ -6,6 +6,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/demo/ball_demo.hpp>
 #include <gridmorph/demo/passage_demo.hpp>
+#include <gridmorph/demo/stand_ins.hpp>
 
 #include <fmt/format.h>
 
@@ -78,6 +79,14 @@ int demo_ball(CommandLine const& options, std::filesystem::path const& folder, T
   return morph_unstructured(with_report(files.case_file, files.morphed), terminal);
 }
 
+/// Meshes of examples, whose case files are not the command's to write.
+int demo_stand_in(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  terminal.progress(fmt::format("making the mesh of the {}", options.demo_name));
+  auto const path = write_stand_in(options.demo_name, folder);
+  terminal.say(fmt::format("mesh       {}\n", path.string()));
+  return done;
+}
+
 /// Options of the other demo would be ignored in silence.
 void refuse_options_of(char const* other, std::string const& chosen,
                        std::vector<std::pair<char const*, bool>> const& given) {
@@ -102,7 +111,16 @@ int run_demo_command(CommandLine const& options, Terminal& terminal) {
                       {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
     return demo_ball(options, folder, terminal);
   }
-  throw ConfigError(fmt::format("there is no demo '{}'{}", name, suggestion(name, {"passage", "ball"})));
+  if (auto const& meshes = stand_in_names(); std::find(meshes.begin(), meshes.end(), name) != meshes.end()) {
+    refuse_options_of("passage", name,
+                      {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
+    refuse_options_of(
+        "ball", name,
+        {{"--elements", options.demo_elements.has_value()}, {"--angle", options.demo_angle_deg.has_value()}});
+    return demo_stand_in(options, folder, terminal);
+  }
+  throw ConfigError(
+      fmt::format("there is no demo '{}'{}", name, suggestion(name, {"passage", "ball", "turbine", "slat", "coil"})));
 }
 
 }  // namespace gridmorph::cli

@@ -41,6 +41,9 @@ struct WriteOptions {
   FileFormat format = FileFormat::cgns_hdf5;
   /// Mesh::two_dimensional is written as index dimension 2; 2 drops CoordinateZ, 3 keeps it.
   int physical_dimension = 3;
+  /// Unstructured meshes: a boundary condition lists its nodes, as older programs write it; its faces are a section of elements of the same
+  /// name, where a reader that wants them finds them.
+  bool boundary_nodes = false;
 };
 
 /// Writes a mesh as a new file: zones, coordinates (single precision where the zone says so), families, boundary

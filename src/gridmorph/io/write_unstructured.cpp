@@ -60,7 +60,8 @@ std::string bc_type_of(UnstructuredPatch const& patch) {
 
 class Writer {
  public:
-  Writer(cgns::File& file, UnstructuredMesh const& mesh, Coordinates const& x) : file_(file), mesh_(mesh), x_(x) {}
+  Writer(cgns::File& file, UnstructuredMesh const& mesh, Coordinates const& x, WriteOptions const& options)
+      : file_(file), mesh_(mesh), x_(x), options_(options) {}
 
   void run() {
     file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &library_version);
@@ -181,8 +182,12 @@ class Writer {
         section(zone_id, unique_name(sections, patch.name), next, types, patch.faces.first, nodes);
         std::array<std::int32_t, 2> const range{std::int32_t(next), std::int32_t(next + patch.faces.size() - 1)};
         next += patch.faces.size();
-        file_.create_text(id, "GridLocation", "GridLocation_t", mesh_.dimension == 3 ? "FaceCenter" : "EdgeCenter");
-        file_.create(id, "PointRange", "IndexRange_t", "I4", {1, 2}, range.data());
+        if (options_.boundary_nodes) {
+          points(id, "PointList", patch_nodes(patch), zone);
+        } else {
+          file_.create_text(id, "GridLocation", "GridLocation_t", mesh_.dimension == 3 ? "FaceCenter" : "EdgeCenter");
+          file_.create(id, "PointRange", "IndexRange_t", "I4", {1, 2}, range.data());
+        }
       } else {
         points(id, "PointList", patch.nodes, zone);
       }
@@ -230,6 +235,7 @@ class Writer {
   cgns::File& file_;
   UnstructuredMesh const& mesh_;
   Coordinates x_;
+  WriteOptions options_;
   std::map<std::string, double> bases_;
 };
 
@@ -239,6 +245,7 @@ std::uint64_t bytes_needed(UnstructuredMesh const& mesh) {
   for (auto const& patch : mesh.patches) {
     nodes += 10 + 3 * patch.families.size();
     numbers += patch.faces.item.size() + 2 * std::uint64_t(patch.faces.size()) + patch.nodes.size();
+    numbers += patch.faces.item.size();  // its nodes, where they are listed too
   }
   for (auto const& c : mesh.connections) numbers += 2 * c.nodes.size();
   return cgns::File::bytes_per_node * nodes + sizeof(std::int32_t) * numbers +
@@ -264,9 +271,9 @@ void write_mesh(std::string const& path, UnstructuredMesh const& mesh, Coordinat
   {
     cgns::File file(target.path(), cgns::File::Mode::create, options.format);
     if (mesh.file_order.node.empty())
-      Writer(file, mesh, morphed).run();
+      Writer(file, mesh, morphed, options).run();
     else
-      Writer(file, in_file_order(mesh), in_file_order(mesh, morphed)).run();
+      Writer(file, in_file_order(mesh), in_file_order(mesh, morphed), options).run();
     file.close();
   }
   if (!fields.empty()) {
