@@ -1,6 +1,8 @@
 // Runs one example in a folder of its own and keeps both meshes.
 #pragma once
 
+#include "support/shared_mesh.hpp"
+
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <gtest/gtest.h>
@@ -16,9 +18,6 @@
 #include <string>
 
 #include <sys/wait.h>
-
-#define GRIDMORPH_NEEDS(mesh) \
-  if (!mesh_is_there(mesh)) GTEST_SKIP() << "no " << mesh << " in " << meshes_ << "; set GRIDMORPH_MESHES to its folder"
 
 namespace gridmorph::testing {
 
@@ -45,14 +44,10 @@ inline double wrapped(double angle) { return std::remainder(angle, 2 * std::acos
 class ExampleTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    char const* folder = std::getenv("GRIDMORPH_MESHES");
-    meshes_ = folder ? folder : GRIDMORPH_MESHES_DIR;
     std::string pattern = (std::filesystem::temp_directory_path() / "gridmorph-examples-XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] bool mesh_is_there(std::string const& mesh) const { return std::filesystem::exists(meshes_ / mesh); }
 
   /// Exit status of a shell command; what it printed is in the files out and err of the test's folder.
   [[nodiscard]] int shell(std::string const& command) const {
@@ -61,14 +56,22 @@ class ExampleTest : public ::testing::Test {
     return WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code);
   }
   [[nodiscard]] std::string path(std::string const& name) const { return (folder_ / name).string(); }
+  /// meshes: folder of meshes that are used instead of their stand-ins; none: "".
   [[nodiscard]] std::string run_command(std::string const& meshes, std::string const& name) const {
-    return "'" GRIDMORPH_EXAMPLES "/run' --gridmorph '" GRIDMORPH_EXECUTABLE "' --meshes '" + meshes + "' --out '" +
-           folder_.string() + "' " + name;
+    return "GRIDMORPH_MESHES= '" GRIDMORPH_EXAMPLES "/run' --gridmorph '" GRIDMORPH_EXECUTABLE "' --meshes '" + meshes +
+           "' --out '" + folder_.string() + "' " + name;
   }
+  /// Where examples/run puts the mesh of an example: beside its case file if it is made, in a folder "meshes" if it is the project's.
+  [[nodiscard]] std::string mesh_of(std::string const& name, std::string const& mesh) const {
+    auto const made = path(name + "/" + mesh);
+    return std::filesystem::exists(made) ? made : path(name + "/meshes/" + mesh);
+  }
+  /// The project's meshes where a case file in the test's folder looks for them.
+  void link_meshes() const { std::filesystem::create_directory_symlink(GRIDMORPH_EXAMPLES "/meshes", path("meshes")); }
 
   /// Runs the example: done, and nothing inverted.
   void run(std::string const& name) const {
-    int const status = shell(run_command(meshes_.string(), name));
+    int const status = shell(run_command(meshes_, name));
     ASSERT_EQ(status, 0) << contents(path("out")) << contents(path("err")) << contents(path(name + "/log.txt"));
     auto const report = nlohmann::json::parse(contents(path(name + "/" + name + ".json")));
     for (auto const* region : {"near_field", "far_field"})
@@ -78,7 +81,7 @@ class ExampleTest : public ::testing::Test {
   /// Morphs and checks what holds for every structured example: run(), interfaces closed as before.
   void morph(std::string const& name, std::string const& mesh) {
     ASSERT_NO_FATAL_FAILURE(run(name));
-    before = read_mesh(path(name + "/" + mesh));
+    before = read_mesh(mesh_of(name, mesh));
     after = read_mesh(path(name + "/" + name + "_morphed.cgns"));
     ASSERT_EQ(before.n_nodes(), after.n_nodes());
     expect_interfaces_closed();
@@ -156,8 +159,27 @@ class ExampleTest : public ::testing::Test {
     for_patch(name, zone, [&](Index n) { EXPECT_TRUE(after.coordinates[n] == before.coordinates[n]); });
   }
 
-  std::filesystem::path meshes_, folder_;
+  std::string meshes_;  ///< as run_command() has it
+  std::filesystem::path folder_;
   Mesh before, after;
 };
+
+/// Examples whose mesh is a stand-in: with that, and with the mesh it stands in for where that is there.
+template <class Base>
+class StandInTest : public Base, public ::testing::WithParamInterface<bool> {
+ protected:
+  void SetUp() override {
+    Base::SetUp();
+    if (GetParam()) return;
+    // Any of them tells where they are.
+    for (auto const* file : {"axialTurbine_7blk.cgns", "multi.cgns", "HeatingCoil.cgns"})
+      if (auto const found = test::shared_mesh(file); !found.empty())
+        this->meshes_ = std::filesystem::path(found).parent_path().string();
+    if (this->meshes_.empty()) GTEST_SKIP() << "the mesh itself is not there; its stand-in is tested";
+  }
+};
+inline std::string stand_in_or_not(::testing::TestParamInfo<bool> const& info) {
+  return info.param ? "stand_in" : "of_others";
+}
 
 }  // namespace gridmorph::testing

@@ -15,7 +15,6 @@ namespace {
 constexpr double deg = 0.017453292519943295;
 
 TEST_F(ExampleTest, TurbineStageTurnsEachRowByItsOwnAngle) {
-  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_stage", "axial_turbine_stage_H.cgns"));
   auto const expect_turn = [&](std::string const& blade, double mid, double stagger, auto const& turn) {
     for_patch(blade, "", [&](Index n) {
@@ -31,7 +30,6 @@ TEST_F(ExampleTest, TurbineStageTurnsEachRowByItsOwnAngle) {
 }
 
 TEST_F(ExampleTest, TurbineStageStaysPeriodicAndOnItsEndWalls) {
-  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_stage", "axial_turbine_stage_H.cgns"));
   expect_periodic_copies_move_alike(0);
   // The motion is purely circumferential, so nodes on the end walls keep axial position and radius.
@@ -44,7 +42,6 @@ TEST_F(ExampleTest, TurbineStageStaysPeriodicAndOnItsEndWalls) {
 }
 
 TEST_F(ExampleTest, TurbineStageSlidesBothSidesOfTheMixingPlaneApart) {
-  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_stage", "axial_turbine_stage_H.cgns"));
   double vane = 0, rotor = 0;
   for_patch("mixing_out", "row1", [&](Index n) { vane = std::max(vane, motion(n, 0).theta); });
@@ -53,9 +50,11 @@ TEST_F(ExampleTest, TurbineStageSlidesBothSidesOfTheMixingPlaneApart) {
   EXPECT_LT(rotor, -0.4 * deg);
 }
 
-TEST_F(ExampleTest, KaplanTurnsVanesAndRunnerAboutTheirSpindles) {
-  GRIDMORPH_NEEDS("axialTurbine_7blk.cgns");
-  ASSERT_NO_FATAL_FAILURE(morph("kaplan_7_blocks", "axialTurbine_7blk.cgns"));
+using StandInExample = StandInTest<ExampleTest>;
+INSTANTIATE_TEST_SUITE_P(Meshes, StandInExample, ::testing::Bool(), stand_in_or_not);
+
+TEST_P(StandInExample, KaplanTurnsVanesAndRunnerAboutTheirSpindles) {
+  ASSERT_NO_FATAL_FAILURE(morph("kaplan_7_blocks", "water_turbine.cgns"));
   auto const expect_turn = [&](std::string const& side, std::string const& zone, double spindle, double at,
                                double turn) {
     double const c = std::cos(turn * deg) - 1, s = std::sin(turn * deg);
@@ -74,9 +73,8 @@ TEST_F(ExampleTest, KaplanTurnsVanesAndRunnerAboutTheirSpindles) {
   expect_turn("ss", "RU_blade", 0, 17.3, 8);
 }
 
-TEST_F(ExampleTest, KaplanStaysPeriodicOnItsCylindersAndOutOfTheDraftTube) {
-  GRIDMORPH_NEEDS("axialTurbine_7blk.cgns");
-  ASSERT_NO_FATAL_FAILURE(morph("kaplan_7_blocks", "axialTurbine_7blk.cgns"));
+TEST_P(StandInExample, KaplanStaysPeriodicOnItsCylindersAndOutOfTheDraftTube) {
+  ASSERT_NO_FATAL_FAILURE(morph("kaplan_7_blocks", "water_turbine.cgns"));
   expect_periodic_copies_move_alike(2);
   for (std::string const wall : {"HUB", "SHROUD"})
     for_patch(wall, "", [&](Index n) { EXPECT_NEAR(motion(n, 2).r, 0, 1e-11) << wall; });
@@ -89,9 +87,8 @@ TEST_F(ExampleTest, KaplanStaysPeriodicOnItsCylindersAndOutOfTheDraftTube) {
     EXPECT_TRUE(after.coordinates[n] == before.coordinates[n]);
 }
 
-TEST_F(ExampleTest, SlatMovesRigidlyAndTheOtherElementsKeepTheirFirstCells) {
-  GRIDMORPH_NEEDS("multi.cgns");
-  ASSERT_NO_FATAL_FAILURE(morph("slat", "multi.cgns"));
+TEST_P(StandInExample, SlatMovesRigidlyAndTheOtherElementsKeepTheirFirstCells) {
+  ASSERT_NO_FATAL_FAILURE(morph("slat", "slotted_airfoil.cgns"));
   double const c = std::cos(-10 * deg), s = std::sin(-10 * deg);
   expect_motion("Klo_Seg   2", "Zone   3", [&](Vec3 const& p) {
     double const x = p.x - 0.0272575, z = p.z - 0.0204985;
@@ -108,9 +105,8 @@ TEST_F(ExampleTest, SlatMovesRigidlyAndTheOtherElementsKeepTheirFirstCells) {
   }
 }
 
-TEST_F(ExampleTest, SlatKeepsTheMeshTwoDimensional) {
-  GRIDMORPH_NEEDS("multi.cgns");
-  ASSERT_NO_FATAL_FAILURE(morph("slat", "multi.cgns"));
+TEST_P(StandInExample, SlatKeepsTheMeshTwoDimensional) {
+  ASSERT_NO_FATAL_FAILURE(morph("slat", "slotted_airfoil.cgns"));
   for (auto const& zone : before.zones)
     for_nodes(zone, {{0, 0, 0}, {1, zone.extent[1], zone.extent[2]}}, [&](Index n, Index3 const&) {
       EXPECT_EQ(after.coordinates.y(n), before.coordinates.y(n));
@@ -121,7 +117,6 @@ TEST_F(ExampleTest, SlatKeepsTheMeshTwoDimensional) {
 }
 
 TEST_F(ExampleTest, WingBendsAndTwistsAsItsFormulaSays) {
-  GRIDMORPH_NEEDS("mdo_tutorial_000_vol.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("wing_38_blocks", "mdo_tutorial_000_vol.cgns"));
   expect_motion("wall", "", [](Vec3 const& p) {
     double const t = p.z / 14, angle = -5 * deg * t * t, x = p.x - 1.25 - 0.473 * p.z;
@@ -133,7 +128,6 @@ TEST_F(ExampleTest, WingBendsAndTwistsAsItsFormulaSays) {
 }
 
 TEST_F(ExampleTest, WingReachesItsTargetSurface) {
-  GRIDMORPH_NEEDS("mdo_tutorial_000_vol.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("wing_target", "mdo_tutorial_000_vol.cgns"));
   auto const report = nlohmann::json::parse(contents(path("wing_target/wing_target.json")));
   ASSERT_EQ(report["targets"].size(), 1u);
@@ -157,7 +151,6 @@ TEST_F(ExampleTest, WingReachesItsTargetSurface) {
 }
 
 TEST_F(ExampleTest, WingletCantsAndTheWingInboardStays) {
-  GRIDMORPH_NEEDS("717_wl_L2.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("winglet", "717_wl_L2.cgns"));
   Index inboard = 0;
   expect_motion("wall", "", [&](Vec3 const& p) {
@@ -226,7 +219,6 @@ double mean_radius(Mesh const& mesh, Index a, Index b, int axis) {
 }
 
 TEST_F(ExampleTest, StageRedesignBowsTheVaneAndKeepsItsAxialPositionsAndEnds) {
-  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("stage_redesign", "axial_turbine_stage_H.cgns"));
   for_patch("BLADE1", "", [&](Index n) { EXPECT_NEAR(motion(n, 0).axial, 0, 1e-15); });
   EdgeNodes const edges = edge_nodes(before, "BLADE1", "blade_ps", 0);
@@ -254,7 +246,6 @@ TEST_F(ExampleTest, StageRedesignBowsTheVaneAndKeepsItsAxialPositionsAndEnds) {
 }
 
 TEST_F(ExampleTest, StageRedesignChangesTheChordOfTheRotorAsInThePaper) {
-  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("stage_redesign", "axial_turbine_stage_H.cgns"));
   expect_periodic_copies_move_alike(0);
   EdgeNodes const edges = edge_nodes(before, "BLADE2", "blade_ps", 0);
@@ -300,9 +291,8 @@ TEST_F(ExampleTest, StageRedesignChangesTheChordOfTheRotorAsInThePaper) {
   }
 }
 
-TEST_F(ExampleTest, KaplanRedesignTurnsItsBladesInTheirCylinders) {
-  GRIDMORPH_NEEDS("axialTurbine_7blk.cgns");
-  ASSERT_NO_FATAL_FAILURE(morph("kaplan_redesign", "axialTurbine_7blk.cgns"));
+TEST_P(StandInExample, KaplanRedesignTurnsItsBladesInTheirCylinders) {
+  ASSERT_NO_FATAL_FAILURE(morph("kaplan_redesign", "water_turbine.cgns"));
   expect_periodic_copies_move_alike(2);
   auto const each_station = [&](std::string const& family, auto const& check) {
     for (std::string const side : {"ps", "ss"}) {
@@ -337,7 +327,6 @@ TEST_F(ExampleTest, KaplanRedesignTurnsItsBladesInTheirCylinders) {
 }
 
 TEST_F(ExampleTest, WingRedesignChangesChordAlongTheSpanAndLeavesTheRoot) {
-  GRIDMORPH_NEEDS("mdo_tutorial_000_vol.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("wing_redesign", "mdo_tutorial_000_vol.cgns"));
   expect_fixed("far");
   for_patch("sym", "", [&](Index n) { EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n)); });
@@ -373,8 +362,7 @@ TEST_F(ExampleTest, WingRedesignChangesChordAlongTheSpanAndLeavesTheRoot) {
 }
 
 TEST_F(ExampleTest, RotorstatorIsRefusedInterfaceByInterfaceWithoutATolerance) {
-  GRIDMORPH_NEEDS("rotorstator.cgns");
-  std::filesystem::create_symlink(std::filesystem::absolute(meshes_ / "rotorstator.cgns"), path("rotorstator.cgns"));
+  link_meshes();
   std::string const morph_without = "sed '/^matching_tolerance/d' '" GRIDMORPH_EXAMPLES "/rotorstator.toml' >'" +
                                     path("case.toml") + "' && '" GRIDMORPH_EXECUTABLE "' morph '" + path("case.toml") +
                                     "'";
@@ -387,8 +375,7 @@ TEST_F(ExampleTest, RotorstatorIsRefusedInterfaceByInterfaceWithoutATolerance) {
 }
 
 TEST_F(ExampleTest, RotorstatorIsRefusedFaceByFaceWithoutOpenFaces) {
-  GRIDMORPH_NEEDS("rotorstator.cgns");
-  std::filesystem::create_symlink(std::filesystem::absolute(meshes_ / "rotorstator.cgns"), path("rotorstator.cgns"));
+  link_meshes();
   std::string const morph_without =
       "sed -e '/^open_faces/d' -e 's/, \"open\"//' '" GRIDMORPH_EXAMPLES "/rotorstator.toml' >'" + path("case.toml") +
       "' && '" GRIDMORPH_EXECUTABLE "' morph '" + path("case.toml") + "'";
@@ -402,7 +389,6 @@ TEST_F(ExampleTest, RotorstatorIsRefusedFaceByFaceWithoutOpenFaces) {
 }
 
 TEST_F(ExampleTest, RotorstatorMovesAllRotorBladesTogether) {
-  GRIDMORPH_NEEDS("rotorstator.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("rotorstator", "rotorstator.cgns"));
   for (std::string const zone : {"blk8", "blk10", "blk12", "blk14"})
     expect_motion("K0_1_bc2004", zone, [](Vec3 const&) { return Vec3{0, 0.606, 0}; });
@@ -410,7 +396,6 @@ TEST_F(ExampleTest, RotorstatorMovesAllRotorBladesTogether) {
 }
 
 TEST_F(ExampleTest, WingFlutterFollowsTheBeamThatItsPlateWasMadeBy) {
-  GRIDMORPH_NEEDS("mdo_tutorial_000_vol.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("wing_flutter", "mdo_tutorial_000_vol.cgns"));
   expect_fixed("wall");  // the series keeps the baseline as its first grid
   ASSERT_EQ(
@@ -436,7 +421,6 @@ TEST_F(ExampleTest, WingFlutterFollowsTheBeamThatItsPlateWasMadeBy) {
 
 TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
   if (test::reduced()) GTEST_SKIP() << "the stage takes long, and other tests have it";
-  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_flutter", "axial_turbine_stage_H.cgns"));
   ASSERT_EQ(shell("cd '" + path("turbine_flutter") +
                   "' && '" GRIDMORPH_EXECUTABLE "' morph turbine_flutter.toml -o s_{step}.cgns"),
@@ -456,7 +440,6 @@ TEST_F(ExampleTest, TurbineFlutterKeepsBladesPeriodicAndTheVanesStill) {
 
 TEST_F(ExampleTest, HotToColdTurnsTheRotorBackAndKeepsItPeriodic) {
   if (test::reduced()) GTEST_SKIP() << "the stage takes long, and other tests have it";
-  GRIDMORPH_NEEDS("axial_turbine_stage_H.cgns");
   ASSERT_NO_FATAL_FAILURE(morph("turbine_hot_to_cold", "axial_turbine_stage_H.cgns"));
   expect_periodic_copies_move_alike(0);
   expect_fixed("BLADE1");
@@ -466,10 +449,27 @@ TEST_F(ExampleTest, HotToColdTurnsTheRotorBackAndKeepsItPeriodic) {
   EXPECT_LT(tip, 0.004);
 }
 
-TEST_F(ExampleTest, ScriptSaysSoWhenThereAreNoMeshes) {
-  EXPECT_EQ(shell(run_command(folder_.string(), "slat winglet")), 2);
-  EXPECT_NE(contents(path("out")).find("skipped: no multi.cgns"), std::string::npos);
-  EXPECT_NE(contents(path("err")).find("none of the meshes"), std::string::npos);
+/// From a clone in an empty folder: nothing beside it, nothing in the environment.
+TEST_F(ExampleTest, EveryCaseFindsItsMeshInTheProjectOrMakesIt) {
+  for (auto const& entry : std::filesystem::directory_iterator(GRIDMORPH_EXAMPLES)) {
+    if (entry.path().extension() != ".toml") continue;
+    std::string const text = contents(entry.path());
+    auto const begin = text.find("input  = \"") + 10;
+    auto const mesh = text.substr(begin, text.find('"', begin) - begin);
+    bool const made = text.find("# mesh: gridmorph demo ") != std::string::npos;
+    EXPECT_NE(made, std::filesystem::exists(entry.path().parent_path() / mesh)) << entry.path() << " needs " << mesh;
+  }
+}
+
+TEST_F(ExampleTest, ScriptSaysSoWhenAMeshIsMissing) {
+  std::filesystem::copy(GRIDMORPH_EXAMPLES "/run", path("run"));
+  std::filesystem::copy(GRIDMORPH_EXAMPLES "/winglet.toml", path("winglet.toml"));
+  EXPECT_EQ(
+      shell("'" + path("run") + "' --gridmorph '" GRIDMORPH_EXECUTABLE "' --out '" + path("out_folder") + "' winglet"),
+      2);
+  EXPECT_NE(contents(path("out")).find("skipped: no meshes/717_wl_L2.cgns"), std::string::npos)
+      << contents(path("out"));
+  EXPECT_NE(contents(path("err")).find("none of the meshes"), std::string::npos) << contents(path("err"));
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -22,12 +21,6 @@ namespace {
 
 class Invariants : public ::testing::TestWithParam<Case> {
  protected:
-  void SetUp() override {
-    std::string const& file = GetParam().file;
-    if (!file.empty() && !std::filesystem::exists(file))
-      GTEST_SKIP() << file << " is not there (set GRIDMORPH_MESHES to the folder of the shared meshes)";
-  }
-
   /// Before Kokkos is closed.
   static void TearDownTestSuite() { outcomes.clear(); }
 

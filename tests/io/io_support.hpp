@@ -1,13 +1,13 @@
 // Shared by the tests of files: a folder of their own, and a way to look at a file without the code under test.
 #pragma once
 
+#include "support/shared_mesh.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,13 +16,6 @@
 #include <vector>
 
 namespace gridmorph::test {
-
-/// Path of a mesh from outside, or "" when the folder is not there.
-inline std::string shared_mesh(std::string const& name) {
-  char const* folder = std::getenv("GRIDMORPH_MESHES");
-  auto const path = std::filesystem::path(folder ? folder : GRIDMORPH_MESHES_DIR) / name;
-  return std::filesystem::exists(path) ? path.string() : "";
-}
 
 /// Every node of a file: path -> "label|type|dimensions|bytes".
 std::map<std::string, std::string> dump_tree(std::string const& path);

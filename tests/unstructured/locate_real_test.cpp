@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,7 +27,8 @@ std::vector<Location> locate(UnstructuredMesh const& mesh, std::vector<Vec3> con
 
 class LocateReal : public testing::TestWithParam<char const*> {};
 INSTANTIATE_TEST_SUITE_P(Meshes, LocateReal,
-                         testing::Values("HeatingCoil.cgns", "mesh_vki_turbine.su2", "axial_turbine_stage_H.cgns",
+                         testing::Values("heated_coil.cgns", "water_turbine.cgns", "slotted_airfoil.cgns",
+                                         "HeatingCoil.cgns", "mesh_vki_turbine.su2", "axial_turbine_stage_H.cgns",
                                          "axialTurbine_7blk.cgns", "rotorstator.cgns", "mdo_tutorial_000_vol.cgns",
                                          "multi.cgns", "717_wl_L2.cgns"),
                          [](auto const& info) {
@@ -39,10 +39,10 @@ INSTANTIATE_TEST_SUITE_P(Meshes, LocateReal,
 
 TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
   auto const path = shared_mesh(GetParam());
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  if (path.empty()) GTEST_SKIP() << GetParam() << " is not there; its stand-in is tested";
   std::string const name = GetParam();
-  bool const unstructured = name == "HeatingCoil.cgns" || name == "mesh_vki_turbine.su2";
-  auto const mesh = unstructured ? read_unstructured_mesh(path) : as_hexahedra(read_mesh(path));
+  auto const mesh =
+      mesh_kind(path) == MeshKind::unstructured ? read_unstructured_mesh(path) : as_hexahedra(read_mesh(path));
   std::vector<Vec3> points;
   for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
   for (Index e = 0; e < mesh.n_elements(); ++e) {

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numbers>
 #include <ostream>
 
@@ -36,7 +35,7 @@ class RealWrap : public testing::TestWithParam<Real> {};
 TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   Real const& real = GetParam();
   std::string const path = shared_mesh(real.file);
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  if (path.empty()) GTEST_SKIP() << real.file << " is not there; its stand-in is tested";
   UnstructuredMesh const mesh =
       mesh_kind(path) == MeshKind::structured ? as_hexahedra(read_mesh(path)) : read_unstructured_mesh(path);
   UnstructuredTopology const topology = make_topology(mesh);
@@ -110,7 +109,8 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Walls, RealWrap,
-                         testing::Values(Real{"HeatingCoil.cgns", "Default 1 Side FluidZone Part 1", 0.03, false, 5},
+                         testing::Values(Real{"heated_coil.cgns", "Default 1 Side FluidZone Part 1", 0.03, false, 5},
+                                         Real{"HeatingCoil.cgns", "Default 1 Side FluidZone Part 1", 0.03, false, 5},
                                          Real{"mesh_vki_turbine.su2", "airfoil", 0.0015, false, 10},
                                          Real{"mdo_tutorial_000_vol.cgns", "wall", 1, false, 20},
                                          Real{"mdo_tutorial_000_vol.cgns", "wall", 1, true, 20},

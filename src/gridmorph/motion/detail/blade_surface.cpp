@@ -15,9 +15,9 @@ namespace gridmorph {
 namespace {
 
 /// Numbers points so that points closer than the tolerance get one number: a hash grid of that cell size.
-class PointNumbers {
+class MergedPoints {
  public:
-  explicit PointNumbers(double tolerance) : tolerance_(tolerance) {}
+  explicit MergedPoints(double tolerance) : tolerance_(tolerance) {}
 
   /// The number of a known point within the tolerance of p, or `fresh`, which p then has.
   int find_or_add(Vec3 const& p, int fresh) {
@@ -42,7 +42,7 @@ class PointNumbers {
   std::map<Cell, std::vector<std::pair<Vec3, int>>> cells_;
 };
 
-double box_diagonal(std::vector<Vec3> const& points) {
+double diagonal_of(std::vector<Vec3> const& points) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   Vec3 lo{inf, inf, inf}, hi{-inf, -inf, -inf};
   for (Vec3 const& p : points) {
@@ -55,7 +55,7 @@ double box_diagonal(std::vector<Vec3> const& points) {
 class Stitcher {
  public:
   Stitcher(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input, std::vector<std::string>& notes)
-      : mesh_(mesh), input_(input), notes_(notes), numbers_(1e-7 * box_diagonal(patch_points(mesh, patches))) {
+      : mesh_(mesh), input_(input), notes_(notes), numbers_(1e-7 * diagonal_of(patch_points(mesh, patches))) {
     for (int p : patches) add_patch(p);
   }
 
@@ -217,7 +217,7 @@ class Stitcher {
   Mesh const& mesh_;
   BladeInput const& input_;
   std::vector<std::string>& notes_;
-  PointNumbers numbers_;
+  MergedPoints numbers_;
   BladeSurface blade_;
   std::vector<Line> lines_;
   std::map<Line, int> known_lines_;
@@ -228,7 +228,7 @@ class Stitcher {
 
 BladeSurface stitch_blade(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes) {
-  double const size = box_diagonal(patch_points(mesh, patches));
+  double const size = diagonal_of(patch_points(mesh, patches));
   if (!(size > 0) || !std::isfinite(size)) throw MotionError("the blade's nodes are one point, or not finite");
   return Stitcher(mesh, patches, input, notes).run();
 }
