@@ -16,17 +16,33 @@ cache_prefix() {
 
 is_built() { [ -e "$1/.complete" ]; }
 
-# build_with_cmake SOURCE PREFIX OPTION...
-build_with_cmake() {
-  local source=$1 prefix=$2 build
+# with_progress NAME LOG COMMAND...: runs the command with its output at the end of LOG, and says now and then how far its ninja is.
+with_progress() {
+  local name=$1 log=$2 pid second
   shift 2
+  "$@" >>"$log" 2>&1 &
+  pid=$!
+  while :; do
+    for ((second = 0; second < 15; second++)); do
+      sleep 1
+      kill -0 "$pid" 2>/dev/null || break 2
+    done
+    say "$name: $(sed -n 's|^\[\([0-9]*\)/\([0-9]*\)\].*|\1 of \2 steps|p' "$log" | tail -n 1)"
+  done
+  wait "$pid"
+}
+
+# build_with_cmake NAME SOURCE PREFIX OPTION...
+build_with_cmake() {
+  local name=$1 source=$2 prefix=$3 build
+  shift 3
   build=$(mktemp -d "$work/build.XXXXXX")
   rm -rf "$prefix"
   if ! {
-    cmake -S "$source" -B "$build" -G Ninja -DCMAKE_INSTALL_PREFIX="$prefix" "$@" &&
-      cmake --build "$build" --parallel "$(nproc)" &&
-      cmake --install "$build"
-  } >"$build.log" 2>&1; then
+    cmake -S "$source" -B "$build" -G Ninja -DCMAKE_INSTALL_PREFIX="$prefix" "$@" >"$build.log" 2>&1 &&
+      with_progress "$name" "$build.log" cmake --build "$build" --parallel "${GRIDMORPH_JOBS:-$(nproc)}" &&
+      cmake --install "$build" >>"$build.log" 2>&1
+  }; then
     tail -n 40 "$build.log" >&2
     return 1
   fi

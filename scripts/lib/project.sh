@@ -18,8 +18,11 @@ use_dependencies() {
   export CMAKE_PREFIX_PATH
 }
 
-# build PRESET [TARGET]: configures and builds.
+# build PRESET [TARGET [cmake option...]]: configures and builds.
 build() {
-  cmake --preset "$1"
+  cmake --preset "$1" "${@:3}"
   cmake --build --preset "$1" --parallel "$jobs" ${2:+--target "$2"}
 }
+
+# step TEXT...: says what comes next, and how many seconds have passed.
+step() { printf '\n== %s (%d s so far)\n' "$*" "$SECONDS" >&2; }

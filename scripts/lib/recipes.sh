@@ -49,8 +49,8 @@ provide() {
     prefix=${prefixes[$route]}
     say "$name: looking for the sources ($route)"
     source=$("${name}_$route") || continue
-    say "$name: building $prefix"
-    if build_with_cmake "$source" "$prefix" "${options[@]}"; then
+    say "$name: building $prefix (once, about a minute on two cores)"
+    if build_with_cmake "$name" "$source" "$prefix" "${options[@]}"; then
       echo "$prefix"
       return 0
     fi

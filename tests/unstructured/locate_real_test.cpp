@@ -82,7 +82,8 @@ TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
     EXPECT_LT(distance(mesh.coordinates[rows.item[std::size_t(rows.first[std::size_t(n)])]], mesh.coordinates[n]),
               tolerance);
   }
-  EXPECT_EQ(several > 0, zones_overlap);
+  // Rows of the stand-in turbine touch along planes, where nodes of the one lie on faces of the other.
+  EXPECT_EQ(several > 0, zones_overlap || name == "water_turbine.cgns");
 }
 
 }  // namespace

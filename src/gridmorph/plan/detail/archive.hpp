@@ -32,7 +32,7 @@ struct Fields;
   };
 
 template <class T>
-concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+concept Arithmetic = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
 template <class T>
 struct IsList : std::false_type {};
@@ -45,7 +45,7 @@ struct IsList<std::string> : std::true_type {};
 template <class Archive, class T>
 void pass(Archive& archive, T& value) {
   using Plain = std::remove_const_t<T>;
-  if constexpr (Number<Plain>) {
+  if constexpr (Arithmetic<Plain>) {
     archive.number(value);
   } else if constexpr (std::is_array_v<Plain> || requires { std::tuple_size<Plain>::value; }) {
     for (auto& element : value) pass(archive, element);
@@ -63,7 +63,7 @@ using Bits =
 
 class ByteWriter {
  public:
-  template <Number T>
+  template <Arithmetic T>
   void number(T const& value) {
     auto const bits = std::bit_cast<Bits<T>>(value);
     std::byte little_endian[sizeof bits];
@@ -73,7 +73,7 @@ class ByteWriter {
   template <class List>
   void list(List const& values) {
     number(std::uint64_t(values.size()));
-    if constexpr (Number<typename List::value_type> && std::endian::native == std::endian::little) {
+    if constexpr (Arithmetic<typename List::value_type> && std::endian::native == std::endian::little) {
       raw(std::as_bytes(std::span(values.data(), values.size())));
     } else {
       for (auto const& value : values) pass(*this, value);
@@ -94,7 +94,7 @@ class ByteWriter {
 /// Bytes that a value takes at least: all its lists empty.
 class LeastSize {
  public:
-  template <Number T>
+  template <Arithmetic T>
   void number(T const&) {
     n_ += sizeof(T);
   }
@@ -125,7 +125,7 @@ class ByteReader {
  public:
   explicit ByteReader(std::span<std::byte const> bytes) : bytes_(bytes) {}
 
-  template <Number T>
+  template <Arithmetic T>
   void number(T& value) {
     if (bytes_.size() < sizeof(T)) throw Damaged("it ends too early");
     Bits<T> bits = 0;
@@ -144,7 +144,7 @@ class ByteReader {
     if (count > bytes_.size() / LeastSize::of<T>())
       throw Damaged("a table of " + std::to_string(count) + " entries is larger than the file");
     values.resize(count);
-    if constexpr (Number<T> && std::endian::native == std::endian::little) {
+    if constexpr (Arithmetic<T> && std::endian::native == std::endian::little) {
       if (count > 0) std::memcpy(values.data(), bytes_.data(), count * sizeof(T));
       bytes_ = bytes_.subspan(count * sizeof(T));
     } else {
