@@ -69,8 +69,12 @@ TEST_P(CoilExample, HeatingCoilDuctSlidesOnItsCylinders) {
       (r > 0.9 ? duct : body).push_back(n);
   }
   EXPECT_EQ(strut.empty(), !GetParam());
+  // A node of the strut's foot may slide on along the body.
   for (Number const n : strut)
-    EXPECT_NEAR(std::abs(moved.x(n)), moved.y(n) * std::tan(std::acos(-1.0) / 18), 1e-6) << describe_node(mesh, n);
+    EXPECT_LT(std::min(std::abs(std::abs(moved.x(n)) - moved.y(n) * std::tan(std::acos(-1.0) / 18)),
+                       std::abs(std::hypot(moved.x(n), moved.y(n)) - 0.5)),
+              2e-4)
+        << describe_node(mesh, n);
   double low = 1, high = -1;
   for (Number const n : body) {
     low = std::min(low, mesh.coordinates.y(n));
