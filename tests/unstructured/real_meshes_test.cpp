@@ -48,6 +48,10 @@ TEST_P(RealCoil, IsReadWholeAndClosed) {
   auto const claims = claim_boundary(mesh, topology);
   for (auto const& p : claims.problems) ADD_FAILURE() << p;
   ASSERT_EQ(mesh.patches.size(), 6u);
+  auto const is_list = [](std::string const& note) { return note.find("is a list of nodes") != std::string::npos; };
+  EXPECT_EQ(std::count_if(mesh.notes.begin(), mesh.notes.end(), is_list), 6);
+  auto const is_null = [](UnstructuredPatch const& patch) { return patch.bc_type == "Null"; };
+  EXPECT_EQ(std::count_if(mesh.patches.begin(), mesh.patches.end(), is_null), 3);
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     EXPECT_GT(claims.faces_of_patch[p], 0) << mesh.patches[p].name;
     EXPECT_EQ(claims.faces_of_patch[p], mesh.patches[p].faces.size()) << mesh.patches[p].name;
