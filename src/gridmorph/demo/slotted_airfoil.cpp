@@ -107,7 +107,7 @@ struct Element {
 /// The lines that bound the four zones. Wakes reach from each tail to x = 10: part A beyond the flap, B above the flap, C above the main
 /// element. Zones meet on three lines: `flap`, around the flap's C grid above and before it; `slat`, below and behind the slat's; and
 /// the inner side of the outermost zone, in pieces.
-struct Lines {
+struct Outlines {
   Element slat{{-0.070, -0.045}, {0.030, 0.045}, 0.10, 0.10};
   Element main{{0, -0.02}, {0.88, 0.02}, 0.075, 0.01};
   Element flap{{0.885, -0.028}, {1.20, -0.12}, 0.075, 0.02};
@@ -170,7 +170,7 @@ struct Grid {
   int wall_to;
 };
 
-std::array<Grid, 4> grids(Lines const& l) {
+std::array<Grid, 4> grids(Outlines const& l) {
   constexpr double thin = 1.8e-4;
   return {Grid{chain({reversed(l.flap_wake), l.flap.wall(-1, 1, 0.16, 32, 0.03, 0.03),
                       l.flap.wall(-1, 0.16, 0, 5, 0.2, 0.2), l.flap.wall(1, 0, 0.2, 5, 0.2, 0.2),
@@ -183,7 +183,7 @@ std::array<Grid, 4> grids(Lines const& l) {
           Grid{chain({reversed(l.slat_wake), l.slat.wall(-1, 1, 0.1, 24, 0.03, 0.03),
                       l.slat.wall(-1, 0.1, 0, 10, 0.1, 0.1), l.slat.wall(1, 0, 1, 70, 0.004, 0.012), l.slat_wake}),
                chain({reversed(l.slat_line), l.above}), 28, thin, 92, 196},
-          Grid{chain({l.below_flap, l.below_main, l.above}), Lines::far_field(), 16, 2e-3, -1, -1}};
+          Grid{chain({l.below_flap, l.below_main, l.above}), Outlines::far_field(), 16, 2e-3, -1, -1}};
 }
 
 void place_nodes(Mesh& mesh, Zone const& zone, Grid const& grid) {
@@ -248,7 +248,7 @@ void add_patches(Mesh& mesh, int z, Grid const& grid) {
 
 Mesh make_slotted_airfoil() {
   using namespace slotted_airfoil;
-  auto const all = grids(Lines());
+  auto const all = grids(Outlines());
   Mesh mesh;
   mesh.source = "slotted airfoil";
   for (std::size_t z = 0; z < all.size(); ++z)
