@@ -41,10 +41,10 @@ struct SurfaceMotion::Impl {
   std::vector<std::unique_ptr<SectionMotion>> sections_of_rule;  ///< per rule, null for other rules
   std::map<int, TargetMotion> targets;                           ///< by rule
 
-  Impl(Mesh const& mesh, ResolvedMotion const& motion)
+  Impl(Mesh const& mesh, ResolvedMotion const& motion, PatchFaces const* faces)
       : rules(motion.rules), surfaces(mesh, motion, notes), row_of_rule(rules.size(), nullptr) {
     Problems problems;
-    make_targets(mesh, motion, problems);
+    make_targets(mesh, motion, faces, problems);
     sections_of_rule.resize(rules.size());
     for (std::size_t r = 0; r < rules.size(); ++r) {
       auto const* sections = std::get_if<SectionsRule>(&rules[r].rule);
@@ -69,12 +69,13 @@ struct SurfaceMotion::Impl {
   }
 
   /// Before the blade rows, which may follow a blade that has a target.
-  void make_targets(Mesh const& mesh, ResolvedMotion const& motion, Problems& problems) {
+  void make_targets(Mesh const& mesh, ResolvedMotion const& motion, PatchFaces const* faces, Problems& problems) {
     for (std::size_t r = 0; r < rules.size(); ++r) {
       auto const* target = std::get_if<TargetRule>(&rules[r].rule);
       if (target == nullptr) continue;
       try {
-        targets.try_emplace(int(r), mesh, patches_of(motion, int(r)), *target, motion.axis, label(int(r)), notes);
+        targets.try_emplace(int(r), mesh, patches_of(motion, int(r)), *target, motion.axis, label(int(r)), notes,
+                            faces);
       } catch (MotionError const& e) {
         problems.add(e.what());
       }
@@ -149,8 +150,8 @@ struct SurfaceMotion::Impl {
   }
 };
 
-SurfaceMotion::SurfaceMotion(Mesh const& mesh, ResolvedMotion const& motion)
-    : impl_(std::make_unique<Impl>(mesh, motion)) {}
+SurfaceMotion::SurfaceMotion(Mesh const& mesh, ResolvedMotion const& motion, PatchFaces const* faces)
+    : impl_(std::make_unique<Impl>(mesh, motion, faces)) {}
 SurfaceMotion::~SurfaceMotion() = default;
 SurfaceMotion::SurfaceMotion(SurfaceMotion&&) noexcept = default;
 SurfaceMotion& SurfaceMotion::operator=(SurfaceMotion&&) noexcept = default;

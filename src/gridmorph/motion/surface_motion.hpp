@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/motion/motion.hpp>
+#include <gridmorph/motion/patch_faces.hpp>
 #include <gridmorph/motion/slip_surface.hpp>
 #include <gridmorph/motion/target_reach.hpp>
 
@@ -17,7 +18,8 @@ namespace gridmorph {
 /// Cost: O(nodes of the patches involved) to construct, O(log n) per point to evaluate.
 class SurfaceMotion {
  public:
-  SurfaceMotion(Mesh const& mesh, ResolvedMotion const& motion);
+  /// `faces`: of patches with a target that are no grids but the outline of an unstructured mesh; read here only.
+  SurfaceMotion(Mesh const& mesh, ResolvedMotion const& motion, PatchFaces const* faces = nullptr);
   ~SurfaceMotion();
   SurfaceMotion(SurfaceMotion&&) noexcept;
   SurfaceMotion& operator=(SurfaceMotion&&) noexcept;

@@ -111,7 +111,11 @@ class Finder {
 
   /// Slip surfaces from the positions of the patches' nodes; those that are the patch itself need its faces.
   void make_surfaces() {
-    out_.surface = std::make_shared<SurfaceMotion const>(out_.outline, by_position(out_.motion));
+    std::vector<std::uint8_t> targeted;
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+      targeted.push_back(std::holds_alternative<TargetRule>(out_.motion.patch_rule(int(p))) ? 1 : 0);
+    out_.target_faces = patch_faces(mesh_, topology_, claims_, out_.nodes_of_patch, targeted);
+    out_.surface = std::make_shared<SurfaceMotion const>(out_.outline, by_position(out_.motion), &out_.target_faces);
     out_.notes.insert(out_.notes.end(), out_.surface->notes().begin(), out_.surface->notes().end());
     surface_of_patch_.assign(mesh_.patches.size(), -1);
     std::map<int, int> seen;  // numbers of SurfaceMotion: nothing else tells surfaces apart for sure
@@ -393,7 +397,7 @@ std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions cons
 std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary, Motion const& motion) {
   ResolvedMotion now = boundary.motion;
   for (std::size_t r = 0; r < motion.rules.size(); ++r) now.rules[r].rule = motion.rules[r].rule;
-  return values_of(mesh, boundary, SurfaceMotion(boundary.outline, by_position(now)));
+  return values_of(mesh, boundary, SurfaceMotion(boundary.outline, by_position(now), &boundary.target_faces));
 }
 
 namespace {
@@ -410,6 +414,9 @@ std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions con
   };
   std::map<std::pair<std::string, std::string>, Conflict> conflicts;
   double const tolerance = boundary.motion.conformity_tolerance * mesh.size();
+  auto const by_default = [&](BoundaryConditions::Request const& q) {
+    return q.patch >= 0 && boundary.motion.patch[std::size_t(q.patch)].by_default;
+  };
   for (std::size_t begin = 0, end = 0; begin < requests.size(); begin = end) {
     end = begin;
     while (end < requests.size() && requests[end].rule == requests[begin].rule) ++end;
@@ -425,6 +432,14 @@ std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions con
         continue;
       }
       auto const& first = requests[std::size_t(given_by[slot])];
+      // Where zones touch without a connection, the side that a rule names has the say.
+      if (mesh.zone_of_node(first.node) != mesh.zone_of_node(r.node) && by_default(first) != by_default(r)) {
+        if (by_default(first)) {
+          given_by[slot] = Index(n);
+          values[slot] = u[n - begin];
+        }
+        continue;
+      }
       if (boundary.motion.rules[std::size_t(first.rule)].rank < boundary.motion.rules[std::size_t(r.rule)].rank)
         continue;
       double const gap = distance(values[slot], u[n - begin]);

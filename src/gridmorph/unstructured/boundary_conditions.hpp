@@ -23,6 +23,7 @@ struct BoundaryConditions {
   Mesh outline;  ///< see boundary_outline()
   std::vector<std::vector<Number>> nodes_of_patch;
   ResolvedMotion motion;
+  PatchFaces target_faces;  ///< of patches that move onto a target
   std::shared_ptr<SurfaceMotion const> surface;
 
   /// Nodes whose displacement the rules give, ascending: the order in which a morph expects their values.

@@ -2,6 +2,7 @@
 #include <gridmorph/unstructured/boundary_outline.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace gridmorph {
@@ -59,6 +60,7 @@ Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Numb
     auto const& nodes = nodes_of_patch[p];
     Patch patch{from.name, from.bc_type, from.kind, from.families, 0, {}};
     patch.zone = add_zone(mesh.zones[std::size_t(from.zone)].name, nodes.size());
+    outline.zones.back().single_precision = mesh.zones[std::size_t(from.zone)].single_precision;
     patch.range = {{0, 0, 0}, {int(nodes.size()), flat ? 2 : 1, 1}};
     outline.patches.push_back(std::move(patch));
     lists.push_back(&nodes);
@@ -87,6 +89,53 @@ Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Numb
     }
   }
   return outline;
+}
+
+PatchFaces patch_faces(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, BoundaryClaims const& claims,
+                       std::vector<std::vector<Number>> const& nodes_of_patch,
+                       std::vector<std::uint8_t> const& wanted) {
+  PatchFaces out;
+  out.lines = mesh.dimension == 2;
+  out.of_patch.resize(mesh.patches.size());
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    if (wanted[p] == 0) continue;
+    auto& listed = out.of_patch[p].listed;
+    listed.resize(nodes_of_patch[p].size());
+    std::iota(listed.begin(), listed.end(), 0);
+    std::sort(listed.begin(), listed.end(), [&](int a, int b) {
+      return node_number_in_file(mesh, nodes_of_patch[p][std::size_t(a)]) <
+             node_number_in_file(mesh, nodes_of_patch[p][std::size_t(b)]);
+    });
+  }
+  for (Index f = 0; f < topology.boundary.size(); ++f) {
+    int const p = claims.patch[std::size_t(f)];
+    if (p < 0 || wanted[std::size_t(p)] == 0) continue;
+    auto const face = topology.boundary.nodes[f];
+    auto const& nodes = nodes_of_patch[std::size_t(p)];
+    std::vector<int> place;
+    Vec3 middle, normal, centre;
+    for (Number const n : face) {
+      place.push_back(int(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin()));
+      middle += (1 / double(face.size())) * mesh.coordinates[n];
+    }
+    auto& corners = out.of_patch[std::size_t(p)].corners;
+    if (place.size() == 2) {
+      corners.push_back({place[0], place[1], -1, -1});
+      continue;
+    }
+    for (std::size_t k = 0; k < face.size(); ++k)
+      normal += cross(mesh.coordinates[face[k]] - middle, mesh.coordinates[face[(k + 1) % face.size()]] - middle);
+    auto const element = mesh.elements.corners(topology.boundary.element[std::size_t(f)]);
+    for (Number const n : element) centre += (1 / double(element.size())) * mesh.coordinates[n];
+    // Elements may be numbered either way around; the normal is to point into them.
+    if (dot(normal, centre - middle) < 0) std::reverse(place.begin(), place.end());
+    if (place.size() <= 4) {
+      corners.push_back({place[0], place[1], place[2], place.size() == 4 ? place[3] : -1});
+    } else {
+      for (std::size_t k = 1; k + 1 < place.size(); ++k) corners.push_back({place[0], place[k], place[k + 1], -1});
+    }
+  }
+  return out;
 }
 
 }  // namespace gridmorph

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <gridmorph/mesh/unstructured_topology.hpp>
+#include <gridmorph/motion/patch_faces.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace gridmorph {
@@ -14,6 +16,11 @@ namespace gridmorph {
 /// revolution, formulas) are then the structured engine's own. A patch of a 2-D mesh, a line, has a second row of nodes across
 /// the mesh's plane, so that it has a plane of its own. Cost O(boundary nodes).
 Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Number>> const& nodes_of_patch);
+
+/// The faces of the patches that `wanted` marks (per patch) on the nodes of the outline, fans of triangles where they have more than four
+/// corners. Cost O(their nodes, log).
+PatchFaces patch_faces(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, BoundaryClaims const& claims,
+                       std::vector<std::vector<Number>> const& nodes_of_patch, std::vector<std::uint8_t> const& wanted);
 
 /// Nodes of each patch, ascending: those of the boundary faces it got, or all it lists where it got none.
 std::vector<std::vector<Number>> nodes_of_patches(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,

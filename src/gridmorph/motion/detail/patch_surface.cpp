@@ -76,8 +76,22 @@ double box_diagonal(std::vector<Vec3> const& points) {
   return distance(lo, hi);
 }
 
-PatchSurface::PatchSurface(Mesh const& mesh, std::vector<int> const& patches) {
-  size = box_diagonal(patch_points(mesh, patches));
+PatchSurface::PatchSurface(Mesh const& mesh, std::vector<int> const& patches, PatchFaces const* faces)
+    : gridded(faces == nullptr), lines(faces != nullptr && faces->lines) {
+  auto const range_of = [&](Patch const& patch) {
+    IndexRange range = patch.range;
+    if (!gridded) range.end[1] = range.begin[1] + 1;
+    return range;
+  };
+  if (gridded) {
+    size = box_diagonal(patch_points(mesh, patches));
+  } else {
+    std::vector<Vec3> all;
+    for (int const p : patches)
+      for_each_node(mesh.zones[mesh.patches[p].zone], range_of(mesh.patches[p]),
+                    [&](Index n) { all.push_back(mesh.coordinates[n]); });
+    size = box_diagonal(all);
+  }
   bool single = false;
   for (int const p : patches) single = single || mesh.zones[mesh.patches[p].zone].single_precision;
   tolerance = (single ? 1e-6 : 1e-9) * size;
@@ -87,9 +101,10 @@ PatchSurface::PatchSurface(Mesh const& mesh, std::vector<int> const& patches) {
     PatchGrid grid;
     grid.patch = p;
     grid.extent = {1, 1};
+    IndexRange const range = range_of(patch);
     for (int axis = 0, d = 0; axis < 3 && d < 2; ++axis)
-      if (patch.range.extent(axis) > 1) grid.extent[d++] = patch.range.extent(axis);
-    for_each_node(mesh.zones[patch.zone], patch.range, [&](Index n) {
+      if (range.extent(axis) > 1) grid.extent[d++] = range.extent(axis);
+    for_each_node(mesh.zones[patch.zone], range, [&](Index n) {
       Vec3 const x = mesh.coordinates[n];
       int number = numbers.find(x);
       if (number < 0) {
@@ -99,24 +114,62 @@ PatchSurface::PatchSurface(Mesh const& mesh, std::vector<int> const& patches) {
       }
       grid.vertex.push_back(number);
     });
-    grid.inward = points_out_of_mesh(mesh, patch);
+    if (gridded) {
+      grid.inward = points_out_of_mesh(mesh, patch);
+    } else {
+      grid.listed = faces->of_patch[std::size_t(p)].listed;
+      for (GridFacet facet : faces->of_patch[std::size_t(p)].corners) {
+        for (int& corner : facet)
+          if (corner >= 0) corner = grid.vertex[std::size_t(corner)];
+        grid.faces.push_back(facet);
+      }
+    }
     grids.push_back(std::move(grid));
   }
 }
 
 std::vector<GridFacet> PatchSurface::facets() const {
   std::vector<GridFacet> out;
-  for (PatchGrid const& grid : grids)
+  auto const add = [&](GridFacet const& all, int corners, bool reverse) {
+    GridFacet facet{-1, -1, -1, -1};
+    int n = 0;
+    for (int c = 0; c < corners; ++c)
+      if (all[c] != all[(c + 1) % corners]) facet[n++] = all[c];
+    if (reverse) std::reverse(facet.begin(), facet.begin() + n);
+    if (n >= 3 && facet[0] != facet[2] && (n == 3 || facet[1] != facet[3])) out.push_back(facet);
+  };
+  for (PatchGrid const& grid : grids) {
+    for (GridFacet const& face : grid.faces)
+      if (face[2] >= 0) add(face, face[3] < 0 ? 3 : 4, false);
     for (int b = 0; b + 1 < grid.extent[1]; ++b)
-      for (int a = 0; a + 1 < grid.extent[0]; ++a) {
-        GridFacet const all{grid.at(a, b), grid.at(a + 1, b), grid.at(a + 1, b + 1), grid.at(a, b + 1)};
-        GridFacet facet{-1, -1, -1, -1};
-        int n = 0;
-        for (int c = 0; c < 4; ++c)
-          if (all[c] != all[(c + 1) % 4]) facet[n++] = all[c];
-        if (grid.inward) std::reverse(facet.begin(), facet.begin() + n);
-        if (n >= 3 && facet[0] != facet[2] && (n == 3 || facet[1] != facet[3])) out.push_back(facet);
+      for (int a = 0; a + 1 < grid.extent[0]; ++a)
+        add({grid.at(a, b), grid.at(a + 1, b), grid.at(a + 1, b + 1), grid.at(a, b + 1)}, 4, grid.inward);
+  }
+  return out;
+}
+
+std::vector<std::vector<int>> PatchSurface::neighbours() const {
+  std::vector<std::vector<int>> out(points.size());
+  auto const join = [&](int a, int b) {
+    if (a == b) return;
+    out[a].push_back(b);
+    out[b].push_back(a);
+  };
+  for (PatchGrid const& grid : grids) {
+    for (GridFacet const& face : grid.faces) {
+      int const corners = int(std::count_if(face.begin(), face.end(), [](int v) { return v >= 0; }));
+      for (int c = 0; c < corners; ++c) join(face[c], face[(c + 1) % corners]);
+    }
+    for (int b = 0; gridded && b < grid.extent[1]; ++b)
+      for (int a = 0; a < grid.extent[0]; ++a) {
+        if (a + 1 < grid.extent[0]) join(grid.at(a, b), grid.at(a + 1, b));
+        if (b + 1 < grid.extent[1]) join(grid.at(a, b), grid.at(a, b + 1));
       }
+  }
+  for (auto& list : out) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
   return out;
 }
 

@@ -17,28 +17,18 @@ struct Neighbour {
   double weight;
 };
 
-/// Neighbours along grid lines, with weights that sum to one; none for nodes whose neighbours all lie on them.
+/// Neighbours along the surface, with weights that sum to one; none for nodes whose neighbours all lie on them.
 std::vector<std::vector<Neighbour>> neighbours_of(PatchSurface const& surface) {
+  auto const next = surface.neighbours();
   std::vector<std::vector<Neighbour>> out(surface.points.size());
-  auto const join = [&](int a, int b) {
-    double const apart = distance(surface.points[a], surface.points[b]);
-    if (!(apart > 0)) return;
-    out[a].push_back({b, 1 / apart});
-    out[b].push_back({a, 1 / apart});
-  };
-  for (PatchGrid const& grid : surface.grids)
-    for (int b = 0; b < grid.extent[1]; ++b)
-      for (int a = 0; a < grid.extent[0]; ++a) {
-        if (a + 1 < grid.extent[0]) join(grid.at(a, b), grid.at(a + 1, b));
-        if (b + 1 < grid.extent[1]) join(grid.at(a, b), grid.at(a, b + 1));
-      }
-  for (auto& list : out) {
-    std::sort(list.begin(), list.end(), [](Neighbour const& m, Neighbour const& n) { return m.vertex < n.vertex; });
-    auto const same = [](Neighbour const& m, Neighbour const& n) { return m.vertex == n.vertex; };
-    list.erase(std::unique(list.begin(), list.end(), same), list.end());
+  for (std::size_t v = 0; v < out.size(); ++v) {
     double sum = 0;
-    for (Neighbour const& n : list) sum += n.weight;
-    for (Neighbour& n : list) n.weight /= sum;
+    for (int const n : next[v])
+      if (double const apart = distance(surface.points[v], surface.points[n]); apart > 0) {
+        out[v].push_back({n, 1 / apart});
+        sum += 1 / apart;
+      }
+    for (Neighbour& n : out[v]) n.weight /= sum;
   }
   return out;
 }

@@ -40,6 +40,10 @@ void SurfaceSpread::settle(int v, Vec3 const& residual) {
 
 std::vector<Vec3> SurfaceSpread::run(Place const& place) {
   place_ = &place;
+  if (!surface_.gridded) {
+    settle_by_layers();
+    return image_;
+  }
   struct Box {
     PatchGrid const* grid;
     int a0, a1, b0, b1;
@@ -64,6 +68,38 @@ std::vector<Vec3> SurfaceSpread::run(Place const& place) {
   for (auto const& side : sides) settle_side(side);
   for (Box const& box : boxes) settle_inside(*box.grid, box.a0, box.a1, box.b0, box.b1);
   return image_;
+}
+
+void SurfaceSpread::settle_by_layers() {
+  auto const neighbours = surface_.neighbours();
+  std::vector<int> layer;
+  for (std::size_t v = 0; v < points_.size(); ++v)
+    if (settled_[v] != 0) layer.push_back(int(v));
+  while (!layer.empty()) {
+    std::vector<int> next;
+    for (int const v : layer)
+      for (int const n : neighbours[v])
+        if (settled_[n] == 0) next.push_back(n);
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    std::vector<Vec3> residuals;
+    for (int const v : next) {
+      Vec3 sum;
+      double weights = 0;
+      for (int const n : neighbours[v])
+        if (settled_[n] != 0) {
+          double const w = 1 / std::max(distance(points_[v], points_[n]), 1e-30);
+          sum += w * residual(n);
+          weights += w;
+        }
+      residuals.push_back((1 / weights) * sum);
+    }
+    for (std::size_t n = 0; n < next.size(); ++n) settle(next[n], residuals[n]);
+    layer = std::move(next);
+  }
+  // What hangs together with nothing known goes along.
+  for (std::size_t v = 0; v < points_.size(); ++v)
+    if (settled_[v] == 0) settle(int(v), {});
 }
 
 /// Where a patch is cut along a direction: its ends, and grid lines that an edge runs along.

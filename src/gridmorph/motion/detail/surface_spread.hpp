@@ -15,7 +15,8 @@ namespace gridmorph {
 /// everything along; what it misses is spread over each patch, which is cut along grid lines that known edges run along.
 /// Corners of the pieces take it by inverse distance to the fourth power, sides linearly by arc length between vertices that have
 /// an image, the inside by transfinite interpolation (W. J. Gordon and C. A. Hall 1973) with shares of the length of each
-/// grid line. Explicit; cost O(vertices), plus corners times known vertices.
+/// grid line. Patches that are no grids take it from neighbour to neighbour instead: a vertex the mean of those nearer to the known ones
+/// by the number of sides, weighted by one over their distance. Explicit; cost O(vertices), plus corners times known vertices.
 class SurfaceSpread {
  public:
   /// Puts a vertex where it shall be in the end, given where the spread wants it.
@@ -36,6 +37,7 @@ class SurfaceSpread {
   [[nodiscard]] std::vector<int> cuts(PatchGrid const& grid, int direction) const;
   void settle_corners(std::vector<int> corners);
   void settle_side(std::vector<int> const& side);
+  void settle_by_layers();
   void settle_inside(PatchGrid const& grid, int a0, int a1, int b0, int b1);
 
   PatchSurface const& surface_;

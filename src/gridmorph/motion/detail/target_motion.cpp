@@ -3,6 +3,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/detail/patch_points.hpp>
 #include <gridmorph/motion/detail/target_nodes.hpp>
+#include <gridmorph/motion/detail/target_profile.hpp>
 #include <gridmorph/motion/detail/target_projection.hpp>
 #include <gridmorph/motion/detail/target_sections.hpp>
 
@@ -95,8 +96,8 @@ TargetTree target_facets(TargetGeometry const& target, std::string const& name) 
 }
 
 TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
-                           std::string const& name, std::vector<std::string>& notes)
-    : surface_(mesh, patches), name_(name) {
+                           std::string const& name, std::vector<std::string>& notes, PatchFaces const* faces)
+    : surface_(mesh, patches, faces), name_(name) {
   if (!rule.target) throw MotionError(name + ": it has no target");
   TargetGeometry const& target = *rule.target;
   if (!(rule.crease_angle_deg > 0 && rule.crease_angle_deg < 180))
@@ -104,6 +105,10 @@ TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, Ta
                       " degrees; give one between 0 and 180");
   if (patches.empty()) throw MotionError(name + ": it moves patches only, and names none");
   if (!(surface_.size > 0)) throw MotionError(name + ": the nodes of its patches are one point");
+  if (!surface_.gridded) {
+    map_faces(mesh, rule, notes);
+    return;
+  }
   bool const automatic = rule.mapping == Mapping::automatic;
   if (rule.mapping == Mapping::nodes || (automatic && target.sections.empty())) {
     mapping_ = Mapping::nodes;
@@ -135,6 +140,39 @@ TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, Ta
   mapping_ = Mapping::projection;
   facets_ = target_facets(target, name);
   displacement_ = project_to_target(surface_, facets_, rule.crease_angle_deg, name, notes);
+}
+
+void TargetMotion::map_faces(Mesh const& mesh, TargetRule const& rule, std::vector<std::string>& notes) {
+  TargetGeometry const& target = *rule.target;
+  for (PatchGrid const& grid : surface_.grids)
+    if (grid.faces.empty())
+      throw MotionError(name_ + ": patch " + describe_patch(mesh, mesh.patches[grid.patch]) +
+                        " has no faces that could go to a target");
+  if (rule.mapping == Mapping::nodes || (rule.mapping == Mapping::automatic && !target.nodes.empty())) {
+    if (target.nodes.empty())
+      throw MotionError(
+          name_ +
+          ": the patches of an unstructured mesh are no grids; list one point per node in the order of their "
+          "numbers, or give mapping = \"projection\"");
+    if (!finite(target.nodes)) throw MotionError(name_ + ": a point of the target is not finite");
+    displacement_ = match_nodes(surface_, target.nodes, mesh, name_);
+    notes.push_back(name_ + ": mapped node for node");
+    return;
+  }
+  mapping_ = Mapping::projection;
+  if (surface_.lines) {
+    for (TargetSection const& section : target.sections)
+      if (!finite(section.points)) throw MotionError(name_ + ": a point of the target is not finite");
+    displacement_ = project_to_profile(surface_, target, name_, notes);
+    return;
+  }
+  if (rule.mapping == Mapping::sections || !target.sections.empty())
+    throw MotionError(
+        name_ +
+        ": sections need the structured surface of a blade or wing, and this mesh is unstructured; give a "
+        "surface (STL, CGNS), which its nodes are projected to");
+  facets_ = target_facets(target, name_);
+  displacement_ = project_to_target(surface_, facets_, rule.crease_angle_deg, name_, notes);
 }
 
 void TargetMotion::displacement(std::span<Vec3 const> points, std::span<Vec3> out) const {

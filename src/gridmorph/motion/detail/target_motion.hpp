@@ -17,7 +17,7 @@ class TargetMotion {
  public:
   /// Throws MotionError when the target is not usable for these patches. `name` begins its messages and notes.
   TargetMotion(Mesh const& mesh, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
-               std::string const& name, std::vector<std::string>& notes);
+               std::string const& name, std::vector<std::string>& notes, PatchFaces const* faces = nullptr);
 
   /// Displacement of nodes of the patches, found by their baseline position. Throws MotionError for other points.
   void displacement(std::span<Vec3 const> points, std::span<Vec3> out) const;
@@ -27,6 +27,9 @@ class TargetMotion {
 
  private:
   using Mapping = TargetRule::Mapping;
+
+  /// Patches of an unstructured mesh: node for node as listed, or onto the surface or profile.
+  void map_faces(Mesh const& mesh, TargetRule const& rule, std::vector<std::string>& notes);
 
   PatchSurface surface_;
   std::string name_;

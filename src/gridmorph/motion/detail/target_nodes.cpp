@@ -203,7 +203,8 @@ std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> con
   std::vector<char> placed(surface.points.size(), 0);
   std::size_t n = 0;
   for (PatchGrid const& patch : surface.grids)
-    for (int const v : patch.vertex) {
+    for (std::size_t k = 0; k < patch.vertex.size(); ++k) {
+      int const v = patch.vertex[patch.listed.empty() ? k : std::size_t(patch.listed[k])];
       Vec3 const& t = nodes[n++];
       if (placed[v] == 0) {
         placed[v] = 1;

@@ -34,7 +34,8 @@ std::pair<Vec3, Vec3> box_of(std::vector<Vec3> const& points) {
   return {lo, hi};
 }
 
-/// A rough idea of where the surface goes: nowhere, or along with its bounding box when the target is clearly elsewhere.
+}  // namespace
+
 std::function<Vec3(Vec3 const&)> rough_guess(std::vector<Vec3> const& points, TargetTree const& target) {
   auto const [lo, hi] = box_of(points);
   auto const [target_lo, target_hi] = box_of(target.points());
@@ -63,6 +64,8 @@ std::function<Vec3(Vec3 const&)> rough_guess(std::vector<Vec3> const& points, Ta
   return guesses[best];
 }
 
+namespace {
+
 class Projection {
  public:
   Projection(PatchSurface const& surface, TargetTree const& target, double crease_angle_deg)
@@ -84,6 +87,11 @@ class Projection {
     auto spread_out = spread.run(as_it_is);
     wanted_ = points_;
     for (Vec3& x : wanted_) x = x + spread.carried()(x);
+    // A closed smooth surface has no edge to go along with: the box around it is all there is to guess by.
+    if (!surface_.gridded && edges_.edges.empty()) {
+      wanted_ = closed_guess();
+      spread_out = wanted_;
+    }
     // Patches may end anywhere, and their sides know nothing of an edge beside them: what is spread is evened out.
     wanted_ = relax(surface_, edges_.known, wanted_, std::move(spread_out), as_it_is);
     normal_.assign(points_.size(), {});
@@ -127,6 +135,40 @@ class Projection {
   static Vec3 facet_normal(std::vector<Vec3> const& points, GridFacet const& f) {
     if (f[3] < 0) return cross(points[f[1]] - points[f[0]], points[f[2]] - points[f[0]]);
     return cross(points[f[2]] - points[f[0]], points[f[3]] - points[f[1]]);
+  }
+
+  /// Where the vertices of a surface without edges go, roughly: with its size and its middle, by area; with the sides of its box
+  /// where that comes much closer.
+  [[nodiscard]] std::vector<Vec3> closed_guess() const {
+    auto const [from, own] = middle_and_area(points_, facets_);
+    auto const [to, there] = middle_and_area(target_.points(), target_facets_);
+    double const scale = own > 0 && there > 0 ? std::sqrt(there / own) : 1;
+    std::vector<Vec3> even, stretched;
+    double to_even = 0, to_stretched = 0;
+    for (Vec3 const& p : points_) {
+      even.push_back(to + scale * (p - from));
+      stretched.push_back(edges_.guess(p));
+    }
+    std::size_t const step = std::max<std::size_t>(1, points_.size() / 500);
+    for (std::size_t v = 0; v < points_.size(); v += step) {
+      to_even += target_.closest(even[v]).distance;
+      to_stretched += target_.closest(stretched[v]).distance;
+    }
+    return to_stretched < 0.5 * to_even ? stretched : even;
+  }
+
+  static std::pair<Vec3, double> middle_and_area(std::vector<Vec3> const& points,
+                                                 std::vector<GridFacet> const& facets) {
+    Vec3 sum;
+    double area = 0;
+    for (GridFacet const& f : facets) {
+      double const own = 0.5 * norm(facet_normal(points, f));
+      Vec3 middle = points[f[0]] + points[f[1]] + points[f[2]];
+      if (f[3] >= 0) middle += points[f[3]];
+      sum += (own / (f[3] < 0 ? 3 : 4)) * middle;
+      area += own;
+    }
+    return {area > 0 ? (1 / area) * sum : Vec3{}, area};
   }
 
   /// Whether the target's normals point as the surface's do (+1), the other way (-1), or neither (0).

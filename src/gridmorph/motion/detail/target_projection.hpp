@@ -4,10 +4,14 @@
 #include <gridmorph/motion/detail/patch_surface.hpp>
 #include <gridmorph/motion/detail/target_tree.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace gridmorph {
+
+/// A rough idea of where the surface goes: nowhere, or along with its bounding box when the target is clearly elsewhere.
+std::function<Vec3(Vec3 const&)> rough_guess(std::vector<Vec3> const& points, TargetTree const& target);
 
 /// Displacement of every vertex of the surface onto the target:
 ///  1. edges (boundary, creases) to the target's edges by arc length (edge_images.hpp);
