@@ -249,5 +249,35 @@ TEST(Plan, DescribesStagesChainsAndReasons) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
+TEST(Plan, SaysWhereZonesTouchWithoutAnInterface) {
+  auto const notes = [](PatchKind kind, Rule const& beside) {
+    MeshBuilder builder("two");
+    for (int z : {0, 1}) {
+      builder.zone(z == 0 ? "left" : "right", {4, 4, 4}, [z](Index3 const& p) {
+        return Vec3{double(p[0] + 3 * z), double(p[1]), double(p[2])};
+      });
+      for (int axis = 0; axis < 3; ++axis)
+        for (int side : {0, 1}) {
+          bool const touches = axis == 0 && side == 1 - z;
+          builder.patch(touches ? "between" : "outer", touches ? kind : far, z, axis, side);
+        }
+    }
+    Mesh mesh = builder.finish();
+    Plan const plan = prepare(mesh, motion({rule({"outer"}, FixedRule{}), rule({"between"}, beside)}), {}).plan();
+    std::string text;
+    for (auto const& note : plan.notes) text += note + "\n";
+    return text;
+  };
+  // The rim lies on the outer boundary, where one rule holds for both sides.
+  EXPECT_NE(notes(PatchKind::other, FreeRule{}).find("4 pairs of nodes of two zones coincide"), std::string::npos)
+      << notes(PatchKind::other, FreeRule{});
+  EXPECT_EQ(notes(PatchKind::other, FixedRule{}).find("coincide"), std::string::npos);
+  EXPECT_EQ(notes(PatchKind::connection, FreeRule{}).find("coincide"), std::string::npos) << "planes that slide";
+  for (Mesh mesh : {bricks_with_t_junctions(1), around_a_box(1), star(5, 1), c_grid(1)}) {
+    Plan const plan = prepare(mesh, motion({rule({"*"}, FixedRule{})}), {}).plan();
+    for (auto const& note : plan.notes) EXPECT_EQ(note.find("coincide"), std::string::npos) << mesh.source;
+  }
+}
+
 }  // namespace
 }  // namespace gridmorph::test

@@ -1,13 +1,15 @@
+#include <gridmorph/mesh/coincident_pairs.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 namespace gridmorph {
 
 namespace {
 
-bool coincide(std::vector<Number> const& owner, TouchingPatches const& pair) {
+bool are_one(std::vector<Number> const& owner, TouchingPatches const& pair) {
   for (std::size_t n = 0; n < pair.nodes.size(); ++n)
     if (owner[std::size_t(pair.nodes[n])] != owner[std::size_t(pair.other_nodes[n])]) return false;
   return true;
@@ -18,7 +20,7 @@ bool coincide(std::vector<Number> const& owner, TouchingPatches const& pair) {
 std::vector<TouchingPatches> undeclared_connections(UnstructuredMesh const& mesh, double tolerance) {
   std::vector<TouchingPatches> out;
   if (mesh.zones.size() < 2) return out;
-  auto const owner = coincident_nodes(mesh);
+  auto const owner = coincident_nodes(mesh), place = nodes_at_one_place(mesh);
   std::vector<std::vector<Number>> nodes;
   for (auto const& patch : mesh.patches) nodes.push_back(patch_nodes(patch));
   for (std::size_t a = 0; a < nodes.size(); ++a)
@@ -30,15 +32,57 @@ std::vector<TouchingPatches> undeclared_connections(UnstructuredMesh const& mesh
       if (match_points(mesh.coordinates, first, nodes[b], tolerance).front() < 0) continue;
       TouchingPatches pair{int(a), int(b), nodes[a], match_points(mesh.coordinates, nodes[a], nodes[b], tolerance)};
       bool const all = std::find(pair.other_nodes.begin(), pair.other_nodes.end(), -1) == pair.other_nodes.end();
-      if (all && !coincide(owner, pair)) out.push_back(std::move(pair));
+      if (!all || are_one(owner, pair)) continue;
+      pair.one = are_one(place, pair);
+      out.push_back(std::move(pair));
     }
   return out;
+}
+
+namespace {
+
+/// Nodes of patches, those of connections that do not match left out.
+std::vector<Index> open_nodes(UnstructuredMesh const& mesh) {
+  std::vector<std::uint8_t> open(std::size_t(mesh.n_nodes()), 0);
+  for (bool const slides : {false, true})
+    for (auto const& patch : mesh.patches)
+      if ((patch.kind == PatchKind::connection) == slides)
+        for (auto const* list : {&patch.faces.item, &patch.nodes})
+          for (Number const n : *list) open[std::size_t(n)] = slides ? 0 : 1;
+  std::vector<Index> out;
+  for (std::size_t n = 0; n < open.size(); ++n)
+    if (open[n] != 0) out.push_back(Index(n));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Number> nodes_at_one_place(UnstructuredMesh const& mesh) {
+  std::vector<Number> root = coincident_nodes(mesh);
+  if (mesh.zones.size() < 2) return root;
+  bool const single =
+      std::any_of(mesh.zones.begin(), mesh.zones.end(), [](auto const& zone) { return zone.single_precision; });
+  auto const pairs = coincident_pairs(
+      mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of_node(n); },
+      coincidence_tolerance(mesh.size(), single));
+  auto const find = [&](Number n) {
+    while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
+    return n;
+  };
+  for (auto const& [a, b] : pairs) {
+    Number const p = find(Number(a)), q = find(Number(b));
+    root[std::size_t(std::max(p, q))] = std::min(p, q);
+  }
+  for (Number n = 0; n < Number(root.size()); ++n) root[std::size_t(n)] = find(n);
+  return root;
 }
 
 std::string describe(UnstructuredMesh const& mesh, TouchingPatches const& pair) {
   return "patches " + describe_patch(mesh, mesh.patches[std::size_t(pair.patch)]) + " and " +
          describe_patch(mesh, mesh.patches[std::size_t(pair.other)]) + " coincide in all of their " +
-         std::to_string(pair.nodes.size()) + " nodes, but no connection joins them; give both the same motion";
+         std::to_string(pair.nodes.size()) + " nodes, but no connection joins them; " +
+         (pair.one ? "their nodes move as one, and a rule for one of them holds for both"
+                   : "give both the same motion");
 }
 
 }  // namespace gridmorph

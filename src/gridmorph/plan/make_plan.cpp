@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/plan/conflict.hpp>
+#include <gridmorph/plan/loose_nodes.hpp>
 #include <gridmorph/plan/make_plan.hpp>
 #include <gridmorph/plan/near_field.hpp>
 #include <gridmorph/plan/poles.hpp>
@@ -273,6 +274,7 @@ PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion cons
   scheduler.volume();
   plan_spreads(context, motion, surface, given, plan);
   plan.skeleton_nodes = skeleton.to_nodes(rotations);
+  note_loose_nodes(mesh, planned.boundary, plan);
   return planned;
 }
 

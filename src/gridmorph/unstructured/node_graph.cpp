@@ -1,4 +1,5 @@
 #include <gridmorph/mesh/detail/for_all.hpp>
+#include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/unstructured/node_graph.hpp>
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 class GraphMaker {
  public:
   GraphMaker(UnstructuredMesh const& mesh, NumberLists const& elements_of_nodes)
-      : mesh_(mesh), elements_of_nodes_(elements_of_nodes), owner_(coincident_nodes(mesh)) {
+      : mesh_(mesh), elements_of_nodes_(elements_of_nodes), owner_(nodes_at_one_place(mesh)) {
     for (Number n = 0; n < Number(owner_.size()); ++n)
       if (owner_[std::size_t(n)] != n) others_.push_back({owner_[std::size_t(n)], n});
     std::sort(others_.begin(), others_.end());
