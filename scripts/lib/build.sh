@@ -18,7 +18,7 @@ is_built() { [ -e "$1/.complete" ]; }
 
 # with_progress NAME LOG COMMAND...: runs the command with its output at the end of LOG, and says now and then how far its ninja is.
 with_progress() {
-  local name=$1 log=$2 pid second
+  local name=$1 log=$2 pid second far
   shift 2
   "$@" >>"$log" 2>&1 &
   pid=$!
@@ -27,7 +27,8 @@ with_progress() {
       sleep 1
       kill -0 "$pid" 2>/dev/null || break 2
     done
-    say "$name: $(sed -n 's|^\[\([0-9]*\)/\([0-9]*\)\].*|\1 of \2 steps|p' "$log" | tail -n 1)"
+    far=$(sed -n 's|^\[\([0-9]*\)/\([0-9]*\)\].*|\1 of \2 steps|p' "$log" | tail -n 1)
+    say "$name: ${far:-building}"
   done
   wait "$pid"
 }
