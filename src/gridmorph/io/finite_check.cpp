@@ -1,9 +1,19 @@
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/mesh/extent.hpp>
 
-#include <cmath>
+#include <array>
+#include <cstdio>
 
 namespace gridmorph::io {
+
+std::string unusable_nodes(std::string const& where, Index count, std::string const& zone, std::string const& first,
+                           Vec3 const& at) {
+  std::array<char, 120> point{};
+  std::snprintf(point.data(), point.size(), "(%.9g, %.9g, %.9g)", at.x, at.y, at.z);
+  return where + ": " + std::to_string(count) + (count == 1 ? " node" : " nodes") + " of zone '" + zone +
+         "' have coordinates that are not finite numbers or larger than 1e100, the first is " + first + " at " +
+         point.data() + "; repair the mesh where it was made";
+}
 
 void check_finite(Mesh const& mesh, Coordinates const& coordinates, std::string const& where, Problems& problems) {
   if (extent_of(coordinates).usable()) return;
@@ -14,11 +24,7 @@ void check_finite(Mesh const& mesh, Coordinates const& coordinates, std::string 
       if (bad++ == 0) first = n;
     }
     if (bad == 0) continue;
-    Vec3 const p = coordinates[first];
-    problems.add(where + ": " + std::to_string(bad) + (bad == 1 ? " node" : " nodes") + " of zone '" + zone.name +
-                 "' have coordinates that are not finite numbers or larger than 1e100, the first is " +
-                 describe_node(mesh, first) + " at (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
-                 std::to_string(p.z) + "); repair the mesh where it was made");
+    problems.add(unusable_nodes(where, bad, zone.name, describe_node(mesh, first), coordinates[first]));
   }
 }
 

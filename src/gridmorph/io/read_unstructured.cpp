@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns_unstructured_boundary.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/su2_file.hpp>
 #include <gridmorph/io/unstructured_check.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
@@ -21,11 +22,7 @@ void check_finite(UnstructuredMesh const& mesh, Coordinates const& coordinates, 
     for (Index n = zone.first_node; n < zone.first_node + zone.n_nodes; ++n)
       if (!is_usable(coordinates[n]) && bad++ == 0) first = n;
     if (bad == 0) continue;
-    Vec3 const p = coordinates[first];
-    problems.add(where + ": " + std::to_string(bad) + (bad == 1 ? " node" : " nodes") + " of zone '" + zone.name +
-                 "' have coordinates that are not finite numbers or larger than 1e100, the first is " +
-                 describe_node(mesh, first) + " at (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
-                 std::to_string(p.z) + "); repair the mesh where it was made");
+    problems.add(unusable_nodes(where, bad, zone.name, describe_node(mesh, first), coordinates[first]));
   }
 }
 
