@@ -42,6 +42,11 @@ QualityInput<Kokkos::HostSpace> large_input(Mesh const& mesh, Coordinates const&
 void expect_same(QualityRegion const& a, QualityRegion const& b) {
   EXPECT_EQ(a.cells, b.cells);
   EXPECT_EQ(a.inverted, b.inverted);
+  for (std::size_t f = 0; f < n_falls; ++f) {
+    EXPECT_EQ(a.fallen[f].cells, b.fallen[f].cells);
+    EXPECT_EQ(a.fallen[f].worst, b.fallen[f].worst);
+    EXPECT_EQ(a.fallen[f].number, b.fallen[f].number);
+  }
   for (std::size_t m = 0; m < n_measures; ++m) {
     EXPECT_EQ(a.measure[m].min, b.measure[m].min);
     EXPECT_EQ(a.measure[m].mean, b.measure[m].mean);
@@ -66,6 +71,30 @@ TEST(QualityBackends, SerialAndOpenMPAgreeBitForBit) {
   EXPECT_EQ(serial.wall.orthogonality_deg_mean, openmp.wall.orthogonality_deg_mean);
   EXPECT_EQ(serial.wall.height_change_max, openmp.wall.height_change_max);
   EXPECT_EQ(serial.wall.height_change_worst.node, openmp.wall.height_change_worst.node);
+}
+
+TEST(QualityBackends, VerdictsAgreeBitForBit) {
+  Mesh const mesh = large_mesh();
+  Coordinates const after = swirled(mesh);
+  auto input = large_input(mesh, after);
+  input.fast = true;
+  input.limits = {0.95, 80, 0.1, 0.02};
+  QualityReport const serial = measure_quality(Kokkos::Serial(), mesh, input);
+  QualityReport const openmp = measure_quality(Kokkos::OpenMP(), mesh, input);
+  for (auto const region : {&QualityReport::near_field, &QualityReport::far_field}) {
+    QualityRegion const &a = serial.*region, &b = openmp.*region;
+    EXPECT_EQ(a.cells, b.cells);
+    for (Fall const fall : {Fall::determinant, Fall::angle, Fall::skewness, Fall::loss}) {
+      EXPECT_GT(a[fall].cells, 0) << to_string(fall);
+      EXPECT_EQ(a[fall].cells, b[fall].cells);
+      EXPECT_EQ(a[fall].worst, b[fall].worst);
+      EXPECT_EQ(a[fall].number, b[fall].number);
+    }
+    for (Measure const m : {Measure::determinant_3x3x3, Measure::minimum_angle_deg}) {
+      EXPECT_EQ(a[m].min, b[m].min);
+      EXPECT_EQ(a[m].worst_cell, b[m].worst_cell);
+    }
+  }
 }
 #endif
 

@@ -122,17 +122,45 @@ TEST(CellQuality, PyramidIsJudgedWithoutItsApex) {
   expect_defined(m);
 }
 
-TEST(CellQuality, CellWithoutVolumeFailsWithDefinedValues) {
+TEST(CellQuality, CellWithoutVolumeIsFlatWithDefinedValues) {
   CellMeasures const point = cell_measures(mapped_cube([](Vec3 const&) { return Vec3{1, 2, 3}; }), 1);
   CellMeasures const flat = cell_measures(mapped_cube([](Vec3 const& p) { return Vec3{p.x, p.y, 0}; }), 1);
   CellMeasures const line = cell_measures(mapped_cube([](Vec3 const& p) { return Vec3{p.x, 0, 0}; }), 1);
   for (CellMeasures const& m : {point, flat, line}) {
     expect_defined(m);
-    EXPECT_EQ(m.determinant_3x3x3, -1);
-    EXPECT_EQ(m.determinant_2x2x2, -1);
+    EXPECT_EQ(m.determinant_3x3x3, 0);
+    EXPECT_EQ(m.determinant_2x2x2, 0);
     EXPECT_EQ(m.smallest_corner_jacobian, 0);
     EXPECT_EQ(m.volume, 0);
   }
+}
+
+// A corner whose edges lie on a line, and a cell of no height, far from the origin: signs of their Jacobians are round-off.
+TEST(CellQuality, JacobiansThatRoundOffDecidesAboutAreZeroInCellsOfAnySize) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-1, 1);
+  for (double const size : {1e-6, 1.0, 1e6})
+    for (double const thin : {1.0, 1e-6})
+      for (int n = 0; n < 50; ++n) {
+        Vec3 const origin = 100 * size * Vec3{shift(random), shift(random), shift(random)};
+        double const turn = shift(random);
+        auto const place = [&](Vec3 const& p) {
+          return origin + size * Vec3{std::cos(turn) * p.x - std::sin(turn) * p.y,
+                                      std::sin(turn) * p.x + std::cos(turn) * p.y, thin * p.z};
+        };
+        HexCell straight = mapped_cube(place);
+        for (int k = 0; k < 2; ++k)
+          straight.corner[3 + 4 * k] = 0.5 * (straight.corner[1 + 4 * k] + straight.corner[2 + 4 * k]);
+        EXPECT_EQ(cell_measures(straight, 1).smallest_corner_jacobian, 0);
+        EXPECT_EQ(cell_measures(straight, 1).determinant_3x3x3, 0);
+        EXPECT_GT(cell_measures(mapped_cube(place), 1).smallest_corner_jacobian, 0);
+        HexCell bent = straight;  // by a thousandth of a degree
+        bent.corner[3] += 1e-5 * (straight.corner[0] - straight.corner[3]);
+        EXPECT_LT(cell_measures(bent, 1).smallest_corner_jacobian, 0);
+        HexCell const no_height = mapped_cube([&](Vec3 const& p) { return place({p.x, p.y, 1e-13 * shift(random)}); });
+        EXPECT_EQ(cell_measures(no_height, 1).smallest_corner_jacobian, 0);
+        EXPECT_EQ(cell_measures(no_height, 1).determinant_2x2x2, 0);
+      }
 }
 
 TEST(CellQuality, CornerThatIsNotFiniteGivesTheWorstValues) {

@@ -187,6 +187,136 @@ TEST(MeasureQuality, InvertedCellOfTheBaselineIsNotCountedAsNew) {
   EXPECT_EQ(report.far_field.newly_inverted, 0);
 }
 
+Vec3 index_position(Index3 const& p) { return {double(p[0]), double(p[1]), double(p[2])}; }
+
+TEST(MeasureQuality, FlatCellsAreCountedAndRoundOffInThemInvertsNothing) {
+  Mesh mesh = test::one_zone({4, 4, 4}, [](Index3 const& p) {
+    Vec3 const x = index_position(p);
+    return p[2] == 3 ? Vec3{x.x, x.y, 2 + 1e-15 * ((p[0] + p[1]) % 2)} : x;  // the last layer has no height
+  });
+  Coordinates const after = test::moved(mesh, [](Vec3 const& p) {
+    return p + Vec3{1e-3 * std::sin(p.y), 0, p.z > 2 ? -3e-15 : 0};
+  });
+  auto input = input_of(mesh);
+  QualityReport const before = measure_quality(Exec(), mesh, input);
+  EXPECT_EQ(before.far_field.flat, 9);
+  EXPECT_EQ(before.far_field.inverted, 0);
+  EXPECT_EQ(before.far_field[Measure::determinant_3x3x3].min, 0);
+  input.baseline = input.coordinates;
+  input.coordinates = views(after);
+  for (bool const fast : {false, true}) {
+    input.fast = fast;
+    QualityReport const report = measure_quality(Exec(), mesh, input);
+    EXPECT_EQ(report.far_field.flat, 9);
+    EXPECT_EQ(report.far_field.inverted, 0);
+    for (FallenCells const& fallen : report.far_field.fallen) EXPECT_EQ(fallen.cells, 0);
+  }
+  // Beyond round-off the layer is inverted, and a layer pressed flat has lost its volume.
+  Coordinates const through = test::moved(mesh, [](Vec3 const& p) {
+    return Vec3{p.x, p.y, p.z > 1.5 ? p.z - (p.z > 2 ? 1e-3 : 0) : p.z == 1 ? 0 : p.z};
+  });
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    if (mesh.zones[0].index(n)[2] == 3) through.z(n) = 2 - 1e-3;
+  input.coordinates = views(through);
+  for (bool const fast : {false, true}) {
+    input.fast = fast;
+    QualityReport const report = measure_quality(Exec(), mesh, input);
+    EXPECT_EQ(report.far_field.inverted, 9);
+    EXPECT_EQ(report.far_field.flat, 9);
+    EXPECT_EQ(report.far_field.newly_inverted, 18);
+  }
+}
+
+TEST(MeasureQuality, AWedgeOfLeftHandedCellsIsSound) {
+  // One cell from the axis outwards: its corner (0, 0, 0) has no Jacobian.
+  Mesh const mesh = test::one_zone({2, 7, 3}, [](Index3 const& p) {
+    double const angle = -0.2 * p[1];
+    return Vec3{0.1 + p[0] * std::cos(angle), 0.3 + p[0] * std::sin(angle), double(p[2])};
+  });
+  QualityReport const report = measure_quality(Exec(), mesh, input_of(mesh));
+  EXPECT_EQ(report.left_handed_zones, 1);
+  EXPECT_EQ(report.far_field.inverted, 0);
+}
+
+/// A box whose cell columns at j = 2 are sheared along i by `shear` cells, and whose node (1, 1, 1) is moved.
+struct Sheared {
+  Mesh mesh = test::one_zone({9, 6, 5}, [](Index3 const& p) { return index_position(p); });
+  Coordinates after;
+
+  explicit Sheared(double shear, Vec3 const& corner = {0, 0, 0}) {
+    after = test::moved(mesh, [&](Vec3 const& p) { return p.y > 2.5 ? p + Vec3{shear, 0, 0} : p; });
+    Index const n = mesh.zones[0].node({1, 1, 1});
+    after.set(n, after[n] + corner);
+  }
+  [[nodiscard]] QualityRegion measure(CellLimits const& limits, bool fast = false) const {
+    auto input = input_of(mesh);
+    input.baseline = input.coordinates;
+    input.coordinates = views(after);
+    input.limits = limits;
+    input.fast = fast;
+    return measure_quality(Exec(), mesh, input).far_field;
+  }
+};
+
+TEST(MeasureQuality, AngleSkewnessAndLossSeeWhatDeterminantsDoNot) {
+  double const shear = 20, angle = std::atan(1 / shear) * 180 / std::acos(-1.0);
+  Sheared const box(shear);
+  Index const column = 8 * 4;
+  QualityRegion const r = box.measure({0.05, 5, 0.95, 0.9});
+  EXPECT_EQ(r[Fall::inverted].cells, 0);
+  EXPECT_EQ(r[Fall::determinant].cells, 0);
+  EXPECT_NEAR(r[Measure::determinant_3x3x3].min, 1, 1e-14);
+  EXPECT_EQ(r[Fall::angle].cells, column);
+  EXPECT_NEAR(r[Fall::angle].worst, angle, 1e-10);
+  EXPECT_EQ(r[Fall::angle].worst_cell, (Index3{0, 2, 0}));
+  EXPECT_EQ(r[Fall::skewness].cells, column);
+  EXPECT_NEAR(r[Fall::skewness].worst, 1 - angle / 90, 1e-12);
+  EXPECT_EQ(r[Fall::loss].cells, column);
+  EXPECT_NEAR(r[Fall::loss].worst, 1 - angle / 90, 1e-12);
+  QualityRegion const mild = box.measure({0.05, 2, 0.99, 0.99});
+  for (FallenCells const& fallen : mild.fallen) EXPECT_EQ(fallen.cells, 0);
+}
+
+TEST(MeasureQuality, WhatTheBaselineWasShortOfIsNoFallUnlessMuchIsLost) {
+  Sheared box(20);
+  std::swap(box.mesh.coordinates, box.after);  // the baseline is the sheared one
+  box.after = test::moved(box.mesh, [](Vec3 const& p) { return p.y > 2.5 ? p + Vec3{2, 0, 0} : p; });
+  QualityRegion const r = box.measure({0.05, 5, 0.95, 0.9});
+  EXPECT_LT(r[Measure::minimum_angle_deg].min, 5);
+  for (FallenCells const& fallen : r.fallen) EXPECT_EQ(fallen.cells, 0);
+  EXPECT_EQ(box.measure({0.05, 5, 0.95, 0.05})[Fall::loss].cells, 8 * 4);
+}
+
+TEST(MeasureQuality, AVerdictSaysWhatTheFullMeasurementSays) {
+  for (Vec3 const corner : {Vec3{0, 0, 0}, Vec3{1.9, 0, 0}, Vec3{0.97, 0, 0}, Vec3{-1, 0, 0}, Vec3{30, 1, 2}}) {
+    Sheared const box(9, corner);
+    CellLimits const limits{0.1, 7, 0.9, 0.8};
+    QualityRegion const full = box.measure(limits), fast = box.measure(limits, true);
+    EXPECT_EQ(fast.cells, full.cells);
+    EXPECT_EQ(fast.inverted, full.inverted);
+    EXPECT_EQ(fast.newly_inverted, full.newly_inverted);
+    EXPECT_EQ(fast.flat, full.flat);
+    EXPECT_EQ(fast.collapsed, full.collapsed);
+    for (std::size_t f = 0; f < n_falls; ++f) {
+      EXPECT_EQ(fast.fallen[f].cells, full.fallen[f].cells) << to_string(Fall(f));
+      EXPECT_EQ(fast.fallen[f].worst, full.fallen[f].worst) << to_string(Fall(f));
+      EXPECT_EQ(fast.fallen[f].worst_cell, full.fallen[f].worst_cell) << to_string(Fall(f));
+    }
+    for (Measure const m : {Measure::determinant_3x3x3, Measure::minimum_angle_deg}) {
+      EXPECT_EQ(fast[m].min, full[m].min);
+      EXPECT_EQ(fast[m].worst_cell, full[m].worst_cell);
+    }
+    EXPECT_EQ(fast[Measure::aspect_ratio].worst_zone, -1);
+  }
+  // The worst cell of a motion that is far too large is told by more than -1.
+  EXPECT_LT(Sheared(0, {30, 0, 0}).measure({})[Fall::inverted].worst, -10);
+}
+
+TEST(MeasureQuality, EdgesThatLoseTheirLengthAreFound) {
+  Sheared const box(0, {-1, 0, 0});  // onto the neighbouring node
+  for (bool const fast : {false, true}) EXPECT_EQ(box.measure({}, fast)[Fall::collapsed].cells, 4);
+}
+
 TEST(MeasureQuality, ZeroMotionHasNoRelativeDisplacement) {
   Mesh const mesh = test::two_zones({}, true);
   auto input = input_of(mesh);

@@ -51,6 +51,19 @@ QualityReport morphed() {
   return report;
 }
 
+QualityThresholds thresholds(double min_determinant, double max_relative_displacement = 0.25) {
+  QualityThresholds out;
+  out.cells.min_determinant = min_determinant;
+  out.max_relative_displacement = max_relative_displacement;
+  return out;
+}
+
+/// Cells of the far field that fell, the worst of them at (2, 3, 4) as people count.
+void let_fall(QualityReport& report, Fall fall, Index cells, double worst) {
+  report.far_field.fallen[std::size_t(fall)] = {cells, 0, {1, 2, 3}, 17, worst};
+  if (fall == Fall::inverted) report.far_field.newly_inverted = cells;
+}
+
 bool has_line_with(std::string const& text, std::initializer_list<std::string_view> words) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -149,10 +162,12 @@ TEST(Shortfalls, AreNoneForAGoodMesh) {
 }
 
 TEST(Shortfalls, NameThresholdValueAndCell) {
-  auto const list = shortfalls(baseline(), morphed(), {0.6, 0.25});
+  QualityReport after = morphed();
+  let_fall(after, Fall::determinant, 3, 0.577);
+  auto const list = shortfalls(baseline(), after, thresholds(0.58, 0.25));
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].severity, Shortfall::Severity::failure);
-  for (char const* words : {"far field", "0.577", "0.6", "zone 'Zone A' cell (i 2, j 3, k 4)", "0.593"})
+  for (char const* words : {"far field", "0.577", "0.58", "zone 'Zone A' cell (i 2, j 3, k 4)", "3 cells"})
     EXPECT_NE(list[0].message.find(words), std::string::npos) << words;
   EXPECT_TRUE(any_failure(list));
 }
@@ -161,20 +176,22 @@ TEST(Shortfalls, ForgiveWhatTheBaselineAlreadyHadButSaySo) {
   QualityReport const before = baseline();
   QualityReport after = morphed();
   after.far_field.measure[int(Measure::determinant_3x3x3)].min = 0.593;
-  auto list = shortfalls(before, after, {0.6, 0.25});
+  auto list = shortfalls(before, after, thresholds(0.6, 0.25));
   ASSERT_EQ(list.size(), 1u);
   EXPECT_FALSE(any_failure(list));
   after.far_field.inverted = 3;
-  list = shortfalls(before, after, {0.1, 0.25});
+  list = shortfalls(before, after, thresholds(0.1, 0.25));
   ASSERT_EQ(list.size(), 1u);
   EXPECT_FALSE(any_failure(list));
   EXPECT_NE(list[0].message.find("in the baseline already"), std::string::npos);
-  after.far_field.newly_inverted = 1;
-  EXPECT_TRUE(any_failure(shortfalls(before, after, {0.1, 0.25})));
+  let_fall(after, Fall::inverted, 1, -3.5);
+  list = shortfalls(before, after, thresholds(0.1, 0.25));
+  EXPECT_TRUE(any_failure(list));
+  EXPECT_NE(list[0].message.find("-3.5 times"), std::string::npos);
 }
 
 TEST(Shortfalls, WarnOfLargeRelativeDisplacementsWithoutFailing) {
-  auto const list = shortfalls(baseline(), morphed(), {0.05, 0.2});
+  auto const list = shortfalls(baseline(), morphed(), thresholds(0.05, 0.2));
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].severity, Shortfall::Severity::warning);
   EXPECT_NE(list[0].message.find("0.21"), std::string::npos);
@@ -182,21 +199,60 @@ TEST(Shortfalls, WarnOfLargeRelativeDisplacementsWithoutFailing) {
 
 TEST(Shortfalls, OfABaselineAloneAreJudgedByTheThresholds) {
   QualityReport alone = baseline();
-  EXPECT_TRUE(any_failure(shortfalls(alone, {}, {0.6, 0.25})));
+  EXPECT_TRUE(any_failure(shortfalls(alone, {}, thresholds(0.6, 0.25))));
   alone.near_field.inverted = 1;
-  EXPECT_TRUE(any_failure(shortfalls(alone, {}, {0.05, 0.25})));
+  EXPECT_TRUE(any_failure(shortfalls(alone, {}, thresholds(0.05, 0.25))));
 }
 
 TEST(Shortfalls, CollapsedEdgesThatMorphingMadeAreAFailure) {
   QualityReport before = baseline(), after = morphed();
   before.far_field.collapsed = after.far_field.collapsed = 12;
   EXPECT_TRUE(shortfalls(before, after, {}).empty());
-  after.far_field.collapsed = 13;
+  let_fall(after, Fall::collapsed, 1, 0);
   EXPECT_TRUE(any_failure(shortfalls(before, after, {})));
 }
 
+TEST(Shortfalls, AnglesSkewnessAndLossesFailOnlyWhereTheMorphMadeThem) {
+  QualityReport after = morphed();
+  QualityThresholds limits;
+  limits.cells.min_angle_deg = 25;  // the baseline has 21
+  limits.cells.max_skewness = 0.7;  // and 0.75
+  auto list = shortfalls(baseline(), after, limits);
+  EXPECT_EQ(list.size(), 4u);  // two regions
+  EXPECT_FALSE(any_failure(list));
+  for (auto const& s : list) EXPECT_NE(s.message.find("in the baseline"), std::string::npos) << s.message;
+  for (Fall const fall : {Fall::angle, Fall::skewness, Fall::loss}) {
+    after = morphed();
+    let_fall(after, fall, 2, 0.93);
+    EXPECT_TRUE(any_failure(shortfalls(baseline(), after, limits))) << to_string(fall);
+  }
+  EXPECT_TRUE(has_line_with(format_table(baseline(), after, limits), {"falls short", "far field", "93 %"}));
+  EXPECT_TRUE(any_failure(shortfalls(baseline(), {}, limits)));  // a mesh alone is judged as it is
+}
+
+TEST(QualityTable, AVerdictHasNoBaselineAndNoRowsForWhatWasNotMeasured) {
+  QualityReport after = morphed();
+  after.fast = true;
+  after.near_field = {};
+  after.far_field.flat = 12;
+  for (auto const m : {Measure::aspect_ratio, Measure::determinant_2x2x2, Measure::equiangle_skewness, Measure::volume,
+                       Measure::volume_ratio, Measure::relative_displacement})
+    after.far_field.measure[std::size_t(m)] = {};
+  std::string const table = format_table({}, after);
+  EXPECT_TRUE(has_line_with(table, {"determinant 3x3x3, min", "0.577"}));
+  EXPECT_TRUE(has_line_with(table, {"flat cells", "12"}));
+  EXPECT_EQ(table.find("aspect ratio"), std::string::npos) << table;
+  EXPECT_EQ(table.find("baseline"), std::string::npos) << table;
+  nlohmann::json const json = quality_json({}, after, {});
+  EXPECT_FALSE(json.contains("baseline"));
+  EXPECT_EQ(json.at("/morphed/verdict_only"_json_pointer), true);
+  EXPECT_EQ(json.at("/morphed/far_field/flat"_json_pointer), 12);
+}
+
 TEST(QualityJson, CarriesValuesPlacesAndFormulas) {
-  nlohmann::json const written = quality_json(baseline(), morphed(), {0.6, 0.25});
+  QualityReport after = morphed();
+  let_fall(after, Fall::determinant, 1, 0.577);
+  nlohmann::json const written = quality_json(baseline(), after, thresholds(0.58, 0.25));
   nlohmann::json const json = nlohmann::json::parse(written.dump());
   EXPECT_EQ(json.at("/baseline/near_field/measures/aspect_ratio/max"_json_pointer), 688.4);
   EXPECT_EQ(json.at("/morphed/far_field/measures/determinant_3x3x3/min"_json_pointer), 0.577);
@@ -212,7 +268,8 @@ TEST(QualityJson, CarriesValuesPlacesAndFormulas) {
   }
   ASSERT_EQ(json.at("shortfalls").size(), 1u);
   EXPECT_EQ(json.at("/shortfalls/0/severity"_json_pointer), "failure");
-  EXPECT_EQ(json.at("/thresholds/min_determinant"_json_pointer), 0.6);
+  EXPECT_EQ(json.at("/thresholds/min_determinant"_json_pointer), 0.58);
+  EXPECT_EQ(json.at("/morphed/far_field/fallen/determinant/worst/cell"_json_pointer), (std::vector<int>{2, 3, 4}));
   EXPECT_FALSE(quality_json(baseline(), {}, {}).contains("morphed"));
 }
 

@@ -1,4 +1,5 @@
 // Times of the steps of a morph as text and JSON.
+#include <gridmorph/report/progress_text.hpp>
 #include <gridmorph/report/step_times.hpp>
 
 #include <nlohmann/json.hpp>
@@ -53,6 +54,33 @@ TEST(StepTimes, NothingMeasuredIsATableWithoutRows) {
   std::string const text = format_times({}, 0);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
   EXPECT_EQ(text.find("nan"), std::string::npos);
+}
+
+TEST(Progress, SaysPercentAndTimeLeftOnceItCanBeTold) {
+  EXPECT_EQ(progress_text("reading", {}, 100), "reading");
+  EXPECT_EQ(progress_text("reading", 0, 100), "reading, 0 %");
+  EXPECT_EQ(progress_text("step 2 of 4", 0.25, 1), "step 2 of 4, 25 %");
+  EXPECT_EQ(progress_text("step 2 of 4", 0.25, 10), "step 2 of 4, 25 %, about 30 s left");
+  EXPECT_EQ(progress_text("step 4 of 4", 0.75, 5400), "step 4 of 4, 75 %, about 30 min left");
+  EXPECT_EQ(progress_text("step 2 of 11", 0.1, 3600), "step 2 of 11, 10 %, about 9 h left");
+}
+
+TEST(Progress, StagesCountByTheirCostAndOneTooManyIsUnknown) {
+  StagedProgress stages;
+  EXPECT_FALSE(stages.advance());
+  stages.expect({2, 5, 3});
+  EXPECT_EQ(stages.advance(), 0.0);
+  EXPECT_EQ(stages.advance(), 0.2);
+  EXPECT_EQ(stages.advance(), 0.7);
+  EXPECT_FALSE(stages.advance());
+}
+
+TEST(Progress, ALogGetsALineNowAndThen) {
+  LogPace pace(10);
+  int lines = 0;
+  for (double now = 0; now < 100; now += 0.5) lines += pace.due(now) ? 1 : 0;
+  EXPECT_EQ(lines, 9);
+  EXPECT_FALSE(LogPace(10).due(9.9));  // short runs have none
 }
 
 }  // namespace

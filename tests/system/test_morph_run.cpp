@@ -4,9 +4,12 @@
 
 #include <gridmorph/io/mesh_io.hpp>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdio>
+#include <sstream>
 
 namespace gridmorph::testing {
 namespace {
@@ -138,8 +141,10 @@ TEST_F(MorphRunTest, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
       "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n";
   write_case("case.toml", torn);
   Outcome const refused = gridmorph("morph case.toml");
-  EXPECT_EQ(refused.status, 1) << refused.err;
-  EXPECT_NE(refused.err.find("is not written"), std::string::npos);
+  EXPECT_EQ(refused.status, 4) << refused.err;
+  for (auto const* words : {"is not written", "the worst is zone '", "now at (", "in the baseline at (", "from patch '",
+                            "times the largest it had"})
+    EXPECT_NE(refused.err.find(words), std::string::npos) << words << refused.err;
   EXPECT_FALSE(std::filesystem::exists(path("out.cgns")));
   write_case("case.toml", torn + "[guard]\nwrite_inverted = true\n");
   EXPECT_EQ(gridmorph("morph case.toml").status, 1);
@@ -151,6 +156,99 @@ TEST_F(MorphRunTest, AThresholdThatIsNotMetGivesStatusOneAndTheMesh) {
   write("strict.toml", text + "\n[guard]\nmin_determinant = 0.99\n");
   EXPECT_EQ(gridmorph("morph strict.toml").status, 1);
   EXPECT_TRUE(std::filesystem::exists(path("passage_rotation.cgns")));
+}
+
+TEST_F(MorphRunTest, AnglesThatShearTakesAwayFallShort) {
+  std::string const text = contents(path("rotation.toml"));
+  write("strict.toml", text + "\n[guard]\nmin_angle_deg = 60\n");
+  Outcome const angle = gridmorph("morph strict.toml");
+  EXPECT_EQ(angle.status, 1) << angle.err;
+  EXPECT_NE(angle.out.find("smallest angle is"), std::string::npos) << angle.out;
+  write("strict.toml", text + "\n[guard]\nmax_loss = 0.05\n");
+  Outcome const loss = gridmorph("morph strict.toml");
+  EXPECT_EQ(loss.status, 1) << loss.err;
+  EXPECT_NE(loss.out.find("lost more than 5 %"), std::string::npos) << loss.out;
+  // Below a threshold in the baseline already: no shortfall of the morph.
+  write("still.toml", text.substr(0, text.find("[[motion]]")) + "[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n" +
+                          "[guard]\nmin_angle_deg = 89\nmax_skewness = 0.01\nmin_determinant = 0.99\n");
+  Outcome const still = gridmorph("morph still.toml");
+  EXPECT_EQ(still.status, 0) << still.err << still.out;
+  EXPECT_NE(still.out.find("was so in the baseline"), std::string::npos) << still.out;
+}
+
+TEST_F(MorphRunTest, AVerdictGivesTheStatusOfTheFullMeasurement) {
+  for (std::string const guard : {"", "min_determinant = 0.99\n"}) {
+    write("case.toml", contents(path("rotation.toml")) + "\n[guard]\n" + guard +
+                           "quality = \"fast\"\n[output]\nreport = \"r.json\"\n");
+    Outcome const fast = gridmorph("morph case.toml");
+    EXPECT_EQ(fast.status, guard.empty() ? 0 : 1) << fast.err;
+    auto const verdict = nlohmann::json::parse(contents(path("r.json")));
+    EXPECT_FALSE(verdict.contains("baseline"));
+    EXPECT_EQ(fast.out.find("aspect ratio"), std::string::npos) << fast.out;
+    Outcome const full = gridmorph("morph case.toml --quality full");
+    EXPECT_EQ(full.status, fast.status);
+    auto const all = nlohmann::json::parse(contents(path("r.json")));
+    for (auto const* region : {"near_field", "far_field"}) {
+      EXPECT_EQ(all["morphed"][region]["fallen"], verdict["morphed"][region]["fallen"]);
+      for (auto const* measure : {"determinant_3x3x3", "minimum_angle_deg"})
+        EXPECT_EQ(all["morphed"][region]["measures"][measure]["worst"],
+                  verdict["morphed"][region]["measures"][measure]["worst"]);
+    }
+  }
+  Outcome const compared = gridmorph("quality passage.cgns passage_rotation.cgns --quality fast");
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  EXPECT_NE(compared.out.find("minimum angle"), std::string::npos);
+}
+
+TEST_F(MorphRunTest, WhatLooksLikeTheCauseIsSaid) {
+  // Millimetres in a mesh in metres, in the displacements alone and in the points too.
+  std::istringstream lines(contents(path("rotation.csv")));
+  std::string line, both, displacements;
+  std::getline(lines, line);
+  both = displacements = line + "\n";
+  while (std::getline(lines, line)) {
+    double v[6];
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", v, v + 1, v + 2, v + 3, v + 4, v + 5), 6);
+    for (int c = 0; c < 6; ++c) {
+      char const* const end = c < 5 ? "," : "\n";
+      both += fmt::format("{:.17g}{}", 1000 * v[c], end);
+      displacements += fmt::format("{:.17g}{}", (c < 3 ? 1 : 1000) * v[c], end);
+    }
+  }
+  write("both.csv", both);
+  write("displacements.csv", displacements);
+  auto const with_blade = [&](std::string const& rule) {
+    std::string text = contents(path("rotation.toml"));
+    std::string const field = "rule    = \"field\"\nfile    = \"rotation.csv\"\n";
+    text.replace(text.find(field), field.size(), rule);
+    write("case.toml", text);
+    return gridmorph("morph case.toml");
+  };
+  auto const expect_cause = [](Outcome const& run, int status, std::string const& words) {
+    EXPECT_EQ(run.status, status) << run.err;
+    auto const at = run.err.find("likely cause: ");
+    ASSERT_NE(at, std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(words, at), std::string::npos) << run.err;
+  };
+  expect_cause(with_blade("rule = \"field\"\nfile = \"both.csv\"\n"), 4, "may be in another unit (length_scale");
+  expect_cause(with_blade("rule = \"field\"\nfile = \"displacements.csv\"\n"), 4,
+               "displacements may be in another unit");
+  expect_cause(with_blade("rule = \"rigid\"\nrotation = { angle_deg = 20, axis = [0, 0, 1], origin = [0, 0, 0] }\n"), 4,
+               "look at axis and origin");
+  std::string text = contents(path("rotation.toml"));
+  std::string const axis = "direction = [1, 0, 0]";
+  text.replace(text.find(axis), axis.size(), "direction = [0, 0, 1]");
+  write("case.toml", text);
+  expect_cause(gridmorph("morph case.toml"), 2, "periodic interfaces turn about (1, 0, 0)");
+}
+
+TEST_F(MorphRunTest, ATerminalShowsPercentAndALogOfAShortRunNothing) {
+  EXPECT_EQ(gridmorph("morph rotation.toml").err, "");
+  if (shell("script --version").status != 0) GTEST_SKIP() << "needs script(1) for a terminal";
+  Outcome const run = shell("script -qec \"$G morph rotation.toml\" /dev/null");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("measuring quality, 50 %"), std::string::npos) << run.out;
+  EXPECT_EQ(shell("script -qec \"$G -q morph rotation.toml\" /dev/null").out, "");
 }
 
 TEST_F(MorphRunTest, ADiskThatIsFullIsAFailureOfTheMachineAndLeavesNothing) {

@@ -117,12 +117,23 @@ TEST_F(SequenceTest, AStepThatInvertsKeepsAllFilesFromAppearing) {
   for (std::string const output : {"out_{step}.cgns", "out.cgns"}) {
     write_sequence("steps = 4\noutput = \"" + output + "\"\n", ", amplitude = 40, phase_deg = 90");
     Outcome const run = gridmorph("morph case.toml --report out.json");
-    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_EQ(run.status, 4) << run.err;
     EXPECT_NE(run.err.find("is not written"), std::string::npos);
     EXPECT_TRUE(nlohmann::json::parse(contents(path("out.json")))["output"].is_null());
     std::filesystem::remove(path("out.json"));
     expect_nothing_written();
   }
+}
+
+TEST_F(SequenceTest, EveryStepIsJudgedByTheLimits) {
+  write_sequence("steps = 4\noutput = \"out.cgns\"\n", ", amplitude = 0.2", "[guard]\nmax_loss = 0.0001\n");
+  Outcome const run = gridmorph("morph case.toml --report out.json");
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_NE(run.out.find("of 4 steps fall short, the first is step "), std::string::npos) << run.out;
+  int count = 0;
+  auto const report = nlohmann::json::parse(contents(path("out.json")));
+  for (auto const& step : report["sequence"]["steps"]) count += step["shortfall"].is_string() ? 1 : 0;
+  EXPECT_GT(count, 1);
 }
 
 TEST_F(SequenceTest, ADiskThatIsFullLeavesNothing) {

@@ -153,7 +153,7 @@ TEST_F(UnstructuredSequence, EveryStepHasTheFieldsThatAreAskedFor) {
 TEST_F(UnstructuredSequence, AStepThatInvertsOrASeriesInOneFileLeavesNothing) {
   write_case("out_{step}.su2", 30);
   Outcome const run = gridmorph("morph case.toml");
-  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_EQ(run.status, 4) << run.err;
   EXPECT_NE(run.err.find("is not written"), std::string::npos) << run.err;
   EXPECT_FALSE(std::filesystem::exists(path("out_1.su2")));
   write_case("out.su2", 0.1);
@@ -176,7 +176,7 @@ class UnstructuredTurn : public UnstructuredSequence {
 
 TEST_F(UnstructuredTurn, WhatOneStepCannotMakeIsMadeInSteps) {
   Outcome const one = turn(120, 1);
-  EXPECT_EQ(one.status, 1);
+  EXPECT_EQ(one.status, 4);
   EXPECT_FALSE(std::filesystem::exists(path("turned.su2")));
   Outcome const two = turn(120, 4);
   EXPECT_EQ(two.status, 0) << two.err;
@@ -197,13 +197,80 @@ TEST_F(UnstructuredTurn, WhatOneStepCannotMakeIsMadeInSteps) {
 
 TEST_F(UnstructuredTurn, WhereStepsDoNotHelpNothingIsWritten) {
   Outcome const run = turn(180, 2);
-  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.status, 4);
   EXPECT_NE(run.err.find("is not written"), std::string::npos) << run.err;
   EXPECT_FALSE(std::filesystem::exists(path("turned.su2")));
   write("case.toml",
         "[mesh]\ninput = \"ring.su2\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"body\"]\nrule = "
         "\"fixed\"\n[guard]\nsteps = 65\n");
   expect_bad_input(gridmorph("morph case.toml"), {"steps", "1 to 64, found 65"});
+}
+
+/// A square hole in a square of quadrilaterals and triangles that are numbered the other way round: 9 x 9 nodes.
+std::string hybrid_square() {
+  constexpr int n = 9;
+  std::string elements, body, outer;
+  int count = 0, at_body = 0, at_outer = 0;
+  auto const node = [](int i, int j) { return i + n * j; };
+  for (int j = 0; j < n - 1; ++j)
+    for (int i = 0; i < n - 1; ++i) {
+      if (i >= 3 && i < 5 && j >= 3 && j < 5) continue;  // the hole
+      bool const near = i >= 2 && i < 6 && j >= 2 && j < 6;
+      int const a = node(i, j), b = node(i + 1, j), c = node(i + 1, j + 1), d = node(i, j + 1);
+      if (near) {
+        elements += fmt::format("9 {} {} {} {}\n", a, b, c, d);
+        ++count;
+      } else {
+        elements += fmt::format("5 {} {} {}\n5 {} {} {}\n", a, c, b, a, d, c);  // clockwise
+        count += 2;
+      }
+    }
+  for (int k = 3; k < 5; ++k)
+    for (auto const& [p, q] : {std::pair(node(k, 3), node(k + 1, 3)), std::pair(node(k, 5), node(k + 1, 5)),
+                               std::pair(node(3, k), node(3, k + 1)), std::pair(node(5, k), node(5, k + 1))}) {
+      body += fmt::format("3 {} {}\n", p, q);
+      ++at_body;
+    }
+  for (int k = 0; k < n - 1; ++k)
+    for (auto const& [p, q] : {std::pair(node(k, 0), node(k + 1, 0)), std::pair(node(k, n - 1), node(k + 1, n - 1)),
+                               std::pair(node(0, k), node(0, k + 1)), std::pair(node(n - 1, k), node(n - 1, k + 1))}) {
+      outer += fmt::format("3 {} {}\n", p, q);
+      ++at_outer;
+    }
+  std::string text = fmt::format("NDIME= 2\nNELEM= {}\n{}NPOIN= {}\n", count, elements, n * n);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) text += fmt::format("{} {}\n", i, j);
+  return text + fmt::format("NMARK= 2\nMARKER_TAG= body\nMARKER_ELEMS= {}\n{}MARKER_TAG= outer\nMARKER_ELEMS= {}\n{}",
+                            at_body, body, at_outer, outer);
+}
+
+TEST_F(UnstructuredTest, AHybridMeshNumberedBothWaysIsMovedAndItsInvertedElementsAreSeen) {
+  write("hybrid.su2", hybrid_square());
+  auto const move = [&](double by, std::string const& guard) {
+    write("case.toml",
+          fmt::format("[mesh]\ninput = \"hybrid.su2\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"body\"]\n"
+                      "rule = \"rigid\"\ntranslation = [{}, 0, 0]\n[guard]\n{}",
+                      by, guard));
+    return gridmorph("morph case.toml -r report.json");
+  };
+  auto const region = [&](char const* state, char const* count) {
+    auto const json = nlohmann::json::parse(contents(path("report.json")));
+    return json[state]["near_field"][count].get<int>() + json[state]["far_field"][count].get<int>();
+  };
+  Outcome const little = move(0.5, "");
+  EXPECT_EQ(little.status, 0) << little.err << little.out;
+  EXPECT_EQ(region("baseline", "inverted"), 0);
+  EXPECT_EQ(region("morphed", "inverted"), 0);
+  for (std::string const guard : {"", "quality = \"fast\"\n"}) {
+    std::filesystem::remove(path("out.su2"));
+    Outcome const far = move(6, guard);  // beyond the outer boundary
+    EXPECT_EQ(far.status, 4) << far.err;
+    EXPECT_GT(region("morphed", "newly_inverted"), 0);
+    for (auto const* words : {"the worst is zone", "from patch '", "times the largest it had", "likely cause: "})
+      EXPECT_NE(far.err.find(words), std::string::npos) << words << far.err;
+    EXPECT_FALSE(std::filesystem::exists(path("out.su2")));
+  }
+  EXPECT_EQ(move(6, "write_inverted = true\n").status, 1);
 }
 
 TEST_F(UnstructuredTest, OtherMeshesAreNoBaselines) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace gridmorph::test {
@@ -202,7 +203,138 @@ TEST(UnstructuredQuality, ElementsNumberedInsideOutAreFoundAndNotRepaired) {
   EXPECT_NE(p.mesh.elements.nodes.item, before);
   Input input;
   input.coordinates = views(p.mesh.coordinates);
-  EXPECT_EQ(p.measure(input).far_field.inverted, 2);
+  EXPECT_EQ(p.measure(input).far_field.inverted, 0);  // numbered the other way than the rest, and sound
+}
+
+/// Numbers an element the other way round.
+void reverse(UnstructuredMesh& mesh, Index e) {
+  auto const first = mesh.elements.nodes.item.begin() + mesh.elements.nodes.first[std::size_t(e)];
+  std::reverse(first, first + n_corners(mesh.elements.type[std::size_t(e)]));
+}
+
+// Quadrilaterals one way and triangles the other, as hybrid meshes in 2-D are.
+TEST(UnstructuredQuality, AFlippedElementIsInvertedAndAHealedOneIsSoundHoweverElementsAreNumbered) {
+  for (int const way : {0, 1, 2, 3}) {
+    auto mesh = flat_box(6, 5, 2);
+    for (Index e = 0; e < mesh.n_elements(); ++e) {
+      bool const triangle = mesh.elements.type[std::size_t(e)] == ElementType::triangle;
+      if ((way == 1 && triangle) || (way == 2 && !triangle) || (way == 3 && e % 3 == 1)) reverse(mesh, e);
+    }
+    Prepared const p(mesh);
+    Input input;
+    input.coordinates = views(p.mesh.coordinates);
+    EXPECT_EQ(p.measure(input).far_field.inverted, 0) << way;
+    // A node among the triangles goes through the side across.
+    Coordinates const torn(p.mesh.n_nodes());
+    Index node = -1;
+    for (Index n = 0; n < p.mesh.n_nodes(); ++n) {
+      torn.set(n, p.mesh.coordinates[n]);
+      if (distance(p.mesh.coordinates[n], {3, 4, 0}) < 1e-9) node = n;
+    }
+    ASSERT_GE(node, 0);
+    torn.set(node, {4.4, 4.2, 0});
+    input.baseline = input.coordinates;
+    input.coordinates = views(torn);
+    for (bool const fast : {false, true}) {
+      input.fast = fast;
+      QualityRegion const r = p.measure(input).far_field;
+      EXPECT_GT(r.inverted, 0) << way;
+      EXPECT_EQ(r.newly_inverted, r.inverted) << way;
+    }
+    // The other way round: what was torn is whole again. Signs come from the mesh, so it is the baseline.
+    UnstructuredMesh torn_mesh = p.mesh;
+    torn_mesh.coordinates = torn;
+    Prepared const q(torn_mesh);
+    Input healed;
+    healed.coordinates = views(q.mesh.coordinates);
+    EXPECT_GT(q.measure(healed).far_field.inverted, 0) << way;
+    healed.baseline = healed.coordinates;
+    healed.coordinates = views(p.mesh.coordinates);
+    EXPECT_EQ(q.measure(healed).far_field.inverted, 0) << way;
+    EXPECT_EQ(q.measure(healed).far_field.newly_inverted, 0) << way;
+  }
+}
+
+TEST(UnstructuredQuality, SignsOfNumberingAreThoseThatEachElementWasGivenInEveryKindOfMesh) {
+  for (auto const& original : {to_prisms_and_tetrahedra(unit_box({4, 3, 5}), 2), to_hexahedra(unit_box({4, 4, 3})),
+                               to_prisms_and_tetrahedra(unit_box({3, 3, 3}), 0)}) {
+    auto mesh = original;
+    std::vector<signed char> expected;
+    for (Index e = 0; e < mesh.n_elements(); ++e) {
+      bool const turned = e % 5 < 2;
+      expected.push_back(turned ? -1 : 1);
+      if (!turned) continue;
+      auto const first = std::size_t(mesh.elements.nodes.first[std::size_t(e)]);
+      auto* const n = mesh.elements.nodes.item.data() + first;
+      switch (mesh.elements.type[std::size_t(e)]) {
+        case ElementType::tetrahedron: std::swap(n[0], n[1]); break;
+        case ElementType::prism:
+          std::swap(n[0], n[1]);
+          std::swap(n[3], n[4]);
+          break;
+        default:
+          for (int k = 0; k < 4; ++k) std::swap(n[k], n[k + 4]);
+      }
+    }
+    EXPECT_EQ(numbering_signs(mesh, element_sides(mesh)), expected);
+  }
+}
+
+TEST(UnstructuredQuality, FlatElementsOfEveryTypeAreNeitherInvertedNorSound) {
+  Mesh structured = unit_box({3, 3, 4});
+  for (Index n = 0; n < structured.n_nodes(); ++n)
+    if (Vec3 const x = structured.coordinates[n]; x.z == 4)
+      structured.coordinates.set(n, {100 + x.x, x.y, 3 + 1e-14 * ((n % 3) - 1.0)});
+    else
+      structured.coordinates.set(n, {100 + x.x, x.y, x.z});
+  for (auto const& mesh :
+       {to_hexahedra(structured), to_prisms_and_tetrahedra(structured, 0), to_prisms_and_tetrahedra(structured, 4)}) {
+    Prepared const p(mesh);
+    Input input;
+    input.coordinates = views(p.mesh.coordinates);
+    QualityRegion const r = p.measure(input).far_field;
+    EXPECT_EQ(r.flat, r.cells / 4);
+    EXPECT_EQ(r.inverted, 0);
+    Coordinates const after(p.mesh.n_nodes());
+    for (Index n = 0; n < p.mesh.n_nodes(); ++n) {
+      Vec3 const x = p.mesh.coordinates[n];
+      after.set(n, {x.x + 0.01 * x.y, x.y, x.z > 2.5 ? 3 - (x.z - 3) : x.z});
+    }
+    input.baseline = input.coordinates;
+    input.coordinates = views(after);
+    for (bool const fast : {false, true}) {
+      input.fast = fast;
+      EXPECT_EQ(p.measure(input).far_field.newly_inverted, 0);
+      EXPECT_EQ(p.measure(input).far_field.flat, r.flat);
+    }
+  }
+}
+
+TEST(UnstructuredQuality, AVerdictSaysWhatTheFullMeasurementSays) {
+  Prepared const p(to_prisms_and_tetrahedra(unit_box({6, 5, 7}), 3));
+  Coordinates const after(p.mesh.n_nodes());
+  for (Index n = 0; n < p.mesh.n_nodes(); ++n) {
+    Vec3 const x = p.mesh.coordinates[n];
+    after.set(n, x + Vec3{x.z > 3.5 ? 4.0 : 0.0, 0, x.x == 3 && x.y == 2 ? 0.9 : 0.0});
+  }
+  Input input;
+  input.coordinates = views(after);
+  input.baseline = views(p.mesh.coordinates);
+  input.limits = {0.3, 9, 0.8, 0.5};
+  QualityRegion const full = p.measure(input).far_field;
+  input.fast = true;
+  QualityRegion const fast = p.measure(input).far_field;
+  EXPECT_GT(full[Fall::angle].cells, 0);
+  EXPECT_GT(full[Fall::loss].cells, 0);
+  EXPECT_EQ(fast.inverted, full.inverted);
+  for (std::size_t f = 0; f < n_falls; ++f) {
+    EXPECT_EQ(fast.fallen[f].cells, full.fallen[f].cells) << to_string(Fall(f));
+    EXPECT_EQ(fast.fallen[f].worst_cell, full.fallen[f].worst_cell) << to_string(Fall(f));
+  }
+  for (Measure const m : {Measure::determinant_3x3x3, Measure::minimum_angle_deg}) {
+    EXPECT_EQ(fast[m].min, full[m].min);
+    EXPECT_EQ(fast[m].worst_cell, full[m].worst_cell);
+  }
 }
 
 TEST(UnstructuredQuality, AZoneThatIsNumberedInsideOutIsSoundButCounted) {

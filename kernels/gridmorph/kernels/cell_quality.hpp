@@ -17,10 +17,14 @@
 // only, and a direction whose 4 edges are collapsed has no relative displacement. Every measure of a cell with finite
 // corners is therefore defined; `invalid_cell()` is the answer for corners that are not finite.
 //
+// Jacobians below jacobian_tolerance() are zero as far as the coordinates can tell; they count as zero, so that round-off
+// decides about nothing. A cell is inverted where a corner has a negative Jacobian, flat where the smallest one is zero.
+//
 // Cost of cell_measures: about 1000 flops, 12 square roots, 24 divisions, 2 arc cosines; 24 coordinates are read.
 #pragma once
 
 #include <gridmorph/kernels/arc_cosine.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/kernels/lanes.hpp>
 #include <gridmorph/kernels/vec3.hpp>
 
@@ -42,6 +46,39 @@ inline constexpr double collapsed_fraction = 1e-12;
 inline constexpr double unbounded = HUGE_VAL;
 
 KOKKOS_INLINE_FUNCTION bool is_finite(double a) { return a - a == 0; }
+
+/// Jacobians below this share of the product of the cell's longest edges along its three directions are zero: an angle of
+/// 6e-7 degrees.
+inline constexpr double flat_fraction = 1e-8;
+
+/// A cell is looked at again where its smallest Jacobian is below this share of the largest one, ...
+inline constexpr double nearly_flat = 1e-6;
+/// ... or its volume is below this share of its longest edge cubed.
+inline constexpr double nearly_no_volume = 1e-10;
+
+/// Size of Jacobians that mean zero [length^3]: flat_fraction a b c + 64 eps x (a b + b c + c a), eps = 2^-52. a, b, c: longest
+/// edges along three directions; x: the largest coordinate in size, whose rounding moves the ends of edges.
+KOKKOS_INLINE_FUNCTION double jacobian_tolerance(double a, double b, double c, double x) {
+  return flat_fraction * a * b * c + 0x1p-46 * x * (a * b + b * c + c * a);
+}
+
+/// The same in 2-D, where Jacobians are areas [length^2].
+KOKKOS_INLINE_FUNCTION double jacobian_tolerance(double a, double b, double x) {
+  return flat_fraction * a * b + 0x1p-46 * x * (a + b);
+}
+
+KOKKOS_INLINE_FUNCTION double without_noise(double jacobian, double tolerance) {
+  return jacobian > tolerance || jacobian < -tolerance ? jacobian : 0;
+}
+
+KOKKOS_INLINE_FUNCTION double largest_coordinate(Vec3 const* points, int count) {
+  double low = 0, high = 0;
+  for (int n = 0; n < count; ++n) {
+    low = smaller(low, smaller(points[n].x, smaller(points[n].y, points[n].z)));
+    high = larger(high, larger(points[n].x, larger(points[n].y, points[n].z)));
+  }
+  return larger(high, -low);
+}
 
 /// The 12 edge vectors: of[d][e] runs along direction d (0 = i, 1 = j, 2 = k); e = p + 2 q, where p and q are the sides
 /// (0 or 1) of the other two directions in ascending order.
@@ -135,16 +172,34 @@ KOKKOS_INLINE_FUNCTION JacobianRange jacobian_range(HexEdges const& edges, unsig
   return r;
 }
 
-/// Smallest / largest Jacobian determinant: 1 for a parallelepiped, negative when any is, never below -1; -1 when the
-/// largest is not positive.
+/// Smallest / largest Jacobian determinant: 1 for a parallelepiped, negative when any is, never below -1. Where the largest
+/// is not positive: -1, and 0 for a cell that is flat everywhere (or has no point to look at, largest < smallest).
 KOKKOS_INLINE_FUNCTION double determinant_ratio(double smallest, double largest) {
-  return largest > 0 ? larger(smallest / largest, -1.0) : -1.0;
+  if (largest > 0) return larger(smallest / largest, -1.0);
+  return smallest < 0 ? -1.0 : 0.0;
+}
+
+/// jacobian_range() of a cell, round-off taken for zero.
+KOKKOS_INLINE_FUNCTION JacobianRange jacobian_range(HexCell const& cell, HexEdges const& edges, unsigned collapsed,
+                                                    double handedness) {
+  JacobianRange r = jacobian_range(edges, collapsed, handedness);
+  double longest[3] = {0, 0, 0};
+  for (int d = 0; d < 3; ++d) {
+    for (int e = 0; e < 4; ++e) longest[d] = larger(longest[d], dot(edges.of[d][e], edges.of[d][e]));
+    longest[d] = compat::math::sqrt(longest[d]);
+  }
+  double const tolerance = jacobian_tolerance(longest[0], longest[1], longest[2], largest_coordinate(cell.corner, 8));
+  r.min8 = without_noise(r.min8, tolerance);
+  r.max8 = without_noise(r.max8, tolerance);
+  r.min27 = without_noise(r.min27, tolerance);
+  r.max27 = without_noise(r.max27, tolerance);
+  return r;
 }
 
 /// The 3x3x3 determinant alone; -1 when a corner is not finite.
 KOKKOS_INLINE_FUNCTION double determinant_3x3x3(HexCell const& cell, double handedness) {
   HexEdges const edges = hex_edges(cell);
-  JacobianRange const j = jacobian_range(edges, collapsed_edges(edges), handedness);
+  JacobianRange const j = jacobian_range(cell, edges, collapsed_edges(edges), handedness);
   return is_finite(j.volume) ? determinant_ratio(j.min27, j.max27) : -1.0;
 }
 
@@ -176,12 +231,13 @@ KOKKOS_INLINE_FUNCTION FaceAngles face_angles(HexEdges const& edges, double cons
 /// What is measured on one cell of one mesh.
 struct CellMeasures {
   double determinant_2x2x2 = -1, determinant_3x3x3 = -1;
-  double smallest_corner_jacobian = -1;  ///< inverted where this is not positive; unit length^3
+  double smallest_corner_jacobian = -1;  ///< inverted where this is negative, flat where it is zero; unit length^3
   double volume = 0;
   double aspect_ratio = unbounded;
   double minimum_angle_deg = 0;
   double equiangle_skewness = 1;
-  bool collapsed = false;  ///< has at least one collapsed edge
+  bool collapsed = false;              ///< has at least one collapsed edge
+  double largest_corner_jacobian = 0;  ///< what a negative one is compared with; unit length^3
 };
 
 /// The measures of a cell whose corners are not all finite: the worst there is.
@@ -191,7 +247,7 @@ KOKKOS_INLINE_FUNCTION CellMeasures invalid_cell() { return {}; }
 KOKKOS_INLINE_FUNCTION CellMeasures cell_measures(HexCell const& cell, double handedness) {
   HexEdges const edges = hex_edges(cell);
   unsigned const collapsed = collapsed_edges(edges);
-  JacobianRange const j = jacobian_range(edges, collapsed, handedness);
+  JacobianRange const j = jacobian_range(cell, edges, collapsed, handedness);
   if (!is_finite(j.volume)) return invalid_cell();
 
   CellMeasures m;
@@ -200,6 +256,7 @@ KOKKOS_INLINE_FUNCTION CellMeasures cell_measures(HexCell const& cell, double ha
   m.determinant_2x2x2 = determinant_ratio(j.min8, j.max8);
   m.determinant_3x3x3 = determinant_ratio(j.min27, j.max27);
   m.smallest_corner_jacobian = is_finite(j.min8) ? j.min8 : 0;  // all corners collapsed: no volume
+  m.largest_corner_jacobian = is_finite(j.max8) ? j.max8 : 0;
 
   double length[3][4], shortest = unbounded, longest = 0;
   for (int d = 0; d < 3; ++d)

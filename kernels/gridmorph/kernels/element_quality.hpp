@@ -20,7 +20,7 @@
 //   displacement   divided by their mean baseline length; the largest of them (u: displacement)
 //
 // In 2-D, J is taken along the unit normal of the plane. Edges shorter than collapsed_fraction of the longest one leave no
-// trace, as in cell_quality.hpp. Cost: 250 flops, 12 divisions, 5 square roots and 2 arc cosines
+// trace, and Jacobians that are round-off count as zero, as in cell_quality.hpp. Cost: 250 flops, 12 divisions, 5 square roots and 2 arc cosines
 // (tetrahedron) to 1000 flops (hexahedron).
 #pragma once
 
@@ -177,20 +177,56 @@ KOKKOS_INLINE_FUNCTION double prism_jacobians(ElementCorners const& c, EdgeLengt
   return volume;
 }
 
-/// Scaled Jacobian of a simplex with Jacobian j.
+/// Smallest (`least`) or largest product over the corners of a simplex of the squares of the edges that meet there.
 template <ElementType type>
-KOKKOS_INLINE_FUNCTION double scaled_simplex(EdgeLengths const& e, double j) {
-  constexpr double scale = type == ElementType::triangle ? 1.1547005383792515290 : 1.4142135623730950488;
-  double largest = 0;
+KOKKOS_INLINE_FUNCTION double corner_product(EdgeLengths const& e, bool least) {
+  double extreme = least ? unbounded : 0;
   for (int corner = 0; corner < n_corners(type); ++corner) {
     double product = 1;
     for (int i = 0; i < n_edges(type); ++i)
       if (edge_corner(type, i, 0) == corner || edge_corner(type, i, 1) == corner) product *= e.square[i];
-    largest = larger(largest, product);
+    extreme = least ? smaller(extreme, product) : larger(extreme, product);
   }
-  if (!(largest > 0)) return -1;
+  return extreme;
+}
+
+/// Scaled Jacobian of a simplex with Jacobian j.
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION double scaled_simplex(EdgeLengths const& e, double j) {
+  constexpr double scale = type == ElementType::triangle ? 1.1547005383792515290 : 1.4142135623730950488;
+  double const largest = corner_product<type>(e, false);
+  if (!(largest > 0)) return 0;
   double const ratio = scale * j / compat::math::sqrt(largest);
   return smaller(1.0, larger(-1.0, ratio));
+}
+
+/// Size of Jacobians that mean zero. Directions: those of edge_direction in quadrilaterals, the base and the longest of the
+/// lateral edges in pyramids, triangles and columns in prisms, the corner with the shortest edges in simplices.
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION double tolerance(ElementCorners const& c, EdgeLengths const& e) {
+  double const x = largest_coordinate(c.at, n_corners(type)), longest = compat::math::sqrt(e.longest);
+  if constexpr (type == ElementType::triangle || type == ElementType::tetrahedron) {
+    double const rounding =
+        type == ElementType::triangle ? jacobian_tolerance(0, longest, x) : jacobian_tolerance(0, longest, longest, x);
+    return rounding + flat_fraction * compat::math::sqrt(corner_product<type>(e, true));
+  }
+  double square[3] = {0, 0, 0};
+  for (int i = 0; i < n_edges(type); ++i) {
+    int const direction = edge_direction(type, i);
+    int const d = type == ElementType::prism ? (direction == 3 ? 2 : 0) : direction < 2 ? direction : 2;
+    square[d] = larger(square[d], e.square[i]);
+  }
+  if constexpr (type == ElementType::prism) square[1] = square[0];
+  double const a = compat::math::sqrt(square[0]), b = compat::math::sqrt(square[1]);
+  if constexpr (type == ElementType::quadrilateral) return jacobian_tolerance(a, b, x);
+  return jacobian_tolerance(a, b, compat::math::sqrt(square[2]), x);
+}
+
+/// Whether a volume (in 2-D an area) is so small against the longest edge that it may be round-off.
+template <ElementType type>
+KOKKOS_INLINE_FUNCTION bool may_be_flat(EdgeLengths const& e, double volume) {
+  constexpr double share = nearly_no_volume * nearly_no_volume;
+  return !(volume * volume > share * e.longest * e.longest * (is_surface(type) ? 1 : e.longest));
 }
 
 /// Jacobians of an element at all points where they are taken: volume and determinants.
@@ -200,9 +236,10 @@ KOKKOS_INLINE_FUNCTION void take_jacobians(ElementCorners const& c, EdgeLengths 
   if constexpr (type == ElementType::tetrahedron || type == ElementType::triangle) {
     constexpr bool solid = type == ElementType::tetrahedron;
     Vec3 const third = solid ? c.at[3] - c.at[0] : plane_normal;
-    double const j = sign * dot(cross(c.at[1] - c.at[0], c.at[2] - c.at[0]), third);
+    double j = sign * dot(cross(c.at[1] - c.at[0], c.at[2] - c.at[0]), third);
     m.volume = j / (solid ? 6 : 2);
-    m.smallest_corner_jacobian = j;
+    if (may_be_flat<type>(e, m.volume)) j = without_noise(j, tolerance<type>(c, e));
+    m.smallest_corner_jacobian = m.largest_corner_jacobian = j;
     m.determinant_2x2x2 = m.determinant_3x3x3 = scaled_simplex<type>(e, j);
   } else {
     Determinants d;
@@ -213,9 +250,15 @@ KOKKOS_INLINE_FUNCTION void take_jacobians(ElementCorners const& c, EdgeLengths 
       m.volume = pyramid_jacobians(c, e, sign, d);
     else
       m.volume = prism_jacobians(c, e, sign, d);
+    if (!(d.all_min > nearly_flat * d.all_max) || may_be_flat<type>(e, m.volume)) {
+      double const zero = tolerance<type>(c, e);
+      d = {without_noise(d.corner_min, zero), without_noise(d.corner_max, zero), without_noise(d.all_min, zero),
+           without_noise(d.all_max, zero)};
+    }
     m.determinant_2x2x2 = determinant_ratio(d.corner_min, d.corner_max);
     m.determinant_3x3x3 = determinant_ratio(d.all_min, d.all_max);
     m.smallest_corner_jacobian = is_finite(d.corner_min) ? d.corner_min : 0;
+    m.largest_corner_jacobian = is_finite(d.corner_max) ? d.corner_max : 0;
   }
 }
 
@@ -292,7 +335,7 @@ KOKKOS_INLINE_FUNCTION double relative_displacement_of(ElementCorners const& bas
 
 }  // namespace element
 
-/// All measures of one element that is no polyhedron. sign: +1, or -1 for elements of a zone that is numbered inside out.
+/// All measures of one element that is no polyhedron. sign: +1, or -1 for elements that are numbered inside out.
 /// plane_normal: unit normal of a 2-D mesh, along which a counter-clockwise element is positive; not used in 3-D.
 KOKKOS_INLINE_FUNCTION CellMeasures element_measures(ElementType type, ElementCorners const& c, double sign,
                                                      Vec3 const& plane_normal) {

@@ -8,8 +8,8 @@
 //   volume        in these sums the weights 1, 4, 1 of Simpson's rule become 1 everywhere: the sum of all 27 / 216.
 //   angles        dot products of unit edge vectors; arc cosines only of the largest and the smallest per cell.
 //
-// A cell that is not regular (a collapsed edge, a corner that is not finite) gets a nonzero mark; its other results mean
-// nothing, and the general functions of cell_quality.hpp take over.
+// A cell that is not regular (a collapsed edge, a corner that is not finite, a Jacobian that is negative or may be round-off)
+// gets a nonzero mark; its other results mean nothing, and the general functions of cell_quality.hpp take over.
 //
 // Cost per cell of a row, where neighbours share the planes between them: determinants about 530 flops and 1 division; all
 // measures about 770 flops, 11 square roots, 13 divisions; relative displacement about 190, 9 and 3.
@@ -67,6 +67,16 @@ template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T irregularity(Extremes<T> const& squares, T const& result) {
   T const limit = collapsed_fraction * collapsed_fraction * squares.max;
   return (squares.min > limit ? broadcast<T>(0) : broadcast<T>(1)) + (result - result);
+}
+
+/// The same for a cell's volume and its determinant over 27 points, in which the corners are.
+template <class T>
+KOKKOS_FORCEINLINE_FUNCTION T irregularity(Extremes<T> const& squares, T const& volume, T const& determinant) {
+  T const cubed = squares.max * squares.max * squares.max;
+  T const doubtful =
+      (determinant > nearly_flat ? broadcast<T>(0) : broadcast<T>(1)) +
+      (volume * volume > nearly_no_volume * nearly_no_volume * cubed ? broadcast<T>(0) : broadcast<T>(1));
+  return irregularity(squares, volume) + doubtful;
 }
 
 /// A bilinear vector on 3 x 3 points: corners, twice the edge mids, four times the centre.

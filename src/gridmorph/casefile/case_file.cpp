@@ -255,12 +255,25 @@ void read_plan(TableReader& root, CaseFile& out) {
 
 void read_results(TableReader& root, CaseFile& out) {
   if (auto guard = root.table("guard")) {
-    if (auto const d = guard->number("min_determinant")) {
-      out.guard.min_determinant = *d;
-      if (*d < -1 || *d >= 1)
-        guard->problem("min_determinant",
-                       fmt::format("is the smallest 3x3x3 determinant that passes, -1 <= value < 1, found {}", *d));
-    }
+    auto const limit = [&](char const* key, double& value, bool (*passes)(double), std::string_view meaning) {
+      auto const found = guard->number(key);
+      if (!found) return;
+      value = *found;
+      if (!passes(value)) guard->problem(key, fmt::format("is {}, found {}", meaning, value));
+    };
+    limit(
+        "min_determinant", out.guard.min_determinant, [](double d) { return d >= -1 && d < 1; },
+        "the smallest 3x3x3 determinant that passes, -1 <= value < 1");
+    limit(
+        "min_angle_deg", out.guard.min_angle_deg, [](double a) { return a >= 0 && a < 90; },
+        "the smallest angle that passes, in degrees, 0 <= value < 90");
+    limit(
+        "max_skewness", out.guard.max_skewness, [](double s) { return s > 0 && s <= 1; },
+        "the largest equiangle skewness that passes, 0 < value <= 1");
+    limit(
+        "max_loss", out.guard.max_loss, [](double l) { return l > 0 && l <= 1; },
+        "the largest share of its determinant or smallest angle that a cell may lose, 0 < value <= 1");
+    if (auto const mode = guard->choice("quality", {"auto", "full", "fast"})) out.guard.quality = QualityMode(*mode);
     out.guard.write_inverted = guard->boolean("write_inverted").value_or(false);
     if (auto const steps = guard->integer("steps")) {
       constexpr int most = 64;

@@ -8,6 +8,7 @@
 #include <gridmorph/casefile/wheel_case.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
+#include <gridmorph/quality/quality.hpp>
 #include <gridmorph/unstructured/options.hpp>
 
 #include <filesystem>
@@ -20,10 +21,13 @@
 
 namespace gridmorph {
 
+/// How much of the quality is measured. automatic: a verdict for meshes of more than a million cells, else all.
+enum class QualityMode { automatic, full, fast };
+
 /// [guard]: when the result counts as good.
-struct GuardOptions {
-  double min_determinant = 0.05;  ///< smallest 3x3x3 determinant that passes, -1 <= value < 1; dimensionless
-  bool write_inverted = false;    ///< write a mesh with inverted cells all the same
+struct GuardOptions : CellLimits {
+  bool write_inverted = false;  ///< write a mesh with inverted cells all the same
+  QualityMode quality = QualityMode::automatic;
   int steps = 4;  ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
 };
 

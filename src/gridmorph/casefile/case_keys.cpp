@@ -225,7 +225,11 @@ plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "Across the plane, of any l
     {"volume priority", "order", "list", "", R"(["wall", "periodic", "inflow", "outflow"])", R"(priority = [ { rule = "boundary", order = ["wall", "periodic"] } ])",
      "With `boundary`: kinds from first to last, of wall, periodic, inflow, outflow, symmetry, farfield, degenerate, connection, other"},
 
-    {"guard", "min_determinant", "-1 <= number < 1", "1", "0.05", "min_determinant = 0.1", "Smallest 3x3x3 determinant that passes; below it the exit status is 1"},
+    {"guard", "max_loss", "0 < number <= 1", "1", "0.9", "max_loss = 0.5", "Largest share that a cell may lose of the 3x3x3 determinant or of the smallest angle that it has in the baseline"},
+    {"guard", "max_skewness", "0 < number <= 1", "1", "0.98", "max_skewness = 0.95", "Largest equiangle skewness that passes"},
+    {"guard", "min_angle_deg", "0 <= number < 90", "deg", "2", "min_angle_deg = 5.0", "Smallest angle that passes"},
+    {"guard", "min_determinant", "-1 <= number < 1", "1", "0.05", "min_determinant = 0.1", "Smallest 3x3x3 determinant that passes"},
+    {"guard", "quality", R"("auto", "full" or "fast")", "", R"("auto")", R"(quality = "full")", "`full`: all measures, baseline and morphed; `fast`: a verdict (what is inverted or beyond a limit, smallest determinant and angle); `auto`: `fast` above a million cells; always `full` where `[output]` `quality` is set; `--quality` overrides it"},
     {"guard", "steps", "1 to 64", "1", "4", "steps = 8", "Unstructured meshes: where elements are inverted after one step, the motion is made in 2, 3, ... steps up to this number, each planned on the mesh before it, until none is"},
     {"guard", "write_inverted", "true or false", "", "false", "write_inverted = true", "Write the mesh even if cells are inverted that were not in the baseline"},
 

@@ -15,13 +15,20 @@ namespace {
 std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "wheel", "surface", "demo"};
 
 constexpr char const* footer =
-    "Exit status: 0 done; 1 the mesh falls short of the thresholds; 2 bad input; 3 failure of the machine.";
+    "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
+    "machine; "
+    "4 not written, because cells are inverted.";
+
+void add_quality(CLI::App& command, CommandLine& out, char const* text) {
+  command.add_option("--quality", out.quality, text)->check(CLI::IsMember({"auto", "full", "fast"}));
+}
 
 CLI::App* add_morph(CLI::App& app, CommandLine& out) {
   auto* morph = app.add_subcommand("morph", "Morph a mesh as a case file says");
   morph->add_option("case", out.input, "Case file (TOML)")->required();
   morph->add_option("-o,--output", out.output, "Morphed mesh, instead of the case file's output");
   morph->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
+  add_quality(*morph, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
   morph->add_flag("--dry-run", out.dry_run, "Check everything and print the plan; write nothing");
   return morph;
 }
@@ -31,6 +38,7 @@ CLI::App* add_wheel(CLI::App& app, CommandLine& out) {
   wheel->add_option("case", out.input, "Case file (TOML) with [wheel]")->required();
   wheel->add_option("-o,--output", out.output, "Mesh of the wheel, instead of the case file's output");
   wheel->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
+  add_quality(*wheel, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
   return wheel;
 }
 
@@ -114,6 +122,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
   quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS or PLOT3D)")->required();
   quality->add_option("morphed", out.second, "Morphed mesh");
+  add_quality(*quality, out, "full (default) or fast: a verdict in a fraction of the time");
   quality->add_flag("--json", out.json, "Print JSON");
   add_leave_out(*quality, out);
   commands.emplace_back(quality, Command::quality);

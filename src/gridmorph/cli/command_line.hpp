@@ -22,6 +22,7 @@ struct CommandLine {
   std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's; surface
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   bool dry_run = false;
+  std::optional<std::string> quality;  ///< morph, wheel: instead of the case file's; quality: "fast" or "full"
   bool json = false;
   std::optional<std::filesystem::path> side_file;        ///< inspect: of the mesh, instead of the one beside it
   std::optional<std::filesystem::path> write_side_file;  ///< inspect: what was found goes there

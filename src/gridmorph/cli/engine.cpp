@@ -1,5 +1,7 @@
+#include <gridmorph/cli/diagnosis.hpp>
 #include <gridmorph/cli/engine.hpp>
 #include <gridmorph/cli/near_field_mask.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/plan/prepare.hpp>
@@ -7,6 +9,7 @@
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/volume/morpher.hpp>
 
+#include <fmt/format.h>
 #include <Kokkos_Core.hpp>
 
 #include <optional>
@@ -58,7 +61,13 @@ struct Engine::Impl {
 
 Engine::Engine(Mesh& mesh, CaseFile const& case_file, Terminal& terminal) {
   terminal.progress("connecting zones, applying rules, planning");
-  impl_ = std::make_unique<Impl>(mesh, case_file);
+  try {
+    impl_ = std::make_unique<Impl>(mesh, case_file);
+  } catch (MotionError const& e) {  // rules about an axis fail in many ways when it is not the machine's
+    auto const cause = axis_mismatch(mesh, case_file.motion.axis);
+    if (!cause) throw;
+    throw MotionError(fmt::format("{}\n  likely cause: {}", e.what(), *cause));
+  }
 }
 Engine::~Engine() = default;
 Engine::Engine(Engine&&) noexcept = default;

@@ -1,5 +1,6 @@
 #include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/diagnosis.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/output_files.hpp>
 #include <gridmorph/cli/run_files.hpp>
@@ -124,7 +125,7 @@ std::string report_text(CaseFile const& case_file, MorphResult const& result, bo
 std::string format_result(CaseFile const& case_file, MorphResult const& result) {
   std::string text = stages_text(result);
   text += (text.empty() ? "" : "\n") + format_table(result.before, result.after, thresholds_of(case_file));
-  text += "\n" + format_short_table(result.before, result.after);
+  if (!result.after.fast) text += "\n" + format_short_table(result.before, result.after);
   return text + "\n" + format_times(result.times, result.mesh.n_nodes());
 }
 
@@ -167,21 +168,19 @@ int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
   if (report) text += fmt::format("wrote {}\n", report->string());
   terminal.say(text);
   if (terminal.quiet())  // otherwise the table has said it
-      // The table ends with them; nobody should miss them when it is not shown.
-    if (terminal.quiet())
-      for (auto const& s : result.shortfalls) terminal.warn(s.message);
+    for (auto const& s : result.shortfalls) terminal.warn(s.message);
   if (!written)
-    terminal.error(
-        fmt::format("'{}' is not written, because cells are inverted that were not in the baseline; move the "
-                    "boundary less, change [volume] or [boundary_layer], or set write_inverted = true in [guard]",
-                    case_file.output.string()));
-  return any_failure(result.shortfalls) || !written ? falls_short : done;
+    terminal.error(refusal(case_file.output.string(), "cells are inverted that were not in the baseline",
+                           diagnose(case_file, for_messages(result.mesh), result.after, result.morphed),
+                           "move the boundary less, change [volume] or [boundary_layer]"));
+  return status_of_morph(written, any_failure(result.shortfalls));
 }
 
 int run_morph_command(CommandLine const& options, Terminal& terminal) {
   CaseFile case_file = read_case_file(options.input);
   if (options.output) (case_file.sequence ? case_file.sequence->output : case_file.output) = *options.output;
   if (options.report) case_file.output_options.report = *options.report;
+  set_quality(case_file, options.quality);
   if (options.dry_run) {
     terminal.result(run_plan(case_file, terminal));
     return done;

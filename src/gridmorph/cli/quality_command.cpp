@@ -38,6 +38,8 @@ void check_same_zones(Mesh const& a, Mesh const& b) {
   problems.throw_if_any<MeshError>();
 }
 
+bool wants_fast(CommandLine const& options) { return options.quality == "fast"; }
+
 int show(QualityReport const& before, std::optional<QualityReport> const& after, CommandLine const& options,
          Terminal& terminal) {
   QualityThresholds const thresholds;
@@ -68,9 +70,11 @@ int quality_of_unstructured(CommandLine const& options, Terminal& terminal) {
                                        read_unstructured_mesh(options.second->string(), second_options(options)));
   }
   terminal.progress("measuring quality");
-  QualityReport const before = measure_mesh(loaded);
+  bool const fast = wants_fast(options);
+  QualityReport before;
+  if (!fast || !morphed) before = measure_mesh(loaded, {}, fast);
   std::optional<QualityReport> after;
-  if (morphed) after = measure_mesh(loaded, morphed);
+  if (morphed) after = measure_mesh(loaded, morphed, fast);
   return show(before, after, options, terminal);
 }
 
@@ -96,7 +100,10 @@ int run_quality_command(CommandLine const& options, Terminal& terminal) {
   QualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(mesh.coordinates);
   input.walls = wall_faces(mesh, walls);
-  QualityReport const before = measure_quality(exec, mesh, input);
+  input.fast = wants_fast(options);
+  input.handedness = zone_handedness(exec, mesh, input.coordinates);
+  QualityReport before;
+  if (!input.fast || !morphed) before = measure_quality(exec, mesh, input);
   std::optional<QualityReport> after;
   if (morphed) {
     input.baseline = input.coordinates;

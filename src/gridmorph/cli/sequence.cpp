@@ -1,4 +1,5 @@
 #include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/diagnosis.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/sequence.hpp>
 #include <gridmorph/cli/sequence_steps.hpp>
@@ -35,7 +36,7 @@ int morph_sequence(CaseFile const& case_file, Terminal& terminal) {
   morph(int(steps.worst()));
   result.after = meter.morphed(result.morphed);
   result.shortfalls = shortfalls(result.before, result.after, thresholds_of(case_file));
-  result.stages = engine.stage_results(result.morphed);
+  if (!result.after.fast) result.stages = engine.stage_results(result.morphed);
   result.notes = engine.notes();
   add_mapping_notes(case_file, result.notes);
   result.times.insert(result.times.end(), steps.times.begin(), steps.times.end());
@@ -43,9 +44,11 @@ int morph_sequence(CaseFile const& case_file, Terminal& terminal) {
   std::string head;
   for (auto const& note : result.notes) head += "note: " + note + "\n";
   if (!head.empty()) head += "\n";
-  return finish_sequence(case_file, terminal, files, steps,
-                         {[&] { return report_json(case_file, result); }, head, format_result(case_file, result),
-                          result.shortfalls, "[volume] or [boundary_layer]"});
+  return finish_sequence(
+      case_file, terminal, files, steps,
+      {[&] { return report_json(case_file, result); }, head, format_result(case_file, result), result.shortfalls,
+       "[volume] or [boundary_layer]",
+       [&] { return diagnose(case_file, for_messages(result.mesh), result.after, result.morphed); }});
 }
 
 }  // namespace gridmorph::cli

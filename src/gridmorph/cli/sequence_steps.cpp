@@ -4,6 +4,7 @@
 #include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/cli/sequence_steps.hpp>
 #include <gridmorph/cli/step_files.hpp>
+#include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/report/measure_text.hpp>
@@ -55,6 +56,7 @@ nlohmann::json steps_json(std::vector<StepResult> const& steps, std::size_t wors
                         {"time", step.time},
                         {"largest_displacement", step.largest_displacement},
                         {"newly_inverted", step.newly_inverted},
+                        {"shortfall", step.shortfall.empty() ? nlohmann::json() : nlohmann::json(step.shortfall)},
                         {"min_determinant", nullptr}};
     if (!step.place.empty()) {
       json["min_determinant"] = {{"value", step.determinant}, {"zone", step.zone}};
@@ -77,14 +79,6 @@ std::string wrote_text(SequenceOptions const& options) {
                                     : fmt::format("\nwrote {} ({} steps)\n", options.output.string(), options.steps);
 }
 
-/// Why nothing was written.
-std::string refusal_text(SequenceOptions const& options, std::string const& what_to_change) {
-  return fmt::format(
-      "'{}' is not written, because steps have cells inverted that were not in the baseline; lower the amplitudes, "
-      "change {}, or set write_inverted = true in [guard]",
-      options.output.string(), what_to_change);
-}
-
 }  // namespace
 
 StepResult step_result(double time, Coordinates const& before, Coordinates const& after, QualityReport const& quality) {
@@ -92,6 +86,8 @@ StepResult step_result(double time, Coordinates const& before, Coordinates const
   out.time = time;
   out.largest_displacement = largest_displacement(before, after);
   out.newly_inverted = newly_inverted(quality);
+  for (auto const* region : {&quality.near_field, &quality.far_field})
+    out.inversion = std::min(out.inversion, (*region)[Fall::inverted].worst);
   MeasureStatistics const* worst = nullptr;
   for (auto const* region : {&quality.near_field, &quality.far_field}) {
     auto const& measure = (*region)[Measure::determinant_3x3x3];
@@ -128,9 +124,18 @@ void check_sequence_outputs(CaseFile const& case_file) {
 
 std::size_t Steps::worst() const {
   auto const found = std::min_element(results.begin(), results.end(), [](StepResult const& a, StepResult const& b) {
-    return a.determinant < b.determinant;
+    return std::pair(a.determinant, a.inversion) < std::pair(b.determinant, b.inversion);
   });
   return std::size_t(found - results.begin());
+}
+
+std::string Steps::shortfall() const {
+  auto const falls_short = [](StepResult const& s) { return !s.shortfall.empty(); };
+  auto const first = std::find_if(results.begin(), results.end(), falls_short);
+  if (first == results.end()) return "";
+  auto const count = std::count_if(results.begin(), results.end(), falls_short);
+  return fmt::format("{} of {} steps {} short, {} step {}: {}", count, results.size(), count == 1 ? "falls" : "fall",
+                     count == 1 ? "it is" : "the first is", first - results.begin() + 1, first->shortfall);
 }
 
 Steps run_steps(CaseFile const& case_file, Terminal& terminal, StepFiles& files, StepWork const& work) {
@@ -138,14 +143,18 @@ Steps run_steps(CaseFile const& case_file, Terminal& terminal, StepFiles& files,
   Steps out;
   Stopwatch part;
   double morphing = 0, measuring = 0, writing = 0;
+  terminal.expect({});
   for (int step = 0; step < options.steps; ++step) {
-    terminal.progress(fmt::format("step {} of {}", step + 1, options.steps));
+    terminal.progress(fmt::format("step {} of {}", step + 1, options.steps), double(step) / options.steps);
     part.lap();
     work.morph(step);
     morphing += part.lap();
     QualityReport const quality = work.measure();
     measuring += part.lap();
     out.results.push_back(step_result(options.time_at(step), work.before, work.after, quality));
+    for (auto const& s : shortfalls({}, quality, thresholds_of(case_file)))
+      if (s.severity == Shortfall::Severity::failure && out.results.back().shortfall.empty())
+        out.results.back().shortfall = s.message;
     out.inverted = out.inverted || out.results.back().newly_inverted > 0;
     part.lap();
     // Once a step cannot be used the files are not needed; the table still says how the others fare.
@@ -177,14 +186,20 @@ int finish_sequence(CaseFile const& case_file, Terminal& terminal, StepFiles& fi
   if (pending) pending->commit();
 
   std::string text = report.head + steps_table(steps.results, worst);
+  std::string const shortfall = steps.shortfall();
+  if (!shortfall.empty()) text += "\n" + shortfall + "\n";
   text += fmt::format("\nstep {}, the worst one\n\n", worst + 1) + report.worst;
   if (written) text += wrote_text(options);
   if (report_file) text += fmt::format("wrote {}\n", report_file->string());
   terminal.say(text);
-  if (terminal.quiet())
+  if (terminal.quiet()) {
+    if (!shortfall.empty()) terminal.warn(shortfall);
     for (auto const& s : report.shortfalls) terminal.warn(s.message);
-  if (!written) terminal.error(refusal_text(options, report.what_to_change));
-  return any_failure(report.shortfalls) || !written ? falls_short : done;
+  }
+  if (!written)
+    terminal.error(refusal(options.output.string(), "steps have cells inverted that were not in the baseline",
+                           report.diagnose(), "lower the amplitudes, change " + report.what_to_change));
+  return status_of_morph(written, !shortfall.empty());
 }
 
 }  // namespace gridmorph::cli

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/cli/diagnosis.hpp>
 #include <gridmorph/cli/step_files.hpp>
 #include <gridmorph/cli/terminal.hpp>
 #include <gridmorph/mesh/mesh.hpp>
@@ -22,10 +23,12 @@ struct StepResult {
   double time = 0;
   double largest_displacement = 0;
   double determinant = 0;  ///< smallest 3x3x3
+  double inversion = 0;    ///< smallest FallenCells::worst of inverted cells: which of two steps at -1 is the worse one
   std::string place;       ///< of it, for people; empty when nothing was measured
   std::string zone;
   std::vector<int> cell;  ///< 1-based indices; of an unstructured mesh the element's number
   Index newly_inverted = 0;
+  std::string shortfall;  ///< the first of those that are failures
 };
 
 StepResult step_result(double time, Coordinates const& before, Coordinates const& after, QualityReport const& quality);
@@ -47,6 +50,8 @@ struct Steps {
   bool inverted = false;  ///< an element in some step that was not in the baseline
   StepTimes times;        ///< of all steps together
 
+  /// "3 of 24 steps fall short, the first is step 7: ..."; empty where none does.
+  [[nodiscard]] std::string shortfall() const;
   /// The step with the smallest determinant.
   [[nodiscard]] std::size_t worst() const;
 };
@@ -60,7 +65,8 @@ struct SequenceReport {
   std::string head;                      ///< above the table
   std::string worst;                     ///< below it: quality of the worst step, times
   std::vector<Shortfall> const& shortfalls;
-  std::string what_to_change;  ///< tables of the case file that may help where elements are inverted
+  std::string what_to_change;           ///< tables of the case file that may help where elements are inverted
+  std::function<Diagnosis()> diagnose;  ///< of the worst step; called when nothing is written
 };
 
 /// Writes report and files, unless steps have inverted elements and the case file does not want those; says what was done. Returns

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include <unistd.h>
 
@@ -25,7 +26,10 @@ void prefixed(std::string_view kind, std::string_view text) {
 
 }  // namespace
 
-Terminal::Terminal(bool quiet) : quiet_(quiet), interactive_(!quiet && isatty(STDERR_FILENO) != 0) {}
+constexpr double seconds_between_lines = 10;
+
+Terminal::Terminal(bool quiet)
+    : pace_(seconds_between_lines), quiet_(quiet), interactive_(!quiet && isatty(STDERR_FILENO) != 0) {}
 Terminal::~Terminal() { clear_progress(); }
 
 void Terminal::to_standard_output(std::string_view text) {
@@ -54,12 +58,25 @@ void Terminal::error(std::string_view text) {
   prefixed("error", text);
 }
 
-void Terminal::progress(std::string_view text) {
-  if (!interactive_) return;
+void Terminal::expect(std::vector<double> costs) {
+  stages_.expect(std::move(costs));
+  begin_ = std::chrono::steady_clock::now();
+  pace_ = LogPace(seconds_between_lines);
+}
+
+void Terminal::progress(std::string_view text) { show(text, stages_.advance()); }
+
+void Terminal::progress(std::string_view text, double share) { show(text, share); }
+
+void Terminal::show(std::string_view text, std::optional<double> share) {
+  if (quiet_) return;
+  double const elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  if (!interactive_ && !pace_.due(elapsed)) return;
+  std::string const line = progress_text(text, share, elapsed);
   clear_progress();
-  std::fprintf(stderr, "%.*s ...", int(text.size()), text.data());
+  std::fprintf(stderr, interactive_ ? "%s ..." : "gridmorph: %s ...\n", line.c_str());
   std::fflush(stderr);
-  shown_ = true;
+  shown_ = interactive_;
 }
 
 void Terminal::clear_progress() {

@@ -1,8 +1,13 @@
 // Where the program's words go: results to standard output, everything else to standard error.
 #pragma once
 
+#include <gridmorph/report/progress_text.hpp>
+
+#include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gridmorph::cli {
 
@@ -21,8 +26,13 @@ class Terminal {
   void warn(std::string_view text);
   /// "gridmorph: error: ..." to standard error; every line that does not begin with a blank gets the prefix.
   void error(std::string_view text);
-  /// Shows what long work is going on, in one line that the next one replaces; only when standard error is a terminal.
+  /// Shows what long work is going on. Where standard error is a terminal: in one line that the next one replaces, with percent and
+  /// time left where the end is known. Otherwise a line when the last one is some time ago. Nothing when quiet.
   void progress(std::string_view text);
+  /// The same, where the caller knows how much of the work of expect() lies behind.
+  void progress(std::string_view text, double share);
+  /// Work begins that calls progress(text) once per stage of the given costs; none: its end is not known.
+  void expect(std::vector<double> costs);
 
   [[nodiscard]] bool quiet() const { return quiet_; }
 
@@ -32,7 +42,11 @@ class Terminal {
  private:
   void to_standard_output(std::string_view text);
   void clear_progress();
+  void show(std::string_view text, std::optional<double> share);
 
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  StagedProgress stages_;
+  LogPace pace_;
   bool quiet_;
   bool interactive_;
   bool shown_ = false;

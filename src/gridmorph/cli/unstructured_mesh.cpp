@@ -25,7 +25,7 @@ LoadedMesh load_unstructured(std::filesystem::path const& path, std::optional<st
   out.claims = claim_boundary(out.mesh, out.topology);
   out.problems = out.claims.problems;
   auto const signs = volume_signs(out.mesh);
-  out.orientation = zone_orientation(out.mesh, signs);
+  out.signs = numbering_signs(out.mesh, out.topology.sides, signs);
   for (auto const& negative : negative_elements(out.mesh, signs))
     out.problems.push_back(out.mesh.source + ": " + describe(out.mesh, negative));
   constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
@@ -34,9 +34,10 @@ LoadedMesh load_unstructured(std::filesystem::path const& path, std::optional<st
   return out;
 }
 
-QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed) {
+QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed, bool fast) {
   UnstructuredQualityInput<Kokkos::HostSpace> input;
-  input.orientation = loaded.orientation;
+  input.signs = loaded.signs;
+  input.fast = fast;
   input.coordinates = views(morphed ? *morphed : loaded.mesh.coordinates);
   if (morphed) input.baseline = views(loaded.mesh.coordinates);
   for (int p = 0; p < int(loaded.mesh.patches.size()); ++p)

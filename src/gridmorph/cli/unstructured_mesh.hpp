@@ -19,7 +19,7 @@ struct LoadedMesh {
   UnstructuredMesh mesh;
   UnstructuredTopology topology;
   BoundaryClaims claims;
-  std::vector<int> orientation;       ///< zone_orientation() of the mesh
+  std::vector<signed char> signs;     ///< numbering_signs() of the mesh
   std::vector<std::string> problems;  ///< open faces, elements that are numbered inside out, ...
 };
 
@@ -29,7 +29,7 @@ LoadedMesh load_unstructured(std::filesystem::path const& path,
                              std::vector<std::string> const& leave_out = {});
 
 /// Quality at all wall patches; of `morphed` against the mesh itself where it is given.
-QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed = {});
+QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed = {}, bool fast = false);
 
 /// Coordinates of b, as it was read, in the order of the loaded mesh a. Throws MeshError unless both have the same zones,
 /// nodes and elements.

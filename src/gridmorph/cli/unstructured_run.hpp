@@ -23,7 +23,7 @@ struct UnstructuredRun {
   UnstructuredOptions options;
   std::optional<PreparedUnstructured> prepared;
   std::optional<Coordinates> background;  ///< morphed
-  QualityReport before;
+  QualityReport before;                   ///< without cells where only a verdict was asked for
   std::vector<std::string> notes;
   StepTimes times;
 
@@ -42,7 +42,8 @@ void read_and_plan(CaseFile const& case_file, Terminal& terminal, UnstructuredRu
 /// Regions and walls, for the morphed mesh or the baseline.
 UnstructuredQualityInput<Kokkos::HostSpace> quality_of_baseline(UnstructuredRun const& run);
 UnstructuredQualityInput<Kokkos::HostSpace> quality_of_morphed(UnstructuredRun const& run);
-void measure_baseline(UnstructuredRun& out);
+/// Unless a verdict is all that is wanted.
+void measure_baseline(CaseFile const& case_file, UnstructuredRun& out);
 /// Measures what the morphed coordinates give: quality, fields and what falls short of it, against the baseline measured before.
 void measure_result(CaseFile const& case_file, UnstructuredRun& out);
 

@@ -1,4 +1,5 @@
 #include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/diagnosis.hpp>
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/sequence.hpp>
 #include <gridmorph/cli/sequence_steps.hpp>
@@ -34,7 +35,7 @@ class Stepper {
     Coordinates const& moved = run_.result.morphed;
     apply_on_host(morpher_, boundary, run_.loaded.mesh.coordinates, moved);
     auto const& l = run_.loaded;
-    RelaxOptions const options{.orientation = l.orientation};
+    RelaxOptions const options{.signs = l.signs};
     relaxed_ = std::max(relaxed_, relax_bad_elements(l.mesh, l.topology, *run_.prepared, moved, options).before);
   }
   /// Most elements that were bad in a step.
@@ -55,7 +56,7 @@ int morph_unstructured_sequence(CaseFile const& case_file, Terminal& terminal) {
   UnstructuredRun run;
   read_and_plan(case_file, terminal, run);
   auto const& l = run.loaded;
-  measure_baseline(run);
+  measure_baseline(case_file, run);
   StepFiles files(case_file, l.mesh);
   Stepper stepper(case_file, run);
   Steps const steps = run_steps(case_file, terminal, files,
@@ -79,7 +80,11 @@ int morph_unstructured_sequence(CaseFile const& case_file, Terminal& terminal) {
   head += regions_text(*run.prepared) + "\n";
   return finish_sequence(case_file, terminal, files, steps,
                          {[&] { return report_json(case_file, run); }, head, format_result(case_file, run),
-                          run.result.shortfalls, "[near_field] or [boundary_layer]"});
+                          run.result.shortfalls, "[near_field] or [boundary_layer]",
+                          [&] {
+                            return diagnose(case_file, for_messages(l.mesh, run.prepared->boundary), run.result.after,
+                                            run.result.morphed);
+                          }});
 }
 
 }  // namespace gridmorph::cli

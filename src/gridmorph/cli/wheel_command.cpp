@@ -1,6 +1,7 @@
 #include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/commands.hpp>
+#include <gridmorph/cli/diagnosis.hpp>
 #include <gridmorph/cli/near_field_mask.hpp>
 #include <gridmorph/cli/output_files.hpp>
 #include <gridmorph/cli/run_files.hpp>
@@ -60,6 +61,7 @@ class WheelRun {
   [[nodiscard]] WheelMesh const& wheel() const { return wheel_; }
   [[nodiscard]] WheelRows const& rows() const { return rows_; }
   [[nodiscard]] WheelSetup const& setup() const { return setup_; }
+  [[nodiscard]] Diagnosis const& diagnosis() const { return worst_of_; }
 
   WheelResult run(MeshFileWriter& writer) {
     terminal_.progress("connecting zones, applying rules, planning");
@@ -74,11 +76,12 @@ class WheelRun {
     for (int r = 0; r < int(rows_.rows.size()); ++r)
       seams.emplace_back(mesh_, shared, rows_, r, case_.motion.axis, setup_.blades[r].passages);
 
+    terminal_.expect({});
     Coordinates const morphed(mesh_.n_nodes()), placed(mesh_.n_nodes());
     int last = -1, zone = 0;
     int const n_passages = wheel_.zones.back().passage + 1;
     for (int p = 0; p < n_passages; ++p) {
-      terminal_.progress(fmt::format("passage {} of {}", p + 1, n_passages));
+      terminal_.progress(fmt::format("passage {} of {}", p + 1, n_passages), double(p) / n_passages);
       if (last < 0 || !motion.alike(p, last)) {
         auto const boundary = motion.boundary(p);
         morph(morpher, boundary, morphed);
@@ -129,6 +132,9 @@ class WheelRun {
     quality_.coordinates = views(mesh_.coordinates);
     quality_.near_field = mask_view(near_field_mask(mesh_, plan));
     quality_.walls = wall_faces(mesh_, measured_walls(mesh_, case_));
+    quality_.limits = case_.guard;
+    quality_.fast = wants_verdict(case_, first_cells(mesh_).back());
+    quality_.handedness = zone_handedness(exec_, mesh_, quality_.coordinates);
     result_.baseline = measure_quality(exec_, mesh_, quality_);
     quality_.baseline = quality_.coordinates;
     time("quality");
@@ -148,6 +154,9 @@ class WheelRun {
     quality_.coordinates = views(morphed);
     passage.quality = measure_quality(exec_, mesh_, quality_);
     passage.shortfalls = shortfalls(result_.baseline, passage.quality, thresholds_of(case_));
+    if (worst_of_.worst.empty() &&
+        passage.quality.near_field.newly_inverted + passage.quality.far_field.newly_inverted > 0)
+      worst_of_ = diagnose(case_, for_messages(mesh_), passage.quality, morphed);
     time("quality");
     return passage;
   }
@@ -177,6 +186,7 @@ class WheelRun {
 
   CaseFile const& case_;
   Terminal& terminal_;
+  Diagnosis worst_of_;  ///< of the first passage with inverted cells
   Stopwatch watch_;
   Exec exec_;
   WheelResult result_;
@@ -207,6 +217,7 @@ std::string text_of(WheelRun const& run, WheelResult const& result) {
 
 int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   CaseFile case_file = read_case_file(options.input);
+  set_quality(case_file, options.quality);
   if (!case_file.wheel)
     throw ConfigError(options.input.string() + ": no [wheel]; add [wheel] with output = \"wheel.cgns\"");
   auto const output = options.output.value_or(case_file.wheel->output);
@@ -245,11 +256,9 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   if (written)
     terminal.say(fmt::format("\nwrote {}\n", output.string()));
   else
-    terminal.error(fmt::format(
-        "'{}' is not written, because cells are inverted that were not in the baseline; move the blades less, "
-        "change [volume] or [boundary_layer], or set write_inverted = true in [guard]",
-        output.string()));
-  return failed ? falls_short : done;
+    terminal.error(refusal(output.string(), "cells are inverted that were not in the baseline", run.diagnosis(),
+                           "move the blades less, change [volume] or [boundary_layer]"));
+  return status_of_morph(written, failed);
 }
 
 }  // namespace gridmorph::cli

@@ -29,9 +29,10 @@ std::string line(std::string const& passage, std::string const& blade, std::size
     return q.near_field.cells == 0 ? q.far_field[m].min : std::min(q.near_field[m].min, q.far_field[m].min);
   };
   auto const largest = [&](Measure m) { return std::max(q.near_field[m].max, q.far_field[m].max); };
-  return fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11.4g}  {:>9.4g}  {:>12.4g}\n", passage, blade, width,
-                     displacement, q.near_field.inverted + q.far_field.inverted, smallest(Measure::determinant_3x3x3),
-                     smallest(Measure::minimum_angle_deg), largest(Measure::aspect_ratio));
+  std::string const aspect_ratio = q.fast ? "-" : fmt::format("{:.4g}", largest(Measure::aspect_ratio));
+  return fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11.4g}  {:>9.4g}  {:>12}\n", passage, blade, width, displacement,
+                     q.near_field.inverted + q.far_field.inverted, smallest(Measure::determinant_3x3x3),
+                     smallest(Measure::minimum_angle_deg), aspect_ratio);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <Kokkos_Core.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ namespace gridmorph::cli {
 struct MorphResult {
   Mesh mesh;  ///< baseline
   Coordinates morphed;
-  QualityReport before, after;
+  QualityReport before;  ///< without cells where only a verdict was asked for
+  QualityReport after;
   std::vector<Shortfall> shortfalls;  ///< against [guard]
   std::vector<StageResult> stages;    ///< smallest determinant of each
   std::vector<std::string> notes;     ///< defaults taken, mapping distances, facts found on the way
@@ -39,6 +41,7 @@ class QualityMeter {
  public:
   /// `mesh` must outlive the meter.
   QualityMeter(Mesh const& mesh, CaseFile const& case_file, Engine const& engine);
+  /// A report without cells where a verdict does: what that needs of the baseline it measures itself.
   [[nodiscard]] QualityReport baseline() const;
   [[nodiscard]] QualityReport morphed(Coordinates const& morphed) const;
 
@@ -64,5 +67,11 @@ Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> mask_view(std::vector<unsig
 
 /// [guard] as thresholds of the quality report.
 QualityThresholds thresholds_of(CaseFile const& case_file);
+
+/// Whether a verdict is all that is wanted of the quality of so many cells.
+bool wants_verdict(CaseFile const& case_file, Index cells);
+
+/// "auto", "full" or "fast" of the command line takes the place of the case file's.
+void set_quality(CaseFile& case_file, std::optional<std::string> const& mode);
 
 }  // namespace gridmorph::cli

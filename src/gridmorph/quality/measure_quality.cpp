@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
-#include <gridmorph/quality/detail/partial_sums.hpp>
+#include <gridmorph/quality/detail/fast_quality.hpp>
+#include <gridmorph/quality/detail/judge_cells.hpp>
 #include <gridmorph/quality/detail/visit_chunks.hpp>
 #include <gridmorph/quality/detail/volume_ratio.hpp>
 #include <gridmorph/quality/detail/wall_quality.hpp>
@@ -23,8 +24,13 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
     throw MeshError("near-field mask: it holds " + std::to_string(input.near_field.extent(0)) + " cells, the mesh '" +
                     mesh.source + "' has " + std::to_string(first.back()));
 
-  std::vector<int> const handedness =
-      zone_handedness(exec, mesh, against_baseline ? input.baseline : input.coordinates);
+  if (input.handedness.size() != mesh.zones.size()) {
+    auto known = input;
+    known.handedness = zone_handedness(exec, mesh, against_baseline ? input.baseline : input.coordinates);
+    return measure_quality(exec, mesh, known);
+  }
+  if (input.fast) return detail::fast_quality(exec, mesh, input);
+  std::vector<int> const& handedness = input.handedness;
   std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
   auto const zones = detail::upload(exec, "gridmorph::quality::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
@@ -38,6 +44,8 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
   auto const baseline = input.baseline;
   auto const near_field = input.near_field;
   bool const has_near_field = near_field.extent(0) > 0;
+  CellLimits const limits = input.limits;
+  detail::CellScreen const screen(limits);
   detail::visit_chunks(
       exec, "gridmorph::measure_quality::cells", chunks, sums,
       KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::PartialSums& s) {
@@ -70,10 +78,11 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
               region.cells += end - begin;
               for (int n = begin; n < end; ++n) {
                 region.collapsed += m.collapsed[n] ? 1 : 0;
-                if (m.smallest_corner_jacobian[n] > 0) continue;
-                region.inverted += 1;
-                if (against_baseline && cell_measures(before.cell(n), zone.handedness).smallest_corner_jacobian > 0)
-                  region.newly_inverted += 1;
+                detail::count_state(region, m.smallest_corner_jacobian[n]);
+                if (against_baseline && screen.may_fall(m.determinant_3x3x3[n], m.minimum_angle_deg[n],
+                                                        m.equiangle_skewness[n], m.collapsed[n]))
+                  detail::judge(region, limits, cell_measures(before.cell(n), zone.handedness),
+                                cell_measures(now.cell(n), zone.handedness), cell + n);
               }
             });
       });

@@ -18,6 +18,19 @@ std::string_view to_string(Measure measure) {
   return "unknown";
 }
 
+std::string_view to_string(Fall fall) {
+  switch (fall) {
+    case Fall::inverted: return "inverted";
+    case Fall::determinant: return "determinant";
+    case Fall::angle: return "angle";
+    case Fall::skewness: return "skewness";
+    case Fall::loss: return "loss";
+    case Fall::collapsed: return "collapsed";
+    case Fall::count: break;
+  }
+  return "unknown";
+}
+
 std::vector<Index> first_cells(Mesh const& mesh) {
   std::vector<Index> first(1, 0);
   first.reserve(mesh.zones.size() + 1);

@@ -51,14 +51,53 @@ struct MeasureStatistics {
   double worst = 0;
 };
 
+/// What a cell must not fall short of by a morph, [guard] of case files. A cell that was short of a limit in the baseline is no
+/// shortfall of the morph, unless it lost more than max_loss.
+struct CellLimits {
+  double min_determinant = 0.05;  ///< smallest 3x3x3 determinant
+  double min_angle_deg = 2;       ///< smallest angle
+  double max_skewness = 0.98;     ///< largest equiangle skewness
+  /// Largest loss, (before - after) / max(|before|, floor), of determinant 3x3x3 (floor 0.05) and of smallest angle (floor 1
+  /// degree): the floors keep small values that change by little from counting.
+  double max_loss = 0.9;
+};
+
+/// Ways in which cells can come out of a morph as they should not.
+enum class Fall {
+  inverted,  ///< a corner's Jacobian is negative that was not, or zero that was positive; value: it / the largest before
+  determinant,  ///< below min_determinant; value: the 3x3x3 determinant
+  angle,        ///< below min_angle_deg; value: the angle
+  skewness,     ///< above max_skewness; value: the skewness
+  loss,         ///< not inverted, but above max_loss; value: the loss
+  collapsed,    ///< an edge has no length that had one; no value
+  count
+};
+
+/// "inverted", ...: names in JSON files.
+std::string_view to_string(Fall fall);
+
+inline constexpr std::size_t n_falls = std::size_t(Fall::count);
+
+/// The cells that fell in one way, and the worst of them.
+struct FallenCells {
+  Index cells = 0;
+  int worst_zone = -1;
+  Index3 worst_cell{0, 0, 0};
+  Index number = -1;  ///< of the worst cell in the mesh (first_cells()), or of the element
+  double worst = 0;
+};
+
 struct QualityRegion {
   Index cells = 0;
-  Index inverted = 0;        ///< smallest of the 8 corner determinants (with the zone's handedness) not positive
-  Index newly_inverted = 0;  ///< those of them that are not inverted in the baseline (0 for the baseline itself)
+  Index inverted = 0;        ///< smallest of the 8 corner determinants (with the zone's handedness) negative
+  Index newly_inverted = 0;  ///< Fall::inverted: those that lost their volume by the morph (0 for the baseline itself)
+  Index flat = 0;            ///< smallest of the 8 corner determinants zero, as far as coordinates can tell
   Index collapsed = 0;       ///< cells with an edge of length zero (poles, wedges)
   std::array<MeasureStatistics, n_measures> measure{};
+  std::array<FallenCells, n_falls> fallen{};  ///< against the baseline
 
   [[nodiscard]] MeasureStatistics const& operator[](Measure m) const { return measure[std::size_t(m)]; }
+  [[nodiscard]] FallenCells const& operator[](Fall f) const { return fallen[std::size_t(f)]; }
 };
 
 /// A node of the mesh for messages: zone and 0-based i, j, k.
@@ -93,6 +132,8 @@ struct QualityReport {
   std::vector<std::string> zone_names;  ///< for messages: MeasureStatistics::worst_zone is a number in it
   int left_handed_zones = 0;
   bool against_baseline = false;  ///< relative displacement and changes at walls were measured
+  /// A verdict: only the numbers of cells, what fell, and smallest determinant and angle (without mean) were measured.
+  bool fast = false;
   /// Cells are elements: worst_cell[0] and NodeLocation::node[0] are one less than the number in the file, the rest is 0.
   bool unstructured = false;
 
@@ -136,6 +177,9 @@ struct QualityInput {
   /// (n_cells), nonzero: near field. Left empty, every cell is in the far field.
   Kokkos::View<std::uint8_t const*, MemorySpace> near_field;
   std::vector<WallFace> walls;
+  CellLimits limits = {};            ///< what cells are judged by against the baseline
+  bool fast = false;                 ///< only a verdict: a third of the time and no memory per cell
+  std::vector<int> handedness = {};  ///< zone_handedness() of the baseline; left empty, it is found again
 };
 
 /// +1 or -1 per zone: the sign that makes most corner Jacobians of a zone positive. Left-handed zones are valid CGNS;
@@ -145,7 +189,8 @@ template <class Exec>
 std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
                                  CoordinateViews<typename Exec::memory_space> const& baseline);
 
-/// Measures every cell and the walls. Returns numbers, so it fences.
+/// Measures every cell and the walls. Returns numbers, so it fences. Cells that may have fallen short of the limits are compared
+/// with their baseline one by one; the rest of the baseline is read for relative displacements and walls only.
 ///
 /// Throws MeshError when Views are shorter than the mesh, or a wall or interface lies outside its zone.
 /// Memory: 8 bytes per cell for volumes, below 1 byte per cell for partial sums, 48 bytes per

@@ -3,7 +3,8 @@
 #include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/quality/detail/element_tables.hpp>
-#include <gridmorph/quality/detail/partial_sums.hpp>
+#include <gridmorph/quality/detail/fast_quality.hpp>
+#include <gridmorph/quality/detail/judge_cells.hpp>
 #include <gridmorph/quality/detail/wall_columns.hpp>
 
 #include <algorithm>
@@ -28,10 +29,6 @@ std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
   return sign;
 }
 
-std::vector<int> detail::orientation_of(UnstructuredMesh const& mesh, std::vector<int> const& known) {
-  return known.size() == mesh.zones.size() ? known : zone_orientation(mesh);
-}
-
 Vec3 plane_normal(UnstructuredMesh const& mesh) {
   Vec3 const up{0, 0, 1};
   if (mesh.dimension == 3 || mesh.coordinates.size() == 0) return up;
@@ -50,18 +47,6 @@ Vec3 plane_normal(UnstructuredMesh const& mesh) {
   }
   double const length = norm(sum);
   return length > 0 ? (1 / length) * sum : up;
-}
-
-std::vector<int> zone_orientation(UnstructuredMesh const& mesh) { return zone_orientation(mesh, volume_signs(mesh)); }
-
-std::vector<int> zone_orientation(UnstructuredMesh const& mesh, std::vector<signed char> const& sign) {
-  std::vector<int> out;
-  for (auto const& zone : mesh.zones) {
-    Index balance = 0;
-    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) balance += sign[std::size_t(e)];
-    out.push_back(balance >= 0 ? 1 : -1);
-  }
-  return out;
 }
 
 std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh) {
@@ -119,27 +104,29 @@ template <class Exec>
 std::vector<detail::PartialSums> measure_elements(Exec const& exec, UnstructuredMesh const& mesh,
                                                   UnstructuredTopology const& topology,
                                                   UnstructuredQualityInput<typename Exec::memory_space> const& input,
-                                                  std::vector<int> const& orientation) {
+                                                  std::vector<signed char> const& sign_of) {
   using MemorySpace = typename Exec::memory_space;
   bool const against_baseline = input.baseline.x.extent(0) > 0;
   std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
   auto const tables = detail::element_tables<MemorySpace>(mesh);
   auto const first_element = detail::upload(exec, "gridmorph::quality::zones", detail::first_elements(mesh));
-  auto const signs = detail::upload(exec, "gridmorph::quality::signs", orientation);
+  auto const signs = detail::view_of<MemorySpace>(sign_of, "gridmorph::quality::signs");
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
-  NumberLists const neighbours_h = detail::neighbour_lists(mesh, topology);
-  auto const neighbours = views<MemorySpace>(neighbours_h);
+  bool const fast = input.fast;
   Kokkos::View<double*, MemorySpace> volumes = input.fields.of[int(Measure::volume)];
-  if (volumes.extent(0) == 0)
+  if (volumes.extent(0) == 0 && !fast)
     volumes = Kokkos::View<double*, MemorySpace>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volumes"), mesh.n_elements());
   Kokkos::View<detail::PartialSums*, MemorySpace> const sums(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::sums"), table.size());
   auto const coordinates = detail::pack(exec, input.coordinates, mesh.n_nodes());
-  auto const baseline = detail::pack(exec, input.baseline, against_baseline ? mesh.n_nodes() : 0);
+  auto const baseline = detail::pack(exec, input.baseline, against_baseline && !fast ? mesh.n_nodes() : 0);
+  auto const original = input.baseline;
   auto const near_field = input.near_field;
   bool const has_near_field = near_field.extent(0) > 0;
   auto const fields = input.fields;
+  CellLimits const limits = input.limits;
+  detail::CellScreen const screen(limits);
   detail::visit_chunks(
       exec, "gridmorph::measure_quality::elements", chunks, sums,
       KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::PartialSums& s) {
@@ -150,37 +137,45 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Unstructured
           };
           ElementType const type = tables.type(e);
           if (type == ElementType::polyhedron) {
-            volumes(e) = 0;
+            if (!fast) volumes(e) = 0;
             for (int m = 0; m < int(n_measures); ++m) keep(Measure(m), 0);
             continue;
           }
-          double const sign = signs(row.zone);
+          double const sign = signs(e);
           ElementCorners const now = tables.corners(coordinates, e);
           CellMeasures const m = element_measures(type, now, sign, tables.plane_normal);
-          volumes(e) = m.volume;
           auto& region = s.region[has_near_field && near_field(e) != 0 ? 0 : 1];
           auto const add = [&](Measure measure, double value) {
             region.template add<1>(measure, &value, 1, e);
             keep(measure, value);
           };
-          add(Measure::aspect_ratio, m.aspect_ratio);
-          add(Measure::determinant_2x2x2, m.determinant_2x2x2);
           add(Measure::determinant_3x3x3, m.determinant_3x3x3);
           add(Measure::minimum_angle_deg, m.minimum_angle_deg);
-          add(Measure::equiangle_skewness, m.equiangle_skewness);
-          add(Measure::volume, m.volume);
           region.cells += 1;
           region.collapsed += m.collapsed ? 1 : 0;
-          bool const inverted = !(m.smallest_corner_jacobian > 0);
-          region.inverted += inverted ? 1 : 0;
-          if (!against_baseline) continue;
-          ElementCorners const before = tables.corners(baseline, e);
-          add(Measure::relative_displacement, element_relative_displacement(type, before, now));
-          if (inverted && element_measures(type, before, sign, tables.plane_normal).smallest_corner_jacobian > 0)
-            region.newly_inverted += 1;
+          detail::count_state(region, m.smallest_corner_jacobian);
+          if (against_baseline &&
+              screen.may_fall(m.determinant_3x3x3, m.minimum_angle_deg, m.equiangle_skewness, m.collapsed))
+            detail::judge(region, limits,
+                          element_measures(type, tables.corners(original, e), sign, tables.plane_normal), m, e);
+          if (fast) continue;
+          volumes(e) = m.volume;
+          add(Measure::aspect_ratio, m.aspect_ratio);
+          add(Measure::determinant_2x2x2, m.determinant_2x2x2);
+          add(Measure::equiangle_skewness, m.equiangle_skewness);
+          add(Measure::volume, m.volume);
+          if (against_baseline)
+            add(Measure::relative_displacement, element_relative_displacement(type, tables.corners(baseline, e), now));
         }
       });
+  auto const sums_on_host = [&] {
+    auto const h = detail::download(exec, sums);
+    return std::vector<detail::PartialSums>(h.data(), h.data() + table.size());
+  };
+  if (fast) return sums_on_host();
 
+  NumberLists const neighbours_h = detail::neighbour_lists(mesh, topology);
+  auto const neighbours = views<MemorySpace>(neighbours_h);
   Kokkos::View<double const*, MemorySpace> const all_volumes = volumes;
   Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());
@@ -197,9 +192,8 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Unstructured
               &ratio, 1, e, larger_is_worse(Measure::volume_ratio));
         }
       });
-  auto const sums_h = detail::download(exec, sums);
   auto const ratios_h = detail::download(exec, ratios);
-  std::vector<detail::PartialSums> out(sums_h.data(), sums_h.data() + table.size());
+  std::vector<detail::PartialSums> out = sums_on_host();
   for (std::size_t k = 0; k < table.size(); ++k)
     for (int r = 0; r < 2; ++r) out[k].region[r].measure[int(Measure::volume_ratio)] = ratios_h(k).region[r];
   return out;
@@ -212,19 +206,25 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
                               BoundaryClaims const& claims,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input) {
   check_sizes(mesh, input);
-  std::vector<int> const orientation = detail::orientation_of(mesh, input.orientation);
-  auto const sums = measure_elements(exec, mesh, topology, input, orientation);
+  auto const signs = detail::signs_of(mesh, topology.sides, input.signs);
+  auto const sums = measure_elements(exec, mesh, topology, input, signs);
   QualityReport report;
   detail::combine(sums.size(), sums.data(), report.near_field, report.far_field,
-                  [&](Index element, MeasureStatistics& s) {
-                    s.worst_zone = mesh.zone_of_element(element);
-                    s.worst_cell = {int(number_in_file(mesh, element) - 1), 0, 0};
+                  [&](Index element) -> detail::CellPlace {
+                    return {mesh.zone_of_element(element), {int(number_in_file(mesh, element) - 1), 0, 0}};
                   });
-  detail::WallQualities walls = detail::wall_quality(exec, mesh, topology, claims, input);
-  report.wall = walls.all;
-  report.wall_groups = std::move(walls.groups);
+  if (input.fast) {
+    detail::keep_verdict(report);
+  } else {
+    detail::WallQualities walls = detail::wall_quality(exec, mesh, topology, claims, input);
+    report.wall = walls.all;
+    report.wall_groups = std::move(walls.groups);
+  }
   for (auto const& zone : mesh.zones) report.zone_names.push_back(zone.name);
-  report.left_handed_zones = int(std::count(orientation.begin(), orientation.end(), -1));
+  for (auto const& zone : mesh.zones) {
+    auto const begin = signs.begin() + zone.first_element, end = begin + zone.n_elements;
+    report.left_handed_zones += std::count(begin, end, -1) > std::count(begin, end, 1) ? 1 : 0;
+  }
   report.against_baseline = input.baseline.x.extent(0) > 0;
   report.unstructured = true;
   return report;
@@ -244,7 +244,8 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     result.push_back(field);
   }
   check_sizes(mesh, with_fields);
-  measure_elements(exec, mesh, topology, with_fields, detail::orientation_of(mesh, input.orientation));
+  with_fields.fast = false;
+  measure_elements(exec, mesh, topology, with_fields, detail::signs_of(mesh, topology.sides, input.signs));
   return result;
 }
 

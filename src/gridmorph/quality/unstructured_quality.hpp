@@ -29,9 +29,11 @@ struct UnstructuredQualityInput {
   /// Numbers in UnstructuredMesh::patches. Heights are measured at their nodes that a column of prisms, hexahedra or (2-D)
   /// quadrilaterals leaves from.
   std::vector<int> walls;
-  /// zone_orientation() of the mesh; left empty, it is found again.
-  std::vector<int> orientation;
+  /// numbering_signs() of the baseline; left empty, they are found again, from the coordinates of the mesh.
+  std::vector<signed char> signs;
   ElementFields<MemorySpace> fields;
+  CellLimits limits = {};  ///< what elements are judged by against the baseline
+  bool fast = false;       ///< only a verdict: half the time and no memory per element; no fields
 };
 
 /// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the mean
@@ -41,9 +43,14 @@ Vec3 plane_normal(UnstructuredMesh const& mesh);
 /// (n_elements) Signs of the elements' volumes in SIDS order, 0 for polyhedra: all that their numbering decides. Host, parallel.
 std::vector<signed char> volume_signs(UnstructuredMesh const& mesh);
 
-/// +1, or -1 for a zone most of whose elements are numbered inside out (negative volume in SIDS order).
-std::vector<int> zone_orientation(UnstructuredMesh const& mesh, std::vector<signed char> const& volume_signs);
-std::vector<int> zone_orientation(UnstructuredMesh const& mesh);
+/// (n_elements) +1, or -1 for elements that are numbered inside out; 0 for polyhedra. Whether two neighbours are numbered alike
+/// follows from the side that they share: seen from one and from the other it must be named in opposite ways. So the signs of
+/// elements that hang together are known but for one, which is that of most of their volumes. An element that is inverted
+/// among elements numbered like it is told from one that is numbered the other way and sound (hybrid meshes whose triangles run
+/// one way and quadrilaterals the other). Linear cost; where all volumes of a zone have one sign, nothing is looked at.
+std::vector<signed char> numbering_signs(UnstructuredMesh const& mesh, ElementSides const& sides,
+                                         std::vector<signed char> const& volume_signs);
+std::vector<signed char> numbering_signs(UnstructuredMesh const& mesh, ElementSides const& sides);
 
 /// Elements of one type in one zone whose volume is negative as they are numbered.
 struct NegativeElements {

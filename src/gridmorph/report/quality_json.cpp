@@ -17,13 +17,32 @@ json number(double value) { return std::isfinite(value) ? json(value) : json(nul
 
 json one_based(Index3 const& p) { return {p[0] + 1, p[1] + 1, p[2] + 1}; }
 
-json statistics_json(QualityReport const& report, MeasureStatistics const& s) {
+json worst_json(QualityReport const& report, MeasureStatistics const& s) {
   json worst{{"value", number(s.worst)}, {"zone", report.zone_names.at(std::size_t(s.worst_zone))}};
   if (report.unstructured)
     worst["element"] = s.worst_cell[0] + 1;
   else
     worst["cell"] = one_based(s.worst_cell);
-  return {{"min", number(s.min)}, {"mean", number(s.mean)}, {"max", number(s.max)}, {"worst", std::move(worst)}};
+  return worst;
+}
+
+json statistics_json(QualityReport const& report, MeasureStatistics const& s) {
+  return {{"min", number(s.min)}, {"mean", number(s.mean)}, {"max", number(s.max)}, {"worst", worst_json(report, s)}};
+}
+
+json fallen_json(QualityReport const& report, QualityRegion const& region) {
+  json list = json::object();
+  for (std::size_t f = 0; f < n_falls; ++f) {
+    FallenCells const& fallen = region.fallen[f];
+    json& entry = list[std::string(to_string(Fall(f)))] = {{"cells", fallen.cells}};
+    if (fallen.cells == 0) continue;
+    MeasureStatistics at;
+    at.worst_zone = fallen.worst_zone;
+    at.worst_cell = fallen.worst_cell;
+    at.worst = fallen.worst;
+    entry["worst"] = worst_json(report, at);
+  }
+  return list;
 }
 
 json region_json(QualityReport const& report, QualityRegion const& region) {
@@ -31,11 +50,10 @@ json region_json(QualityReport const& report, QualityRegion const& region) {
   for (std::size_t m = 0; m < n_measures; ++m)
     if (region.measure[m].worst_zone >= 0)
       measures[std::string(to_string(Measure(m)))] = statistics_json(report, region.measure[m]);
-  return {{"cells", region.cells},
-          {"inverted", region.inverted},
-          {"newly_inverted", region.newly_inverted},
-          {"collapsed", region.collapsed},
-          {"measures", std::move(measures)}};
+  json out{{"cells", region.cells}, {"inverted", region.inverted},   {"newly_inverted", region.newly_inverted},
+           {"flat", region.flat},   {"collapsed", region.collapsed}, {"measures", std::move(measures)}};
+  if (report.against_baseline) out["fallen"] = fallen_json(report, region);
+  return out;
 }
 
 json place_json(QualityReport const& report, NodeLocation const& location) {
@@ -69,9 +87,20 @@ json definitions(bool unstructured) {
     list[std::string(to_string(Measure(m)))] = {
         {"formula", unstructured ? element_formula(Measure(m)) : text_of(Measure(m)).formula},
         {"worse", larger_is_worse(Measure(m)) ? "larger" : "smaller"}};
-  list["inverted"] = {{"formula",
-                       "number of cells whose smallest corner Jacobian, times the handedness of the zone, is not "
-                       "positive; newly_inverted: those that were not inverted in the baseline"}};
+  list["inverted"] = {
+      {"formula",
+       "number of cells whose smallest corner Jacobian, times the handedness of the zone or the sign of "
+       "the element's numbering, is negative; newly_inverted: cells with a negative one that was not "
+       "negative in the baseline, or a zero one that was positive"}};
+  list["flat"] = {
+      {"formula",
+       "number of cells whose smallest corner Jacobian is zero: not above 1e-8 of the product of the cell's "
+       "longest edges in its three directions, or what rounding of coordinates can make of it"}};
+  list["fallen"] = {
+      {"formula",
+       "cells beyond a threshold that were not so in the baseline; inverted: the value is the smallest corner "
+       "Jacobian / the cell's largest in the baseline; loss: (before - after) / max(|before|, floor) of "
+       "determinant 3x3x3 (floor 0.05) or smallest angle (floor 1 degree), whichever is larger"}};
   list["collapsed"] = {{"formula",
                         "number of cells with an edge shorter than 1e-12 of the longest edge of the cell; "
                         "points where a collapsed edge makes the Jacobian vanish do not count"}};
@@ -93,18 +122,23 @@ void to_json(nlohmann::json& json, QualityReport const& report) {
   json = {{"near_field", region_json(report, report.near_field)},
           {"far_field", region_json(report, report.far_field)},
           {"left_handed_zones", report.left_handed_zones},
-          {"walls", wall_json(report, report.wall)}};
+          {"verdict_only", report.fast}};
+  if (report.fast) return;
+  json["walls"] = wall_json(report, report.wall);
   nlohmann::json& groups = json["walls"]["groups"] = nlohmann::json::object();
   for (WallGroup const& group : report.wall_groups) groups[group.name] = wall_json(report, group.quality);
 }
 
 nlohmann::json quality_json(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
                             QualityThresholds const& thresholds) {
-  json result = {{"definitions", definitions(baseline.unstructured)},
-                 {"baseline", baseline},
+  json result = {{"definitions", definitions(morphed ? morphed->unstructured : baseline.unstructured)},
                  {"thresholds",
-                  {{"min_determinant", thresholds.min_determinant},
+                  {{"min_determinant", thresholds.cells.min_determinant},
+                   {"min_angle_deg", thresholds.cells.min_angle_deg},
+                   {"max_skewness", thresholds.cells.max_skewness},
+                   {"max_loss", thresholds.cells.max_loss},
                    {"max_relative_displacement", thresholds.max_relative_displacement}}}};
+  if (baseline.cells() > 0) result["baseline"] = baseline;
   if (morphed) result["morphed"] = *morphed;
   json list = json::array();
   for (Shortfall const& s : shortfalls(baseline, morphed, thresholds))

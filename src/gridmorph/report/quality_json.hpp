@@ -15,7 +15,8 @@ namespace gridmorph {
 /// bound are null.
 void to_json(nlohmann::json& json, QualityReport const& report);
 
-/// The whole: "definitions" (formula of each measure), "baseline", "morphed" (if given), "thresholds", "shortfalls".
+/// The whole: "definitions" (formula of each measure), "baseline" (if it has cells), "morphed" (if given), "thresholds",
+/// "shortfalls".
 nlohmann::json quality_json(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
                             QualityThresholds const& thresholds);
 

@@ -24,9 +24,8 @@ struct Column {
 std::vector<Column> columns(QualityReport const& baseline, std::optional<QualityReport> const& morphed) {
   std::vector<Column> list;
   auto const add = [&](std::string_view name, QualityRegion QualityReport::*region) {
-    if ((baseline.*region).cells == 0) return;
-    list.push_back({name, "baseline", &(baseline.*region)});
-    if (morphed) list.push_back({name, "morphed", &((*morphed).*region)});
+    if ((baseline.*region).cells > 0) list.push_back({name, "baseline", &(baseline.*region)});
+    if (morphed && ((*morphed).*region).cells > 0) list.push_back({name, "morphed", &((*morphed).*region)});
   };
   add("near field", &QualityReport::near_field);
   add("far field", &QualityReport::far_field);
@@ -45,6 +44,8 @@ void row(std::string& out, std::string_view title, std::vector<Column> const& li
 
 void measure_row(std::string& out, std::vector<Column> const& list, Measure measure, std::string_view statistic,
                  double MeasureStatistics::*member) {
+  if (std::none_of(list.begin(), list.end(), [&](Column const& c) { return (*c.values)[measure].worst_zone >= 0; }))
+    return;
   row(out, fmt::format("{}, {}", text_of(measure).title, statistic), list, [&](QualityRegion const& r) {
     MeasureStatistics const& s = r[measure];
     return s.worst_zone < 0 ? std::string("-") : format_value(s.*member);
@@ -154,9 +155,12 @@ std::string format_table(QualityReport const& baseline, std::optional<QualityRep
   heading(out, "Quality", list);
   row(out, "cells", list, [](QualityRegion const& r) { return std::to_string(r.cells); });
   row(out, "inverted cells", list, [](QualityRegion const& r) { return std::to_string(r.inverted); });
-  if (baseline.near_field.collapsed + baseline.far_field.collapsed > 0 ||
-      (morphed && morphed->near_field.collapsed + morphed->far_field.collapsed > 0))
-    row(out, "cells with collapsed edges", list, [](QualityRegion const& r) { return std::to_string(r.collapsed); });
+  auto const count_row = [&](std::string_view title, Index QualityRegion::*member) {
+    if (std::any_of(list.begin(), list.end(), [&](Column const& c) { return c.values->*member > 0; }))
+      row(out, title, list, [&](QualityRegion const& r) { return std::to_string(r.*member); });
+  };
+  count_row("flat cells", &QualityRegion::flat);
+  count_row("cells with collapsed edges", &QualityRegion::collapsed);
   measure_row(out, list, Measure::aspect_ratio, "max", &MeasureStatistics::max);
   measure_row(out, list, Measure::aspect_ratio, "mean", &MeasureStatistics::mean);
   measure_row(out, list, Measure::determinant_3x3x3, "min", &MeasureStatistics::min);
@@ -165,7 +169,7 @@ std::string format_table(QualityReport const& baseline, std::optional<QualityRep
   measure_row(out, list, Measure::equiangle_skewness, "max", &MeasureStatistics::max);
   measure_row(out, list, Measure::volume, "min", &MeasureStatistics::min);
   measure_row(out, list, Measure::volume_ratio, "max", &MeasureStatistics::max);
-  if (morphed && morphed->against_baseline)
+  if (morphed && morphed->against_baseline && !morphed->fast)
     measure_row(out, list, Measure::relative_displacement, "max", &MeasureStatistics::max);
   walls(out, baseline, morphed);
   wall_groups(out, baseline, morphed);

@@ -10,7 +10,7 @@
 namespace gridmorph {
 
 /// Near and far field, baseline and (if given) morphed side by side; walls; worst cells; what falls short of the
-/// thresholds. A near field without cells gets no columns.
+/// thresholds. A near field or a baseline without cells gets no columns, what was not measured no rows.
 std::string format_table(QualityReport const& baseline, std::optional<QualityReport> const& morphed = {},
                          QualityThresholds const& thresholds = {});
 

@@ -1,4 +1,4 @@
-// What a mesh falls short of: inverted cells, determinants below the threshold, large relative displacements.
+// What a mesh falls short of: inverted cells, cells beyond the limits of [guard], large relative displacements.
 #pragma once
 
 #include <gridmorph/quality/quality.hpp>
@@ -10,7 +10,7 @@
 namespace gridmorph {
 
 struct QualityThresholds {
-  double min_determinant = 0.05;            ///< 3x3x3, `guard.min_determinant` of case files
+  CellLimits cells;                         ///< [guard] of case files
   double max_relative_displacement = 0.25;  ///< paper, section 3.2: what is known to be handled well; a warning only
 };
 
@@ -23,8 +23,9 @@ struct Shortfall {
   std::string message;  ///< what, value, threshold, worst cell with zone and 1-based i, j, k
 };
 
-/// Shortfalls of the morphed mesh, or of the baseline when there is no morphed one. Cells that were inverted, or below
-/// the threshold, in the baseline already are warnings when morphing did not make more of them or worse ones.
+/// Shortfalls of the morphed mesh, or of the baseline when there is no morphed one. Cells that were inverted, or beyond a limit, in
+/// the baseline already are warnings; how much they may lose is limited like that of all others (CellLimits::max_loss). The
+/// baseline is looked at for what it had and may be empty (a verdict knows by itself what fell).
 std::vector<Shortfall> shortfalls(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
                                   QualityThresholds const& thresholds);
 

@@ -19,7 +19,7 @@ class Relaxation {
         prepared_(prepared),
         x_(morphed),
         options_(options),
-        orientation_(detail::orientation_of(mesh, options.orientation)) {}
+        signs_(detail::signs_of(mesh, topology.sides, options.signs)) {}
 
   RelaxReport run() {
     RelaxReport report;
@@ -57,9 +57,10 @@ class Relaxation {
 
   [[nodiscard]] bool is_bad(Number e) const {
     if (mesh_.elements.type[std::size_t(e)] == ElementType::polyhedron) return false;
-    double const sign = orientation_[std::size_t(mesh_.zone_of_element(e))];
+    double const sign = signs_[std::size_t(e)], now = determinant(e, sign, x_);
+    if (now > options_.share) return false;  // no determinant is above 1
     double const before = determinant(e, sign, mesh_.coordinates);
-    return before > 0 && !(determinant(e, sign, x_) > options_.share * before);
+    return before > 0 ? !(now > options_.share * before) : before == 0 && now < 0;
   }
 
   [[nodiscard]] std::vector<Number> find_bad() const {
@@ -181,7 +182,7 @@ class Relaxation {
   PreparedUnstructured const& prepared_;
   Coordinates const& x_;
   RelaxOptions const& options_;
-  std::vector<int> orientation_;
+  std::vector<signed char> signs_;
   std::vector<std::uint8_t> held_;
 };
 

@@ -37,13 +37,23 @@ struct ElementTables {
 
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
   KOKKOS_INLINE_FUNCTION ElementCorners corners(PackedPoints<MemorySpace> const& points, Index e) const {
+    return gather(e, [&](Number node) {
+      PackedPoint const p = points(node);
+      return Vec3{p.x, p.y, p.z};
+    });
+  }
+  /// For few elements: x, y and z come from three places.
+  KOKKOS_INLINE_FUNCTION ElementCorners corners(CoordinateViews<MemorySpace> const& c, Index e) const {
+    return gather(e, [&](Number node) { return Vec3{c.x(node), c.y(node), c.z(node)}; });
+  }
+
+ private:
+  template <class PointOf>
+  KOKKOS_INLINE_FUNCTION ElementCorners gather(Index e, PointOf const& point) const {
     ElementCorners out;
     Index const first = elements.first(e);
     int const n = n_corners(elements.type(e));
-    for (int k = 0; k < n; ++k) {
-      PackedPoint const p = points(elements.node(first + k));
-      out.at[k] = {p.x, p.y, p.z};
-    }
+    for (int k = 0; k < n; ++k) out.at[k] = point(elements.node(first + k));
     return out;
   }
 };
@@ -90,8 +100,9 @@ KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, ElementView
 /// Elements on the other side of each side of each element, through connections too, where there is one.
 NumberLists neighbour_lists(UnstructuredMesh const& mesh, UnstructuredTopology const& topology);
 
-/// `known` where it has an entry per zone, else zone_orientation().
-std::vector<int> orientation_of(UnstructuredMesh const& mesh, std::vector<int> const& known);
+/// `known` where it has an entry per element, else numbering_signs().
+std::vector<signed char> signs_of(UnstructuredMesh const& mesh, ElementSides const& sides,
+                                  std::vector<signed char> const& known);
 
 /// Throws MeshError unless each of the Views holds every node of the mesh.
 void check_size(UnstructuredMesh const& mesh, std::size_t nx, std::size_t ny, std::size_t nz, std::string const& what);

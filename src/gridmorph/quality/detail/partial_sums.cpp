@@ -28,14 +28,14 @@ void add(MeasureStatistics& total, PartialMeasure const& part, bool larger_is_wo
 void combine(Mesh const& mesh, std::vector<CellChunk> const& chunks, PartialSums const* sums, QualityRegion& near_field,
              QualityRegion& far_field) {
   std::vector<Index> const first = first_cells(mesh);
-  combine(chunks.size(), sums, near_field, far_field, [&](Index cell, MeasureStatistics& s) {
-    s.worst_zone = int(std::upper_bound(first.begin(), first.end(), cell) - first.begin()) - 1;
-    s.worst_cell = cell_index(mesh.zones[s.worst_zone], cell - first[s.worst_zone]);
+  combine(chunks.size(), sums, near_field, far_field, [&](Index cell) -> CellPlace {
+    int const zone = int(std::upper_bound(first.begin(), first.end(), cell) - first.begin()) - 1;
+    return {zone, cell_index(mesh.zones[zone], cell - first[zone])};
   });
 }
 
 void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_field, QualityRegion& far_field,
-             std::function<void(Index cell, MeasureStatistics& statistics)> const& place) {
+             std::function<CellPlace(Index cell)> const& place) {
   QualityRegion* const regions[2] = {&near_field, &far_field};
   for (int r = 0; r < 2; ++r) {
     QualityRegion& region = *regions[r];
@@ -44,7 +44,7 @@ void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_
       PartialRegion const& part = sums[c].region[r];
       region.cells += part.cells;
       region.inverted += part.inverted;
-      region.newly_inverted += part.newly_inverted;
+      region.flat += part.flat;
       region.collapsed += part.collapsed;
     }
     for (std::size_t m = 0; m < n_measures; ++m) {
@@ -56,9 +56,20 @@ void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_
         add(s, sums[c].region[r].measure[m], larger_is_worse(Measure(m)), worst);
       if (worst < 0) continue;  // no cells, or not measured: all zero
       s.mean /= double(region.cells);
-      place(worst, s);
+      CellPlace const at = place(worst);
+      s.worst_zone = at.zone;
+      s.worst_cell = at.cell;
       region.measure[m] = s;
     }
+    for (std::size_t f = 0; f < n_falls; ++f) {
+      PartialFall sum;
+      for (std::size_t c = 0; c < n_chunks; ++c) sum.join(sums[c].region[r].fallen[f]);
+      if (sum.cells == 0) continue;
+      CellPlace const at = place(sum.worst_cell);
+      region.fallen[f] = {sum.cells, at.zone, at.cell, sum.worst_cell,
+                          larger_is_worse(Fall(f)) ? -sum.worst : sum.worst};
+    }
+    region.newly_inverted = region[Fall::inverted].cells;
   }
 }
 

@@ -69,10 +69,31 @@ struct PartialMeasure {
   }
 };
 
+/// Cells that fell in one way; `worst` is the smallest value.
+struct PartialFall {
+  double worst = unbounded;
+  Index worst_cell = -1;
+  int cells = 0;
+
+  KOKKOS_INLINE_FUNCTION void take(double value, Index cell) { join({value, cell, 1}); }
+  KOKKOS_INLINE_FUNCTION void join(PartialFall const& other) {
+    if (other.cells == 0) return;
+    if (cells == 0 || other.worst < worst || (other.worst == worst && other.worst_cell < worst_cell)) {
+      worst = other.worst;
+      worst_cell = other.worst_cell;
+    }
+    cells += other.cells;
+  }
+};
+
+/// Ways to fall whose value is worse the larger it is: gathered with the other sign.
+KOKKOS_INLINE_FUNCTION constexpr bool larger_is_worse(Fall f) { return f == Fall::skewness || f == Fall::loss; }
+
 /// The cells of one region (0: near field, 1: far field) in one chunk.
 struct PartialRegion {
-  int cells = 0, inverted = 0, newly_inverted = 0, collapsed = 0;
+  int cells = 0, inverted = 0, flat = 0, collapsed = 0;
   PartialMeasure measure[n_measures];
+  PartialFall fallen[n_falls];
 
   template <int W>
   KOKKOS_INLINE_FUNCTION void add(Measure m, double const* value, int count, Index cell) {
@@ -81,9 +102,10 @@ struct PartialRegion {
   KOKKOS_INLINE_FUNCTION void join(PartialRegion const& other) {
     cells += other.cells;
     inverted += other.inverted;
-    newly_inverted += other.newly_inverted;
+    flat += other.flat;
     collapsed += other.collapsed;
     for (int m = 0; m < int(n_measures); ++m) measure[m].join(other.measure[m], larger_is_worse(Measure(m)));
+    for (int f = 0; f < int(n_falls); ++f) fallen[f].join(other.fallen[f]);
   }
 };
 
@@ -125,8 +147,14 @@ KOKKOS_INLINE_FUNCTION void for_each_region_run(std::uint8_t const* mask, int co
 void combine(Mesh const& mesh, std::vector<CellChunk> const& chunks, PartialSums const* sums, QualityRegion& near_field,
              QualityRegion& far_field);
 
-/// The same for any cells: place(cell) sets zone and index of the worst cells of a measure.
+/// Zone and index of a cell for people.
+struct CellPlace {
+  int zone;
+  Index3 cell;
+};
+
+/// The same for any cells, whose places are asked for where they are the worst.
 void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_field, QualityRegion& far_field,
-             std::function<void(Index cell, MeasureStatistics& statistics)> const& place);
+             std::function<CellPlace(Index cell)> const& place);
 
 }  // namespace gridmorph::detail

@@ -37,7 +37,7 @@ struct CellPolicy {
       Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename Exec::memory_space>::accessible;
   static constexpr int lanes = on_host ? native_lanes : 1;
   static constexpr int row_length = on_host ? 64 : 1;  ///< scratch arrays of rows stay in the first-level cache
-  static constexpr int team_size = on_host ? 1 : 64;   ///< partial sums of a team fit into 48 KiB of scratch memory
+  static constexpr int team_size = on_host ? 1 : 32;   ///< partial sums of a team fit into 48 KiB of scratch memory
 };
 
 /// Cells begin <= n < end of one box of cells, numbered within the box, i fastest. Sums are made chunk by chunk, so they
