@@ -1,4 +1,5 @@
 // How the library behaves inside a program that profiles it: labels, allocations, fences, instances.
+#include "support/expect_error.hpp"
 #include "support/made_bodies.hpp"
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
@@ -118,6 +119,46 @@ TEST_F(Manners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
   EXPECT_FALSE(record.kernels.empty());
 }
 
+/// A list of another length than the plan wants is refused with both numbers, before any kernel.
+template <class Call>
+void expect_refused(std::size_t given, std::size_t needed, char const* list, Call const& call) {
+  Listener const listener;
+  expect_all_in(message_of<ConfigError>(call),
+                {"has " + std::to_string(given) + " entries", std::to_string(needed) + " boundary nodes", list});
+  EXPECT_TRUE(record.kernels.empty());
+}
+
+TEST_F(Manners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  std::size_t const n = boundary.extent(0);
+  for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
+    Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
+    Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> const lists("gridmorph::test::lists", 2, other);
+    auto const refused = [&](auto const& call) { expect_refused(other, n, "Plan::boundary_nodes", call); };
+    refused([&] { morpher.apply(exec, list, x.read(), u.write()); });
+    refused([&] { morpher.displace(exec, list, u.write()); });
+    refused([&] { morpher.displace(exec, lists, {u.write()}); });
+    refused([&] { morpher.velocity(exec, list, boundary, u.write()); });
+    refused([&] { morpher.velocity(exec, boundary, list, u.write()); });
+  }
+}
+
+TEST_F(Manners, MeshesWithoutAllTheirCoordinatesAreRefused) {
+  auto const refused = [](Mesh& m, std::initializer_list<std::string_view> words) {
+    expect_all_in(message_of<MeshError>([&] { (void)prepare(m, motion({rule({"*"}, FixedRule{})}), PlanOptions{}); }),
+                  words);
+  };
+  std::string const n = std::to_string(mesh.n_nodes()) + " nodes";
+  mesh.coordinates.z = {};
+  refused(mesh, {n, "for " + std::to_string(mesh.n_nodes()) + " (x)", " 0 (z)"});
+  mesh.coordinates = Coordinates(mesh.n_nodes() - 1);
+  refused(mesh, {n, std::to_string(mesh.n_nodes() - 1) + " (y)"});
+  mesh.coordinates = {};
+  refused(mesh, {n, "0 (x)", "set coordinates"});
+  Mesh nothing;
+  refused(nothing, {"no zones"});
+}
+
 TEST_F(Manners, EveryMorphRunsTheSameKernels) {
   Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
   std::vector<std::string> first;
@@ -185,6 +226,28 @@ TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence
   EXPECT_EQ(record.copies, std::vector<std::string>());
   for (auto const& fence : record.fences) EXPECT_TRUE(is_profiling_fence(fence)) << fence;
   EXPECT_FALSE(record.kernels.empty());
+}
+
+TEST_F(UnstructuredManners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  std::size_t const n = boundary.extent(0);
+  for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
+    Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
+    auto const refused = [&](auto const& call) { expect_refused(other, n, "UnstructuredPlan::known", call); };
+    refused([&] { morpher.apply(exec, list, x.read(), u.write()); });
+    refused([&] { morpher.displace(exec, list, x.read(), u.write()); });
+  }
+}
+
+TEST_F(UnstructuredManners, MeshesWithoutCoordinatesAreRefused) {
+  UnstructuredTopology const topology = make_topology(mesh);
+  BoundaryClaims const claims = claim_boundary(mesh, topology);
+  mesh.coordinates = {};
+  expect_all_in(message_of<MeshError>([&] {
+                  (void)prepare(mesh, topology, claims, motion({rule({"body"}, RigidRule{{}, {1, 0.5, 0}})}),
+                                UnstructuredOptions{});
+                }),
+                {std::to_string(mesh.n_nodes()) + " nodes", "0 (x)"});
 }
 
 TEST_F(UnstructuredManners, EveryMorphRunsTheSameKernels) {

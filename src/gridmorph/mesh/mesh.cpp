@@ -3,6 +3,7 @@
 
 #include <gridmorph/core/index.hpp>
 #include <gridmorph/core/large_pages.hpp>
+#include <gridmorph/core/require_kokkos.hpp>
 
 #include <algorithm>
 #include <array>
@@ -70,10 +71,14 @@ std::string_view to_string(PatchKind kind) {
   return "other";
 }
 
-Coordinates::Coordinates(Index n_nodes)
-    : x(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::x"), n_nodes),
-      y(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::y"), n_nodes),
-      z(Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::Coordinates::z"), n_nodes) {
+Coordinates::Coordinates(Index n_nodes) {
+  require_kokkos("gridmorph::Coordinates");
+  auto const allocate = [&](char const* label) {
+    return View(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), n_nodes);
+  };
+  x = allocate("gridmorph::Coordinates::x");
+  y = allocate("gridmorph::Coordinates::y");
+  z = allocate("gridmorph::Coordinates::z");
   for (View const* component : {&x, &y, &z})
     prefer_large_pages(component->data(), std::size_t(n_nodes) * sizeof(double));
 }

@@ -38,19 +38,28 @@ enum class Law {
   c2       ///< 10 s^3 - 15 s^4 + 6 s^5: zero slope and curvature at both ends
 };
 
+/// Kinds of boundaries from first to last, as chains rank by them.
+inline std::vector<std::string> standard_order() { return {"wall", "periodic", "inflow", "outflow"}; }
+
 /// One group of the chain priority; a later group breaks the ties of the one before.
 struct PriorityRule {
   enum class Kind { boundary, quality, aspect_ratio };
   Kind kind = Kind::boundary;
   /// boundary: kinds from first to last; a chain ranks by its better end, then by its other end.
-  std::vector<std::string> order{"wall", "periodic", "inflow", "outflow"};
+  std::vector<std::string> order = standard_order();
 };
+
+/// Boundary types, then quality, then aspect ratio. A function, not a braced list beside the member: g++ 12 ends with an internal
+/// error where such a member's struct is value-initialised inside a template.
+inline std::vector<PriorityRule> standard_priority() {
+  return {{PriorityRule::Kind::boundary, standard_order()},
+          {PriorityRule::Kind::quality, {}},
+          {PriorityRule::Kind::aspect_ratio, {}}};
+}
 
 struct VolumeOptions {
   Law law = Law::linear;
-  std::vector<PriorityRule> priority{{PriorityRule::Kind::boundary, {"wall", "periodic", "inflow", "outflow"}},
-                                     {PriorityRule::Kind::quality, {}},
-                                     {PriorityRule::Kind::aspect_ratio, {}}};
+  std::vector<PriorityRule> priority = standard_priority();
 };
 
 struct PlanOptions {

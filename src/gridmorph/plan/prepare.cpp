@@ -1,4 +1,5 @@
 #include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/mesh/check_coordinates.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
 #include <utility>
@@ -6,6 +7,7 @@
 namespace gridmorph {
 
 PreparedMorph prepare(Mesh& mesh, Motion const& motion, PlanOptions const& options) {
+  check_coordinates(mesh, "gridmorph::prepare");
   Stopwatch watch;
   PreparedMorph::Seconds seconds;
   Links links = connect_and_check(mesh, options.topology);

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/check_coordinates.hpp>
 #include <gridmorph/topology/coverage.hpp>
 
 #include <algorithm>
@@ -229,6 +230,7 @@ void check_coverage(Mesh const& mesh, Links const& links) {
 }
 
 Links connect_and_check(Mesh& mesh, TopologyOptions const& options) {
+  check_coordinates(mesh, "gridmorph::connect_and_check");
   Problems problems;
   Links links = connect(mesh, options, problems);
   try {

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/check_coordinates.hpp>
 #include <gridmorph/topology/detail/find_periodic.hpp>
 #include <gridmorph/topology/find_interfaces.hpp>
 
@@ -143,6 +144,7 @@ Periodic declared(topology::PeriodicMatch const& match) {
 }  // namespace
 
 FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options) {
+  check_coordinates(mesh, "gridmorph::find_interfaces");
   if (!(options.tolerance > 0 && options.tolerance <= 0.25))
     throw MeshError("the tolerance for matching points is a share of the smallest edge, between 0 and 0.25, found " +
                     text(options.tolerance));

@@ -33,10 +33,11 @@ struct FineLattice {
 };
 
 struct Background {
-  Mesh mesh;                                              ///< patches of families "wrap", "outer" and, in 2-D, "sides"
-  int dimension = 3;                                      ///< 2: one layer of cells in z
-  std::optional<FineLattice> lattice;                     ///< of backgrounds made from lattice cells
-  std::vector<std::string> wrap{"wrap"}, outer{"outer"};  ///< selectors of the patches that move, that stay
+  Mesh mesh;                           ///< patches of families "wrap", "outer" and, in 2-D, "sides"
+  int dimension = 3;                   ///< 2: one layer of cells in z
+  std::optional<FineLattice> lattice;  ///< of backgrounds made from lattice cells
+  /// Selectors of the patches that move, and of those that stay. (No braced lists: see standard_priority().)
+  std::vector<std::string> wrap = std::vector<std::string>(1, "wrap"), outer = std::vector<std::string>(1, "outer");
 };
 
 /// Around a tube: an O-type mesh, four blocks around the tube and nine beyond each of its ends (a butterfly in front of the flat

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/check_coordinates.hpp>
 #include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/unstructured/detail/corner_means.hpp>
@@ -100,6 +101,7 @@ namespace gridmorph {
 
 PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryClaims const& claims, Motion const& motion, UnstructuredOptions const& options) {
+  check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(claims);
   Stopwatch watch;
   NodeGraph graph = make_node_graph(mesh, topology.elements_of_nodes);
@@ -115,6 +117,7 @@ PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology 
 PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryClaims const& claims, NodeGraph graph, BoundaryConditions boundary,
                              UnstructuredOptions const& options) {
+  check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(claims);
   return detail::UnstructuredPlanner(mesh, topology, claims, std::move(graph), std::move(boundary), options).run();
 }

@@ -1,5 +1,6 @@
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/plan/boundary_size.hpp>
 #include <gridmorph/unstructured/detail/morph_kernels.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
 #include <gridmorph/volume/morpher.hpp>
@@ -105,6 +106,10 @@ struct UnstructuredMorpher<Exec>::State {
   template <class Kernel>
   static void launch(char const* label, Exec const& exec, std::size_t n, Kernel const& kernel) {
     detail::launch(label, exec, 0, Index(n), kernel);
+  }
+
+  void require_boundary(std::size_t given, char const* what) const {
+    require_boundary_size(what, given, known.extent(0), "UnstructuredPlan::known");
   }
 
   void displacement(Exec const& exec, Boundary const& boundary, kernels::Field<double const> const& x) const {
@@ -224,6 +229,7 @@ UnstructuredMorpher<Exec>::UnstructuredMorpher(Exec const& exec, UnstructuredPla
 template <class Exec>
 void UnstructuredMorpher<Exec>::apply(Exec const& exec, Boundary boundary, kernels::Field<double const> x,
                                       kernels::Field<double> moved) const {
+  state_->require_boundary(boundary.extent(0), "gridmorph::UnstructuredMorpher::apply");
   state_->displacement(exec, boundary, x);
   State::launch("gridmorph::move", exec, std::size_t(state_->n_nodes),
                 WriteNodes<MemorySpace, true>{state_->u, x, moved});
@@ -232,6 +238,7 @@ void UnstructuredMorpher<Exec>::apply(Exec const& exec, Boundary boundary, kerne
 template <class Exec>
 void UnstructuredMorpher<Exec>::displace(Exec const& exec, Boundary boundary, kernels::Field<double const> x,
                                          kernels::Field<double> u) const {
+  state_->require_boundary(boundary.extent(0), "gridmorph::UnstructuredMorpher::displace");
   state_->displacement(exec, boundary, x);
   State::launch("gridmorph::write", exec, std::size_t(state_->n_nodes),
                 WriteNodes<MemorySpace, false>{state_->u, x, u});

@@ -13,6 +13,7 @@ namespace gridmorph {
 
 /// An UnstructuredPlan on an execution space. Construction uploads the rows and allocates the workspace (fences); everything
 /// else only enqueues kernels on the instance it is given: no allocation, no fence, no copy to or from the host, no host decision.
+/// A boundary displacement of another size than UnstructuredPlan::known is a ConfigError, before anything is enqueued.
 ///
 /// Memory: 48 bytes per node, the rows (about 60 bytes per near node, 70 per far node, 50 for the residual), and the
 /// background mesh. A morpher's workspace serves one call at a time; copies of a morpher share it.

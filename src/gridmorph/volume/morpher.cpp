@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/plan/boundary_size.hpp>
 #include <gridmorph/volume/device_plan.hpp>
 #include <gridmorph/volume/morpher.hpp>
 
@@ -116,6 +117,10 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
                this->sides, this->t.data(), from(this->ends), from(this->residuals), x, out, n});
   }
 
+  void require_boundary(std::size_t given, char const* what) const {
+    require_boundary_size(what, given, this->boundary_slots.extent(0), "Plan::boundary_nodes");
+  }
+
   void require_fields(int n, char const* what) const {
     if (n > this->fields)
       throw ConfigError(std::string("gridmorph::Morpher::") + what + " needs room for " + std::to_string(n) +
@@ -131,12 +136,14 @@ Morpher<Exec>::Morpher(Exec const& exec, Plan const& plan, kernels::Field<double
 template <class Exec>
 void Morpher<Exec>::apply(Exec const& exec, Boundary boundary, kernels::Field<double const> x,
                           kernels::Field<double> moved) const {
+  state_->require_boundary(boundary.extent(0), "gridmorph::Morpher::apply");
   state_->displacement_of_skeleton(exec, 0, boundary.data());
   state_->template write<true>(exec, 0, 1, x, {moved});
 }
 
 template <class Exec>
 void Morpher<Exec>::displace(Exec const& exec, Boundary boundary, kernels::Field<double> u) const {
+  state_->require_boundary(boundary.extent(0), "gridmorph::Morpher::displace");
   state_->displacement_of_skeleton(exec, 0, boundary.data());
   state_->template write<false>(exec, 0, 1, {}, {u});
 }
@@ -145,6 +152,7 @@ template <class Exec>
 void Morpher<Exec>::displace(Exec const& exec, BoundaryBatch boundary, kernels::FieldBatch<double> u) const {
   int const n = int(boundary.extent(0));
   state_->require_fields(n, "displace");
+  state_->require_boundary(boundary.extent(1), "gridmorph::Morpher::displace");
   for (int f = 0; f < n; ++f) state_->displacement_of_skeleton(exec, f, boundary.data() + f * boundary.stride(0));
   state_->template write<false>(exec, 0, n, {}, u);
 }
@@ -153,6 +161,8 @@ template <class Exec>
 void Morpher<Exec>::velocity(Exec const& exec, Boundary boundary, Boundary rate, kernels::Field<double> v) const {
   State const& s = *state_;
   s.require_fields(2, "velocity");
+  s.require_boundary(boundary.extent(0), "gridmorph::Morpher::velocity");
+  s.require_boundary(rate.extent(0), "gridmorph::Morpher::velocity (rate)");
   s.skeleton_stages(exec, 0, boundary.data());
   s.skeleton_stages(exec, 1, rate.data());
   for (auto const& pass : s.spreads) {

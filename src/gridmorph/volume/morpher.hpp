@@ -18,7 +18,8 @@ struct MorpherOptions {
 
 /// A plan on an execution space. Construction uploads the plan's tables, allocates the workspace and computes the line
 /// parameters from the baseline mesh (fences once, 24 bytes read and 8 written per node and line parameter); everything
-/// else only enqueues kernels on the instance it is given: no allocation, no fence, no copy, no host decision.
+/// else only enqueues kernels on the instance it is given: no allocation, no fence, no copy, no host decision. A boundary
+/// displacement of another size than Plan::boundary_nodes is a ConfigError, before anything is enqueued.
 ///
 /// Memory: 8 bytes per node of the far field and 8 per node and finalize pass, plus about 50 bytes per node on the faces of
 /// pieces. A Morpher's workspace serves one call at a time; copies of a Morpher share it.

@@ -1,0 +1,29 @@
+// What every entry point asks of the mesh it is given, before it reads a coordinate.
+#pragma once
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/require_kokkos.hpp>
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <string>
+
+namespace gridmorph {
+
+/// Throws MeshError unless the mesh (Mesh or UnstructuredMesh) has zones and all three coordinates of each of their nodes, and
+/// ConfigError where Kokkos is not running. `who` is the function that asks, for the message. Cost: none.
+template <class AnyMesh>
+void check_coordinates(AnyMesh const& mesh, char const* who) {
+  require_kokkos(who);
+  auto const complain = [&](std::string const& what) {
+    throw MeshError(std::string(who) + ": mesh '" + mesh.source + "' " + what);
+  };
+  if (mesh.zones.empty()) complain("has no zones; add them with add_zone()");
+  Index const n = mesh.n_nodes();
+  Coordinates const& c = mesh.coordinates;
+  if (Index(c.x.extent(0)) == n && Index(c.y.extent(0)) == n && Index(c.z.extent(0)) == n) return;
+  complain("has " + std::to_string(n) + " nodes in its zones, and coordinates for " + std::to_string(c.x.extent(0)) +
+           " (x), " + std::to_string(c.y.extent(0)) + " (y), " + std::to_string(c.z.extent(0)) +
+           " (z) of them; set coordinates = Coordinates(mesh.n_nodes()) once all zones are there, and fill them");
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,48 @@
+// A program that forgot to initialise Kokkos, or uses the library after Kokkos was finalised: one clear error each, no abort.
+// A program of its own, because test programs run inside Kokkos from beginning to end.
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/topology/find_interfaces.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <cstdio>
+#include <string>
+
+namespace {
+
+using namespace gridmorph;
+
+int failures = 0;
+
+template <class Call>
+void expect_error(char const* what, Call const& call) {
+  try {
+    call();
+    std::printf("%s: no error\n", what);
+  } catch (ConfigError const& e) {
+    if (std::string(e.what()).find("Kokkos::ScopeGuard") != std::string::npos) return;
+    std::printf("%s: unclear: %s\n", what, e.what());
+  }
+  ++failures;
+}
+
+void check_all() {
+  Mesh mesh;
+  mesh.add_zone("a", {2, 2, 2});
+  expect_error("Coordinates", [] { (void)Coordinates(8); });
+  expect_error("prepare", [&] { (void)prepare(mesh, Motion{}, PlanOptions{}); });
+  expect_error("find_interfaces", [&] { (void)find_interfaces(mesh); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  check_all();
+  Kokkos::initialize(argc, argv);
+  (void)gridmorph::Coordinates(8);
+  Kokkos::finalize();
+  check_all();
+  return failures == 0 ? 0 : 1;
+}
