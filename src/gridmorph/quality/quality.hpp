@@ -194,7 +194,7 @@ std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
 ///
 /// Throws MeshError when Views are shorter than the mesh, or a wall or interface lies outside its zone.
 /// Memory: 8 bytes per cell for volumes, below 1 byte per cell for partial sums, 48 bytes per
-/// node of the largest wall face.
+/// node of the walls.
 /// Cost: one pass over the cells (about 1000 flops each, as many cells at once as the registers hold), one over the volumes.
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,

@@ -19,7 +19,25 @@ struct WallGrid {
   Index extent[2];
   Index stride[2];
   Index inward;  ///< from a wall node to the next node on its line
+  Index begin;   ///< number of its first node among those of all walls
+
+  KOKKOS_INLINE_FUNCTION Index size() const { return extent[0] * extent[1]; }
+  [[nodiscard]] Index node(Index m) const { return first + m % extent[0] * stride[0] + m / extent[0] * stride[1]; }
 };
+
+/// Entry of the wall that node `m` of all walls belongs to.
+template <class Walls>
+KOKKOS_INLINE_FUNCTION Index wall_of(Walls const& walls, Index m) {
+  Index low = 0, high = Index(walls.extent(0)) - 1;
+  while (low < high) {
+    Index const middle = (low + high + 1) / 2;
+    if (walls(middle).begin <= m)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  return low;
+}
 
 WallGrid wall_grid(Mesh const& mesh, WallFace const& wall) {
   if (wall.zone < 0 || wall.zone >= int(mesh.zones.size()))
@@ -38,7 +56,8 @@ WallGrid wall_grid(Mesh const& mesh, WallFace const& wall) {
   return {zone.node(wall.range.begin),
           {wall.range.extent(t1), wall.range.extent(t2)},
           {strides[t1], strides[t2]},
-          wall.side == 0 ? strides[wall.axis] : -strides[wall.axis]};
+          wall.side == 0 ? strides[wall.axis] : -strides[wall.axis],
+          0};
 }
 
 template <class MemorySpace>
@@ -60,32 +79,46 @@ WallQualities wall_quality(Exec const& exec, Mesh const& mesh,
                            CoordinateViews<typename Exec::memory_space> const& coordinates,
                            CoordinateViews<typename Exec::memory_space> const& baseline,
                            std::vector<WallFace> const& walls) {
+  using MemorySpace = typename Exec::memory_space;
   bool const against_baseline = baseline.x.extent(0) > 0;
-  WallSums all;
-  std::vector<std::pair<std::string, WallSums>> groups;
+  std::vector<WallGrid> grids;
+  std::vector<WallFace const*> faces;
+  Index n_nodes = 0;
   for (WallFace const& face : walls) {
-    WallGrid const wall = wall_grid(mesh, face);
-    Index const n = wall.extent[0] * wall.extent[1];
+    WallGrid wall = wall_grid(mesh, face);
     if (wall.extent[0] < 2 || wall.extent[1] < 2) continue;  // a single line of nodes has no normal
-    Kokkos::View<WallNodePair*, typename Exec::memory_space> nodes(
-        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::wall_nodes"), n);
+    wall.begin = n_nodes;
+    n_nodes += wall.size();
+    grids.push_back(wall);
+    faces.push_back(&face);
+  }
+  // One launch for all: meshes have hundreds of small wall faces, and a launch each costs more than its work.
+  auto const list = upload(exec, "gridmorph::quality::walls", grids);
+  Kokkos::View<WallNodePair*, MemorySpace> const nodes(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::wall_nodes"), n_nodes);
+  if (n_nodes > 0)
     Kokkos::parallel_for(
-        "gridmorph::wall_quality", Kokkos::RangePolicy<Exec>(exec, 0, n), KOKKOS_LAMBDA(Index m) {
-          Index const p = m % wall.extent[0], q = m / wall.extent[0];
+        "gridmorph::wall_quality", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n_nodes),
+        KOKKOS_LAMBDA(Index m) {
+          WallGrid const wall = list(wall_of(list, m));
+          Index const p = (m - wall.begin) % wall.extent[0], q = (m - wall.begin) / wall.extent[0];
           WallNodePair pair;
           pair.now = wall_node_at(coordinates, wall, p, q);
           if (against_baseline) pair.before = wall_node_at(baseline, wall, p, q);
           nodes(m) = pair;
         });
+  auto const nodes_h = download(exec, nodes);
+  WallSums all;
+  std::vector<std::pair<std::string, WallSums>> groups;
+  for (std::size_t w = 0; w < grids.size(); ++w) {
+    WallGrid const& wall = grids[w];
+    WallFace const& face = *faces[w];
     auto group = std::find_if(groups.begin(), groups.end(), [&](auto const& g) { return g.first == face.group; });
     if (group == groups.end()) group = groups.insert(group, {face.group, {}});
-    auto const nodes_h = download(exec, nodes);
-    Index const first = wall.first;
-    for (Index m = 0; m < n; ++m) {
-      Index const node = first + m % wall.extent[0] * wall.stride[0] + m / wall.extent[0] * wall.stride[1];
-      NodeLocation const where{face.zone, mesh.zones[face.zone].index(node)};
-      all.add(nodes_h(m), where, against_baseline);
-      group->second.add(nodes_h(m), where, against_baseline);
+    for (Index m = 0; m < wall.size(); ++m) {
+      NodeLocation const where{face.zone, mesh.zones[face.zone].index(wall.node(m))};
+      all.add(nodes_h(wall.begin + m), where, against_baseline);
+      group->second.add(nodes_h(wall.begin + m), where, against_baseline);
     }
   }
   WallQualities out{all.result(), {}};
