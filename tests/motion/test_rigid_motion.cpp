@@ -60,6 +60,28 @@ TEST(RigidMotion, ARotationLeavesItsAxisInPlaceAndDistancesAlone) {
   }
 }
 
+TEST(RigidMotion, SharesFollowOneAnotherOnTheWayOfTheParameters) {
+  Axis const axis{{1, 2, 3}, {1, -1, 2}};
+  std::vector<RigidSteps> const turn{{.angle_rad = 1.2, .axis = axis}},
+      stretch{{.scale = {2, 0.5, 1.5}, .scale_center = {3, 1, 0}}};
+  std::mt19937 random(5);
+  for (int n = 0; n < 50; ++n) {
+    Vec3 const p = random_point(random);
+    expect_near(displacement(make_rigid_steps(turn, 0.25), p),
+                displacement(make_rigid({.angle_rad = 0.3, .axis = axis}), p), 1e-14);
+    for (auto const& steps : {turn, stretch}) {
+      Vec3 q = p;
+      for (double const share : {0.3, 0.9, -0.2}) q = q + displacement(make_rigid_steps(steps, share), q);
+      expect_near(q, p + displacement(make_rigid_steps(steps), p), 1e-13);
+      EXPECT_EQ(displacement(make_rigid_steps(steps, 0), p), (Vec3{0, 0, 0}));
+    }
+    std::vector<RigidSteps> const both{{.angle_rad = 1.2, .axis = axis}, {.translation = {1, 2, 3}}};
+    expect_near(displacement(make_rigid_steps(both, 0.5), p),
+                displacement(make_rigid({.angle_rad = 0.6, .axis = axis, .translation = {0.5, 1, 1.5}}), p), 1e-14);
+  }
+  EXPECT_THROW(make_rigid_steps(std::vector<RigidSteps>{{.scale = {-1, 1, 1}}}, 0.5), MotionError);
+}
+
 TEST(RigidMotion, RefusesWhatIsNoMotion) {
   EXPECT_THROW(make_rigid({.scale = {1, 0, 1}}), MotionError);
   EXPECT_THROW(make_rigid({.angle_rad = 1, .axis = {{0, 0, 0}, {0, 0, 0}}}), MotionError);

@@ -4,6 +4,7 @@
 
 #include <gridmorph/core/error.hpp>
 
+#include <gridmorph/motion/contour.hpp>
 #include <gridmorph/motion/slip_surface.hpp>
 #include <gridmorph/motion/surface_motion.hpp>
 
@@ -143,17 +144,82 @@ TEST(SlipSurfaces, FreeRulesHaveASurfaceOnlyWhenConstrained) {
   EXPECT_FALSE(motion.slip_surface(3));
 }
 
+/// The profile of the hub at 60 places, moved outwards.
+std::vector<std::pair<double, double>> hub_moved_by(double outwards) {
+  std::vector<std::pair<double, double>> out;
+  for (int i = 0; i < 60; ++i) {
+    double const x = -1 + 3.0 * i / 59;
+    out.emplace_back(x, hub(x) + outwards);
+  }
+  return out;
+}
+
 TEST(SlipSurfaces, AGivenProfileIsUsedAndItsDistanceReported) {
   RowMesh row;
   row.add(end_wall("hub", 0, 101, 5));
   Mesh const mesh = row.finish();
   SlipRule rule = revolution();
-  rule.profile = {{-1, 1.25}, {2, 1.25}};
+  rule.profile = hub_moved_by(2e-4);
   SurfaceMotion const motion = make(mesh, {{{"hub"}, rule, 0, ""}});
-  EXPECT_EQ(motion.slip_surface(0)->profile(0.3), 1.25);
-  double most = 0;
-  for (int i = 0; i <= 100; ++i) most = std::max(most, 1.25 - hub(inlet(0) + (outlet - inlet(0)) * i / 100));
-  EXPECT_NEAR(motion.slip_surface(0)->baseline_deviation, most, 1e-14);
+  EXPECT_NEAR(motion.slip_surface(0)->profile(0.3), hub(0.3) + 2e-4, 1e-6);
+  EXPECT_NEAR(motion.slip_surface(0)->baseline_deviation, 2e-4, 1e-6);
+}
+
+TEST(SlipSurfaces, AProfileFarFromTheWallIsRefusedWithItsDistance) {
+  RowMesh row;
+  row.add(end_wall("hub", 0, 101, 5));
+  Mesh const mesh = row.finish();
+  SlipRule rule = revolution();
+  rule.profile = hub_moved_by(0.25);
+  auto const message = message_of<MotionError>([&] { make(mesh, {{{"hub"}, rule, 0, "case.toml:7"}}); });
+  expect_all_in(message,
+                {"case.toml:7", "patch 'hub'", "0.25 off the given profile", "axial", "allowed: 0.00", "contour"});
+}
+
+TEST(Contour, PutsNodesOnTheNewProfileAtTheirAngleAndAxialPosition) {
+  RigidTransform const placed = rotation_about({1, 2, 3}, {1, -2, 0.5}, 0.8);
+  Axis const axis{placed({0, 0, 0}), placed.rotation * Vec3{1, 0, 0}};
+  auto const profile = hub_moved_by(-0.05);
+  for (double const share : {1.0, 0.5, 0.0}) {
+    FunctionRule const rule = make_contour(profile, axis, "here", share);
+    for (double x = -0.9; x < 1.9; x += 0.07) {
+      double const theta = 5 * x;
+      Vec3 const p = placed(cylindrical(x, hub(x), theta)),
+                 wanted = placed(cylindrical(x, hub(x) - share * 0.05, theta));
+      Vec3 u;
+      rule.function({&p, 1}, {&u, 1});
+      EXPECT_LT(distance(p + u, wanted), 2e-7) << x;
+      if (share == 0) {
+        EXPECT_EQ(u, (Vec3{0, 0, 0}));
+      }
+    }
+  }
+}
+
+TEST(Contour, MovesAWallAcrossTheAxisAlongIt) {
+  FunctionRule const rule = make_contour({{0.5, 0}, {0.5, 0.3}, {0.6, 0.8}, {0.6, 1}}, Axis{}, "here");
+  for (Vec3 const& p : {Vec3{0.2, 0, 0}, Vec3{0.2, 0.1, 0.2}, Vec3{0.45, 0.5, 0.5}}) {
+    Vec3 u;
+    rule.function({&p, 1}, {&u, 1});
+    EXPECT_EQ(u.y, 0);
+    EXPECT_EQ(u.z, 0);
+    double const r = std::hypot(p.y, p.z);
+    if (r < 0.3) {
+      EXPECT_NEAR(p.x + u.x, 0.5, 1e-12);
+    }
+    EXPECT_GE(p.x + u.x, 0.5 - 1e-12);
+    EXPECT_LE(p.x + u.x, 0.6 + 1e-12);
+  }
+}
+
+TEST(Contour, RefusesNodesBeyondItsEnds) {
+  FunctionRule const rule = make_contour({{0, 1}, {1, 1.1}}, Axis{}, "case.toml:7");
+  Vec3 const p{1.5, 1, 0};
+  Vec3 u;
+  expect_all_in(message_of<MotionError>([&] {
+                  rule.function({&p, 1}, {&u, 1});
+                }),
+                {"case.toml:7", "(1.5, 1, 0)", "beyond the ends of the profile by 0.5"});
 }
 
 // ---- projection and constraint ------------------------------------------------------------------------------------

@@ -116,6 +116,9 @@ class Resolver {
                       " rad; it must be positive");
     } else if (auto const* sections = std::get_if<SectionsRule>(&rule)) {
       check_sections(r, *sections);
+    } else if (auto const* target = std::get_if<TargetRule>(&rule);
+               target != nullptr && !std::isfinite(target->share)) {
+      problems_.add(label(r) + ": its share of the way to the target is not finite");
     }
   }
 

@@ -42,6 +42,22 @@ RigidRule make_rigid(RigidSteps const& s) {
   return rule;
 }
 
+RigidRule make_rigid_steps(std::span<RigidSteps const> steps, double share) {
+  RigidRule all;
+  for (RigidSteps step : steps) {
+    if (share != 1) {
+      if (!(step.scale.x > 0 && step.scale.y > 0 && step.scale.z > 0))
+        throw MotionError("rigid motion: a scale factor is not positive, so that there is no part of the scaling");
+      step.scale = {std::pow(step.scale.x, share), std::pow(step.scale.y, share), std::pow(step.scale.z, share)};
+      step.angle_rad *= share;
+      step.translation = share * step.translation;
+    }
+    RigidRule const next = make_rigid(step);
+    all = {next.matrix * all.matrix, next.matrix * all.translation + next.translation};
+  }
+  return all;
+}
+
 Vec3 displacement(RigidRule const& rule, Vec3 const& point) {
   // m_ii - 1 is exact for 0.5 <= m_ii <= 2, so nothing is lost against M x - x, and the identity gives exact zeros.
   Mat3 d = rule.matrix;

@@ -184,7 +184,8 @@ bool SurfaceMotion::slides_upstream(int rule, Vec3 const& point) const {
 
 std::vector<TargetReach> SurfaceMotion::target_reach(Mesh const& mesh, Coordinates const& morphed) const {
   std::vector<TargetReach> out;
-  for (auto const& [rule, target] : impl_->targets) out.push_back(target.reach(mesh, morphed));
+  for (auto const& [rule, target] : impl_->targets)
+    if (target.whole()) out.push_back(target.reach(mesh, morphed));
   return out;
 }
 

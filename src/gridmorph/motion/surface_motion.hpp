@@ -41,7 +41,8 @@ class SurfaceMotion {
   /// Whether a point lies upstream of the middle of the blade that circumferential-slide rule number r names.
   [[nodiscard]] bool slides_upstream(int rule, Vec3 const& point) const;
 
-  /// How far the nodes of each target rule ended from their target, measured on the morphed mesh; rules in order.
+  /// How far the nodes of each target rule ended from their target, measured on the morphed mesh; rules in order, without those
+  /// that go a share of the way only.
   [[nodiscard]] std::vector<TargetReach> target_reach(Mesh const& mesh, Coordinates const& morphed) const;
 
   /// Human-readable facts found on the way: blade sections, span range, profile deviation, mapping distances.

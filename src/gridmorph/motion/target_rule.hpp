@@ -59,6 +59,8 @@ struct TargetRule {
   Vec3 flow{1, 0, 0};
   /// Projection: an edge whose facets turn by more than this is an edge of the surface.
   double crease_angle_deg = 40;
+  /// Of the way from the baseline to the target, straight.
+  double share = 1;
 };
 
 }  // namespace gridmorph

@@ -19,6 +19,9 @@ namespace {
 
 using Patches = std::vector<int>;
 
+/// How far nodes may lie off a profile of revolution, as a share of the wall's size (radius or extent along the axis).
+constexpr double profile_tolerance = 1e-3;
+
 std::string number(double v) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", v);
@@ -295,7 +298,7 @@ class Finder {
     set_profile(surface, fit(meridional));
     surface.baseline_deviation = surface.profile.deviation;
     size = std::max(size, surface.profile.knots.back().axial - surface.profile.knots.front().axial);
-    if (surface.baseline_deviation > 1e-3 * size)
+    if (surface.baseline_deviation > profile_tolerance * size)
       throw MotionError("its nodes are up to " + number(surface.baseline_deviation) +
                         " off the nearest surface of revolution about the "
                         "axis; check the axis, or give another rule");
@@ -312,14 +315,41 @@ class Finder {
       return;
     }
     auto const points = patch_points(mesh_, patches);
-    for (Vec3 const& p : points) {
-      auto const [a, r] = frame_.meridional(p);
-      MeridionalFrame const& frame = surface.frame;
-      surface.baseline_deviation =
-          std::max(surface.baseline_deviation, std::abs(frame.ordinate(a, r) - surface.profile(frame.abscissa(a, r))));
+    double const size = wall_size(points);
+    std::string far;
+    for (int const patch : patches)
+      for (Vec3 const& p : patch_points(mesh_, {patch})) {
+        double const off = distance(p, surface.view().project(p));
+        if (off > profile_tolerance * size && off > surface.baseline_deviation)
+          far = describe(mesh_, {patch}) + " is up to " + number(off) + " off the given profile, most at " + place(p);
+        surface.baseline_deviation = std::max(surface.baseline_deviation, off);
+      }
+    if (!far.empty()) {
+      problems_.add(where_ + ": patch " + far + " (allowed: " + number(profile_tolerance * size) +
+                    "); nodes that slip stay on the wall as it is: give its own profile or none; to move the wall onto "
+                    "this profile, use the rule contour");
+      return;
     }
     note(patches, surface, "given profile of");
     store(std::move(surface), patches, points);
+  }
+
+  std::string place(Vec3 const& p) const {
+    auto const [axial, radius] = frame_.meridional(p);
+    return "(" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + "), axial " + number(axial) + ", radius " +
+           number(radius);
+  }
+
+  /// Of a wall of revolution: its largest radius, or its extent along the axis where that is more.
+  double wall_size(std::vector<Vec3> const& points) const {
+    double radius = 0, first = frame_.meridional(points.front()).axial, last = first;
+    for (Vec3 const& p : points) {
+      auto const [a, r] = frame_.meridional(p);
+      radius = std::max(radius, r);
+      first = std::min(first, a);
+      last = std::max(last, a);
+    }
+    return std::max(radius, last - first);
   }
 
   static std::string end(SlipSurface const& s, ProfileKnot const& k) {

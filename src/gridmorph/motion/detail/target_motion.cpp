@@ -97,7 +97,7 @@ TargetTree target_facets(TargetGeometry const& target, std::string const& name) 
 
 TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
                            std::string const& name, std::vector<std::string>& notes, PatchFaces const* faces)
-    : surface_(mesh, patches, faces), name_(name) {
+    : surface_(mesh, patches, faces), name_(name), share_(rule.share) {
   if (!rule.target) throw MotionError(name + ": it has no target");
   TargetGeometry const& target = *rule.target;
   if (!(rule.crease_angle_deg > 0 && rule.crease_angle_deg < 180))
@@ -184,7 +184,7 @@ void TargetMotion::displacement(std::span<Vec3 const> points, std::span<Vec3> ou
       throw MotionError(name_ + ": the point " + text +
                         " is no node of its patches; a target says where they go and nothing else");
     }
-    out[n] = displacement_[v];
+    out[n] = share_ == 1 ? displacement_[v] : share_ * displacement_[v];
   }
 }
 

@@ -22,6 +22,9 @@ class TargetMotion {
   /// Displacement of nodes of the patches, found by their baseline position. Throws MotionError for other points.
   void displacement(std::span<Vec3 const> points, std::span<Vec3> out) const;
 
+  /// Whether nodes go all the way; otherwise how far they end from the target says nothing.
+  [[nodiscard]] bool whole() const { return share_ == 1; }
+
   /// How far the nodes of the patches ended from the target.
   [[nodiscard]] TargetReach reach(Mesh const& mesh, Coordinates const& morphed) const;
 
@@ -33,6 +36,7 @@ class TargetMotion {
 
   PatchSurface surface_;
   std::string name_;
+  double share_ = 1;
   Mapping mapping_ = Mapping::nodes;
   std::vector<Vec3> displacement_;         ///< per vertex
   std::vector<char> reached_;              ///< per vertex: belongs to the target; empty: all do
