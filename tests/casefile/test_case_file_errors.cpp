@@ -265,5 +265,18 @@ TEST(CaseFileErrors, VolumeGuardAndConformity) {
   EXPECT_TRUE(reported(problems("[conformity]\ntolerance = -1e-3"), "case.toml:7: ", {"tolerance", "-0.001"}));
 }
 
+TEST(CaseFileErrors, AConstantThatNoFormulaCanNameHasItsLine) {
+  for (std::string const name : {"tip-bend", "a.b", "sin", "\"2x\"", "t", "\"\"", "\"\u00e4\""}) {
+    std::string const quoted = name == "a.b" ? "\"a.b\"" : name;
+    auto const lines =
+        problems_of("[constants]\n" + quoted + " = 1.5\n" + case_with_rule("rule = \"formula\"\ndx = \"0.1 * x\"\n"));
+    EXPECT_TRUE(reported(lines, "case.toml:2: ", {"cannot be the name of a constant"})) << name;
+    EXPECT_EQ(lines.size(), 1U) << name;
+  }
+  EXPECT_TRUE(reported(problems_of(case_with_rule("rule = \"formula\"\ndx = \"a-b * x\"\nconstants = { a-b = 1 }\n")),
+                       "case.toml:9: ", {"cannot be the name of a constant"}));
+  EXPECT_TRUE(reported(problems_of(case_with_rule("rule = \"formula\"\ndx = \"\"\n")), "case.toml:8: ", {"is empty"}));
+}
+
 }  // namespace
 }  // namespace gridmorph::testing

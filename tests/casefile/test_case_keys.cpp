@@ -27,8 +27,11 @@ std::string rule_of_table(std::string_view table) {
   return std::string(table.substr(0, table.find(' ')));
 }
 
-/// The rule of the case file that shows a table; a sequence needs one that changes with time.
-std::string rule_beside(std::string_view table) { return table == "sequence" ? "field" : rule_of_table(table); }
+/// The rule of the case file that shows a key; a sequence needs one that changes with time, an amplitude one that moves.
+std::string rule_beside(CaseKey const& key) {
+  bool const amplitude = key.table == "motion" && key.key.starts_with("amplitude");
+  return amplitude ? "rigid" : key.table == "sequence" ? "field" : rule_of_table(key.table);
+}
 
 /// What the reader calls the table: without the rule.
 std::string as_asked(std::string_view table) {
@@ -50,11 +53,13 @@ std::string case_with(CaseKey const& key, std::string const& rule) {
   text += "[[motion]]\n";
   if (!(common && key.key == "patches")) text += "patches = [\"blade\"]\n";
   if (!(common && key.key == "rule")) text += "rule = \"" + (rule.empty() ? "fixed" : rule) + "\"\n";
+  if (common && rule == "rigid") text += "translation = [0.1, 0, 0]\n";
   if (table == "sequence") text += "modes = [ { file = \"mode.csv\" } ]\n";
   if (table == "motion") text += example;
   if (!key.table.empty() && table != "mesh" && table != "motion" && table != "constants")
     text += "[" + table + "]\n" + example;
-  if (example.find("frequency") != std::string::npos) text += "[sequence]\nsteps = 4\nperiod = 1\n";
+  if (example.find("frequency") != std::string::npos || example.find("amplitude = [[") != std::string::npos)
+    text += "[sequence]\nsteps = 4\nperiod = 1\n";
   return text;
 }
 
@@ -68,7 +73,7 @@ std::map<std::string, CaseKeyUse> everything_asked() {
     }
   };
   for (auto const& rule : casefile::known_rules()) read({"motion", "rank", "", "", "", "", ""}, rule);
-  for (auto const& key : case_keys()) read(key, rule_beside(key.table));
+  for (auto const& key : case_keys()) read(key, rule_beside(key));
   return asked;
 }
 
@@ -98,7 +103,7 @@ TEST(CaseKeys, EveryKeyThatIsListedIsKnownToTheReader) {
   auto const asked = everything_asked();
   for (auto const& k : case_keys()) {
     if (k.key == "<name>") continue;
-    auto const found = asked.find(rule_beside(k.table));
+    auto const found = asked.find(rule_beside(k));
     EXPECT_TRUE(found != asked.end() && found->second.count({as_asked(k.table), std::string(k.key)}) == 1)
         << "case_keys.cpp describes '" << k.key << "' of [" << k.table
         << "], but the reader does not ask for it; take it out";
@@ -107,7 +112,7 @@ TEST(CaseKeys, EveryKeyThatIsListedIsKnownToTheReader) {
 
 TEST(CaseKeys, EveryExampleIsValid) {
   for (auto const& k : case_keys()) {
-    std::string const text = case_with(k, rule_beside(k.table));
+    std::string const text = case_with(k, rule_beside(k));
     // A motion table has keys without which no other key can stand.
     for (auto const& line : problems_of(text))
       EXPECT_TRUE(line.find("does not exist") != std::string::npos || line.find("no such file") != std::string::npos)

@@ -1,6 +1,8 @@
 // Mode shapes over time, and the case-file keys that give them.
 #include "model_support.hpp"
 
+#include <gridmorph/casefile/modal_field.hpp>
+
 namespace gridmorph::testing {
 namespace {
 
@@ -121,7 +123,7 @@ TEST_F(ModalCase, KeysSayWhatMovesWhen) {
   EXPECT_DOUBLE_EQ(c.sequence->time_at(4), 0.5);
   EXPECT_EQ(c.sequence->output, folder.path("s_{step}.cgns"));
   for (double const t : {0.0, 0.125, 0.3}) {
-    Vec3 const u = displacement_of(motion_at(c, t).rules.at(0).rule, {0, 0, 0});
+    Vec3 const u = displacement_of(motion_at(c, {t, 0, 1}).rules.at(0).rule, {0, 0, 0});
     EXPECT_VEC3_NEAR(u, (Vec3{0, -6 * std::sin(two_pi * t), 1 + std::cos(2 * two_pi * t)}), 1e-14);
   }
   EXPECT_EQ(displacement_of(c.motion.rules.at(0).rule, {0, 0, 0}), (Vec3{0, 0, 2})) << "without a time: at its begin";
@@ -129,8 +131,8 @@ TEST_F(ModalCase, KeysSayWhatMovesWhen) {
 
 TEST_F(ModalCase, FrequenciesAreInCyclesPerUnitOfTime) {
   auto const c = parsed("modes = [ { file = \"a.csv\", frequency = 6 } ]\n", "[sequence]\nsteps = 8\nperiod = 0.5\n");
-  EXPECT_VEC3_NEAR(displacement_of(motion_at(c, 0.1).rules.at(0).rule, {0, 0, 0}), (Vec3{0, 0, std::cos(two_pi * 0.3)}),
-                   1e-14);
+  EXPECT_VEC3_NEAR(displacement_of(motion_at(c, {0.1, 0, 1}).rules.at(0).rule, {0, 0, 0}),
+                   (Vec3{0, 0, std::cos(two_pi * 0.3)}), 1e-14);
 }
 
 TEST_F(ModalCase, ProblemsHaveTheirLine) {
@@ -151,7 +153,7 @@ TEST_F(ModalCase, ProblemsOfTheSequenceHaveTheirLine) {
   EXPECT_TRUE(reported(problems(modes, "[sequence]\n\n"), line(1), {"'steps' is missing"}));
   EXPECT_TRUE(reported(problems(modes, "[sequence]\nsteps = 3\nperiod = -1\n"), line(3), {"must be positive"}));
   EXPECT_TRUE(reported(problems(modes, "[sequence]\nsteps = 3\nstep = 1\n"), line(3), {"unknown key 'step'", "steps"}));
-  EXPECT_TRUE(reported(problems("file = \"a.csv\"\n"), line(1), {"no rule has modes"}));
+  EXPECT_TRUE(reported(problems("file = \"a.csv\"\n"), line(1), {"no rule changes with time"}));
 }
 
 }  // namespace

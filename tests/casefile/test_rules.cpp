@@ -50,6 +50,91 @@ TEST(RigidRuleText, ScalesAboutAnOrigin) {
   EXPECT_EQ(moved(rule, {3, 1, -1}), (Vec3{2, 1, 0}));
 }
 
+/// The rule of case_with_rule() at a time of a sequence.
+Rule rule_at(std::string const& lines, double time, int step = 1) {
+  CaseFile const c =
+      parse_case_file("[constants]\ngain = 2\n[sequence]\nsteps = 4\n" + case_with_rule(lines), "case.toml");
+  return motion_at(c, {time, time, step}).rules.at(0).rule;
+}
+
+TEST(AmplitudeText, AShareOfATurnIsATurnByThatShareOfTheAngle) {
+  std::string const turn = "rule = \"rigid\"\nrotation = { axis = [0, 0, 1], origin = [1, 0, 0], angle_deg = 90 }\n";
+  auto const turned = [&](std::string const& amplitude, double time) {
+    return moved(rule_at(turn + amplitude, time), {2, 0, 5});
+  };
+  auto const by = [](double degrees) {
+    double const angle = degrees * std::numbers::pi / 180;
+    return Vec3{1 + std::cos(angle), std::sin(angle), 5};
+  };
+  std::string const ramp = "amplitude = [[1, 0], [2, 1], [4, -1]]\n";
+  EXPECT_EQ(turned(ramp, 0.5), (Vec3{2, 0, 5}));
+  EXPECT_VEC3_NEAR(turned(ramp, 1.5), by(45), 1e-14);
+  EXPECT_VEC3_NEAR(turned(ramp, 3.5), by(-45), 1e-14);
+  EXPECT_VEC3_NEAR(turned(ramp, 9), by(-90), 1e-14);
+  EXPECT_VEC3_NEAR(turned(ramp + "amplitude_law = \"smooth\"\n", 1.25), by(90 * (3. / 16 - 2. / 64)), 1e-14);
+  EXPECT_VEC3_NEAR(turned("amplitude = \"gain * t / step\"\n", 0.25), by(45), 1e-14);
+  EXPECT_VEC3_NEAR(moved(rule_of(turn + "amplitude = 0.5\n"), {2, 0, 5}), by(45), 1e-14);
+}
+
+TEST(AmplitudeText, MultipliesWhatEveryRuleWithADisplacementSays) {
+  std::string const half = "amplitude = [[0, 0], [1, 0.5]]\n";
+  EXPECT_VEC3_NEAR(displacement_of(rule_at("rule = \"formula\"\ndx = \"x + t\"\n" + half, 1), {3, 0, 0}),
+                   (Vec3{2, 0, 0}), 1e-15);
+  Vec3 const turned = displacement_of(rule_at("rule = \"formula\"\ndtheta = \"pi\"\n" + half, 1), {0, 1, 0});
+  EXPECT_VEC3_NEAR(turned, (Vec3{0, -1, 1}), 1e-15);
+  auto const sections =
+      std::get<SectionsRule>(rule_at("rule = \"sections\"\nchord = [[0, 0.2], [1, -0.1]]\n" + half, 1));
+  EXPECT_EQ(sections.chord.at(0), 0.1);
+  EXPECT_EQ(sections.chord.at(1), -0.05);
+  EXPECT_VEC3_NEAR(displacement_of(rule_at("rule = \"contour\"\nprofile = [[0, 1], [2, 1]]\n" + half, 1), {0.5, 0, 2}),
+                   (Vec3{0, 0, -0.5}), 1e-15);
+}
+
+TEST(AmplitudeText, FormulasKnowTimeAndStep) {
+  Rule const rule = rule_at("rule = \"formula\"\ndx = \"10 * step\"\ndy = \"x * t\"\n", 0.25, 3);
+  EXPECT_EQ(displacement_of(rule, {8, 0, 0}), (Vec3{30, 2, 0}));
+}
+
+TEST(AmplitudeText, ProblemsHaveTheirLine) {
+  auto const problems = [](std::string const& lines, std::string const& top = "[sequence]\nsteps = 4\n") {
+    return problems_of(top + case_with_rule(lines));
+  };
+  std::string const rigid = "rule = \"rigid\"\ntranslation = [1, 0, 0]\n";
+  EXPECT_TRUE(reported(problems(rigid + "amplitude = [[0, 0], [1, 1]]", ""), "case.toml:9: ", {"no [sequence]"}));
+  EXPECT_TRUE(reported(problems("rule = \"formula\"\ndx = \"t\"", ""), "case.toml:8: ", {"no [sequence]"}));
+  EXPECT_TRUE(
+      reported(problems(rigid + "amplitude = [[1, 0], [1, 1]]"), "case.toml:11: ", {"must ascend", "1 after 1"}));
+  EXPECT_TRUE(reported(problems(rigid + "amplitude = [[0, 1, 2]]"), "case.toml:11: ", {"[[time, value], ...]"}));
+  EXPECT_TRUE(reported(problems(rigid + "amplitude = \"t * x\""), "case.toml:11: ", {"uses x", "t and step"}));
+  EXPECT_TRUE(reported(problems(rigid + "amplitude = \"tt\""), "case.toml:11: ", {"unknown name 'tt'"}));
+  EXPECT_TRUE(
+      reported(problems(rigid + "amplitude = 1\namplitude_law = \"smooth\""), "case.toml:12: ", {"amplitude_law"}));
+  EXPECT_TRUE(reported(problems("rule = \"fixed\"\namplitude = 2"), "case.toml:10: ", {"\"fixed\" gives none"}));
+  EXPECT_TRUE(
+      reported(problems("rule = \"follow\"\nof = \"hub\"\namplitude = 2"), "case.toml:11: ", {"rule of the blade"}));
+  EXPECT_TRUE(reported(problems(rigid), "case.toml:1: ", {"no rule changes with time"}));
+  EXPECT_TRUE(reported(problems(rigid + "amplitude = \"t\"", "[sequence]\ntimes = [0, 2, 1]\n"),
+                       "case.toml:2: ", {"must ascend", "1 after 2"}));
+  EXPECT_TRUE(reported(problems(rigid + "amplitude = \"t\"", "[sequence]\ntimes = [0, 1]\nsteps = 2\n"),
+                       "case.toml:3: ", {"stands beside times"}));
+}
+
+TEST(SequenceText, StepsAreWhereTheTimesSay) {
+  auto const sequence = [](std::string const& keys) {
+    return *parse_case_file("[sequence]\n" + keys + case_with_rule("rule = \"formula\"\ndx = \"t\"\n"), "case.toml")
+                .sequence;
+  };
+  SequenceOptions const given = sequence("times = [0, 0.25, 3]\nperiod = 2\n");
+  EXPECT_EQ(given.steps, 3);
+  EXPECT_EQ(given.time_at(1), 0.25);
+  EXPECT_EQ(given.periods_at(2), 1.5);
+  EXPECT_EQ(given.moment(2).step, 3);
+  SequenceOptions const closed = sequence("steps = 5\nperiod = 2\ninclude_end = true\n");
+  EXPECT_EQ(closed.time_at(0), 0);
+  EXPECT_EQ(closed.time_at(4), 2);
+  EXPECT_EQ(sequence("steps = 4\nperiod = 2\n").time_at(3), 1.5);
+}
+
 TEST(RigidRuleText, AppliesStepsInTheirOrder) {
   Rule const rule = rule_of(
       "rule = \"rigid\"\nsteps = [ { translation = [1, 0, 0] }, { scale = 2 }, { rotation = { axis = [0, 0, 1], origin "

@@ -136,6 +136,71 @@ TEST_F(SequenceTest, EveryStepIsJudgedByTheLimits) {
   EXPECT_GT(count, 1);
 }
 
+TEST_F(SequenceTest, ARampOfARuleGivesTheMeshesOfItsShares) {
+  std::string const rest =
+      "[[motion]]\npatches = [\"inlet\", \"outlet\"]\nrule = \"circumferential-slide\"\nof = \"blade\"\n"
+      "[[motion]]\npatches = [\"type:periodic\"]\nrule = \"follow\"\nof = \"blade\"\n"
+      "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n";
+  std::string const head = "[mesh]\ninput = \"passage.cgns\"\naxis = \"x\"\n";
+  auto const blade = [](std::string const& twist, std::string const& amplitude) {
+    return "[[motion]]\npatches = [\"blade\"]\nrule = \"sections\"\ntwist_deg = " + twist + "\n" + amplitude;
+  };
+  write("ramp.toml", head + "[sequence]\ntimes = [0, 1, 1.5, 2]\noutput = \"out_{step}.cgns\"\n" +
+                         blade("[[0, 2], [1, 4]]", "amplitude = [[0, 0], [2, 1]]\n") + rest);
+  Outcome const run = gridmorph("morph ramp.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  expect_same(mesh("out_1.cgns"), mesh("passage.cgns"));
+  std::string const twists[3] = {"[[0, 1], [1, 2]]", "[[0, 1.5], [1, 3]]", "[[0, 2], [1, 4]]"};
+  for (int step = 2; step <= 4; ++step) {
+    write("single.toml", head + blade(twists[step - 2], "") + rest);
+    ASSERT_EQ(gridmorph("morph single.toml -o single.cgns").status, 0);
+    Mesh const alone = mesh("single.cgns"), in_sequence = mesh("out_" + std::to_string(step) + ".cgns");
+    for (Index n = 0; n < alone.n_nodes(); ++n)
+      ASSERT_LT(distance(alone.coordinates[n], in_sequence.coordinates[n]), 1e-13 * alone.size()) << step;
+  }
+}
+
+TEST_F(SequenceTest, ContouredEndWallsLieOnTheirProfileAndTheBladeGoesWithThem) {
+  write("case.toml",
+        "[mesh]\ninput = \"passage.cgns\"\naxis = \"x\"\noutput = \"out.cgns\"\n"
+        "[[motion]]\npatches = \"hub\"\nrule = \"contour\"\nprofile = [[-1, 0.44], [-0.16, 0.44], [0, 0.45], [0.2, "
+        "0.46], [1, "
+        "0.46]]\n"
+        "[[motion]]\npatches = [\"blade\", \"type:periodic\"]\nrule = \"free\"\n"
+        "[[motion]]\npatches = [\"inlet\", \"outlet\"]\nrule = \"free\"\nconstraint = \"axial\"\n"
+        "[[motion]]\npatches = \"case\"\nrule = \"fixed\"\n");
+  Outcome const run = gridmorph("morph case.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  Mesh const before = mesh("passage.cgns"), after = mesh("out.cgns");
+  auto const each = [&](std::string const& family, auto const& visit) {
+    for (auto const& patch : before.patches)
+      if (patch.families.front() == family)
+        for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
+          for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
+            for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
+              Index const n = before.zones[patch.zone].node({i, j, k});
+              visit(before.coordinates[n], after.coordinates[n]);
+            }
+  };
+  auto const radius = [](Vec3 const& p) { return std::hypot(p.y, p.z); };
+  each("hub", [&](Vec3 const& p, Vec3 const& q) {
+    EXPECT_NEAR(p.x, q.x, 1e-15);
+    EXPECT_NEAR(std::atan2(p.z, p.y), std::atan2(q.z, q.y), 1e-14);
+    if (std::abs(p.x + 0.16) < 1e-9) {
+      EXPECT_NEAR(radius(q), 0.44, 1e-12);
+    }
+    if (std::abs(p.x) < 1e-9) {
+      EXPECT_NEAR(radius(q), 0.45, 1e-12);
+    }
+    EXPECT_GT(radius(q), 0.4399);
+    EXPECT_LT(radius(q), 0.4601);
+  });
+  double most = 0;
+  each("blade", [&](Vec3 const& p, Vec3 const& q) { most = std::max(most, std::abs(radius(q) - radius(p))); });
+  EXPECT_GT(most, 0.005);
+  each("case", [&](Vec3 const& p, Vec3 const& q) { EXPECT_LT(distance(p, q), 1e-12); });
+}
+
 TEST_F(SequenceTest, ADiskThatIsFullLeavesNothing) {
   for (std::string const output : {"out_{step}.cgns", "out.cgns"}) {
     write_sequence("steps = 4\noutput = \"" + output + "\"\n", ", amplitude = 0.2");

@@ -174,6 +174,38 @@ class UnstructuredTurn : public UnstructuredSequence {
   }
 };
 
+TEST_F(UnstructuredTurn, ASequenceGoesThereInStepsToo) {
+  auto const sequence = [&](int steps) {
+    for (int n = 1; n <= 3; ++n) std::filesystem::remove(path(fmt::format("turn_{}.su2", n)));
+    write("case.toml",
+          fmt::format("[mesh]\ninput = \"ring.su2\"\n[sequence]\ntimes = [0, 0.25, 1]\noutput = \"turn_{{step}}.su2\"\n"
+                      "[[motion]]\npatches = [\"body\"]\nrule = \"rigid\"\namplitude = [[0, 0], [1, 1]]\n"
+                      "rotation = {{ axis = [0, 0, 1], origin = [0, 0, 0], angle_deg = 120 }}\n"
+                      "[guard]\nmin_determinant = 0.001\nsteps = {}\n",
+                      steps));
+    return gridmorph("morph case.toml");
+  };
+  EXPECT_EQ(sequence(1).status, turn(120, 1).status);
+  EXPECT_FALSE(std::filesystem::exists(path("turn_1.su2")));
+  Outcome const run = sequence(4);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("step 3: "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("in 2 steps, each planned on the mesh before it, none is"), std::string::npos) << run.out;
+  auto const before = coordinates("ring.su2"), still = coordinates("turn_1.su2"), quarter = coordinates("turn_2.su2"),
+             whole = coordinates("turn_3.su2");
+  ASSERT_EQ(turn(120, 4).status, 0);
+  auto const alone = coordinates("turned.su2");
+  double const angle = std::acos(-1.0) / 6;
+  for (Index n = 0; n < before.size(); ++n) {
+    EXPECT_EQ(still[n], before[n]) << n;
+    EXPECT_LT(distance(whole[n], alone[n]), 1e-6) << n;
+    if (n >= around) continue;
+    Vec3 const x = before[n],
+               turned{x.x * std::cos(angle) - x.y * std::sin(angle), x.x * std::sin(angle) + x.y * std::cos(angle), 0};
+    EXPECT_LT(distance(quarter[n], turned), 1e-14) << n;
+  }
+}
+
 TEST_F(UnstructuredTurn, WhatOneStepCannotMakeIsMadeInSteps) {
   Outcome const one = turn(120, 1);
   EXPECT_EQ(one.status, 4);

@@ -117,6 +117,45 @@ TEST_F(PassageWheel, WithItsSidesOpenedForEqualBladesIsTheSame) {
   for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_between(opened, p, closed, p, n_blades), 1e-13 * size()) << p;
 }
 
+TEST_F(PassageWheel, FactorsMultiplyTheTablesOfARedesign) {
+  std::string const formula = text("passage.toml");
+  auto const from = formula.find("rule    = \"formula\""), to = formula.find("[[motion]]", from);
+  auto const redesign = [&](std::string const& file, std::string const& tables) {
+    folder.write(file, formula.substr(0, from) + "rule = \"sections\"\n" + tables + formula.substr(to));
+  };
+  redesign("passage.toml", "stagger_deg = 2\nlean = [[0, 0], [1, 0.002]]\n");
+  WheelFile const wheel = this->wheel("passage.toml", "factors = [1, -2, 0.5, 0]\n");
+  redesign("twice.toml", "stagger_deg = -4\nlean = [[0, 0], [1, -0.004]]\n");
+  WheelFile const twice = this->wheel("twice.toml", "");
+  WheelFile const once = this->wheel("passage.toml", "");
+  auto const blade_differs = [&](int p, WheelFile const& other) {
+    double worst = 0;
+    for (auto const& patch : mesh.patches) {
+      if (patch.families.front() != "blade") continue;
+      auto const& zone = mesh.zones[patch.zone];
+      for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
+        for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
+          for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
+            auto const n = std::size_t(zone.node({i, j, k}) - zone.first_node);
+            worst = std::max(
+                worst, distance(wheel.zones.at(name(zone.name, p)).at(n), other.zones.at(name(zone.name, p)).at(n)));
+          }
+    }
+    return worst;
+  };
+  for (int const p : {0, 4}) EXPECT_LT(blade_differs(p, once), 1e-13 * size()) << p;
+  for (int const p : {1, 5}) EXPECT_LT(blade_differs(p, twice), 1e-13 * size()) << p;
+  for (int const p : {1, 2, 3}) EXPECT_GT(blade_differs(p, once), 1e-4 * size()) << p;
+  for_angles(wheel, 3, "blade", [&](Index n, Vec3 const& x, Vec3 const& y) { EXPECT_LT(distance(x, y), 1e-13) << n; });
+}
+
+TEST_F(PassageWheel, AFactorOfNothingIsRefused) {
+  std::string still = text("passage.toml");
+  auto const from = still.find("rule    = \"formula\""), to = still.find("[[motion]]", from);
+  still.replace(from, to - from, "rule = \"fixed\"\n");
+  EXPECT_NE(refusal(still, "factors = [1, 3]\n").find("nothing to multiply"), std::string::npos);
+}
+
 TEST_F(PassageWheel, OfDifferentBladesIsWatertight) {
   WheelFile const wheel = this->wheel("passage.toml", two_blades);
   EXPECT_EQ(wheel.n_periodic(), 0);

@@ -12,7 +12,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -143,12 +145,28 @@ void read_mesh(TableReader& root, CaseFile& out) {
   mesh->finish();
 }
 
+/// times = [0, 0.5, 1], in place of steps spread evenly.
+void read_times(TableReader& table, SequenceOptions& sequence) {
+  if (!table.has("times")) return;
+  sequence.times = table.numbers("times").value_or(std::vector<double>{0});
+  for (char const* key : {"steps", "periods", "include_end"})
+    if (table.has(key)) table.problem(key, "stands beside times, which says when the steps are; remove one of them");
+  if (sequence.times.empty() || sequence.times.size() > std::size_t(largest_sequence))
+    table.problem("times", fmt::format("must be 1 to {} times, found {}", largest_sequence, sequence.times.size()));
+  auto const back = std::adjacent_find(sequence.times.begin(), sequence.times.end(), std::greater_equal<>());
+  if (back != sequence.times.end())
+    table.problem("times", fmt::format("must ascend, found {} after {}", *(back + 1), *back));
+  sequence.steps = int(sequence.times.size());
+}
+
 void read_sequence(TableReader& root, CaseFile& out) {
   auto table = root.table("sequence");
   if (!table) return;
   SequenceOptions sequence;
-  sequence.steps = table->integer("steps").value_or(1);
-  table->require("steps", "steps = 32, the number of meshes");
+  auto const steps = table->integer("steps");
+  sequence.steps = steps.value_or(1);
+  read_times(*table, sequence);
+  if (!table->has("times")) table->require("steps", "steps = 32, the number of meshes, or times = [0, 0.5, 1]");
   if (sequence.steps < 1 || sequence.steps > largest_sequence)
     table->problem("steps", fmt::format("must be 1 to {}, found {}", largest_sequence, sequence.steps));
   auto const positive = [&](std::string const& key, double& value) {
@@ -157,6 +175,7 @@ void read_sequence(TableReader& root, CaseFile& out) {
   };
   positive("period", sequence.period);
   positive("periods", sequence.periods);
+  sequence.include_end = table->boolean("include_end").value_or(false);
   if (auto const output = table->string("output"))
     sequence.output = (table->context().directory / *output).lexically_normal();
   if (!sequence.output.empty() && sequence.output == out.input)
@@ -176,7 +195,7 @@ void read_motion(TableReader& root, CaseFile& out) {
     }
     conformity->finish();
   }
-  casefile::RuleContext shared{out.axis, {}};
+  casefile::RuleContext shared{out.axis, {}, out.sequence.has_value()};
   casefile::read_constants(root, "constants", shared.constants);
   for (auto& table : root.tables("motion")) casefile::read_motion_rule(table, shared, out);
   casefile::read_wheel(root, shared, out);
@@ -184,10 +203,11 @@ void read_motion(TableReader& root, CaseFile& out) {
     root.context().problems.add(root.context().file +
                                 ": no [[motion]] rule; add at least one, for example [[motion]] with "
                                 "patches = [\"blade\"] and rule = \"rigid\"");
-  else if (out.sequence && out.modal.empty() && root.context().problems.empty())
-    root.context().problem(
-        root.line("sequence"),
-        "[sequence]: no rule has modes, so that all steps would be alike; add modes to a rule \"field\"");
+  else if (out.sequence && root.context().problems.empty() &&
+           std::none_of(out.timed.begin(), out.timed.end(), [](TimedRule const& r) { return r.changes; }))
+    root.context().problem(root.line("sequence"),
+                           "[sequence]: no rule changes with time, so that all steps would be alike; give a rule an "
+                           "amplitude over time, use t or step in a formula, or add modes to a rule \"field\"");
 }
 
 BoundaryLayer read_boundary_layer(TableReader& table) {
@@ -314,13 +334,17 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   return out;
 }
 
-Motion motion_at(CaseFile const& case_file, double periods) {
+Motion motion_at(CaseFile const& case_file, Moment const& when) {
   Motion motion = case_file.motion;
-  for (auto const& use : case_file.modal)
-    std::get<FunctionRule>(motion.rules[use.rule].rule).function =
-        [field = use.field, periods](std::span<Vec3 const> points, std::span<Vec3> u) {
-          field->at(periods, points, u);
-        };
+  for (std::size_t r = 0; r < case_file.timed.size(); ++r) {
+    TimedRule const& timed = case_file.timed[r];
+    if (!timed.changes) continue;
+    double const share = timed.amplitude ? timed.amplitude(when) : 1;
+    if (!std::isfinite(share))
+      throw MotionError(fmt::format("{}: amplitude is {} at t = {:.9g}, step {}", motion.rules[r].where, share,
+                                    when.time, when.step));
+    motion.rules[r].rule = timed.at(share, when);
+  }
   return motion;
 }
 

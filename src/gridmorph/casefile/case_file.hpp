@@ -3,8 +3,8 @@
 // The keys are described in docs/case_file.md.
 #pragma once
 
-#include <gridmorph/casefile/modal_field.hpp>
 #include <gridmorph/casefile/point_field.hpp>
+#include <gridmorph/casefile/timed_rule.hpp>
 #include <gridmorph/casefile/wheel_case.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
@@ -46,22 +46,24 @@ struct FieldUse {
   std::shared_ptr<PointField const> field;
 };
 
-/// One `field` rule with modes, whose displacement depends on time.
-struct ModalUse {
-  std::size_t rule = 0;  ///< number in Motion::rules
-  std::shared_ptr<ModalField const> field;
-};
-
 /// [sequence]: meshes over time.
 struct SequenceOptions {
   int steps = 0;
   double period = 1;             ///< [time]
   double periods = 1;            ///< that the steps are spread over
+  bool include_end = false;      ///< whether the last step is at the end of all periods, or a step short of it
+  std::vector<double> times;     ///< of the steps, ascending; empty: spread evenly
   std::filesystem::path output;  ///< with "{step}" in its name: one file per step; without: one file with a series
 
-  /// Of step 0 ... steps - 1; the first one at 0, the last one a step short of all periods.
-  [[nodiscard]] double periods_at(int step) const { return periods * step / steps; }
-  [[nodiscard]] double time_at(int step) const { return period * periods_at(step); }
+  /// Of step 0 ... steps - 1.
+  [[nodiscard]] double periods_at(int step) const {
+    return times.empty() ? periods * step / (include_end && steps > 1 ? steps - 1 : steps)
+                         : times[std::size_t(step)] / period;
+  }
+  [[nodiscard]] double time_at(int step) const {
+    return times.empty() ? period * periods_at(step) : times[std::size_t(step)];
+  }
+  [[nodiscard]] Moment moment(int step) const { return {periods_at(step), time_at(step), step + 1}; }
 };
 
 /// [background] file: a background mesh of the user's.
@@ -85,13 +87,14 @@ struct CaseFile {
   OutputOptions output_options;
   std::vector<FieldUse> fields;
   std::optional<WheelCase> wheel;  ///< [wheel], for `gridmorph wheel`
-  std::vector<ModalUse> modal;
+  std::vector<TimedRule> timed;    ///< per rule of `motion`
   std::optional<SequenceOptions> sequence;
   std::vector<std::filesystem::path> files;  ///< tables, targets, models, ... that its keys name and that are read
 };
 
-/// The rules of the case file at a time: those with modes as they are then, all others as they stand.
-Motion motion_at(CaseFile const& case_file, double periods);
+/// The rules of the case file at a moment: those that change with time as they are then, all others as they stand. Throws
+/// MotionError where an amplitude is not finite.
+Motion motion_at(CaseFile const& case_file, Moment const& when);
 
 /// Reads a case file and the displacement files that it names. Throws one ConfigError that lists every problem, each as
 /// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.

@@ -51,6 +51,11 @@ constexpr auto list = std::to_array<CaseKey>({
     {"motion", "rule", "string", "", "required", R"(rule = "fixed")", "One of the rules below"},
     {"motion", "rank", "whole number", "1", "0", "rank = 1",
      "Where patches meet and their displacements disagree, the lower rank wins; equal ranks that disagree are an error"},
+    {"motion", "amplitude", "number, expression or list of [time, value]", "1", "1", "amplitude = 0.5",
+     "How much of the motion: of `rigid`, `formula`, `field`, `sections`, `target` and `contour`. A list (at times) or an expression with `t` or "
+     "`step` needs [sequence]; see [amplitudes](#amplitudes-over-time)"},
+    {"motion", "amplitude_law", "\"linear\" or \"smooth\"", "", "\"linear\"", "amplitude = [[0, 0], [1, 1]]\namplitude_law = \"smooth\"",
+     "With a list: between its times straight, or level at each of them (3s^2 - 2s^3)"},
 
     {"motion rigid", "scale", "factor, [sx, sy, sz] or table", "1", "1", "scale = 0.95", "Applied first; about [0, 0, 0] unless the table has an origin"},
     {"motion rigid", "rotation", "table", "", "none", "rotation = { angle_deg = 5, axis = [1, 0, 0], origin = [0, 0, 0] }", "Applied second"},
@@ -120,7 +125,9 @@ offset = "translate")", "The offset between the elements and a node off them tur
     {"motion slip", "plane", "table", "", "fitted to the baseline patch", R"(surface = "plane"
 plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "The plane, with `surface = \"plane\"`"},
     {"motion slip", "profile", "list of [axial, radius]", "length", "read off the baseline patch", R"(surface = "revolution"
-profile = [[0, 0.5], [1, 0.5]])", "The profile, with `surface = \"revolution\"`: a wall along the axis, across it, or turning by less than 180 degrees"},
+profile = [[0, 0.5], [1, 0.5]])", "The profile of the wall as it is, with `surface = \"revolution\"`: along the axis, across it, or turning by less than 180 degrees. Nodes "
+     "farther off than 1e-3 of the wall's size (its largest radius, or its extent along the axis) are an error; to move the wall onto another "
+     "profile, use the rule `contour`"},
     {"motion slip", "crease_angle_deg", "0 < number <= 180", "deg", "46", R"(surface = "baseline"
 crease_angle_deg = 30)", "With `surface = \"baseline\"`: faces of the patch that meet at a larger angle meet at a crease, which stays sharp"},
     {"motion slip plane", "point", "[x, y, z]", "length", "required", R"(surface = "plane"
@@ -128,6 +135,8 @@ plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "A point of the plane"},
     {"motion slip plane", "normal", "[x, y, z]", "1", "required", R"(surface = "plane"
 plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "Across the plane, of any length"},
 
+    {"motion contour", "profile", "list of [axial, radius]", "length", "required", "profile = [[0, 0.5], [0.5, 0.48], [1, 0.5]]",
+     "The new profile of the wall, at least as long as the wall: along the axis, across it, or turning by less than 180 degrees"},
     {"motion free", "constraint", R"("none", "axial" or "plane")", "", R"("none")", R"(constraint = "axial")",
      "`axial`: axial position kept; `plane`: nodes stay on the plane of the patch"},
 
@@ -177,10 +186,13 @@ plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "Across the plane, of any l
     {"motion target", "flow", "\"x\", \"y\", \"z\" or [x, y, z]", "1", "the machine axis where the span is a radius, else x", "file = \"new_sections.dat\"\nmapping = \"sections\"\nflow = \"x\"",
      "Sections: downstream, to tell leading from trailing edges"},
 
-    {"sequence", "steps", "1 to 99999", "1", "required", "steps = 32\noutput = \"blade_{step}.cgns\"", "Number of meshes"},
+    {"sequence", "steps", "1 to 99999", "1", "required unless there are `times`", "steps = 32\noutput = \"blade_{step}.cgns\"", "Number of meshes"},
     {"sequence", "period", "number > 0", "time", "1", "steps = 32\nperiod = 8e-3", "Time that `harmonic` and the times in the output refer to"},
     {"sequence", "periods", "number > 0", "period", "1", "steps = 32\nperiods = 0.5",
      "That the steps are spread over: step n of N is at time (n - 1) `periods` `period` / N"},
+    {"sequence", "include_end", "true or false", "", "false", "steps = 11\ninclude_end = true",
+     "The last step is at the end, step n of N at time (n - 1) `periods` `period` / (N - 1): for motions that are not periodic"},
+    {"sequence", "times", "list of numbers", "time", "none", "times = [0, 0.1, 0.5, 1]", "The times of the steps, ascending, in place of `steps`, `periods` and `include_end`"},
     {"sequence", "output", "file", "", "`--output`", "steps = 32\noutput = \"blade_{step}.cgns\"",
      "With `{step}` in its name one file per step (`blade_01.cgns` ...); without, one CGNS file with a series "
      "([formats.md](formats.md#series)). `--output` overrides it. `[mesh] output` is not used"},
@@ -245,7 +257,7 @@ plane = { point = [0, 0, 0], normal = [0, 0, 1] })", "Across the plane, of any l
     {"wheel", "sequence", "list of blade names", "", "every blade as [[motion]] says", R"(sequence = ["A", "B"]
 blade = [ { name = "A" }, { name = "B", factor = 1.05 } ])",
      "Which blade stands in which passage, first passage first; repeated, so the passages are a multiple of its length"},
-    {"wheel", "factors", "list of numbers", "1", "1", "factors = [1, 1.02, 0.97]", "On the displacement of the blades, per passage, repeated likewise"},
+    {"wheel", "factors", "list of numbers", "1", "1", "factors = [1, 1.02, 0.97]", "On the motion of the blades, as `factor` of [[wheel.blade]]; per passage, repeated likewise"},
     {"wheel", "zones", "string or list", "", "every periodic row", R"(zones = ["rotor*"])",
      "The row that passages, sequence and factors are for: zone names or globs that hit one of its zones"},
     {"wheel", "row", "list of tables", "", "one row", R"([[wheel.row]]
@@ -270,14 +282,14 @@ factors = [1, 1.02])", "As in [wheel]"},
 name = "A")", "What `sequence` calls it"},
     {"wheel blade", "factor", "number", "1", "1", R"([[wheel.blade]]
 name = "B"
-factor = 1.05)", "Multiplies the displacement of the rules `rigid`, `formula` and `field`, in cylindrical components"},
+factor = 1.05)", "Multiplies what the explicit rules do ([wheel.md](wheel.md#factors))"},
     {"wheel blade", "motion", "list of tables", "", "none", R"([[wheel.blade]]
 name = "C"
 [[wheel.blade.motion]]
 patches = ["blade"]
 rule = "rigid"
 translation = [0, 0.001, 0])", "Tables as [[motion]], of rule `fixed`, `rigid`, `formula` or `field`, in place of the [[motion]] rule of such "
-     "a kind that has the same patches"},
+     "a kind, or `sections` or `target`, that has the same patches"},
     // clang-format on
 });
 

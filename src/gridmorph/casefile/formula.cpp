@@ -19,7 +19,7 @@ namespace gridmorph {
 
 namespace {
 
-std::vector<std::string> const variable_names{"x", "y", "z", "r", "theta", "axial"};
+std::vector<std::string> const variable_names{"x", "y", "z", "r", "theta", "axial", "t", "step"};
 
 /// Evaluated this many points at a time: long enough to hide the call, short enough to stay in cache.
 constexpr std::size_t batch = 512;
@@ -112,11 +112,13 @@ class Formula {
     needs_cylinder_ = needs_cylinder_ || frame_ == FormulaFrame::cylindrical;
   }
 
-  void operator()(std::span<Vec3 const> points, std::span<Vec3> displacement) {
+  void operator()(std::span<Vec3 const> points, std::span<Vec3> displacement, double share, Moment const& when) {
     std::lock_guard const lock(turn_);
+    std::fill(variables_[6].begin(), variables_[6].end(), when.time);
+    std::fill(variables_[7].begin(), variables_[7].end(), double(when.step));
     for (std::size_t first = 0; first < points.size(); first += batch) {
       std::size_t const n = std::min(batch, points.size() - first);
-      evaluate(points.subspan(first, n), displacement.subspan(first, n));
+      evaluate(points.subspan(first, n), displacement.subspan(first, n), share);
     }
   }
 
@@ -124,15 +126,15 @@ class Formula {
   void check(int c, std::map<std::string, double> const& constants, Problems& problems) {
     auto const& [key, expression, where] = components_[c];
     mu::Parser& parser = parsers_[c];
-    define_language(parser);
-    for (std::size_t v = 0; v < variable_names.size(); ++v) parser.DefineVar(variable_names[v], variables_[v].data());
-    for (auto const& [name, value] : constants) parser.DefineConst(name, value);
     if (assigns(expression)) {
       problems.add(
           fmt::format("{}: formula {} = \"{}\" contains a single '='; write == to compare", where, key, expression));
       return;
     }
     try {
+      define_language(parser);
+      for (std::size_t v = 0; v < variable_names.size(); ++v) parser.DefineVar(variable_names[v], variables_[v].data());
+      for (auto const& [name, value] : constants) parser.DefineConst(name, value);
       parser.SetExpr(expression);
       int results = 0;
       parser.Eval(results);
@@ -141,6 +143,8 @@ class Formula {
                                  key, expression, results));
     } catch (mu::Parser::exception_type const& e) {
       problems.add(describe(e, c, constants));
+    } catch (std::exception const& e) {
+      problems.add(fmt::format("{}: formula {} = \"{}\": {}", where, key, expression, e.what()));
     }
   }
 
@@ -174,7 +178,7 @@ class Formula {
     return fmt::format("{}: {} (at character {})", at, text, position + 1);
   }
 
-  void evaluate(std::span<Vec3 const> points, std::span<Vec3> displacement) {
+  void evaluate(std::span<Vec3 const> points, std::span<Vec3> displacement, double share) {
     std::size_t const n = points.size();
     for (std::size_t i = 0; i < n; ++i) {
       variables_[0][i] = points[i].x;
@@ -192,13 +196,16 @@ class Formula {
       try {
         parsers_[c].Eval(results_[c].data(), int(n));
       } catch (mu::Parser::exception_type const& e) {
-        throw MotionError(fmt::format("{}: formula {} = \"{}\": {}", components_[c].where, components_[c].key,
-                                      components_[c].expression, e.GetMsg()));
+        throw_at(c, e.GetMsg());
+      } catch (std::exception const& e) {
+        throw_at(c, e.what());
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
-      for (int c = 0; c < 3; ++c)
+      for (int c = 0; c < 3; ++c) {
+        if (share != 1 && !components_[c].expression.empty()) results_[c][i] *= share;
         if (!std::isfinite(results_[c][i])) not_finite(c, points[i], results_[c][i]);
+      }
       displacement[i] = frame_ == FormulaFrame::cartesian ? Vec3{results_[0][i], results_[1][i], results_[2][i]}
                                                           : along_circle(i, points[i]);
     }
@@ -223,6 +230,11 @@ class Formula {
            daxial * cylinder_.axis;
   }
 
+  [[noreturn]] void throw_at(int c, std::string const& what) const {
+    throw MotionError(fmt::format("{}: formula {} = \"{}\": {}", components_[c].where, components_[c].key,
+                                  components_[c].expression, what));
+  }
+
   [[noreturn]] void not_finite(int c, Vec3 const& point, double value) const {
     throw MotionError(fmt::format(
         "{}: formula {} = \"{}\" is {} at x = {:.9g}, y = {:.9g}, z = {:.9g}; restrict it to where "
@@ -234,7 +246,7 @@ class Formula {
   std::array<FormulaComponent, 3> components_;
   PolarFrame cylinder_;
   bool needs_cylinder_ = false;
-  std::array<std::vector<double>, 6> variables_;  // x, y, z, r, theta, axial of one batch
+  std::array<std::vector<double>, 8> variables_;  // in the order of variable_names, of one batch
   std::array<std::vector<double>, 3> results_;
   std::array<mu::Parser, 3> parsers_;
   std::mutex turn_;  // the parsers read and write the batch above
@@ -257,16 +269,47 @@ bool uses_axis(std::string const& expression) {
                      [](std::string const& n) { return n == "r" || n == "theta" || n == "axial"; });
 }
 
+bool uses_time(std::string const& expression) {
+  auto const names = names_in(expression);
+  return std::any_of(names.begin(), names.end(), [](std::string const& n) { return n == "t" || n == "step"; });
+}
+
+std::function<double(Moment const& when)> make_time_formula(FormulaComponent const& formula,
+                                                            std::map<std::string, double> const& constants,
+                                                            Problems& problems) {
+  for (auto const& name : names_in(formula.expression))
+    if (name != "t" && name != "step" &&
+        std::find(variable_names.begin(), variable_names.end(), name) != variable_names.end())
+      problems.add(fmt::format("{}: formula {} = \"{}\" uses {}; it may depend on t and step, not on the position",
+                               formula.where, formula.key, formula.expression, name));
+  auto const rule = make_formula_in_time(FormulaFrame::cartesian, {formula, {}, {}}, constants, Axis{}, problems);
+  return [rule](Moment const& when) {
+    Vec3 const origin;
+    Vec3 value;
+    rule(1, when).function({&origin, 1}, {&value, 1});
+    return value.x;
+  };
+}
+
 FunctionRule make_formula(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
                           std::map<std::string, double> const& constants, Axis const& axis, Problems& problems) {
+  return make_formula_in_time(frame, components, constants, axis, problems)(1, {});
+}
+
+FormulaAt make_formula_in_time(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
+                               std::map<std::string, double> const& constants, Axis const& axis, Problems& problems) {
   auto const formula = std::make_shared<Formula>(frame, components, axis);
   formula->prepare(constants, problems);
   std::string description = "formula";
   for (auto const& c : components)
     if (!c.expression.empty())
       description += fmt::format("{} {} = {}", description == "formula" ? "" : ",", c.key, c.expression);
-  return {description,
-          [formula](std::span<Vec3 const> points, std::span<Vec3> displacement) { (*formula)(points, displacement); }};
+  return [formula, description](double share, Moment const& when) {
+    return FunctionRule{description,
+                        [formula, share, when](std::span<Vec3 const> points, std::span<Vec3> displacement) {
+                          (*formula)(points, displacement, share, when);
+                        }};
+  };
 }
 
 }  // namespace gridmorph

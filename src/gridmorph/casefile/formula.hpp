@@ -1,10 +1,12 @@
 // Displacement rules written as formulas of the baseline position (muParser).
 #pragma once
 
+#include <gridmorph/casefile/timed_rule.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/motion.hpp>
 
 #include <array>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -33,9 +35,23 @@ struct FormulaComponent {
 FunctionRule make_formula(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
                           std::map<std::string, double> const& constants, Axis const& axis, Problems& problems);
 
+/// The same at a moment of a sequence, with the variables `t` (time) and `step` (1, 2, ...), times a share of each component (so
+/// half of a turn by dtheta is a turn by half the angle).
+using FormulaAt = std::function<FunctionRule(double share, Moment const& when)>;
+FormulaAt make_formula_in_time(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
+                               std::map<std::string, double> const& constants, Axis const& axis, Problems& problems);
+
+/// A number that depends on `t`, `step` and the constants alone. Problems are added as above, also for names of the position.
+std::function<double(Moment const& when)> make_time_formula(FormulaComponent const& formula,
+                                                            std::map<std::string, double> const& constants,
+                                                            Problems& problems);
+
 /// Whether a name can be a constant of a formula: letters, digits and '_', not starting with a digit, and neither a
 /// variable, a built-in constant nor a function.
 bool is_free_formula_name(std::string const& name);
+
+/// Whether an expression uses t or step, that is, needs a sequence.
+bool uses_time(std::string const& expression);
 
 /// Whether an expression uses r, theta or axial, that is, needs the machine axis.
 bool uses_axis(std::string const& expression);

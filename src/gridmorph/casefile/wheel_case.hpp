@@ -1,6 +1,7 @@
 // [wheel] of a case file: how many passages, and which blade stands in which of them.
 #pragma once
 
+#include <gridmorph/casefile/timed_rule.hpp>
 #include <gridmorph/motion/motion.hpp>
 
 #include <filesystem>
@@ -12,8 +13,9 @@ namespace gridmorph {
 /// [[wheel.blade]]: a blade that differs from what [[motion]] says.
 struct WheelBlade {
   std::string name;
-  double factor = 1;  ///< on the displacement that rigid, formula and field rules give, in cylindrical components
+  double factor = 1;              ///< multiplies what explicit rules do, see docs/wheel.md
   std::vector<MotionRule> rules;  ///< in place of the [[motion]] rules of the same patches
+  std::vector<TimedRule> timed;   ///< of the same number
   std::string where;              ///< "case.toml:14"
 };
 

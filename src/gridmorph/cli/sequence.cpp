@@ -26,9 +26,7 @@ int morph_sequence(CaseFile const& case_file, Terminal& terminal) {
 
   StepFiles files(case_file, result.mesh);
   result.morphed = Coordinates(result.mesh.n_nodes());
-  auto const morph = [&](int step) {
-    engine.morph_into(motion_at(case_file, options.periods_at(step)), result.morphed);
-  };
+  auto const morph = [&](int step) { engine.morph_into(motion_at(case_file, options.moment(step)), result.morphed); };
   Steps const steps =
       run_steps(case_file, terminal, files,
                 {morph, [&] { return meter.morphed(result.morphed); }, [&] { return output_fields(case_file, result); },

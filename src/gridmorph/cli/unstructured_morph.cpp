@@ -10,7 +10,6 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/unstructured/guard.hpp>
-#include <gridmorph/unstructured/stepped_morph.hpp>
 #include <gridmorph/unstructured/unstructured_morpher.hpp>
 
 #include <fmt/format.h>
@@ -60,41 +59,13 @@ void relax(UnstructuredRun& out, Terminal& terminal) {
   out.times.push_back({"guard", watch.lap(), true});
 }
 
-/// Where elements are inverted: the same motion in 2, 3, ... steps, until none is; the best is kept.
-void try_steps(CaseFile const& case_file, UnstructuredRun& out, Terminal& terminal) {
-  Index const in_one = newly_inverted(out.result.after);
-  if (in_one == 0 || case_file.guard.steps < 2 || out.options.background) return;
+void morph_in_steps_if_needed(CaseFile const& case_file, UnstructuredRun& out, Terminal& terminal) {
+  if (newly_inverted(out.result.after) == 0) return;
   Stopwatch watch;
   terminal.expect({});  // how many steps it will take is not known
-  auto& l = out.loaded;
-  auto const displacement = out.prepared->boundary_displacement(l.mesh);
-  UnstructuredRun::Result best = std::move(out.result);
-  int best_steps = 1;
-  for (int steps = 2; steps <= case_file.guard.steps && newly_inverted(best.after) > 0; ++steps) {
-    auto const progress = [&](int step) {
-      terminal.progress(fmt::format("elements are inverted; morphing in steps, {} of {}", step, steps));
-    };
-    try {
-      out.result.morphed = morph_in_steps(l.mesh, l.topology, l.claims, *out.prepared, displacement,
-                                          {steps, out.options, {.signs = l.signs}, progress});
-    } catch (Error const& e) {
-      // There is a result: a mesh on the way that cannot be planned on is no reason to lose it.
-      out.notes.push_back(fmt::format("in {} steps the motion cannot be planned: {}", steps, e.what()));
-      continue;
-    }
-    measure_result(case_file, out);
-    if (newly_inverted(out.result.after) >= newly_inverted(best.after)) continue;
-    best = std::move(out.result);
-    best_steps = steps;
-  }
-  out.result = std::move(best);
-  Index const left = newly_inverted(out.result.after);
-  out.notes.push_back(
-      best_steps == 1
-          ? fmt::format("{} elements are inverted, and up to {} steps leave no fewer", in_one, case_file.guard.steps)
-          : fmt::format("{} elements were inverted in one step; in {} steps, each planned on the "
-                        "mesh before it, {} {}",
-                        in_one, best_steps, left == 0 ? "none" : std::to_string(left), left <= 1 ? "is" : "are"));
+  auto const tried = try_steps(case_file, out, out.prepared->boundary_displacement(out.loaded.mesh), terminal);
+  out.notes.insert(out.notes.end(), tried.notes.begin(), tried.notes.end());
+  if (!tried.text.empty()) out.notes.push_back(tried.text);
   out.times.push_back({"steps", watch.lap(), true});
 }
 
@@ -157,7 +128,7 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   measure_baseline(case_file, out);
   measure_result(case_file, out);
   out.times.push_back({"quality", quality.lap(), true});
-  try_steps(case_file, out, terminal);
+  morph_in_steps_if_needed(case_file, out, terminal);
   bool const written = newly_inverted(out.result.after) == 0 || case_file.guard.write_inverted;
   std::optional<PendingFile> pending;
   if (report) pending.emplace(*report, report_text(case_file, out, written) + std::string(room_for_a_time, '\n'));

@@ -2,10 +2,12 @@
 #include <gridmorph/cli/morph_command.hpp>
 #include <gridmorph/cli/unstructured_run.hpp>
 #include <gridmorph/cli/workflow.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
+#include <gridmorph/unstructured/stepped_morph.hpp>
 
 #include <fmt/format.h>
 #include <Kokkos_Core.hpp>
@@ -28,7 +30,7 @@ double largest_motion(CaseFile const& case_file, LoadedMesh const& loaded, Bound
   double largest = 0;
   auto const& sequence = *case_file.sequence;
   for (int step = 0; step < sequence.steps; ++step)
-    for (Vec3 const& u : evaluate(loaded.mesh, boundary, motion_at(case_file, sequence.periods_at(step))))
+    for (Vec3 const& u : evaluate(loaded.mesh, boundary, motion_at(case_file, sequence.moment(step))))
       largest = std::max(largest, norm(u));
   return largest;
 }
@@ -137,6 +139,43 @@ void measure_result(CaseFile const& case_file, UnstructuredRun& out) {
     }
   result.after = measure_quality(Exec(), l.mesh, l.topology, l.claims, input);
   result.shortfalls = shortfalls(out.before, result.after, thresholds_of(case_file));
+}
+
+TriedSteps try_steps(CaseFile const& case_file, UnstructuredRun& out, std::vector<Vec3> const& displacement,
+                     Terminal& terminal) {
+  TriedSteps tried;
+  Index const in_one = newly_inverted(out.result.after);
+  if (in_one == 0 || case_file.guard.steps < 2 || out.options.background) return tried;
+  auto& l = out.loaded;
+  UnstructuredRun::Result best = std::move(out.result);
+  int best_steps = 1;
+  for (int steps = 2; steps <= case_file.guard.steps && newly_inverted(best.after) > 0; ++steps) {
+    auto const progress = [&](int step) {
+      terminal.progress(fmt::format("elements are inverted; morphing in steps, {} of {}", step, steps));
+    };
+    try {
+      out.result.morphed = morph_in_steps(l.mesh, l.topology, l.claims, *out.prepared, displacement,
+                                          {steps, out.options, {.signs = l.signs}, progress});
+    } catch (Error const& e) {
+      // There is a result: a mesh on the way that cannot be planned on is no reason to lose it.
+      tried.notes.push_back(fmt::format("in {} steps the motion cannot be planned: {}", steps, e.what()));
+      continue;
+    }
+    measure_result(case_file, out);
+    if (newly_inverted(out.result.after) >= newly_inverted(best.after)) continue;
+    best = std::move(out.result);
+    best_steps = steps;
+  }
+  out.result = std::move(best);
+  Index const left = newly_inverted(out.result.after);
+  tried.text =
+      best_steps == 1
+          ? fmt::format("{} elements are inverted, and up to {} steps leave no fewer", in_one, case_file.guard.steps)
+          : fmt::format(
+                "{} elements were inverted in one step; in {} steps, each planned on the "
+                "mesh before it, {} {}",
+                in_one, best_steps, left == 0 ? "none" : std::to_string(left), left <= 1 ? "is" : "are");
+  return tried;
 }
 
 nlohmann::json report_json(CaseFile const& case_file, UnstructuredRun const& out) {

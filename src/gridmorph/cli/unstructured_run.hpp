@@ -47,6 +47,17 @@ void measure_baseline(CaseFile const& case_file, UnstructuredRun& out);
 /// Measures what the morphed coordinates give: quality, fields and what falls short of it, against the baseline measured before.
 void measure_result(CaseFile const& case_file, UnstructuredRun& out);
 
+/// What came of morphing in steps.
+struct TriedSteps {
+  std::string text;  ///< how many elements were inverted in one step, and in how many are left; empty: not tried
+  std::vector<std::string> notes;  ///< numbers of steps that could not be planned
+};
+
+/// Where the result has elements inverted: the same displacement of the plan's known nodes in 2, 3, ... steps, up to [guard] steps,
+/// until none is; the best stays the result. Not with a background mesh of the user's.
+TriedSteps try_steps(CaseFile const& case_file, UnstructuredRun& out, std::vector<Vec3> const& displacement,
+                     Terminal& terminal);
+
 /// The report, less the name of the output.
 nlohmann::json report_json(CaseFile const& case_file, UnstructuredRun const& run);
 /// Near field, layers and background mesh in two lines.

@@ -1,6 +1,5 @@
 #include <gridmorph/cli/wheel_setup.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/selectors.hpp>
 #include <gridmorph/wheel/blade_share.hpp>
 
@@ -14,26 +13,23 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// A rule whose displacement is multiplied, in cylindrical components, so that a turn stays a turn; rules that follow others do so
-/// by themselves.
-void scale(Rule& rule, double factor, Axis const& axis) {
-  auto const scaled = [axis, factor](std::span<Vec3 const> points, std::span<Vec3> out) {
-    for (std::size_t n = 0; n < points.size(); ++n) out[n] = share_motion(axis, points[n], {}, out[n], factor);
-  };
-  if (auto* function = std::get_if<FunctionRule>(&rule)) {
-    *function = {fmt::format("{} times {}", factor, function->description),
-                 [inner = function->function, scaled](std::span<Vec3 const> points, std::span<Vec3> out) {
-                   inner(points, out);
-                   scaled(points, out);
-                 }};
-  } else if (auto const* rigid = std::get_if<RigidRule>(&rule)) {
-    rule = FunctionRule{fmt::format("{} times a rigid motion", factor),
-                        [inner = *rigid, scaled](std::span<Vec3 const> points, std::span<Vec3> out) {
-                          std::transform(points.begin(), points.end(), out.begin(),
-                                         [&](Vec3 const& p) { return displacement(inner, p); });
-                          scaled(points, out);
-                        }};
+/// A rule times a factor: rigid motions and sections by their parameters, targets by the way to them; formulas and fields by their
+/// displacement in cylindrical components, so that a turn stays a turn. Rules that follow others do so by themselves; walls between
+/// which the blades stand are the same for all. False for rules that have nothing to multiply.
+bool scale(Rule& rule, TimedRule const& timed, double factor, Axis const& axis) {
+  if (!timed.at || timed.end_wall) return false;
+  auto const* function = std::get_if<FunctionRule>(&rule);
+  if (function == nullptr) {
+    rule = timed.at(factor, {});
+    return true;
   }
+  rule = FunctionRule{fmt::format("{} times {}", factor, function->description),
+                      [inner = function->function, axis, factor](std::span<Vec3 const> points, std::span<Vec3> out) {
+                        inner(points, out);
+                        for (std::size_t n = 0; n < points.size(); ++n)
+                          out[n] = share_motion(axis, points[n], {}, out[n], factor);
+                      }};
+  return true;
 }
 
 std::vector<int> patches_of(Mesh const& mesh, std::vector<std::string> const& selectors) {
@@ -70,7 +66,7 @@ class Setup {
                       periodic_zones());
     }
     for (auto& row : out_.blades)
-      if (row.blades.empty()) row.blades.assign(std::size_t(row.passages), motion(-1, 1));
+      if (row.blades.empty()) row.blades.assign(std::size_t(row.passages), motion(-1, 1, {}));
     problems_.throw_if_any<ConfigError>();
     return std::move(out_);
   }
@@ -118,51 +114,66 @@ class Setup {
             std::find_if(wheel_.blades.begin(), wheel_.blades.end(), [&](auto const& b) { return b.name == name; });
         blade = int(at - wheel_.blades.begin());
       }
-      blades.blades.push_back(motion(blade, row.factors.empty() ? 1 : row.factors[p % row.factors.size()]));
+      blades.blades.push_back(motion(blade, row.factors.empty() ? 1 : row.factors[p % row.factors.size()], row.where));
     }
   }
 
-  /// Number of a blade's motion; equal blades have one.
-  int motion(int blade, double factor) {
+  /// Number of a blade's motion; equal blades have one. where: of the row that asks for it.
+  int motion(int blade, double factor, std::string where) {
     auto const [at, fresh] = known_.try_emplace({blade, factor}, int(out_.motions.size()));
     if (!fresh) return at->second;
     Motion made = case_.motion;
+    std::vector<TimedRule> timed = case_.timed;
     std::string name;
     double all = factor;
+    bool stands = false;
     if (blade >= 0) {
       WheelBlade const& own = wheel_.blades[blade];
       name = own.name;
       all *= own.factor;
-      for (auto const& rule : own.rules) replace(made, rule);
+      if (own.factor != 1) where = own.where;
+      stands = std::any_of(own.rules.begin(), own.rules.end(),
+                           [](MotionRule const& r) { return std::holds_alternative<FixedRule>(r.rule); });
+      for (std::size_t r = 0; r < own.rules.size(); ++r) replace(made, timed, own.rules[r], own.timed[r]);
     }
     if (factor != 1) name += fmt::format("{}x {:g}", name.empty() ? "" : " ", factor);
-    if (all != 1)
-      for (auto& rule : made.rules) scale(rule.rule, all, made.axis);
+    if (all != 1 && !scale_all(made, timed, all) && !stands)
+      problems_.add(where +
+                    ": the factor has nothing to multiply; give the blade a rule rigid, formula, field, sections or "
+                    "target in [[motion]] or [[wheel.blade.motion]]");
     out_.motions.push_back(std::move(made));
     out_.names.push_back(std::move(name));
     return at->second;
   }
 
-  void replace(Motion& motion, MotionRule const& rule) {
+  static bool scale_all(Motion& motion, std::vector<TimedRule> const& timed, double factor) {
+    bool any = false;
+    for (std::size_t r = 0; r < motion.rules.size(); ++r)
+      any = scale(motion.rules[r].rule, timed[r], factor, motion.axis) || any;
+    return any;
+  }
+
+  void replace(Motion& motion, std::vector<TimedRule>& timed, MotionRule const& rule, TimedRule const& own) {
     auto const patches = patches_of(mesh_, rule.patches);
     for (std::size_t r = 0; r < motion.rules.size(); ++r) {
       if (patches.empty() || patches_of(mesh_, case_.motion.rules[r].patches) != patches) continue;
       Rule& base = motion.rules[r].rule;
-      if (std::holds_alternative<FixedRule>(base) || std::holds_alternative<RigidRule>(base) ||
-          std::holds_alternative<FunctionRule>(base)) {
+      if (std::holds_alternative<FixedRule>(base) || (timed[r].at && !timed[r].end_wall)) {
         // A near field of fixed walls would be another plan.
         base = std::holds_alternative<FixedRule>(rule.rule)
                    ? Rule(FunctionRule{"fixed",
                                        [](auto, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }})
                    : rule.rule;
         motion.rules[r].where = rule.where;
+        timed[r] = own;
         return;
       }
     }
-    problems_.add(fmt::format(
-        "{}: patches {} are those of no rule fixed, rigid, formula or field in [[motion]]; a blade replaces "
-        "such a rule with the same patches",
-        rule.where, quote_list(rule.patches)));
+    problems_.add(
+        fmt::format("{}: patches {} are those of no rule fixed, rigid, formula, field, sections or target in "
+                    "[[motion]]; a blade replaces "
+                    "such a rule with the same patches",
+                    rule.where, quote_list(rule.patches)));
   }
 
   CaseFile const& case_;

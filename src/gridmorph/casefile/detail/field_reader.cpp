@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -71,21 +72,34 @@ std::optional<Mode> read_mode(TableReader& table, std::optional<std::string> con
   return mode;
 }
 
-Rule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& options, std::optional<StructuralModel> mean,
-                std::vector<Mode> modes) {
+/// A displacement field times a share.
+FunctionRule shared_field(std::string description, double share,
+                          std::function<void(std::span<Vec3 const> points, std::span<Vec3> u)> field) {
+  if (share == 1) return {std::move(description), std::move(field)};
+  return {std::move(description), [share, field = std::move(field)](std::span<Vec3 const> points, std::span<Vec3> u) {
+            field(points, u);
+            for (Vec3& one : u) one = share * one;
+          }};
+}
+
+TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& options,
+                     std::optional<StructuralModel> mean, std::vector<Mode> modes) {
   auto const n_modes = modes.size();
   auto const field = std::make_shared<ModalField const>(std::move(mean), std::move(modes), options);
   for (auto const& one : field->fields()) out.fields.push_back({table.context().where(table.line()), one});
-  FunctionRule rule;
-  rule.description = fmt::format("field of {} modes", n_modes);
-  rule.function = [field](std::span<Vec3 const> points, std::span<Vec3> u) { field->at(0, points, u); };
-  out.modal.push_back({out.motion.rules.size(), field});
+  TimedRule rule;
+  rule.changes = out.sequence.has_value();
+  rule.at = [field, n_modes](double share, Moment const& when) {
+    return shared_field(
+        fmt::format("field of {} modes", n_modes), share,
+        [field, when](std::span<Vec3 const> points, std::span<Vec3> u) { field->at(when.periods, points, u); });
+  };
   return rule;
 }
 
 }  // namespace
 
-Rule read_field(TableReader& table, CaseFile& out) {
+TimedRule read_field(TableReader& table, CaseFile& out) {
   FieldOptions const options = read_options(table);
   auto const elements = table.string("elements");
   auto const solution = table.string("solution");
@@ -105,20 +119,25 @@ Rule read_field(TableReader& table, CaseFile& out) {
   if (!has_modes) table.require("file", "file = \"displacement.csv\" (columns x,y,z,dx,dy,dz)");
   auto const file = table.string("file");
   auto model = read_model(table, elements, solution);
-  if (!good || (!model && (file || !has_modes))) return FixedRule{};
+  if (!good || (!model && (file || !has_modes))) return {};
   try {
     if (has_modes) return modal_rule(table, out, options, std::move(model), std::move(modes));
     if (!model->nodes.imaginary.empty())
       model->notes.push_back(fmt::format("{}: the imaginary part is not used; name the file in modes", *file));
     auto const field = std::make_shared<PointField const>(std::move(*model), options);
     out.fields.push_back({table.context().where(table.line()), field});
-    return FunctionRule{
+    std::string const description =
         fmt::format("field {} ({} points{})", *file, field->size(),
-                    field->n_elements() > 0 ? fmt::format(", {} elements", field->n_elements()) : ""),
-        [field](std::span<Vec3 const> points, std::span<Vec3> displacement) { (*field)(points, displacement); }};
+                    field->n_elements() > 0 ? fmt::format(", {} elements", field->n_elements()) : "");
+    TimedRule rule;
+    rule.at = [field, description](double share, Moment const&) {
+      return shared_field(description, share,
+                          [field](std::span<Vec3 const> points, std::span<Vec3> u) { (*field)(points, u); });
+    };
+    return rule;
   } catch (Error const& e) {
     table.problem("file", e.what());
-    return FixedRule{};
+    return {};
   }
 }
 

@@ -8,6 +8,6 @@ namespace gridmorph::casefile {
 
 /// The rule; its fields and, where it has modes, its modal field (for rule number out.motion.rules.size()) are added to the
 /// case file. The files that it names are read.
-Rule read_field(TableReader& table, CaseFile& out);
+TimedRule read_field(TableReader& table, CaseFile& out);
 
 }  // namespace gridmorph::casefile

@@ -4,7 +4,10 @@
 #include <gridmorph/casefile/detail/target_reader.hpp>
 #include <gridmorph/casefile/formula.hpp>
 #include <gridmorph/casefile/suggest.hpp>
-#include <gridmorph/core/rigid_transform.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/contour.hpp>
+#include <gridmorph/motion/rigid_motion.hpp>
+#include <gridmorph/motion/section_share.hpp>
 
 #include <fmt/format.h>
 
@@ -19,23 +22,13 @@ namespace gridmorph::casefile {
 namespace {
 
 std::vector<std::string> const rule_names{"fixed",  "rigid", "formula", "field",    "circumferential-slide",
-                                          "follow", "slip",  "free",    "sections", "target"};
-
-/// x' = matrix * x + translation.
-struct Affine {
-  Mat3 matrix;
-  Vec3 translation;
-
-  void then(Affine const& next) {
-    matrix = next.matrix * matrix;
-    translation = next.matrix * translation + next.translation;
-  }
-};
+                                          "follow", "slip",  "free",    "sections", "target",
+                                          "contour"};
 
 /// rotation = { axis, origin, angle_deg }. Without axis and origin: about the machine axis.
-std::optional<Affine> read_rotation(TableReader& step, RuleContext const& shared) {
+void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid) {
   auto table = step.table("rotation");
-  if (!table) return std::nullopt;
+  if (!table) return;
   auto const angle = table->number("angle_deg");
   table->require("angle_deg", "angle_deg = 10.0 (degrees, right-handed about the axis)");
   auto const direction = table->vector("axis");
@@ -43,25 +36,22 @@ std::optional<Affine> read_rotation(TableReader& step, RuleContext const& shared
   bool const given = table->has("axis");
   if (given && direction && norm(*direction) == 0) {
     table->problem("axis", "the direction [0, 0, 0] has no length; give the direction to turn about");
-    return std::nullopt;
+    return;
   }
   if (!given && !shared.axis)
     table->problem("axis", "is missing and [mesh] has no axis; add axis = [x, y, z] here or axis to [mesh]");
   if (given && !table->has("origin"))
     table->problem("origin", "is missing; add origin = [x, y, z], a point on the line to turn about");
   table->finish();
-  if (!angle || (given && (!direction || !origin)) || (!given && !shared.axis)) return std::nullopt;
-  Vec3 const about = given ? *direction : shared.axis->direction;
-  Vec3 const point = origin ? *origin : shared.axis->origin;
-  if (*angle == 0) return Affine{};
-  RigidTransform const turn = rotation_about(point, about, *angle * std::numbers::pi / 180);
-  return Affine{turn.rotation, turn.translation};
+  if (!angle || (given && (!direction || !origin)) || (!given && !shared.axis)) return;
+  rigid.axis = {origin ? *origin : shared.axis->origin, given ? *direction : shared.axis->direction};
+  rigid.angle_rad = *angle * std::numbers::pi / 180;
 }
 
 /// scale = 0.95, scale = [sx, sy, sz], or scale = { factor = one of these, origin = [x, y, z] }.
-std::optional<Affine> read_scale(TableReader& step) {
+void read_scale(TableReader& step, RigidSteps& rigid) {
   auto const* value = step.find("scale");
-  if (value == nullptr) return std::nullopt;
+  if (value == nullptr) return;
   auto const factors = [](TableReader& table, std::string const& key) -> std::optional<Vec3> {
     auto const* v = table.find(key);
     if (v == nullptr) return std::nullopt;
@@ -87,32 +77,30 @@ std::optional<Affine> read_scale(TableReader& step) {
   } else {
     factor = factors(step, "scale");
   }
-  if (!factor) return std::nullopt;
-  Affine a;
-  a.matrix.m[0][0] = factor->x;
-  a.matrix.m[1][1] = factor->y;
-  a.matrix.m[2][2] = factor->z;
-  a.translation = {origin.x - factor->x * origin.x, origin.y - factor->y * origin.y, origin.z - factor->z * origin.z};
-  return a;
+  if (!factor) return;
+  rigid.scale = *factor;
+  rigid.scale_center = origin;
 }
 
 /// Scale, then rotation, then translation, as far as given. False when none is.
-bool read_step(TableReader& step, RuleContext const& shared, Affine& affine) {
+bool read_step(TableReader& step, RuleContext const& shared, std::vector<RigidSteps>& all) {
   bool const any = step.has("scale") || step.has("rotation") || step.has("translation");
-  if (auto const scale = read_scale(step)) affine.then(*scale);
-  if (auto const rotation = read_rotation(step, shared)) affine.then(*rotation);
-  if (auto const shift = step.vector("translation")) affine.then({Mat3{}, *shift});
+  RigidSteps rigid;
+  read_scale(step, rigid);
+  read_rotation(step, shared, rigid);
+  if (auto const shift = step.vector("translation")) rigid.translation = *shift;
+  if (any) all.push_back(rigid);
   return any;
 }
 
-Rule read_rigid(TableReader& table, RuleContext const& shared) {
-  Affine affine;
-  bool const any = read_step(table, shared, affine);
+TimedRule read_rigid(TableReader& table, RuleContext const& shared) {
+  std::vector<RigidSteps> all;
+  bool const any = read_step(table, shared, all);
   auto steps = table.tables("steps");
   if (any && !steps.empty())
     table.problem("steps", "cannot stand beside scale, rotation or translation; put these into a step of their own");
   for (auto& step : steps) {
-    if (!read_step(step, shared, affine))
+    if (!read_step(step, shared, all))
       step.context().problem(step.line(), "[[motion]] steps: a step needs scale, rotation or translation");
     step.finish();
   }
@@ -120,10 +108,16 @@ Rule read_rigid(TableReader& table, RuleContext const& shared) {
     table.problem("rule",
                   "rigid needs translation = [x, y, z], rotation = { axis, origin, angle_deg } or scale; for no "
                   "motion use rule = \"fixed\"");
-  return RigidRule{affine.matrix, affine.translation};
+  return {[all](double share, Moment const&) { return make_rigid_steps(all, share); }, {}};
 }
 
-Rule read_formula(TableReader& table, RuleContext const& shared) {
+/// Things that depend on t or step need a sequence.
+void needs_sequence(TableReader& table, RuleContext const& shared, std::string const& key) {
+  if (!shared.in_time)
+    table.problem(key, "depends on the time or the step, and there is no [sequence]; add one, or take t and step out");
+}
+
+TimedRule read_formula(TableReader& table, RuleContext const& shared) {
   std::array<std::string, 3> const cartesian{"dx", "dy", "dz"}, cylindrical{"dr", "dtheta", "daxial"};
   auto constants = shared.constants;
   read_constants(table, "constants", constants);
@@ -137,25 +131,83 @@ Rule read_formula(TableReader& table, RuleContext const& shared) {
   if (!round && !straight)
     table.problem("rule", "formula needs at least one of dx, dy, dz or of dr, dtheta [rad], daxial");
   std::array<FormulaComponent, 3> components;
-  bool axis_used = round;
+  bool axis_used = round, in_time = false;
   for (int c = 0; c < 3; ++c) {
     auto const a = table.string(cartesian[c]), b = table.string(cylindrical[c]);
     std::string const& key = round ? cylindrical[c] : cartesian[c];
     components[c] = {key, round ? b.value_or("") : a.value_or(""), table.where(key)};
     axis_used = axis_used || uses_axis(components[c].expression);
+    if ((a && a->empty()) || (b && b->empty()))
+      table.problem(table.has(cartesian[c]) ? cartesian[c] : cylindrical[c], "is empty; write \"0\" or leave it out");
+    if (!uses_time(components[c].expression)) continue;
+    needs_sequence(table, shared, key);
+    in_time = true;
   }
   if (axis_used && !shared.axis)
     table.problem("rule",
                   "the formula uses r, theta or axial, but [mesh] has no axis; add axis = { origin = [0, 0, 0], "
                   "direction = [1, 0, 0] } to [mesh]");
-  return make_formula(round ? FormulaFrame::cylindrical : FormulaFrame::cartesian, components, constants,
-                      shared.axis.value_or(Axis{}), table.context().problems);
+  return {make_formula_in_time(round ? FormulaFrame::cylindrical : FormulaFrame::cartesian, components, constants,
+                               shared.axis.value_or(Axis{}), table.context().problems),
+          {},
+          in_time};
 }
 
 std::vector<std::string> read_of(TableReader& table) {
   auto const of = table.strings("of");
   table.require("of", "of = \"blade\", the patches whose motion is taken over");
   return of.value_or(std::vector<std::string>{});
+}
+
+std::optional<double> number_of(toml::value const& v) {
+  if (v.is_integer()) return double(v.as_integer());
+  if (v.is_floating() && std::isfinite(v.as_floating())) return v.as_floating();
+  return std::nullopt;
+}
+
+/// Pairs of numbers, [[a, b], ...], `least` of them; `what` says so in messages.
+std::vector<std::pair<double, double>> read_pairs(TableReader& table, std::string const& key, std::size_t least,
+                                                  std::string const& what) {
+  auto const* value = table.find(key);
+  if (value == nullptr) return {};
+  std::vector<std::pair<double, double>> out;
+  bool good = value->is_array() && value->as_array().size() >= least;
+  if (good)
+    for (auto const& pair : value->as_array()) {
+      bool const two = pair.is_array() && pair.as_array().size() == 2;
+      auto const a = two ? number_of(pair.as_array()[0]) : std::nullopt,
+                 b = two ? number_of(pair.as_array()[1]) : std::nullopt;
+      good = good && a && b;
+      if (!good) break;
+      out.emplace_back(*a, *b);
+    }
+  if (!good) table.problem(key, fmt::format("expected at least {}, as finite numbers", what));
+  return good ? out : std::vector<std::pair<double, double>>{};
+}
+
+std::vector<std::pair<double, double>> read_profile(TableReader& table) {
+  auto const profile = read_pairs(table, "profile", 2, "two points [[axial, radius], ...]");
+  for (auto const& [axial, radius] : profile)
+    if (radius < 0) table.problem("profile", fmt::format("the point [{}, {}] has a negative radius", axial, radius));
+  return profile;
+}
+
+TimedRule read_contour(TableReader& table, RuleContext const& shared) {
+  auto const profile = read_profile(table);
+  table.require("profile", "profile = [[axial, radius], [axial, radius], ...]");
+  TimedRule rule;
+  rule.end_wall = true;
+  if (profile.empty() || !shared.axis) return rule;
+  try {
+    (void)make_contour(profile, *shared.axis, {});
+  } catch (MotionError const& e) {
+    table.problem("profile", e.what());
+    return rule;
+  }
+  rule.at = [profile, axis = *shared.axis, where = table.where("profile")](double share, Moment const&) {
+    return make_contour(profile, axis, where, share);
+  };
+  return rule;
 }
 
 Rule read_slip(TableReader& table, RuleContext const& shared) {
@@ -187,28 +239,9 @@ Rule read_slip(TableReader& table, RuleContext const& shared) {
       rule.plane = {*point, *normal};
     plane->finish();
   }
-  if (auto const* profile = table.find("profile")) {
-    if (!round) table.problem("profile", "belongs to surface = \"revolution\"; remove it or change the surface");
-    bool good = profile->is_array();
-    if (good)
-      for (auto const& pair : profile->as_array()) {
-        auto const number = [](toml::value const& v) {
-          return v.is_integer() ? double(v.as_integer()) : v.as_floating();
-        };
-        good = pair.is_array() && pair.as_array().size() == 2 &&
-               std::all_of(pair.as_array().begin(), pair.as_array().end(),
-                           [](toml::value const& v) { return v.is_integer() || v.is_floating(); });
-        if (!good) break;
-        double const axial = number(pair.as_array()[0]), radius = number(pair.as_array()[1]);
-        if (!std::isfinite(axial) || !std::isfinite(radius) || radius < 0)
-          table.problem(
-              "profile",
-              fmt::format("the point [{}, {}] is not [axial, radius] with a radius of zero or more", axial, radius));
-        rule.profile.emplace_back(axial, radius);
-      }
-    if (!good || rule.profile.size() < 2)
-      table.problem("profile", "expected at least two points [[axial, radius], [axial, radius], ...]");
-  }
+  if (table.has("profile") && !round)
+    table.problem("profile", "belongs to surface = \"revolution\"; remove it or change the surface");
+  rule.profile = read_profile(table);
   if (round && !shared.axis)
     table.problem("surface",
                   "a surface of revolution needs the machine axis; add axis = { origin = [0, 0, 0], direction = "
@@ -232,17 +265,94 @@ void needs_axis(TableReader& table, RuleContext const& shared, std::string const
                               name));
 }
 
-Rule read_rule(std::size_t number, TableReader& table, RuleContext const& shared, CaseFile& out) {
+/// The same rule, of which all shares are this one's shares.
+void take_share(TimedRule& rule, double amplitude) {
+  rule.amplitude = nullptr;
+  rule.at = [at = std::move(rule.at), amplitude](double share, Moment const& when) {
+    return at(share * amplitude, when);
+  };
+}
+
+/// Values over time: before the first and after the last as there; between them linear, or level at each and smooth.
+std::function<double(Moment const&)> amplitude_table(std::vector<std::pair<double, double>> stations, bool smooth) {
+  return [stations = std::move(stations), smooth](Moment const& when) {
+    if (when.time <= stations.front().first) return stations.front().second;
+    if (when.time >= stations.back().first) return stations.back().second;
+    auto const after = std::upper_bound(stations.begin(), stations.end(), when.time,
+                                        [](double time, auto const& station) { return time < station.first; });
+    auto const before = after - 1;
+    double const s = (when.time - before->first) / (after->first - before->first);
+    return before->second + (smooth ? s * s * (3 - 2 * s) : s) * (after->second - before->second);
+  };
+}
+
+/// amplitude = 0.5, amplitude = "sin(t)" or amplitude = [[time, value], ...].
+void read_amplitude(TableReader& table, RuleContext const& shared, TimedRule& rule) {
+  auto const* value = table.find("amplitude");
+  auto const smooth = table.choice("amplitude_law", {"linear", "smooth"});
+  if (table.has("amplitude_law") && (value == nullptr || !value->is_array()))
+    table.problem("amplitude_law", "belongs to amplitude = [[time, value], ...]; remove it");
+  if (value == nullptr) return;
+  if (value->is_array()) {
+    auto const stations = read_pairs(table, "amplitude", 1, "one pair [[time, value], ...]");
+    for (std::size_t n = 1; n < stations.size(); ++n)
+      if (!(stations[n].first > stations[n - 1].first))
+        table.problem("amplitude",
+                      fmt::format("times must ascend, found {} after {}", stations[n].first, stations[n - 1].first));
+    rule.amplitude = amplitude_table(stations, smooth.value_or(0) == 1);
+  } else if (value->is_string()) {
+    auto const expression = table.string("amplitude");
+    if (expression->empty())
+      return table.problem("amplitude", "is empty; write a number or an expression of t and step");
+    rule.amplitude = make_time_formula({"amplitude", *expression, table.where("amplitude")}, shared.constants,
+                                       table.context().problems);
+    if (!uses_time(*expression)) {
+      // Known now; a formula with problems has been reported.
+      try {
+        if (rule.at && table.context().problems.empty()) take_share(rule, rule.amplitude({}));
+      } catch (MotionError const& e) {
+        table.problem("amplitude", e.what());
+      }
+      return;
+    }
+  } else {
+    if (auto const share = table.number("amplitude"); share && rule.at) take_share(rule, *share);
+    return;
+  }
+  needs_sequence(table, shared, "amplitude");
+  rule.changes = true;
+}
+
+/// Rules with a displacement of their own, by their number in rule_names; none for the others.
+std::optional<TimedRule> read_explicit(std::size_t number, TableReader& table, RuleContext const& shared,
+                                       CaseFile& out) {
   switch (number) {
     case 1: return read_rigid(table, shared);
     case 2: return read_formula(table, shared);
     case 3: return read_field(table, out);
+    case 8:
+      return TimedRule{[sections = read_sections(table, shared.axis.has_value())](double share, Moment const&) {
+                         return share == 1 ? sections : share_of(sections, share);
+                       },
+                       {}};
+    case 9:
+      return TimedRule{[target = std::get<TargetRule>(read_target_rule(table, shared))](double share, Moment const&) {
+                         TargetRule rule = target;
+                         rule.share = share;
+                         return rule;
+                       },
+                       {}};
+    case 10: needs_axis(table, shared, rule_names[number]); return read_contour(table, shared);
+    default: return std::nullopt;
+  }
+}
+
+Rule read_other(std::size_t number, TableReader& table, RuleContext const& shared) {
+  switch (number) {
     case 4: needs_axis(table, shared, rule_names[number]); return CircumferentialSlideRule{read_of(table)};
     case 5: needs_axis(table, shared, rule_names[number]); return FollowRule{read_of(table)};
     case 6: return read_slip(table, shared);
     case 7: return read_free(table, shared);
-    case 8: return read_sections(table, shared.axis.has_value());
-    case 9: return read_target_rule(table, shared);
     default: return FixedRule{};
   }
 }
@@ -278,11 +388,14 @@ void read_constants(TableReader& table, std::string const& key, std::map<std::st
   auto names = table.table(key);
   if (!names) return;
   for (auto const& [name, value] : table.find(key)->as_table()) {
-    if (auto const number = names->number(name)) constants[name] = *number;
+    auto const number = names->number(name);
+    // A name that no formula can use would make the formula library throw.
     if (!is_free_formula_name(name))
       names->problem(name,
                      "cannot be the name of a constant; use letters, digits and '_', and none of x, y, z, r, theta, "
-                     "axial, pi, deg or the functions");
+                     "axial, t, step, pi, deg or the functions");
+    else if (number)
+      constants[name] = *number;
   }
 }
 
@@ -300,9 +413,26 @@ void read_motion_rule(TableReader& table, RuleContext const& shared, CaseFile& o
     table.problem("rule", fmt::format("\"{}\" is no rule{}", *name, suggestion(*name, rule_names)));
     return;  // its other keys cannot be judged
   }
-  motion.rule = read_rule(std::size_t(known - rule_names.begin()), table, shared, out);
+  auto const number = std::size_t(known - rule_names.begin());
+  TimedRule timed;
+  if (auto own = read_explicit(number, table, shared, out)) {
+    timed = std::move(*own);
+    read_amplitude(table, shared, timed);
+  } else {
+    motion.rule = read_other(number, table, shared);
+    if (table.find("amplitude") != nullptr)
+      table.problem("amplitude", number == 4 || number == 5
+                                     ? "belongs to the rule of the blade, which this rule goes along with"
+                                     : fmt::format("multiplies a displacement, and \"{}\" gives none", *name));
+  }
   table.finish();
+  try {
+    if (timed.at) motion.rule = timed.at(1, {});
+  } catch (Error const& e) {
+    table.problem("rule", e.what());
+  }
   out.motion.rules.push_back(std::move(motion));
+  out.timed.push_back(std::move(timed));
 }
 
 }  // namespace gridmorph::casefile

@@ -14,6 +14,7 @@ namespace gridmorph::casefile {
 struct RuleContext {
   std::optional<Axis> axis;
   std::map<std::string, double> constants;
+  bool in_time = false;  ///< whether there is a sequence, so that things may depend on time
 };
 
 /// The words for `rule`, those that are not available yet among them.

@@ -18,7 +18,12 @@ WheelBlade read_blade(TableReader& table, RuleContext const& shared, CaseFile& o
   table.require("name", "name = \"A\", which sequence can name");
   blade.factor = table.number("factor").value_or(1);
   CaseFile fragment;
-  for (auto& rule : table.tables("motion")) read_motion_rule(rule, shared, fragment);
+  RuleContext own = shared;
+  own.in_time = false;
+  for (auto& rule : table.tables("motion")) read_motion_rule(rule, own, fragment);
+  for (std::size_t r = 0; r < fragment.timed.size(); ++r)
+    if (fragment.timed[r].end_wall)
+      table.problem("motion", "a blade does not move the walls it stands on; the rule contour belongs to [[motion]]");
   for (auto& rule : fragment.motion.rules)
     if (!std::holds_alternative<RigidRule>(rule.rule) && !std::holds_alternative<FunctionRule>(rule.rule) &&
         !std::holds_alternative<FixedRule>(rule.rule))
@@ -27,6 +32,7 @@ WheelBlade read_blade(TableReader& table, RuleContext const& shared, CaseFile& o
                                 "from the blade belongs to [[motion]]",
                                 rule_name(rule.rule)));
   blade.rules = std::move(fragment.motion.rules);
+  blade.timed = std::move(fragment.timed);
   out.fields.insert(out.fields.end(), fragment.fields.begin(), fragment.fields.end());
   table.finish();
   return blade;
