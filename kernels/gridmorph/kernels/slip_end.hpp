@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/slip_edge.hpp>
 #include <gridmorph/kernels/slip_surface.hpp>
 
 namespace gridmorph::kernels {
@@ -51,7 +52,7 @@ struct SlipEndBaselines {
 /// length of the steps.
 template <class MemorySpace, bool Rate>
 struct SlipEndValues {
-  static constexpr int max_rounds = 3, max_steps = 20;
+  static constexpr int max_rounds = 3;
   Kokkos::View<SlipEnd const*, MemorySpace> ends;
   Kokkos::View<SlipEndBaseline const*, MemorySpace> baselines;
   Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
@@ -79,42 +80,30 @@ struct SlipEndValues {
         break;
       }
     }
-    if (!on_all) slide_along_edge(end, baseline, wanted, wanted_rate);
+    if (!on_all) {
+      int const count = end.surface[2] < 0 ? 2 : 3;
+      AcrossEdge const across =
+          slide_along_edge(count, Surfaces{surfaces, end}, Offsets{baseline}, baseline.position, wanted);
+      if constexpr (Rate)
+        for (int k = 0; k < across.count; ++k)
+          wanted_rate = wanted_rate - dot(wanted_rate, across.direction[k]) * across.direction[k];
+    }
     bool const left_alone = norm(wanted - given) <= end.tolerance && end.tolerance > 0;
     Vec3 const d = left_alone ? Vec3{} : (Rate ? wanted_rate - given_rate : wanted - given);
     values.set(end.value, in_frame(end.to_chain, d));
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION void slide_along_edge(SlipEnd const& end, SlipEndBaseline const& baseline, Vec3& u,
-                                               Vec3& u_rate) const {
-    double last = -1;
-    for (int n = 0; n < max_steps; ++n) {
-      // Gram-Schmidt: what a surface asks for is added across the surfaces before it, so they stay satisfied.
-      Vec3 across[3], step;
-      int n_across = 0;
-      for (int m = 0; m < 3; ++m) {
-        if (end.surface[m] < 0) continue;
-        Vec3 gradient;
-        double const excess = surfaces(end.surface[m]).excess(baseline.position, baseline.own_offset[m], u, gradient);
-        Vec3 part = gradient;
-        for (int k = 0; k < n_across; ++k) part = part - dot(part, across[k]) * across[k];
-        double const share = dot(part, part);
-        if (!(share > 1e-4 * dot(gradient, gradient))) continue;
-        step = step - ((excess + dot(gradient, step)) / share) * part;
-        across[n_across++] = (1 / norm(part)) * part;
-      }
-      double const length = norm(step);
-      bool const done = !(length > 1e-15 * surfaces(end.surface[0]).size) || (last >= 0 && !(length < 0.9 * last));
-      if (!done) u += step;
-      if (done || n + 1 == max_steps) {
-        if constexpr (Rate)
-          for (int k = 0; k < n_across; ++k) u_rate = u_rate - dot(u_rate, across[k]) * across[k];
-        return;
-      }
-      last = length;
-    }
-  }
+  /// What slide_along_edge() asks of one end.
+  struct Surfaces {
+    Kokkos::View<SlipSurfaceView const*, MemorySpace> const& all;
+    SlipEnd const& end;
+    KOKKOS_INLINE_FUNCTION SlipSurfaceView const& operator()(int m) const { return all(end.surface[m]); }
+  };
+  struct Offsets {
+    SlipEndBaseline const& baseline;
+    KOKKOS_INLINE_FUNCTION double operator()(int m) const { return baseline.own_offset[m]; }
+  };
 
   KOKKOS_INLINE_FUNCTION Vec3 in_frame(std::int32_t matrix, Vec3 const& v) const {
     return matrix < 0 ? v : matrices(matrix) * v;

@@ -200,7 +200,7 @@ void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, Surf
       Claims claims(topology, nothing);
       std::vector<Chain> now, later;
       for (Chain& chain : list.chains) (claims.add(chain) ? now : later).push_back(std::move(chain));
-      SpreadPass pass = build_spread(context, now, surface_so_far, given, plan.mesh_size);
+      SpreadPass pass = build_spread(context, now, surface_so_far, given, plan);
       std::map<std::pair<std::string, std::string>, int> ends;
       for (Chain const& chain : now) {
         auto name = [&](ChainEnd const& end) {

@@ -195,10 +195,21 @@ void add_slip_ends(PlanContext const& context, PlacedBox const& box, int entity,
     }
 }
 
+/// How far given displacements may take nodes off their surfaces before they are put back. A surface fitted to nodes that scatter is
+/// tilted by their scatter over its size: a displacement along the true one leaves it by as much.
+double given_tolerance(std::vector<int> const& surfaces, Plan const& plan) {
+  double tolerance = 1e-10 * plan.mesh_size;
+  for (int const s : surfaces) {
+    SlipSurface const& surface = plan.surfaces[s];
+    tolerance = std::max(tolerance, std::min(2 * surface.baseline_deviation, 1e-6 * surface.size));
+  }
+  return tolerance;
+}
+
 }  // namespace
 
 SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains,
-                        std::vector<int> const& surface_of_patch, Known const& given, double mesh_size) {
+                        std::vector<int> const& surface_of_patch, Known const& given, Plan const& plan) {
   SpreadPass pass;
   Lattice const& lattice = context.topology.lattice;
   auto const surfaces_of = surfaces_of_classes(context.topology, surface_of_patch);
@@ -224,8 +235,8 @@ SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& ch
       if (patch < 0 || surface_of_patch[patch] < 0) continue;
       for_end_entities(context, chain, layout, end, [&](PlacedBox const& box, int entity) {
         int const c = lattice.class_of(entity);
-        add_slip_ends(context, box, entity, device, end, surfaces_of.at(c), given(c) ? 1e-10 * mesh_size : 0,
-                      pass.ends);
+        add_slip_ends(context, box, entity, device, end, surfaces_of.at(c),
+                      given(c) ? given_tolerance(surfaces_of.at(c), plan) : 0, pass.ends);
       });
     }
   }

@@ -20,9 +20,10 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
 
 /// Redistribution chains: every entity of the chains is written once, known or not. `given` are the entities whose
 /// displacement the motion rules give: they are honoured exactly while they stay within 1e-10 of the mesh size of
-/// their slip surfaces, and trimmed to them beyond that.
+/// their slip surfaces (or twice as far as nodes of the baseline scatter about them, up to 1e-6 of their size), and trimmed
+/// to them beyond that. Uses mesh_size and surfaces of `plan`.
 SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains,
-                        std::vector<int> const& surface_of_patch, Known const& given, double mesh_size);
+                        std::vector<int> const& surface_of_patch, Known const& given, Plan const& plan);
 
 /// Position of a kind in the priority's order; kinds that are not listed come after all that are.
 int kind_rank(EndKind kind, std::vector<std::string> const& order);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/slip_edge.hpp>
 #include <gridmorph/kernels/slip_surface.hpp>
 #include <gridmorph/kernels/uniform_lattice.hpp>
 #include <gridmorph/kernels/wall_turn.hpp>
@@ -162,14 +163,36 @@ struct AskOthers {
   View<MemorySpace, Vec3> asked;  ///< with what nodes without a slot begin with
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Number const n = node(k);
-    Index const from = surfaces_of.first(k), to = surfaces_of.first(k + 1);
-    // Alternating corrections come to the edge where surfaces meet; planes at right angles need one round.
-    int const rounds = to - from > 1 ? 20 : 1;
-    Vec3 v = slot(k) >= 0 ? boundary(slot(k)) : asked(n);
-    Vec3 const p = x[n];
-    for (int round = 0; round < rounds; ++round)
-      for (Index s = from; s < to; ++s) v = surfaces(surfaces_of.item(s)).constrain(p, v);
-    asked(n) = v;
+    asked(n) = on_its_surfaces(k, x[n], slot(k) >= 0 ? boundary(slot(k)) : asked(n));
+  }
+
+ private:
+  /// What slide_along_edge() asks of one node.
+  struct Surfaces {
+    AskOthers const& others;
+    Index from;
+    KOKKOS_INLINE_FUNCTION SlipSurfaceView const& operator()(int m) const {
+      return others.surfaces(others.surfaces_of.item(from + m));
+    }
+  };
+  struct Offsets {
+    Surfaces const& surface;
+    Vec3 const& baseline;
+    KOKKOS_INLINE_FUNCTION double operator()(int m) const { return surface(m).own_offset(baseline); }
+  };
+
+  /// One after another, which is exact for planes at right angles; where that does not settle, along their edge.
+  KOKKOS_INLINE_FUNCTION Vec3 on_its_surfaces(Index k, Vec3 const& baseline, Vec3 v) const {
+    constexpr int most_rounds = 3;
+    Surfaces const surface{*this, surfaces_of.first(k)};
+    int const count = int(surfaces_of.first(k + 1) - surface.from);
+    for (int round = 0; round < (count > 1 ? most_rounds : 1); ++round) {
+      Vec3 const before = v;
+      for (int m = 0; m < count; ++m) v = surface(m).constrain(baseline, v);
+      if (count < 2 || v == before) return v;
+    }
+    kernels::slide_along_edge(count, surface, Offsets{surface, baseline}, baseline, v);
+    return v;
   }
 };
 

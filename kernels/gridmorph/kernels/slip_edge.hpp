@@ -1,0 +1,45 @@
+// Sliding along the edge where several slip surfaces meet.
+#pragma once
+
+#include <gridmorph/kernels/slip_surface.hpp>
+
+namespace gridmorph::kernels {
+
+/// Directions across the edge where the node is: unit, at right angles to one another.
+struct AcrossEdge {
+  Vec3 direction[3];
+  int count = 0;
+};
+
+/// Corrects the displacement u of a baseline node until the node is where all of `count` surfaces want it, by Gauss-Newton steps: each
+/// the shortest that brings it onto the tangent planes of all surfaces at once. Quadratic convergence, whatever the angle; putting
+/// the node on one surface after the other gains a factor cos^2 of the angle per round. Surfaces that meet at less than 0.01 rad
+/// count as one. `surface(m)` is a SlipSurfaceView, `own(m)` the node's own offset from it.
+template <class Surfaces, class Offsets>
+KOKKOS_INLINE_FUNCTION AcrossEdge slide_along_edge(int count, Surfaces const& surface, Offsets const& own,
+                                                   Vec3 const& baseline, Vec3& u) {
+  constexpr int max_steps = 20;
+  double last = -1;
+  for (int n = 0;; ++n) {
+    // Gram-Schmidt: what a surface asks for is added across the surfaces before it, so they stay satisfied.
+    AcrossEdge across;
+    Vec3 step;
+    for (int m = 0; m < count && across.count < 3; ++m) {
+      Vec3 gradient;
+      double const excess = surface(m).excess(baseline, own(m), u, gradient);
+      Vec3 part = gradient;
+      for (int k = 0; k < across.count; ++k) part = part - dot(part, across.direction[k]) * across.direction[k];
+      double const share = dot(part, part);
+      if (!(share > 1e-4 * dot(gradient, gradient))) continue;
+      step = step - ((excess + dot(gradient, step)) / share) * part;
+      across.direction[across.count++] = (1 / norm(part)) * part;
+    }
+    double const length = norm(step);
+    bool const done = !(length > 1e-15 * surface(0).size) || (last >= 0 && !(length < 0.9 * last));
+    if (!done) u += step;
+    if (done || n + 1 == max_steps) return across;
+    last = length;
+  }
+}
+
+}  // namespace gridmorph::kernels
