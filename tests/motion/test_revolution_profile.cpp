@@ -190,5 +190,47 @@ TEST(RevolutionProfile, RefusesNumbersThatAreNotFinite) {
   expect_all_in(message_of<MotionError>([&] { RevolutionProfile::from_points(points); }), {"not finite"});
 }
 
+double smooth_step(double x) { return 0.455 + 0.015 * std::tanh(8 * (x - 0.02)); }
+
+/// Axial positions as the blocks of an O4H mesh have them: several families of nodes, clusters beside gaps.
+std::vector<std::pair<double, double>> uneven_points(unsigned seed, double noise) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<> unit(0, 1);
+  std::normal_distribution<> scatter;
+  std::vector<std::pair<double, double>> points{{-0.16, smooth_step(-0.16)}, {0.2, smooth_step(0.2)}};
+  for (int k = 0; k < 600; ++k) {
+    double const q = unit(random), x = k % 3 == 0   ? -0.06 + 0.12 * q
+                                       : k % 3 == 1 ? -0.16 + 0.36 * q * q
+                                                    : 0.2 - 0.2 * q * q * q;
+    double const off_axial = noise * scatter(random);
+    points.emplace_back(x + off_axial, smooth_step(x) + noise * scatter(random));
+  }
+  return points;
+}
+
+TEST(RevolutionProfile, OfPointsInClustersIsAsExactAsTheirNoise) {
+  for (double const noise : {0.0, 1e-15, 1e-13, 1e-12, 1e-10, 1e-8})
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      auto const profile = RevolutionProfile::from_points(uneven_points(seed, noise));
+      EXPECT_LT(profile.deviation, 1e-13 + 20 * noise) << noise;
+      for (double x = -0.15; x < 0.19; x += 1e-4) EXPECT_NEAR(profile(x), smooth_step(x), 1e-11 + 100 * noise) << noise;
+    }
+}
+
+TEST(RevolutionProfile, DoesNotDependOnTheUnit) {
+  for (double const noise : {0.0, 3e-14, 1e-13, 1e-10})
+    for (double const unit : {1e-3, 1e3, 0.0254}) {
+      auto const points = uneven_points(7, noise);
+      auto scaled = points;
+      for (auto& [a, r] : scaled) {
+        a *= unit;
+        r *= unit;
+      }
+      auto const one = RevolutionProfile::from_points(points), other = RevolutionProfile::from_points(scaled);
+      for (double x = -0.16; x < 0.2; x += 1e-4)
+        EXPECT_NEAR(other(unit * x) / unit, one(x), 1e-13) << noise << " " << unit;
+    }
+}
+
 }  // namespace
 }  // namespace gridmorph

@@ -77,6 +77,34 @@ TEST(UnstructuredMorph, NodesThatSlipStayOnTheirPlane) {
   EXPECT_EQ(c.inverted(m.x), 0);
 }
 
+TEST(UnstructuredMorph, NodesWherePlanesMeetAtAnyAngleStayOnBoth) {
+  for (double const lean : {0.0, 0.5, 2.0}) {
+    // The body stands in the edge of two planes, on which the nodes before and behind it slip.
+    UnstructuredMesh mesh =
+        test::box_around({9, 9, 9}, [](Vec3 const& p) { return p.x < 3 && p.z < 3 && p.y > 3 && p.y < 6; });
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      Vec3 const q = mesh.coordinates[n];
+      mesh.coordinates.set(n, {q.x + lean * q.z, q.y, q.z});
+    }
+    Case const c(std::move(mesh));
+    Morphed const m = c.morph(body_moves(translation({0.3, 0.1, 0.2}), {{{"i_min", "k_min"}, SlipRule{}, 0, "slip"}}));
+    auto const& known = m.prepared.plan.known;
+    auto const off = [&](std::string const& side, Vec3 const& normal) {
+      double worst = 0, moved = 0;
+      for (Number const n : m.prepared.boundary.nodes_of_patch[std::size_t(c.patch(side))]) {
+        if (std::binary_search(known.begin(), known.end(), n)) continue;
+        Vec3 const u = m.x[n] - c.mesh.coordinates[n];
+        worst = std::max(worst, std::abs(dot(u, normal)) / norm(normal));
+        moved = std::max(moved, norm(u));
+      }
+      EXPECT_GT(moved, 0.01) << side << " " << lean;
+      return worst;
+    };
+    EXPECT_LT(off("i_min", {1, 0, -lean}), 1e-12) << lean;
+    EXPECT_LT(off("k_min", {0, 0, 1}), 1e-12) << lean;
+  }
+}
+
 TEST(UnstructuredMorph, ProfilesThatDifferInTheMiddleOnlyAreTwoSurfaces) {
   // Half an annulus along x; two parts of its case slip, on profiles with the same ends.
   auto const radius = [](double x, bool bulged) {

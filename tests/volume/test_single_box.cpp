@@ -176,5 +176,27 @@ TEST(Box, TurnedAndMirroredItGivesTheSame) {
   }
 }
 
+TEST(SlipOnNoisyPlanes, DisplacementsAlongTheTruePlaneAreHonouredExactly) {
+  for (double const noise : {0.0, 1e-9, 1e-7}) {
+    Mesh mesh = box({9, 8, 7}, Shape::straight, 3);
+    Random random(5);
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      Vec3 p = mesh.coordinates[n];
+      p.y += noise * random.vector(1).y;
+      mesh.coordinates.set(n, p);
+    }
+    Motion const along = motion({rule({"u_min"}, function_rule([](Vec3 const& p) {
+                                        return Vec3{0.3 + 0.1 * p.z, 0, 0.2 * p.z * (1.2 - p.z)};
+                                      })),
+                                 rule({"u_max"}, FixedRule{}), rule({"v_min", "v_max"}, SlipRule{}),
+                                 rule({"w_min", "w_max"}, SlipRule{})});
+    Outcome const run = morph(std::move(mesh), along);
+    for (std::size_t n = 0; n < run.boundary.size(); ++n) {
+      Index const node = run.plan().boundary_nodes[n];
+      EXPECT_EQ(run.u(node), run.boundary[n]) << noise << " " << describe_node(run.mesh, node);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gridmorph::test

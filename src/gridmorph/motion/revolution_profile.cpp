@@ -99,15 +99,13 @@ Points thin(Points const& p, double least) {
 /// Slopes and second derivatives at the points of a profile.
 class Slopes {
  public:
-  Slopes(Points const& p, double noise, double size) : p_(p), n_(int(p.size())), noisy_(noise > 1e-13 * size) {
-    find_kinks(noise);
-  }
+  Slopes(Points const& p, double noise) : p_(p), n_(int(p.size())) { find_kinks(noise); }
 
   std::vector<double> all() const {
     std::vector<double> s(p_.size());
-    for (int i = 0; i < n_; ++i) s[i] = kink_[i] ? at_kink(i) : smooth(i);
+    for (int i = 0; i < n_; ++i) s[i] = kink_[i] ? at_kink(i) : derivative(i, stencil(i));
     // A short table does not tell bends from kinks: it is drawn without overshoot everywhere.
-    if (p_.size() < least_for_statistics)
+    if (is_table())
       for (int i = 0; i < n_; ++i) s[i] = limited(i, s[i]);
     return s;
   }
@@ -116,27 +114,21 @@ class Slopes {
   /// both ends, otherwise that of the cubic with the same slopes, which the quintic then is.
   std::vector<double> curvatures(std::vector<double> const& slope) const {
     std::vector<double> c;
-    bool const table = p_.size() < least_for_statistics;
     for (int i = 0; i + 1 < n_; ++i) {
       double const h = p_[i + 1].first - p_[i].first, m = secant(i);
-      bool const smooth_piece = !table && !kink_[i] && !kink_[i + 1] && !(noisy_ && uneven(i));
-      c.push_back(smooth_piece ? second_derivative(i) : (6 * m - 4 * slope[i] - 2 * slope[i + 1]) / h);
-      c.push_back(smooth_piece ? second_derivative(i + 1) : (2 * slope[i] + 4 * slope[i + 1] - 6 * m) / h);
+      bool const smooth_piece = !is_table() && !kink_[i] && !kink_[i + 1];
+      c.push_back(smooth_piece ? second_derivative(i, stencil(i)) : (6 * m - 4 * slope[i] - 2 * slope[i + 1]) / h);
+      c.push_back(smooth_piece ? second_derivative(i + 1, stencil(i + 1))
+                               : (2 * slope[i] + 4 * slope[i + 1] - 6 * m) / h);
     }
     return c;
   }
 
  private:
-  /// Points near piece i lie so much closer together than its ends that their noise, divided by their distance twice,
-  /// would outweigh what a second derivative gains.
-  bool uneven(int i) const {
-    constexpr int reach = 2;
-    double closest = p_[i + 1].first - p_[i].first;
-    double const h = closest;
-    for (int j = std::max(0, i - reach); j < std::min(n_ - 1, i + 1 + reach); ++j)
-      closest = std::min(closest, p_[j + 1].first - p_[j].first);
-    return closest < 0.4 * h;
-  }
+  /// Numbers of the points beside one, without it, that a polynomial through it also passes through.
+  using Stencil = std::vector<int>;
+
+  [[nodiscard]] bool is_table() const { return p_.size() < least_for_statistics; }
 
   double secant(int i) const { return (p_[i + 1].second - p_[i].second) / (p_[i + 1].first - p_[i].first); }
 
@@ -164,24 +156,37 @@ class Slopes {
     }
   }
 
-  /// Points that a stencil starting at i may use on one side: up to `most`, up to and including the next kink.
-  int reach(int i, int step, int most) const {
-    int n = 0;
-    for (int j = i + step; j >= 0 && j < n_ && n < most; j += step) {
-      ++n;
-      if (kink_[j]) break;
-    }
-    return n;
+  /// Distance between points of a stencil at i, at least: points much closer together than their surroundings tell little about a slope
+  /// beyond their noise, which their distance divides.
+  double apart(int i) const {
+    if (is_table()) return 0;
+    constexpr int reach = 4;
+    int const a = std::max(0, i - reach), b = std::min(n_ - 1, i + reach);
+    return 0.4 * (p_[b].first - p_[a].first) / (b - a);
   }
 
-  /// Derivative at point i of the polynomial through points i - left .. i + right, from differences to the value at i.
-  double derivative(int i, int left, int right) const {
+  /// Appends the points that a stencil at i may use on one side: up to `most`, up to and including the next kink, none of
+  /// them nearer than `apart` to the one before; but always the last before a kink or an end if there is no other.
+  void reach(int i, int step, int most, double apart, Stencil& out) const {
+    int last = i;
+    for (int j = i + step, found = 0; j >= 0 && j < n_ && found < most; j += step) {
+      bool const ends = kink_[j] || j == 0 || j == n_ - 1;
+      if (std::abs(p_[j].first - p_[last].first) >= apart || (ends && found == 0)) {
+        out.push_back(j);
+        last = j;
+        ++found;
+      }
+      if (kink_[j]) break;
+    }
+  }
+
+  /// Derivative at point i of the polynomial through it and a stencil, from differences to the value at i.
+  double derivative(int i, Stencil const& stencil) const {
     double sum = 0;
-    for (int j = i - left; j <= i + right; ++j) {
-      if (j == i) continue;
+    for (int const j : stencil) {
       double w = 1 / (p_[j].first - p_[i].first);
-      for (int k = i - left; k <= i + right; ++k)
-        if (k != i && k != j) w *= (p_[i].first - p_[k].first) / (p_[j].first - p_[k].first);
+      for (int const k : stencil)
+        if (k != j) w *= (p_[i].first - p_[k].first) / (p_[j].first - p_[k].first);
       sum += w * (p_[j].second - p_[i].second);
     }
     return sum;
@@ -189,19 +194,17 @@ class Slopes {
 
   /// Second derivative at point i of the same polynomial. With divided differences q_j = (r_j - r_i) / (x_j - x_i), which
   /// are r' at x_i plus (x - x_i) / 2 times r'' and so on, it is twice the derivative there of the polynomial through q.
-  double second_derivative(int i) const {
-    auto const [left, right] = stencil(i);
+  double second_derivative(int i, Stencil const& stencil) const {
     double sum = 0;
-    for (int j = i - left; j <= i + right; ++j) {
-      if (j == i) continue;
+    for (int const j : stencil) {
       double const q = (p_[j].second - p_[i].second) / (p_[j].first - p_[i].first);
       // Derivative at x_i of the Lagrange factor of node j among the nodes other than i.
       double slope = 0;
-      for (int m = i - left; m <= i + right; ++m) {
-        if (m == i || m == j) continue;
+      for (int const m : stencil) {
+        if (m == j) continue;
         double w = 1 / (p_[j].first - p_[m].first);
-        for (int k = i - left; k <= i + right; ++k)
-          if (k != i && k != j && k != m) w *= (p_[i].first - p_[k].first) / (p_[j].first - p_[k].first);
+        for (int const k : stencil)
+          if (k != j && k != m) w *= (p_[i].first - p_[k].first) / (p_[j].first - p_[k].first);
         slope += w;
       }
       sum += slope * q;
@@ -210,22 +213,31 @@ class Slopes {
   }
 
   /// Points on both sides: seven in the middle; five in all where a side is short.
-  std::pair<int, int> stencil(int i) const {
+  Stencil stencil(int i) const {
     constexpr int each_side = 3, least = 4;
-    int left = reach(i, -1, each_side), right = reach(i, +1, each_side);
-    if (left < each_side) right = reach(i, +1, std::max(each_side, least - left));
-    if (right < each_side) left = reach(i, -1, std::max(each_side, least - right));
-    return {left, right};
-  }
-
-  double smooth(int i) const {
-    auto const [left, right] = stencil(i);
-    return derivative(i, left, right);
+    double const gap = apart(i);
+    Stencil left, right;
+    reach(i, -1, each_side, gap, left);
+    reach(i, +1, each_side, gap, right);
+    int const n_left = int(left.size()), n_right = int(right.size());
+    if (n_left < each_side) {
+      right.clear();
+      reach(i, +1, std::max(each_side, least - n_left), gap, right);
+    }
+    if (n_right < each_side) {
+      left.clear();
+      reach(i, -1, std::max(each_side, least - n_right), gap, left);
+    }
+    left.insert(left.end(), right.begin(), right.end());
+    return left;
   }
 
   double at_kink(int i) const {
     constexpr int one_side = 3;
-    double const before = derivative(i, reach(i, -1, one_side), 0), after = derivative(i, 0, reach(i, +1, one_side));
+    Stencil left, right;
+    reach(i, -1, one_side, apart(i), left);
+    reach(i, +1, one_side, apart(i), right);
+    double const before = derivative(i, left), after = derivative(i, right);
     return before * after <= 0 ? 0 : limited(i, std::abs(before) < std::abs(after) ? before : after);
   }
 
@@ -241,7 +253,6 @@ class Slopes {
 
   Points const& p_;
   int n_;
-  bool noisy_;
   std::vector<bool> kink_;
 };
 
@@ -299,7 +310,7 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
   }
 
   RevolutionProfile profile;
-  Slopes const slopes(points, std::max(noise, 4e-16 * size), size);
+  Slopes const slopes(points, std::max(noise, 4e-16 * size));
   std::vector<double> const slope = slopes.all(), curvature = slopes.curvatures(slope);
   for (std::size_t n = 0; n < points.size(); ++n) {
     ProfileKnot knot{points[n].first, points[n].second, slope[n], {0, 0}};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <utility>
@@ -172,6 +173,19 @@ std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion 
   return lists;
 }
 
+/// What a curved surface asks for, spread along lines on another curved surface, takes their nodes off it. So the passes of curved
+/// surfaces are swept there and back: each sweep leaves a small share of the disturbance of the one before.
+void sweep_again(std::vector<RuleChains>& lists) {
+  int const sweeps = std::getenv("SWEEPS") ? atoi(std::getenv("SWEEPS")) : 1;
+  auto const first_curved = std::find_if(lists.begin(), lists.end(), [](RuleChains const& l) { return l.curved; });
+  std::vector<RuleChains> sweep(first_curved, lists.end());
+  if (sweep.size() < 2) return;
+  for (int n = 0; n < sweeps; ++n) {
+    std::reverse(sweep.begin(), sweep.end());
+    lists.insert(lists.end(), sweep.begin() + 1, sweep.end());
+  }
+}
+
 }  // namespace
 
 void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, SurfaceMotion const& surface,
@@ -186,13 +200,7 @@ void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, Surf
   // of its own rule.
   std::vector<int> surface_so_far(mesh.patches.size(), -1);
   std::vector<RuleChains> lists = chains_by_rule(topology, motion, surface_of_patch, candidates);
-  // What a curved surface asks for, spread along lines on another curved surface, takes their nodes off it. Once more for
-  // those: the disturbance left is that of a disturbance.
-  auto const first_curved = std::find_if(lists.begin(), lists.end(), [](RuleChains const& l) { return l.curved; });
-  if (lists.end() - first_curved > 1) {
-    std::vector<RuleChains> const again(first_curved, lists.end() - 1);
-    lists.insert(lists.end(), again.rbegin(), again.rend());
-  }
+  sweep_again(lists);
   for (RuleChains& list : lists) {
     for (std::size_t p = 0; p < mesh.patches.size(); ++p)
       if (list.rules.contains(motion.patch[p].rule)) surface_so_far[p] = surface_of_patch[p];
