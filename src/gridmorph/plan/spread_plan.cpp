@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <map>
 #include <set>
 #include <utility>
@@ -176,7 +175,7 @@ std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion 
 /// What a curved surface asks for, spread along lines on another curved surface, takes their nodes off it. So the passes of curved
 /// surfaces are swept there and back: each sweep leaves a small share of the disturbance of the one before.
 void sweep_again(std::vector<RuleChains>& lists) {
-  int const sweeps = std::getenv("SWEEPS") ? atoi(std::getenv("SWEEPS")) : 1;
+  constexpr int sweeps = 2;
   auto const first_curved = std::find_if(lists.begin(), lists.end(), [](RuleChains const& l) { return l.curved; });
   std::vector<RuleChains> sweep(first_curved, lists.end());
   if (sweep.size() < 2) return;
