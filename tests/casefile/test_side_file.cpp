@@ -1,12 +1,22 @@
 // Side files: what they add to a mesh, what they refuse, and that what is written is read.
 #include "case_text.hpp"
+#include "support/expect_error.hpp"
 #include "support/interface_cells.hpp"
 #include "support/mesh_builders.hpp"
 #include "support/scramble.hpp"
+#include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/casefile/side_file.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/topology/coverage.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
 
 namespace gridmorph::testing {
 namespace {
@@ -41,6 +51,56 @@ TEST(SideFile, WhatIsWrittenIsReadAndCoversTheMesh) {
       EXPECT_TRUE(test::flaws(read, 1e-6).empty()) << test::flaws(read, 1e-6).front();
       EXPECT_NO_THROW(connect_and_check(read, {}));
     }
+}
+
+/// Four boxes round a square hole: the hole is one body, the outside has six sides.
+TEST(SideFile, OpenFacesThatContinueOneAnotherHaveOneName) {
+  test::MeshBuilder builder("frame");
+  for (auto const& [x, y, nx, ny] : {std::array{0, 0, 4, 1}, {0, 1, 1, 2}, {3, 1, 1, 2}, {0, 3, 4, 1}})
+    builder.zone("z" + std::to_string(x) + std::to_string(y), {2 * nx + 1, 2 * ny + 1, 5}, [x, y](Index3 const& p) {
+      return Vec3{x + 0.5 * p[0], y + 0.5 * p[1], 0.4 * p[2]};
+    });
+  Mesh mesh = builder.finish();
+  Mesh read = mesh;
+  add_side_file(side_file_text(mesh, find_interfaces(mesh)), "mesh.toml", read);
+  std::map<std::string, Index> area;  // in cells
+  for (auto const& patch : read.patches) {
+    Index cells = 1;
+    for (int a = 0; a < 3; ++a) cells *= std::max(1, patch.range.extent(a) - 1);
+    area[patch.name] += cells;
+  }
+  std::map<std::string, Index> const expected{{"body", 4 * 4 * 4}, {"x_min", 8 * 4}, {"x_max", 8 * 4},
+                                              {"y_min", 8 * 4},    {"y_max", 8 * 4}, {"z_min", 64 - 16},
+                                              {"z_max", 64 - 16}};
+  EXPECT_EQ(area, expected);
+}
+
+/// SU2 files keep periodic pairs in the solver's configuration, and say nothing of kinds.
+TEST(SideFile, SaysKindsAndPeriodicPairsOfMarkers) {
+  UnstructuredMesh const mesh = test::flat_box(3, 2, 2);  // 3 wide, 2 high
+  auto const text = [](double pitch) {
+    return "[[patch]]\nname = \"i_min\"\nkind = \"inflow\"\nfamily = \"ends\"\n[[periodic]]\nname = \"pitch\"\n" +
+           fmt::format("translation = [0, {}, 0]\n", pitch) +
+           "[[interface]]\npatch = \"j_min\"\ndonor_patch = \"j_max\"\nperiodic = \"pitch\"\n";
+  };
+  for (double const sense : {1.0, -1.0}) {  // either side may be named first
+    UnstructuredMesh read = mesh;
+    add_side_file(text(2 * sense), "mesh.toml", read);
+    ASSERT_EQ(read.connections.size(), 1u);
+    EXPECT_EQ(read.connections[0].nodes.size(), 4u);
+    EXPECT_EQ(largest_mismatch(read, read.connections[0]), 0);
+    for (auto const& patch : read.patches)
+      if (patch.name == "i_min") {
+        EXPECT_EQ(patch.families, (std::vector<std::string>{"ends"}));
+        EXPECT_EQ(patch.kind, PatchKind::inflow);
+      }
+  }
+  auto const message = test::message_of<ConfigError>([&] {
+    UnstructuredMesh read = mesh;
+    add_side_file(text(5) + "[[patch]]\nname = \"k_min\"\n", "mesh.toml", read);
+  });
+  for (auto const* part : {"mesh.toml:9", "4 of its 4 nodes", "mesh.toml:13", "'k_min'"})
+    EXPECT_NE(message.find(part), std::string::npos) << message;
 }
 
 TEST(SideFile, SaysPatchesFamiliesAndZoneNames) {

@@ -32,7 +32,8 @@ class UnstructuredTest : public CommandTest {
 TEST_F(UnstructuredTest, InspectSaysWhatThereIs) {
   Outcome const run = gridmorph("inspect mesh.su2 --quiet");
   EXPECT_EQ(run.status, 0) << run.err;
-  for (auto const* part : {"2-D", "9 nodes", "4 quadrilaterals", "wall", "8 faces", "determinant 2x2x2"})
+  for (auto const* part :
+       {"2-D", "9 nodes", "4 quadrilaterals", "wall", "faces", "first cell", "determinant 2x2x2", "[[motion]]"})
     EXPECT_NE(run.out.find(part), std::string::npos) << run.out;
   auto const json = nlohmann::json::parse(gridmorph("inspect mesh.su2 --json --quiet").out);
   EXPECT_EQ(json["boundaries"][0]["faces"], 8);

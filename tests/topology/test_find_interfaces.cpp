@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -149,6 +150,57 @@ TEST(FindInterfacesCases, APeriodicSectorComesWithItsAxisAndAngle) {
   EXPECT_TRUE(seen);
 }
 
+/// Six zones between two spheres, each over a side of a cube.
+Mesh cubed_sphere(int n) {
+  MeshBuilder b("cubed sphere");
+  for (int z = 0; z < 6; ++z)
+    b.zone("z" + std::to_string(z), {n + 1, n + 1, 4}, [z, n](Index3 const& p) {
+      double const u = 2.0 * p[0] / n - 1, v = 2.0 * p[1] / n - 1, w = z % 2 == 0 ? 1 : -1;
+      Vec3 const at = z / 2 == 0 ? Vec3{w, u, v} : z / 2 == 1 ? Vec3{u, w, v} : Vec3{u, v, w};
+      return ((1.0 + p[2]) / norm(at)) * at;
+    });
+  return b.finish();
+}
+
+/// Bare meshes without periodicity: symmetric ones map onto themselves in many ways, none of which is a passage.
+TEST(FindInterfacesCases, SymmetricMeshesAreNotPeriodic) {
+  std::vector<Mesh> meshes{cubed_sphere(6),
+                           around_a_box(1),
+                           l_shape(1),
+                           o_grid(0.4, 1),
+                           o_grid(0, 1),
+                           c_grid(1),
+                           box({5, 4, 6}, Shape::straight, 1),
+                           box({5, 5, 5}, Shape::straight, 1),
+                           star(5, 1)};
+  // A symmetric O-grid in a square: its outer sides match by translations, the body's sides from the wrong side.
+  MeshBuilder square("square o-grid");
+  square.zone("z", {33, 9, 4}, [](Index3 const& p) {
+    double const a = 2 * M_PI * p[0] / 32, c = std::cos(a), s = std::sin(a);
+    double const r = (1 + p[1]) / std::max(std::fabs(c), std::fabs(s));
+    return Vec3{r * c, r * s, 0.7 * p[2]};
+  });
+  meshes.push_back(square.finish());
+  for (Mesh mesh : meshes) {
+    SCOPED_TRACE(mesh.source);
+    mesh.interfaces.clear();
+    mesh.patches.clear();
+    FoundInterfaces const found = find_interfaces(mesh);
+    EXPECT_TRUE(std::none_of(found.interfaces.begin(), found.interfaces.end(), [](auto const& face) {
+      return face.periodic.has_value();
+    })) << testing::PrintToString(found.notes);
+  }
+}
+
+TEST(FindInterfacesCases, PlanesArePeriodicWhereTheRestOfTheBoundaryIsDeclared) {
+  Mesh mesh = box({5, 4, 6}, Shape::straight, 1);
+  std::erase_if(mesh.patches, [](Patch const& p) { return p.range.extent(2) == 1; });
+  ASSERT_EQ(mesh.patches.size(), 4u);
+  FoundInterfaces const found = find_interfaces(mesh);
+  ASSERT_EQ(found.interfaces.size(), 1u);
+  EXPECT_TRUE(found.interfaces[0].periodic);
+}
+
 /// A cube of cubes: every face cell is like every other, and there are many zones.
 TEST(FindInterfacesCases, UniformMeshesOfManyZonesTakeSeconds) {
   MeshBuilder b("cubes");
@@ -164,7 +216,10 @@ TEST(FindInterfacesCases, UniformMeshesOfManyZonesTakeSeconds) {
   FoundInterfaces const found = find_interfaces(mesh);
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_EQ(joined_cells(mesh, found.interfaces, false).size(), std::size_t(3 * n * n * (n - 1) * cells * cells));
-  EXPECT_EQ(joined_cells(mesh, found.interfaces, true).size(), std::size_t(3 * n * n * cells * cells));
+  EXPECT_TRUE(joined_cells(mesh, found.interfaces, true).empty()) << "planes of one shape may be anything";
+  EXPECT_EQ(std::count_if(found.notes.begin(), found.notes.end(),
+                          [](auto const& note) { return note.find("not taken") != std::string::npos; }),
+            3);
   EXPECT_LT(seconds, 60);
 }
 

@@ -34,8 +34,8 @@ UnstructuredMesh load_unstructured_mesh(std::filesystem::path const& mesh,
 void add_side_file(std::string const& text, std::filesystem::path const& path, Mesh& mesh);
 void add_side_file(std::string const& text, std::filesystem::path const& path, UnstructuredMesh& mesh);
 
-/// A side file for a mesh: the interfaces that were found, and one patch for every rectangle of a zone face that is left,
-/// named by zone and face, for the user to rename. `existing`: text of the mesh's present side file, which comes first as it is.
+/// A side file for a mesh: the interfaces that were found, and a patch for every rectangle of a zone face that is left. Rectangles
+/// that continue one another have one name (open_patches.hpp), for the user to change. `existing`: text of the mesh's present side file, which comes first as it is.
 std::string side_file_text(Mesh const& mesh, FoundInterfaces const& found, std::string const& existing = {});
 
 }  // namespace gridmorph

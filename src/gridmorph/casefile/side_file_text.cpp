@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/open_patches.hpp>
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/topology/coverage.hpp>
 #include <gridmorph/topology/periodic_axis.hpp>
@@ -113,14 +114,10 @@ std::string side_file_text(Mesh const& mesh, FoundInterfaces const& found, std::
         "\n# What is left is the boundary: give each patch its name, family and kind (wall, inflow, outflow, "
         "symmetry,\n"
         "# farfield, other).\n";
+  auto const names = names_of_open_patches(rest, before);
   for (std::size_t p = before; p < rest.patches.size(); ++p) {
     Patch const& patch = rest.patches[p];
-    int axis = 0;
-    for (int a = 0; a < 3; ++a)
-      if (patch.range.extent(a) == 1) axis = a;
-    auto const face = face_name(axis, patch.range.begin[axis] == 0 ? 0 : 1);
-    text += fmt::format("\n[[patch]]\nname = {}\nkind = \"{}\"\nzone = {}\nrange = {}\n",
-                        quoted(fmt::format("{} {} {}", mesh.zones[patch.zone].name, face, p - before + 1)),
+    text += fmt::format("\n[[patch]]\nname = {}\nkind = \"{}\"\nzone = {}\nrange = {}\n", quoted(names[p - before]),
                         to_string(patch.kind), zone(patch.zone), range_text(patch.range));
   }
   return text;

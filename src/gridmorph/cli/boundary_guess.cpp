@@ -3,6 +3,7 @@
 #include <gridmorph/motion/detail/cylindrical.hpp>
 #include <gridmorph/motion/detail/plane_fit.hpp>
 #include <gridmorph/motion/slip_surface.hpp>
+#include <gridmorph/wheel/detail/link_nodes.hpp>
 
 #include <fmt/format.h>
 
@@ -27,21 +28,6 @@ struct AxialBounds {
   double axial_min = Box::inf, axial_max = -Box::inf, radius_min = Box::inf, radius_max = -Box::inf;
 };
 
-std::vector<Vec3> points_of(Mesh const& mesh, BoundarySummary const& b) {
-  std::vector<Vec3> points;
-  for (int const p : b.patches) {
-    Patch const& patch = mesh.patches[p];
-    Zone const& zone = mesh.zones[patch.zone];
-    for (int a = 0; a < 3; ++a)
-      if (patch.range.begin[a] < 0 || patch.range.end[a] > zone.extent[a]) return {};
-    for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
-      for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
-        for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i)
-          points.push_back(mesh.coordinates[zone.node({i, j, k})]);
-  }
-  return points;
-}
-
 std::string describe_plane(PlaneFit const& plane) {
   double const n[3] = {plane.normal.x, plane.normal.y, plane.normal.z};
   double const o[3] = {plane.origin.x, plane.origin.y, plane.origin.z};
@@ -50,7 +36,6 @@ std::string describe_plane(PlaneFit const& plane) {
   return fmt::format("plane with normal ({:.4g}, {:.4g}, {:.4g})", n[0], n[1], n[2]);
 }
 
-/// Whether every zone of the boundary is one cell thick away from it: the sides of a 2-D mesh.
 bool one_cell_thick(Mesh const& mesh, BoundarySummary const& b) {
   return std::all_of(b.patches.begin(), b.patches.end(), [&](int p) {
     Patch const& patch = mesh.patches[p];
@@ -60,12 +45,34 @@ bool one_cell_thick(Mesh const& mesh, BoundarySummary const& b) {
   });
 }
 
-std::optional<std::string> guess_plane(Mesh const& mesh, MeshSummary const& s, BoundarySummary const& b,
+/// The plane of the points; in a 2-D mesh of the points and of what lies above them.
+PlaneFit plane_of(MeshSummary const& s, std::vector<Vec3> points, double size) {
+  if (s.unstructured && s.two_dimensional)
+    for (std::size_t n = points.size(); n > 0; --n) points.push_back(points[n - 1] + Vec3{0, 0, size});
+  return fit_plane(points);
+}
+
+bool is_flat(MeshSummary const& s, std::vector<Vec3> const& points, double size) {
+  PlaneFit const plane = plane_of(s, points, size);
+  return plane.determined && plane.deviation <= flat * size;
+}
+
+/// In how many directions the box keeps off that of the mesh on both sides.
+int directions_enclosed(Box const& mesh, Box const& b) {
+  double const off = 1e-6 * distance(mesh.low, mesh.high);
+  auto const inside = [&](double low, double high, double mesh_low, double mesh_high) {
+    return low > mesh_low + off && high < mesh_high - off ? 1 : 0;
+  };
+  return inside(b.low.x, b.high.x, mesh.low.x, mesh.high.x) + inside(b.low.y, b.high.y, mesh.low.y, mesh.high.y) +
+         inside(b.low.z, b.high.z, mesh.low.z, mesh.high.z);
+}
+
+std::optional<std::string> guess_plane(MeshSummary const& s, BoundaryShape const& shape,
                                        std::vector<Vec3> const& points, double size) {
-  PlaneFit const plane = fit_plane(points);
+  PlaneFit const plane = plane_of(s, points, size);
   if (!plane.determined || plane.deviation > flat * size) return std::nullopt;
   std::string text = describe_plane(plane);
-  if (one_cell_thick(mesh, b)) return text + ", side of a 2-D mesh";
+  if (shape.side_of_two_dimensions) return text + ", side of a 2-D mesh";
   if (!s.axis) return text;
   CylindricalFrame const frame(*s.axis);
   double const sine = norm(cross(plane.normal, frame.direction()));
@@ -108,34 +115,60 @@ bool is_outer_hull(Box const& mesh, Box const& b) {
 
 }  // namespace
 
-void guess_roles(Mesh const& mesh, MeshSummary& s) {
+std::vector<BoundaryShape> shapes_of(Mesh const& mesh, MeshSummary const& summary) {
+  std::vector<BoundaryShape> out;
+  for (auto const& b : summary.boundaries) {
+    BoundaryShape shape;
+    shape.side_of_two_dimensions = one_cell_thick(mesh, b);
+    for (int const p : b.patches) {
+      Patch const& patch = mesh.patches[p];
+      Zone const& zone = mesh.zones[patch.zone];
+      bool inside = true;
+      for (int a = 0; a < 3; ++a) inside = inside && patch.range.begin[a] >= 0 && patch.range.end[a] <= zone.extent[a];
+      auto& points = shape.patches.emplace_back();
+      if (inside) for_each_node(zone, patch.range, [&](Index n) { points.push_back(mesh.coordinates[n]); });
+    }
+    out.push_back(std::move(shape));
+  }
+  return out;
+}
+
+void guess_roles(Coordinates const& coordinates, std::vector<BoundaryShape> const& shapes, MeshSummary& s) {
   double const size = distance(s.box.low, s.box.high);
   AxialBounds bounds;
   if (s.axis) {
     CylindricalFrame const frame(*s.axis);
-    for (Index n = 0; n < mesh.n_nodes(); ++n) {
-      auto const m = frame.meridional(mesh.coordinates[n]);
+    for (Index n = 0; n < coordinates.size(); ++n) {
+      auto const m = frame.meridional(coordinates[n]);
       bounds.axial_min = std::min(bounds.axial_min, m.axial);
       bounds.axial_max = std::max(bounds.axial_max, m.axial);
       bounds.radius_min = std::min(bounds.radius_min, m.radius);
       bounds.radius_max = std::max(bounds.radius_max, m.radius);
     }
   }
-  for (auto& b : s.boundaries) {
-    auto const points = points_of(mesh, b);
+  for (std::size_t k = 0; k < s.boundaries.size(); ++k) {
+    auto& b = s.boundaries[k];
+    auto const& shape = shapes[k];
+    std::vector<Vec3> points;
+    for (auto const& patch : shape.patches) points.insert(points.end(), patch.begin(), patch.end());
     if (points.empty()) continue;
+    b.enclosed = directions_enclosed(s.box, b.box);
     if (distance(b.box.low, b.box.high) <= 1e-12 * size) {
       b.guess = "collapsed to a point";
       continue;
     }
+    b.flat = std::all_of(shape.patches.begin(), shape.patches.end(),
+                         [&](auto const& patch) { return !patch.empty() && is_flat(s, patch, size); });
     std::vector<std::string> said;
-    if (auto plane = guess_plane(mesh, s, b, points, size))
+    if (auto plane = guess_plane(s, shape, points, size))
       said.push_back(std::move(*plane));
     else if (auto revolution = guess_revolution(s, points, bounds))
       said.push_back(std::move(*revolution));
     else if (is_outer_hull(s.box, b.box))
       said.emplace_back("reaches round the whole mesh: far field");
-    if (b.first_height_mean > 0 && b.first_height_mean < thin * size && !one_cell_thick(mesh, b))
+    else if (b.flat)
+      said.push_back(fmt::format("{} patches, each in a plane", shape.patches.size()));
+    if (b.first_height_mean > 0 && b.first_height_mean < thin * size && !shape.side_of_two_dimensions)
       said.emplace_back("thin first cells: viscous wall");
     for (auto const& text : said) b.guess += (b.guess.empty() ? "" : "; ") + text;
   }

@@ -1,12 +1,23 @@
-// What the shape of a boundary says about its role, for files whose names do not.
+// What the shape of boundaries suggests about their role.
 #pragma once
 
 #include <gridmorph/cli/mesh_summary.hpp>
 
+#include <vector>
+
 namespace gridmorph::cli {
 
-/// Fills BoundarySummary::guess of every boundary from its nodes: planes, surfaces of revolution, thin first cells, the
-/// outer hull. Suggestions for the reader, never used for morphing. Cost: O(boundary nodes log boundary nodes).
-void guess_roles(Mesh const& mesh, MeshSummary& summary);
+/// What a guess is made from.
+struct BoundaryShape {
+  std::vector<std::vector<Vec3>> patches;  ///< nodes of each patch of the boundary
+  bool side_of_two_dimensions = false;     ///< one cell thick away from it: a side of a 2-D mesh
+};
+
+/// The nodes of each boundary of a structured mesh, patch by patch; none for ranges outside their zone.
+std::vector<BoundaryShape> shapes_of(Mesh const& mesh, MeshSummary const& summary);
+
+/// Fills BoundarySummary::guess, flat and enclosed. shapes[b] belongs to boundary b. Lines of a 2-D mesh in a plane z = constant are
+/// looked at as walls along z. Cost: O(nodes).
+void guess_roles(Coordinates const& coordinates, std::vector<BoundaryShape> const& shapes, MeshSummary& summary);
 
 }  // namespace gridmorph::cli

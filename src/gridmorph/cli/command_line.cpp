@@ -57,6 +57,7 @@ CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
                       "Patches and interfaces (TOML), instead of the file beside the mesh");
   add_leave_out(*inspect, out);
   inspect->add_flag("--match", out.match, "Look for interfaces and periodicity where nothing is declared");
+  inspect->add_flag("!--no-periodic", out.match_periodic, "Look for interfaces only, not for periodicity");
   inspect->add_option("--match-tolerance", out.match_tolerance, "Distance of points that match, of the smallest edge")
       ->check(CLI::Range(1e-9, 0.25));
   inspect->add_option("--write-side-file", out.write_side_file,
@@ -69,11 +70,12 @@ CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
 }
 
 CLI::App* add_surface(CLI::App& app, CommandLine& out) {
-  auto* surface = app.add_subcommand("surface", "Write patches of a mesh as an STL surface");
+  auto* surface = app.add_subcommand(
+      "surface", "Write patches of a mesh as facets (STL) or as nodes (CSV, as a rule \"field\" reads them)");
   surface->add_option("mesh", out.input, "Mesh (CGNS or PLOT3D)")->required();
   surface->add_option("-p,--patches", out.patches, "Patches, named as in case files (blade, type:wall, row1/per*)")
       ->required();
-  surface->add_option("-o,--output", out.output, "STL file")->required();
+  surface->add_option("-o,--output", out.output, "NAME.stl or NAME.csv")->required();
   surface->add_option("--split", out.split, "Cut each facet into N x N")->check(CLI::Range(1, 1000));
   add_leave_out(*surface, out);
   surface->add_flag("--ascii", out.ascii, "Text with all digits; binary STL has single precision");

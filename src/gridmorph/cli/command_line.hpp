@@ -29,6 +29,7 @@ struct CommandLine {
   std::optional<std::string> suggest;  ///< inspect: a case file to start from, to this file; empty: printed
   std::vector<std::string> leave_out;  ///< inspect, quality, surface: bases and zones that are no part of the mesh
   bool match = false;                  ///< inspect: look for interfaces
+  bool match_periodic = true;          ///< inspect: and for periodicity
   double match_tolerance = 0.01;       ///< inspect: share of the smallest edge
 
   std::vector<std::string> patches;  ///< surface: selectors

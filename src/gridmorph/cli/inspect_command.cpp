@@ -26,9 +26,22 @@ namespace gridmorph::cli {
 
 namespace {
 
+SnippetOptions snippet_options(CommandLine const& options) {
+  SnippetOptions out;
+  if (options.suggest && !options.suggest->empty())
+    if (auto const folder = std::filesystem::path(*options.suggest).parent_path(); !folder.empty()) out.folder = folder;
+  // What is written beside the mesh under its name is found without being told.
+  auto const side = options.write_side_file ? options.write_side_file : options.side_file;
+  std::error_code ignored;
+  auto const own = find_side_file(options.input);
+  if (side && !(own && std::filesystem::equivalent(*side, *own, ignored))) out.side_file = side;
+  out.leave_out = options.leave_out;
+  return out;
+}
+
 /// A first case file, printed or written.
 int suggest(CommandLine const& options, MeshSummary const& summary, Terminal& terminal) {
-  std::string const text = case_snippet(summary);
+  std::string const text = case_snippet(summary, snippet_options(options));
   if (options.suggest->empty()) {
     terminal.result(text);
   } else {
@@ -44,16 +57,17 @@ int inspect_unstructured(CommandLine const& options, Terminal& terminal) {
                     ": is an unstructured mesh; --match and --write-side-file are for structured ones");
   terminal.progress("reading " + options.input.string());
   LoadedMesh const loaded = load_unstructured(options.input, options.side_file, options.leave_out);
-  if (options.suggest) return suggest(options, summarize(loaded), terminal);
+  terminal.progress("looking at boundaries");
+  MeshSummary const summary = summarize(loaded);
+  if (options.suggest) return suggest(options, summary, terminal);
   terminal.progress("measuring quality");
   QualityReport const quality = measure_mesh(loaded);
   if (options.json) {
-    nlohmann::json json = inspect_json(loaded);
-    json["case_file"] = case_snippet(summarize(loaded));
+    nlohmann::json json = inspect_json(loaded, summary, snippet_options(options));
     json["quality"] = quality_json(quality, {}, {});
     terminal.result(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
-    terminal.result(inspect_text(loaded, format_table(quality)));
+    terminal.result(inspect_text(loaded, summary, format_table(quality), snippet_options(options)));
   }
   return done;
 }
@@ -78,7 +92,8 @@ void check_files(CommandLine const& options) {
 /// What the points say: added to the mesh, and to its side file where one is to be written.
 void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
   terminal.progress("matching points");
-  FoundInterfaces const found = find_interfaces(mesh, {.tolerance = options.match_tolerance});
+  FoundInterfaces const found =
+      find_interfaces(mesh, {.tolerance = options.match_tolerance, .periodic = options.match_periodic});
   int const periodic = int(std::count_if(found.interfaces.begin(), found.interfaces.end(),
                                          [](auto const& f) { return f.periodic.has_value(); }));
   mesh.notes.push_back(
@@ -97,6 +112,8 @@ void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
 
 int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   check_files(options);
+  if (options.suggest && options.match && !options.write_side_file)
+    throw ConfigError("--suggest with --match: a case file finds the interfaces in a side file; add --write-side-file");
   if (mesh_kind(options.input.string(), options.leave_out) == MeshKind::unstructured)
     return inspect_unstructured(options, terminal);
   terminal.progress("reading " + options.input.string());
@@ -108,11 +125,11 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   terminal.progress("measuring quality");
   QualityReport const quality = measure_mesh(mesh);
   if (options.json) {
-    nlohmann::json json = inspect_json(summary);
+    nlohmann::json json = inspect_json(summary, snippet_options(options));
     json["quality"] = quality_json(quality, {}, {});
     terminal.result(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
-    terminal.result(inspect_text(summary, format_table(quality)));
+    terminal.result(inspect_text(summary, format_table(quality), snippet_options(options)));
     if (options.write_side_file) terminal.say(fmt::format("wrote {}\n", options.write_side_file->string()));
   }
   return done;

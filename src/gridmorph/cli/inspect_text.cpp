@@ -109,23 +109,6 @@ std::string zones_text(MeshSummary const& s) {
   return text;
 }
 
-std::string boundaries_text(MeshSummary const& s) {
-  if (s.boundaries.empty()) return "  none\n";
-  std::vector<Row> rows{{"name", "is a", "type:", "ranges", "nodes", "x", "y", "z", "first cell"}};
-  for (auto const& b : s.boundaries)
-    rows.push_back({b.selector, std::string(source_text(b.source)), kinds_text(b), std::to_string(b.patches.size()),
-                    count_text(b.nodes), range_text(b.box.low.x, b.box.high.x), range_text(b.box.low.y, b.box.high.y),
-                    range_text(b.box.low.z, b.box.high.z), fmt::format("{:.3g}", b.first_height_mean)});
-  std::string text = table(rows, "lllrrlllr");
-  std::string more;
-  for (auto const& b : s.boundaries) {
-    if (b.source == BoundarySummary::Source::family && !(b.names.size() == 1 && b.names.front() == b.selector))
-      more += fmt::format("  {}: BC {}\n", b.selector, list_some(b.names, 8));
-    if (!b.guess.empty()) more += fmt::format("  {}: looks like {}\n", b.selector, b.guess);
-  }
-  return more.empty() ? text : text + "\n" + more;
-}
-
 std::string connections_text(MeshSummary const& s) {
   int periodic = 0;
   for (auto const& p : s.periodics) periodic += p.interfaces;
@@ -147,7 +130,28 @@ std::string connections_text(MeshSummary const& s) {
 
 }  // namespace
 
-std::string inspect_text(MeshSummary const& s, std::string const& quality) {
+std::string boundaries_text(MeshSummary const& s) {
+  if (s.boundaries.empty()) return "  none\n";
+  std::vector<Row> rows{
+      {"name", "is a", "type:", s.unstructured ? "faces" : "ranges", "nodes", "x", "y", "z", "first cell"}};
+  for (auto const& b : s.boundaries)
+    rows.push_back({b.selector, std::string(source_text(b.source)), kinds_text(b),
+                    s.unstructured ? count_text(b.faces) : std::to_string(b.patches.size()), count_text(b.nodes),
+                    range_text(b.box.low.x, b.box.high.x), range_text(b.box.low.y, b.box.high.y),
+                    range_text(b.box.low.z, b.box.high.z),
+                    b.first_height_mean > 0 ? fmt::format("{:.3g}", b.first_height_mean) : "-"});
+  std::string text = table(rows, "lllrrlllr");
+  std::string more;
+  for (auto const& b : s.boundaries) {
+    if (b.source == BoundarySummary::Source::family && !(b.names.size() == 1 && b.names.front() == b.selector))
+      more += fmt::format("  {}: BC {}\n", b.selector, list_some(b.names, 8));
+    if (b.paired) more += fmt::format("  {}: periodic connections pair its nodes\n", b.selector);
+    if (!b.guess.empty()) more += fmt::format("  {}: looks like {}\n", b.selector, b.guess);
+  }
+  return more.empty() ? text : text + "\n" + more;
+}
+
+std::string inspect_text(MeshSummary const& s, std::string const& quality, SnippetOptions const& options) {
   std::string text =
       fmt::format("{}: {}, {}, {}{}\n", s.source, plural(Index(s.zones.size()), "zone"), plural(s.nodes, "node"),
                   plural(s.cells, "cell"), s.two_dimensional ? ", 2-D (one cell thick)" : "");
@@ -162,13 +166,15 @@ std::string inspect_text(MeshSummary const& s, std::string const& quality) {
     text +=
         "\nFaces that nothing claims may be interfaces: --match looks for them, --write-side-file also writes them "
         "down\n";
-  if (!s.problems.empty()) text += "\nProblems that stop a morph\n";
+  if (!s.problems.empty())
+    text += s.remedied ? "\nProblems that the settings of the case file below deal with\n"
+                       : "\nProblems that stop a morph\n";
   for (std::size_t p = 0; p < std::min(s.problems.size(), most_problems); ++p) text += "  " + s.problems[p] + "\n";
   if (s.problems.size() > most_problems)
     text += fmt::format("  ... and {} more (--json lists all)\n", s.problems.size() - most_problems);
   if (s.blocks) text += "\nBlocks that plans are made on\n" + blocks_text(*s.blocks);
   if (!quality.empty()) text += "\n" + quality;
-  text += "\nA case file to start from\n\n" + case_snippet(s);
+  text += "\nA case file to start from\n\n" + case_snippet(s, options);
   return text;
 }
 
@@ -205,7 +211,7 @@ nlohmann::json json_of(PeriodicSummary const& p) {
 
 }  // namespace
 
-nlohmann::json inspect_json(MeshSummary const& s) {
+nlohmann::json inspect_json(MeshSummary const& s, SnippetOptions const& options) {
   nlohmann::json json{{"source", s.source},
                       {"nodes", s.nodes},
                       {"cells", s.cells},
@@ -216,7 +222,8 @@ nlohmann::json inspect_json(MeshSummary const& s) {
                       {"interfaces", {{"stored", s.interfaces}, {"of_a_zone_with_itself", s.self_interfaces}}},
                       {"notes", s.notes},
                       {"problems", s.problems},
-                      {"case_file", case_snippet(s)}};
+                      {"problems_remedied", s.remedied},
+                      {"case_file", case_snippet(s, options)}};
   json["zones"] = nlohmann::json::array();
   for (auto const& z : s.zones)
     json["zones"].push_back({{"name", z.name}, {"extent", z.extent}, {"nodes", z.nodes}, {"box", json_of(z.box)}});

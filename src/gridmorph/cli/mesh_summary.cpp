@@ -1,14 +1,17 @@
 #include <gridmorph/cli/boundary_guess.hpp>
 #include <gridmorph/cli/mesh_summary.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/topology/coincident_nodes.hpp>
 #include <gridmorph/topology/coverage.hpp>
 #include <gridmorph/topology/links.hpp>
 #include <gridmorph/topology/periodic_axis.hpp>
+#include <gridmorph/wheel/detail/link_nodes.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -155,10 +158,27 @@ void look_for_remedies(Mesh const& mesh, MeshSummary& summary) {
     try {
       (void)connect_and_check(completed, options);
       summary.open_faces = open;
+      summary.remedied = true;
       return;
     } catch (MeshError const&) {  // said already
     }
   }
+}
+
+std::vector<std::vector<Index>> nodes_of(Mesh const& mesh, std::vector<BoundarySummary> const& boundaries,
+                                         std::vector<Index> const& number) {
+  std::vector<std::vector<Index>> out;
+  for (auto const& b : boundaries) {
+    auto& nodes = out.emplace_back();
+    for (int const p : b.patches) {
+      Patch const& patch = mesh.patches[std::size_t(p)];
+      Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+      bool inside = true;
+      for (int a = 0; a < 3; ++a) inside = inside && patch.range.begin[a] >= 0 && patch.range.end[a] <= zone.extent[a];
+      if (inside) for_each_node(zone, patch.range, [&](Index n) { nodes.push_back(number[std::size_t(n)]); });
+    }
+  }
+  return out;
 }
 
 /// What the topology says to this mesh: its problems, or its blocks.
@@ -225,6 +245,26 @@ PeriodicSummary describe_periodic(Periodic const& declared, RigidTransform const
   return out;
 }
 
+void find_touching(std::vector<BoundarySummary>& boundaries, std::vector<std::vector<Index>> const& nodes,
+                   Index n_nodes) {
+  std::vector<std::pair<Index, int>> places;
+  for (std::size_t b = 0; b < nodes.size(); ++b)
+    for (Index const n : nodes[b])
+      if (n >= 0 && n < n_nodes) places.emplace_back(n, int(b));
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  std::vector<std::set<int>> touches(boundaries.size());
+  for (auto begin = places.begin(); begin != places.end();) {
+    auto const end = std::find_if(begin, places.end(), [&](auto const& p) { return p.first != begin->first; });
+    for (auto a = begin; a != end; ++a)
+      for (auto b = begin; b != end; ++b)
+        if (a != b) touches[std::size_t(a->second)].insert(b->second);
+    begin = end;
+  }
+  for (std::size_t b = 0; b < boundaries.size(); ++b)
+    boundaries[b].touches.assign(touches[b].begin(), touches[b].end());
+}
+
 MeshSummary summarize(Mesh const& mesh) {
   MeshSummary out;
   out.source = mesh.source;
@@ -244,7 +284,8 @@ MeshSummary summarize(Mesh const& mesh) {
   collect_interfaces(mesh, size, out);
   out.boundaries = group_patches(mesh);
   for (auto& b : out.boundaries) measure(mesh, b);
-  guess_roles(mesh, out);
+  guess_roles(mesh.coordinates, shapes_of(mesh, out), out);
+  find_touching(out.boundaries, nodes_of(mesh, out.boundaries, coincident_nodes(mesh)), mesh.n_nodes());
   for (auto const& family : mesh.families) {
     bool const used = std::any_of(mesh.patches.begin(), mesh.patches.end(),
                                   [&](Patch const& p) {

@@ -41,6 +41,11 @@ struct BoundarySummary {
   double first_height_min = 0, first_height_mean = 0;  ///< distance to the next node off the face [length]
   int cells_across = 0;                                ///< of the thinnest zone, from the face to the opposite one
   std::string guess;                                   ///< what its shape suggests; empty: nothing in particular
+  Index faces = 0;                                     ///< of unstructured meshes
+  bool flat = false;         ///< each of its patches lies in a plane, so that nodes can slide on it
+  bool paired = false;       ///< of unstructured meshes: periodic connections pair all of its nodes
+  int enclosed = 0;          ///< directions x, y, z in which it keeps off the mesh's own limits on both sides
+  std::vector<int> touches;  ///< numbers of the boundaries that share nodes with it, ascending
 };
 
 /// Periodic interfaces that share their transform.
@@ -67,9 +72,10 @@ struct MeshSummary {
   Box box;
   Index nodes = 0, cells = 0;
   bool two_dimensional = false;
-  bool unstructured = false;            ///< then only what case_snippet() asks for is filled in
+  bool unstructured = false;            ///< then zones, periodics and blocks are not filled in
   std::vector<std::string> notes;       ///< of the reader
   std::vector<std::string> problems;    ///< what a morph would refuse
+  bool remedied = false;                ///< with the two settings below it would not
   double needed_tolerance = 0;          ///< matching_tolerance with which interfaces match; 0: the default does
   bool open_faces = false;              ///< some faces are claimed by nothing
   std::optional<BlocksSummary> blocks;  ///< only without problems
@@ -78,6 +84,10 @@ struct MeshSummary {
 /// Axis, angle and sectors, or the translation, without names. `fitted`: what matched nodes say, where there are any; it counts
 /// before what the file declares. The dominant component of the direction is positive, so that both sides of a pair have one axis.
 PeriodicSummary describe_periodic(Periodic const& declared, RigidTransform const* fitted, double size);
+
+/// Fills BoundarySummary::touches. nodes[b]: those of boundary b, nodes that coincide by one number less than n_nodes.
+void find_touching(std::vector<BoundarySummary>& boundaries, std::vector<std::vector<Index>> const& nodes,
+                   Index n_nodes);
 
 /// Cost: O(nodes) for extents, O(boundary nodes) for the rest.
 MeshSummary summarize(Mesh const& mesh);

@@ -1,6 +1,7 @@
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/run_files.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/linked_files.hpp>
 
 #include <fmt/format.h>
@@ -42,6 +43,28 @@ std::string unwritable(RunFile const& file) {
   return {};
 }
 
+/// The format in which an output is written; empty where any name is as good. Meshes keep the format of the input.
+std::string_view format_of(RunFile const& file, RunFiles const& inputs) {
+  if (file.what == "report") return "JSON";
+  if (file.what == "case file" || file.what == "side file") return "TOML";
+  if (file.what == "wheel") return to_string(MeshFormat::cgns);
+  if (file.what != "output") return {};
+  for (auto const& input : inputs) try {
+      if (input.what == "input mesh") return to_string(mesh_format(input.path.string()));
+    } catch (IoError const&) {  // its reader says why
+    }
+  return {};
+}
+
+/// An ending that stands for another format is a mistake, or would become one.
+std::string wrong_ending(RunFile const& file, RunFiles const& inputs) {
+  auto const stands_for = format_of_ending(file.path.string());
+  auto const format = stands_for.empty() ? std::string_view() : format_of(file, inputs);
+  if (format.empty() || stands_for == format) return {};
+  return fmt::format("its ending stands for {}, and it is written as {}{}; give it another ending", stands_for, format,
+                     file.what == "output" ? ", the format of the input" : "");
+}
+
 }  // namespace
 
 RunFiles inputs_of_mesh(fs::path const& mesh, std::optional<fs::path> const& side_file) {
@@ -81,6 +104,7 @@ void check_run_files(RunFiles const& inputs, RunFiles const& outputs) {
       problems.add(fmt::format("{}: {}", name, why));
       continue;
     }
+    if (auto const why = wrong_ending(file, inputs); !why.empty()) problems.add(fmt::format("{}: {}", name, why));
     std::string const key = identity(file.path);
     if (auto const input = taken.find(key); input != taken.end())
       problems.add(fmt::format("{} is the {} '{}'; give another file name, inputs are never overwritten", name,

@@ -28,7 +28,7 @@ RunFiles outputs_of(std::filesystem::path const& output, std::optional<std::file
 
 /// Throws one ConfigError for all outputs that cannot be: in a folder that does not exist; a folder, device or pipe; an input or another
 /// output, by whatever name (links and hard links are the same file: device and inode are compared; what does not exist yet
-/// is compared by its canonical path). Cost O(n log n) in the number of files.
+/// is compared by its canonical path); or named with the ending of another format than it is written in. Cost O(n log n) in the number of files.
 void check_run_files(RunFiles const& inputs, RunFiles const& outputs);
 
 }  // namespace gridmorph::cli

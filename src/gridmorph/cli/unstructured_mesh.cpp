@@ -1,10 +1,11 @@
 #include <gridmorph/casefile/side_file.hpp>
+#include <gridmorph/cli/boundary_guess.hpp>
+#include <gridmorph/cli/inspect_text.hpp>
 #include <gridmorph/cli/mesh_summary.hpp>
 #include <gridmorph/cli/unstructured_mesh.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
-#include <gridmorph/motion/detail/plane_fit.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/topology/periodic_axis.hpp>
 
@@ -27,7 +28,9 @@ LoadedMesh load_unstructured(std::filesystem::path const& path, std::optional<st
   auto const signs = volume_signs(out.mesh);
   out.signs = numbering_signs(out.mesh, out.topology.sides, signs);
   for (auto const& negative : negative_elements(out.mesh, signs))
-    out.problems.push_back(out.mesh.source + ": " + describe(out.mesh, negative));
+    out.remarks.push_back(out.mesh.source + ": " + describe(out.mesh, negative));
+  if (out.mesh.dimension == 2 && std::fabs(plane_normal(out.mesh).z) != 1)
+    out.problems.push_back(out.mesh.source + ": is 2-D but does not lie in a plane z = constant; turn it into one");
   constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
   for (auto const& pair : undeclared_connections(out.mesh, tolerance * out.mesh.size()))
     out.mesh.notes.push_back(out.mesh.source + ": " + describe(out.mesh, pair));
@@ -135,7 +138,8 @@ std::vector<std::string> all_notes(LoadedMesh const& loaded) {
 
 }  // namespace
 
-std::string inspect_text(LoadedMesh const& loaded, std::string const& quality) {
+std::string inspect_text(LoadedMesh const& loaded, MeshSummary const& summary, std::string const& quality,
+                         SnippetOptions const& options) {
   auto const& mesh = loaded.mesh;
   std::string text = fmt::format("{}: unstructured, {}-D, {} zone{}, {} nodes, {} elements ({})\n", mesh.source,
                                  mesh.dimension, mesh.zones.size(), mesh.zones.size() == 1 ? "" : "s", mesh.n_nodes(),
@@ -150,19 +154,7 @@ std::string inspect_text(LoadedMesh const& loaded, std::string const& quality) {
   }
   if (mesh.zones.size() > most_rows)
     text += fmt::format("  ... and {} more (--json lists all)\n", mesh.zones.size() - most_rows);
-  text += "\nBoundaries that a case file can name\n";
-  if (mesh.patches.empty()) text += "  none\n";
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    auto const& patch = mesh.patches[p];
-    auto const nodes = patch_nodes(patch);
-    Box const box = box_of(mesh, nodes);
-    text += fmt::format("  {} (zone {}, type:{}{}): {} faces, {} nodes; x {}, y {}, z {}\n",
-                        patch.families.empty() ? patch.name : patch.families.front(),
-                        mesh.zones[std::size_t(patch.zone)].name, to_string(patch.kind),
-                        patch.bc_type.empty() ? "" : ", " + patch.bc_type, loaded.claims.faces_of_patch[p],
-                        nodes.size(), range_text(box.low.x, box.high.x), range_text(box.low.y, box.high.y),
-                        range_text(box.low.z, box.high.z));
-  }
+  text += "\nBoundaries that a case file can name\n" + boundaries_text(summary);
   text += "\nConnections\n";
   if (mesh.connections.empty()) text += "  none\n";
   for (auto const& c : mesh.connections)
@@ -171,11 +163,12 @@ std::string inspect_text(LoadedMesh const& loaded, std::string const& quality) {
                     mesh.zones[std::size_t(c.zone)].name, mesh.zones[std::size_t(c.donor_zone)].name, c.nodes.size(),
                     largest_mismatch(mesh, c), c.periodic ? "; " + periodic_text(describe_connection(mesh, c)) : "");
   text += list_text("Notes of the reader", all_notes(loaded));
+  text += list_text("Remarks", loaded.remarks);
   text += list_text("Problems that stop a morph", loaded.problems);
-  return text + "\n" + quality;
+  return text + "\n" + quality + "\nA case file to start from\n\n" + case_snippet(summary, options);
 }
 
-nlohmann::json inspect_json(LoadedMesh const& loaded) {
+nlohmann::json inspect_json(LoadedMesh const& loaded, MeshSummary const& summary, SnippetOptions const& options) {
   auto const& mesh = loaded.mesh;
   auto const vector = [](Vec3 const& v) { return nlohmann::json{v.x, v.y, v.z}; };
   auto const box_json = [&](Box const& box) {
@@ -189,9 +182,17 @@ nlohmann::json inspect_json(LoadedMesh const& loaded) {
       if (count[std::size_t(t)] > 0) out[std::string(to_string(ElementType(t)))] = count[std::size_t(t)];
     return out;
   };
-  nlohmann::json json{{"source", mesh.source},     {"unstructured", true},          {"dimension", mesh.dimension},
-                      {"nodes", mesh.n_nodes()},   {"elements", mesh.n_elements()}, {"types", types_json(-1)},
-                      {"families", mesh.families}, {"notes", all_notes(loaded)},    {"problems", loaded.problems}};
+  nlohmann::json json{{"source", mesh.source},
+                      {"unstructured", true},
+                      {"dimension", mesh.dimension},
+                      {"nodes", mesh.n_nodes()},
+                      {"elements", mesh.n_elements()},
+                      {"types", types_json(-1)},
+                      {"families", mesh.families},
+                      {"notes", all_notes(loaded)},
+                      {"problems", loaded.problems},
+                      {"remarks", loaded.remarks},
+                      {"case_file", case_snippet(summary, options)}};
   json["zones"] = nlohmann::json::array();
   for (std::size_t z = 0; z < mesh.zones.size(); ++z)
     json["zones"].push_back({{"name", mesh.zones[z].name},
@@ -203,7 +204,12 @@ nlohmann::json inspect_json(LoadedMesh const& loaded) {
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     auto const& patch = mesh.patches[p];
     auto const nodes = patch_nodes(patch);
+    auto const& selector = patch.families.empty() ? patch.name : patch.families.front();
+    auto const b = std::find_if(summary.boundaries.begin(), summary.boundaries.end(),
+                                [&](BoundarySummary const& s) { return s.selector == selector; });
     json["boundaries"].push_back({{"name", patch.name},
+                                  {"guess", b->guess},
+                                  {"first_height", {{"min", b->first_height_min}, {"mean", b->first_height_mean}}},
                                   {"families", patch.families},
                                   {"kind", to_string(patch.kind)},
                                   {"bc_type", patch.bc_type},
@@ -230,23 +236,42 @@ nlohmann::json inspect_json(LoadedMesh const& loaded) {
 
 namespace {
 
-/// Whether all nodes lie in the plane through the first of them, across the sum of the faces' areas.
-bool is_flat(LoadedMesh const& loaded, std::vector<int> const& patches) {
+/// Mean and smallest distance of the corners opposite a boundary face from it: the height of the first cell.
+void measure_heights(LoadedMesh const& loaded, std::vector<int> const& boundary_of_patch,
+                     std::vector<BoundarySummary>& boundaries) {
   auto const& mesh = loaded.mesh;
-  Vec3 const across = plane_normal(mesh);
-  std::vector<Vec3> points;
-  Vec3 normal;
-  for (Index f = 0; f < loaded.topology.boundary.size(); ++f) {
-    if (std::find(patches.begin(), patches.end(), loaded.claims.patch[std::size_t(f)]) == patches.end()) continue;
-    auto const face = loaded.topology.boundary.nodes[f];
+  auto const& faces = loaded.topology.boundary;
+  std::vector<double> sum(boundaries.size(), 0), smallest(boundaries.size(), Box::inf);
+  std::vector<Index> count(boundaries.size(), 0);
+  Vec3 const up = plane_normal(mesh);
+  for (Index f = 0; f < faces.size(); ++f) {
+    int const patch = loaded.claims.patch[std::size_t(f)];
+    if (patch < 0) continue;
+    auto const b = std::size_t(boundary_of_patch[std::size_t(patch)]);
+    auto const face = faces.nodes[f];
     Vec3 const origin = mesh.coordinates[face[0]];
-    for (Number const n : face) points.push_back(mesh.coordinates[n]);
-    if (mesh.dimension == 2) normal += cross(mesh.coordinates[face[1]] - origin, across);
+    Vec3 normal = mesh.dimension == 2 ? cross(mesh.coordinates[face[1]] - origin, up) : Vec3{};
     for (std::size_t k = 2; k < face.size(); ++k)
       normal += cross(mesh.coordinates[face[k - 1]] - origin, mesh.coordinates[face[k]] - origin);
+    double const length = norm(normal);
+    if (!(length > 0)) continue;
+    double height = 0;
+    int opposite = 0;
+    for (Number const n : mesh.elements.corners(faces.element[std::size_t(f)])) {
+      if (std::find(face.begin(), face.end(), n) != face.end()) continue;
+      height += std::fabs(dot(mesh.coordinates[n] - origin, normal)) / length;
+      ++opposite;
+    }
+    if (opposite == 0) continue;
+    sum[b] += height / opposite;
+    smallest[b] = std::min(smallest[b], height / opposite);
+    ++count[b];
   }
-  double const length = norm(normal);
-  return length > 0 && deviation_from_plane(points, points.front(), (1 / length) * normal) <= 1e-6 * mesh.size();
+  for (std::size_t b = 0; b < boundaries.size(); ++b)
+    if (count[b] > 0) {
+      boundaries[b].first_height_mean = sum[b] / double(count[b]);
+      boundaries[b].first_height_min = smallest[b];
+    }
 }
 
 /// The axis that all periodic rotations share, its largest component positive.
@@ -263,6 +288,26 @@ std::optional<Axis> common_axis(UnstructuredMesh const& mesh) {
   return axis;
 }
 
+/// Sides of one wall in two zones may coincide without a connection that says so: their nodes get one number.
+void join_by_position(UnstructuredMesh const& mesh, std::vector<BoundarySummary> const& boundaries,
+                      std::vector<std::vector<Index>>& nodes) {
+  double const tolerance = 1e-6 * mesh.size();  // as for connections of a file
+  auto const apart = [&](Box const& a, Box const& b) {
+    return a.low.x > b.high.x + tolerance || b.low.x > a.high.x + tolerance || a.low.y > b.high.y + tolerance ||
+           b.low.y > a.high.y + tolerance || a.low.z > b.high.z + tolerance || b.low.z > a.high.z + tolerance;
+  };
+  auto const zone_of = [&](std::size_t b) { return mesh.patches[std::size_t(boundaries[b].patches.front())].zone; };
+  constexpr std::size_t most = 64;  // pairs of boundaries are looked at
+  for (std::size_t a = 0; a < std::min(most, nodes.size()); ++a)
+    for (std::size_t b = a + 1; b < std::min(most, nodes.size()); ++b) {
+      if (zone_of(a) == zone_of(b) || apart(boundaries[a].box, boundaries[b].box)) continue;
+      std::vector<Number> const own(nodes[b].begin(), nodes[b].end()), others(nodes[a].begin(), nodes[a].end());
+      auto const partner = match_points(mesh.coordinates, own, others, tolerance);
+      for (std::size_t n = 0; n < partner.size(); ++n)
+        if (partner[n] >= 0) nodes[b][n] = partner[n];
+    }
+}
+
 }  // namespace
 
 MeshSummary summarize(LoadedMesh const& loaded) {
@@ -272,26 +317,53 @@ MeshSummary summarize(LoadedMesh const& loaded) {
   out.source = mesh.source;
   out.two_dimensional = mesh.dimension == 2;
   out.axis = common_axis(mesh);
-  auto const paired = periodic_nodes(mesh);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) out.box.add(mesh.coordinates[n]);
+  auto const periodic = periodic_nodes(mesh);
+  auto const representative = coincident_nodes(mesh);
+  std::vector<BoundaryShape> shapes;
+  std::vector<std::vector<Index>> nodes_of_boundary;
+  std::vector<int> boundary_of_patch;
   for (int p = 0; p < int(mesh.patches.size()); ++p) {
     auto const& patch = mesh.patches[std::size_t(p)];
+    using Source = BoundarySummary::Source;
     std::string const& selector = patch.families.empty() ? patch.name : patch.families.front();
-    // Periodic patches move as one with their partner unless a rule names them.
-    auto const nodes = patch_nodes(patch);
-    if (std::all_of(nodes.begin(), nodes.end(), [&](Number n) { return paired[std::size_t(n)] != 0; })) continue;
+    Source const source = !patch.families.empty()               ? Source::family
+                          : patch.kind == PatchKind::connection ? Source::connection
+                                                                : Source::boundary_condition;
     auto found = std::find_if(out.boundaries.begin(), out.boundaries.end(),
                               [&](BoundarySummary const& b) { return b.selector == selector; });
     if (found == out.boundaries.end()) {
       found = out.boundaries.insert(out.boundaries.end(), BoundarySummary{});
       found->selector = selector;
+      found->source = source;
+      found->paired = true;
+      shapes.emplace_back();
+      nodes_of_boundary.emplace_back();
     }
-    if (std::find(found->kinds.begin(), found->kinds.end(), patch.kind) == found->kinds.end())
-      found->kinds.push_back(patch.kind);
-    found->names.push_back(patch.name);
+    auto const b = std::size_t(found - out.boundaries.begin());
+    boundary_of_patch.push_back(int(b));
+    auto const once = [](auto& list, auto const& value) {
+      if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+    };
+    once(found->kinds, patch.kind);
+    once(found->names, patch.name);
+    if (!patch.bc_type.empty()) once(found->bc_types, patch.bc_type);
     found->patches.push_back(p);
+    found->faces += loaded.claims.faces_of_patch[std::size_t(p)];
+    auto const nodes = patch_nodes(patch);
+    found->nodes += Index(nodes.size());
+    auto& points = shapes[b].patches.emplace_back();
+    for (Number const n : nodes) {
+      points.push_back(mesh.coordinates[n]);
+      found->box.add(points.back());
+      nodes_of_boundary[b].push_back(representative[std::size_t(n)]);
+      found->paired = found->paired && periodic[std::size_t(n)] != 0;
+    }
   }
-  for (auto& b : out.boundaries)
-    if (is_flat(loaded, b.patches)) b.guess = "plane";
+  join_by_position(mesh, out.boundaries, nodes_of_boundary);
+  measure_heights(loaded, boundary_of_patch, out.boundaries);
+  guess_roles(mesh.coordinates, shapes, out);
+  find_touching(out.boundaries, nodes_of_boundary, mesh.n_nodes());
   return out;
 }
 

@@ -1,7 +1,7 @@
 // What inspect and quality do with unstructured meshes.
 #pragma once
 
-#include <gridmorph/cli/mesh_summary.hpp>
+#include <gridmorph/cli/inspect_text.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/quality/quality.hpp>
 
@@ -20,7 +20,8 @@ struct LoadedMesh {
   UnstructuredTopology topology;
   BoundaryClaims claims;
   std::vector<signed char> signs;     ///< numbering_signs() of the mesh
-  std::vector<std::string> problems;  ///< open faces, elements that are numbered inside out, ...
+  std::vector<std::string> problems;  ///< what stops a morph: open faces, ...
+  std::vector<std::string> remarks;   ///< what does not: elements that are numbered inside out
 };
 
 /// As load_unstructured_mesh() of side_file.hpp.
@@ -35,11 +36,12 @@ QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> 
 /// nodes and elements.
 Coordinates coordinates_of_same_mesh(UnstructuredMesh const& a, UnstructuredMesh b);
 
-/// Zones, boundaries, connections, notes and problems; `quality` is printed last.
-std::string inspect_text(LoadedMesh const& loaded, std::string const& quality);
-nlohmann::json inspect_json(LoadedMesh const& loaded);
-
-/// What a first case file needs to know: boundaries by the names that rules use, which of them are flat, the axis.
+/// Boundaries by the names that rules use, what they look like and how they meet; the axis.
 MeshSummary summarize(LoadedMesh const& loaded);
+
+/// Zones, boundaries, connections, notes, remarks and problems, `quality`, and a case file to start from.
+std::string inspect_text(LoadedMesh const& loaded, MeshSummary const& summary, std::string const& quality,
+                         SnippetOptions const& options);
+nlohmann::json inspect_json(LoadedMesh const& loaded, MeshSummary const& summary, SnippetOptions const& options);
 
 }  // namespace gridmorph::cli

@@ -225,7 +225,9 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   if (output.empty())
     throw ConfigError(options.input.string() +
                       ": no output; add output = \"wheel.cgns\" to [wheel] or give --output FILE");
-  check_run_files(inputs_of(case_file), outputs_of(output, report));
+  RunFiles outputs = outputs_of(output, report);
+  outputs.front().what = "wheel";  // CGNS, whatever the sector is
+  check_run_files(inputs_of(case_file), outputs);
   if (case_file.output_options.displacement || case_file.output_options.quality)
     terminal.warn("[output] displacement and quality are not written into wheels");
 

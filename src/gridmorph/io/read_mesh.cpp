@@ -3,6 +3,7 @@
 #include <gridmorph/io/cgns_layout.hpp>
 #include <gridmorph/io/extrude.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/plot3d.hpp>
@@ -44,6 +45,7 @@ void read_coordinates(cgns::File const& file, cgns::Layout const& layout, Mesh& 
 }  // namespace
 
 Mesh read_mesh(std::string const& path, ReadOptions const& options) {
+  if (options.plot3d_format.empty()) refuse_other_format(path);
   if (!cgns::is_cgns(path)) {
     if (!options.leave_out.empty())
       throw IoError(path + ": leave_out is for CGNS files, which name bases and zones; remove it for a PLOT3D mesh");

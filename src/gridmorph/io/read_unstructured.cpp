@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns_unstructured_boundary.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/su2_file.hpp>
 #include <gridmorph/io/unstructured_check.hpp>
@@ -98,6 +99,7 @@ bool is_cgns(std::string const& path) {
 
 MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leave_out) {
   if (su2::is_su2(path)) return MeshKind::unstructured;
+  refuse_other_format(path);
   if (!is_cgns(path)) return MeshKind::structured;
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();

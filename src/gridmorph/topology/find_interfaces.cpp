@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
-#include <gridmorph/topology/detail/find_periodic.hpp>
+#include <gridmorph/topology/detail/plausible_periodic.hpp>
 #include <gridmorph/topology/find_interfaces.hpp>
 
 #include <algorithm>
@@ -18,8 +18,6 @@ using topology::CellPair;
 using topology::SurfaceCells;
 using topology::Turn;
 using topology::ZoneFace;
-
-constexpr std::size_t few_of_many = 5;  // a fifth
 
 /// A pair of cells with what it has in common with others of one interface: faces, turn, and where node (0, 0) would go.
 struct Placed {
@@ -170,31 +168,24 @@ FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options) {
                         " face cells coincide with several others and were joined with the nearest");
   if (!options.periodic) return out;
 
+  std::vector<std::uint8_t> open(std::size_t(cells.size()));
+  for (Index c = 0; c < cells.size(); ++c) open[std::size_t(c)] = cells.is_open(c) ? 1 : 0;
   auto const matches = topology::find_periodic(cells, options.tolerance, out.notes);
-  // A few cells that happen to fit are no periodicity beside many that do.
-  std::size_t shifted = 0;
-  for (auto const& match : matches)
-    if (!match.rotation) shifted = std::max(shifted, match.pairs.size());
-  auto const counts = [&](auto const& match) { return few_of_many * match.pairs.size() >= shifted; };
-  bool const turns =
-      std::any_of(matches.begin(), matches.end(), [&](auto const& m) { return m.rotation && counts(m); });
-  for (auto const& match : matches) {
+  auto const judged = topology::judge(cells, matches, open);
+  for (std::size_t m = 0; m < matches.size(); ++m) {
+    auto const& match = matches[m];
     std::string what = std::to_string(match.pairs.size()) + " pairs of face cells match by ";
     if (match.rotation)
       what += "a rotation of " + text(match.angle_rad * 180 / std::numbers::pi) + " degrees about " +
               text(match.direction) + " through " + text(match.origin);
     else
       what += "the translation " + text(match.transform.translation);
-    bool const taken = counts(match) && (match.rotation || !turns);
-    if (!counts(match))
-      what += "; not taken as periodic, because so few are chance";
-    else if (!taken)
-      what += "; not taken as periodic, because the mesh is by a rotation";
+    if (!judged[m].taken)
+      what += "; not taken as periodic: " + judged[m].why;
     else if (!match.rotation)
       what += "; taken as periodic: take it out if these are inlet and outlet, or end walls";
     out.notes.push_back(std::move(what));
-    if (!taken) continue;
-    add(match.pairs, declared(match));
+    if (judged[m].taken) add(match.pairs, declared(match));
   }
   return out;
 }

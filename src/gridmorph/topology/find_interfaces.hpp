@@ -26,10 +26,10 @@ struct FoundInterfaces {
 /// interfaces on parts of faces, of a zone with itself and across collapsed edges come out as they are; cells collapsed to lines are left open.
 ///
 /// Periodicity: the corners of what is still open propose translations, then rotations (from the largest piece around them that is
-/// congruent cell by cell, fitted by least squares); a proposal counts when it maps open cells onto open cells. Two
-/// planes of a mesh of one cell layer are never taken as periodic. Geometry alone cannot tell a periodic pair from
-/// an inlet and outlet of the same shape: where a rotation is found, translations are dropped with a note, otherwise they are the
-/// user's to judge.
+/// congruent cell by cell, fitted by least squares); a proposal is a remark, or a pair where it is plausible for a machine: whole,
+/// sizeable sides at the two ends of the passage, a whole number of sectors about one axis, no translation between planes while other
+/// faces are open (the rules are in detail/plausible_periodic.hpp). Two planes of a mesh of one cell layer are never taken as periodic.
+/// Where a rotation is taken, translations are not.
 ///
 /// Cost: O(surface cells) for interfaces, the same again for each proposal that is tried.
 FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options = {});

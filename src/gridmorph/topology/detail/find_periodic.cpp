@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -14,9 +15,11 @@ namespace gridmorph::topology {
 
 namespace {
 
-constexpr std::size_t most_seeds = 4000;
+constexpr std::size_t most_seeds = 1200;
 constexpr std::size_t most_proposals = 4096;
 constexpr int most_trials = 48;
+constexpr Index sampled = 1500;              // cells by which a proposal is first judged
+constexpr std::size_t fewest_of_sample = 6;  // of them, for a look at all cells
 constexpr int most_fits = 5;
 constexpr double tidy_direction = 1e-6, tidy_angle = 1e-6;
 
@@ -25,7 +28,16 @@ struct Seed {
   Index cell;
   int face, a, b;
   CellShape shape;
+  Index reach = 0;  ///< cells of the open rectangle that it is the corner of, along both directions
 };
+
+/// Open cells on the way from (a, b) along one direction, both ways.
+int run_length(SurfaceCells const& cells, ZoneFace const& face, int a, int b, int du, int dv) {
+  int n = 1;
+  for (int sense : {1, -1})
+    for (int k = 1; cells.is_open(face, a + sense * k * du, b + sense * k * dv); ++k) ++n;
+  return n;
+}
 
 std::vector<Seed> find_seeds(SurfaceCells const& cells, std::vector<std::string>& notes) {
   std::vector<Seed> seeds;
@@ -37,13 +49,19 @@ std::vector<Seed> find_seeds(SurfaceCells const& cells, std::vector<std::string>
         if (cells.is_open(face, a - 1, b) && cells.is_open(face, a + 1, b)) continue;
         if (cells.is_open(face, a, b - 1) && cells.is_open(face, a, b + 1)) continue;
         Index const cell = face.first + a + Index(face.nu) * b;
-        Seed s{cell, f, a, b, cells.shape(cell)};
+        Seed s{cell,
+               f,
+               a,
+               b,
+               cells.shape(cell),
+               Index(run_length(cells, face, a, b, 1, 0)) * run_length(cells, face, a, b, 0, 1)};
         if (s.shape.edge > 0) seeds.push_back(std::move(s));
       }
   }
   if (seeds.size() > most_seeds) {
     notes.push_back("open faces have " + std::to_string(seeds.size()) + " corners; periodicity was looked for from " +
-                    std::to_string(most_seeds) + " of them");
+                    std::to_string(most_seeds) + " of the largest");
+    std::stable_sort(seeds.begin(), seeds.end(), [](Seed const& a, Seed const& b) { return a.reach > b.reach; });
     seeds.resize(most_seeds);
   }
   std::stable_sort(seeds.begin(), seeds.end(),
@@ -77,13 +95,14 @@ class Proposals {
       : probe_{low, {high.x, low.y, low.z}, {low.x, high.y, low.z}, {low.x, low.y, high.z}}, tolerance_(tolerance) {}
 
   void add(RigidTransform const& t) {
-    for (auto& p : all_)
-      if (same(p.transform, t) || same(p.transform, t.inverse())) {
-        ++p.votes;
+    Vec3 const centre = 0.5 * (probe_[0] + Vec3{probe_[1].x, probe_[2].y, probe_[3].z});
+    for (RigidTransform const& way : {t, t.inverse()})
+      if (int const known = find(way, way(centre)); known >= 0) {
+        ++all_[std::size_t(known)].votes;
         return;
       }
     if (all_.size() >= most_proposals) return;
-    Vec3 const centre = 0.5 * (probe_[0] + Vec3{probe_[1].x, probe_[2].y, probe_[3].z});
+    places_[key_of(t(centre))].push_back(int(all_.size()));
     all_.push_back({t, 1, distance(t(centre), centre)});
   }
   /// Most votes first, then the shortest way.
@@ -97,12 +116,32 @@ class Proposals {
   }
 
  private:
+  using Key = std::array<std::int64_t, 3>;
+
+  [[nodiscard]] Key key_of(Vec3 const& p) const {
+    double const width = 16 * tolerance_;
+    return {std::int64_t(std::floor(p.x / width)), std::int64_t(std::floor(p.y / width)),
+            std::int64_t(std::floor(p.z / width))};
+  }
+  /// The proposal that is the same as t, which takes the centre of the mesh to `place`; -1 when there is none.
+  [[nodiscard]] int find(RigidTransform const& t, Vec3 const& place) const {
+    Vec3 const reach{tolerance_, tolerance_, tolerance_};
+    Key const low = key_of(place - reach), high = key_of(place + reach);
+    for (auto i = low[0]; i <= high[0]; ++i)
+      for (auto j = low[1]; j <= high[1]; ++j)
+        for (auto k = low[2]; k <= high[2]; ++k)
+          if (auto const at = places_.find({i, j, k}); at != places_.end())
+            for (int const p : at->second)
+              if (same(all_[std::size_t(p)].transform, t)) return p;
+    return -1;
+  }
   [[nodiscard]] bool same(RigidTransform const& a, RigidTransform const& b) const {
     return std::all_of(probe_.begin(), probe_.end(), [&](Vec3 const& p) { return distance(a(p), b(p)) <= tolerance_; });
   }
   std::array<Vec3, 4> probe_;
   double tolerance_;
   std::vector<Proposal> all_;
+  std::map<Key, std::vector<int>> places_;  ///< by where the centre of the mesh goes
 };
 
 std::optional<RigidTransform> translation_between(CellShape const& p, CellShape const& q, double relative) {
@@ -128,6 +167,21 @@ bool congruent(CellShape const& p, CellShape const& q, Turn turn, double relativ
           tolerance)
         return false;
   return true;
+}
+
+/// Whether laying one cell on the other turns its zone to the other side and moves it into the mesh at the start and out of it at
+/// the end: the sides of a sector do. Cheap, and true for few of many pairs that are alike.
+bool may_turn(CellShape const& p, CellShape const& q, Turn turn) {
+  std::vector<Vec3> const from(p.corner.begin(), p.corner.end());
+  std::vector<Vec3> to;
+  for (int c = 0; c < 4; ++c) to.push_back(q.corner[std::size_t(turn.image(c))]);
+  RigidTransform const t = fit_rigid_transform(from, to);
+  if (!on_opposite_sides(transformed(p, t), q)) return false;
+  auto const axis = as_turn(t, std::numeric_limits<double>::infinity());
+  if (!axis) return false;
+  Vec3 const start = cross(axis->direction, p.centre - axis->origin),
+             end = cross(axis->direction, q.centre - axis->origin);
+  return dot(start, p.inward) > 0 && dot(end, q.inward) < 0;
 }
 
 /// Where cells go when one goes on another: (a, b) -> matrix (a, b) + shift, in nodes.
@@ -321,9 +375,30 @@ std::vector<PeriodicMatch> find_periodic(SurfaceCells& cells, double relative, s
       return hits > 0;
     });
   };
+  // A few cells from everywhere show whether a sizeable part is mapped; most proposals map next to nothing.
+  std::vector<Index> sample;
+  {
+    std::vector<Index> open;
+    for (Index c = 0; c < cells.size(); ++c)
+      if (cells.is_open(c)) open.push_back(c);
+    Index const stride = std::max<Index>(1, Index(open.size()) / sampled);
+    for (std::size_t n = 0; n < open.size(); n += std::size_t(stride)) sample.push_back(open[n]);
+  }
+  auto const worth_a_look = [&](RigidTransform const& t) {
+    std::size_t found = 0, tried = 0;
+    for (Index const c : sample) {
+      if (!cells.is_open(c)) continue;
+      ++tried;
+      int hits = 0;
+      (void)bins.partner(c, t, false, hits);
+      if (hits > 0 && ++found >= fewest_of_sample) return true;
+    }
+    return tried < std::size_t(sampled) / 2 && found > 0;
+  };
   auto const matched = [&](RigidTransform const& t) {
     Index ambiguous = 0;
-    return maps_a_seed(t) || maps_a_seed(t.inverse()) ? bins.match(t, false, ambiguous) : std::vector<CellPair>{};
+    return worth_a_look(t) && (maps_a_seed(t) || maps_a_seed(t.inverse())) ? bins.match(t, false, ambiguous)
+                                                                           : std::vector<CellPair>{};
   };
   // Those that map the most cells come first: a small piece can be like others in many ways.
   auto const by_count = [&](std::vector<Proposal> const& proposals) {
@@ -377,7 +452,7 @@ std::vector<PeriodicMatch> find_periodic(SurfaceCells& cells, double relative, s
   Index budget = 10 * cells.size() + 100'000;
   for_each_pair(cells, seeds, relative, [&](Seed const& p, Seed const& q) {
     for (int n = 0; n < 8 && budget > 0; ++n) {
-      if (!congruent(p.shape, q.shape, Turn{n}, relative)) continue;
+      if (!congruent(p.shape, q.shape, Turn{n}, relative) || !may_turn(p.shape, q.shape, Turn{n})) continue;
       auto const t = Grower(cells, p, q, Turn{n}, relative, budget).fit();
       if (t && as_rotation(*t, 10 * corner_tolerance(p.shape, q.shape, relative))) turns.add(*t);
     }

@@ -1,0 +1,28 @@
+// What a file is, by its first bytes and its name: formats that are read, and those that others use.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace gridmorph {
+
+/// Formats of meshes that are read and written.
+enum class MeshFormat { cgns, plot3d, su2 };
+
+/// "CGNS", "PLOT3D", "SU2".
+std::string_view to_string(MeshFormat format);
+
+/// By the first bytes; what is neither CGNS nor SU2 counts as PLOT3D. Throws IoError as refuse_other_format() does.
+MeshFormat mesh_format(std::string const& path);
+
+/// Throws IoError that names the format of a file or folder of another program (Gmsh, Fluent, VTK, UGRID, Exodus, OpenFOAM, STL,
+/// ...) and says how to convert it. What is recognised as nothing of the kind passes. Reads at most 256 kB.
+void refuse_other_format(std::string const& path);
+
+/// The format that the ending of a file name stands for ("VTK", "STL", "CGNS", ...); empty where it says nothing certain.
+std::string_view format_of_ending(std::string_view path);
+
+/// Whether a name may be given to a mesh in this format: its ending stands for it, or for nothing certain.
+bool ending_fits(std::string_view path, MeshFormat format);
+
+}  // namespace gridmorph
