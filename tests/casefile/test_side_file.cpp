@@ -72,7 +72,7 @@ TEST(SideFile, OpenFacesThatContinueOneAnotherHaveOneName) {
   std::map<std::string, Index> const expected{{"body", 4 * 4 * 4}, {"x_min", 8 * 4}, {"x_max", 8 * 4},
                                               {"y_min", 8 * 4},    {"y_max", 8 * 4}, {"z_min", 64 - 16},
                                               {"z_max", 64 - 16}};
-  EXPECT_EQ(area, expected);
+  EXPECT_EQ(area, expected) << ::testing::PrintToString(find_interfaces(mesh).notes);
 }
 
 /// SU2 files keep periodic pairs in the solver's configuration, and say nothing of kinds.

@@ -148,7 +148,7 @@ TEST_F(Suggestions, GiveTheAxisOfAnObliqueSector) {
   auto const vector = [](nlohmann::json const& v) { return Vec3{v[0], v[1], v[2]}; };
   Vec3 const unit = (1 / norm(sector.axis)) * sector.axis;
   EXPECT_LT(distance(vector(axis["direction"]), unit), 1e-12);
-  EXPECT_LT(norm(cross(vector(axis["origin"]) - sector.origin, unit)), 1e-9);
+  EXPECT_LT(norm(cross(vector(axis["origin"]) - sector.origin, unit)), 1e-12);
   EXPECT_EQ(json["periodic"][0]["rotation"]["sectors"], sector.copies);
 }
 

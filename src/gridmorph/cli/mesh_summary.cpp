@@ -237,10 +237,11 @@ PeriodicSummary describe_periodic(Periodic const& declared, RigidTransform const
   double const dominant =
       *std::max_element(parts, parts + 3, [](double a, double b) { return std::fabs(a) < std::fabs(b); });
   Vec3 const unit = ((dominant > 0 ? 1.0 : -1.0) / norm(direction)) * direction;
-  // The centre that the file names is the better number where it is on the axis.
-  Vec3 const off_axis = cross(declared.rotation_center - turn->origin, turn->direction);
-  bool const named = norm(off_axis) < 1e-6 * size;
-  Vec3 const origin = named ? declared.rotation_center : without_round_off(turn->origin, size);
+  // The point of the axis next to the centre that the file names, which is the better number where it is on the axis.
+  Vec3 const along = dot(declared.rotation_center - turn->origin, turn->direction) * turn->direction;
+  Vec3 const near = turn->origin + along;
+  bool const named = distance(near, declared.rotation_center) < 1e-12 * size;
+  Vec3 const origin = named ? declared.rotation_center : without_round_off(near, size);
   out.axis = {{origin.x + 0.0, origin.y + 0.0, origin.z + 0.0}, {unit.x + 0.0, unit.y + 0.0, unit.z + 0.0}};
   return out;
 }

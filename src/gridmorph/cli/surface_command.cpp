@@ -102,6 +102,7 @@ std::string csv_text(std::vector<Vec3> const& nodes) {
 }  // namespace
 
 int run_surface_command(CommandLine const& options, Terminal& terminal) {
+  check_run_files(inputs_of_mesh(options.input), {{"surface", *options.output}});
   std::string const output = options.output->string();
   auto const format = format_of_ending(output);
   bool const nodes = format == "CSV";
@@ -111,7 +112,6 @@ int run_surface_command(CommandLine const& options, Terminal& terminal) {
         output));
   if (nodes && (options.split != 1 || options.ascii))
     throw ConfigError("--split and --ascii are for STL; leave them out when nodes are written as CSV");
-  check_run_files(inputs_of_mesh(options.input), {{"surface", *options.output}});
   terminal.progress("reading " + options.input.string());
   bool const elements = mesh_kind(options.input.string(), options.leave_out) == MeshKind::unstructured;
   Surface const surface = elements ? surface_of_elements(options, !nodes) : surface_of_blocks(options, !nodes);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 namespace gridmorph::topology {
@@ -37,11 +38,24 @@ bool same_axis(PeriodicMatch const& a, PeriodicMatch const& b, double size) {
   return norm(cross(a.direction, b.direction)) < 1e-4 && norm(cross(b.origin - a.origin, a.direction)) < 1e-4 * size;
 }
 
-/// Normal and distance of a plane that holds all points, if one does; found from the first cell that has an area.
-bool on_one_plane(std::vector<Vec3> const& points, CellArea const& first, double size) {
-  return std::all_of(points.begin(), points.end(),
-                     [&](Vec3 const& p) { return std::fabs(dot(p - points.front(), first.inward)) <= flat * size; });
-}
+/// Cells of a side that lie on one zone face.
+struct Piece {
+  std::vector<Vec3> points;
+  CellArea first;  ///< of the first cell that has an area
+
+  void add(CellShape const& shape, CellArea const& area) {
+    points.insert(points.end(), shape.corner.begin(), shape.corner.end());
+    if (first.area == 0) first = area;
+  }
+  void add(Piece const& other) {
+    points.insert(points.end(), other.points.begin(), other.points.end());
+    if (first.area == 0) first = other.first;
+  }
+  [[nodiscard]] bool is_flat(double size) const {
+    return std::all_of(points.begin(), points.end(),
+                       [&](Vec3 const& p) { return std::fabs(dot(p - points.front(), first.inward)) <= flat * size; });
+  }
+};
 
 class Judge {
  public:
@@ -51,7 +65,7 @@ class Judge {
     Vec3 low{inf, inf, inf}, high{-inf, -inf, -inf};
     for (Index c = 0; c < cells.size(); ++c) {
       CellShape const s = cells.shape(c);
-      if (open[std::size_t(c)] != 0) open_area_ += area_of(s).area;
+      if (open[std::size_t(c)] != 0 && !cells.on_plane_of_layer(c)) open_area_ += area_of(s).area;
       for (auto const& p : s.corner) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
@@ -75,7 +89,7 @@ class Judge {
     double area = 0;         ///< of one side
     double through = 0;      ///< share of it from which the way leads through the mesh
     double cut = 0;          ///< share of its outline that runs through open, smooth surface
-    bool planes = false;     ///< each side lies in a plane
+    bool planes = false;     ///< the sides are flat on every zone face
     bool one_plane = false;  ///< and it is the same one
     double radius_low = 0, radius_high = 0;
   };
@@ -88,18 +102,16 @@ class Judge {
     Sides out;
     std::vector<std::uint8_t> own(std::size_t(cells_.size()), 0);
     for (auto const& pair : m.pairs) own[std::size_t(pair.cell)] = 1;
-    std::vector<Vec3> here, there;
-    CellArea first_here, first_there;
+    std::map<int, Piece> here, there;  // by zone face
     double good = 0, outline = 0, cut = 0;
     out.radius_low = std::numeric_limits<double>::infinity();
     for (auto const& pair : m.pairs) {
       CellShape const p = cells_.shape(pair.cell), q = cells_.shape(pair.other);
       CellArea const a = area_of(p), b = area_of(q);
-      if (here.empty() || (first_here.area == 0 && a.area > 0)) first_here = a, first_there = b;
       out.area += a.area;
       if (dot(way_at(m, p.centre), a.inward) > 0 && dot(way_at(m, q.centre), b.inward) < 0) good += a.area;
-      here.insert(here.end(), p.corner.begin(), p.corner.end());
-      there.insert(there.end(), q.corner.begin(), q.corner.end());
+      here[cells_.face_of(pair.cell)].add(p, a);
+      there[cells_.face_of(pair.other)].add(q, b);
       for (auto const& corner : p.corner) {
         out.radius_low = std::min(out.radius_low, m.rotation ? radius_of(m, corner) : 0);
         out.radius_high = std::max(out.radius_high, m.rotation ? radius_of(m, corner) : 0);
@@ -108,10 +120,15 @@ class Judge {
     }
     out.through = out.area > 0 ? good / out.area : 0;
     out.cut = outline > 0 ? cut / outline : 0;
-    out.planes = !here.empty() && on_one_plane(here, first_here, size_) && on_one_plane(there, first_there, size_);
+    auto const all_flat = [&](std::map<int, Piece> const& pieces) {
+      return std::all_of(pieces.begin(), pieces.end(), [&](auto const& piece) { return piece.second.is_flat(size_); });
+    };
+    out.planes = all_flat(here) && all_flat(there);
     if (out.planes) {
-      here.insert(here.end(), there.begin(), there.end());
-      out.one_plane = on_one_plane(here, first_here, size_);
+      Piece all;
+      for (auto const* pieces : {&here, &there})
+        for (auto const& [face, piece] : *pieces) all.add(piece);
+      out.one_plane = all.is_flat(size_);
     }
     return out;
   }

@@ -23,7 +23,7 @@ struct Judgement {
 ///   than the sides do (a cube turns onto itself too); of several, those about the axis of the largest;
 /// - a translation is not between planes, which inlets and outlets, end walls and far fields are too, unless the boundary that is
 ///   declared leaves nothing else open.
-/// `open`: for each cell whether it was open before the matches took theirs. Cost: O(surface cells).
+/// The two planes of a mesh of one cell layer do not count as open area. `open`: for each cell whether it was open before the matches took theirs. Cost: O(surface cells).
 std::vector<Judgement> judge(SurfaceCells const& cells, std::vector<PeriodicMatch> const& matches,
                              std::vector<std::uint8_t> const& open);
 

@@ -25,6 +25,8 @@ SurfaceCells::SurfaceCells(Mesh const& mesh) : mesh_(&mesh) {
         count += Index(f.nu) * f.nv;
         faces_.push_back(f);
       }
+  for (auto const& zone : mesh.zones)
+    one_layer_ = one_layer_ && std::find(zone.extent.begin(), zone.extent.end(), 2) != zone.extent.end();
   open_.assign(std::size_t(count), 1);
   for (auto const& patch : mesh.patches) claim(patch.zone, patch.range);
   for (auto const& interface : mesh.interfaces) {

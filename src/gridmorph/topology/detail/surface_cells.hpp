@@ -50,8 +50,11 @@ class SurfaceCells {
   [[nodiscard]] bool is_open(ZoneFace const& face, int a, int b) const {
     return a >= 0 && a < face.nu && b >= 0 && b < face.nv && open_[face.first + a + Index(face.nu) * b] != 0;
   }
-  /// Whether two cells are on the two sides of a zone of one cell layer, as the planes of a 2-D mesh are.
+  /// Whether a cell is on one of the two planes of a mesh all of whose zones have one cell layer, as 2-D meshes have.
+  [[nodiscard]] bool on_plane_of_layer(Index cell) const { return one_layer_ && !faces_[face_of(cell)].thick; }
+  /// Whether two cells are on the two sides of a zone of one cell layer, or on the planes of a mesh of them.
   [[nodiscard]] bool across_one_layer(Index a, Index b) const {
+    if (on_plane_of_layer(a) && on_plane_of_layer(b)) return true;
     ZoneFace const& f = faces_[face_of(a)];
     ZoneFace const& g = faces_[face_of(b)];
     return f.zone == g.zone && f.axis == g.axis && !f.thick;
@@ -69,6 +72,7 @@ class SurfaceCells {
   Mesh const* mesh_;
   std::vector<ZoneFace> faces_;
   std::vector<std::uint8_t> open_;
+  bool one_layer_ = true;  ///< every zone is one cell thick along an axis
 };
 
 }  // namespace gridmorph::topology
