@@ -57,8 +57,7 @@ MeshExtent extent_of(Coordinates const& c, Index begin, Index end) {
 
 bool is_usable(Vec3 const& p) {
   // Not-a-number is no larger, and no smaller, than anything.
-  return std::fabs(p.x) <= largest_coordinate && std::fabs(p.y) <= largest_coordinate &&
-         std::fabs(p.z) <= largest_coordinate;
+  return std::fabs(p.x) <= coordinate_limit && std::fabs(p.y) <= coordinate_limit && std::fabs(p.z) <= coordinate_limit;
 }
 
 bool MeshExtent::usable() const { return finite && (low.x > high.x || (is_usable(low) && is_usable(high))); }

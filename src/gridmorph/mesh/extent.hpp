@@ -6,13 +6,13 @@
 namespace gridmorph {
 
 /// Larger coordinates are damage, or marks of nodes that were left out: squares of their distances leave the range of numbers.
-inline constexpr double largest_coordinate = 1e100;
+inline constexpr double coordinate_limit = 1e100;
 
 struct MeshExtent {
   Vec3 low, high;      ///< corners of the bounding box; of the finite values only
   bool finite = true;  ///< every x + y + z is finite (coordinates so large that their sum is not are of no use either)
 
-  /// Whether every coordinate can be computed with: finite, and no larger than largest_coordinate.
+  /// Whether every coordinate can be computed with: finite, and no larger than coordinate_limit.
   [[nodiscard]] bool usable() const;
   /// Diagonal of the box; 0 for a mesh without nodes.
   [[nodiscard]] double size() const;
