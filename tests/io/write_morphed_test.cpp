@@ -4,7 +4,11 @@
 #include "support/file_size_limit.hpp"
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/cgns_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+
+#include <algorithm>
+#include <cstring>
 
 #include <sys/stat.h>
 
@@ -172,11 +176,109 @@ TEST_P(Formats, FieldsAreAddedForEveryZone) {
     EXPECT_EQ(cell_numbers.front(), double(first_cell));
     first_cell += Index(cell_numbers.size());
   }
-  // Once more onto its own output: the solutions that are there stay.
+  // Once more onto its own output: what is there stays, and what is added stands beside it.
   write_morphed(output_, output_, mesh, mesh.coordinates, fields);
   auto const twice = dump_tree(output_);
   EXPECT_EQ(twice.at("/Base/Zone 1/MorphNodes/DisplacementX"), tree.at("/Base/Zone 1/MorphNodes/DisplacementX"));
-  EXPECT_TRUE(twice.contains("/Base/Zone 1/MorphNodes2/DisplacementX"));
+  EXPECT_TRUE(twice.contains("/Base/Zone 1/MorphNodes/MorphDisplacementX"));
+  EXPECT_TRUE(twice.contains("/Base/Zone 1/MorphCells/MorphCellNumber"));
+  EXPECT_FALSE(twice.contains("/Base/Zone 1/MorphNodes2"));
+}
+
+/// A solution as solvers write them: one array, with rind planes around it or without.
+double add_solution(cgns::File& file, double zone, std::string const& name, char const* location,
+                    std::vector<Index> const& sizes, std::vector<std::int32_t> const& rind = {}) {
+  double const id = file.create(zone, name, "FlowSolution_t");
+  file.create_text(id, "GridLocation", "GridLocation_t", location);
+  if (!rind.empty()) file.create(id, "Rind", "Rind_t", "I4", {Index(rind.size())}, rind.data());
+  std::size_t n = 1;
+  for (Index const size : sizes) n *= std::size_t(size);
+  std::vector<double> const values(n, 1.25);
+  file.create(id, "Density", "DataArray_t", "R8", sizes, values.data());
+  return id;
+}
+
+TEST_P(Formats, FieldsGoToTheSolutionsThatViewersShow) {
+  Mesh const mesh = write_lattice(Lattice{{{{0, 3}, {0, 4}, {0, 3}}}});
+  Index3 const e = mesh.zones[0].extent;
+  {
+    cgns::File file(input_, cgns::File::Mode::modify);
+    auto const tree = file.tree();
+    auto const* zone = tree.children.back().labelled("Zone_t");
+    for (auto const& base : tree.children)
+      if (base.label == "CGNSBase_t") zone = base.labelled("Zone_t");
+    ASSERT_NE(zone, nullptr);
+    std::vector<Index> const nodes{e[0], e[1], e[2]}, cells{e[0] - 1, e[1] - 1, e[2] - 1};
+    double const part = add_solution(file, file.id(*zone), "Part", "CellCenter", {1, 1, 1});
+    std::vector<std::int32_t> const range{1, 1, 1, 1, 1, 1};
+    file.create(part, "PointRange", "IndexRange_t", "I4", {3, 2}, range.data());
+    add_solution(file, file.id(*zone), "Flow", "CellCenter", {e[0] + 1, e[1], e[2] - 1}, {1, 1, 0, 1, 0, 0});
+    add_solution(file, file.id(*zone), "Restart", "CellCenter", cells);
+    add_solution(file, file.id(*zone), "Walls", "Vertex", nodes);
+    auto const* grid = zone->labelled("GridCoordinates_t");
+    ASSERT_NE(grid, nullptr);
+    file.create_text(file.id(*grid->child("CoordinateX")), "DataClass", "DataClass_t", "Dimensional");
+    file.close();
+  }
+  Coordinates const morphed = moved(mesh.coordinates);
+  OutputFields fields;
+  fields.displacement = true;
+  fields.cells.push_back({"Number", {}});
+  for (Index c = 0; c < mesh.n_cells(); ++c) fields.cells[0].values.push_back(double(c));
+  fields.cells.push_back({"Angle", std::vector<double>(std::size_t(mesh.n_cells()), 30.0), FieldUnit::degree});
+  write_morphed(input_, output_, mesh, morphed, fields);
+  expect_same_but_coordinates(input_, output_);
+  auto const tree = dump_tree(output_);
+  std::string const zone = "/Base/" + mesh.zones[0].name;
+  for (auto const* own : {"/MorphNodes", "/MorphCells"}) EXPECT_FALSE(tree.contains(zone + own)) << own;
+  EXPECT_FALSE(tree.contains(zone + "/Restart/Number")) << "viewers show the first";
+  EXPECT_EQ(payload(tree.at(zone + "/Flow/Number/DataClass")), "NondimensionalParameter");
+  EXPECT_EQ(payload(tree.at(zone + "/Flow/Angle/DataClass")), "Dimensional");
+  EXPECT_EQ(payload(tree.at(zone + "/Walls/DisplacementX/DataClass")), "Dimensional");
+  EXPECT_TRUE(tree.contains(zone + "/Walls/DisplacementX/DimensionalExponents"));
+  EXPECT_FALSE(tree.contains(zone + "/Walls/DisplacementY/DataClass")) << "the coordinate has none";
+  // Every stored value, those of the rind from the cell beside it.
+  auto const raw = payload(tree.at(zone + "/Flow/Number"));
+  std::vector<double> stored(raw.size() / sizeof(double));
+  std::memcpy(stored.data(), raw.data(), raw.size());
+  ASSERT_EQ(Index(stored.size()), Index(e[0] + 1) * e[1] * (e[2] - 1));
+  std::size_t n = 0;
+  for (int k = 0; k < e[2] - 1; ++k)
+    for (int j = 0; j < e[1]; ++j)
+      for (int i = 0; i < e[0] + 1; ++i) {
+        int const ci = std::clamp(i - 1, 0, e[0] - 2), cj = std::min(j, e[1] - 2);
+        EXPECT_EQ(stored[n++], double(ci + (e[0] - 1) * (cj + Index(e[1] - 1) * k)));
+      }
+}
+
+TEST_P(Formats, FieldsGoToTheSolutionThatTheFilePointsTo) {
+  Mesh const mesh = write_lattice(Lattice{{{{0, 3}, {0, 4}, {0, 3}}}});
+  Index3 const e = mesh.zones[0].extent;
+  {
+    cgns::File file(input_, cgns::File::Mode::modify);
+    auto const tree = file.tree();
+    for (auto const& base : tree.children) {
+      if (base.label != "CGNSBase_t") continue;
+      double const zone = file.id(*base.labelled("Zone_t"));
+      for (char const* name : {"Initial", "Step1", "Step2"})
+        add_solution(file, zone, name, "CellCenter", {e[0] - 1, e[1] - 1, e[2] - 1});
+      double const iterative = file.create(zone, "ZoneIterativeData", "ZoneIterativeData_t");
+      std::string names = "Step1";
+      names.resize(32, ' ');
+      names += "Step2";
+      names.resize(64, ' ');
+      file.create(iterative, "FlowSolutionPointers", "DataArray_t", "C1", {32, 2}, names.data());
+    }
+    file.close();
+  }
+  OutputFields fields;
+  fields.cells.push_back({"Number", std::vector<double>(std::size_t(mesh.n_cells()), 1.0)});
+  write_morphed(input_, output_, mesh, moved(mesh.coordinates), fields);
+  auto const tree = dump_tree(output_);
+  std::string const zone = "/Base/" + mesh.zones[0].name;
+  EXPECT_TRUE(tree.contains(zone + "/Step1/Number"));
+  EXPECT_TRUE(tree.contains(zone + "/Step2/Number"));
+  EXPECT_FALSE(tree.contains(zone + "/Initial/Number"));
 }
 
 TEST_P(Formats, OutputMayBeTheInput) {

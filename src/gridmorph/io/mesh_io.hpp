@@ -73,23 +73,30 @@ class MeshFileWriter {
   std::unique_ptr<State> state_;
 };
 
+/// What the values of a field are, for their DataClass_t.
+enum class FieldUnit { number, degree };
+
 /// One value per node, numbered as Mesh::coordinates.
 struct NodeField {
   std::string name;
   std::vector<double> values;  ///< (n_nodes)
+  FieldUnit unit = FieldUnit::number;
 };
 
 /// One value per cell: zones one after another, i fastest.
 struct CellField {
   std::string name;
   std::vector<double> values;  ///< (n_cells)
+  FieldUnit unit = FieldUnit::number;
 };
 
-/// What write_morphed adds to the file, each set as one FlowSolution_t per zone.
+/// What write_morphed adds to the file, zone by zone: to the solution that the zone has at the nodes, or in the cells, since viewers show
+/// one of each; to one of our own where it has none. Names that are taken get "Morph" before them.
 struct OutputFields {
-  bool displacement = false;     ///< DisplacementX, Y, Z at the nodes: morphed minus Mesh::coordinates
-  std::vector<NodeField> nodes;  ///< with the displacement, in "MorphNodes"
-  std::vector<CellField> cells;  ///< in "MorphCells"
+  bool displacement =
+      false;  ///< DisplacementX, Y, Z at the nodes: morphed minus Mesh::coordinates, of the same data class
+  std::vector<NodeField> nodes;  ///< with the displacement; "MorphNodes" where there is no solution at the nodes
+  std::vector<CellField> cells;  ///< "MorphCells" where there is no solution in the cells
 
   [[nodiscard]] bool empty() const { return !displacement && nodes.empty() && cells.empty(); }
 };

@@ -12,8 +12,9 @@ namespace {
 /// Zone by zone, each of its values as the file numbers them.
 class FieldsWriter {
  public:
-  FieldsWriter(cgns::File& file, cgns::Layout const& layout, UnstructuredMesh const& mesh)
-      : file_(file), layout_(layout), mesh_(mesh) {}
+  FieldsWriter(cgns::File& file, cgns::Layout const& layout, std::vector<io::ZoneSolutions> const& present,
+               UnstructuredMesh const& mesh)
+      : file_(file), layout_(layout), present_(present), mesh_(mesh) {}
 
   void write(Coordinates const& morphed, OutputFields const& fields) {
     if (fields.displacement || !fields.nodes.empty()) nodes(morphed, fields);
@@ -26,47 +27,49 @@ class FieldsWriter {
   void nodes(Coordinates const& morphed, OutputFields const& fields) {
     Solutions solutions;
     for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
-      solutions.emplace_back(file_, *layout_.zones[z].node, "MorphNodes", "Vertex",
-                             std::vector<Index>{mesh_.zones[z].n_nodes});
-    auto const add = [&](std::size_t z, std::string const& name, std::vector<double> const& values) {
-      solutions[z].add(name, values.data() + mesh_.zones[z].first_node);
-    };
+      solutions.emplace_back(
+          file_, layout_.zones[z], present_[z], "MorphNodes", "Vertex", std::vector<Index>{mesh_.zones[z].n_nodes},
+          io::names_of_nodes(fields, {layout_.zones[z].array[0] != nullptr, layout_.zones[z].array[1] != nullptr,
+                                      layout_.zones[z].array[2] != nullptr}));
     auto const before = io::components(mesh_.coordinates), after = io::components(morphed);
     std::vector<double> difference(fields.displacement ? std::size_t(mesh_.n_nodes()) : 0);
     for (std::size_t c = 0; fields.displacement && c < 3; ++c) {
       for (std::size_t n = 0; n < difference.size(); ++n) difference[n] = after[c][n] - before[c][n];
       auto const ordered = in_file_order(mesh_.file_order.node, difference);
       for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
-        if (layout_.zones[z].array[c]) add(z, io::displacement_names[c], ordered);
+        if (layout_.zones[z].array[c])
+          solutions[z].add_displacement(io::displacement_names[c], ordered.data() + mesh_.zones[z].first_node, int(c));
     }
     for (auto const& field : fields.nodes) {
       auto const ordered = in_file_order(mesh_.file_order.node, field.values);
-      for (std::size_t z = 0; z < mesh_.zones.size(); ++z) add(z, field.name, ordered);
+      for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
+        solutions[z].add(field.name, ordered.data() + mesh_.zones[z].first_node, field.unit);
     }
   }
 
   void cells(OutputFields const& fields) {
     Solutions solutions;
     for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
-      solutions.emplace_back(file_, *layout_.zones[z].node, "MorphCells", "CellCenter",
-                             std::vector<Index>{mesh_.zones[z].n_elements});
+      solutions.emplace_back(file_, layout_.zones[z], present_[z], "MorphCells", "CellCenter",
+                             std::vector<Index>{mesh_.zones[z].n_elements}, io::names_of_cells(fields));
     for (auto const& field : fields.cells) {
       auto const ordered = in_file_order(mesh_.file_order.element, field.values);
       for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
-        solutions[z].add(field.name, ordered.data() + mesh_.zones[z].first_element);
+        solutions[z].add(field.name, ordered.data() + mesh_.zones[z].first_element, field.unit);
     }
   }
 
   cgns::File& file_;
   cgns::Layout const& layout_;
+  std::vector<io::ZoneSolutions> const& present_;
   UnstructuredMesh const& mesh_;
 };
 
 }  // namespace
 
-void write_fields(cgns::File& file, cgns::Layout const& layout, UnstructuredMesh const& mesh,
-                  Coordinates const& morphed, OutputFields const& fields) {
-  FieldsWriter(file, layout, mesh).write(morphed, fields);
+void write_fields(cgns::File& file, cgns::Layout const& layout, std::vector<io::ZoneSolutions> const& present,
+                  UnstructuredMesh const& mesh, Coordinates const& morphed, OutputFields const& fields) {
+  if (!fields.empty()) FieldsWriter(file, layout, present, mesh).write(morphed, fields);
 }
 
 }  // namespace gridmorph

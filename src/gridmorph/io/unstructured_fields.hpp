@@ -3,13 +3,16 @@
 
 #include <gridmorph/io/cgns_layout.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
+
+#include <vector>
 
 namespace gridmorph {
 
-/// Adds the fields to the zones of a file that holds the mesh, each as one FlowSolution_t per zone, in the order of the
-/// file. Displacements are `morphed` minus the mesh's coordinates.
-void write_fields(cgns::File& file, cgns::Layout const& layout, UnstructuredMesh const& mesh,
-                  Coordinates const& morphed, OutputFields const& fields);
+/// Adds the fields to the zones of a file that holds the mesh, in the order of the file (SolutionWriter says where). `present`: of
+/// every zone, or empty where there are no fields. Displacements are `morphed` minus the mesh's coordinates.
+void write_fields(cgns::File& file, cgns::Layout const& layout, std::vector<io::ZoneSolutions> const& present,
+                  UnstructuredMesh const& mesh, Coordinates const& morphed, OutputFields const& fields);
 
 }  // namespace gridmorph

@@ -13,17 +13,20 @@ namespace gridmorph {
 
 namespace {
 
-io::SolutionWriter solution_of(cgns::File& file, cgns::ZoneLayout const& layout, char const* name, char const* location,
-                               Index less) {
+io::SolutionWriter solution_of(cgns::File& file, cgns::ZoneLayout const& layout, io::ZoneSolutions const& present,
+                               char const* name, char const* location, Index less,
+                               std::vector<std::string> const& arrays) {
   std::vector<Index> dimensions;
   for (int a = 0; a < layout.index_dimension; ++a) dimensions.push_back(layout.extent[a] - less);
-  return {file, *layout.node, name, location, std::move(dimensions)};
+  return {file, layout, present, name, location, std::move(dimensions), arrays};
 }
 
-void write_node_fields(cgns::File& file, cgns::ZoneLayout const& layout, Mesh const& mesh, Zone const& zone,
-                       Coordinates const& morphed, OutputFields const& fields) {
+void write_node_fields(cgns::File& file, cgns::ZoneLayout const& layout, io::ZoneSolutions const& present,
+                       Mesh const& mesh, Zone const& zone, Coordinates const& morphed, OutputFields const& fields) {
   if (!fields.displacement && fields.nodes.empty()) return;
-  auto const solution = solution_of(file, layout, "MorphNodes", "Vertex", 0);
+  auto const solution = solution_of(
+      file, layout, present, "MorphNodes", "Vertex", 0,
+      io::names_of_nodes(fields, {layout.array[0] != nullptr, layout.array[1] != nullptr, layout.array[2] != nullptr}));
   std::vector<double> plane;
   if (fields.displacement) {
     auto const before = io::components(mesh.coordinates), after = io::components(morphed);
@@ -33,19 +36,20 @@ void write_node_fields(cgns::File& file, cgns::ZoneLayout const& layout, Mesh co
       for (Index n = 0; n < zone.size(); ++n)
         difference[n] = after[c][zone.first_node + n] - before[c][zone.first_node + n];
       cgns::with_file_nodes(layout, zone, difference.data(), plane,
-                            [&](double const* v) { solution.add(io::displacement_names[c], v); });
+                            [&](double const* v) { solution.add_displacement(io::displacement_names[c], v, c); });
     }
   }
   for (auto const& field : fields.nodes)
     cgns::with_file_nodes(layout, zone, field.values.data() + zone.first_node, plane,
-                          [&](double const* v) { solution.add(field.name, v); });
+                          [&](double const* v) { solution.add(field.name, v, field.unit); });
 }
 
-void write_cell_fields(cgns::File& file, cgns::ZoneLayout const& layout, Index first_cell, OutputFields const& fields) {
+void write_cell_fields(cgns::File& file, cgns::ZoneLayout const& layout, io::ZoneSolutions const& present,
+                       Index first_cell, OutputFields const& fields) {
   // A plane of nodes in three index directions has no cells in the file that values could belong to.
   if (fields.cells.empty() || (layout.flat_axis >= 0 && layout.index_dimension == 3)) return;
-  auto const solution = solution_of(file, layout, "MorphCells", "CellCenter", 1);
-  for (auto const& field : fields.cells) solution.add(field.name, field.values.data() + first_cell);
+  auto const solution = solution_of(file, layout, present, "MorphCells", "CellCenter", 1, io::names_of_cells(fields));
+  for (auto const& field : fields.cells) solution.add(field.name, field.values.data() + first_cell, field.unit);
 }
 
 /// The coordinates of a file that has been written.
@@ -89,6 +93,7 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree_of_copy(original);
     auto const layout = cgns::zones_of(file, tree, mesh);
+    auto const solutions = fields.empty() ? std::vector<io::ZoneSolutions>() : io::zone_solutions(file, layout);
     std::vector<double> plane;
     Index first_cell = 0;
     for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
@@ -97,8 +102,10 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
       for (int c = 0; c < 3; ++c)
         cgns::with_file_nodes(layout.zones[z], zone, arrays[c] + zone.first_node, plane,
                               [&](double const* v) { write_component(file, layout.zones[z], c, v); });
-      write_node_fields(file, layout.zones[z], mesh, zone, morphed, fields);
-      write_cell_fields(file, layout.zones[z], first_cell, fields);
+      if (!fields.empty()) {
+        write_node_fields(file, layout.zones[z], solutions[z], mesh, zone, morphed, fields);
+        write_cell_fields(file, layout.zones[z], solutions[z], first_cell, fields);
+      }
       first_cell += Index(zone.extent[0] - 1) * (zone.extent[1] - 1) * (zone.extent[2] - 1);
     }
     file.close();

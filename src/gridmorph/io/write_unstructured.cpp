@@ -279,7 +279,8 @@ void write_mesh(std::string const& path, UnstructuredMesh const& mesh, Coordinat
   if (!fields.empty()) {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree();
-    write_fields(file, cgns::unstructured_zones_of(file, tree, mesh), mesh, morphed, fields);
+    auto const layout = cgns::unstructured_zones_of(file, tree, mesh);
+    write_fields(file, layout, io::zone_solutions(file, layout), mesh, morphed, fields);
     file.close();
   }
   target.commit();

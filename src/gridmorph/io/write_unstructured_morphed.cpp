@@ -44,10 +44,11 @@ void write_cgns(std::string const& input, std::string const& output, Unstructure
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree_of_copy(original);
     auto const layout = cgns::unstructured_zones_of(file, tree, mesh);
+    auto const present = fields.empty() ? std::vector<io::ZoneSolutions>() : io::zone_solutions(file, layout);
     for (std::size_t z = 0; z < mesh.zones.size(); ++z)
       for (int c = 0; c < 3; ++c)
         write_component(file, layout.zones[z], c, arrays[std::size_t(c)] + mesh.zones[z].first_node);
-    write_fields(file, layout, mesh, morphed, fields);
+    write_fields(file, layout, present, mesh, morphed, fields);
     file.close();
   }
   {
