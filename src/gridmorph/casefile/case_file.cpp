@@ -331,6 +331,7 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   root.finish();
   context.problems.throw_if_any<ConfigError>();
   out.files = std::move(context.files);
+  out.given.assign(context.given.begin(), context.given.end());
   return out;
 }
 
@@ -350,6 +351,16 @@ Motion motion_at(CaseFile const& case_file, Moment const& when) {
 
 CaseFile read_case_file(std::filesystem::path const& path) {
   return parse_case_file(casefile::read_text_file(path, "case file", largest_case_file), path);
+}
+
+std::optional<std::filesystem::path> mesh_of_case_file(std::filesystem::path const& path) {
+  try {
+    toml::value const document =
+        parse_toml(casefile::read_text_file(path, "case file", largest_case_file), path.string());
+    return (path.parent_path() / toml::find<std::string>(document, "mesh", "input")).lexically_normal();
+  } catch (std::exception const&) {  // read_case_file says what is wrong
+    return std::nullopt;
+  }
 }
 
 }  // namespace gridmorph

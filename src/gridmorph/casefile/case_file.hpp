@@ -11,6 +11,7 @@
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/unstructured/options.hpp>
 
+#include <compare>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -69,7 +70,17 @@ struct SequenceOptions {
 /// [background] file: a background mesh of the user's.
 struct BackgroundFile {
   std::filesystem::path path;
-  std::vector<std::string> wrap{"wrap"}, outer{"outer"};  ///< selectors of its patches
+  /// Selectors of its patches.
+  std::vector<std::string> wrap = std::vector<std::string>(1, "wrap"), outer = std::vector<std::string>(1, "outer");
+};
+
+/// A key that stands in a case file.
+struct GivenKey {
+  std::string table;  ///< "", "mesh", "mesh axis", "motion", "motion modes", ...
+  std::string key;
+  int line = 0;
+
+  auto operator<=>(GivenKey const&) const = default;
 };
 
 struct CaseFile {
@@ -90,6 +101,8 @@ struct CaseFile {
   std::vector<TimedRule> timed;    ///< per rule of `motion`
   std::optional<SequenceOptions> sequence;
   std::vector<std::filesystem::path> files;  ///< tables, targets, models, ... that its keys name and that are read
+  std::vector<GivenKey>
+      given;  ///< every key that was read, by table and line; what the mesh decides about (ignored_keys.hpp)
 };
 
 /// The rules of the case file at a moment: those that change with time as they are then, all others as they stand. Throws
@@ -99,6 +112,9 @@ Motion motion_at(CaseFile const& case_file, Moment const& when);
 /// Reads a case file and the displacement files that it names. Throws one ConfigError that lists every problem, each as
 /// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
 CaseFile read_case_file(std::filesystem::path const& path);
+
+/// The mesh that a case file names, and nothing more; nothing where the file is not usable.
+std::optional<std::filesystem::path> mesh_of_case_file(std::filesystem::path const& path);
 
 /// (table, key) pairs that the reader asked for, tables as "mesh", "mesh axis", "motion": what it knows, for checks of the docs.
 using CaseKeyUse = std::set<std::pair<std::string, std::string>>;

@@ -104,6 +104,7 @@ extrapolation = "nearest")", "Beyond the edge of the model the field goes on as 
     {"motion field", "max_extrapolation", "number >= 0", "length", "no limit", R"(file = "displacement.csv"
 max_extrapolation = 2e-3)", "A node farther than this beyond the edge is an error"},
     {"motion field", "offset", R"("turn" or "translate")", "", R"("turn")", R"(file = "displacement.csv"
+elements = "blade_elements.csv"
 offset = "translate")", "The offset between the elements and a node off them turns with the elements, or not"},
     {"motion field modes", "file", "file", "length", "required", R"(modes = [ { file = "bending.csv" } ])", "The mode shape, as `file` of the rule"},
     {"motion field modes", "elements", "file", "", "those of the rule", R"(modes = [ { file = "bending.csv", elements = "blade_elements.csv" } ])",

@@ -97,9 +97,18 @@ TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& opti
   return rule;
 }
 
+/// Points have no surface that an offset could turn with. `first`: of the rule's fields.
+void refuse_offset_of_points(TableReader& table, CaseFile const& out, std::size_t first) {
+  if (!table.has("offset") || first == out.fields.size()) return;
+  for (std::size_t f = first; f < out.fields.size(); ++f)
+    if (out.fields[f].field->n_elements() > 0) return;
+  table.problem("offset", "is for models with elements, and this one has points alone; add elements or remove it");
+}
+
 }  // namespace
 
 TimedRule read_field(TableReader& table, CaseFile& out) {
+  std::size_t const first_field = out.fields.size();
   FieldOptions const options = read_options(table);
   auto const elements = table.string("elements");
   auto const solution = table.string("solution");
@@ -121,11 +130,16 @@ TimedRule read_field(TableReader& table, CaseFile& out) {
   auto model = read_model(table, elements, solution);
   if (!good || (!model && (file || !has_modes))) return {};
   try {
-    if (has_modes) return modal_rule(table, out, options, std::move(model), std::move(modes));
+    if (has_modes) {
+      TimedRule rule = modal_rule(table, out, options, std::move(model), std::move(modes));
+      refuse_offset_of_points(table, out, first_field);
+      return rule;
+    }
     if (!model->nodes.imaginary.empty())
       model->notes.push_back(fmt::format("{}: the imaginary part is not used; name the file in modes", *file));
     auto const field = std::make_shared<PointField const>(std::move(*model), options);
     out.fields.push_back({table.context().where(table.line()), field});
+    refuse_offset_of_points(table, out, first_field);
     std::string const description =
         fmt::format("field {} ({} points{})", *file, field->size(),
                     field->n_elements() > 0 ? fmt::format(", {} elements", field->n_elements()) : "");

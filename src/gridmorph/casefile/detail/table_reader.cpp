@@ -40,15 +40,15 @@ unsigned TableReader::line(std::string const& key) const {
 }
 
 toml::value const* TableReader::find(std::string const& key) {
-  if (context_->asked != nullptr) {
-    std::string table = name_;
-    std::erase_if(table, [](char c) { return c == '[' || c == ']'; });
-    context_->asked->emplace(std::move(table), key);
-  }
+  std::string name = name_;
+  std::erase_if(name, [](char c) { return c == '[' || c == ']'; });
+  if (context_->asked != nullptr) context_->asked->emplace(name, key);
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   auto const& table = table_->as_table();
   auto const found = table.find(key);
-  return found == table.end() ? nullptr : &found->second;
+  if (found == table.end()) return nullptr;
+  context_->given.insert({std::move(name), key, int(line_of(found->second))});
+  return &found->second;
 }
 
 void TableReader::problem(std::string const& key, std::string const& text) {

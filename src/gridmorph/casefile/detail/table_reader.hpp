@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,7 @@ struct Context {
   std::filesystem::path directory;  ///< relative paths in the case file start here
   Problems problems;
   CaseKeyUse* asked = nullptr;                 ///< every key that is asked for, where somebody wants to know
+  std::set<GivenKey> given{};                  ///< every key that is asked for and there
   std::vector<std::filesystem::path> files{};  ///< that have been named as inputs
 
   /// A file as a key names it, to be read; noted, so that no output takes its place.

@@ -79,6 +79,8 @@ Rule read_target_rule(TableReader& table, RuleContext const& shared) {
     }
   }
   bool const sections = rule.mapping == TargetRule::Mapping::sections || !target->sections.empty();
+  if (table.has("crease_angle_deg") && (sections || rule.mapping == TargetRule::Mapping::nodes))
+    table.problem("crease_angle_deg", "belongs to mapping = \"projection\"; remove it or change the mapping");
   if (file && !target->sections.empty() && rule.mapping == TargetRule::Mapping::projection)
     table.problem("mapping", "\"projection\" needs a surface (STL or CGNS), the file holds sections");
   read_sections_keys(table, shared, sections, rule);
