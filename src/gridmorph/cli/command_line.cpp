@@ -1,8 +1,11 @@
 #include <gridmorph/casefile/suggest.hpp>
 #include <gridmorph/cli/command_line.hpp>
+#include <gridmorph/cli/help.hpp>
+#include <gridmorph/cli/version.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -14,13 +17,24 @@ namespace {
 
 std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "wheel", "surface", "demo"};
 
-constexpr char const* footer =
+constexpr char const* exit_statuses =
     "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
     "machine; "
     "4 not written, because cells are inverted.";
 
 void add_quality(CLI::App& command, CommandLine& out, char const* text) {
   command.add_option("--quality", out.quality, text)->check(CLI::IsMember({"auto", "full", "fast"}));
+}
+
+/// What every command understands, before its name and after it.
+void add_common(CLI::App& app, CommandLine& out) {
+  app.add_flag("-q,--quiet", out.quiet,
+               "Print errors and warnings only, and what inspect, plan and quality are asked for");
+  app.add_flag("--json", out.json, "Print the result as JSON on standard output, and nothing else there");
+  app.add_option(
+         "-t,--threads", out.threads,
+         "Threads to compute with (default: OMP_NUM_THREADS, else what the machine and the size of the mesh allow)")
+      ->check(CLI::Range(1, 4096));
 }
 
 CLI::App* add_morph(CLI::App& app, CommandLine& out) {
@@ -51,8 +65,7 @@ void add_leave_out(CLI::App& command, CommandLine& out) {
 
 CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
   auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
-  inspect->add_option("mesh", out.input, "Mesh (CGNS or PLOT3D)")->required();
-  auto* json = inspect->add_flag("--json", out.json, "Print JSON");
+  inspect->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D or SU2)")->required();
   inspect->add_option("--side-file", out.side_file,
                       "Patches and interfaces (TOML), instead of the file beside the mesh");
   add_leave_out(*inspect, out);
@@ -64,15 +77,14 @@ CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
                       "Look for interfaces and write them, and patches for what is left, to this file (TOML)");
   inspect->add_option("--suggest", out.suggest, "Only a case file to start from, printed or written to a file")
       ->expected(0, 1)
-      ->default_str("")
-      ->excludes(json);
+      ->default_str("");
   return inspect;
 }
 
 CLI::App* add_surface(CLI::App& app, CommandLine& out) {
   auto* surface = app.add_subcommand(
       "surface", "Write patches of a mesh as facets (STL) or as nodes (CSV, as a rule \"field\" reads them)");
-  surface->add_option("mesh", out.input, "Mesh (CGNS or PLOT3D)")->required();
+  surface->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D or SU2)")->required();
   surface->add_option("-p,--patches", out.patches, "Patches, named as in case files (blade, type:wall, row1/per*)")
       ->required();
   surface->add_option("-o,--output", out.output, "NAME.stl or NAME.csv")->required();
@@ -108,10 +120,10 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   CommandLine out;
   CLI::App app("gridmorph moves an existing CFD mesh to a new boundary shape and keeps its connectivity and quality.",
                "gridmorph");
-  app.footer(footer);
-  app.set_version_flag("--version", "gridmorph " GRIDMORPH_VERSION);
-  app.add_flag("-q,--quiet", out.quiet, "Print errors and warnings only");
-  app.add_option("-t,--threads", out.threads, "Threads to compute with")->check(CLI::Range(1, 4096));
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.footer(exit_statuses);
+  app.set_version_flag("--version", version_text, "Print the versions of gridmorph, Kokkos and CGNS, and stop");
+  add_common(app, out);
   app.require_subcommand(1);
   app.fallthrough();
 
@@ -122,15 +134,18 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   plan->add_option("case", out.input, "Case file (TOML)")->required();
   commands.emplace_back(plan, Command::plan);
   auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
-  quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS or PLOT3D)")->required();
+  quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS, PLOT3D or SU2)")->required();
   quality->add_option("morphed", out.second, "Morphed mesh");
   add_quality(*quality, out, "full (default) or fast: a verdict in a fraction of the time");
-  quality->add_flag("--json", out.json, "Print JSON");
   add_leave_out(*quality, out);
   commands.emplace_back(quality, Command::quality);
   commands.emplace_back(add_wheel(app, out), Command::wheel);
   commands.emplace_back(add_surface(app, out), Command::surface);
   commands.emplace_back(add_demo(app, out), Command::demo);
+  for (auto const& [subcommand, command] : commands) {
+    add_common(*subcommand, out);
+    subcommand->footer(exit_statuses);
+  }
 
   // CLI11 takes a misspelt command for a stray argument; say what it is.
   for (int a = 1; a < argc; ++a) {
@@ -154,6 +169,8 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   }
   for (auto const& [subcommand, command] : commands)
     if (subcommand->parsed()) out.command = command;
+  if (out.json && out.suggest)
+    return Stop{2, "inspect: --suggest prints a case file and --json prints JSON; leave out one of them"};
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <gridmorph/demo/stand_ins.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -97,9 +98,10 @@ void refuse_options_of(char const* other, std::string const& chosen,
 
 }  // namespace
 
-int run_demo_command(CommandLine const& options, Terminal& terminal) {
+namespace {
+
+int run_demo(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
   std::string const& name = options.demo_name;
-  auto const folder = options.demo_folder.empty() ? std::filesystem::path("demo_" + name) : options.demo_folder;
   if (name == "passage") {
     refuse_options_of(
         "ball", name,
@@ -121,6 +123,19 @@ int run_demo_command(CommandLine const& options, Terminal& terminal) {
   }
   throw ConfigError(
       fmt::format("there is no demo '{}'{}", name, suggestion(name, {"passage", "ball", "turbine", "slat", "coil"})));
+}
+
+}  // namespace
+
+int run_demo_command(CommandLine const& options, Terminal& terminal) {
+  auto const folder =
+      options.demo_folder.empty() ? std::filesystem::path("demo_" + options.demo_name) : options.demo_folder;
+  int const status = run_demo(options, folder, terminal);
+  terminal.document({{"gridmorph", GRIDMORPH_VERSION},
+                     {"demo", options.demo_name},
+                     {"folder", folder.string()},
+                     {"morphs", terminal.take_documents()}});
+  return status;
 }
 
 }  // namespace gridmorph::cli

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 #include <Kokkos_Core.hpp>
+#include <nlohmann/json.hpp>
 
 #include <optional>
 #include <utility>
@@ -73,6 +74,22 @@ Engine::~Engine() = default;
 Engine::Engine(Engine&&) noexcept = default;
 
 std::string Engine::plan_text() const { return describe(impl_->plan()); }
+
+nlohmann::json Engine::plan_json() const {
+  nlohmann::json list = nlohmann::json::array();
+  for (auto const& stage : impl_->plan().stages) {
+    Index cells = 0;
+    for (CellBox const& box : stage.cells) {
+      Index inside = 1;
+      for (int a = 0; a < 3; ++a) inside *= box.cells.extent(a);
+      cells += inside;
+    }
+    list.push_back({{"name", stage.name}, {"chains", stage.description}, {"cells", cells}});
+  }
+  for (auto const& pass : impl_->plan().spreads)
+    list.push_back({{"name", "slip surfaces"}, {"chains", pass.description}, {"cells", 0}});
+  return list;
+}
 
 std::vector<std::string> Engine::notes() const {
   std::vector<std::string> out = impl_->mesh.notes;

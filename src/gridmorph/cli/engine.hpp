@@ -8,6 +8,8 @@
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/report/step_times.hpp>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,6 +34,8 @@ class Engine {
 
   /// The stages and chains in order, with the reason for each rank.
   [[nodiscard]] std::string plan_text() const;
+  /// The same as a list: name of each stage, one line per chain, how many cells it morphs; finalize passes at the end.
+  [[nodiscard]] nlohmann::json plan_json() const;
   /// Defaults taken, facts found on the way (those of morph() once it has run).
   [[nodiscard]] std::vector<std::string> notes() const;
   /// One number per cell, nonzero in the near field of moving walls; cells as in quality (zone after zone, i fastest).

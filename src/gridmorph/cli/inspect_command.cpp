@@ -65,7 +65,7 @@ int inspect_unstructured(CommandLine const& options, Terminal& terminal) {
   if (options.json) {
     nlohmann::json json = inspect_json(loaded, summary, snippet_options(options));
     json["quality"] = quality_json(quality, {}, {});
-    terminal.result(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    terminal.document(json);
   } else {
     terminal.result(inspect_text(loaded, summary, format_table(quality), snippet_options(options)));
   }
@@ -127,7 +127,7 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   if (options.json) {
     nlohmann::json json = inspect_json(summary, snippet_options(options));
     json["quality"] = quality_json(quality, {}, {});
-    terminal.result(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    terminal.document(json);
   } else {
     terminal.result(inspect_text(summary, format_table(quality), snippet_options(options)));
     if (options.write_side_file) terminal.say(fmt::format("wrote {}\n", options.write_side_file->string()));

@@ -12,6 +12,7 @@
 #include <gridmorph/cli/commands.hpp>
 #include <gridmorph/cli/kokkos_session.hpp>
 #include <gridmorph/cli/terminal.hpp>
+#include <gridmorph/cli/threads.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/output_file.hpp>
 
@@ -103,10 +104,11 @@ int main(int argc, char** argv) try {
       return int(done);
     });
   }
+  wait_passively(argv);
   auto const& options = std::get<CommandLine>(parsed);
-  Terminal terminal(options.quiet);
+  Terminal terminal(options.quiet, options.json);
   return report_errors(terminal, [&] {
-    KokkosSession const session(options.threads);
+    KokkosSession const session(choose_threads(options));
     return run(options, terminal);
   });
 } catch (...) {  // what fails in reporting a failure, when memory has run out

@@ -51,6 +51,10 @@ std::string field_name(Measure measure) {
   return out;
 }
 
+FieldUnit field_unit(Measure measure) {
+  return measure == Measure::minimum_angle_deg ? FieldUnit::degree : FieldUnit::number;
+}
+
 OutputFields output_fields(CaseFile const& case_file, MorphResult const& result) {
   OutputFields fields;
   fields.displacement = case_file.output_options.displacement;
@@ -60,8 +64,9 @@ OutputFields output_fields(CaseFile const& case_file, MorphResult const& result)
   input.baseline = views(result.mesh.coordinates);
   auto const values = cell_fields(Kokkos::DefaultHostExecutionSpace(), result.mesh, input, field_measures);
   for (std::size_t m = 0; m < field_measures.size(); ++m)
-    fields.cells.push_back(
-        {field_name(field_measures[m]), std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0))});
+    fields.cells.push_back({field_name(field_measures[m]),
+                            std::vector<double>(values[m].data(), values[m].data() + values[m].extent(0)),
+                            field_unit(field_measures[m])});
   return fields;
 }
 
@@ -114,10 +119,14 @@ nlohmann::json report_json(CaseFile const& case_file, MorphResult const& result)
 
 namespace {
 
-std::string report_text(CaseFile const& case_file, MorphResult const& result, bool written) {
+nlohmann::json whole_report(CaseFile const& case_file, MorphResult const& result, bool written) {
   nlohmann::json json = report_json(case_file, result);
   json["output"] = written ? nlohmann::json(case_file.output.string()) : nlohmann::json(nullptr);
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json;
+}
+
+std::string report_text(CaseFile const& case_file, MorphResult const& result, bool written) {
+  return json_text(whole_report(case_file, result, written));
 }
 
 }  // namespace
@@ -167,6 +176,7 @@ int morph_and_write(CaseFile const& case_file, Terminal& terminal) {
   if (written) text += fmt::format("\nwrote {}\n", case_file.output.string());
   if (report) text += fmt::format("wrote {}\n", report->string());
   terminal.say(text);
+  terminal.document(whole_report(case_file, result, written));
   if (terminal.quiet())  // otherwise the table has said it
     for (auto const& s : result.shortfalls) terminal.warn(s.message);
   if (!written)
@@ -182,10 +192,10 @@ int run_morph_command(CommandLine const& options, Terminal& terminal) {
   if (options.report) case_file.output_options.report = *options.report;
   set_quality(case_file, options.quality);
   if (options.dry_run) {
-    terminal.result(run_plan(case_file, terminal));
+    print_plan(case_file, terminal);
     return done;
   }
-  bool const unstructured = mesh_kind(case_file.input.string(), case_file.leave_out) == MeshKind::unstructured;
+  bool const unstructured = check_keys(case_file) == MeshKind::unstructured;
   if (case_file.sequence)
     return unstructured ? morph_unstructured_sequence(case_file, terminal) : morph_sequence(case_file, terminal);
   if (case_file.output.empty())

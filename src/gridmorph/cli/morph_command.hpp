@@ -13,6 +13,7 @@ namespace gridmorph::cli {
 
 /// "determinant_2x2x2" -> "Determinant2x2x2", as solution fields of CGNS files are called.
 std::string field_name(Measure measure);
+FieldUnit field_unit(Measure measure);
 /// What [output] adds to the output mesh.
 OutputFields output_fields(CaseFile const& case_file, MorphResult const& result);
 /// The report, less the name of the output.

@@ -4,7 +4,7 @@
 namespace gridmorph::cli {
 
 int run_plan_command(CommandLine const& options, Terminal& terminal) {
-  terminal.result(run_plan(read_case_file(options.input), terminal));
+  print_plan(read_case_file(options.input), terminal);
   return done;
 }
 

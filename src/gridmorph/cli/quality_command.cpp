@@ -40,13 +40,10 @@ void check_same_zones(Mesh const& a, Mesh const& b) {
 
 bool wants_fast(CommandLine const& options) { return options.quality == "fast"; }
 
-int show(QualityReport const& before, std::optional<QualityReport> const& after, CommandLine const& options,
-         Terminal& terminal) {
+int show(QualityReport const& before, std::optional<QualityReport> const& after, Terminal& terminal) {
   QualityThresholds const thresholds;
-  terminal.result(
-      options.json
-          ? quality_json(before, after, thresholds).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-          : format_table(before, after, thresholds));
+  terminal.document(quality_json(before, after, thresholds));
+  if (!terminal.json()) terminal.result(format_table(before, after, thresholds));
   // A single mesh cannot have been morphed badly; a morphed one can.
   return after && any_failure(shortfalls(before, after, thresholds)) ? falls_short : done;
 }
@@ -75,7 +72,7 @@ int quality_of_unstructured(CommandLine const& options, Terminal& terminal) {
   if (!fast || !morphed) before = measure_mesh(loaded, {}, fast);
   std::optional<QualityReport> after;
   if (morphed) after = measure_mesh(loaded, morphed, fast);
-  return show(before, after, options, terminal);
+  return show(before, after, terminal);
 }
 
 }  // namespace
@@ -111,7 +108,7 @@ int run_quality_command(CommandLine const& options, Terminal& terminal) {
     after = measure_quality(exec, mesh, input);
   }
 
-  return show(before, after, options, terminal);
+  return show(before, after, terminal);
 }
 
 }  // namespace gridmorph::cli

@@ -173,12 +173,10 @@ int finish_sequence(CaseFile const& case_file, Terminal& terminal, StepFiles& fi
   bool const written = !steps.inverted || case_file.guard.write_inverted;
   auto const& report_file = case_file.output_options.report;
   std::optional<PendingFile> pending;
-  if (report_file) {
-    nlohmann::json json = report.json();
-    json["output"] = written ? nlohmann::json(options.output.string()) : nlohmann::json(nullptr);
-    json["sequence"] = steps_json(steps.results, worst, options);
-    pending.emplace(*report_file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  }
+  nlohmann::json json = report.json();
+  json["output"] = written ? nlohmann::json(options.output.string()) : nlohmann::json(nullptr);
+  json["sequence"] = steps_json(steps.results, worst, options);
+  if (report_file) pending.emplace(*report_file, json_text(json));
   if (written) {
     terminal.progress("writing " + options.output.string());
     files.commit();
@@ -192,6 +190,7 @@ int finish_sequence(CaseFile const& case_file, Terminal& terminal, StepFiles& fi
   if (written) text += wrote_text(options);
   if (report_file) text += fmt::format("wrote {}\n", report_file->string());
   terminal.say(text);
+  terminal.document(json);
   if (terminal.quiet()) {
     if (!shortfall.empty()) terminal.warn(shortfall);
     for (auto const& s : report.shortfalls) terminal.warn(s.message);

@@ -13,6 +13,7 @@
 #include <gridmorph/unstructured/boundary_outline.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -99,6 +100,15 @@ std::string csv_text(std::vector<Vec3> const& nodes) {
   return text;
 }
 
+nlohmann::json document(CommandLine const& options, Surface const& surface) {
+  return {{"gridmorph", GRIDMORPH_VERSION},
+          {"input", options.input.string()},
+          {"output", options.output->string()},
+          {"patches", surface.patches},
+          {"facets", surface.facets.triangles.size()},
+          {"nodes", surface.nodes.size()}};
+}
+
 }  // namespace
 
 int run_surface_command(CommandLine const& options, Terminal& terminal) {
@@ -118,12 +128,14 @@ int run_surface_command(CommandLine const& options, Terminal& terminal) {
   if (nodes) {
     PendingFile(*options.output, csv_text(surface.nodes)).commit();
     terminal.say(fmt::format("wrote {}: {} nodes of {} patches\n", output, surface.nodes.size(), surface.patches));
+    terminal.document(document(options, surface));
     return done;
   }
   if (surface.facets.triangles.empty()) throw ConfigError("the patches have no facets with an area");
   write_stl(output, surface.facets, options.ascii ? StlFormat::ascii : StlFormat::binary);
   terminal.say(
       fmt::format("wrote {}: {} facets of {} patches\n", output, surface.facets.triangles.size(), surface.patches));
+  terminal.document(document(options, surface));
   return done;
 }
 

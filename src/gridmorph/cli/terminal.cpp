@@ -28,8 +28,12 @@ void prefixed(std::string_view kind, std::string_view text) {
 
 constexpr double seconds_between_lines = 10;
 
-Terminal::Terminal(bool quiet)
-    : pace_(seconds_between_lines), quiet_(quiet), interactive_(!quiet && isatty(STDERR_FILENO) != 0) {}
+std::string json_text(nlohmann::json const& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+Terminal::Terminal(bool quiet, bool json)
+    : pace_(seconds_between_lines), quiet_(quiet), json_(json), interactive_(!quiet && isatty(STDERR_FILENO) != 0) {}
 Terminal::~Terminal() { clear_progress(); }
 
 void Terminal::to_standard_output(std::string_view text) {
@@ -45,8 +49,14 @@ void Terminal::to_standard_output(std::string_view text) {
 void Terminal::result(std::string_view text) { to_standard_output(text); }
 
 void Terminal::say(std::string_view text) {
-  if (!quiet_) to_standard_output(text);
+  if (!quiet_ && !json_) to_standard_output(text);
 }
+
+void Terminal::document(nlohmann::json const& json) {
+  if (json_) documents_.push_back(json);
+}
+
+std::vector<nlohmann::json> Terminal::take_documents() { return std::exchange(documents_, {}); }
 
 void Terminal::warn(std::string_view text) {
   clear_progress();
@@ -87,6 +97,7 @@ void Terminal::clear_progress() {
 }
 
 void Terminal::finish() {
+  for (auto const& json : take_documents()) to_standard_output(json_text(json));
   clear_progress();
   if (error_ == 0 && std::fflush(stdout) != 0) error_ = errno;
   if (error_ != 0 && error_ != EPIPE)

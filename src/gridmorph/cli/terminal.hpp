@@ -3,6 +3,8 @@
 
 #include <gridmorph/report/progress_text.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <chrono>
 #include <optional>
 #include <string>
@@ -11,16 +13,24 @@
 
 namespace gridmorph::cli {
 
+/// Indented, with what is no UTF-8 replaced, and a line feed at the end: reports and --json.
+std::string json_text(nlohmann::json const& json);
+
 class Terminal {
  public:
-  explicit Terminal(bool quiet);
+  /// json: documents go to standard output, and nothing else.
+  explicit Terminal(bool quiet, bool json = false);
   ~Terminal();
   Terminal(Terminal const&) = delete;
   Terminal& operator=(Terminal const&) = delete;
 
   /// What the user asked to see (inspect, plan, quality): to standard output, also when quiet.
   void result(std::string_view text);
-  /// What happened along the way (morph, demo): to standard output unless quiet.
+  /// The result for programs: printed by finish() with --json, not looked at without.
+  void document(nlohmann::json const& json);
+  /// The documents so far, for a command that makes one of several.
+  [[nodiscard]] std::vector<nlohmann::json> take_documents();
+  /// What happened along the way (morph, demo): to standard output unless quiet, and not with --json.
   void say(std::string_view text);
   /// "gridmorph: warning: ..." to standard error, also when quiet: results may not be what was meant.
   void warn(std::string_view text);
@@ -35,6 +45,7 @@ class Terminal {
   void expect(std::vector<double> costs);
 
   [[nodiscard]] bool quiet() const { return quiet_; }
+  [[nodiscard]] bool json() const { return json_; }
 
   /// Throws MachineError when standard output could not be written, unless its reader has gone (a closed pipe).
   void finish();
@@ -48,9 +59,11 @@ class Terminal {
   StagedProgress stages_;
   LogPace pace_;
   bool quiet_;
+  bool json_;
   bool interactive_;
   bool shown_ = false;
   int error_ = 0;
+  std::vector<nlohmann::json> documents_;
 };
 
 }  // namespace gridmorph::cli

@@ -103,10 +103,14 @@ void write_stages(std::filesystem::path const& folder, UnstructuredRun const& ou
   write_mesh((folder / stage_names[3]).string(), background);
 }
 
-std::string report_text(CaseFile const& case_file, UnstructuredRun const& out, bool written) {
+nlohmann::json whole_report(CaseFile const& case_file, UnstructuredRun const& out, bool written) {
   nlohmann::json json = report_json(case_file, out);
   json["output"] = written ? nlohmann::json(case_file.output.string()) : nlohmann::json(nullptr);
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json;
+}
+
+std::string report_text(CaseFile const& case_file, UnstructuredRun const& out, bool written) {
+  return json_text(whole_report(case_file, out, written));
 }
 
 }  // namespace
@@ -153,6 +157,7 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   if (auto const& stages = case_file.output_options.stages)
     text += fmt::format("wrote wrap and background mesh to {}\n", stages->string());
   terminal.say(text);
+  terminal.document(whole_report(case_file, out, written));
   if (terminal.quiet())
     for (auto const& s : out.result.shortfalls) terminal.warn(s.message);
   if (!written)
@@ -163,12 +168,19 @@ int morph_unstructured(CaseFile const& case_file, Terminal& terminal) {
   return status_of_morph(written, any_failure(out.result.shortfalls));
 }
 
-std::string unstructured_plan_text(CaseFile const& case_file, Terminal& terminal) {
+void print_unstructured_plan(CaseFile const& case_file, nlohmann::json json, Terminal& terminal) {
   UnstructuredRun out;
   read_and_plan(case_file, terminal, out);
+  json["nodes"] = out.loaded.mesh.n_nodes();
+  json["elements"] = out.loaded.mesh.n_elements();
+  json["notes"] = out.notes;
+  json["plan"] = plan_json(*out.prepared);
+  json["times"] = times_json(out.times, out.loaded.mesh.n_nodes());
+  terminal.document(json);
   std::string text;
   for (auto const& note : out.notes) text += "note: " + note + "\n";
-  return text + regions_text(*out.prepared) + "\n" + format_times(out.times, out.loaded.mesh.n_nodes());
+  text += regions_text(*out.prepared) + "\n" + format_times(out.times, out.loaded.mesh.n_nodes());
+  if (!terminal.json()) terminal.result(text);
 }
 
 }  // namespace gridmorph::cli

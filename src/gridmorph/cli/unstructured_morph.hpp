@@ -11,6 +11,7 @@ namespace gridmorph::cli {
 int morph_unstructured(CaseFile const& case_file, Terminal& terminal);
 
 /// `gridmorph plan`, and `morph --dry-run`: what the walls, regions, layers and the background mesh are, notes first.
-std::string unstructured_plan_text(CaseFile const& case_file, Terminal& terminal);
+/// `json` has what is known without the mesh.
+void print_unstructured_plan(CaseFile const& case_file, nlohmann::json json, Terminal& terminal);
 
 }  // namespace gridmorph::cli

@@ -43,6 +43,8 @@ PreparedUnstructured plan_sequence(CaseFile const& case_file, LoadedMesh const& 
   return prepare(l.mesh, l.topology, l.claims, std::move(graph), std::move(boundary), options);
 }
 
+}  // namespace
+
 nlohmann::json plan_json(PreparedUnstructured const& prepared) {
   auto const& r = prepared.report;
   auto const& p = prepared.plan;
@@ -70,8 +72,6 @@ nlohmann::json plan_json(PreparedUnstructured const& prepared) {
             {"location", r.seconds.location},
             {"residual", r.seconds.residual}}}};
 }
-
-}  // namespace
 
 void read_and_plan(CaseFile const& case_file, Terminal& terminal, UnstructuredRun& out) {
   Stopwatch watch;
@@ -133,7 +133,7 @@ void measure_result(CaseFile const& case_file, UnstructuredRun& out) {
   if (case_file.output_options.quality)
     for (Measure const m : {Measure::aspect_ratio, Measure::determinant_3x3x3, Measure::minimum_angle_deg,
                             Measure::equiangle_skewness, Measure::relative_displacement}) {
-      auto& values = result.fields.cells.emplace_back(field_name(m), std::vector<double>()).values;
+      auto& values = result.fields.cells.emplace_back(field_name(m), std::vector<double>(), field_unit(m)).values;
       values.resize(std::size_t(l.mesh.n_elements()));
       input.fields[m] = Kokkos::View<double*, Kokkos::HostSpace>(values.data(), values.size());
     }

@@ -58,6 +58,8 @@ struct TriedSteps {
 TriedSteps try_steps(CaseFile const& case_file, UnstructuredRun& out, std::vector<Vec3> const& displacement,
                      Terminal& terminal);
 
+/// Near field, layers and background mesh as the report has them.
+nlohmann::json plan_json(PreparedUnstructured const& prepared);
 /// The report, less the name of the output.
 nlohmann::json report_json(CaseFile const& case_file, UnstructuredRun const& run);
 /// Near field, layers and background mesh in two lines.

@@ -1,3 +1,4 @@
+#include <gridmorph/casefile/ignored_keys.hpp>
 #include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/commands.hpp>
@@ -225,29 +226,27 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   if (output.empty())
     throw ConfigError(options.input.string() +
                       ": no output; add output = \"wheel.cgns\" to [wheel] or give --output FILE");
+  refuse_ignored_keys(case_file, {.run = CaseUse::Run::wheel});
   RunFiles outputs = outputs_of(output, report);
   outputs.front().what = "wheel";  // CGNS, whatever the sector is
   check_run_files(inputs_of(case_file), outputs);
-  if (case_file.output_options.displacement || case_file.output_options.quality)
-    terminal.warn("[output] displacement and quality are not written into wheels");
 
   WheelRun run(case_file, terminal);
   std::optional<MeshFileWriter> writer(std::in_place, output.string(), run.wheel().mesh);
   WheelResult const result = run.run(*writer);
   bool const written = !newly_inverted(result) || case_file.guard.write_inverted;
   std::optional<PendingFile> pending;
-  if (report) {
-    nlohmann::json json = wheel_json(run.mesh(), run.rows(), run.setup(), result);
-    json["case_file"] = case_file.source.string();
-    json["input"] = case_file.input.string();
-    json["output"] = written ? nlohmann::json(output.string()) : nlohmann::json(nullptr);
-    pending.emplace(*report, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  }
+  nlohmann::json json = wheel_json(run.mesh(), run.rows(), run.setup(), result);
+  json["case_file"] = case_file.source.string();
+  json["input"] = case_file.input.string();
+  json["output"] = written ? nlohmann::json(output.string()) : nlohmann::json(nullptr);
+  if (report) pending.emplace(*report, json_text(json));
   if (written) writer->commit();
   writer.reset();
   if (pending) pending->commit();
 
   terminal.say(text_of(run, result));
+  terminal.document(json);
   bool failed = !written;
   for (std::size_t p = 0; p < result.passages.size(); ++p)
     for (auto const& s : result.passages[p].shortfalls) {

@@ -1,15 +1,19 @@
+#include <gridmorph/casefile/ignored_keys.hpp>
 #include <gridmorph/casefile/mapping_report.hpp>
 #include <gridmorph/casefile/side_file.hpp>
 #include <gridmorph/cli/unstructured_morph.hpp>
 #include <gridmorph/cli/workflow.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/su2_file.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/report/target_text.hpp>
 
 #include <Kokkos_Core.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -134,16 +138,38 @@ MorphResult run_morph(CaseFile const& case_file, Terminal& terminal) {
   return out;
 }
 
-std::string run_plan(CaseFile const& case_file, Terminal& terminal) {
-  if (mesh_kind(case_file.input.string(), case_file.leave_out) == MeshKind::unstructured)
-    return unstructured_plan_text(case_file, terminal);
+MeshKind check_keys(CaseFile const& case_file) {
+  std::string const input = case_file.input.string();
+  CaseUse use;
+  MeshKind const kind = mesh_kind(input, case_file.leave_out);
+  use.unstructured = kind == MeshKind::unstructured;
+  use.run = case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph;
+  use.format = cgns::is_cgns(input) ? CaseUse::Format::cgns
+               : su2::is_su2(input) ? CaseUse::Format::su2
+                                    : CaseUse::Format::plot3d;
+  refuse_ignored_keys(case_file, use);
+  return kind;
+}
+
+void print_plan(CaseFile const& case_file, Terminal& terminal) {
+  nlohmann::json json{
+      {"gridmorph", GRIDMORPH_VERSION}, {"case_file", case_file.source.string()}, {"input", case_file.input.string()}};
+  if (check_keys(case_file) == MeshKind::unstructured) {
+    print_unstructured_plan(case_file, std::move(json), terminal);
+    return;
+  }
   terminal.progress("reading " + case_file.input.string());
   Mesh mesh = load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
   Engine const engine(mesh, case_file, terminal);
+  json["nodes"] = mesh.n_nodes();
+  json["notes"] = engine.notes();
+  json["stages"] = engine.plan_json();
+  json["times"] = times_json(engine.times(), mesh.n_nodes());
+  terminal.document(json);
   std::string text;
   for (auto const& note : engine.notes()) text += "note: " + note + "\n";
   if (!text.empty()) text += "\n";
-  return text + engine.plan_text();
+  if (!terminal.json()) terminal.result(text + engine.plan_text());
 }
 
 }  // namespace gridmorph::cli

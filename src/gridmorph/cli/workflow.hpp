@@ -4,6 +4,7 @@
 #include <gridmorph/casefile/case_file.hpp>
 #include <gridmorph/cli/engine.hpp>
 #include <gridmorph/cli/terminal.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/report/shortfalls.hpp>
@@ -53,8 +54,11 @@ class QualityMeter {
 /// Reads the mesh, plans, morphs and measures. Throws the errors of all of these; writes nothing.
 MorphResult run_morph(CaseFile const& case_file, Terminal& terminal);
 
-/// The plan of a case file as text, notes first.
-std::string run_plan(CaseFile const& case_file, Terminal& terminal);
+/// The kind of the case file's mesh, once no key of the case file is without effect on such a mesh. Throws ConfigError.
+MeshKind check_keys(CaseFile const& case_file);
+
+/// Plans and prints the stages and chains of a case file, notes first; as text or as JSON.
+void print_plan(CaseFile const& case_file, Terminal& terminal);
 
 /// Quality of a mesh as it is, without a near field, at all its wall patches.
 QualityReport measure_mesh(Mesh const& mesh);

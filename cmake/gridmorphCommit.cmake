@@ -1,0 +1,21 @@
+# Run with cmake -P in every build: writes the commit of the source tree into a header, and touches the header only where it
+# changed. -DSOURCE=folder -DOUTPUT=header [-DCOMMIT=text] (COMMIT for archives without a .git folder)
+set(commit "${COMMIT}")
+if(NOT commit)
+  find_package(Git QUIET)
+  if(Git_FOUND)
+    execute_process(COMMAND "${GIT_EXECUTABLE}" describe --always --dirty --abbrev=10 --exclude=*
+                    WORKING_DIRECTORY "${SOURCE}" OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE
+                    ERROR_QUIET RESULT_VARIABLE status)
+    if(NOT status EQUAL 0)
+      set(commit "")
+    endif()
+  endif()
+endif()
+set(text "#define GRIDMORPH_COMMIT \"${commit}\"\n")
+if(EXISTS "${OUTPUT}")
+  file(READ "${OUTPUT}" before)
+endif()
+if(NOT "${before}" STREQUAL "${text}")
+  file(WRITE "${OUTPUT}" "${text}")
+endif()

@@ -1,0 +1,45 @@
+# Completion of gridmorph for bash; installed as share/bash-completion/completions/gridmorph, or: source gridmorph.bash
+# zsh: autoload -U +X bashcompinit && bashcompinit, then the same.
+#
+# Commands and options are those that the program's own --help lists, so that this file has nothing to keep up with.
+
+_gridmorph() {
+  local program=${COMP_WORDS[0]} current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+  local commands command="" word n
+  COMPREPLY=()
+  commands=$("$program" --help 2>/dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z][a-z]*\)  .*/\1/p')
+  for ((n = 1; n < COMP_CWORD && ${#command} == 0; n++)); do
+    for word in $commands; do
+      [[ ${COMP_WORDS[n]} == "$word" ]] && command=$word
+    done
+  done
+  if [[ $current == -* ]]; then
+    local options
+    # shellcheck disable=SC2086 # no command: one word less
+    options=$("$program" $command --help 2>/dev/null | sed -n 's/^  \(-[^ ]*\).*/\1/p' | tr ',' '\n')
+    mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current")
+    return
+  fi
+  case $previous in
+    -q | --quiet | --json | --dry-run | --match | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
+  esac
+  case $previous in
+    -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --split | --match-tolerance | -p | --patches) return ;;
+    -m | --motion) mapfile -t COMPREPLY < <(compgen -W "rotation chord all" -- "$current") ;;
+    -d | --directory) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
+    -*) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
+    *)
+      if [[ -z $command ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$current")
+        return
+      fi
+      case $command in
+        demo) mapfile -t COMPREPLY < <(compgen -W "passage ball" -- "$current") ;;
+        morph | plan | wheel) mapfile -t COMPREPLY < <(compgen -d -- "$current"; compgen -f -X '!*.toml' -- "$current") ;;
+        *) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
+      esac
+      ;;
+  esac
+}
+
+complete -o filenames -F _gridmorph gridmorph

@@ -1,0 +1,11 @@
+// The CGNS library that reads and writes the files.
+#pragma once
+
+#include <string>
+
+namespace gridmorph {
+
+/// "4.3.0"
+std::string cgns_version();
+
+}  // namespace gridmorph
