@@ -71,7 +71,7 @@ KOKKOS_INLINE_FUNCTION double without_noise(double jacobian, double tolerance) {
   return jacobian > tolerance || jacobian < -tolerance ? jacobian : 0;
 }
 
-KOKKOS_INLINE_FUNCTION double largest_coordinate(Vec3 const* points, int count) {
+KOKKOS_INLINE_FUNCTION double largest_component(Vec3 const* points, int count) {
   double low = 0, high = 0;
   for (int n = 0; n < count; ++n) {
     low = smaller(low, smaller(points[n].x, smaller(points[n].y, points[n].z)));
@@ -188,7 +188,7 @@ KOKKOS_INLINE_FUNCTION JacobianRange jacobian_range(HexCell const& cell, HexEdge
     for (int e = 0; e < 4; ++e) longest[d] = larger(longest[d], dot(edges.of[d][e], edges.of[d][e]));
     longest[d] = compat::math::sqrt(longest[d]);
   }
-  double const tolerance = jacobian_tolerance(longest[0], longest[1], longest[2], largest_coordinate(cell.corner, 8));
+  double const tolerance = jacobian_tolerance(longest[0], longest[1], longest[2], largest_component(cell.corner, 8));
   r.min8 = without_noise(r.min8, tolerance);
   r.max8 = without_noise(r.max8, tolerance);
   r.min27 = without_noise(r.min27, tolerance);

@@ -204,7 +204,7 @@ KOKKOS_INLINE_FUNCTION double scaled_simplex(EdgeLengths const& e, double j) {
 /// lateral edges in pyramids, triangles and columns in prisms, the corner with the shortest edges in simplices.
 template <ElementType type>
 KOKKOS_INLINE_FUNCTION double tolerance(ElementCorners const& c, EdgeLengths const& e) {
-  double const x = largest_coordinate(c.at, n_corners(type)), longest = compat::math::sqrt(e.longest);
+  double const x = largest_component(c.at, n_corners(type)), longest = compat::math::sqrt(e.longest);
   if constexpr (type == ElementType::triangle || type == ElementType::tetrahedron) {
     double const rounding =
         type == ElementType::triangle ? jacobian_tolerance(0, longest, x) : jacobian_tolerance(0, longest, longest, x);

@@ -36,7 +36,7 @@ std::string describe(Mesh const& mesh, Patches const& patches) {
   return text;
 }
 
-double largest_coordinate(std::vector<Vec3> const& points) {
+double largest_component(std::vector<Vec3> const& points) {
   double most = 0;
   for (Vec3 const& p : points) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   return most;
@@ -166,7 +166,7 @@ class Finder {
 
   /// 1e-6 of the patch's size, and the rounding of single-precision coordinates wherever they are.
   static double flat(double extent, std::vector<Vec3> const& points) {
-    return 1e-6 * extent + 2e-7 * largest_coordinate(points);
+    return 1e-6 * extent + 2e-7 * largest_component(points);
   }
 
   void plane(Patches members, std::optional<std::pair<Vec3, Vec3>> const& given) {
@@ -209,7 +209,7 @@ class Finder {
         auto const points = patch_points(mesh_, members);
         PlaneFit const fit = fit_plane(points);
         if (fit.determined &&
-            deviation_from_plane(points, fit.origin, fit.normal) <= 1e-13 * largest_coordinate(points)) {
+            deviation_from_plane(points, fit.origin, fit.normal) <= 1e-13 * largest_component(points)) {
           // Flat to round-off: a plane is the same surface at a fraction of the cost.
           plane(members, std::nullopt);
           continue;
