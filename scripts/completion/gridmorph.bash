@@ -16,12 +16,12 @@ _gridmorph() {
   if [[ $current == -* ]]; then
     local options
     # shellcheck disable=SC2086 # no command: one word less
-    options=$("$program" $command --help 2>/dev/null | sed -n 's/^  \(-[^ ]*\).*/\1/p' | tr ',' '\n')
+    options=$("$program" $command --help 2>/dev/null | sed -n 's/^  \(-[^ {]*\).*/\1/p' | tr ',' '\n')
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current")
     return
   fi
   case $previous in
-    -q | --quiet | --json | --dry-run | --match | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
+    -q | --quiet | --json | --dry-run | --match | --no-periodic | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
   esac
   case $previous in
     -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --split | --match-tolerance | -p | --patches) return ;;
@@ -34,7 +34,7 @@ _gridmorph() {
         return
       fi
       case $command in
-        demo) mapfile -t COMPREPLY < <(compgen -W "passage ball" -- "$current") ;;
+        demo) mapfile -t COMPREPLY < <(compgen -W "passage ball turbine slat coil" -- "$current") ;;
         morph | plan | wheel) mapfile -t COMPREPLY < <(compgen -d -- "$current"; compgen -f -X '!*.toml' -- "$current") ;;
         *) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
       esac

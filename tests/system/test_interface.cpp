@@ -49,7 +49,7 @@ class InterfaceTest : public CommandTest {
   [[nodiscard]] std::set<std::string> options_of(std::string const& command) const {
     std::string const help = gridmorph(command + " --help").out;
     std::set<std::string> out;
-    std::regex const line("(^|\n)  (-[^ \n]*)");
+    std::regex const line("(^|\n)  (-[^ {\n]*)");  // "--no-x{false}"
     for (std::sregex_iterator at(help.begin(), help.end(), line), end; at != end; ++at) {
       std::istringstream list((*at)[2]);
       for (std::string option; std::getline(list, option, ',');) out.insert(option);
