@@ -31,7 +31,7 @@ struct Solver {
     (void)Background{};
     (void)StepOptions{};
     return TopologyOptions{}.open_faces.empty() && BoundaryLayer{}.walls.empty() &&
-           VolumeOptions{}.law == Law::linear && MorpherOptions{}.fields == 1 && RelaxOptions{}.orientation.empty() &&
+           VolumeOptions{}.law == Law::linear && MorpherOptions{}.fields == 1 && RelaxOptions{}.signs.empty() &&
            WrapOptions{}.resolution > 0;
   }
 };
