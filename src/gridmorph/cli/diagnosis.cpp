@@ -67,13 +67,13 @@ Moved moved_by(MeshForMessages const& mesh, MotionRule const& rule, Coordinates 
   return out;
 }
 
-struct Turn {
+struct FoundTurn {
   Vec3 direction;  ///< unit vector, its largest component positive
   double angle;    ///< [rad]
 };
 
 /// Axis and angle of a rotation; nothing for the identity, half a turn and matrices that are no rotation.
-std::optional<Turn> turn_of(Mat3 const& m) {
+std::optional<FoundTurn> turn_of(Mat3 const& m) {
   Vec3 const x = m * Vec3{1, 0, 0}, y = m * Vec3{0, 1, 0}, z = m * Vec3{0, 0, 1};
   constexpr double tolerance = 1e-9;
   if (std::abs(norm(x) - 1) + std::abs(norm(y) - 1) + std::abs(norm(z) - 1) > tolerance) return {};
@@ -82,7 +82,7 @@ std::optional<Turn> turn_of(Mat3 const& m) {
   Vec3 const axial{y.z - z.y, z.x - x.z, x.y - y.x};
   if (!(angle > 1e-6) || !(norm(axial) > 1e-9)) return {};
   double const low = std::min({axial.x, axial.y, axial.z}), high = std::max({axial.x, axial.y, axial.z});
-  return Turn{((-low > high ? -1 : 1) / norm(axial)) * axial, angle};
+  return FoundTurn{((-low > high ? -1 : 1) / norm(axial)) * axial, angle};
 }
 
 /// Distance of a point from the axis of the rotation in x' = M x + t; nothing where M is no rotation.
