@@ -27,7 +27,7 @@ class InterfaceTest : public CommandTest {
     write_case("wheel.toml", rules + "[wheel]\noutput = \"out_wheel.cgns\"\npassages = 2\n");
     std::string const su2 = GRIDMORPH_SOURCE "/examples/meshes/mesh_vki_turbine.su2";
     write("flat.toml", "[mesh]\ninput = \"" + su2 +
-                           "\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"wall1\"]\nrule = \"rigid\"\n"
+                           "\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"airfoil\"]\nrule = \"rigid\"\n"
                            "translation = [0.0001, 0, 0]\n");
   }
 
