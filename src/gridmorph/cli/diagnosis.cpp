@@ -2,6 +2,8 @@
 #include <gridmorph/cli/mesh_summary.hpp>
 #include <gridmorph/motion/selectors.hpp>
 #include <gridmorph/report/measure_text.hpp>
+#include <gridmorph/topology/periodic_axis.hpp>
+#include <gridmorph/wheel/detail/link_nodes.hpp>
 
 #include <fmt/format.h>
 
@@ -67,31 +69,13 @@ Moved moved_by(MeshForMessages const& mesh, MotionRule const& rule, Coordinates 
   return out;
 }
 
-struct FoundTurn {
-  Vec3 direction;  ///< unit vector, its largest component positive
-  double angle;    ///< [rad]
-};
-
-/// Axis and angle of a rotation; nothing for the identity, half a turn and matrices that are no rotation.
-std::optional<FoundTurn> turn_of(Mat3 const& m) {
-  Vec3 const x = m * Vec3{1, 0, 0}, y = m * Vec3{0, 1, 0}, z = m * Vec3{0, 0, 1};
+/// The line that x' = M x + t turns points about; nothing where M is no rotation.
+std::optional<AxisTurn> turn_of(Mat3 const& m, Vec3 const& t) {
   constexpr double tolerance = 1e-9;
-  if (std::abs(norm(x) - 1) + std::abs(norm(y) - 1) + std::abs(norm(z) - 1) > tolerance) return {};
-  // Trace: 1 + 2 cos(angle); the antisymmetric part: 2 sin(angle) times the axis.
-  double const angle = std::acos(std::clamp((x.x + y.y + z.z - 1) / 2, -1.0, 1.0));
-  Vec3 const axial{y.z - z.y, z.x - x.z, x.y - y.x};
-  if (!(angle > 1e-6) || !(norm(axial) > 1e-9)) return {};
-  double const low = std::min({axial.x, axial.y, axial.z}), high = std::max({axial.x, axial.y, axial.z});
-  return FoundTurn{((-low > high ? -1 : 1) / norm(axial)) * axial, angle};
-}
-
-/// Distance of a point from the axis of the rotation in x' = M x + t; nothing where M is no rotation.
-std::optional<double> distance_from_axis(RigidRule const& rule, Vec3 const& point) {
-  auto const turn = turn_of(rule.matrix);
-  if (!turn) return {};
-  Vec3 const step = rule.matrix * point + rule.translation - point;
-  Vec3 const across = step - dot(step, turn->direction) * turn->direction;
-  return norm(across) / (2 * std::sin(turn->angle / 2));
+  double change = 0;
+  for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) change += std::abs(norm(m * e) - 1);
+  if (change > tolerance) return {};
+  return as_turn({m, t}, std::numeric_limits<double>::infinity());
 }
 
 void add_unit_causes(CaseFile const& case_file, MotionRule const& rule, Moved const& moved,
@@ -125,11 +109,7 @@ MeshForMessages for_messages(Mesh const& mesh) {
   for (Patch const& patch : mesh.patches) {
     out.patch_names.push_back(name_of(patch));
     auto& nodes = out.patch_nodes.emplace_back();
-    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
-    auto const& r = patch.range;
-    for (int k = r.begin[2]; k < r.end[2]; ++k)
-      for (int j = r.begin[1]; j < r.end[1]; ++j)
-        for (int i = r.begin[0]; i < r.end[0]; ++i) nodes.push_back(zone.node({i, j, k}));
+    for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range, [&](Index n) { nodes.push_back(n); });
   }
   return out;
 }
@@ -181,13 +161,14 @@ std::vector<std::string> likely_causes(CaseFile const& case_file, MeshForMessage
     if (rigid == nullptr && !std::holds_alternative<FunctionRule>(rule.rule)) continue;
     Moved const moved = moved_by(mesh, rule, morphed);
     if (!(moved.size > 0) || !(moved.largest > 0)) continue;
-    auto const from_axis =
-        rigid != nullptr ? distance_from_axis(*rigid, 0.5 * (moved.box.low + moved.box.high)) : std::nullopt;
-    if (from_axis && *from_axis > moved.size)
+    auto const turn = rigid != nullptr ? turn_of(rigid->matrix, rigid->translation) : std::nullopt;
+    Vec3 const middle = 0.5 * (moved.box.low + moved.box.high);
+    double const from_axis = turn ? norm(cross(middle - turn->origin, turn->direction)) : 0;
+    if (from_axis > moved.size)
       causes.push_back(fmt::format(
           "{}: the patches turn about a line {:.3g} from their middle, {:.3g} times their size; look at axis and "
           "origin of the rotation (without axis it is about the axis of [mesh])",
-          rule.where, *from_axis, *from_axis / moved.size));
+          rule.where, from_axis, from_axis / moved.size));
     else
       add_unit_causes(case_file, rule, moved, causes);
   }
@@ -198,10 +179,12 @@ std::optional<std::string> axis_mismatch(Mesh const& mesh, Axis const& axis) {
   Vec3 const wanted = (1 / norm(axis.direction)) * axis.direction;
   std::optional<Vec3> other;
   for (auto const& interface : mesh.interfaces) {
-    auto const turn = interface.periodic ? turn_of(interface.periodic->declared.rotation) : std::nullopt;
+    auto const turn = interface.periodic ? turn_of(interface.periodic->declared.rotation, {}) : std::nullopt;
     if (!turn) continue;
-    if (norm(cross(turn->direction, wanted)) < 1e-3) return {};
-    if (!other) other = turn->direction;
+    Vec3 const& d = turn->direction;
+    if (norm(cross(d, wanted)) < 1e-3) return {};
+    bool const backward = -std::min({d.x, d.y, d.z}) > std::max({d.x, d.y, d.z});
+    if (!other) other = backward ? -d : d;
   }
   if (!other) return {};
   return fmt::format("the axis of [mesh] is {}, but the periodic interfaces turn about {}: is it the right axis?",

@@ -1,3 +1,4 @@
+#include <gridmorph/core/rotation.hpp>
 #include <gridmorph/topology/links.hpp>
 #include <gridmorph/topology/periodic_axis.hpp>
 
@@ -35,25 +36,11 @@ std::optional<Vec3> across_line(std::vector<Vec3> const& points, double size) {
 }  // namespace
 
 std::optional<AxisTurn> as_turn(RigidTransform const& t, double tolerance) {
-  auto const& m = t.rotation.m;
-  // R - R^T gives sin(angle) times the axis; its trace the cosine. Near half a turn the symmetric part gives the axis.
-  Vec3 const twice{m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
-  double const cosine = 0.5 * (m[0][0] + m[1][1] + m[2][2] - 1), sine = 0.5 * norm(twice);
+  Vec3 const turn = rotation_vector(t.rotation);
   AxisTurn out;
-  out.angle_rad = std::atan2(sine, cosine);
+  out.angle_rad = norm(turn);
   if (out.angle_rad < smallest_angle) return std::nullopt;
-  if (sine > 1e-3) {
-    out.direction = (1 / norm(twice)) * twice;
-  } else {
-    int largest = 0;
-    for (int a = 1; a < 3; ++a)
-      if (m[a][a] > m[largest][largest]) largest = a;
-    Vec3 column{m[0][largest] + m[largest][0], m[1][largest] + m[largest][1], m[2][largest] + m[largest][2]};
-    (largest == 0 ? column.x : largest == 1 ? column.y : column.z) += 2 * (0 - cosine);
-    if (norm(column) == 0) return std::nullopt;
-    out.direction = (1 / norm(column)) * column;
-    if (dot(out.direction, twice) < 0) out.direction = -out.direction;
-  }
+  out.direction = (1 / out.angle_rad) * turn;
   double const along = dot(t.translation, out.direction);
   if (std::fabs(along) > tolerance) return std::nullopt;
   Vec3 const across = t.translation - along * out.direction;

@@ -2,6 +2,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/detail/patch_points.hpp>
+#include <gridmorph/motion/detail/patch_surface.hpp>
 
 #include <algorithm>
 #include <array>
@@ -42,20 +43,10 @@ class MergedPoints {
   std::map<Cell, std::vector<std::pair<Vec3, int>>> cells_;
 };
 
-double diagonal_of(std::vector<Vec3> const& points) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Vec3 lo{inf, inf, inf}, hi{-inf, -inf, -inf};
-  for (Vec3 const& p : points) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-  }
-  return distance(lo, hi);
-}
-
 class Stitcher {
  public:
   Stitcher(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input, std::vector<std::string>& notes)
-      : mesh_(mesh), input_(input), notes_(notes), numbers_(1e-7 * diagonal_of(patch_points(mesh, patches))) {
+      : mesh_(mesh), input_(input), notes_(notes), numbers_(1e-7 * box_diagonal(patch_points(mesh, patches))) {
     for (int p : patches) add_patch(p);
   }
 
@@ -228,7 +219,7 @@ class Stitcher {
 
 BladeSurface stitch_blade(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes) {
-  double const size = diagonal_of(patch_points(mesh, patches));
+  double const size = box_diagonal(patch_points(mesh, patches));
   if (!(size > 0) || !std::isfinite(size)) throw MotionError("the blade's nodes are one point, or not finite");
   return Stitcher(mesh, patches, input, notes).run();
 }
