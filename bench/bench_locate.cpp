@@ -16,7 +16,7 @@
 #include "last_made.hpp"
 
 #include <gridmorph/mesh/as_hexahedra.hpp>
-#include <gridmorph/unstructured/locate.hpp>
+#include <gridmorph/plan/elements/locate.hpp>
 
 #include <algorithm>
 #include <array>
@@ -150,8 +150,8 @@ struct Rows {
       locator.locate(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(points.data(), points.size()),
                      Kokkos::View<Location*, Kokkos::HostSpace>(places.data(), places.size()));
       compat::fence(exec, "gridmorph::bench (located)");
-      std::vector<Number> targets(points.size());
-      for (std::size_t n = 0; n < targets.size(); ++n) targets[n] = Number(n);
+      std::vector<Index32> targets(points.size());
+      for (std::size_t n = 0; n < targets.size(); ++n) targets[n] = Index32(n);
       iterate(state, exec, [&] { benchmark::DoNotOptimize(interpolation_rows(mesh, places, targets).size()); });
       // A location, a type, corner nodes read; target, first, items and weights written.
       set_locate_rates(state, mesh.n_elements(), 44 + 9 + 32 + 12 + 64);

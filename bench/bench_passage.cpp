@@ -14,10 +14,10 @@
 #include "node_arrays.hpp"
 #include "roof.hpp"
 
-#include <gridmorph/demo/passage.hpp>
-#include <gridmorph/demo/passage_motion.hpp>
+#include <generators/passage.hpp>
+#include <generators/passage_motion.hpp>
+#include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/volume/morpher.hpp>
 
 namespace gridmorph::bench {
 namespace {

@@ -11,7 +11,7 @@
 #include "rbf_reference.hpp"
 #include "roof.hpp"
 
-#include <gridmorph/demo/ball_demo.hpp>
+#include <generators/ball_demo.hpp>
 
 #include <algorithm>
 #include <random>
@@ -35,31 +35,31 @@ BallCase make_case(Index nodes) {
   BallOptions options;
   options.elements = std::max(Index(50'000), Index(double(nodes) / nodes_per_element));
   out.mesh = make_ball(options);
-  std::vector<Number> moving, still;
+  std::vector<Index32> moving, still;
   for (auto const& patch : out.mesh.patches) {
     auto& list = patch.name == "ball" || patch.name == "rope" ? moving : still;
     auto const nodes_of = patch_nodes(patch);
     list.insert(list.end(), nodes_of.begin(), nodes_of.end());
   }
   std::mt19937 random(1);
-  auto const pick = [&](std::vector<Number>& list, std::vector<Number> const& taken) {
+  auto const pick = [&](std::vector<Index32>& list, std::vector<Index32> const& taken) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
-    for (Number const n : taken) list.erase(std::remove(list.begin(), list.end(), n), list.end());
+    for (Index32 const n : taken) list.erase(std::remove(list.begin(), list.end(), n), list.end());
     for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[random() % i]);
     std::size_t const n = std::min(list.size(), std::size_t(n_centres / 2));
-    return std::vector<Number>(list.begin(), list.begin() + std::ptrdiff_t(n));
+    return std::vector<Index32>(list.begin(), list.begin() + std::ptrdiff_t(n));
   };
   auto const fixed = pick(still, {});
   auto const swinging = pick(moving, fixed);
   for (auto const* list : {&fixed, &swinging})
-    for (Number const n : *list) {
+    for (Index32 const n : *list) {
       Vec3 const p = out.mesh.coordinates[n];
       out.centres.push_back(p);
       out.displacement.push_back(list == &swinging ? ball_displacement(options, {}, p) : Vec3{});
     }
   RbfField<Kokkos::HostSpace> const field(out.centres, out.displacement, out.mesh.size());
-  for (Number const n : moving) {
+  for (Index32 const n : moving) {
     Vec3 const p = out.mesh.coordinates[n];
     out.error = std::max(out.error, distance(field(p), ball_displacement(options, {}, p)));
   }

@@ -25,11 +25,11 @@
 #include "node_arrays.hpp"
 #include "roof.hpp"
 
-#include <gridmorph/demo/ball_demo.hpp>
+#include <generators/ball_demo.hpp>
 #include <gridmorph/mesh/file_order.hpp>
-#include <gridmorph/unstructured/detail/scatter_views.hpp>
-#include <gridmorph/unstructured/unstructured_morpher.hpp>
-#include <gridmorph/volume/morpher.hpp>
+#include <gridmorph/morph/detail/inverse_distance_views.hpp>
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/unstructured_morpher.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -58,7 +58,7 @@ struct BallCase {
   BallOptions options;
   UnstructuredMesh mesh;
   UnstructuredTopology topology;
-  BoundaryClaims claims;
+  BoundaryFacePatches face_patches;
 
   BallCase(Index nodes, bool in_order) {
     options.shuffle = true;
@@ -66,10 +66,10 @@ struct BallCase {
     mesh = make_ball(options);
     if (in_order) reorder(mesh, order_by_position(mesh));
     topology = make_topology(mesh);
-    claims = claim_boundary(mesh, topology);
+    face_patches = find_face_patches(mesh, topology);
   }
   [[nodiscard]] PreparedUnstructured prepare() const {
-    return gridmorph::prepare(mesh, topology, claims, swing(options), {});
+    return gridmorph::prepare(mesh, topology, face_patches, swing(options), {});
   }
   [[nodiscard]] PreparedUnstructured const& prepared() const {
     if (!prepared_) prepared_.emplace(prepare());
@@ -96,7 +96,9 @@ void set_ball_rates(benchmark::State& state, ExecutionSpace const& exec, double 
   state.counters["elements/s"] = double(mesh.n_elements()) / mean;
 }
 
-double bytes_of(GatherRows const& rows) { return 36.0 * double(rows.size()) + 32.0 * double(rows.item.size()); }
+double bytes_of(InterpolationOperator const& rows) {
+  return 36.0 * double(rows.size()) + 32.0 * double(rows.item.size());
+}
 
 /// Work on the host, on the cores of the default host execution space whatever `exec` is.
 template <class Work>
@@ -155,7 +157,7 @@ struct Project {
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
     using Memory = typename ExecutionSpace::memory_space;
     BallCase const& ball = ball_case(state.range(0));
-    GatherViews<Memory> const far(ball.plan().far);
+    InterpolationViews<Memory> const far(ball.plan().far);
     NodeArrays<Memory> const background(ball.plan().background->mesh.coordinates);
     Kokkos::View<Vec3*, Memory> const u("gridmorph::bench::u", std::size_t(ball.mesh.n_nodes()));
     double const mean = time_iterations(state, exec, [&] { gather(exec, far, background.read(), u); });
@@ -169,7 +171,7 @@ struct Scatter {
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
     using Memory = typename ExecutionSpace::memory_space;
     BallCase const& ball = ball_case(state.range(0));
-    detail::ScatterViews<Memory, detail::AffineMotion> const walls(ball.plan().walls);
+    detail::InverseDistanceViews<Memory, detail::AffineMotion> const walls(ball.plan().walls);
     Kokkos::View<detail::AffineMotion*, Memory> const given("gridmorph::bench::given", ball.plan().driving.size());
     double const mean = time_iterations(state, exec, [&] { walls.run(exec, given); });
     auto const& plan = ball.plan().walls;

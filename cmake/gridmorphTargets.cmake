@@ -33,11 +33,10 @@ function(gridmorph_precompile_headers target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess -Wno-stringop-overflow -Wno-array-bounds>)
 endfunction()
 
-# gridmorph_add_library(<target> EXPORT_NAME <name> FOLDERS <folder> ... [HEADERS <header> ...])
+# gridmorph_add_library(<target> EXPORT_NAME <name> FOLDERS <folder> ... HEADERS <header> ...)
 #
 # Makes the library <target>, known outside as gridmorph::<name>, from folders of src/gridmorph. The sources are listed in
-# each folder's CMakeLists.txt. What is installed are the headers in these folders, not those in their `detail` folders,
-# or the HEADERS alone where they are named.
+# each folder's CMakeLists.txt. What is installed are the HEADERS.
 function(gridmorph_add_library target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "EXPORT_NAME" "FOLDERS;HEADERS")
   add_library(${target})
@@ -48,13 +47,7 @@ function(gridmorph_add_library target)
     ${target} PROPERTIES EXPORT_NAME ${arg_EXPORT_NAME} VERSION ${PROJECT_VERSION}
                          SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_compile_features(${target} PUBLIC cxx_std_20)
-  set(headers ${arg_HEADERS})
-  if(NOT headers)
-    list(TRANSFORM arg_FOLDERS PREPEND gridmorph/ OUTPUT_VARIABLE patterns)
-    list(TRANSFORM patterns APPEND /*.hpp)
-    file(GLOB headers CONFIGURE_DEPENDS ${patterns})
-  endif()
-  target_sources(${target} PUBLIC FILE_SET HEADERS TYPE HEADERS BASE_DIRS "${CMAKE_CURRENT_SOURCE_DIR}" FILES ${headers})
+  target_sources(${target} PUBLIC FILE_SET HEADERS TYPE HEADERS BASE_DIRS "${CMAKE_CURRENT_SOURCE_DIR}" FILES ${arg_HEADERS})
   foreach(folder IN LISTS arg_FOLDERS)
     add_subdirectory(gridmorph/${folder})
   endforeach()

@@ -3,8 +3,8 @@
 // Two zones, one above the other, share an interface; the floor of the lower one is a panel that bends, the other faces
 // stay. The plan is made once. Every step enqueues kernels on the solver's own execution space: no allocation, no fence,
 // no host decision. Needs the core library (and so Kokkos) alone.
+#include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/volume/morpher.hpp>
 
 #include <Kokkos_Core.hpp>
 

@@ -4,10 +4,10 @@
 //
 // Prints how many elements are inverted that were not before, and the smallest determinant in parentheses. Made the table of
 // docs/unstructured.md, "Large rotations".
-#include <gridmorph/core/rigid_transform.hpp>
-#include <gridmorph/demo/sphere.hpp>
+#include <generators/sphere.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
+#include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
-#include <gridmorph/unstructured/stepped_morph.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -24,12 +24,12 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 struct SphereCase {
   gridmorph::UnstructuredMesh mesh;
   gridmorph::UnstructuredTopology topology;
-  gridmorph::BoundaryClaims claims;
+  gridmorph::BoundaryFacePatches face_patches;
 
   explicit SphereCase(gridmorph::Index elements)
       : mesh(gridmorph::make_sphere({.elements = elements})),
         topology(gridmorph::make_topology(mesh)),
-        claims(gridmorph::claim_boundary(mesh, topology)) {}
+        face_patches(gridmorph::find_face_patches(mesh, topology)) {}
 
   /// The sphere turned by an angle about an axis that no grid line follows; the outer sphere, a far field, stands.
   gridmorph::Coordinates turned(double angle_deg, int steps) {
@@ -39,17 +39,18 @@ struct SphereCase {
     rule.patches = {"sphere"};
     rule.rule = gridmorph::RigidRule{turn.rotation, turn.translation};
     rule.where = "sphere_turns";
-    auto const prepared = gridmorph::prepare(mesh, topology, claims, motion, {});
+    auto const prepared = gridmorph::prepare(mesh, topology, face_patches, motion, {});
     gridmorph::StepOptions options;
     options.steps = steps;
-    return gridmorph::morph_in_steps(mesh, topology, claims, prepared, prepared.boundary_displacement(mesh), options);
+    return gridmorph::morph_in_steps(mesh, topology, face_patches, prepared, prepared.boundary_displacement(mesh),
+                                     options);
   }
 
   [[nodiscard]] std::string verdict(gridmorph::Coordinates const& morphed) const {
     gridmorph::UnstructuredQualityInput<Kokkos::HostSpace> input;
     input.baseline = gridmorph::views(mesh.coordinates);
     input.coordinates = gridmorph::views(morphed);
-    auto const quality = gridmorph::measure_quality(Exec(), mesh, topology, claims, input).far_field;
+    auto const quality = gridmorph::measure_quality(Exec(), mesh, topology, face_patches, input).far_field;
     char text[64];
     std::snprintf(text, sizeof text, "%lld (%.3g)", static_cast<long long>(quality.newly_inverted),
                   quality[gridmorph::Measure::determinant_3x3x3].min);

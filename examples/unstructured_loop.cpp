@@ -2,7 +2,7 @@
 //
 // Elements, boundary faces and coordinates are handed over as lists, the plan is made once, and every step enqueues kernels on the
 // solver's own execution space: no allocation, no fence, no host decision. Needs the core library (and so Kokkos) alone.
-#include <gridmorph/unstructured/unstructured_morpher.hpp>
+#include <gridmorph/morph/unstructured_morpher.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -17,7 +17,7 @@ namespace {
 using gridmorph::ElementType;
 using gridmorph::Index;
 using gridmorph::Index3;
-using gridmorph::Number;
+using gridmorph::Index32;
 using gridmorph::Vec3;
 
 constexpr int n = 18;  // unit cells along each side of the box; the body takes the middle third
@@ -40,9 +40,9 @@ gridmorph::UnstructuredMesh box_around_a_body() {
       {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
   // What is behind the sides of a hexahedron, in the order of the CGNS standard.
   constexpr std::array<Index3, 6> behind{{{0, 0, -1}, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
-  std::vector<Number> number(std::size_t((n + 1) * (n + 1) * (n + 1)), -1);
+  std::vector<Index32> number(std::size_t((n + 1) * (n + 1) * (n + 1)), -1);
   std::vector<Vec3> points;
-  std::vector<std::array<Number, 8>> elements;
+  std::vector<std::array<Index32, 8>> elements;
   gridmorph::UnstructuredPatch body, box;
   body.name = "body";
   body.kind = gridmorph::PatchKind::wall;
@@ -56,9 +56,9 @@ gridmorph::UnstructuredMesh box_around_a_body() {
         auto& nodes = elements.emplace_back();
         for (std::size_t c = 0; c < 8; ++c) {
           Index3 const at{i + corner[c][0], j + corner[c][1], k + corner[c][2]};
-          Number& own = number[std::size_t(at[0] + (n + 1) * (at[1] + (n + 1) * at[2]))];
+          Index32& own = number[std::size_t(at[0] + (n + 1) * (at[1] + (n + 1) * at[2]))];
           if (own < 0) {
-            own = Number(points.size());
+            own = Index32(points.size());
             points.push_back({double(at[0]), double(at[1]), double(at[2])});
           }
           nodes[c] = own;
@@ -67,7 +67,7 @@ gridmorph::UnstructuredMesh box_around_a_body() {
           auto const& b = behind[std::size_t(side)];
           Cell const there = cell({i + b[0], j + b[1], k + b[2]});
           if (there == Cell::fluid) continue;
-          std::array<Number, 4> face;
+          std::array<Index32, 4> face;
           for (int c = 0; c < 4; ++c)
             face[std::size_t(c)] = nodes[std::size_t(gridmorph::face_corner(hexahedron, side, c))];
           (there == Cell::body ? body : box).faces.add(face);
@@ -94,12 +94,12 @@ int main(int argc, char** argv) {
   gridmorph::UnstructuredMesh const mesh = box_around_a_body();
   gridmorph::check_mesh(mesh);
   gridmorph::UnstructuredTopology const topology = gridmorph::make_topology(mesh);
-  gridmorph::BoundaryClaims const claims = gridmorph::claim_boundary(mesh, topology);
+  gridmorph::BoundaryFacePatches const claims = gridmorph::find_face_patches(mesh, topology);
   gridmorph::Motion motion;
   motion.rules.push_back({{"body"}, gridmorph::RigidRule{{}, {0, 0, 1}}, 0, "unstructured_loop"});
   gridmorph::UnstructuredOptions options;
   options.motion = 2;  // the largest displacement there will be: the wrap leaves room for it
-  gridmorph::PreparedUnstructured const prepared = gridmorph::prepare(mesh, topology, claims, motion, options);
+  gridmorph::PreparedUnstructured const prepared = gridmorph::prepare(mesh, topology, face_patches, motion, options);
   gridmorph::UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
 
   // Every step: displacement of the boundary nodes in, positions of all nodes out, always from the reference mesh.

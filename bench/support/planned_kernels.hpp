@@ -3,9 +3,9 @@
 
 #include "node_arrays.hpp"
 
+#include <gridmorph/morph/device_plan.hpp>
+#include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/volume/device_plan.hpp>
-#include <gridmorph/volume/morpher.hpp>
 
 #include <functional>
 #include <memory>

@@ -3,8 +3,8 @@
 
 #include "case_text.hpp"
 
-#include <gridmorph/casefile/structural_model.hpp>
-#include <gridmorph/core/rigid_transform.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
+#include <gridmorph/mapping/structural_model.hpp>
 
 #include <cmath>
 #include <functional>

@@ -16,9 +16,9 @@ namespace hybrid_checks {
 
 using namespace gridmorph;
 
-using Key = std::array<Number, 4>;
+using Key = std::array<Index32, 4>;
 
-inline Key key_of(std::span<Number const> corners) {
+inline Key key_of(std::span<Index32 const> corners) {
   Key key{-1, -1, -1, -1};
   std::copy(corners.begin(), corners.end(), key.begin());
   std::sort(key.begin(), key.end());
@@ -33,7 +33,7 @@ struct Side {
 
 inline std::map<Key, Side> sides_of(UnstructuredMesh const& mesh) {
   std::map<Key, Side> sides;
-  std::array<Number, max_face_corners> room{};
+  std::array<Index32, max_face_corners> room{};
   for (Index e = 0; e < mesh.n_elements(); ++e)
     for (int s = 0; s < n_sides(mesh, e); ++s) ++sides[key_of(side_nodes(mesh, e, s, room))].elements;
   for (auto const& patch : mesh.patches)
@@ -86,8 +86,8 @@ inline UnstructuredPatch const& patch(UnstructuredMesh const& mesh, std::string 
 /// Volume that the faces of all patches enclose; exact where they are plane, and if they close.
 inline double enclosed_volume(UnstructuredMesh const& mesh) {
   double sum = 0;
-  std::map<Key, std::vector<Number>> outward;
-  std::array<Number, max_face_corners> room{};
+  std::map<Key, std::vector<Index32>> outward;
+  std::array<Index32, max_face_corners> room{};
   for (auto const& p : mesh.patches)
     for (Index f = 0; f < p.faces.size(); ++f) outward[key_of(p.faces[f])];
   for (Index e = 0; e < mesh.n_elements(); ++e)
@@ -107,7 +107,7 @@ inline double enclosed_volume(UnstructuredMesh const& mesh) {
   return sum;
 }
 
-inline bool same_lists(NumberLists const& a, NumberLists const& b) { return a.first == b.first && a.item == b.item; }
+inline bool same_lists(CsrGraph const& a, CsrGraph const& b) { return a.first == b.first && a.item == b.item; }
 
 inline bool same_coordinates(UnstructuredMesh const& a, UnstructuredMesh const& b) {
   if (a.n_nodes() != b.n_nodes()) return false;

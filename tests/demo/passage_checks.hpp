@@ -1,7 +1,7 @@
 // What the tests of the demo passage share. Formulas are written out here again, apart from the generator's.
 #pragma once
 
-#include <gridmorph/demo/passage.hpp>
+#include <generators/passage.hpp>
 
 #include <cmath>
 #include <functional>

@@ -2,7 +2,7 @@
 #include "invariants/cases.hpp"
 #include "support/shared_mesh.hpp"
 
-#include <gridmorph/demo/passage_motion.hpp>
+#include <generators/passage_motion.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
 namespace gridmorph::test {

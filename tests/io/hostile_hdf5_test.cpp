@@ -4,7 +4,7 @@
 #include "io_support.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/linked_files.hpp>
+#include <gridmorph/io/cgns/linked_files.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 

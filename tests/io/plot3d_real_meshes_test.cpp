@@ -3,8 +3,8 @@
 #include "support/interface_cells.hpp"
 #include "support/plot3d_file.hpp"
 
+#include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/topology/find_interfaces.hpp>
 
 namespace gridmorph::test {
 namespace {

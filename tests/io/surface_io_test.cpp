@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/io/surface_io.hpp>
+#include <gridmorph/io/surface/surface_io.hpp>
 
 #include <cgnslib.h>
 

@@ -4,7 +4,7 @@
 #include "support/file_size_limit.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <algorithm>

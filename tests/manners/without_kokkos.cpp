@@ -1,9 +1,9 @@
 // A program that forgot to initialise Kokkos, or uses the library after Kokkos was finalised: one clear error each, no abort.
 // A program of its own, because test programs run inside Kokkos from beginning to end.
+#include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/topology/find_interfaces.hpp>
 
 #include <Kokkos_Core.hpp>
 

@@ -18,7 +18,7 @@ namespace {
 Vec3 centre_of(UnstructuredMesh const& mesh, Index e) {
   Vec3 sum;
   auto const corners = mesh.elements.corners(e);
-  for (Number const n : corners) sum += mesh.coordinates[n];
+  for (Index32 const n : corners) sum += mesh.coordinates[n];
   return (1.0 / double(corners.size())) * sum;
 }
 
@@ -34,9 +34,9 @@ class Copier {
   void add_zone(std::string const& name, std::vector<Index> const& elements) {
     auto& number = numbers.emplace_back(std::size_t(from_.n_nodes()), -1);
     for (Index const e : elements)
-      for (Number const n : from_.elements.nodes[e]) number[std::size_t(n)] = 0;
-    Number next = Number(points_.size());
-    Number const first = next;
+      for (Index32 const n : from_.elements.nodes[e]) number[std::size_t(n)] = 0;
+    Index32 next = Index32(points_.size());
+    Index32 const first = next;
     for (std::size_t n = 0; n < number.size(); ++n)
       if (number[n] == 0) {
         number[n] = next++;
@@ -44,8 +44,8 @@ class Copier {
       }
     out.add_zone(name, next - first);
     for (Index const e : elements) {
-      std::vector<Number> nodes;
-      for (Number const n : from_.elements.nodes[e]) nodes.push_back(number[std::size_t(n)]);
+      std::vector<Index32> nodes;
+      for (Index32 const n : from_.elements.nodes[e]) nodes.push_back(number[std::size_t(n)]);
       out.add_element(from_.elements.type[std::size_t(e)], nodes);
     }
     for (auto const& patch : from_.patches) {
@@ -53,8 +53,8 @@ class Copier {
       mine.zone = int(out.zones.size()) - 1;
       mine.faces = {};
       for (Index f = 0; f < patch.faces.size(); ++f) {
-        std::vector<Number> face;
-        for (Number const n : patch.faces[f])
+        std::vector<Index32> face;
+        for (Index32 const n : patch.faces[f])
           if (number[std::size_t(n)] >= 0) face.push_back(number[std::size_t(n)]);
         if (face.size() == patch.faces[f].size()) mine.faces.add(face);
       }
@@ -69,7 +69,7 @@ class Copier {
   }
 
   UnstructuredMesh out;
-  std::vector<std::vector<Number>> numbers;
+  std::vector<std::vector<Index32>> numbers;
 
  private:
   UnstructuredMesh const& from_;
@@ -87,14 +87,14 @@ UnstructuredMesh part_of(UnstructuredMesh const& mesh, std::function<bool(Vec3 c
   copier.add_zone("zone", elements);
   UnstructuredMesh out = copier.finish();
   auto const topology = make_topology(out);
-  auto const claims = claim_boundary(out, topology);
+  auto const face_patches = find_face_patches(out, topology);
   UnstructuredPatch patch;
   patch.name = cut;
   patch.kind = kind;
   patch.bc_type = kind == PatchKind::wall ? "BCWall" : kind == PatchKind::symmetry ? "BCSymmetryPlane" : "BCFarfield";
   patch.zone = 0;
   for (Index f = 0; f < topology.boundary.size(); ++f)
-    if (claims.patch[std::size_t(f)] < 0) patch.faces.add(topology.boundary.nodes[f]);
+    if (face_patches.patch[std::size_t(f)] < 0) patch.faces.add(topology.boundary.nodes[f]);
   if (patch.faces.size() > 0) out.patches.push_back(std::move(patch));
   return out;
 }
@@ -112,7 +112,7 @@ UnstructuredMesh in_two_zones(UnstructuredMesh const& mesh, std::function<bool(V
     connection.zone = zone;
     connection.donor_zone = 1 - zone;
     for (std::size_t n = 0; n < copier.numbers[0].size(); ++n) {
-      Number const a = copier.numbers[std::size_t(zone)][n], b = copier.numbers[std::size_t(1 - zone)][n];
+      Index32 const a = copier.numbers[std::size_t(zone)][n], b = copier.numbers[std::size_t(1 - zone)][n];
       if (a < 0 || b < 0) continue;
       connection.nodes.push_back(a);
       connection.donor_nodes.push_back(b);
@@ -124,16 +124,16 @@ UnstructuredMesh in_two_zones(UnstructuredMesh const& mesh, std::function<bool(V
 
 UnstructuredMesh second_order(UnstructuredMesh const& tetrahedra) {
   constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-  std::map<std::pair<Number, Number>, Number> middle;
+  std::map<std::pair<Index32, Index32>, Index32> middle;
   std::vector<Vec3> points;
   for (Index n = 0; n < tetrahedra.n_nodes(); ++n) points.push_back(tetrahedra.coordinates[n]);
-  std::vector<std::vector<Number>> nodes;
+  std::vector<std::vector<Index32>> nodes;
   for (Index e = 0; e < tetrahedra.n_elements(); ++e) {
     auto const corners = tetrahedra.elements.corners(e);
     auto& list = nodes.emplace_back(corners.begin(), corners.end());
     for (auto const& edge : edges) {
-      std::pair<Number, Number> const ends = std::minmax(corners[edge[0]], corners[edge[1]]);
-      auto const [at, fresh] = middle.try_emplace(ends, Number(points.size()));
+      std::pair<Index32, Index32> const ends = std::minmax(corners[edge[0]], corners[edge[1]]);
+      auto const [at, fresh] = middle.try_emplace(ends, Index32(points.size()));
       if (fresh) points.push_back(0.5 * (points[std::size_t(ends.first)] + points[std::size_t(ends.second)]));
       list.push_back(at->second);
     }
@@ -152,12 +152,12 @@ UnstructuredMesh as_polyhedra(UnstructuredMesh const& mesh) {
   UnstructuredMesh out;
   out.source = mesh.source;
   out.add_zone("zone", mesh.n_nodes());
-  std::array<Number, max_face_corners> room{};
+  std::array<Index32, max_face_corners> room{};
   out.polyhedra.first_face.push_back(0);
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     out.add_element(ElementType::polyhedron, mesh.elements.corners(e));
     for (int s = 0; s < n_sides(mesh, e); ++s) out.polyhedra.faces.add(side_nodes(mesh, e, s, room));
-    out.polyhedra.element.push_back(Number(e));
+    out.polyhedra.element.push_back(Index32(e));
     out.polyhedra.first_face.push_back(out.polyhedra.faces.size());
   }
   out.patches = mesh.patches;
@@ -186,7 +186,7 @@ UnstructuredMesh airfoil(int around, int layers, double first, double growth, do
   mesh.source = "airfoil";
   mesh.add_zone("zone", Index(around) * rows);
   mesh.coordinates = Coordinates(mesh.n_nodes());
-  auto const node = [&](int i, int j) { return Number((i % around) + around * j); };
+  auto const node = [&](int i, int j) { return Index32((i % around) + around * j); };
   for (int i = 0; i < around; ++i) {
     // Clockwise from the trailing edge would turn elements inside out: upper side first.
     double const angle = 2 * std::numbers::pi * i / around, x = 0.5 * (1 + std::cos(angle));
@@ -199,7 +199,7 @@ UnstructuredMesh airfoil(int around, int layers, double first, double growth, do
   }
   for (int j = 0; j + 1 < rows; ++j)
     for (int i = 0; i < around; ++i) {
-      Number const a = node(i, j), b = node(i, j + 1), c = node(i + 1, j + 1), d = node(i + 1, j);
+      Index32 const a = node(i, j), b = node(i, j + 1), c = node(i + 1, j + 1), d = node(i + 1, j);
       if (j < layers) {
         mesh.add_element(ElementType::quadrilateral, std::array{a, b, c, d});
       } else {

@@ -1,8 +1,8 @@
 // Runs a plan on an execution space: displacement and morphed coordinates of every node, back on the host.
 #pragma once
 
+#include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/volume/morpher.hpp>
 
 #include <cstring>
 #include <limits>

@@ -1,10 +1,10 @@
 // An unstructured mesh with what follows from it, ready to be morphed and measured.
 #pragma once
 
-#include <gridmorph/core/rigid_transform.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
+#include <gridmorph/guard/guard.hpp>
+#include <gridmorph/morph/unstructured_morpher.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
-#include <gridmorph/unstructured/guard.hpp>
-#include <gridmorph/unstructured/unstructured_morpher.hpp>
 
 #include <algorithm>
 #include <string>
@@ -24,13 +24,13 @@ struct UnstructuredCase {
 
   UnstructuredMesh mesh;
   UnstructuredTopology topology;
-  BoundaryClaims claims;
+  BoundaryFacePatches face_patches;
 
   explicit UnstructuredCase(UnstructuredMesh m)
-      : mesh(std::move(m)), topology(make_topology(mesh)), claims(claim_boundary(mesh, topology)) {}
+      : mesh(std::move(m)), topology(make_topology(mesh)), face_patches(find_face_patches(mesh, topology)) {}
 
   [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
-    UnstructuredMorphed out{prepare(mesh, topology, claims, motion, options), {}, Coordinates(mesh.n_nodes())};
+    UnstructuredMorphed out{prepare(mesh, topology, face_patches, motion, options), {}, Coordinates(mesh.n_nodes())};
     out.boundary = out.prepared.boundary_displacement(mesh);
     apply_on_host(UnstructuredMorpher<Host>(Host(), out.prepared.plan), out.boundary, mesh.coordinates, out.x);
     return out;
@@ -48,7 +48,7 @@ struct UnstructuredCase {
     UnstructuredQualityInput<Kokkos::HostSpace> input;
     input.baseline = views(mesh.coordinates);
     input.coordinates = views(x);
-    return measure_quality(Host(), mesh, topology, claims, input).far_field;
+    return measure_quality(Host(), mesh, topology, face_patches, input).far_field;
   }
   [[nodiscard]] Index inverted(Coordinates const& x) const { return quality(x).newly_inverted; }
 
@@ -58,9 +58,9 @@ struct UnstructuredCase {
     return -1;
   }
   /// Nodes of a patch, those of its faces where it lists faces.
-  [[nodiscard]] std::vector<Number> nodes_of(std::string const& name) const {
+  [[nodiscard]] std::vector<Index32> nodes_of(std::string const& name) const {
     int const p = patch(name);
-    return p < 0 ? std::vector<Number>() : patch_nodes(mesh.patches[std::size_t(p)]);
+    return p < 0 ? std::vector<Index32>() : patch_nodes(mesh.patches[std::size_t(p)]);
   }
   /// Largest deviation of known nodes from what their rules ask for: 0 bit for bit.
   [[nodiscard]] double largest_miss(UnstructuredMorphed const& m) const {

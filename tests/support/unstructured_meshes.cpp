@@ -10,10 +10,10 @@ namespace gridmorph::test {
 namespace {
 
 /// Corner numbers of a cell as i + 2 j + 4 k.
-std::array<Number, 8> cell_nodes(Zone const& zone, Index3 const& c) {
-  std::array<Number, 8> out{};
+std::array<Index32, 8> cell_nodes(Zone const& zone, Index3 const& c) {
+  std::array<Index32, 8> out{};
   for (int n = 0; n < 8; ++n)
-    out[std::size_t(n)] = Number(zone.node({c[0] + (n & 1), c[1] + (n >> 1 & 1), c[2] + (n >> 2)}));
+    out[std::size_t(n)] = Index32(zone.node({c[0] + (n & 1), c[1] + (n >> 1 & 1), c[2] + (n >> 2)}));
   return out;
 }
 
@@ -44,9 +44,9 @@ void each_quad(Zone const& zone, IndexRange const& range, Function const& f) {
       auto const node = [&](int du, int dv) {
         at[u] = p + du;
         at[v] = q + dv;
-        return Number(zone.node(at));
+        return Index32(zone.node(at));
       };
-      std::array<Number, 4> const corners{node(0, 0), node(1, 0), node(1, 1), node(0, 1)};
+      std::array<Index32, 4> const corners{node(0, 0), node(1, 0), node(1, 1), node(0, 1)};
       f(axis, corners, v == 2 ? q : 0);
     }
 }
@@ -90,7 +90,7 @@ UnstructuredMesh to_prisms_and_tetrahedra(Mesh const& mesh, int prism_layers) {
   }
   for (auto const& patch : mesh.patches) {
     auto faces = start(patch);
-    each_quad(mesh.zones[std::size_t(patch.zone)], patch.range, [&](int axis, std::array<Number, 4> const& q, int k) {
+    each_quad(mesh.zones[std::size_t(patch.zone)], patch.range, [&](int axis, std::array<Index32, 4> const& q, int k) {
       if (axis != 2 && k < prism_layers) return faces.faces.add(q);
       faces.faces.add(std::array{q[0], q[1], q[2]});
       faces.faces.add(std::array{q[0], q[2], q[3]});
@@ -130,7 +130,7 @@ UnstructuredMesh flat_box(int ni, int nj, int layers) {
   mesh.source = "flat box";
   mesh.add_zone("plane", Index(ni + 1) * (nj + 1));
   mesh.coordinates = Coordinates(mesh.n_nodes());
-  auto const node = [&](int i, int j) { return Number(i + (ni + 1) * j); };
+  auto const node = [&](int i, int j) { return Index32(i + (ni + 1) * j); };
   for (int j = 0; j <= nj; ++j)
     for (int i = 0; i <= ni; ++i) mesh.coordinates.set(node(i, j), {double(i), double(j), 0});
   for (int j = 0; j < nj; ++j)

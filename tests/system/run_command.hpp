@@ -1,7 +1,7 @@
 // Starts the executable as a user would and keeps what it printed.
 #pragma once
 
-#include <gridmorph/demo/passage_demo.hpp>
+#include <generators/passage_demo.hpp>
 
 #include <gtest/gtest.h>
 

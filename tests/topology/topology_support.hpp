@@ -1,7 +1,7 @@
 // Topology of a mesh without any motion: patches of different families stay on different blocks.
 #pragma once
 
-#include <gridmorph/topology/topology.hpp>
+#include <gridmorph/plan/topology.hpp>
 
 #include <map>
 #include <string>

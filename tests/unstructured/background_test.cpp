@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/plan/elements/background.hpp>
 #include <gridmorph/quality/quality.hpp>
-#include <gridmorph/unstructured/background.hpp>
 
 #include <gtest/gtest.h>
 
@@ -246,7 +246,7 @@ TEST(Background, OfAPlaneMeshMovesInItsPlaneOnly) {
 }
 
 /// Rows of a far field, applied on the host.
-std::vector<Vec3> gathered(GatherRows const& rows, Coordinates const& u) {
+std::vector<Vec3> gathered(InterpolationOperator const& rows, Coordinates const& u) {
   std::vector<Vec3> out;
   for (Index r = 0; r < rows.size(); ++r) {
     Vec3 sum;
@@ -271,7 +271,7 @@ TEST(LatticeRows, ReproduceFieldsThatAreLinearInEveryDirection) {
   Coordinates u(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) u.set(n, field(mesh.coordinates[n]));
   std::vector<Vec3> points;
-  std::vector<Number> numbers;
+  std::vector<Index32> numbers;
   unsigned state = 7;
   auto random = [&state] {
     state = state * 1664525u + 1013904223u;
@@ -280,7 +280,7 @@ TEST(LatticeRows, ReproduceFieldsThatAreLinearInEveryDirection) {
   while (points.size() < 5000) {
     Vec3 const x{-4 + 9 * random(), -4 + 9 * random(), -4 + 9 * random()};
     if (p.wrap.contains(x)) continue;
-    numbers.push_back(Number(points.size()));
+    numbers.push_back(Index32(points.size()));
     points.push_back(x);
   }
   FarRows const far = lattice_rows(p.background, points_of(points), numbers);
@@ -293,13 +293,13 @@ TEST(LatticeRows, ReproduceFieldsThatAreLinearInEveryDirection) {
 TEST(LatticeRows, NameOneNodeForAPointOnANode) {
   Planned const p = planned(box_body(), {.offset = 0.1}, {-4, -4, -4}, {5, 5, 5});
   Mesh const& mesh = p.background.mesh;
-  std::vector<Number> nodes;
-  for (Number n = 0; n < Number(mesh.n_nodes()); n += 97) nodes.push_back(n);
+  std::vector<Index32> nodes;
+  for (Index32 n = 0; n < Index32(mesh.n_nodes()); n += 97) nodes.push_back(n);
   FarRows const far = lattice_rows(p.background, mesh.coordinates, nodes);
   EXPECT_EQ(far.n_outside, 0) << "nodes of the wrap's surface are not inside it";
   for (Index r = 0; r < far.rows.size(); ++r) {
     ASSERT_EQ(far.rows.first[std::size_t(r) + 1] - far.rows.first[std::size_t(r)], 1);
-    Number const item = far.rows.item[std::size_t(far.rows.first[std::size_t(r)])];
+    Index32 const item = far.rows.item[std::size_t(far.rows.first[std::size_t(r)])];
     ASSERT_EQ(norm(mesh.coordinates[item] - mesh.coordinates[nodes[std::size_t(r)]]), 0);
   }
 }
@@ -307,7 +307,7 @@ TEST(LatticeRows, NameOneNodeForAPointOnANode) {
 TEST(LatticeRows, CountPointsInTheWrapAndBeyondTheBoxAndTakeTheNearestPlace) {
   Planned const p = planned(box_body(), {.offset = 0.1}, {-4, -4, -4}, {5, 5, 5});
   std::vector<Vec3> const points{{0.5, 0.4, 0.95}, {7, 0, 0}, {2, 2, 2}};
-  std::vector<Number> const nodes{0, 1, 2};
+  std::vector<Index32> const nodes{0, 1, 2};
   FarRows const far = lattice_rows(p.background, points_of(points), nodes);
   EXPECT_EQ(far.n_outside, 2);
   EXPECT_NEAR(far.largest_distance, 2, 1e-6);
@@ -322,7 +322,7 @@ TEST(LatticeRows, InAPlaneNeedNoThirdCoordinate) {
   b.polygon({{0, 0, 0}, {0.5, 0.2, 0}, {1, 0.1, 0}, {0.5, -0.1, 0}});
   Planned const p = planned(b, {.offset = 0.08}, {-4, -4, 0}, {5, 4, 0}, 2);
   std::vector<Vec3> const points{{3, 2, 0}, {-1, 0.3, 0}};
-  std::vector<Number> const nodes{0, 1};
+  std::vector<Index32> const nodes{0, 1};
   FarRows const far = lattice_rows(p.background, points_of(points), nodes);
   EXPECT_EQ(far.n_outside, 0);
   std::vector<Vec3> const at = gathered(far.rows, p.background.mesh.coordinates);
@@ -339,7 +339,7 @@ TEST(Background, OfTheUsersIsTakenWithTheSelectorsOfItsPatches) {
   PreparedMorph const prepared = prepare_background(mine);
   EXPECT_EQ(wrap_nodes(mine, prepared).position.size(), p.nodes.position.size());
   EXPECT_THROW(make_background(p.background.mesh, {"hull"}, {}), MotionError);
-  std::vector<Number> const nodes{0};
+  std::vector<Index32> const nodes{0};
   expect_all_in(message_of<MeshError>([&] { lattice_rows(mine, mine.mesh.coordinates, nodes); }), {"lattice"});
 }
 

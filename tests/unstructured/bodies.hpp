@@ -12,14 +12,14 @@ namespace gridmorph::test {
 class Bodies {
  public:
   void box(Vec3 const& low, Vec3 const& high) {
-    std::array<Number, 8> corner{};
+    std::array<Index32, 8> corner{};
     for (int n = 0; n < 8; ++n)
       corner[std::size_t(n)] =
           add({(n & 1) != 0 ? high.x : low.x, (n & 2) != 0 ? high.y : low.y, (n & 4) != 0 ? high.z : low.z});
     constexpr int face[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
     for (auto const& f : face) {
-      std::array<Number, 4> const nodes{corner[std::size_t(f[0])], corner[std::size_t(f[1])], corner[std::size_t(f[2])],
-                                        corner[std::size_t(f[3])]};
+      std::array<Index32, 4> const nodes{corner[std::size_t(f[0])], corner[std::size_t(f[1])],
+                                         corner[std::size_t(f[2])], corner[std::size_t(f[3])]};
       walls.front().add(nodes);
     }
   }
@@ -45,23 +45,23 @@ class Bodies {
   /// n strips of m quadrilaterals, closed around.
   template <class Position>
   void grid(int n, int m, Position const& position) {
-    Number const first = Number(points_.size());
+    Index32 const first = Index32(points_.size());
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i < m; ++i) points_.push_back(position(j, i));
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < m; ++i) {
         int const next = (i + 1) % m;
-        std::array<Number, 4> const face{first + j * m + i, first + j * m + next, first + (j + 1) * m + next,
-                                         first + (j + 1) * m + i};
+        std::array<Index32, 4> const face{first + j * m + i, first + j * m + next, first + (j + 1) * m + next,
+                                          first + (j + 1) * m + i};
         walls.front().add(face);
       }
   }
   /// A closed polygon in the plane z = 0, as edges.
   void polygon(std::vector<Vec3> const& corners) {
-    std::vector<Number> numbers;
+    std::vector<Index32> numbers;
     for (Vec3 const& p : corners) numbers.push_back(add(p));
     for (std::size_t n = 0; n < numbers.size(); ++n) {
-      std::array<Number, 2> const edge{numbers[n], numbers[(n + 1) % numbers.size()]};
+      std::array<Index32, 2> const edge{numbers[n], numbers[(n + 1) % numbers.size()]};
       walls.front().add(edge);
     }
   }
@@ -78,12 +78,12 @@ class Bodies {
   }
   [[nodiscard]] std::vector<Vec3> const& points() const { return points_; }
 
-  std::vector<NumberLists> walls{1};
+  std::vector<CsrGraph> walls{1};
 
  private:
-  Number add(Vec3 const& p) {
+  Index32 add(Vec3 const& p) {
     points_.push_back(p);
-    return Number(points_.size()) - 1;
+    return Index32(points_.size()) - 1;
   }
   std::vector<Vec3> points_;
 };

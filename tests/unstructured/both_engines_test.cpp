@@ -5,7 +5,7 @@
 
 #include "../io/io_support.hpp"
 
-#include <gridmorph/casefile/case_file.hpp>
+#include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/quality/quality.hpp>
@@ -56,7 +56,7 @@ TEST_P(BothEngines, MoveTheBoundaryAlikeAndTurnNothingOver) {
 
   double wall = 0, largest = 0, farthest = 0;
   for (std::size_t k = 0; k < other.boundary.size(); ++k) {
-    Number const n = other.prepared.plan.known[k];
+    Index32 const n = other.prepared.plan.known[k];
     wall = std::max(wall, distance(structured[n], other.x[n]));
     largest = std::max(largest, norm(other.boundary[k]));
   }

@@ -5,7 +5,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
@@ -67,9 +67,9 @@ TEST_P(UnstructuredCgns, PeriodicConnectionsComeThrough) {
   expect_same_mesh(read, mesh);
   EXPECT_LT(largest_mismatch(read, read.connections[0]), 1e-12);
   auto const topology = make_topology(read);
-  EXPECT_TRUE(claim_boundary(read, topology).problems.empty());
+  EXPECT_TRUE(find_face_patches(read, topology).problems.empty());
   EXPECT_EQ(
-      std::count_if(topology.boundary.across.begin(), topology.boundary.across.end(), [](Number e) { return e >= 0; }),
+      std::count_if(topology.boundary.across.begin(), topology.boundary.across.end(), [](Index32 e) { return e >= 0; }),
       2 * 4);
 }
 
@@ -202,7 +202,7 @@ class HandMadeFile {
   int file_ = 0, base_ = 0, zone_ = 0;
 };
 
-std::vector<Number> const x_min{0, 3, 6, 9}, x_max{2, 5, 8, 11};
+std::vector<Index32> const x_min{0, 3, 6, 9}, x_max{2, 5, 8, 11};
 
 TEST(UnstructuredBoundary, PointListsRangesElementListsAndNodesAllNameTheSameFaces) {
   TemporaryFolder const folder;
@@ -329,7 +329,7 @@ TEST(UnstructuredFiles, ZonesThatAreLeftOutByNameAreNoPartOfTheMeshAndStayAsThey
   ASSERT_EQ(mesh.zones.size(), 1u);
   EXPECT_EQ(mesh.n_elements(), 4);
   EXPECT_TRUE(mesh.connections.empty());
-  EXPECT_TRUE(claim_boundary(mesh, make_topology(mesh)).problems.empty()) << "the connection is a patch";
+  EXPECT_TRUE(find_face_patches(mesh, make_topology(mesh)).problems.empty()) << "the connection is a patch";
   Coordinates moved(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.125, 0, 0});
   write_morphed(path, out, mesh, moved);
@@ -381,7 +381,7 @@ TEST(UnstructuredFiles, SecondOrderElementsKeepAllTheirNodes) {
   EXPECT_EQ(mesh.elements.corners(0).size(), 4u);
   auto const topology = make_topology(mesh);
   EXPECT_EQ(topology.boundary.size(), 4);
-  EXPECT_EQ(claim_boundary(mesh, topology).faces_of_patch[0], 1);
+  EXPECT_EQ(find_face_patches(mesh, topology).faces_of_patch[0], 1);
 }
 
 TEST(UnstructuredFiles, HybridFilesAreRefused) {

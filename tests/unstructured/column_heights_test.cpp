@@ -1,7 +1,7 @@
 // Where columns end, on a channel of unit squares, 8 by 6, above a wall at y = 0.
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/unstructured/column_heights.hpp>
+#include <gridmorph/plan/elements/column_heights.hpp>
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ struct Channel {
 
   explicit Channel(double (*height)(double x)) {
     columns.height.assign(std::size_t(mesh.n_nodes()), 0);
-    for (Number n = 0; n < mesh.n_nodes(); ++n) {
+    for (Index32 n = 0; n < mesh.n_nodes(); ++n) {
       Vec3 const x = mesh.coordinates[n];
       if (x.y == 0) columns.height[std::size_t(n)] = height(x.x);
       if (x.y == 0 || x.y > height(x.x)) continue;
@@ -30,8 +30,8 @@ struct Channel {
       columns.above_wall.push_back(x.y);
     }
   }
-  [[nodiscard]] Number at(double x, double y) const {
-    for (Number n = 0; n < mesh.n_nodes(); ++n)
+  [[nodiscard]] Index32 at(double x, double y) const {
+    for (Index32 n = 0; n < mesh.n_nodes(); ++n)
       if (mesh.coordinates[n].x == x && mesh.coordinates[n].y == y) return n;
     return -1;
   }
@@ -45,8 +45,8 @@ TEST(ColumnHeights, RoomIsLeftForTheMotion) {
 
 TEST(ColumnHeights, BoundariesAheadLeaveAGapAndBoundariesBesideDoNot) {
   Channel const c([](double) { return 3.0; });
-  std::vector<Number> lid, side;
-  for (Number n = 0; n < c.mesh.n_nodes(); ++n) {
+  std::vector<Index32> lid, side;
+  for (Index32 n = 0; n < c.mesh.n_nodes(); ++n) {
     Vec3 const x = c.mesh.coordinates[n];
     if (x.y == 6) lid.push_back(n);
     if (x.x == 0) side.push_back(n);

@@ -16,7 +16,7 @@ void try_mesh(std::string const& path) {
   try {
     if (mesh_kind(path) != MeshKind::unstructured) return;
     auto const mesh = read_unstructured_mesh(path);
-    claim_boundary(mesh, make_topology(mesh));
+    find_face_patches(mesh, make_topology(mesh));
   } catch (Error const& e) {
     // IoError or MeshError, as the damage has it; anything else ends the test.
     EXPECT_NE(std::string(e.what()).find("bad"), std::string::npos) << e.what();

@@ -16,9 +16,9 @@
 namespace gridmorph::test {
 namespace {
 
-std::vector<Number> shuffled(Index first, Index n, Random& random) {
-  std::vector<Number> list(static_cast<std::size_t>(n));
-  std::iota(list.begin(), list.end(), Number(first));
+std::vector<Index32> shuffled(Index first, Index n, Random& random) {
+  std::vector<Index32> list(static_cast<std::size_t>(n));
+  std::iota(list.begin(), list.end(), Index32(first));
   random.shuffle(list);
   return list;
 }
@@ -28,8 +28,8 @@ UnstructuredMesh shuffle(UnstructuredMesh mesh, unsigned seed) {
   Random random(seed);
   FileOrder order;
   for (auto const& zone : mesh.zones) {
-    for (Number const n : shuffled(zone.first_node, zone.n_nodes, random)) order.node.push_back(n);
-    for (Number const e : shuffled(zone.first_element, zone.n_elements, random)) order.element.push_back(e);
+    for (Index32 const n : shuffled(zone.first_node, zone.n_nodes, random)) order.node.push_back(n);
+    for (Index32 const e : shuffled(zone.first_element, zone.n_elements, random)) order.element.push_back(e);
   }
   reorder(mesh, order);
   mesh.file_order = {};
@@ -41,23 +41,23 @@ UnstructuredMesh two_boxes() {
   UnstructuredMesh mesh = to_prisms_and_tetrahedra(unit_box({5, 4, 6}), 2);
   mesh.patches[5].nodes = patch_nodes(mesh.patches[5]);
   mesh.patches[5].faces = {};
-  for (Number e = 0; e < mesh.n_elements(); ++e) mesh.elements.number.push_back(3 * e + 7);
-  for (Number const e : {3, 8}) {
+  for (Index32 e = 0; e < mesh.n_elements(); ++e) mesh.elements.number.push_back(3 * e + 7);
+  for (Index32 const e : {3, 8}) {
     mesh.polyhedra.element.push_back(e);
     if (mesh.polyhedra.first_face.empty()) mesh.polyhedra.first_face.push_back(0);
-    std::array<Number, max_face_corners> room{};
+    std::array<Index32, max_face_corners> room{};
     for (int s = 0; s < n_sides(mesh, e); ++s) mesh.polyhedra.faces.add(side_nodes(mesh, e, s, room));
     mesh.polyhedra.first_face.push_back(mesh.polyhedra.faces.size());
   }
-  for (Number const e : {3, 8}) mesh.elements.type[std::size_t(e)] = ElementType::polyhedron;
-  Number const first_node = Number(mesh.n_nodes()), first_element = Number(mesh.n_elements());
+  for (Index32 const e : {3, 8}) mesh.elements.type[std::size_t(e)] = ElementType::polyhedron;
+  Index32 const first_node = Index32(mesh.n_nodes()), first_element = Index32(mesh.n_elements());
   UnstructuredMesh const other = to_hexahedra(unit_box({3, 4, 6}));
   mesh.add_zone("second", other.n_nodes());
   for (Index e = 0; e < other.n_elements(); ++e) {
-    std::vector<Number> nodes;
-    for (Number const n : other.elements.corners(e)) nodes.push_back(n + first_node);
+    std::vector<Index32> nodes;
+    for (Index32 const n : other.elements.corners(e)) nodes.push_back(n + first_node);
     mesh.add_element(other.elements.type[std::size_t(e)], nodes);
-    mesh.elements.number.push_back(first_element + Number(e));
+    mesh.elements.number.push_back(first_element + Index32(e));
   }
   Coordinates x(mesh.n_nodes());
   for (Index n = 0; n < first_node; ++n) x.set(n, mesh.coordinates[n]);
@@ -67,7 +67,7 @@ UnstructuredMesh two_boxes() {
   c.name = "between";
   c.zone = 0;
   c.donor_zone = 1;
-  for (Number n = 0; n < mesh.n_nodes(); ++n)
+  for (Index32 n = 0; n < mesh.n_nodes(); ++n)
     if (x[n].x == 5) (n < first_node ? c.nodes : c.donor_nodes).push_back(n);
   mesh.connections = {c};
   return mesh;
@@ -101,7 +101,7 @@ TEST(FileOrder, WhatBelongsTogetherStaysTogether) {
   EXPECT_EQ(largest_mismatch(ordered, ordered.connections[0]), 0);
   auto const a = make_topology(mesh), b = make_topology(ordered);
   EXPECT_EQ(a.boundary.size(), b.boundary.size());
-  EXPECT_EQ(claim_boundary(mesh, a).faces_of_patch, claim_boundary(ordered, b).faces_of_patch);
+  EXPECT_EQ(find_face_patches(mesh, a).faces_of_patch, find_face_patches(ordered, b).faces_of_patch);
   for (std::size_t p = 0; p < ordered.polyhedra.element.size(); ++p)
     EXPECT_EQ(ordered.elements.type[std::size_t(ordered.polyhedra.element[p])], ElementType::polyhedron);
 }

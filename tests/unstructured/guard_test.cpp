@@ -3,8 +3,8 @@
 #include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
-#include <gridmorph/unstructured/guard.hpp>
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 struct Box {
   UnstructuredMesh mesh = to_prisms_and_tetrahedra(unit_box({8, 8, 8}), 2);
   UnstructuredTopology topology = make_topology(mesh);
-  BoundaryClaims claims = claim_boundary(mesh, topology);
+  BoundaryFacePatches face_patches = find_face_patches(mesh, topology);
   PreparedUnstructured prepared;
   Coordinates morphed;
 
@@ -27,7 +27,7 @@ struct Box {
     Motion motion;
     motion.rules.push_back({{"k_min"}, RigidRule{{}, {0, 0, 0.1}}, 0, "test"});
     motion.rules.push_back({{"i_min", "i_max", "j_min", "j_max"}, SlipRule{}, 0, "test"});
-    prepared = prepare(mesh, topology, claims, motion, {});
+    prepared = prepare(mesh, topology, face_patches, motion, {});
     morphed = Coordinates(mesh.n_nodes());
     for (Index n = 0; n < mesh.n_nodes(); ++n) morphed.set(n, mesh.coordinates[n]);
   }

@@ -4,7 +4,7 @@
 #include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/demo/sphere.hpp>
+#include <generators/sphere.hpp>
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ class ViscousSphere : public testing::TestWithParam<Outer> {
   void expect_rigid_columns(UnstructuredMorphed const& m, RigidTransform const& motion) const {
     auto const& columns = m.prepared.plan.columns.node;
     ASSERT_GT(columns.size(), 1000u);
-    for (Number const n : columns) ASSERT_LT(distance(m.x[n], motion(c.mesh.coordinates[n])), 1e-9);
+    for (Index32 const n : columns) ASSERT_LT(distance(m.x[n], motion(c.mesh.coordinates[n])), 1e-9);
   }
 };
 
@@ -113,11 +113,11 @@ TEST(HalfModels, NodesOfTheSymmetryPlaneStayInItWhileABodyOnItMoves) {
     auto const m = c.morph(motion_of({rule_for({"sphere"}, rule)}));
     expect_sound(c, m);
     double slid = 0;
-    for (Number const n : plane) {
+    for (Index32 const n : plane) {
       EXPECT_NEAR(m.x.z(n), 0, 1e-13);
       slid = std::max(slid, distance(m.x[n], c.mesh.coordinates[n]));
     }
-    for (Number const n : plane_y) EXPECT_NEAR(m.x.y(n), 0, 1e-13);
+    for (Index32 const n : plane_y) EXPECT_NEAR(m.x.y(n), 0, 1e-13);
     EXPECT_GT(slid, 0.05);
   }
 }
@@ -151,7 +151,7 @@ TEST_P(Boxes, ABodyRootedInASlidingPlaneTakesItAlong) {
   for (Rule const& rule : {translation({2, 0, 0}), rotation({8, 8, 0}, {0, 0, 1}, 0.5)}) {
     auto const m = c.morph(motion_of({rule_for({"body"}, rule), rule_for({"k_min"}, SlipRule{})}));
     expect_sound(c, m);
-    for (Number const n : c.nodes_of("k_min")) EXPECT_NEAR(m.x.z(n), 0, 1e-12);
+    for (Index32 const n : c.nodes_of("k_min")) EXPECT_NEAR(m.x.z(n), 0, 1e-12);
   }
 }
 
@@ -183,9 +183,9 @@ TEST(WingSections, PitchAndPlungeInAFarField) {
   for (Rule const& rule : {rotation({0.25, 0, 0}, {0, 0, 1}, -15 * std::numbers::pi / 180), translation({0, 0.5, 0})}) {
     auto const m = c.morph(motion_of({rule_for({"airfoil"}, rule)}));
     expect_sound(c, m);
-    for (Number const n : c.nodes_of("farfield")) EXPECT_EQ(distance(m.x[n], c.mesh.coordinates[n]), 0);
+    for (Index32 const n : c.nodes_of("farfield")) EXPECT_EQ(distance(m.x[n], c.mesh.coordinates[n]), 0);
     // First cells: the node above wall node i is i + 160.
-    for (Number const n : c.nodes_of("airfoil"))
+    for (Index32 const n : c.nodes_of("airfoil"))
       EXPECT_NEAR(distance(m.x[n], m.x[n + 160]), distance(c.mesh.coordinates[n], c.mesh.coordinates[n + 160]),
                   1e-3 * 1e-5);
   }

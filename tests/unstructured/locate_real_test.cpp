@@ -4,7 +4,7 @@
 
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
-#include <gridmorph/unstructured/locate.hpp>
+#include <gridmorph/plan/elements/locate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
   for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     Location middle;
-    middle.element = Number(e);
+    middle.element = Index32(e);
     ElementType const type = mesh.elements.type[std::size_t(e)];
     middle.local = type == ElementType::tetrahedron ? Vec3{0.25, 0.25, 0.25}
                    : type == ElementType::triangle || type == ElementType::prism
@@ -65,13 +65,13 @@ TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
   for (std::size_t n = 0; n < points.size(); ++n) {
     ASSERT_GE(found[n].element, 0);
     EXPECT_LT(distance(position(mesh, found[n]), points[n]), 2 * tolerance);
-    if (Index(n) >= mesh.n_nodes() && found[n].element != Number(Index(n) - mesh.n_nodes())) ++elsewhere;
+    if (Index(n) >= mesh.n_nodes() && found[n].element != Index32(Index(n) - mesh.n_nodes())) ++elsewhere;
   }
   bool const zones_overlap = name == "rotorstator.cgns";
   EXPECT_EQ(elsewhere > 0, zones_overlap);
   // Nodes take their own value, or that of one at the same place in another zone.
-  std::vector<Number> targets(std::size_t(mesh.n_nodes()));
-  for (std::size_t n = 0; n < targets.size(); ++n) targets[n] = Number(n);
+  std::vector<Index32> targets(std::size_t(mesh.n_nodes()));
+  for (std::size_t n = 0; n < targets.size(); ++n) targets[n] = Index32(n);
   auto const rows = interpolation_rows(mesh, std::span<Location const>(found).first(targets.size()), targets);
   Index several = 0;
   for (Index n = 0; n < rows.size(); ++n) {

@@ -5,7 +5,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/kernels/element_place.hpp>
-#include <gridmorph/unstructured/locate.hpp>
+#include <gridmorph/plan/elements/locate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 
 template <class Space>
 std::vector<Location> locate_with(UnstructuredMesh const& mesh, std::vector<Vec3> const& points,
-                                  std::span<Number const> candidates) {
+                                  std::span<Index32 const> candidates) {
   ElementLocator<Space> const locator(Space(), mesh, candidates);
   std::vector<Location> out(points.size());
   locator.locate(Space(), Kokkos::View<Vec3 const*, Kokkos::HostSpace>(points.data(), points.size()),
@@ -32,8 +32,8 @@ std::vector<Location> locate_with(UnstructuredMesh const& mesh, std::vector<Vec3
   return out;
 }
 
-std::vector<Number> all_of(UnstructuredMesh const& mesh) {
-  std::vector<Number> all(std::size_t(mesh.n_elements()));
+std::vector<Index32> all_of(UnstructuredMesh const& mesh) {
+  std::vector<Index32> all(std::size_t(mesh.n_elements()));
   std::iota(all.begin(), all.end(), 0);
   return all;
 }
@@ -61,11 +61,11 @@ UnstructuredMesh polyhedra_of(UnstructuredMesh const& mesh) {
     ElementType const type = mesh.elements.type[std::size_t(e)];
     auto const corners = mesh.elements.corners(e);
     for (int f = 0; f < n_faces(type); ++f) {
-      std::vector<Number> face;
+      std::vector<Index32> face;
       for (int k = 0; k < n_face_corners(type, f); ++k) face.push_back(corners[std::size_t(face_corner(type, f, k))]);
       out.polyhedra.faces.add(face);
     }
-    out.polyhedra.element.push_back(Number(e));
+    out.polyhedra.element.push_back(Index32(e));
     out.polyhedra.first_face.push_back(out.polyhedra.faces.size());
     out.elements.type[std::size_t(e)] = ElementType::polyhedron;
   }
@@ -82,12 +82,12 @@ UnstructuredMesh pyramids(Index3 cells) {
   for (Index n = 0; n < boxes.n_nodes(); ++n) out.coordinates.set(n, boxes.coordinates[n]);
   for (Index e = 0; e < boxes.n_elements(); ++e) {
     auto const c = boxes.elements.corners(e);
-    Number const centre = Number(boxes.n_nodes() + e);
+    Index32 const centre = Index32(boxes.n_nodes() + e);
     Vec3 sum;
-    for (Number const n : c) sum += boxes.coordinates[n];
+    for (Index32 const n : c) sum += boxes.coordinates[n];
     out.coordinates.set(centre, 0.125 * sum);
     for (int f = 0; f < 6; ++f) {
-      std::array<Number, 5> nodes{};
+      std::array<Index32, 5> nodes{};
       // Bases are counter-clockwise seen from inside: faces turned round.
       for (int k = 0; k < 4; ++k)
         nodes[std::size_t(k)] = c[std::size_t(face_corner(ElementType::hexahedron, f, 3 - k))];
@@ -134,8 +134,8 @@ ElementCorners corners_of(UnstructuredMesh const& mesh, Index e) {
 
 double size_of_element(UnstructuredMesh const& mesh, Index e) {
   double size = 0;
-  for (Number const a : mesh.elements.corners(e))
-    for (Number const b : mesh.elements.corners(e))
+  for (Index32 const a : mesh.elements.corners(e))
+    for (Index32 const b : mesh.elements.corners(e))
       size = std::max(size, distance(mesh.coordinates[a], mesh.coordinates[b]));
   return size;
 }
@@ -144,7 +144,7 @@ double size_of_element(UnstructuredMesh const& mesh, Index e) {
 Vec3 random_mean(UnstructuredMesh const& mesh, Index e, Random& random) {
   double sum = 0;
   Vec3 p;
-  for (Number const n : mesh.elements.corners(e)) {
+  for (Index32 const n : mesh.elements.corners(e)) {
     double const w = std::pow(random.unit(), 3);
     sum += w;
     p += w * mesh.coordinates[n];
@@ -195,9 +195,9 @@ TEST(ElementLocator, PlacesAreThoseOfASearchThroughAllElements) {
     int outside = 0;
     double const tolerance = ElementLocator<Exec>(Exec(), mesh).tolerance();
     for (std::size_t n = 0; n < points.size(); ++n) {
-      Number holding = -1, nearest = -1;
+      Index32 holding = -1, nearest = -1;
       double least = unbounded;
-      for (Number e = 0; e < mesh.n_elements() && holding < 0; ++e) {
+      for (Index32 e = 0; e < mesh.n_elements() && holding < 0; ++e) {
         ElementType const type = mesh.elements.type[std::size_t(e)];
         Vec3 local;
         if (element_contains(type, corners_of(mesh, e), points[n], tolerance, local)) holding = e;
@@ -239,7 +239,7 @@ TEST(ElementLocator, OrderOfCandidatesAndOfPointsAndTheBackendChangeNothing) {
     for (int n = 0; n < 3000; ++n)
       points.push_back(random_mean(mesh, random.below(int(mesh.n_elements())), random) +
                        random.vector(n % 3 == 0 ? size : 1e-3));
-    std::vector<Number> candidates = all_of(mesh);
+    std::vector<Index32> candidates = all_of(mesh);
     auto const expected = locate_with<Exec>(mesh, points, candidates);
 #ifdef KOKKOS_ENABLE_SERIAL
     EXPECT_TRUE(same_bits(locate_with<Kokkos::Serial>(mesh, points, candidates), expected));
@@ -257,9 +257,9 @@ TEST(ElementLocator, SharedPlacesBelongToTheElementWithTheSmallestNumber) {
   for (auto const& [name, mesh] : cases()) {
     SCOPED_TRACE(name);
     std::vector<Vec3> points;
-    std::vector<Number> smallest(std::size_t(mesh.n_nodes()), -1);
+    std::vector<Index32> smallest(std::size_t(mesh.n_nodes()), -1);
     for (Index e = mesh.n_elements() - 1; e >= 0; --e)
-      for (Number const n : mesh.elements.corners(e)) smallest[std::size_t(n)] = Number(e);
+      for (Index32 const n : mesh.elements.corners(e)) smallest[std::size_t(n)] = Index32(e);
     for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
     auto const found = locate(mesh, points);
     for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(found[n].element, smallest[n]);
@@ -269,7 +269,7 @@ TEST(ElementLocator, SharedPlacesBelongToTheElementWithTheSmallestNumber) {
 TEST(ElementLocator, OnlyCandidatesAreFound) {
   auto const mesh = as_hexahedra(unit_box({4, 1, 1}));
   std::vector<Vec3> const points{{0.5, 0.5, 0.5}, {3.75, 0.25, 0.5}, {2, 0.5, 0.5}};
-  std::vector<Number> const candidates{2};
+  std::vector<Index32> const candidates{2};
   auto const found = locate_with<Exec>(mesh, points, candidates);
   for (auto const& place : found) EXPECT_EQ(place.element, 2);
   EXPECT_EQ(found[0].distance, 1.5);
@@ -277,7 +277,7 @@ TEST(ElementLocator, OnlyCandidatesAreFound) {
   EXPECT_EQ(found[2].distance, 0);
   auto const none = locate_with<Exec>(mesh, points, {});
   for (auto const& place : none) EXPECT_EQ(place.element, -1);
-  std::vector<Number> const wrong{0, 4};
+  std::vector<Index32> const wrong{0, 4};
   EXPECT_THROW(locate_with<Exec>(mesh, points, wrong), MeshError);
 }
 
@@ -342,9 +342,9 @@ TEST(ElementLocator, SizesThatDifferByTenMillionAreFoundInOneMesh) {
     });
     Random random(5);
     std::vector<Vec3> points;
-    std::vector<Number> expected;
+    std::vector<Index32> expected;
     for (int n = 0; n < 20000; ++n) {
-      auto const e = Number(random.below(int(mesh.n_elements())));
+      auto const e = Index32(random.below(int(mesh.n_elements())));
       Vec3 const local{random.between(0.01, 0.99), random.between(0.01, 0.99), random.between(0.01, 0.99)};
       points.push_back(element_position(ElementType::hexahedron, corners_of(mesh, e), local));
       expected.push_back(e);
@@ -366,11 +366,11 @@ TEST(InterpolationRows, LinearFieldsAndConstantsAreReproducedByAllElements) {
   for (auto const& [name, mesh] : cases()) {
     SCOPED_TRACE(name);
     std::vector<Vec3> points;
-    std::vector<Number> targets;
+    std::vector<Index32> targets;
     for (Index e = 0; e < mesh.n_elements(); ++e) points.push_back(random_mean(mesh, e, random));
-    for (std::size_t n = 0; n < points.size(); ++n) targets.push_back(Number(points.size() - 1 - n));
+    for (std::size_t n = 0; n < points.size(); ++n) targets.push_back(Index32(points.size() - 1 - n));
     auto const where = locate(mesh, points);
-    GatherRows const rows = interpolation_rows(mesh, where, targets);
+    InterpolationOperator const rows = interpolation_rows(mesh, where, targets);
     ASSERT_EQ(rows.size(), Index(points.size()));
     EXPECT_EQ(rows.target, targets);
     double const size = mesh.size();
@@ -415,12 +415,12 @@ TEST(InterpolationRows, NodesAreCopiesOfThemselvesAndOutsideNothingIsExtrapolate
   for (auto const& [name, mesh] : cases()) {
     SCOPED_TRACE(name);
     std::vector<Vec3> points;
-    std::vector<Number> targets;
+    std::vector<Index32> targets;
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
       points.push_back(mesh.coordinates[n]);
-      targets.push_back(Number(n));
+      targets.push_back(Index32(n));
     }
-    GatherRows const rows = interpolation_rows(mesh, locate(mesh, points), targets);
+    InterpolationOperator const rows = interpolation_rows(mesh, locate(mesh, points), targets);
     ASSERT_EQ(rows.item.size(), rows.target.size());
     EXPECT_EQ(rows.item, targets);
     for (float const w : rows.weight) EXPECT_EQ(w, 1);
@@ -429,8 +429,8 @@ TEST(InterpolationRows, NodesAreCopiesOfThemselvesAndOutsideNothingIsExtrapolate
     double const size = mesh.size();
     for (int n = 0; n < 300; ++n) away.push_back(mesh.coordinates[0] + random.vector(3 * size));
     targets.resize(away.size(), 0);
-    GatherRows const outside =
-        interpolation_rows(mesh, locate(mesh, away), std::span<Number const>(targets).first(away.size()));
+    InterpolationOperator const outside =
+        interpolation_rows(mesh, locate(mesh, away), std::span<Index32 const>(targets).first(away.size()));
     for (float const w : outside.weight) EXPECT_TRUE(w > 0 && w <= 1);
   }
 }
@@ -438,7 +438,7 @@ TEST(InterpolationRows, NodesAreCopiesOfThemselvesAndOutsideNothingIsExtrapolate
 TEST(InterpolationRows, WhatCannotBeInterpolatedIsRefused) {
   auto const mesh = as_hexahedra(unit_box({2, 1, 1}));
   std::vector<Location> const nowhere(1);
-  std::vector<Number> const one{0}, two{0, 1};
+  std::vector<Index32> const one{0}, two{0, 1};
   EXPECT_THROW(interpolation_rows(mesh, nowhere, one), MeshError);
   EXPECT_THROW(interpolation_rows(mesh, locate(mesh, {{0.5, 0.5, 0.5}}), two), MeshError);
 }
@@ -468,7 +468,7 @@ TEST(AsHexahedra, LeftHandedZonesAreTurnedAndCellsKeepTheirNumbers) {
     for (Index e = 0; e < mesh.n_elements(); ++e) {
       EXPECT_NEAR(element_volume(ElementType::hexahedron, corners_of(mesh, e), 1, {0, 0, 1}), 1, 1e-14);
       Vec3 mean;
-      for (Number const n : mesh.elements.corners(e)) mean += 0.125 * mesh.coordinates[n];
+      for (Index32 const n : mesh.elements.corners(e)) mean += 0.125 * mesh.coordinates[n];
       EXPECT_EQ(mean, (Vec3{(mirror ? -1 : 1) * (e % 3 + 0.5), e / 3 % 4 + 0.5, double(e / 12) + 0.5}));
     }
   }

@@ -71,7 +71,7 @@ TEST(UnstructuredMorph, PrescribedDisplacementsHoldExactlyAndTheRestIsSound) {
 TEST(UnstructuredMorph, NodesThatSlipStayOnTheirPlane) {
   Case const c(box_with_body(12));
   Morphed const m = c.morph(body_moves(translation({1, 0.5, 1}), {{{"k_min"}, SlipRule{}, 0, "slip"}}));
-  for (Number const n : m.prepared.boundary.nodes_of_patch[std::size_t(c.patch("k_min"))]) {
+  for (Index32 const n : m.prepared.boundary.nodes_of_patch[std::size_t(c.patch("k_min"))]) {
     EXPECT_NEAR(m.x[n].z, 0, 1e-12);
   }
   EXPECT_EQ(c.inverted(m.x), 0);
@@ -91,7 +91,7 @@ TEST(UnstructuredMorph, NodesWherePlanesMeetAtAnyAngleStayOnBoth) {
     auto const& known = m.prepared.plan.known;
     auto const off = [&](std::string const& side, Vec3 const& normal) {
       double worst = 0, moved = 0;
-      for (Number const n : m.prepared.boundary.nodes_of_patch[std::size_t(c.patch(side))]) {
+      for (Index32 const n : m.prepared.boundary.nodes_of_patch[std::size_t(c.patch(side))]) {
         if (std::binary_search(known.begin(), known.end(), n)) continue;
         Vec3 const u = m.x[n] - c.mesh.coordinates[n];
         worst = std::max(worst, std::abs(dot(u, normal)) / norm(normal));
@@ -130,7 +130,7 @@ TEST(UnstructuredMorph, ProfilesThatDifferInTheMiddleOnlyAreTwoSurfaces) {
     if (patch.name == "j_max")
       for (Index f = 0; f < patch.faces.size(); ++f) {
         double angle = 0;
-        for (Number const n : patch.faces[f])
+        for (Index32 const n : patch.faces[f])
           angle += 0.25 * std::atan2(mesh.coordinates.z(n), mesh.coordinates.y(n)) * 12 / std::numbers::pi;
         parts[part_of_case(angle)].faces.add(patch.faces[f]);
       }
@@ -153,7 +153,7 @@ TEST(UnstructuredMorph, ProfilesThatDifferInTheMiddleOnlyAreTwoSurfaces) {
   EXPECT_EQ(m.prepared.plan.surfaces.size(), 2u);
   double largest = 0;
   for (bool const bulged : {false, true})
-    for (Number const n : c.nodes_of(bulged ? "part1" : "part0")) {
+    for (Index32 const n : c.nodes_of(bulged ? "part1" : "part0")) {
       Vec3 const x = m.x[n];
       largest = std::max(largest, distance(x, c.mesh.coordinates[n]));
       EXPECT_NEAR(std::hypot(x.y, x.z), radius(x.x, bulged), 1e-5) << describe_node(c.mesh, n);
@@ -169,7 +169,7 @@ TEST(UnstructuredMorph, AroundARigidWallTheNearFieldIsTheSameRigidMotion) {
   Morphed const m = c.morph(body_moves(RigidRule{r.rotation, r.translation}), options);
   // One element off the body, where other boundaries are five times as far as the wall.
   Index seen = 0;
-  for (Number const n : m.prepared.plan.near.rows.target) {
+  for (Index32 const n : m.prepared.plan.near.rows.target) {
     Vec3 const x = c.mesh.coordinates[n];
     double const d = std::max({std::abs(x.x - 9), std::abs(x.y - 9), std::abs(x.z - 9)}) - 3;
     if (d > 1.01 || !m.prepared.report.wrap->contains(x)) continue;
@@ -223,7 +223,7 @@ TEST(UnstructuredMorph, ColumnsOfPrismsKeepTheirHeight) {
   auto const& columns = m.prepared.plan.columns;
   ASSERT_GT(columns.node.size(), 100u);
   for (std::size_t k = 0; k < columns.node.size(); ++k) {
-    Number const wall = m.prepared.plan.driving[std::size_t(columns.root[k])];
+    Index32 const wall = m.prepared.plan.driving[std::size_t(columns.root[k])];
     // The rim of the wall is where the fixed sides begin.
     Vec3 const w = c.mesh.coordinates[wall];
     if (w.x < 1 || w.x > 9 || w.y < 1 || w.y > 9) continue;

@@ -3,9 +3,9 @@
 #include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/mesh/detail/number_buckets.hpp>
+#include <gridmorph/core/index_buckets.hpp>
+#include <gridmorph/mesh/node_graph.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
-#include <gridmorph/unstructured/node_graph.hpp>
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@
 namespace gridmorph::test {
 namespace {
 
-std::vector<Number> shuffled_numbers(Index n, Random& random) {
-  std::vector<Number> number(static_cast<std::size_t>(n));
+std::vector<Index32> shuffled_numbers(Index n, Random& random) {
+  std::vector<Index32> number(static_cast<std::size_t>(n));
   std::iota(number.begin(), number.end(), 0);
   random.shuffle(number);
   return number;
@@ -33,36 +33,36 @@ UnstructuredMesh shuffled_box(Index3 cells, int prism_layers) {
   out.add_zone("zone", from.n_nodes());
   out.coordinates = Coordinates(from.n_nodes());
   for (Index n = 0; n < from.n_nodes(); ++n) out.coordinates.set(node[std::size_t(n)], from.coordinates[n]);
-  for (Number const e : shuffled_numbers(from.n_elements(), random)) {
-    std::vector<Number> corners;
-    for (Number const c : from.elements.corners(e)) corners.push_back(node[std::size_t(c)]);
+  for (Index32 const e : shuffled_numbers(from.n_elements(), random)) {
+    std::vector<Index32> corners;
+    for (Index32 const c : from.elements.corners(e)) corners.push_back(node[std::size_t(c)]);
     out.add_element(from.elements.type[std::size_t(e)], corners);
   }
   return out;
 }
 
-TEST(NumberBuckets, KeepTheOrderOfTheItemsUnderEachKey) {
+TEST(IndexBuckets, KeepTheOrderOfTheItemsUnderEachKey) {
   for (Index const n_keys : {1, 7, 1024, 1025, 50000}) {
     Index const n_items = 30000;
     Random random(3);
-    std::vector<std::vector<Number>> keys;
-    std::map<Number, std::vector<Number>> expected;
-    for (Number i = 0; i < n_items; ++i) {
+    std::vector<std::vector<Index32>> keys;
+    std::map<Index32, std::vector<Index32>> expected;
+    for (Index32 i = 0; i < n_items; ++i) {
       auto& own = keys.emplace_back();
-      for (int k = random.below(4); k > 0; --k) own.push_back(Number(random.below(int(n_keys))));
-      for (Number const key : own) expected[key].push_back(i);
+      for (int k = random.below(4); k > 0; --k) own.push_back(Index32(random.below(int(n_keys))));
+      for (Index32 const key : own) expected[key].push_back(i);
     }
-    detail::NumberBuckets<Number> const buckets("test", n_items, n_keys, [&](Index i, auto const& put) {
-      for (Number const key : keys[std::size_t(i)]) put(key, Number(i));
+    detail::IndexBuckets<Index32> const buckets("test", n_items, n_keys, [&](Index i, auto const& put) {
+      for (Index32 const key : keys[std::size_t(i)]) put(key, Index32(i));
     });
-    std::vector<std::vector<Number>> found(static_cast<std::size_t>(n_keys));
+    std::vector<std::vector<Index32>> found(static_cast<std::size_t>(n_keys));
     std::vector<Index> before(static_cast<std::size_t>(n_keys), -1);
-    buckets.for_each_key([&](Number key, Index at, std::span<Number const> items) {
+    buckets.for_each_key([&](Index32 key, Index at, std::span<Index32 const> items) {
       found[std::size_t(key)].assign(items.begin(), items.end());
       before[std::size_t(key)] = at;
     });
     Index sum = 0;
-    for (Number key = 0; key < n_keys; ++key) {
+    for (Index32 key = 0; key < n_keys; ++key) {
       EXPECT_EQ(found[std::size_t(key)], expected[key]) << key << " of " << n_keys;
       EXPECT_EQ(before[std::size_t(key)], sum);
       sum += Index(found[std::size_t(key)].size());
@@ -71,28 +71,28 @@ TEST(NumberBuckets, KeepTheOrderOfTheItemsUnderEachKey) {
   }
 }
 
-TEST(NumberBuckets, NothingInNothingOut) {
-  detail::NumberBuckets<Number> const none("test", 0, 0, [](Index, auto const&) {});
-  none.for_each_key([](Number, Index, std::span<Number>) { FAIL(); });
+TEST(IndexBuckets, NothingInNothingOut) {
+  detail::IndexBuckets<Index32> const none("test", 0, 0, [](Index, auto const&) {});
+  none.for_each_key([](Index32, Index, std::span<Index32>) { FAIL(); });
   EXPECT_EQ(none.size(), 0);
 }
 
 TEST(NodeGraph, NeighboursAreTheOtherEndsOfAllEdges) {
   auto const mesh = shuffled_box({12, 13, 14}, 3);
   ASSERT_GT(mesh.n_nodes(), 2048);
-  std::map<Number, std::set<Number>> expected;
+  std::map<Index32, std::set<Index32>> expected;
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const type = mesh.elements.type[std::size_t(e)];
     auto const c = mesh.elements.corners(e);
     for (int k = 0; k < n_edges(type); ++k) {
-      Number const a = c[std::size_t(edge_corner(type, k, 0))], b = c[std::size_t(edge_corner(type, k, 1))];
+      Index32 const a = c[std::size_t(edge_corner(type, k, 0))], b = c[std::size_t(edge_corner(type, k, 1))];
       expected[a].insert(b);
       expected[b].insert(a);
     }
   }
   auto const graph = make_node_graph(mesh, elements_of_nodes(mesh));
   ASSERT_EQ(graph.neighbours.size(), mesh.n_nodes());
-  for (Number n = 0; n < mesh.n_nodes(); ++n) {
+  for (Index32 n = 0; n < mesh.n_nodes(); ++n) {
     auto const found = graph.neighbours[n];
     EXPECT_TRUE(std::equal(found.begin(), found.end(), expected[n].begin(), expected[n].end())) << n;
   }
@@ -101,29 +101,29 @@ TEST(NodeGraph, NeighboursAreTheOtherEndsOfAllEdges) {
 TEST(UnstructuredTopology, SidesMeetWhereTheyHaveTheSameNodes) {
   auto const mesh = shuffled_box({11, 12, 17}, 4);
   ASSERT_GT(mesh.n_nodes(), 2048);
-  std::map<std::vector<Number>, std::vector<Number>> elements_of_side;
+  std::map<std::vector<Index32>, std::vector<Index32>> elements_of_side;
   auto const nodes_of = [&](Index e, int side) {
-    std::array<Number, max_face_corners> room{};
+    std::array<Index32, max_face_corners> room{};
     auto const nodes = side_nodes(mesh, e, side, room);
-    std::vector<Number> sorted(nodes.begin(), nodes.end());
+    std::vector<Index32> sorted(nodes.begin(), nodes.end());
     std::sort(sorted.begin(), sorted.end());
     return sorted;
   };
   for (Index e = 0; e < mesh.n_elements(); ++e)
-    for (int s = 0; s < n_sides(mesh, e); ++s) elements_of_side[nodes_of(e, s)].push_back(Number(e));
+    for (int s = 0; s < n_sides(mesh, e); ++s) elements_of_side[nodes_of(e, s)].push_back(Index32(e));
   auto const sides = element_sides(mesh);
   for (Index e = 0; e < mesh.n_elements(); ++e)
     for (int s = 0; s < n_sides(mesh, e); ++s) {
       auto const& both = elements_of_side.at(nodes_of(e, s));
       ASSERT_LE(both.size(), 2u);
-      Number const expected = both.size() == 1 ? ElementSides::boundary : both[0] == e ? both[1] : both[0];
+      Index32 const expected = both.size() == 1 ? ElementSides::boundary : both[0] == e ? both[1] : both[0];
       EXPECT_EQ(sides.of(e)[std::size_t(s)], expected) << "element " << e << " side " << s;
     }
   auto const around = elements_of_nodes(mesh);
-  std::map<Number, std::vector<Number>> expected;
+  std::map<Index32, std::vector<Index32>> expected;
   for (Index e = 0; e < mesh.n_elements(); ++e)
-    for (Number const c : mesh.elements.corners(e)) expected[c].push_back(Number(e));
-  for (Number n = 0; n < mesh.n_nodes(); ++n) {
+    for (Index32 const c : mesh.elements.corners(e)) expected[c].push_back(Index32(e));
+  for (Index32 n = 0; n < mesh.n_nodes(); ++n) {
     auto const found = around[n];
     EXPECT_TRUE(std::equal(found.begin(), found.end(), expected[n].begin(), expected[n].end())) << n;
   }

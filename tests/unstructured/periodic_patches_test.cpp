@@ -1,7 +1,7 @@
 // Files that list a periodic boundary twice, as a patch and as a connection: the patch does not hold what the connection lets go.
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/unstructured/boundary_conditions.hpp>
+#include <gridmorph/motion/boundary_conditions.hpp>
 
 #include <gtest/gtest.h>
 
@@ -28,14 +28,14 @@ struct Channel {
     mesh.connections.push_back(c);
     motion.rules.push_back({{"j_max"}, RigidRule{{}, {0.3, 0, 0}}, 0, "test"});
   }
-  [[nodiscard]] Number at(double x, double y) const {
-    for (Number n = 0; n < mesh.n_nodes(); ++n)
+  [[nodiscard]] Index32 at(double x, double y) const {
+    for (Index32 n = 0; n < mesh.n_nodes(); ++n)
       if (mesh.coordinates[n].x == x && mesh.coordinates[n].y == y) return n;
     return -1;
   }
   [[nodiscard]] BoundaryConditions conditions() const {
     auto const topology = make_topology(mesh);
-    return boundary_conditions(mesh, topology, claim_boundary(mesh, topology),
+    return boundary_conditions(mesh, topology, find_face_patches(mesh, topology),
                                make_node_graph(mesh, topology.elements_of_nodes), motion, {});
   }
   [[nodiscard]] bool holds(BoundaryConditions const& b, double x, double y) const {

@@ -23,13 +23,13 @@ void write_polyhedra(std::string const& path, UnstructuredMesh const& mesh, bool
   std::vector<cgsize_t> nodes, node_start{0}, parents_left, parents_right;
   std::vector<std::vector<cgsize_t>> faces_of(std::size_t(mesh.n_elements()));
   cgsize_t n_faces = 0;
-  std::array<Number, max_face_corners> room{};
+  std::array<Index32, max_face_corners> room{};
   for (int const boundary : {0, 1})
     for (Index e = 0; e < mesh.n_elements(); ++e) {
       auto const neighbours = topology.sides.of(e);
       for (std::size_t s = 0; s < neighbours.size(); ++s) {
         if ((neighbours[s] < 0) != (boundary == 1) || (boundary == 0 && neighbours[s] < e)) continue;
-        for (Number const n : side_nodes(mesh, e, int(s), room)) nodes.push_back(n + 1);
+        for (Index32 const n : side_nodes(mesh, e, int(s), room)) nodes.push_back(n + 1);
         node_start.push_back(cgsize_t(nodes.size()));
         faces_of[std::size_t(e)].push_back(++n_faces);
         if (boundary == 0) faces_of[std::size_t(neighbours[s])].push_back(-n_faces);
@@ -68,8 +68,8 @@ void write_polyhedra(std::string const& path, UnstructuredMesh const& mesh, bool
   check(cg_close(file));
 }
 
-std::vector<Number> sorted(std::span<Number const> list) {
-  std::vector<Number> out(list.begin(), list.end());
+std::vector<Index32> sorted(std::span<Index32 const> list) {
+  std::vector<Index32> out(list.begin(), list.end());
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -86,7 +86,7 @@ TEST(Polyhedra, UsualShapesAreRecognised) {
       auto const a = make_topology(read), b = make_topology(mesh);
       EXPECT_EQ(a.boundary.size(), b.boundary.size());
       ASSERT_EQ(read.patches.size(), 1u);
-      EXPECT_EQ(claim_boundary(read, a).faces_of_patch[0], 1);
+      EXPECT_EQ(find_face_patches(read, a).faces_of_patch[0], 1);
     }
 }
 
@@ -98,7 +98,7 @@ TEST(Polyhedra, OtherShapesKeepTheirFaces) {
   auto const topology = make_topology(boxes);
   std::vector<cgsize_t> nodes, start{0}, faces, face_start{0};
   for (Index f = 0; f < topology.boundary.size(); ++f) {
-    for (Number const n : topology.boundary.nodes[f]) nodes.push_back(n + 1);
+    for (Index32 const n : topology.boundary.nodes[f]) nodes.push_back(n + 1);
     start.push_back(cgsize_t(nodes.size()));
     faces.push_back(cgsize_t(f) + 1);
   }

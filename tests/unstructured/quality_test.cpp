@@ -20,15 +20,15 @@ struct Prepared {
   explicit Prepared(UnstructuredMesh m) : mesh(std::move(m)) {
     check_mesh(mesh);
     topology = make_topology(mesh);
-    claims = claim_boundary(mesh, topology);
+    face_patches = find_face_patches(mesh, topology);
   }
   template <class E = Exec>
   [[nodiscard]] QualityReport measure(Input const& input) const {
-    return measure_quality(E(), mesh, topology, claims, input);
+    return measure_quality(E(), mesh, topology, face_patches, input);
   }
   UnstructuredMesh mesh;
   UnstructuredTopology topology;
-  BoundaryClaims claims;
+  BoundaryFacePatches face_patches;
 };
 
 Vec3 swirl(Vec3 const& p) { return p + 0.02 * Vec3{std::sin(9 * p.y), std::sin(7 * p.x * p.z), p.x}; }

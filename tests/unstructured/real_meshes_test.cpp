@@ -45,16 +45,16 @@ TEST_P(RealCoil, IsReadWholeAndClosed) {
   EXPECT_TRUE(negative_elements(mesh).empty());
   auto const topology = make_topology(mesh);
   EXPECT_EQ(topology.crowded_sides, 0);
-  auto const claims = claim_boundary(mesh, topology);
-  for (auto const& p : claims.problems) ADD_FAILURE() << p;
+  auto const face_patches = find_face_patches(mesh, topology);
+  for (auto const& p : face_patches.problems) ADD_FAILURE() << p;
   ASSERT_EQ(mesh.patches.size(), 6u);
   auto const is_list = [](std::string const& note) { return note.find("is a list of nodes") != std::string::npos; };
   EXPECT_EQ(std::count_if(mesh.notes.begin(), mesh.notes.end(), is_list), 6);
   auto const is_null = [](UnstructuredPatch const& patch) { return patch.bc_type == "Null"; };
   EXPECT_EQ(std::count_if(mesh.patches.begin(), mesh.patches.end(), is_null), 3);
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    EXPECT_GT(claims.faces_of_patch[p], 0) << mesh.patches[p].name;
-    EXPECT_EQ(claims.faces_of_patch[p], mesh.patches[p].faces.size()) << mesh.patches[p].name;
+    EXPECT_GT(face_patches.faces_of_patch[p], 0) << mesh.patches[p].name;
+    EXPECT_EQ(face_patches.faces_of_patch[p], mesh.patches[p].faces.size()) << mesh.patches[p].name;
   }
   // The coil is in both zones, though the file does not say that they touch.
   auto const touching = undeclared_connections(mesh, 1e-6 * mesh.size());
@@ -112,12 +112,12 @@ TEST(RealUnstructured, TurbineCascadeIsReadWholeWithItsPeriodicPoints) {
   }
   EXPECT_EQ(pairs, 294);
   auto const topology = make_topology(mesh);
-  auto const claims = claim_boundary(mesh, topology);
-  EXPECT_TRUE(claims.problems.empty());
+  auto const face_patches = find_face_patches(mesh, topology);
+  EXPECT_TRUE(face_patches.problems.empty());
   // A layer of elements beyond periodic_2 repeats those inside periodic_1: that marker lies inside the mesh, and the edges
   // around the layer belong to the connection.
   for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-    EXPECT_EQ(claims.faces_of_patch[p], mesh.patches[p].name == "periodic_2" ? 0 : mesh.patches[p].faces.size())
+    EXPECT_EQ(face_patches.faces_of_patch[p], mesh.patches[p].name == "periodic_2" ? 0 : mesh.patches[p].faces.size())
         << mesh.patches[p].name;
   EXPECT_TRUE(negative_elements(mesh).empty());
   TemporaryFolder const folder;
@@ -143,14 +143,14 @@ TEST_P(RealConverted, HexahedraMeasureLikeTheCells) {
   check_mesh(mesh);
   EXPECT_TRUE(negative_elements(mesh).empty());
   auto const topology = make_topology(mesh);
-  auto const claims = claim_boundary(mesh, topology);
+  auto const face_patches = find_face_patches(mesh, topology);
   Kokkos::DefaultHostExecutionSpace const exec;
   QualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(structured.coordinates);
   UnstructuredQualityInput<Kokkos::HostSpace> same;
   same.coordinates = views(mesh.coordinates);
   auto const expected = measure_quality(exec, structured, input).far_field;
-  auto const found = measure_quality(exec, mesh, topology, claims, same).far_field;
+  auto const found = measure_quality(exec, mesh, topology, face_patches, same).far_field;
   EXPECT_EQ(found.cells, expected.cells);
   EXPECT_EQ(found.inverted, expected.inverted);
   EXPECT_EQ(found.collapsed, expected.collapsed);

@@ -1,10 +1,10 @@
 // Wraps and background meshes of walls that others have meshed.
+#include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
-#include <gridmorph/topology/coverage.hpp>
-#include <gridmorph/unstructured/background.hpp>
-#include <gridmorph/unstructured/classify.hpp>
+#include <gridmorph/plan/elements/background.hpp>
+#include <gridmorph/plan/elements/classify.hpp>
 
 #include <gtest/gtest.h>
 
@@ -39,10 +39,10 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   UnstructuredMesh const mesh =
       mesh_kind(path) == MeshKind::structured ? as_hexahedra(read_mesh(path)) : read_unstructured_mesh(path);
   UnstructuredTopology const topology = make_topology(mesh);
-  BoundaryClaims const claims = claim_boundary(mesh, topology);
-  std::vector<NumberLists> walls(1);
+  BoundaryFacePatches const face_patches = find_face_patches(mesh, topology);
+  std::vector<CsrGraph> walls(1);
   for (Index f = 0; f < topology.boundary.size(); ++f) {
-    int const p = claims.patch[std::size_t(f)];
+    int const p = face_patches.patch[std::size_t(f)];
     if (p < 0) continue;
     UnstructuredPatch const& patch = mesh.patches[std::size_t(p)];
     if (patch.name == real.wall || to_string(patch.kind) == real.wall) walls[0].add(topology.boundary.nodes[f]);
@@ -55,20 +55,20 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   EXPECT_EQ(bool(wrap.tube), real.tube) << wrap.note;
   std::vector<char> is_wall(std::size_t(mesh.n_nodes()), 0);
   double lowest = 1e300;
-  for (Number const n : walls[0].item) {
+  for (Index32 const n : walls[0].item) {
     ASSERT_TRUE(wrap.contains(mesh.coordinates[n]));
     is_wall[std::size_t(n)] = 1;
     lowest = std::min(lowest, mesh.coordinates[n].z);
   }
   Classification const regions = classify(mesh, wrap);
-  EXPECT_EQ(regions.n_near + regions.n_fence + regions.n_far, mesh.n_elements());
+  EXPECT_EQ(regions.n_near + regions.n_partial + regions.n_far, mesh.n_elements());
   EXPECT_GT(regions.n_far, mesh.n_elements() / 10);
-  std::vector<Number> far;
+  std::vector<Index32> far;
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
     if (is_wall[std::size_t(n)] != 0) {
       EXPECT_EQ(regions.near[std::size_t(n)], 1);
     }
-    if (regions.near[std::size_t(n)] == 0) far.push_back(Number(n));
+    if (regions.near[std::size_t(n)] == 0) far.push_back(Index32(n));
   }
 
   Background background = make_background(wrap);

@@ -1,7 +1,7 @@
 // The smooth field between boundary values: constants, and the same field however the nodes are numbered.
 #include "support/random.hpp"
 
-#include <gridmorph/unstructured/detail/scatter_views.hpp>
+#include <gridmorph/morph/detail/inverse_distance_views.hpp>
 
 #include <gtest/gtest.h>
 
@@ -27,18 +27,18 @@ std::vector<Vec3> cube_surface(int n) {
 /// Values on the lattice over twice the cube; node number k is points[order[k]].
 std::vector<Vec3> field(std::vector<Vec3> const& points, std::vector<int> const& order, Vec3 (*value)(Vec3 const&)) {
   Coordinates x(Index(points.size()));
-  std::vector<Number> nodes;
+  std::vector<Index32> nodes;
   std::vector<double> area;
   Kokkos::View<Vec3*, Kokkos::HostSpace> const given("given", points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     Vec3 const p = points[std::size_t(order[k])];
     x.set(Index(k), p);
-    nodes.push_back(Number(k));
+    nodes.push_back(Index32(k));
     area.push_back(1 + 0.1 * std::sin(p.x + 2 * p.y + 3 * p.z));
     given(k) = value(p);
   }
-  ScatterLattice const lattice = make_scatter_lattice(x, nodes, area, 3, {-4, -4, -4}, {12, 12, 12}, 4000);
-  detail::ScatterViews<Kokkos::HostSpace, Vec3> const views(lattice);
+  InverseDistanceField const lattice = make_scatter_lattice(x, nodes, area, 3, {-4, -4, -4}, {12, 12, 12}, 4000);
+  detail::InverseDistanceViews<Kokkos::HostSpace, Vec3> const views(lattice);
   Exec const exec;
   views.run(exec, given);
   exec.fence();
@@ -51,14 +51,14 @@ std::vector<int> in_order(std::size_t n) {
   return order;
 }
 
-TEST(ScatterLattice, ConstantsStayConstant) {
+TEST(InverseDistanceField, ConstantsStayConstant) {
   auto const points = cube_surface(8);
   for (Vec3 const& v : field(points, in_order(points.size()), [](Vec3 const&) { return Vec3{1, -2, 0.5}; })) {
     EXPECT_LT(norm(v - Vec3{1, -2, 0.5}), 1e-12);
   }
 }
 
-TEST(ScatterLattice, NumberingOfTheNodesDoesNotMatter) {
+TEST(InverseDistanceField, NumberingOfTheNodesDoesNotMatter) {
   auto const points = cube_surface(8);
   auto const value = [](Vec3 const& p) { return Vec3{std::sin(p.x), p.y * p.z / 10, std::cos(p.x + p.y)}; };
   auto const expected = field(points, in_order(points.size()), value);
@@ -73,7 +73,7 @@ TEST(ScatterLattice, NumberingOfTheNodesDoesNotMatter) {
   }
 }
 
-TEST(ScatterLattice, ValuesLieBetweenThoseGiven) {
+TEST(InverseDistanceField, ValuesLieBetweenThoseGiven) {
   auto const points = cube_surface(6);
   for (Vec3 const& v : field(points, in_order(points.size()), [](Vec3 const& p) { return Vec3{p.x, 0, 1}; })) {
     EXPECT_GE(v.x, 0);

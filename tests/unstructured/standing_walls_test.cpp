@@ -29,14 +29,14 @@ UnstructuredMesh pins(int count) {
   UnstructuredMesh mesh;
   mesh.dimension = 2;
   mesh.source = "pins";
-  std::map<std::pair<long, long>, Number> number;
+  std::map<std::pair<long, long>, Index32> number;
   std::vector<Vec3> points;
   auto const node = [&](double x, double y) {
-    auto const [at, fresh] = number.try_emplace({std::lround(1e9 * x), std::lround(1e9 * y)}, Number(points.size()));
+    auto const [at, fresh] = number.try_emplace({std::lround(1e9 * x), std::lround(1e9 * y)}, Index32(points.size()));
     if (fresh) points.push_back({x, y, 0});
     return at->second;
   };
-  std::vector<std::vector<std::array<Number, around>>> grid;
+  std::vector<std::vector<std::array<Index32, around>>> grid;
   for (int pin = 0; pin < count; ++pin) {
     grid.emplace_back();
     for (double const t : height) {
@@ -54,7 +54,7 @@ UnstructuredMesh pins(int count) {
   mesh.add_zone("channel", Index(points.size()));
   mesh.coordinates = Coordinates(mesh.n_nodes());
   for (std::size_t n = 0; n < points.size(); ++n) mesh.coordinates.set(Index(n), points[n]);
-  std::map<std::string, NumberLists> faces;
+  std::map<std::string, CsrGraph> faces;
   for (int pin = 0; pin < count; ++pin) {
     auto const& g = grid[std::size_t(pin)];
     for (std::size_t i = 0; i < around; ++i) {
@@ -172,7 +172,7 @@ TEST(StandingWall, HoldsNodesThatSlipBesideIt) {
         c.morph(motion_of({rule_for({"body"}, translation({0, 0, 0.6})), rule_for({"j_min"}, SlipRule{})}), options);
     double largest = 0, beside = 0;
     double const first = thin ? 1.0 / 32 : 1;
-    for (Number const n : c.nodes_of("j_min")) {
+    for (Index32 const n : c.nodes_of("j_min")) {
       Vec3 const x = c.mesh.coordinates[n];
       double const u = distance(m.x[n], x);
       largest = std::max(largest, u);

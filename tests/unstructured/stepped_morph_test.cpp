@@ -4,11 +4,11 @@
 #include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <generators/sphere.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/rotation.hpp>
-#include <gridmorph/demo/sphere.hpp>
-#include <gridmorph/unstructured/motion_path.hpp>
-#include <gridmorph/unstructured/stepped_morph.hpp>
+#include <gridmorph/geometry/rotation.hpp>
+#include <gridmorph/guard/motion_path.hpp>
+#include <gridmorph/guard/stepped_morph.hpp>
 
 #include <gtest/gtest.h>
 
@@ -75,7 +75,7 @@ Motion turn(double angle, Vec3 const& shift = {}) {
 
 TEST(MotionPath, ABodyKeepsItsShapeOnTheWay) {
   auto const c = sphere(12'000);
-  auto const prepared = prepare(c.mesh, c.topology, c.claims, turn(120, {0.5, 0, 0}), {});
+  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, turn(120, {0.5, 0, 0}), {});
   auto const u = prepared.boundary_displacement(c.mesh);
   MotionPath const path(c.mesh.coordinates, prepared.graph, prepared.boundary, u);
   auto const& known = prepared.plan.known;
@@ -98,7 +98,7 @@ TEST(MotionPath, WhatBendsGoesStraight) {
   FunctionRule const bend{"bends", [](std::span<Vec3 const> x, std::span<Vec3> u) {
                             for (std::size_t n = 0; n < x.size(); ++n) u[n] = {x[n].z * x[n].z, 0, -0.5 * x[n].x};
                           }};
-  auto const prepared = prepare(c.mesh, c.topology, c.claims, motion_of({rule_for({"sphere"}, bend)}), {});
+  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion_of({rule_for({"sphere"}, bend)}), {});
   auto const u = prepared.boundary_displacement(c.mesh);
   auto const half = MotionPath(c.mesh.coordinates, prepared.graph, prepared.boundary, u).at(0.5);
   for (std::size_t k = 0; k < u.size(); ++k) EXPECT_EQ(norm(half[k] - 0.5 * u[k]), 0);
@@ -114,7 +114,7 @@ TEST(SteppedMorph, ABodyTurnsByARightAngle) {
     int calls = 0;
     StepOptions options;
     options.progress = [&](int step) { EXPECT_EQ(step, ++calls); };
-    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.claims, in_one.prepared, in_one.boundary, options);
+    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, in_one.prepared, in_one.boundary, options);
     EXPECT_EQ(calls, 2);
     EXPECT_EQ(c.mesh.coordinates.x.data(), baseline.x.data());
     EXPECT_EQ(c.inverted(x), 0) << elements;
@@ -128,11 +128,11 @@ TEST(SteppedMorph, AShiftOfEverythingIsOne) {
   auto c = sphere(12'000);
   Motion const motion =
       motion_of({rule_for({"sphere"}, translation({1, 2, 3})), rule_for({"outer"}, translation({1, 2, 3}))});
-  auto const prepared = prepare(c.mesh, c.topology, c.claims, motion, {});
+  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, {});
   StepOptions options;
   options.steps = 3;
   auto const u = prepared.boundary_displacement(c.mesh);
-  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.claims, prepared, u, options);
+  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options);
   for (Index n = 0; n < c.mesh.n_nodes(); ++n) EXPECT_LT(norm(x[n] - c.mesh.coordinates[n] - Vec3{1, 2, 3}), 1e-12);
 }
 
@@ -148,12 +148,12 @@ TEST(SteppedMorph, SlipPlanesAreKept) {
       motion_of({rule_for({"k_min"}, push), rule_for({"i_min", "i_max", "j_min", "j_max"}, SlipRule{}),
                  rule_for({"k_max"}, translation({0, 0, 0}))});
   EXPECT_NO_THROW({
-    auto const prepared = prepare(c.mesh, c.topology, c.claims, motion, {});
+    auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, {});
     auto const u = prepared.boundary_displacement(c.mesh);
     StepOptions options;
     options.steps = 3;
     Coordinates const before = c.mesh.coordinates;
-    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.claims, prepared, u, options);
+    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options);
     for (Index n = 0; n < c.mesh.n_nodes(); ++n)
       if (before[n].y == 0 || before[n].y == 8) {
         EXPECT_NEAR(x[n].y, before[n].y, 1e-12);
@@ -163,17 +163,17 @@ TEST(SteppedMorph, SlipPlanesAreKept) {
 
 TEST(SteppedMorph, ABackgroundMeshOfOnesOwnIsRefusedAndTheMeshIsAsItWas) {
   auto c = sphere(12'000);
-  auto const prepared = prepare(c.mesh, c.topology, c.claims, turn(10), {});
+  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, turn(10), {});
   Coordinates const before = c.mesh.coordinates;
   StepOptions options;
   options.plan.background = std::make_shared<Background const>();
   auto const u = prepared.boundary_displacement(c.mesh);
-  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.claims, prepared, u, options), PlanError);
+  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options), PlanError);
   options.plan.background = {};
   options.progress = [](int step) {
     if (step == 2) throw MotionError("stop");
   };
-  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.claims, prepared, u, options), MotionError);
+  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options), MotionError);
   EXPECT_EQ(c.mesh.coordinates.x.data(), before.x.data());
 }
 

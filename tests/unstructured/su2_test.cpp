@@ -64,7 +64,7 @@ TEST_F(Su2, FlatMeshesWithMarkersAreRead) {
   EXPECT_EQ(mesh.patches[0].name, "lower_wall");
   EXPECT_EQ(mesh.patches[0].kind, PatchKind::wall);
   EXPECT_EQ(mesh.patches[1].kind, PatchKind::outflow);
-  EXPECT_EQ(mesh.patches[0].faces.item, (std::vector<Number>{0, 1, 1, 2}));
+  EXPECT_EQ(mesh.patches[0].faces.item, (std::vector<Index32>{0, 1, 1, 2}));
   EXPECT_EQ(describe_node(mesh, 0), "zone 'zone 1' node 0");
   EXPECT_TRUE(negative_elements(mesh).empty());
 }
@@ -140,8 +140,8 @@ TEST_F(Su2, PeriodicMarkersBecomeConnections) {
                          "NPERIODIC= 2\nPERIODIC_INDEX= 0\n0 0 0\n0 0 0\n0 0 0\n"
                          "PERIODIC_INDEX= 1\n0 0 0\n0 0 0\n1 0 0\n");
   ASSERT_EQ(mesh.connections.size(), 1u);
-  EXPECT_EQ(mesh.connections[0].nodes, (std::vector<Number>{0, 3}));
-  EXPECT_EQ(mesh.connections[0].donor_nodes, (std::vector<Number>{2, 5}));
+  EXPECT_EQ(mesh.connections[0].nodes, (std::vector<Index32>{0, 3}));
+  EXPECT_EQ(mesh.connections[0].donor_nodes, (std::vector<Index32>{2, 5}));
   ASSERT_TRUE(mesh.connections[0].periodic);
   EXPECT_EQ(largest_mismatch(mesh, mesh.connections[0]), 0);
 }

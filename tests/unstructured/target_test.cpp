@@ -4,8 +4,8 @@
 #include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <generators/sphere.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/demo/sphere.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
 #include <gtest/gtest.h>
@@ -45,14 +45,14 @@ Rule onto(TargetGeometry target, TargetRule::Mapping mapping = TargetRule::Mappi
 
 /// Displacement of the nodes of one patch by its rule, by node.
 struct Asked {
-  std::vector<Number> nodes;
+  std::vector<Index32> nodes;
   std::vector<Vec3> u;
 };
 Asked asked(Case const& c, std::string const& patch, Rule const& rule) {
-  auto const prepared = prepare(c.mesh, c.topology, c.claims, motion_of({rule_for({patch}, rule)}), {});
+  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion_of({rule_for({patch}, rule)}), {});
   auto const all = prepared.boundary_displacement(c.mesh);
   Asked out;
-  for (Number const n : c.nodes_of(patch)) {
+  for (Index32 const n : c.nodes_of(patch)) {
     auto const at = std::lower_bound(prepared.plan.known.begin(), prepared.plan.known.end(), n);
     out.nodes.push_back(n);
     out.u.push_back(all[std::size_t(at - prepared.plan.known.begin())]);
@@ -110,7 +110,7 @@ TEST(UnstructuredTarget, LinesOfA2DMeshGoToAProfileByArcLength) {
   auto const grown = [](Vec3 const& x) { return Vec3{1.1 * x.x - 0.05, 1.1 * x.y, x.z}; };
   // The profile around: by angle about mid-chord.
   std::vector<Vec3> around;
-  for (Number const n : nodes) around.push_back(grown(c.mesh.coordinates[n]));
+  for (Index32 const n : nodes) around.push_back(grown(c.mesh.coordinates[n]));
   std::sort(around.begin(), around.end(),
             [](Vec3 const& a, Vec3 const& b) { return std::atan2(a.y, a.x - 0.5) > std::atan2(b.y, b.x - 0.5); });
   TargetGeometry section;
@@ -145,7 +145,7 @@ TEST(UnstructuredTarget, ARoundProfileThatTurnsTakesItsNodesAlong) {
     for (int i = 0; i < around; ++i) {
       Vec3 const x = ellipse(2 * pi * i / around), far = 4 * Vec3{x.x, x.y / 0.3, 0};
       mesh.coordinates.set(i + around * j, x + (double(j) / layers) * (far - x));
-      Number const a = i + around * j, b = (i + 1) % around + around * j;
+      Index32 const a = i + around * j, b = (i + 1) % around + around * j;
       if (j < layers) mesh.add_element(ElementType::quadrilateral, std::array{a, a + around, b + around, b});
       if (j == 0) body.faces.add(std::array{a, b});
       if (j == layers) outer.faces.add(std::array{a, b});
@@ -188,7 +188,7 @@ TEST(UnstructuredTarget, PointsForNodesAreInTheOrderOfTheFile) {
   });
   TargetGeometry target;
   Case const before(mesh);
-  for (Number const n : before.nodes_of("body")) target.nodes.push_back(1.1 * mesh.coordinates[n]);
+  for (Index32 const n : before.nodes_of("body")) target.nodes.push_back(1.1 * mesh.coordinates[n]);
   reorder(mesh, order_by_position(mesh));
   Case const c(std::move(mesh));
   auto const [nodes, u] = asked(c, "body", onto(target));

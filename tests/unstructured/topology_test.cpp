@@ -20,18 +20,18 @@ TEST(UnstructuredTopology, NeighboursOfHexahedraAreThoseOfTheCells) {
   auto const mesh = to_hexahedra(unit_box(n));
   check_mesh(mesh);
   auto const topology = make_topology(mesh);
-  auto const cell = [&](int i, int j, int k) { return Number(i + n[0] * (j + n[1] * k)); };
+  auto const cell = [&](int i, int j, int k) { return Index32(i + n[0] * (j + n[1] * k)); };
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
       for (int i = 0; i < n[0]; ++i) {
-        std::multiset<Number> expected;
+        std::multiset<Index32> expected;
         for (auto const& s : {Index3{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}) {
           Index3 const p{i + s[0], j + s[1], k + s[2]};
           bool const inside = p[0] >= 0 && p[0] < n[0] && p[1] >= 0 && p[1] < n[1] && p[2] >= 0 && p[2] < n[2];
           expected.insert(inside ? cell(p[0], p[1], p[2]) : ElementSides::boundary);
         }
         auto const found = topology.sides.of(cell(i, j, k));
-        EXPECT_EQ(std::multiset<Number>(found.begin(), found.end()), expected);
+        EXPECT_EQ(std::multiset<Index32>(found.begin(), found.end()), expected);
       }
   EXPECT_EQ(topology.boundary.size(), 2 * (4 * 3 + 3 * 5 + 4 * 5));
   EXPECT_EQ(topology.crowded_sides, 0);
@@ -40,10 +40,10 @@ TEST(UnstructuredTopology, NeighboursOfHexahedraAreThoseOfTheCells) {
 /// Every inner side is seen from both elements, and the area vectors of the boundary add up to zero and its flux to the volume.
 void expect_closed(UnstructuredMesh const& mesh, double volume) {
   auto const topology = make_topology(mesh);
-  std::map<std::pair<Number, Number>, int> seen;
+  std::map<std::pair<Index32, Index32>, int> seen;
   for (Index e = 0; e < mesh.n_elements(); ++e)
-    for (Number const other : topology.sides.of(e))
-      if (other >= 0) ++seen[{std::min(Number(e), other), std::max(Number(e), other)}];
+    for (Index32 const other : topology.sides.of(e))
+      if (other >= 0) ++seen[{std::min(Index32(e), other), std::max(Index32(e), other)}];
   for (auto const& [pair, times] : seen) EXPECT_EQ(times, 2);
   Vec3 sum;
   double flux = 0;
@@ -77,7 +77,7 @@ TEST(UnstructuredTopology, PyramidsMeetTheirNeighbours) {
   mesh.coordinates.set(8, {0.5, 0.5, 0.5});
   constexpr std::array<int, 8> sids{0, 1, 3, 2, 4, 5, 7, 6};
   for (int f = 0; f < 6; ++f) {
-    std::array<Number, 5> pyramid{};
+    std::array<Index32, 5> pyramid{};
     // Faces of a hexahedron point outwards; seen from inside they run the other way.
     for (int c = 0; c < 4; ++c)
       pyramid[std::size_t(3 - c)] = sids[std::size_t(face_corner(ElementType::hexahedron, f, c))];
@@ -94,11 +94,11 @@ TEST(UnstructuredTopology, EveryPatchGetsItsFacesAndNothingStaysOpen) {
   Index3 const n{4, 3, 5};
   for (auto const& mesh : {to_hexahedra(unit_box(n)), to_prisms_and_tetrahedra(unit_box(n), 2)}) {
     auto const topology = make_topology(mesh);
-    auto const claims = claim_boundary(mesh, topology);
-    EXPECT_TRUE(claims.problems.empty());
-    EXPECT_TRUE(claims.notes.empty());
+    auto const face_patches = find_face_patches(mesh, topology);
+    EXPECT_TRUE(face_patches.problems.empty());
+    EXPECT_TRUE(face_patches.notes.empty());
     for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-      EXPECT_EQ(claims.faces_of_patch[p], mesh.patches[p].faces.size()) << mesh.patches[p].name;
+      EXPECT_EQ(face_patches.faces_of_patch[p], mesh.patches[p].faces.size()) << mesh.patches[p].name;
   }
 }
 
@@ -110,39 +110,39 @@ TEST(UnstructuredTopology, PatchesGivenAsNodesGetTheSameFaces) {
     patch.faces = {};
   }
   auto const topology = make_topology(faces);
-  EXPECT_EQ(claim_boundary(nodes, topology).patch, claim_boundary(faces, topology).patch);
+  EXPECT_EQ(find_face_patches(nodes, topology).patch, find_face_patches(faces, topology).patch);
 }
 
 TEST(UnstructuredTopology, FacesThatNothingClaimsAreAProblemThatNamesTheFirst) {
   auto mesh = to_hexahedra(unit_box({2, 2, 2}));
   mesh.patches.erase(mesh.patches.begin());  // i_min
-  auto const claims = claim_boundary(mesh, make_topology(mesh));
-  ASSERT_EQ(claims.problems.size(), 1u);
+  auto const face_patches = find_face_patches(mesh, make_topology(mesh));
+  ASSERT_EQ(face_patches.problems.size(), 1u);
   for (auto const* part : {"zone 'box'", "4 boundary faces belong", "hexahedron 1 ", "nodes "})
-    EXPECT_NE(claims.problems[0].find(part), std::string::npos) << claims.problems[0];
+    EXPECT_NE(face_patches.problems[0].find(part), std::string::npos) << face_patches.problems[0];
 }
 
 TEST(UnstructuredTopology, FacesClaimedTwiceAndFacesInsideAreSaid) {
   auto mesh = to_hexahedra(unit_box({2, 2, 2}));
   mesh.patches.push_back(mesh.patches[0]);
   mesh.patches.back().name = "again";
-  auto const baffle = std::array<Number, 4>{1, 4, 13, 10};  // the plane i = 2 between two cells
+  auto const baffle = std::array<Index32, 4>{1, 4, 13, 10};  // the plane i = 2 between two cells
   mesh.patches[1].faces.add(baffle);
-  auto const claims = claim_boundary(mesh, make_topology(mesh));
-  ASSERT_EQ(claims.problems.size(), 1u);
-  EXPECT_NE(claims.problems[0].find("'again'"), std::string::npos);
-  ASSERT_EQ(claims.notes.size(), 2u);
-  EXPECT_NE(claims.notes[0].find("1 of its 5 faces are not on the boundary"), std::string::npos);
+  auto const face_patches = find_face_patches(mesh, make_topology(mesh));
+  ASSERT_EQ(face_patches.problems.size(), 1u);
+  EXPECT_NE(face_patches.problems[0].find("'again'"), std::string::npos);
+  ASSERT_EQ(face_patches.notes.size(), 2u);
+  EXPECT_NE(face_patches.notes[0].find("1 of its 5 faces are not on the boundary"), std::string::npos);
 }
 
 TEST(UnstructuredTopology, ElementsThatOverlapAreSaid) {
   auto mesh = to_hexahedra(unit_box({2, 1, 1}));
   auto const corners = mesh.elements.corners(0);
-  mesh.add_element(ElementType::hexahedron, std::vector<Number>(corners.begin(), corners.end()));
+  mesh.add_element(ElementType::hexahedron, std::vector<Index32>(corners.begin(), corners.end()));
   auto const topology = make_topology(mesh);
   EXPECT_GT(topology.crowded_sides, 0);
-  auto const claims = claim_boundary(mesh, topology);
-  EXPECT_TRUE(std::any_of(claims.problems.begin(), claims.problems.end(),
+  auto const face_patches = find_face_patches(mesh, topology);
+  EXPECT_TRUE(std::any_of(face_patches.problems.begin(), face_patches.problems.end(),
                           [](auto const& p) { return p.find("more than two elements") != std::string::npos; }));
 }
 
@@ -172,20 +172,20 @@ TEST(UnstructuredTopology, ConnectionsLeadToTheElementBehind) {
     // The only neighbours across the cut have a face whose four nodes coincide.
     int across = 0;
     for (Index f = 0; f < topology.boundary.size(); ++f) {
-      Number const other = topology.boundary.across[std::size_t(f)];
+      Index32 const other = topology.boundary.across[std::size_t(f)];
       if (other < 0) continue;
       ++across;
       EXPECT_NE(mesh.zone_of_element(other), mesh.zone_of_element(topology.boundary.element[std::size_t(f)]));
-      for (Number const n : topology.boundary.nodes[f]) {
+      for (Index32 const n : topology.boundary.nodes[f]) {
         auto const corners = mesh.elements.corners(other);
         EXPECT_TRUE(std::any_of(corners.begin(), corners.end(),
-                                [&](Number m) { return distance(mesh.coordinates[n], mesh.coordinates[m]) < 1e-14; }));
+                                [&](Index32 m) { return distance(mesh.coordinates[n], mesh.coordinates[m]) < 1e-14; }));
       }
     }
     EXPECT_EQ(across, 2 * 5 * 4);
     auto const owner = coincident_nodes(mesh);
     int paired = 0;
-    for (Number n = 0; n < Number(owner.size()); ++n) {
+    for (Index32 n = 0; n < Index32(owner.size()); ++n) {
       if (owner[std::size_t(n)] == n) continue;
       ++paired;
       EXPECT_LT(owner[std::size_t(n)], n);
@@ -198,11 +198,11 @@ TEST(UnstructuredTopology, ConnectionsLeadToTheElementBehind) {
 TEST(UnstructuredTopology, PointsAreMatchedByPosition) {
   auto const mesh = to_hexahedra(two_zones({}, false));
   auto const& c = mesh.connections.front();
-  std::vector<Number> all(std::size_t(mesh.zones[1].n_nodes));
-  for (std::size_t n = 0; n < all.size(); ++n) all[n] = Number(mesh.zones[1].first_node + Index(n));
+  std::vector<Index32> all(std::size_t(mesh.zones[1].n_nodes));
+  for (std::size_t n = 0; n < all.size(); ++n) all[n] = Index32(mesh.zones[1].first_node + Index(n));
   EXPECT_EQ(match_points(mesh.coordinates, c.nodes, all, 1e-9), c.donor_nodes);
-  std::vector<Number> const far{Number(mesh.zones[0].first_node)};
-  EXPECT_EQ(match_points(mesh.coordinates, far, all, 1e-9), std::vector<Number>{-1});
+  std::vector<Index32> const far{Index32(mesh.zones[0].first_node)};
+  EXPECT_EQ(match_points(mesh.coordinates, far, all, 1e-9), std::vector<Index32>{-1});
 }
 
 TEST(UnstructuredTopology, PatchesThatTouchWithoutAConnectionAreFound) {
@@ -231,8 +231,8 @@ TEST(UnstructuredTopology, FlatMeshesHaveEdgesAsBoundary) {
   check_mesh(mesh);
   auto const topology = make_topology(mesh);
   EXPECT_EQ(topology.boundary.size(), 2 * (5 + 4));
-  auto const claims = claim_boundary(mesh, topology);
-  EXPECT_TRUE(claims.problems.empty());
+  auto const face_patches = find_face_patches(mesh, topology);
+  EXPECT_TRUE(face_patches.problems.empty());
   // Elements lie on the left of their edges: the boundary runs round the area once.
   double area = 0;
   for (Index f = 0; f < topology.boundary.size(); ++f) {

@@ -19,7 +19,7 @@ using Case = UnstructuredCase;
 /// nodes there are off by `gap`.
 struct TwoZones {
   UnstructuredMesh mesh;
-  std::vector<std::pair<Number, Number>> pairs;
+  std::vector<std::pair<Index32, Index32>> pairs;
 };
 TwoZones two_zones(PatchKind kind, double gap) {
   TwoZones out{test::in_two_zones(test::box_around(

@@ -1,6 +1,6 @@
 #include <gridmorph/mesh/as_hexahedra.hpp>
-#include <gridmorph/unstructured/background.hpp>
-#include <gridmorph/unstructured/classify.hpp>
+#include <gridmorph/plan/elements/background.hpp>
+#include <gridmorph/plan/elements/classify.hpp>
 
 #include <gtest/gtest.h>
 
@@ -206,12 +206,12 @@ TEST(OTypeBackground, IsBoundedByTheTubeAndByTheBox) {
     UnstructuredMesh const tube = wrap_mesh(wrap), cells = as_hexahedra(mesh);
     auto volume = [](UnstructuredMesh const& m) {
       double sum = 0;
-      std::array<Number, max_face_corners> room{};
+      std::array<Index32, max_face_corners> room{};
       for (Index e = 0; e < m.n_elements(); ++e)
         for (int s = 0; s < n_sides(m, e); ++s) {
           auto const side = side_nodes(m, e, s, room);
           Vec3 middle;
-          for (Number const n : side) middle += (1.0 / double(side.size())) * m.coordinates[n];
+          for (Index32 const n : side) middle += (1.0 / double(side.size())) * m.coordinates[n];
           for (std::size_t a = 0; a < side.size(); ++a)
             sum += dot(middle, cross(m.coordinates[side[a]], m.coordinates[side[(a + 1) % side.size()]])) / 6;
         }
@@ -241,10 +241,10 @@ TEST(OTypeBackground, RowsReproduceLinearFieldsAtPointsOfTheFarField) {
     if (!wrap.contains(x)) points.push_back(x);
   }
   Coordinates at(Index(points.size()));
-  std::vector<Number> nodes;
+  std::vector<Index32> nodes;
   for (std::size_t n = 0; n < points.size(); ++n) {
     at.set(Index(n), points[n]);
-    nodes.push_back(Number(n));
+    nodes.push_back(Index32(n));
   }
   FarRows const far = background_rows(background, at, nodes);
   EXPECT_EQ(far.n_outside, 0);
@@ -269,12 +269,12 @@ TEST(Classification, OfATubeNamesEveryElementThatHasAPointInIt) {
   ASSERT_TRUE(wrap.tube) << wrap.note;
   Classification const found = classify(mesh, wrap);
   EXPECT_GT(found.n_near, 50);
-  EXPECT_GT(found.n_fence, 100);
+  EXPECT_GT(found.n_partial, 100);
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const corners = mesh.elements.corners(e);
     Vec3 middle;
     int inside = 0;
-    for (Number const n : corners) {
+    for (Index32 const n : corners) {
       middle += (1.0 / double(corners.size())) * mesh.coordinates[n];
       inside += int(wrap.contains(mesh.coordinates[n]));
     }

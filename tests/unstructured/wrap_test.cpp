@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/unstructured/classify.hpp>
-#include <gridmorph/unstructured/wrap.hpp>
+#include <gridmorph/plan/elements/classify.hpp>
+#include <gridmorph/plan/elements/wrap.hpp>
 
 #include <gtest/gtest.h>
 
@@ -164,7 +164,7 @@ TEST(Wrap, OfABodyOnTheLimitOfTheMeshGoesBeyondItAndIsFull) {
   UnstructuredMesh mesh = bodies.in_domain({-4, -4, 0}, {4, 4, 4});
   for (Index f = 0; f < bodies.walls.front().size(); ++f) {
     auto const face = bodies.walls.front()[f];
-    if (std::all_of(face.begin(), face.end(), [&](Number n) { return mesh.coordinates[n].z > -1e-9; }))
+    if (std::all_of(face.begin(), face.end(), [&](Index32 n) { return mesh.coordinates[n].z > -1e-9; }))
       half.walls.front().add(face);
   }
   for (Index n = 0; n < mesh.n_nodes(); ++n) mesh.coordinates.z(n) = std::max(mesh.coordinates.z(n), 0.0);
@@ -224,7 +224,7 @@ TEST(Wrap, RefusesWhatItCannotWrap) {
   Bodies bodies;
   bodies.box({0, 0, 0}, {1, 1, 1});
   UnstructuredMesh const mesh = bodies.in_domain({-1, -1, -1}, {2, 2, 2});
-  std::vector<NumberLists> const none(1);
+  std::vector<CsrGraph> const none(1);
   expect_all_in(message_of<MeshError>([&] { make_wrap(mesh, none, {.offset = 0.1}); }), {"nothing to wrap"});
   expect_all_in(message_of<MotionError>([&] { make_wrap(mesh, bodies.walls, {}); }), {"offset", "positive"});
 }
@@ -252,11 +252,11 @@ TEST(SuggestedOffset, KeepsLayersInsideAndLeavesRoomForOtherBoundaries) {
 TEST(Classification, AgreesWithTheWrapElementByElement) {
   // A block of unit cells from (0, 0, 0) to (12, 12, 12) with an imagined wall in the middle.
   UnstructuredMesh const mesh = to_prisms_and_tetrahedra(unit_box({12, 12, 12}), 4);
-  std::vector<NumberLists> walls(1);
-  auto node = [](int i, int j, int k) { return Number(i + 13 * (j + 13 * k)); };
+  std::vector<CsrGraph> walls(1);
+  auto node = [](int i, int j, int k) { return Index32(i + 13 * (j + 13 * k)); };
   for (int i = 4; i < 8; ++i)
     for (int j = 4; j < 8; ++j) {
-      std::array<Number, 4> const face{node(i, j, 6), node(i + 1, j, 6), node(i + 1, j + 1, 6), node(i, j + 1, 6)};
+      std::array<Index32, 4> const face{node(i, j, 6), node(i + 1, j, 6), node(i + 1, j + 1, 6), node(i, j + 1, 6)};
       walls.front().add(face);
     }
   Wrap const wrap = make_wrap(mesh, walls, {.offset = 1.25, .resolution = 6});
@@ -269,7 +269,7 @@ TEST(Classification, AgreesWithTheWrapElementByElement) {
     int inside = 0;
     Vec3 centre;
     auto const corners = mesh.elements.corners(e);
-    for (Number const n : corners) {
+    for (Index32 const n : corners) {
       inside += int(wrap.contains(mesh.coordinates[n]));
       centre += (1.0 / double(corners.size())) * mesh.coordinates[n];
     }
@@ -281,13 +281,13 @@ TEST(Classification, AgreesWithTheWrapElementByElement) {
       EXPECT_FALSE(wrap.contains(centre));
     }
     if (region != Region::far)
-      for (Number const n : corners) near[std::size_t(n)] = 1;
+      for (Index32 const n : corners) near[std::size_t(n)] = 1;
   }
   EXPECT_EQ(count[std::size_t(Region::near)], found.n_near);
-  EXPECT_EQ(count[std::size_t(Region::fence)], found.n_fence);
+  EXPECT_EQ(count[std::size_t(Region::partial)], found.n_partial);
   EXPECT_EQ(count[std::size_t(Region::far)], found.n_far);
   EXPECT_GT(found.n_near, 50);
-  EXPECT_GT(found.n_fence, 50);
+  EXPECT_GT(found.n_partial, 50);
   EXPECT_GT(found.n_far, 500);
   EXPECT_TRUE(std::equal(near.begin(), near.end(), found.near.begin()));
   EXPECT_EQ(found.n_near_nodes, std::count(near.begin(), near.end(), 1));

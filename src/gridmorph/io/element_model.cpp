@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_file.hpp>
-#include <gridmorph/io/cgns_sections.hpp>
+#include <gridmorph/io/cgns/cgns_file.hpp>
+#include <gridmorph/io/cgns/cgns_sections.hpp>
 #include <gridmorph/io/element_faces.hpp>
 #include <gridmorph/io/element_model.hpp>
 

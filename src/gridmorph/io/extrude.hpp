@@ -1,7 +1,7 @@
 // 2-D meshes as meshes of one cell layer.
 #pragma once
 
-#include <gridmorph/io/cgns_layout.hpp>
+#include <gridmorph/io/cgns/cgns_layout.hpp>
 
 namespace gridmorph::cgns {
 

@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/file_kind.hpp>
-#include <gridmorph/io/su2_file.hpp>
+#include <gridmorph/io/su2/su2_file.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // Internal to io.
 #pragma once
 
-#include <gridmorph/io/cgns_layout.hpp>
+#include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/extrude.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>

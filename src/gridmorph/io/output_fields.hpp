@@ -1,7 +1,7 @@
 // Fields of a morph beside the mesh in a CGNS file: what structured and unstructured writers share. Internal to io.
 #pragma once
 
-#include <gridmorph/io/cgns_layout.hpp>
+#include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <array>

@@ -1,12 +1,12 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_boundary.hpp>
-#include <gridmorph/io/cgns_layout.hpp>
+#include <gridmorph/io/cgns/cgns_boundary.hpp>
+#include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/extrude.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/io/plot3d.hpp>
+#include <gridmorph/io/plot3d/plot3d.hpp>
 
 namespace gridmorph {
 

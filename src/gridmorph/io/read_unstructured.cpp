@@ -1,9 +1,9 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_unstructured_boundary.hpp>
+#include <gridmorph/io/cgns/cgns_unstructured_boundary.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/finite_check.hpp>
-#include <gridmorph/io/su2_file.hpp>
+#include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/unstructured_check.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/extent.hpp>

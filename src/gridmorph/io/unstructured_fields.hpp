@@ -1,7 +1,7 @@
 // Fields of a morph beside the mesh in a CGNS file.
 #pragma once
 
-#include <gridmorph/io/cgns_layout.hpp>
+#include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>

@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_families.hpp>
-#include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/cgns/cgns_families.hpp>
+#include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/output_file.hpp>
 

@@ -5,7 +5,7 @@
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
-#include <gridmorph/io/plot3d.hpp>
+#include <gridmorph/io/plot3d/plot3d.hpp>
 
 #include <utility>
 

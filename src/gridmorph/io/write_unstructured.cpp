@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_file.hpp>
+#include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
@@ -147,7 +147,7 @@ class Writer {
       if (types.back() == 0)
         throw IoError(mesh_.source + ": " + describe_element(mesh_, e) + " of " + std::to_string(list.size()) +
                       " nodes cannot be written");
-      for (Number const n : list) nodes.push_back(std::int32_t(n - zone.first_node + 1));
+      for (Index32 const n : list) nodes.push_back(std::int32_t(n - zone.first_node + 1));
       start.push_back(Index(nodes.size()));
     }
     if (!types.empty()) section(zone_id, unique_name(taken, "Elements"), 1, types, start, nodes);
@@ -178,7 +178,7 @@ class Writer {
             throw IoError(mesh_.source + ": patch " + describe_patch(mesh_, patch) + " has faces of " +
                           std::to_string(patch.faces[f].size()) + " corners, which cannot be written");
         }
-        for (Number const n : patch.faces.item) nodes.push_back(std::int32_t(n - zone.first_node + 1));
+        for (Index32 const n : patch.faces.item) nodes.push_back(std::int32_t(n - zone.first_node + 1));
         section(zone_id, unique_name(sections, patch.name), next, types, patch.faces.first, nodes);
         std::array<std::int32_t, 2> const range{std::int32_t(next), std::int32_t(next + patch.faces.size() - 1)};
         next += patch.faces.size();
@@ -195,9 +195,9 @@ class Writer {
     }
   }
 
-  void points(double parent, char const* name, std::vector<Number> const& nodes, UnstructuredZone const& zone) {
+  void points(double parent, char const* name, std::vector<Index32> const& nodes, UnstructuredZone const& zone) {
     std::vector<std::int32_t> list;
-    for (Number const n : nodes) list.push_back(std::int32_t(n - zone.first_node + 1));
+    for (Index32 const n : nodes) list.push_back(std::int32_t(n - zone.first_node + 1));
     file_.create(parent, name, "IndexArray_t", "I4", {1, Index(list.size())}, list.data());
   }
 

@@ -1,10 +1,10 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns_layout.hpp>
+#include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
-#include <gridmorph/io/su2_file.hpp>
+#include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/unstructured_check.hpp>
 #include <gridmorph/io/unstructured_fields.hpp>
 #include <gridmorph/io/unstructured_io.hpp>

@@ -11,10 +11,11 @@ namespace gridmorph {
 namespace {
 
 /// Nodes of a cell in SIDS order, as if the zone were right-handed.
-std::array<Number, 8> cell_nodes(Zone const& zone, Index3 const& c) {
+std::array<Index32, 8> cell_nodes(Zone const& zone, Index3 const& c) {
   auto const strides = zone.strides();
   Index const n = zone.node(c), i = n + strides[0], j = n + strides[1], ij = i + strides[1], up = strides[2];
-  return {Number(n), Number(i), Number(ij), Number(j), Number(n + up), Number(i + up), Number(ij + up), Number(j + up)};
+  return {Index32(n),      Index32(i),      Index32(ij),      Index32(j),
+          Index32(n + up), Index32(i + up), Index32(ij + up), Index32(j + up)};
 }
 
 template <class Function>
@@ -27,7 +28,7 @@ void for_each_cell(Zone const& zone, Function const& f) {
 /// Whether more cells have a negative volume than a positive one.
 bool is_left_handed(Mesh const& mesh, Zone const& zone) {
   Index balance = 0;
-  for_each_cell(zone, [&](std::array<Number, 8> const& nodes) {
+  for_each_cell(zone, [&](std::array<Index32, 8> const& nodes) {
     ElementCorners c;
     for (std::size_t k = 0; k < nodes.size(); ++k) c.at[k] = mesh.coordinates[nodes[k]];
     double const volume = element_volume(ElementType::hexahedron, c, 1, {0, 0, 1});
@@ -37,7 +38,7 @@ bool is_left_handed(Mesh const& mesh, Zone const& zone) {
 }
 
 /// The quadrilaterals of a patch range.
-void add_faces(Zone const& zone, IndexRange const& range, NumberLists& faces) {
+void add_faces(Zone const& zone, IndexRange const& range, CsrGraph& faces) {
   int axis = 0;
   for (int a = 0; a < 3; ++a)
     if (range.extent(a) == 1) axis = a;
@@ -48,9 +49,9 @@ void add_faces(Zone const& zone, IndexRange const& range, NumberLists& faces) {
       auto const node = [&](int du, int dv) {
         at[u] = p + du;
         at[v] = q + dv;
-        return Number(zone.node(at));
+        return Index32(zone.node(at));
       };
-      faces.add(std::array<Number, 4>{node(0, 0), node(1, 0), node(1, 1), node(0, 1)});
+      faces.add(std::array<Index32, 4>{node(0, 0), node(1, 0), node(1, 1), node(0, 1)});
     }
 }
 
@@ -66,8 +67,8 @@ UnstructuredConnection connection_of(Mesh const& mesh, Interface1to1 const& face
   for (int k = face.range.begin[2]; k < face.range.end[2]; ++k)
     for (int j = face.range.begin[1]; j < face.range.end[1]; ++j)
       for (int i = face.range.begin[0]; i < face.range.end[0]; ++i) {
-        c.nodes.push_back(Number(zone.node({i, j, k})));
-        c.donor_nodes.push_back(Number(donor.node(face.to_donor(Index3{i, j, k}))));
+        c.nodes.push_back(Index32(zone.node({i, j, k})));
+        c.donor_nodes.push_back(Index32(donor.node(face.to_donor(Index3{i, j, k}))));
       }
   return c;
 }
@@ -75,10 +76,10 @@ UnstructuredConnection connection_of(Mesh const& mesh, Interface1to1 const& face
 }  // namespace
 
 UnstructuredMesh as_hexahedra(Mesh const& mesh) {
-  if (mesh.n_nodes() > std::numeric_limits<Number>::max())
+  if (mesh.n_nodes() > std::numeric_limits<Index32>::max())
     throw MeshError("'" + mesh.source + "' has " + std::to_string(mesh.n_nodes()) +
                     " nodes; as an unstructured mesh it may have at most " +
-                    std::to_string(std::numeric_limits<Number>::max()));
+                    std::to_string(std::numeric_limits<Index32>::max()));
   UnstructuredMesh out;
   out.source = mesh.source;
   out.families = mesh.families;
@@ -93,7 +94,7 @@ UnstructuredMesh as_hexahedra(Mesh const& mesh) {
     int const added = out.add_zone(zone.name, zone.size());
     out.zones[std::size_t(added)].single_precision = zone.single_precision;
     bool const turn = is_left_handed(mesh, zone);
-    for_each_cell(zone, [&](std::array<Number, 8> nodes) {
+    for_each_cell(zone, [&](std::array<Index32, 8> nodes) {
       if (turn) std::swap_ranges(nodes.begin(), nodes.begin() + 4, nodes.begin() + 4);
       out.add_element(ElementType::hexahedron, nodes);
     });

@@ -1,9 +1,9 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/core/index_buckets.hpp>
+#include <gridmorph/core/sort_keys.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
-#include <gridmorph/mesh/detail/for_all.hpp>
-#include <gridmorph/mesh/detail/number_buckets.hpp>
-#include <gridmorph/mesh/detail/sort_keys.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
@@ -20,31 +20,31 @@ using HostExec = Kokkos::DefaultHostExecutionSpace;
 
 using detail::for_all;
 
-std::vector<Number> inverse_of(std::vector<Number> const& order) {
-  std::vector<Number> inverse(order.size());
+std::vector<Index32> inverse_of(std::vector<Index32> const& order) {
+  std::vector<Index32> inverse(order.size());
   for_all("gridmorph::inverse_of", Index(order.size()),
-          [&](Index n) { inverse[std::size_t(order[std::size_t(n)])] = Number(n); });
+          [&](Index n) { inverse[std::size_t(order[std::size_t(n)])] = Index32(n); });
   return inverse;
 }
 
 /// The values at the places that `order` names, one after another.
 template <class T>
-std::vector<T> gather(std::vector<T> const& values, std::vector<Number> const& order) {
+std::vector<T> gather(std::vector<T> const& values, std::vector<Index32> const& order) {
   std::vector<T> out(values.size());
   for_all("gridmorph::gather", Index(values.size()),
           [&](Index n) { out[std::size_t(n)] = values[std::size_t(order[std::size_t(n)])]; });
   return out;
 }
 
-Coordinates gather(Coordinates const& values, std::vector<Number> const& order) {
+Coordinates gather(Coordinates const& values, std::vector<Index32> const& order) {
   Coordinates out(values.size());
   for_all("gridmorph::gather_coordinates", values.size(), [&](Index n) { out.set(n, values[order[std::size_t(n)]]); });
   return out;
 }
 
 /// The lists that `order` names, one after another, the numbers in them translated.
-NumberLists gather(NumberLists const& lists, std::vector<Number> const& order, std::vector<Number> const& translation) {
-  NumberLists out;
+CsrGraph gather(CsrGraph const& lists, std::vector<Index32> const& order, std::vector<Index32> const& translation) {
+  CsrGraph out;
   out.first.resize(std::size_t(lists.size()) + 1);
   for (std::size_t n = 0; n < order.size(); ++n) {
     auto const from = std::size_t(order[n]);
@@ -54,25 +54,25 @@ NumberLists gather(NumberLists const& lists, std::vector<Number> const& order, s
   for_all("gridmorph::gather_lists", lists.size(), [&](Index n) {
     auto const list = lists[order[std::size_t(n)]];
     std::transform(list.begin(), list.end(), out.item.begin() + out.first[std::size_t(n)],
-                   [&](Number item) { return translation[std::size_t(item)]; });
+                   [&](Index32 item) { return translation[std::size_t(item)]; });
   });
   return out;
 }
 
-void translate(std::vector<Number>& numbers, std::vector<Number> const& translation) {
-  for (Number& n : numbers) n = translation[std::size_t(n)];
+void translate(std::vector<Index32>& numbers, std::vector<Index32> const& translation) {
+  for (Index32& n : numbers) n = translation[std::size_t(n)];
 }
 
 /// Polyhedra in the order of their elements, their nodes translated.
-Polyhedra gather(Polyhedra const& polyhedra, std::vector<Number> const& new_element,
-                 std::vector<Number> const& new_node) {
-  std::vector<std::pair<Number, std::size_t>> moved;  // new number, old place
+Polyhedra gather(Polyhedra const& polyhedra, std::vector<Index32> const& new_element,
+                 std::vector<Index32> const& new_node) {
+  std::vector<std::pair<Index32, std::size_t>> moved;  // new number, old place
   for (std::size_t p = 0; p < polyhedra.element.size(); ++p)
     moved.emplace_back(new_element[std::size_t(polyhedra.element[p])], p);
   std::sort(moved.begin(), moved.end());
   Polyhedra out;
   if (!polyhedra.first_face.empty()) out.first_face.push_back(0);
-  std::vector<Number> nodes;
+  std::vector<Index32> nodes;
   for (auto const& [element, p] : moved) {
     out.element.push_back(element);
     for (Index f = polyhedra.first_face[p]; f < polyhedra.first_face[p + 1]; ++f) {
@@ -114,18 +114,18 @@ UnstructuredMesh permuted(UnstructuredMesh const& mesh, FileOrder const& order) 
   return out;
 }
 
-std::vector<Number> order_nodes(UnstructuredMesh const& mesh) {
+std::vector<Index32> order_nodes(UnstructuredMesh const& mesh) {
   MeshExtent const box = extent_of(mesh.coordinates);
   Vec3 const size = box.high - box.low;
   double const longest = std::max({size.x, size.y, size.z});
   double const steps = longest > 0 ? double(1 << LatticePlace::bits) / longest : 0;
-  std::vector<Number> order(std::size_t(mesh.n_nodes()));
+  std::vector<Index32> order(std::size_t(mesh.n_nodes()));
   HostExec const exec;
   for (auto const& zone : mesh.zones) {
-    detail::KeyedNumbers<Kokkos::HostSpace> const list(std::size_t(zone.n_nodes), "gridmorph::order_by_position");
+    detail::KeyedIndices<Kokkos::HostSpace> const list(std::size_t(zone.n_nodes), "gridmorph::order_by_position");
     for_all("gridmorph::order_by_position::codes", zone.n_nodes, [&](Index n) {
       list.key(n) = hilbert_code({mesh.coordinates[zone.first_node + n], box.low, {steps, steps, steps}});
-      list.number(n) = Number(zone.first_node + n);
+      list.number(n) = Index32(zone.first_node + n);
     });
     auto const sorted = detail::sort_keys(exec, list);
     compat::fence(exec, "gridmorph::order_by_position (read by the host)");
@@ -135,16 +135,16 @@ std::vector<Number> order_nodes(UnstructuredMesh const& mesh) {
 }
 
 /// By the smallest new number among their nodes.
-std::vector<Number> order_elements(UnstructuredMesh const& mesh, std::vector<Number> const& new_node) {
-  detail::NumberBuckets<Number> const buckets("gridmorph::order_elements", mesh.n_elements(), mesh.n_nodes(),
+std::vector<Index32> order_elements(UnstructuredMesh const& mesh, std::vector<Index32> const& new_node) {
+  detail::IndexBuckets<Index32> const buckets("gridmorph::order_elements", mesh.n_elements(), mesh.n_nodes(),
                                               [&](Index e, auto const& put) {
-                                                Number first = new_node[std::size_t(mesh.elements.nodes[e].front())];
-                                                for (Number const n : mesh.elements.corners(e))
+                                                Index32 first = new_node[std::size_t(mesh.elements.nodes[e].front())];
+                                                for (Index32 const n : mesh.elements.corners(e))
                                                   first = std::min(first, new_node[std::size_t(n)]);
-                                                put(first, Number(e));
+                                                put(first, Index32(e));
                                               });
-  std::vector<Number> order(std::size_t(mesh.n_elements()));
-  buckets.for_each_key([&](Number, Index at, std::span<Number const> elements) {
+  std::vector<Index32> order(std::size_t(mesh.n_elements()));
+  buckets.for_each_key([&](Index32, Index at, std::span<Index32 const> elements) {
     std::copy(elements.begin(), elements.end(), order.begin() + at);
   });
   return order;
@@ -207,7 +207,7 @@ Coordinates in_file_order(UnstructuredMesh const& mesh, Coordinates const& coord
   return gather(coordinates, inverse_of(mesh.file_order.node));
 }
 
-std::vector<double> in_file_order(std::span<Number const> place, std::span<double const> values) {
+std::vector<double> in_file_order(std::span<Index32 const> place, std::span<double const> values) {
   std::vector<double> out(values.begin(), values.end());
   for_all("gridmorph::in_file_order", Index(place.size()),
           [&](Index n) { out[std::size_t(place[std::size_t(n)])] = values[std::size_t(n)]; });

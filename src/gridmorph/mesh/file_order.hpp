@@ -30,6 +30,6 @@ UnstructuredMesh in_file_order(UnstructuredMesh const& mesh);
 /// Coordinates as the file of the mesh numbers them.
 Coordinates in_file_order(UnstructuredMesh const& mesh, Coordinates const& coordinates);
 /// A value for each node or each element of the mesh, as its file numbers them. `place` is file_order.node or .element.
-std::vector<double> in_file_order(std::span<Number const> place, std::span<double const> values);
+std::vector<double> in_file_order(std::span<Index32 const> place, std::span<double const> values);
 
 }  // namespace gridmorph

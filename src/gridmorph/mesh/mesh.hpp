@@ -5,7 +5,7 @@
 #pragma once
 
 #include <gridmorph/core/index.hpp>
-#include <gridmorph/core/rigid_transform.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 
 #include <Kokkos_Core.hpp>
 

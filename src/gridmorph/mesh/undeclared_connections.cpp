@@ -9,7 +9,7 @@ namespace gridmorph {
 
 namespace {
 
-bool are_one(std::vector<Number> const& owner, TouchingPatches const& pair) {
+bool are_one(std::vector<Index32> const& owner, TouchingPatches const& pair) {
   for (std::size_t n = 0; n < pair.nodes.size(); ++n)
     if (owner[std::size_t(pair.nodes[n])] != owner[std::size_t(pair.other_nodes[n])]) return false;
   return true;
@@ -21,14 +21,14 @@ std::vector<TouchingPatches> undeclared_connections(UnstructuredMesh const& mesh
   std::vector<TouchingPatches> out;
   if (mesh.zones.size() < 2) return out;
   auto const owner = coincident_nodes(mesh), place = nodes_at_one_place(mesh);
-  std::vector<std::vector<Number>> nodes;
+  std::vector<std::vector<Index32>> nodes;
   for (auto const& patch : mesh.patches) nodes.push_back(patch_nodes(patch));
   for (std::size_t a = 0; a < nodes.size(); ++a)
     for (std::size_t b = a + 1; b < nodes.size(); ++b) {
       if (mesh.patches[a].zone == mesh.patches[b].zone || nodes[a].size() != nodes[b].size() || nodes[a].empty())
         continue;
       // One node that finds no partner is enough to leave most pairs.
-      std::span<Number const> const first(nodes[a].data(), 1);
+      std::span<Index32 const> const first(nodes[a].data(), 1);
       if (match_points(mesh.coordinates, first, nodes[b], tolerance).front() < 0) continue;
       TouchingPatches pair{int(a), int(b), nodes[a], match_points(mesh.coordinates, nodes[a], nodes[b], tolerance)};
       bool const all = std::find(pair.other_nodes.begin(), pair.other_nodes.end(), -1) == pair.other_nodes.end();
@@ -48,7 +48,7 @@ std::vector<Index> open_nodes(UnstructuredMesh const& mesh) {
     for (auto const& patch : mesh.patches)
       if ((patch.kind == PatchKind::connection) == slides)
         for (auto const* list : {&patch.faces.item, &patch.nodes})
-          for (Number const n : *list) open[std::size_t(n)] = slides ? 0 : 1;
+          for (Index32 const n : *list) open[std::size_t(n)] = slides ? 0 : 1;
   std::vector<Index> out;
   for (std::size_t n = 0; n < open.size(); ++n)
     if (open[n] != 0) out.push_back(Index(n));
@@ -57,23 +57,23 @@ std::vector<Index> open_nodes(UnstructuredMesh const& mesh) {
 
 }  // namespace
 
-std::vector<Number> nodes_at_one_place(UnstructuredMesh const& mesh) {
-  std::vector<Number> root = coincident_nodes(mesh);
+std::vector<Index32> nodes_at_one_place(UnstructuredMesh const& mesh) {
+  std::vector<Index32> root = coincident_nodes(mesh);
   if (mesh.zones.size() < 2) return root;
   bool const single =
       std::any_of(mesh.zones.begin(), mesh.zones.end(), [](auto const& zone) { return zone.single_precision; });
   auto const pairs = coincident_pairs(
       mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of_node(n); },
       coincidence_tolerance(mesh.size(), single));
-  auto const find = [&](Number n) {
+  auto const find = [&](Index32 n) {
     while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
     return n;
   };
   for (auto const& [a, b] : pairs) {
-    Number const p = find(Number(a)), q = find(Number(b));
+    Index32 const p = find(Index32(a)), q = find(Index32(b));
     root[std::size_t(std::max(p, q))] = std::min(p, q);
   }
-  for (Number n = 0; n < Number(root.size()); ++n) root[std::size_t(n)] = find(n);
+  for (Index32 n = 0; n < Index32(root.size()); ++n) root[std::size_t(n)] = find(n);
   return root;
 }
 

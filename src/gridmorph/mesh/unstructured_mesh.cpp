@@ -31,7 +31,7 @@ int UnstructuredMesh::add_zone(std::string name, Index n_nodes) {
   return int(zones.size()) - 1;
 }
 
-void UnstructuredMesh::add_element(ElementType type, std::span<Number const> nodes) {
+void UnstructuredMesh::add_element(ElementType type, std::span<Index32 const> nodes) {
   elements.type.push_back(type);
   elements.nodes.add(nodes);
   zones.back().n_elements = n_elements() - zones.back().first_element;
@@ -55,7 +55,7 @@ namespace {
 
 std::size_t place_of_polyhedron(UnstructuredMesh const& mesh, Index element) {
   auto const& list = mesh.polyhedra.element;
-  return std::size_t(std::lower_bound(list.begin(), list.end(), Number(element)) - list.begin());
+  return std::size_t(std::lower_bound(list.begin(), list.end(), Index32(element)) - list.begin());
 }
 
 }  // namespace
@@ -67,23 +67,23 @@ int n_sides(UnstructuredMesh const& mesh, Index element) {
   return int(mesh.polyhedra.first_face[p + 1] - mesh.polyhedra.first_face[p]);
 }
 
-std::span<Number const> side_nodes(UnstructuredMesh const& mesh, Index element, int side,
-                                   std::array<Number, max_face_corners>& room) {
+std::span<Index32 const> side_nodes(UnstructuredMesh const& mesh, Index element, int side,
+                                    std::array<Index32, max_face_corners>& room) {
   ElementType const type = mesh.elements.type[std::size_t(element)];
   if (type == ElementType::polyhedron)
     return mesh.polyhedra.faces[mesh.polyhedra.first_face[place_of_polyhedron(mesh, element)] + side];
-  Number const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(element)];
+  Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(element)];
   int const n = n_face_corners(type, side);
   std::size_t kept = 0;
   for (int c = 0; c < n; ++c) {
-    Number const corner = node[face_corner(type, side, c)];
+    Index32 const corner = node[face_corner(type, side, c)];
     if (std::find(room.begin(), room.begin() + kept, corner) == room.begin() + kept) room[kept++] = corner;
   }
   return {room.data(), kept};
 }
 
-std::vector<Number> patch_nodes(UnstructuredPatch const& patch) {
-  std::vector<Number> nodes = patch.faces.size() > 0 ? patch.faces.item : patch.nodes;
+std::vector<Index32> patch_nodes(UnstructuredPatch const& patch) {
+  std::vector<Index32> nodes = patch.faces.size() > 0 ? patch.faces.item : patch.nodes;
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
@@ -144,7 +144,7 @@ class MeshCheck {
 
  private:
   void sizes() {
-    constexpr Index most = std::numeric_limits<Number>::max();
+    constexpr Index most = std::numeric_limits<Index32>::max();
     auto const& e = mesh_.elements;
     Index nodes = 0, elements = 0;
     for (auto const& zone : mesh_.zones) {
@@ -165,9 +165,9 @@ class MeshCheck {
                     " coordinates for " + std::to_string(nodes) + " nodes");
   }
 
-  [[nodiscard]] bool inside(UnstructuredZone const& zone, std::span<Number const> nodes) const {
+  [[nodiscard]] bool inside(UnstructuredZone const& zone, std::span<Index32 const> nodes) const {
     return std::all_of(nodes.begin(), nodes.end(),
-                       [&](Number n) { return n >= zone.first_node && n < zone.first_node + zone.n_nodes; });
+                       [&](Index32 n) { return n >= zone.first_node && n < zone.first_node + zone.n_nodes; });
   }
 
   void elements() {
@@ -219,5 +219,25 @@ class MeshCheck {
 }  // namespace
 
 void check_mesh(UnstructuredMesh const& mesh) { MeshCheck(mesh).run(); }
+
+Vec3 plane_normal(UnstructuredMesh const& mesh) {
+  Vec3 const up{0, 0, 1};
+  if (mesh.dimension == 3 || mesh.coordinates.size() == 0) return up;
+  MeshExtent const box = extent_of(mesh.coordinates);
+  double const flat = 1e-9 * box.size();
+  Vec3 const size = box.high - box.low;
+  if (size.z <= flat) return up;
+  if (size.y <= flat) return {0, 1, 0};
+  if (size.x <= flat) return {1, 0, 0};
+  Vec3 sum;
+  for (Index e = 0; e < mesh.n_elements(); ++e) {
+    auto const n = mesh.elements.corners(e);
+    Vec3 const origin = mesh.coordinates[n[0]];
+    for (std::size_t k = 2; k < n.size(); ++k)
+      sum += cross(mesh.coordinates[n[k - 1]] - origin, mesh.coordinates[n[k]] - origin);
+  }
+  double const length = norm(sum);
+  return length > 0 ? (1 / length) * sum : up;
+}
 
 }  // namespace gridmorph

@@ -5,6 +5,7 @@
 // of unstructured_topology.hpp. Node numbers are 0-based and run through all zones.
 #pragma once
 
+#include <gridmorph/core/csr_graph.hpp>
 #include <gridmorph/kernels/element_shape.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
@@ -17,24 +18,6 @@
 #include <vector>
 
 namespace gridmorph {
-
-/// Number of a node or an element in compressed lists: half the memory of an Index, enough for 2 thousand million.
-using Number = std::int32_t;
-
-/// Lists of numbers, stored one after another: list n is item[first[n]] ... item[first[n + 1] - 1].
-struct NumberLists {
-  std::vector<Index> first{0};  ///< (n_lists + 1)
-  std::vector<Number> item;
-
-  [[nodiscard]] Index size() const { return Index(first.size()) - 1; }
-  [[nodiscard]] std::span<Number const> operator[](Index n) const {
-    return {item.data() + first[std::size_t(n)], std::size_t(first[std::size_t(n) + 1] - first[std::size_t(n)])};
-  }
-  void add(std::span<Number const> list) {
-    item.insert(item.end(), list.begin(), list.end());
-    first.push_back(Index(item.size()));
-  }
-};
 
 /// "triangle", "tetrahedron", ...
 std::string_view to_string(ElementType type);
@@ -50,13 +33,13 @@ struct UnstructuredZone {
 /// Elements of the mesh's own dimension (volumes in 3-D, surfaces in 2-D), zone after zone in file order.
 struct Elements {
   std::vector<ElementType> type;  ///< (n_elements)
-  NumberLists nodes;              ///< SIDS order: corners first, then the further nodes of second-order elements
-  std::vector<Number>
+  CsrGraph nodes;                 ///< SIDS order: corners first, then the further nodes of second-order elements
+  std::vector<Index32>
       number;  ///< as the file counts them, for messages; empty: first_number + place in the file's zone
 
   [[nodiscard]] Index size() const { return Index(type.size()); }
   /// Corner nodes of element e.
-  [[nodiscard]] std::span<Number const> corners(Index e) const {
+  [[nodiscard]] std::span<Index32 const> corners(Index e) const {
     auto const all = nodes[e];
     ElementType const t = type[std::size_t(e)];
     return t == ElementType::polyhedron ? all : all.first(std::size_t(n_corners(t)));
@@ -70,8 +53,8 @@ struct UnstructuredPatch {
   PatchKind kind = PatchKind::other;
   std::vector<std::string> families;  ///< FamilyName_t first, then AdditionalFamilyName_t; may be empty
   int zone = -1;                      ///< number in UnstructuredMesh::zones
-  NumberLists faces;                  ///< corner nodes of each face (each edge in 2-D), in any order around it
-  std::vector<Number> nodes;          ///< instead of faces, where the file lists nodes; ascending, each once
+  CsrGraph faces;                     ///< corner nodes of each face (each edge in 2-D), in any order around it
+  std::vector<Index32> nodes;         ///< instead of faces, where the file lists nodes; ascending, each once
 };
 
 /// Two lists of nodes that coincide one by one, the donor's after `periodic` where there is one.
@@ -80,23 +63,23 @@ struct UnstructuredConnection {
   std::vector<std::string> families;
   int zone = -1;
   int donor_zone = -1;
-  std::vector<Number> nodes;        ///< of zone
-  std::vector<Number> donor_nodes;  ///< of donor_zone, as many
+  std::vector<Index32> nodes;        ///< of zone
+  std::vector<Index32> donor_nodes;  ///< of donor_zone, as many
   std::optional<Periodic> periodic;
 };
 
 /// Faces of the elements of type polyhedron, in element order.
 struct Polyhedra {
-  std::vector<Number> element;    ///< ascending
+  std::vector<Index32> element;   ///< ascending
   std::vector<Index> first_face;  ///< (element.size() + 1) in `faces`; empty when there are none
-  NumberLists faces;              ///< nodes in order around each face, the normal pointing outwards
+  CsrGraph faces;                 ///< nodes in order around each face, the normal pointing outwards
 };
 
 /// Where in its file each node and element stands, counted from 0 through all zones; empty: where it stands in the mesh. See
 /// file_order.hpp.
 struct FileOrder {
-  std::vector<Number> node;     ///< (n_nodes) or empty
-  std::vector<Number> element;  ///< (n_elements) or empty
+  std::vector<Index32> node;     ///< (n_nodes) or empty
+  std::vector<Index32> element;  ///< (n_elements) or empty
 };
 
 struct UnstructuredMesh {
@@ -119,7 +102,7 @@ struct UnstructuredMesh {
   /// them in n_elements.
   int add_zone(std::string name, Index n_nodes);
   /// Appends an element of the last zone.
-  void add_element(ElementType type, std::span<Number const> nodes);
+  void add_element(ElementType type, std::span<Index32 const> nodes);
   [[nodiscard]] int zone_of_node(Index node) const;
   [[nodiscard]] int zone_of_element(Index element) const;
   /// Diagonal of the bounding box: the size that relative tolerances refer to.
@@ -130,11 +113,15 @@ struct UnstructuredMesh {
 int n_sides(UnstructuredMesh const& mesh, Index element);
 /// Corner nodes of one side, the normal pointing outwards; each once, so that collapsed sides have fewer. `room` holds them
 /// unless the element is a polyhedron.
-std::span<Number const> side_nodes(UnstructuredMesh const& mesh, Index element, int side,
-                                   std::array<Number, max_face_corners>& room);
+std::span<Index32 const> side_nodes(UnstructuredMesh const& mesh, Index element, int side,
+                                    std::array<Index32, max_face_corners>& room);
+
+/// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the mean
+/// normal of its elements. (0, 0, 1) for a 3-D mesh.
+Vec3 plane_normal(UnstructuredMesh const& mesh);
 
 /// All nodes of a patch, ascending, each once.
-std::vector<Number> patch_nodes(UnstructuredPatch const& patch);
+std::vector<Index32> patch_nodes(UnstructuredPatch const& patch);
 
 /// Elements of each type, in all zones or in one.
 std::array<Index, n_element_types> count_types(UnstructuredMesh const& mesh, int zone = -1);
@@ -158,50 +145,12 @@ template <class MemorySpace>
 struct ElementViews {
   Kokkos::View<ElementType const*, MemorySpace> type;  ///< (n_elements)
   Kokkos::View<Index const*, MemorySpace> first;       ///< (n_elements + 1)
-  Kokkos::View<Number const*, MemorySpace> node;
+  Kokkos::View<Index32 const*, MemorySpace> node;
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Index size() const { return Index(type.extent(0)); }
 };
 
-/// Compressed lists in a memory space, for kernels.
-template <class MemorySpace>
-struct ListViews {
-  Kokkos::View<Index const*, MemorySpace> first;
-  Kokkos::View<Number const*, MemorySpace> item;
-
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION Index size() const { return Index(first.extent(0)) - 1; }
-};
-
-/// The lists in a memory space that kernels can read: copied, unless that is the host's, where the Views only look at them
-/// (the lists must then outlive the Views). Fences when it copies.
-template <class MemorySpace>
-ListViews<MemorySpace> views(NumberLists const& lists);
-template <class MemorySpace>
-ElementViews<MemorySpace> views(Elements const& elements);
-
-namespace detail {
-
-template <class MemorySpace, class T>
-Kokkos::View<T const*, MemorySpace> view_of(std::vector<T> const& list, [[maybe_unused]] char const* label) {
-  Kokkos::View<T const*, Kokkos::HostSpace> const host(list.data(), list.size());
-  if constexpr (std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
-    return host;
-  } else {
-    Kokkos::View<T*, MemorySpace> device(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
-                                         list.size());
-    Kokkos::deep_copy(device, host);
-    return device;
-  }
-}
-
-}  // namespace detail
-
-template <class MemorySpace>
-ListViews<MemorySpace> views(NumberLists const& lists) {
-  return {detail::view_of<MemorySpace>(lists.first, "gridmorph::NumberLists::first"),
-          detail::view_of<MemorySpace>(lists.item, "gridmorph::NumberLists::item")};
-}
-
+/// The same for elements.
 template <class MemorySpace>
 ElementViews<MemorySpace> views(Elements const& elements) {
   return {detail::view_of<MemorySpace>(elements.type, "gridmorph::Elements::type"),

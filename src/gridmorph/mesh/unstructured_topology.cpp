@@ -1,5 +1,5 @@
-#include <gridmorph/mesh/detail/for_all.hpp>
-#include <gridmorph/mesh/detail/number_buckets.hpp>
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/core/index_buckets.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
@@ -12,44 +12,44 @@ namespace {
 
 /// Lists of the items that name a key, ascending, from the keys of each item; an item that names a key twice counts once.
 template <class KeysOf>
-NumberLists invert(char const* label, Index n_keys, Index n_items, KeysOf const& keys_of) {
-  detail::NumberBuckets<Number> const buckets(label, n_items, n_keys, [&](Index i, auto const& put) {
+CsrGraph invert(char const* label, Index n_keys, Index n_items, KeysOf const& keys_of) {
+  detail::IndexBuckets<Index32> const buckets(label, n_items, n_keys, [&](Index i, auto const& put) {
     auto const keys = keys_of(i);
     for (auto key = keys.begin(); key != keys.end(); ++key)
-      if (std::find(keys.begin(), key, *key) == key) put(*key, Number(i));
+      if (std::find(keys.begin(), key, *key) == key) put(*key, Index32(i));
   });
-  NumberLists out;
+  CsrGraph out;
   out.first.resize(std::size_t(n_keys) + 1, 0);
   out.item.resize(std::size_t(buckets.size()));
-  buckets.for_each_key([&](Number key, Index at, std::span<Number const> items) {
+  buckets.for_each_key([&](Index32 key, Index at, std::span<Index32 const> items) {
     out.first[std::size_t(key) + 1] = at + Index(items.size());
     std::copy(items.begin(), items.end(), out.item.begin() + at);
   });
   return out;
 }
 
-bool contains(std::span<Number const> list, Number value) {
+bool contains(std::span<Index32 const> list, Index32 value) {
   return std::find(list.begin(), list.end(), value) != list.end();
 }
 
 /// Whether two short lists without repetitions hold the same numbers.
-bool same_set(std::span<Number const> a, std::span<Number const> b) {
-  return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Number n) { return contains(b, n); });
+bool same_set(std::span<Index32 const> a, std::span<Index32 const> b) {
+  return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Index32 n) { return contains(b, n); });
 }
 
 /// The node that fewest elements share: the shortest list to search.
-Number rarest(NumberLists const& lists, std::span<Number const> nodes) {
+Index32 rarest(CsrGraph const& lists, std::span<Index32 const> nodes) {
   return *std::min_element(nodes.begin(), nodes.end(),
-                           [&](Number a, Number b) { return lists[a].size() < lists[b].size(); });
+                           [&](Index32 a, Index32 b) { return lists[a].size() < lists[b].size(); });
 }
 
 /// A side of an element under the smallest of its nodes.
 struct KeyedSide {
   /// The next larger nodes, ascending; -1 where there are fewer. Sides of polyhedra may have more: see `n_nodes`.
-  std::array<Number, max_face_corners - 1> nodes;
-  Number element;
-  Number side;
-  Number n_nodes;
+  std::array<Index32, max_face_corners - 1> nodes;
+  Index32 element;
+  Index32 side;
+  Index32 n_nodes;
 
   [[nodiscard]] bool alike(KeyedSide const& other) const { return nodes == other.nodes && n_nodes == other.n_nodes; }
   [[nodiscard]] bool operator<(KeyedSide const& other) const {
@@ -59,15 +59,15 @@ struct KeyedSide {
 
 bool same_side(UnstructuredMesh const& mesh, KeyedSide const& a, KeyedSide const& b) {
   if (a.n_nodes <= max_face_corners) return true;
-  std::array<Number, max_face_corners> room_a{}, room_b{};
+  std::array<Index32, max_face_corners> room_a{}, room_b{};
   return same_set(side_nodes(mesh, a.element, a.side, room_a), side_nodes(mesh, b.element, b.side, room_b));
 }
 
 /// Corner nodes of a side of an element with tables, ascending, each once. Returns how many there are.
-inline int sort_side(ElementType type, Number const* node, int side, std::array<Number, max_face_corners>& sorted) {
+inline int sort_side(ElementType type, Index32 const* node, int side, std::array<Index32, max_face_corners>& sorted) {
   int n = 0;
   for (int c = 0; c < n_face_corners(type, side); ++c) {
-    Number const corner = node[face_corner(type, side, c)];
+    Index32 const corner = node[face_corner(type, side, c)];
     int at = n;
     while (at > 0 && sorted[std::size_t(at) - 1] > corner) --at;
     if (at > 0 && sorted[std::size_t(at) - 1] == corner) continue;
@@ -80,20 +80,20 @@ inline int sort_side(ElementType type, Number const* node, int side, std::array<
 
 template <class Put>
 void put_polyhedron(UnstructuredMesh const& mesh, Index e, Put const& put) {
-  std::array<Number, max_face_corners> room, smallest;
+  std::array<Index32, max_face_corners> room, smallest;
   for (int s = 0; s < n_sides(mesh, e); ++s) {
     auto const nodes = side_nodes(mesh, e, s, room);
     if (int(nodes.size()) < mesh.dimension) continue;
     smallest.fill(-1);
     std::partial_sort_copy(nodes.begin(), nodes.end(), smallest.begin(),
                            smallest.begin() + std::min<std::ptrdiff_t>(max_face_corners, std::ssize(nodes)));
-    put(smallest[0], KeyedSide{{smallest[1], smallest[2], smallest[3]}, Number(e), Number(s), Number(nodes.size())});
+    put(smallest[0], KeyedSide{{smallest[1], smallest[2], smallest[3]}, Index32(e), Index32(s), Index32(nodes.size())});
   }
 }
 
 /// What is behind one of `alike`, sides that have the same smallest nodes and as many.
-Number behind(UnstructuredMesh const& mesh, KeyedSide const& own, std::span<KeyedSide const> alike) {
-  Number found = ElementSides::boundary;
+Index32 behind(UnstructuredMesh const& mesh, KeyedSide const& own, std::span<KeyedSide const> alike) {
+  Index32 found = ElementSides::boundary;
   for (KeyedSide const& other : alike) {
     if (other.element == own.element || other.element == found || !same_side(mesh, own, other)) continue;
     if (found >= 0) return ElementSides::crowded;
@@ -104,14 +104,14 @@ Number behind(UnstructuredMesh const& mesh, KeyedSide const& own, std::span<Keye
 
 BoundaryFaces boundary_faces(UnstructuredMesh const& mesh, ElementSides const& sides) {
   BoundaryFaces out;
-  std::array<Number, max_face_corners> room{};
+  std::array<Index32, max_face_corners> room{};
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const neighbours = sides.of(e);
     for (std::size_t s = 0; s < neighbours.size(); ++s) {
       if (neighbours[s] != ElementSides::boundary) continue;
       out.nodes.add(side_nodes(mesh, e, int(s), room));
-      out.element.push_back(Number(e));
-      out.side.push_back(Number(s));
+      out.element.push_back(Index32(e));
+      out.side.push_back(Index32(s));
     }
   }
   out.across.assign(out.element.size(), -1);
@@ -120,30 +120,30 @@ BoundaryFaces boundary_faces(UnstructuredMesh const& mesh, ElementSides const& s
 
 /// Finds the elements behind connections: a face whose nodes are all paired, with a face of the donors there.
 void cross_connections(UnstructuredMesh const& mesh, UnstructuredTopology& topology) {
-  std::vector<Number> donor(std::size_t(mesh.n_nodes()), -1);
+  std::vector<Index32> donor(std::size_t(mesh.n_nodes()), -1);
   for (auto const& c : mesh.connections)
     for (int const way : {0, 1}) {
       auto const& own = way == 0 ? c.nodes : c.donor_nodes;
       auto const& other = way == 0 ? c.donor_nodes : c.nodes;
       for (std::size_t n = 0; n < own.size(); ++n) donor[std::size_t(own[n])] = other[n];
-      std::vector<Number> image;
-      for (Number const node : own)
-        for (Number const face : topology.faces_of_nodes[node]) {
+      std::vector<Index32> image;
+      for (Index32 const node : own)
+        for (Index32 const face : topology.faces_of_nodes[node]) {
           auto& across = topology.boundary.across[std::size_t(face)];
           if (across >= 0) continue;
           image.clear();
-          for (Number const n : topology.boundary.nodes[face]) image.push_back(donor[std::size_t(n)]);
+          for (Index32 const n : topology.boundary.nodes[face]) image.push_back(donor[std::size_t(n)]);
           if (contains(image, -1)) continue;
-          Number const there = find_boundary_face(topology, image);
+          Index32 const there = find_boundary_face(topology, image);
           if (there >= 0 && there != face) across = topology.boundary.element[std::size_t(there)];
         }
-      for (Number const node : own) donor[std::size_t(node)] = -1;
+      for (Index32 const node : own) donor[std::size_t(node)] = -1;
     }
 }
 
 }  // namespace
 
-NumberLists elements_of_nodes(UnstructuredMesh const& mesh) {
+CsrGraph elements_of_nodes(UnstructuredMesh const& mesh) {
   return invert("gridmorph::elements_of_nodes", mesh.n_nodes(), mesh.n_elements(),
                 [&](Index e) { return mesh.elements.corners(e); });
 }
@@ -154,19 +154,19 @@ ElementSides element_sides(UnstructuredMesh const& mesh) {
   out.first.resize(std::size_t(n) + 1, 0);
   for (Index e = 0; e < n; ++e) out.first[std::size_t(e) + 1] = out.first[std::size_t(e)] + n_sides(mesh, e);
   out.neighbour.resize(std::size_t(out.first.back()), ElementSides::collapsed);
-  detail::NumberBuckets<KeyedSide> const buckets(
+  detail::IndexBuckets<KeyedSide> const buckets(
       "gridmorph::element_sides", n, mesh.n_nodes(), [&](Index e, auto const& put) {
         ElementType const type = mesh.elements.type[std::size_t(e)];
         if (type == ElementType::polyhedron) return put_polyhedron(mesh, e, put);
-        Number const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(e)];
+        Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(e)];
         for (int s = 0; s < n_faces(type); ++s) {
-          std::array<Number, max_face_corners> sorted{-1, -1, -1, -1};
+          std::array<Index32, max_face_corners> sorted{-1, -1, -1, -1};
           int const corners = sort_side(type, node, s, sorted);
           if (corners >= mesh.dimension)
-            put(sorted[0], KeyedSide{{sorted[1], sorted[2], sorted[3]}, Number(e), Number(s), Number(corners)});
+            put(sorted[0], KeyedSide{{sorted[1], sorted[2], sorted[3]}, Index32(e), Index32(s), Index32(corners)});
         }
       });
-  buckets.for_each_key([&](Number, Index, std::span<KeyedSide> sides) {
+  buckets.for_each_key([&](Index32, Index, std::span<KeyedSide> sides) {
     std::sort(sides.begin(), sides.end());
     for (auto begin = sides.begin(); begin != sides.end();) {
       auto const end = std::find_if_not(begin, sides.end(), [&](KeyedSide const& s) { return s.alike(*begin); });
@@ -190,31 +190,31 @@ UnstructuredTopology make_topology(UnstructuredMesh const& mesh) {
   return out;
 }
 
-Number find_boundary_face(UnstructuredTopology const& topology, std::span<Number const> named) {
+Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index32 const> named) {
   if (named.empty()) return -1;
-  std::vector<Number> nodes;
-  for (Number const n : named)
+  std::vector<Index32> nodes;
+  for (Index32 const n : named)
     if (!contains(nodes, n)) nodes.push_back(n);
-  for (Number const face : topology.faces_of_nodes[rarest(topology.faces_of_nodes, nodes)])
+  for (Index32 const face : topology.faces_of_nodes[rarest(topology.faces_of_nodes, nodes)])
     if (same_set(topology.boundary.nodes[face], nodes)) return face;
   return -1;
 }
 
-std::vector<Number> coincident_nodes(UnstructuredMesh const& mesh) {
-  std::vector<Number> root(std::size_t(mesh.n_nodes()));
+std::vector<Index32> coincident_nodes(UnstructuredMesh const& mesh) {
+  std::vector<Index32> root(std::size_t(mesh.n_nodes()));
   std::iota(root.begin(), root.end(), 0);
-  auto const find = [&](Number n) {
+  auto const find = [&](Index32 n) {
     while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
     return n;
   };
   for (auto const& c : mesh.connections) {
     if (c.periodic) continue;
     for (std::size_t p = 0; p < c.nodes.size(); ++p) {
-      Number const a = find(c.nodes[p]), b = find(c.donor_nodes[p]);
+      Index32 const a = find(c.nodes[p]), b = find(c.donor_nodes[p]);
       root[std::size_t(std::max(a, b))] = std::min(a, b);
     }
   }
-  for (Number n = 0; n < Number(root.size()); ++n) root[std::size_t(n)] = find(n);
+  for (Index32 n = 0; n < Index32(root.size()); ++n) root[std::size_t(n)] = find(n);
   return root;
 }
 
@@ -223,33 +223,33 @@ std::vector<std::uint8_t> periodic_nodes(UnstructuredMesh const& mesh) {
   for (auto const& c : mesh.connections)
     if (c.periodic)
       for (auto const* list : {&c.nodes, &c.donor_nodes})
-        for (Number const n : *list) paired[std::size_t(n)] = 1;
+        for (Index32 const n : *list) paired[std::size_t(n)] = 1;
   return paired;
 }
 
-std::vector<Number> match_points(Coordinates const& coordinates, std::span<Number const> points,
-                                 std::span<Number const> donors, double tolerance,
-                                 std::optional<Periodic> const& periodic) {
+std::vector<Index32> match_points(Coordinates const& coordinates, std::span<Index32 const> points,
+                                  std::span<Index32 const> donors, double tolerance,
+                                  std::optional<Periodic> const& periodic) {
   // Along an oblique line few points of a mesh lie side by side, even where it is a lattice.
   constexpr Vec3 line{0.5318, 0.6173, 0.5797};
   struct Placed {
     double along;
-    Number node;
+    Index32 node;
   };
   std::vector<Placed> sorted;
   sorted.reserve(donors.size());
-  for (Number const d : donors) sorted.push_back({dot(line, coordinates[d]), d});
+  for (Index32 const d : donors) sorted.push_back({dot(line, coordinates[d]), d});
   auto const before = [](Placed const& a, Placed const& b) {
     return a.along < b.along || (a.along == b.along && a.node < b.node);
   };
   std::sort(sorted.begin(), sorted.end(), before);
-  std::vector<Number> out(points.size(), -1);
+  std::vector<Index32> out(points.size(), -1);
   detail::for_all("gridmorph::match_points", Index(points.size()), [&](Index p) {
     Vec3 x = coordinates[points[std::size_t(p)]];
     if (periodic) x = periodic->declared(x);
     double const along = dot(line, x);
     double nearest = tolerance;
-    Number& best = out[std::size_t(p)];
+    Index32& best = out[std::size_t(p)];
     for (auto at = std::lower_bound(sorted.begin(), sorted.end(), Placed{along - 1.01 * tolerance, -1}, before);
          at != sorted.end() && at->along <= along + 1.01 * tolerance; ++at) {
       double const d = distance(x, coordinates[at->node]);

@@ -11,18 +11,18 @@
 namespace gridmorph {
 
 /// Elements that have a node among their corners, ascending: list n belongs to node n.
-NumberLists elements_of_nodes(UnstructuredMesh const& mesh);
+CsrGraph elements_of_nodes(UnstructuredMesh const& mesh);
 
 /// The other side of every side of every element.
 struct ElementSides {
-  static constexpr Number boundary = -1;   ///< nothing on the other side
-  static constexpr Number crowded = -2;    ///< more than two elements have this side: overlapping elements
-  static constexpr Number collapsed = -3;  ///< the side is a line or a point: the element names a node more than once
+  static constexpr Index32 boundary = -1;   ///< nothing on the other side
+  static constexpr Index32 crowded = -2;    ///< more than two elements have this side: overlapping elements
+  static constexpr Index32 collapsed = -3;  ///< the side is a line or a point: the element names a node more than once
 
-  std::vector<Index> first;       ///< (n_elements + 1): sides of element e are first[e] ... first[e + 1] - 1
-  std::vector<Number> neighbour;  ///< element of the same zone, or one of the constants above
+  std::vector<Index> first;        ///< (n_elements + 1): sides of element e are first[e] ... first[e + 1] - 1
+  std::vector<Index32> neighbour;  ///< element of the same zone, or one of the constants above
 
-  [[nodiscard]] std::span<Number const> of(Index e) const {
+  [[nodiscard]] std::span<Index32 const> of(Index e) const {
     return {neighbour.data() + first[std::size_t(e)], std::size_t(first[std::size_t(e) + 1] - first[std::size_t(e)])};
   }
 };
@@ -32,54 +32,54 @@ ElementSides element_sides(UnstructuredMesh const& mesh);
 
 /// Sides with nothing behind them, in element order; normals point out of the mesh.
 struct BoundaryFaces {
-  NumberLists nodes;            ///< corner nodes
-  std::vector<Number> element;  ///< the one they belong to
-  std::vector<Number> side;     ///< which of its sides
-  std::vector<Number> across;   ///< the element behind a connection, periodic ones too; -1: none
+  CsrGraph nodes;                ///< corner nodes
+  std::vector<Index32> element;  ///< the one they belong to
+  std::vector<Index32> side;     ///< which of its sides
+  std::vector<Index32> across;   ///< the element behind a connection, periodic ones too; -1: none
   [[nodiscard]] Index size() const { return nodes.size(); }
 };
 
 /// All of it. The mesh must have passed check_mesh().
 struct UnstructuredTopology {
-  NumberLists elements_of_nodes;
+  CsrGraph elements_of_nodes;
   ElementSides sides;
   BoundaryFaces boundary;
-  NumberLists faces_of_nodes;  ///< boundary faces that have a node, ascending
+  CsrGraph faces_of_nodes;  ///< boundary faces that have a node, ascending
   Index crowded_sides = 0;
 };
 
 UnstructuredTopology make_topology(UnstructuredMesh const& mesh);
 
 /// The boundary face with exactly these corner nodes, in any order (a node may be named twice); -1 where there is none.
-Number find_boundary_face(UnstructuredTopology const& topology, std::span<Number const> nodes);
+Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index32 const> nodes);
 
 /// Which patch each boundary face belongs to.
-struct BoundaryClaims {
+struct BoundaryFacePatches {
   static constexpr int connection = -1;  ///< no patch, but all of its nodes are paired by one connection
   static constexpr int open = -2;        ///< neither
 
   std::vector<int> patch;             ///< (boundary faces) number in UnstructuredMesh::patches, or one of the constants
   std::vector<Index> faces_of_patch;  ///< (patches) boundary faces each of them got
-  std::vector<std::string> problems;  ///< what a morph would refuse: faces that nothing claims, claimed twice
+  std::vector<std::string> problems;  ///< what a morph would refuse: faces that nothing face_patches, claimed twice
   std::vector<std::string> notes;     ///< faces of patches inside the mesh, ...
 };
 
 /// A face belongs to the patch that lists it. Patches given as nodes get the faces all of whose corners they list and that
 /// no patch of faces has; where several do, the one with fewest nodes, then the first in the file.
-BoundaryClaims claim_boundary(UnstructuredMesh const& mesh, UnstructuredTopology const& topology);
+BoundaryFacePatches find_face_patches(UnstructuredMesh const& mesh, UnstructuredTopology const& topology);
 
 /// For each node the smallest number among the nodes that connections (periodic ones left out) declare to be the same point;
 /// its own number where there is none.
-std::vector<Number> coincident_nodes(UnstructuredMesh const& mesh);
+std::vector<Index32> coincident_nodes(UnstructuredMesh const& mesh);
 
 /// (n_nodes) 1 for nodes that a periodic connection pairs.
 std::vector<std::uint8_t> periodic_nodes(UnstructuredMesh const& mesh);
 
 /// For each of `points` the nearest of `donors` within `tolerance` (the first of equals), or -1. Both are node numbers;
 /// `periodic`: moves the points onto the donors first. n log n.
-std::vector<Number> match_points(Coordinates const& coordinates, std::span<Number const> points,
-                                 std::span<Number const> donors, double tolerance,
-                                 std::optional<Periodic> const& periodic = {});
+std::vector<Index32> match_points(Coordinates const& coordinates, std::span<Index32 const> points,
+                                  std::span<Index32 const> donors, double tolerance,
+                                  std::optional<Periodic> const& periodic = {});
 
 /// Largest distance between nodes that a connection pairs.
 double largest_mismatch(UnstructuredMesh const& mesh, UnstructuredConnection const& connection);

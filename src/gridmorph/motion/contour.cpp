@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/motion/contour.hpp>
-#include <gridmorph/motion/detail/cylindrical.hpp>
-#include <gridmorph/motion/slip_surface.hpp>
 
 #include <algorithm>
 #include <array>

@@ -6,6 +6,7 @@
 // carries the nodes and the finalize step puts them back on their surface).
 #pragma once
 
+#include <gridmorph/geometry/axis.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/target_rule.hpp>
 
@@ -18,12 +19,6 @@
 #include <vector>
 
 namespace gridmorph {
-
-/// Axis of the machine (or any axis of rotation); direction need not be normalised.
-struct Axis {
-  Vec3 origin{0, 0, 0};
-  Vec3 direction{1, 0, 0};
-};
 
 /// Displacement zero.
 struct FixedRule {};
@@ -155,11 +150,6 @@ struct ResolvedMotion {
 
   [[nodiscard]] Rule const& patch_rule(int p) const { return rules[patch[p].rule].rule; }
 };
-
-/// Numbers of the patches a list of selectors names, ascending. Case-sensitive; family first, then BC name, then
-/// connection name: a selector that matches a family takes that family's patches only. "zone/name" addresses a BC or
-/// connection of one zone. Throws one MotionError for all selectors that name no patch; it lists what there is.
-std::vector<int> select_patches(Mesh const& mesh, std::vector<std::string> const& selectors);
 
 /// Gives each patch and periodic interface its rule. A later rule does not override an earlier one: two rules that name
 /// the same patch are an error, and so is a selector that matches nothing (the message lists what there is). A rule on

@@ -1,6 +1,6 @@
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/motion.hpp>
-#include <gridmorph/motion/selectors.hpp>
 
 #include <algorithm>
 #include <array>

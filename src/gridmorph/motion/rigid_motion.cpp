@@ -1,7 +1,7 @@
 #include <gridmorph/motion/rigid_motion.hpp>
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/rigid_transform.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 
 #include <cmath>
 

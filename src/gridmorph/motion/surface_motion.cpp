@@ -1,12 +1,12 @@
 #include <gridmorph/motion/surface_motion.hpp>
 
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/motion/detail/row_motion.hpp>
-#include <gridmorph/motion/detail/section_motion.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
-#include <gridmorph/motion/detail/target_motion.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
-#include <gridmorph/motion/selectors.hpp>
+#include <gridmorph/motion/target/target_motion.hpp>
+#include <gridmorph/motion/turbomachinery/row_motion.hpp>
+#include <gridmorph/motion/turbomachinery/section_motion.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Evaluates motion rules on the surface: the displacement of boundary nodes from rules, before the volume stage.
 #pragma once
 
+#include <gridmorph/boundary/patch_faces.hpp>
+#include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/motion/motion.hpp>
-#include <gridmorph/motion/patch_faces.hpp>
-#include <gridmorph/motion/slip_surface.hpp>
 #include <gridmorph/motion/target_reach.hpp>
 
 #include <memory>

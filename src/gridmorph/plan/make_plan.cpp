@@ -1,13 +1,13 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/plan/conflict.hpp>
-#include <gridmorph/plan/loose_nodes.hpp>
+#include <gridmorph/plan/blocks/conflict.hpp>
+#include <gridmorph/plan/blocks/loose_nodes.hpp>
+#include <gridmorph/plan/blocks/near_field.hpp>
+#include <gridmorph/plan/blocks/poles.hpp>
+#include <gridmorph/plan/blocks/priority.hpp>
+#include <gridmorph/plan/blocks/ranked_kinds.hpp>
+#include <gridmorph/plan/blocks/spread_plan.hpp>
+#include <gridmorph/plan/blocks/stage_builder.hpp>
 #include <gridmorph/plan/make_plan.hpp>
-#include <gridmorph/plan/near_field.hpp>
-#include <gridmorph/plan/poles.hpp>
-#include <gridmorph/plan/priority.hpp>
-#include <gridmorph/plan/ranked_kinds.hpp>
-#include <gridmorph/plan/spread_plan.hpp>
-#include <gridmorph/plan/stage_builder.hpp>
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 // From topology and motion to a plan.
 #pragma once
 
-#include <gridmorph/plan/boundary.hpp>
+#include <gridmorph/plan/boundary_requests.hpp>
 #include <gridmorph/plan/plan.hpp>
 
 namespace gridmorph {

@@ -1,18 +1,12 @@
 // What a user can choose about topology, plan and volume morph. Plain values with their defaults.
 #pragma once
 
+#include <gridmorph/boundary/topology_options.hpp>
+
 #include <string>
 #include <vector>
 
 namespace gridmorph {
-
-struct TopologyOptions {
-  /// Largest distance, in length units of the mesh, between nodes that a 1-to-1 interface declares coincident.
-  /// 0: the default, 1e-8 of the mesh size (1e-6 where a zone's coordinates are single precision).
-  double matching_tolerance = 0;
-  /// Name of the patch that faces claimed by nothing are given (kind `other`); empty: they are an error.
-  std::string open_faces;
-};
 
 /// Near field of moving walls (design: stage 0). Several may be given, for different walls.
 struct BoundaryLayer {

@@ -8,7 +8,7 @@
 #include <gridmorph/kernels/slip_end.hpp>
 #include <gridmorph/kernels/volume_pass.hpp>
 #include <gridmorph/motion/surface_motion.hpp>
-#include <gridmorph/plan/chain.hpp>
+#include <gridmorph/plan/blocks/chain.hpp>
 #include <gridmorph/plan/options.hpp>
 
 #include <string>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/plan/make_plan.hpp>
-#include <gridmorph/topology/topology.hpp>
+#include <gridmorph/plan/topology.hpp>
 
 namespace gridmorph {
 

@@ -1,11 +1,11 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/core/instantiate.hpp>
-#include <gridmorph/mesh/detail/for_all.hpp>
 #include <gridmorph/mesh/extent.hpp>
-#include <gridmorph/quality/detail/element_tables.hpp>
 #include <gridmorph/quality/detail/fast_quality.hpp>
 #include <gridmorph/quality/detail/judge_cells.hpp>
 #include <gridmorph/quality/detail/wall_columns.hpp>
+#include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -27,26 +27,6 @@ std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
     sign[std::size_t(e)] = v > 0 ? 1 : v < 0 ? -1 : 0;
   });
   return sign;
-}
-
-Vec3 plane_normal(UnstructuredMesh const& mesh) {
-  Vec3 const up{0, 0, 1};
-  if (mesh.dimension == 3 || mesh.coordinates.size() == 0) return up;
-  MeshExtent const box = extent_of(mesh.coordinates);
-  double const flat = 1e-9 * box.size();
-  Vec3 const size = box.high - box.low;
-  if (size.z <= flat) return up;
-  if (size.y <= flat) return {0, 1, 0};
-  if (size.x <= flat) return {1, 0, 0};
-  Vec3 sum;
-  for (Index e = 0; e < mesh.n_elements(); ++e) {
-    auto const n = mesh.elements.corners(e);
-    Vec3 const origin = mesh.coordinates[n[0]];
-    for (std::size_t k = 2; k < n.size(); ++k)
-      sum += cross(mesh.coordinates[n[k - 1]] - origin, mesh.coordinates[n[k]] - origin);
-  }
-  double const length = norm(sum);
-  return length > 0 ? (1 / length) * sum : up;
 }
 
 std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh) {
@@ -174,7 +154,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Unstructured
   };
   if (fast) return sums_on_host();
 
-  NumberLists const neighbours_h = detail::neighbour_lists(mesh, topology);
+  CsrGraph const neighbours_h = detail::neighbour_lists(mesh, topology);
   auto const neighbours = views<MemorySpace>(neighbours_h);
   Kokkos::View<double const*, MemorySpace> const all_volumes = volumes;
   Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
@@ -203,7 +183,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Unstructured
 
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                              BoundaryClaims const& claims,
+                              BoundaryFacePatches const& face_patches,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input) {
   check_sizes(mesh, input);
   auto const signs = detail::signs_of(mesh, topology.sides, input.signs);
@@ -216,7 +196,7 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
   if (input.fast) {
     detail::keep_verdict(report);
   } else {
-    detail::WallQualities walls = detail::wall_quality(exec, mesh, topology, claims, input);
+    detail::WallQualities walls = detail::wall_quality(exec, mesh, topology, face_patches, input);
     report.wall = walls.all;
     report.wall_groups = std::move(walls.groups);
   }
@@ -249,11 +229,12 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
   return result;
 }
 
-#define GRIDMORPH_INSTANTIATE(Exec)                                                                                   \
-  template QualityReport measure_quality(Exec const&, UnstructuredMesh const&, UnstructuredTopology const&,           \
-                                         BoundaryClaims const&, UnstructuredQualityInput<Exec::memory_space> const&); \
-  template std::vector<Kokkos::View<double*, Exec::memory_space>> cell_fields(                                        \
-      Exec const&, UnstructuredMesh const&, UnstructuredTopology const&,                                              \
+#define GRIDMORPH_INSTANTIATE(Exec)                                                                         \
+  template QualityReport measure_quality(Exec const&, UnstructuredMesh const&, UnstructuredTopology const&, \
+                                         BoundaryFacePatches const&,                                        \
+                                         UnstructuredQualityInput<Exec::memory_space> const&);              \
+  template std::vector<Kokkos::View<double*, Exec::memory_space>> cell_fields(                              \
+      Exec const&, UnstructuredMesh const&, UnstructuredTopology const&,                                    \
       UnstructuredQualityInput<Exec::memory_space> const&, std::span<Measure const>);
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE

@@ -36,10 +36,6 @@ struct UnstructuredQualityInput {
   bool fast = false;       ///< only a verdict: half the time and no memory per element; no fields
 };
 
-/// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the mean
-/// normal of its elements. (0, 0, 1) for a 3-D mesh.
-Vec3 plane_normal(UnstructuredMesh const& mesh);
-
 /// (n_elements) Signs of the elements' volumes in SIDS order, 0 for polyhedra: all that their numbering decides. Host, parallel.
 std::vector<signed char> volume_signs(UnstructuredMesh const& mesh);
 
@@ -72,7 +68,7 @@ std::string describe(UnstructuredMesh const& mesh, NegativeElements const& negat
 /// Memory: 8 bytes per element for volumes and, on devices, the element lists and neighbours.
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                              BoundaryClaims const& claims,
+                              BoundaryFacePatches const& face_patches,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input);
 
 /// Values of the given measures in every element, (n_elements) each, in the order asked for; zero for polyhedra.

@@ -1,8 +1,9 @@
 #include <gridmorph/wheel/blade_share.hpp>
 
+#include <gridmorph/boundary/link_nodes.hpp>
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/motion/detail/cylindrical.hpp>
-#include <gridmorph/wheel/detail/link_nodes.hpp>
+#include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/wheel/detail/pitch_fraction.hpp>
 #include <gridmorph/wheel/shared_nodes.hpp>
 

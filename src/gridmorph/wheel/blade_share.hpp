@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/motion/motion.hpp>
-#include <gridmorph/plan/boundary.hpp>
+#include <gridmorph/plan/boundary_requests.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // A passage whose periodic sides move independently of each other.
 #pragma once
 
+#include <gridmorph/boundary/links.hpp>
 #include <gridmorph/motion/motion.hpp>
-#include <gridmorph/topology/links.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
 #include <vector>

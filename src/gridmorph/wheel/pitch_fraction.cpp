@@ -1,4 +1,4 @@
-#include <gridmorph/wheel/detail/link_nodes.hpp>
+#include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/wheel/detail/pitch_fraction.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include <gridmorph/wheel/rows.hpp>
 
+#include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/wheel/detail/link_nodes.hpp>
 #include <gridmorph/wheel/turn.hpp>
 
 #include <cmath>

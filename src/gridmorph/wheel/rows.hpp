@@ -1,9 +1,9 @@
 // Blade rows of a sector mesh: which zones belong together, and how many of their passages make a wheel.
 #pragma once
 
+#include <gridmorph/boundary/links.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
-#include <gridmorph/topology/links.hpp>
 
 #include <vector>
 

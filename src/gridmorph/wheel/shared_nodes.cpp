@@ -1,6 +1,6 @@
 #include <gridmorph/wheel/shared_nodes.hpp>
 
-#include <gridmorph/wheel/detail/link_nodes.hpp>
+#include <gridmorph/boundary/link_nodes.hpp>
 
 #include <algorithm>
 #include <numeric>

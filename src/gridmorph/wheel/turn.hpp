@@ -1,7 +1,7 @@
 // Turns about the machine axis by equal parts of a full turn, as a wheel of passages needs them.
 #pragma once
 
-#include <gridmorph/core/rigid_transform.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/motion/motion.hpp>
 
 #include <cmath>

@@ -1,7 +1,8 @@
 #include <gridmorph/motion/detail/baseline_facets.hpp>
 
-#include <gridmorph/motion/detail/facet_topology.hpp>
-#include <gridmorph/motion/detail/joined_sides.hpp>
+#include <gridmorph/boundary/joined_sides.hpp>
+#include <gridmorph/boundary/patch_facets.hpp>
+#include <gridmorph/geometry/facet_topology.hpp>
 
 #include <algorithm>
 #include <map>

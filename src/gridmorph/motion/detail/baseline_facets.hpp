@@ -1,7 +1,8 @@
 // The baseline mesh's own surface as facets: which patches make up one surface, and what lies beyond periodic interfaces.
 #pragma once
 
-#include <gridmorph/motion/facet_surface.hpp>
+#include <gridmorph/geometry/facet_surface.hpp>
+#include <gridmorph/mesh/mesh.hpp>
 
 #include <vector>
 

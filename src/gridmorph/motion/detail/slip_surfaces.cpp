@@ -1,11 +1,12 @@
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 
+#include <gridmorph/boundary/patch_facets.hpp>
+#include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/geometry/plane_fit.hpp>
 #include <gridmorph/motion/detail/baseline_facets.hpp>
-#include <gridmorph/motion/detail/cylindrical.hpp>
-#include <gridmorph/motion/detail/patch_points.hpp>
-#include <gridmorph/motion/detail/plane_fit.hpp>
-#include <gridmorph/motion/selectors.hpp>
 
 #include <algorithm>
 #include <cmath>

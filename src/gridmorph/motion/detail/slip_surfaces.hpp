@@ -1,8 +1,8 @@
 // Finds the surface of every patch that slips.
 #pragma once
 
+#include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/motion/motion.hpp>
-#include <gridmorph/motion/slip_surface.hpp>
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include <gridmorph/quality/detail/element_tables.hpp>
+#include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@ namespace {
 
 /// +1 where two elements name the side between them in opposite ways, as neighbours numbered alike do, -1 where in the same way,
 /// 0 where it cannot be told.
-int alike(std::span<Number const> own, std::span<Number const> other) {
+int alike(std::span<Index32 const> own, std::span<Index32 const> other) {
   std::size_t const n = own.size();
   if (n != other.size() || n < 2) return 0;
   auto const at = std::find(other.begin(), other.end(), own[0]);
@@ -49,8 +49,8 @@ class Numbering {
   }
 
   /// How element e names its side s against how its neighbour does.
-  [[nodiscard]] int across(Number e, int s, Number neighbour) const {
-    std::array<Number, max_face_corners> room, other_room;
+  [[nodiscard]] int across(Index32 e, int s, Index32 neighbour) const {
+    std::array<Index32, max_face_corners> room, other_room;
     auto const own = side_nodes(mesh_, e, s, room);
     auto const back = sides_.of(neighbour);
     for (int t = 0; t < int(back.size()); ++t)
@@ -61,14 +61,14 @@ class Numbering {
 
   /// Signs of all elements that hang together with e.
   void follow(Index first) {
-    members_.assign(1, Number(first));
+    members_.assign(1, Index32(first));
     sign_[std::size_t(first)] = 1;
     Index balance = volume_[std::size_t(first)];
     for (std::size_t m = 0; m < members_.size(); ++m) {
-      Number const e = members_[m];
+      Index32 const e = members_[m];
       auto const neighbours = sides_.of(e);
       for (int s = 0; s < int(neighbours.size()); ++s) {
-        Number const n = neighbours[std::size_t(s)];
+        Index32 const n = neighbours[std::size_t(s)];
         if (n < 0 || sign_[std::size_t(n)] != 0 || is_polyhedron(n)) continue;
         int const same = across(e, s, n);
         if (same == 0) continue;
@@ -78,14 +78,14 @@ class Numbering {
       }
     }
     if (balance < 0)
-      for (Number const e : members_) sign_[std::size_t(e)] = static_cast<signed char>(-sign_[std::size_t(e)]);
+      for (Index32 const e : members_) sign_[std::size_t(e)] = static_cast<signed char>(-sign_[std::size_t(e)]);
   }
 
   UnstructuredMesh const& mesh_;
   ElementSides const& sides_;
   std::vector<signed char> const& volume_;
   std::vector<signed char> sign_;
-  std::vector<Number> members_;
+  std::vector<Index32> members_;
 };
 
 }  // namespace

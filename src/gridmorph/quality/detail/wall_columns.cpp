@@ -1,7 +1,7 @@
 #include <gridmorph/core/instantiate.hpp>
-#include <gridmorph/quality/detail/element_tables.hpp>
 #include <gridmorph/quality/detail/wall_columns.hpp>
 #include <gridmorph/quality/detail/wall_sums.hpp>
+#include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>
 #include <string>
@@ -13,14 +13,14 @@ namespace {
 
 /// The nodes of one group of walls: wall node, next node on its column, faces of the group around it.
 struct WallTable {
-  std::vector<Number> node, next;
-  NumberLists faces_of_node;  ///< numbers in face_nodes
-  NumberLists face_nodes;
+  std::vector<Index32> node, next;
+  CsrGraph faces_of_node;  ///< numbers in face_nodes
+  CsrGraph face_nodes;
 };
 
 /// The next node of a column over corner `node` of boundary face f, or -1.
-Number next_on_column(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, Number f, Number node) {
-  Number const element = topology.boundary.element[std::size_t(f)];
+Index32 next_on_column(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, Index32 f, Index32 node) {
+  Index32 const element = topology.boundary.element[std::size_t(f)];
   auto const type = mesh.elements.type[std::size_t(element)];
   if (type == ElementType::polyhedron) return -1;
   auto const corners = mesh.elements.corners(element);
@@ -33,19 +33,19 @@ Number next_on_column(UnstructuredMesh const& mesh, UnstructuredTopology const& 
 }
 
 WallTable wall_table(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                     std::vector<Number> const& faces) {
+                     std::vector<Index32> const& faces) {
   WallTable out;
-  std::vector<std::pair<Number, Number>> pairs;  // node, face of the table
+  std::vector<std::pair<Index32, Index32>> pairs;  // node, face of the table
   for (std::size_t f = 0; f < faces.size(); ++f) {
     auto const nodes = topology.boundary.nodes[faces[f]];
     out.face_nodes.add(nodes);
-    for (Number const n : nodes) pairs.emplace_back(n, Number(f));
+    for (Index32 const n : nodes) pairs.emplace_back(n, Index32(f));
   }
   std::sort(pairs.begin(), pairs.end());
-  std::vector<Number> around;
+  std::vector<Index32> around;
   for (std::size_t p = 0; p < pairs.size();) {
-    Number const node = pairs[p].first;
-    Number next = -1;
+    Index32 const node = pairs[p].first;
+    Index32 next = -1;
     around.clear();
     for (; p < pairs.size() && pairs[p].first == node; ++p) {
       around.push_back(pairs[p].second);
@@ -62,15 +62,15 @@ WallTable wall_table(UnstructuredMesh const& mesh, UnstructuredTopology const& t
 /// The table in a memory space.
 template <class MemorySpace>
 struct WallViews {
-  Kokkos::View<Number const*, MemorySpace> node, next;
-  ListViews<MemorySpace> faces_of_node, face_nodes;
+  Kokkos::View<Index32 const*, MemorySpace> node, next;
+  CsrViews<MemorySpace> faces_of_node, face_nodes;
   Vec3 plane_normal;  ///< of a 2-D mesh, whose faces are edges
 
   KOKKOS_INLINE_FUNCTION WallNode at(CoordinateViews<MemorySpace> const& c, Index m) const {
-    auto const x = [&](Number n) { return Vec3{c.x(n), c.y(n), c.z(n)}; };
+    auto const x = [&](Index32 n) { return Vec3{c.x(n), c.y(n), c.z(n)}; };
     Vec3 normal;
     for (Index k = faces_of_node.first(m); k < faces_of_node.first(m + 1); ++k) {
-      Number const f = faces_of_node.item(k);
+      Index32 const f = faces_of_node.item(k);
       Index const begin = face_nodes.first(f), end = face_nodes.first(f + 1);
       Vec3 const origin = x(face_nodes.item(begin));
       if (end - begin == 2) normal += cross(x(face_nodes.item(begin + 1)) - origin, plane_normal);
@@ -85,7 +85,7 @@ struct WallViews {
 
 template <class Exec>
 WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                           BoundaryClaims const& claims,
+                           BoundaryFacePatches const& face_patches,
                            UnstructuredQualityInput<typename Exec::memory_space> const& input) {
   using MemorySpace = typename Exec::memory_space;
   bool const against_baseline = input.baseline.x.extent(0) > 0;
@@ -98,10 +98,10 @@ WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, Unstr
     group_of_patch[std::size_t(p)] = int(at - names.begin());
     if (at == names.end()) names.push_back(name);
   }
-  std::vector<std::vector<Number>> faces(names.size());
-  for (std::size_t f = 0; f < claims.patch.size(); ++f)
-    if (claims.patch[f] >= 0 && group_of_patch[std::size_t(claims.patch[f])] >= 0)
-      faces[std::size_t(group_of_patch[std::size_t(claims.patch[f])])].push_back(Number(f));
+  std::vector<std::vector<Index32>> faces(names.size());
+  for (std::size_t f = 0; f < face_patches.patch.size(); ++f)
+    if (face_patches.patch[f] >= 0 && group_of_patch[std::size_t(face_patches.patch[f])] >= 0)
+      faces[std::size_t(group_of_patch[std::size_t(face_patches.patch[f])])].push_back(Index32(f));
 
   WallSums all;
   WallQualities out;
@@ -140,7 +140,8 @@ WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, Unstr
 
 #define GRIDMORPH_INSTANTIATE(Exec)                                                                      \
   template WallQualities wall_quality(Exec const&, UnstructuredMesh const&, UnstructuredTopology const&, \
-                                      BoundaryClaims const&, UnstructuredQualityInput<Exec::memory_space> const&);
+                                      BoundaryFacePatches const&,                                        \
+                                      UnstructuredQualityInput<Exec::memory_space> const&);
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE
 

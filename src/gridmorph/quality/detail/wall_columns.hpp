@@ -10,7 +10,7 @@ namespace gridmorph::detail {
 /// or its BC name). The normal at a node is the sum of the area vectors of its faces in the group.
 template <class Exec>
 WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                           BoundaryClaims const& claims,
+                           BoundaryFacePatches const& face_patches,
                            UnstructuredQualityInput<typename Exec::memory_space> const& input);
 
 }  // namespace gridmorph::detail

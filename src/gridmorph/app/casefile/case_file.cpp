@@ -1,0 +1,366 @@
+#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/casefile/detail/near_field_reader.hpp>
+#include <gridmorph/app/casefile/detail/rule_reader.hpp>
+#include <gridmorph/app/casefile/detail/table_reader.hpp>
+#include <gridmorph/app/casefile/detail/wheel_reader.hpp>
+#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/text_table.hpp>
+
+#include <fmt/format.h>
+#include <toml.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+using casefile::Context;
+using casefile::TableReader;
+
+/// A case file is written by hand; anything larger is some other file.
+constexpr std::uintmax_t largest_case_file = 4u << 20;
+/// The parser recurses into brackets; nobody nests them this deep.
+constexpr int deepest_nesting = 64;
+/// Steps are numbered with up to five digits.
+constexpr int largest_sequence = 99999;
+
+/// Refuses what is no text at all, and brackets nested so deep that a recursive parser would run out of stack.
+void check_text(std::string const& text, std::string const& file) {
+  if (text.find('\0') != std::string::npos)
+    throw ConfigError(fmt::format("{}: not a text file; a case file (TOML) is wanted, not a mesh", file));
+  int line = 1, depth = 0;
+  char quote = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char const c = text[i];
+    if (c == '\n') {
+      ++line;
+      quote = 0;  // one-line strings end here at the latest; longer ones only make the count of brackets less strict
+    } else if (quote != 0) {
+      if (c == '\\' && quote == '"')
+        ++i;
+      else if (c == quote)
+        quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
+    } else if (c == '[' || c == '{') {
+      if (++depth > deepest_nesting)
+        throw ConfigError(
+            fmt::format("{}:{}: not valid TOML: brackets nested more than {} deep", file, line, deepest_nesting));
+    } else if ((c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+}
+
+/// toml11 draws its messages over several lines; one line says the same.
+std::string one_line(std::string_view drawn) {
+  auto const first_line = [](std::string_view text) { return text.substr(0, text.find('\n')); };
+  std::string_view what = first_line(drawn);
+  if (what.starts_with("[error] ")) what.remove_prefix(8);
+  if (what.starts_with("toml::"))
+    if (auto const colon = what.find(": "); colon != std::string_view::npos) what.remove_prefix(colon + 2);
+  std::string out(what);
+  while (!out.empty() && out.back() == '.') out.pop_back();
+  if (auto const mark = drawn.rfind("^--- "); mark != std::string_view::npos)
+    out += fmt::format(" ({})", first_line(drawn.substr(mark + 5)));
+  return out;
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The value that the parser could not read, for messages that do not show it. TOML asks for digits on both sides of a
+/// point, other languages do not.
+std::string unreadable_value(std::string_view what, toml::source_location const& place) {
+  if (!what.starts_with("bad ") && !what.starts_with("value having invalid format")) return {};
+  std::string const& line = place.line_str();
+  if (place.column() == 0 || place.column() > line.size()) return {};
+  std::string_view rest = std::string_view(line).substr(place.column() - 1);
+  if (auto const equals = rest.find('='); equals != std::string_view::npos) rest.remove_prefix(equals + 1);
+  rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+  std::string_view const value = rest.substr(0, rest.find_first_of(",]} \t\r#"));
+  if (value.empty()) return {};
+  std::string_view const number = value.substr(value.front() == '-' || value.front() == '+' ? 1 : 0);
+  bool const bare_point = number.size() > 1 && ((number.front() == '.' && is_digit(number[1])) ||
+                                                (number.back() == '.' && is_digit(number.front())));
+  return fmt::format("; found {}{}", value, bare_point ? ", write a digit on both sides of the point, as in 0.5" : "");
+}
+
+toml::value parse_toml(std::string const& text, std::string const& file) {
+  check_text(text, file);
+  std::istringstream in(text);
+  try {
+    return toml::parse(in, file);
+  } catch (toml::exception const& e) {
+    std::string const what = one_line(e.what());
+    throw ConfigError(fmt::format("{}:{}: not valid TOML: {}{}", file, e.location().line(), what,
+                                  unreadable_value(what, e.location())));
+  } catch (std::exception const& e) {
+    throw ConfigError(fmt::format("{}: not valid TOML: {}", file, one_line(e.what())));
+  }
+}
+
+}  // namespace
+
+namespace casefile {
+
+toml::value parse_toml_text(std::string const& text, std::string const& file) { return parse_toml(text, file); }
+
+}  // namespace casefile
+
+namespace {
+
+void read_mesh(TableReader& root, CaseFile& out) {
+  root.require("mesh", "[mesh] with input = \"mesh.cgns\"");
+  auto mesh = root.table("mesh");
+  if (!mesh) return;
+  auto const& directory = mesh->context().directory;
+  if (auto const input = mesh->string("input")) out.input = (directory / *input).lexically_normal();
+  mesh->require("input", "input = \"mesh.cgns\"");
+  if (auto const output = mesh->string("output")) out.output = (directory / *output).lexically_normal();
+  if (!out.output.empty() && out.output == out.input)
+    mesh->problem("output", "is the input; give another file name, the baseline is never overwritten");
+  if (auto const side = mesh->string("side_file")) out.side_file = (directory / *side).lexically_normal();
+  out.leave_out = mesh->strings("leave_out").value_or(std::vector<std::string>{});
+  out.axis = casefile::read_axis(*mesh, "axis");
+  if (out.axis) out.motion.axis = *out.axis;
+  if (auto const tolerance = mesh->number("matching_tolerance")) {
+    out.plan.topology.matching_tolerance = *tolerance;
+    if (*tolerance <= 0)
+      mesh->problem("matching_tolerance",
+                    fmt::format("must be a positive length, found {}; remove it for the default", *tolerance));
+  }
+  out.plan.topology.open_faces = mesh->string("open_faces").value_or("");
+  mesh->finish();
+}
+
+/// times = [0, 0.5, 1], in place of steps spread evenly.
+void read_times(TableReader& table, SequenceOptions& sequence) {
+  if (!table.has("times")) return;
+  sequence.times = table.numbers("times").value_or(std::vector<double>{0});
+  for (char const* key : {"steps", "periods", "include_end"})
+    if (table.has(key)) table.problem(key, "stands beside times, which says when the steps are; remove one of them");
+  if (sequence.times.empty() || sequence.times.size() > std::size_t(largest_sequence))
+    table.problem("times", fmt::format("must be 1 to {} times, found {}", largest_sequence, sequence.times.size()));
+  auto const back = std::adjacent_find(sequence.times.begin(), sequence.times.end(), std::greater_equal<>());
+  if (back != sequence.times.end())
+    table.problem("times", fmt::format("must ascend, found {} after {}", *(back + 1), *back));
+  sequence.steps = int(sequence.times.size());
+}
+
+void read_sequence(TableReader& root, CaseFile& out) {
+  auto table = root.table("sequence");
+  if (!table) return;
+  SequenceOptions sequence;
+  auto const steps = table->integer("steps");
+  sequence.steps = steps.value_or(1);
+  read_times(*table, sequence);
+  if (!table->has("times")) table->require("steps", "steps = 32, the number of meshes, or times = [0, 0.5, 1]");
+  if (sequence.steps < 1 || sequence.steps > largest_sequence)
+    table->problem("steps", fmt::format("must be 1 to {}, found {}", largest_sequence, sequence.steps));
+  auto const positive = [&](std::string const& key, double& value) {
+    value = table->number(key).value_or(1);
+    if (value <= 0) table->problem(key, fmt::format("must be positive, found {}", value));
+  };
+  positive("period", sequence.period);
+  positive("periods", sequence.periods);
+  sequence.include_end = table->boolean("include_end").value_or(false);
+  if (auto const output = table->string("output"))
+    sequence.output = (table->context().directory / *output).lexically_normal();
+  if (!sequence.output.empty() && sequence.output == out.input)
+    table->problem("output", "is the input; give another file name, the baseline is never overwritten");
+  table->finish();
+  out.sequence = sequence;
+}
+
+void read_motion(TableReader& root, CaseFile& out) {
+  if (auto const word = root.choice("default", {"type", "error"})) out.motion.strict = *word == 1;
+  if (auto conformity = root.table("conformity")) {
+    if (auto const tolerance = conformity->number("tolerance")) {
+      out.motion.conformity_tolerance = *tolerance;
+      if (*tolerance < 0 || *tolerance >= 1)
+        conformity->problem("tolerance",
+                            fmt::format("must be a share of the mesh size between 0 and 1, found {}", *tolerance));
+    }
+    conformity->finish();
+  }
+  casefile::RuleContext shared{out.axis, {}, out.sequence.has_value()};
+  casefile::read_constants(root, "constants", shared.constants);
+  for (auto& table : root.tables("motion")) casefile::read_motion_rule(table, shared, out);
+  casefile::read_wheel(root, shared, out);
+  if (!root.has("motion"))
+    root.context().problems.add(root.context().file +
+                                ": no [[motion]] rule; add at least one, for example [[motion]] with "
+                                "patches = [\"blade\"] and rule = \"rigid\"");
+  else if (out.sequence && root.context().problems.empty() &&
+           std::none_of(out.timed.begin(), out.timed.end(), [](TimedRule const& r) { return r.changes; }))
+    root.context().problem(root.line("sequence"),
+                           "[sequence]: no rule changes with time, so that all steps would be alike; give a rule an "
+                           "amplitude over time, use t or step in a formula, or add modes to a rule \"field\"");
+}
+
+BoundaryLayer read_boundary_layer(TableReader& table) {
+  BoundaryLayer layer;
+  layer.walls = table.strings("walls").value_or(std::vector<std::string>{});
+  if (auto const* extent = table.find("extent")) {
+    if (extent->is_string()) {
+      table.choice("extent", {"block"});
+    } else if (auto inner = table.table("extent")) {
+      auto const layers = inner->integer("layers");
+      auto const thickness = inner->number("thickness");
+      if (layers && *layers < 1) inner->problem("layers", fmt::format("must be at least 1, found {}", *layers));
+      if (thickness && *thickness <= 0)
+        inner->problem("thickness", fmt::format("must be a positive length, found {}", *thickness));
+      if (inner->has("layers") == inner->has("thickness"))
+        table.problem("extent", "needs exactly one of { layers = 30 } and { thickness = 2e-3 }");
+      inner->finish();
+      layer.extent = layers ? BoundaryLayer::Extent::layers : BoundaryLayer::Extent::thickness;
+      layer.layers = layers.value_or(0);
+      layer.thickness = thickness.value_or(0);
+    }
+  }
+  if (auto const mode = table.choice("mode", {"translate", "rotate", "blend"})) layer.mode = BoundaryLayer::Mode(*mode);
+  table.finish();
+  return layer;
+}
+
+std::vector<PriorityRule> read_priority(TableReader& volume) {
+  std::vector<std::string> const kinds{"wall",     "periodic",   "inflow",     "outflow", "symmetry",
+                                       "farfield", "degenerate", "connection", "other"};
+  std::vector<PriorityRule> priority;
+  for (auto& table : volume.tables("priority")) {
+    PriorityRule rule;
+    table.require("rule", "rule = \"boundary\", \"quality\" or \"aspect-ratio\"");
+    auto const kind = table.choice("rule", {"boundary", "quality", "aspect-ratio"});
+    if (kind) rule.kind = PriorityRule::Kind(*kind);
+    if (kind && *kind == 0) {
+      if (auto const order = table.strings("order")) {
+        rule.order = *order;
+        for (std::size_t i = 0; i < order->size(); ++i) {
+          std::string const& word = (*order)[i];
+          if (std::find(kinds.begin(), kinds.end(), word) == kinds.end())
+            table.problem("order", fmt::format("\"{}\" is no kind of boundary{}", word, suggestion(word, kinds)));
+          if (std::find(order->begin(), order->begin() + std::ptrdiff_t(i), word) != order->begin() + std::ptrdiff_t(i))
+            table.problem("order", fmt::format("names \"{}\" twice", word));
+        }
+      }
+    } else {
+      rule.order.clear();
+    }
+    if (kind) table.finish();
+    priority.push_back(std::move(rule));
+  }
+  return priority;
+}
+
+void read_plan(TableReader& root, CaseFile& out) {
+  for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
+  auto volume = root.table("volume");
+  if (!volume) return;
+  if (auto const law = volume->choice("law", {"linear", "c1", "c2"})) out.plan.volume.law = Law(*law);
+  if (auto priority = read_priority(*volume); !priority.empty()) out.plan.volume.priority = std::move(priority);
+  volume->finish();
+}
+
+void read_results(TableReader& root, CaseFile& out) {
+  if (auto guard = root.table("guard")) {
+    auto const limit = [&](char const* key, double& value, bool (*passes)(double), std::string_view meaning) {
+      auto const found = guard->number(key);
+      if (!found) return;
+      value = *found;
+      if (!passes(value)) guard->problem(key, fmt::format("is {}, found {}", meaning, value));
+    };
+    limit(
+        "min_determinant", out.guard.min_determinant, [](double d) { return d >= -1 && d < 1; },
+        "the smallest 3x3x3 determinant that passes, -1 <= value < 1");
+    limit(
+        "min_angle_deg", out.guard.min_angle_deg, [](double a) { return a >= 0 && a < 90; },
+        "the smallest angle that passes, in degrees, 0 <= value < 90");
+    limit(
+        "max_skewness", out.guard.max_skewness, [](double s) { return s > 0 && s <= 1; },
+        "the largest equiangle skewness that passes, 0 < value <= 1");
+    limit(
+        "max_loss", out.guard.max_loss, [](double l) { return l > 0 && l <= 1; },
+        "the largest share of its determinant or smallest angle that a cell may lose, 0 < value <= 1");
+    if (auto const mode = guard->choice("quality", {"auto", "full", "fast"})) out.guard.quality = QualityMode(*mode);
+    out.guard.write_inverted = guard->boolean("write_inverted").value_or(false);
+    if (auto const steps = guard->integer("steps")) {
+      constexpr int most = 64;
+      out.guard.steps = std::clamp(*steps, 1, most);
+      if (*steps < 1 || *steps > most)
+        guard->problem("steps", fmt::format("is the number of steps to try at most, 1 to {}, found {}", most, *steps));
+    }
+    guard->finish();
+  }
+  if (auto output = root.table("output")) {
+    out.output_options.displacement = output->boolean("displacement").value_or(false);
+    out.output_options.quality = output->boolean("quality").value_or(false);
+    if (auto const stages = output->string("stages"))
+      out.output_options.stages = (output->context().directory / *stages).lexically_normal();
+    if (auto const report = output->string("report"))
+      out.output_options.report = (output->context().directory / *report).lexically_normal();
+    output->finish();
+  }
+}
+
+}  // namespace
+
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked) {
+  Context context{path.string(), path.parent_path(), {}, asked};
+  toml::value const document = parse_toml(text, context.file);
+  CaseFile out;
+  out.source = path;
+  TableReader root(context, document, "");
+  read_mesh(root, out);
+  read_sequence(root, out);
+  read_motion(root, out);
+  read_plan(root, out);
+  casefile::read_near_field(root, out);
+  read_results(root, out);
+  root.finish();
+  context.problems.throw_if_any<ConfigError>();
+  out.files = std::move(context.files);
+  out.given.assign(context.given.begin(), context.given.end());
+  return out;
+}
+
+Motion motion_at(CaseFile const& case_file, Moment const& when) {
+  Motion motion = case_file.motion;
+  for (std::size_t r = 0; r < case_file.timed.size(); ++r) {
+    TimedRule const& timed = case_file.timed[r];
+    if (!timed.changes) continue;
+    double const share = timed.amplitude ? timed.amplitude(when) : 1;
+    if (!std::isfinite(share))
+      throw MotionError(fmt::format("{}: amplitude is {} at t = {:.9g}, step {}", motion.rules[r].where, share,
+                                    when.time, when.step));
+    motion.rules[r].rule = timed.at(share, when);
+  }
+  return motion;
+}
+
+CaseFile read_case_file(std::filesystem::path const& path) {
+  return parse_case_file(casefile::read_text_file(path, "case file", largest_case_file), path);
+}
+
+std::optional<std::filesystem::path> mesh_of_case_file(std::filesystem::path const& path) {
+  try {
+    toml::value const document =
+        parse_toml(casefile::read_text_file(path, "case file", largest_case_file), path.string());
+    return (path.parent_path() / toml::find<std::string>(document, "mesh", "input")).lexically_normal();
+  } catch (std::exception const&) {  // read_case_file says what is wrong
+    return std::nullopt;
+  }
+}
+
+}  // namespace gridmorph

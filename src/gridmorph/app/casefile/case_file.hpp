@@ -1,0 +1,126 @@
+// A case file (TOML): what to morph, how the boundary moves, and what to write. Plain structs with their defaults.
+//
+// The keys are described in docs/case_file.md.
+#pragma once
+
+#include <gridmorph/app/casefile/timed_rule.hpp>
+#include <gridmorph/app/casefile/wheel_case.hpp>
+#include <gridmorph/mapping/point_field.hpp>
+#include <gridmorph/motion/motion.hpp>
+#include <gridmorph/plan/options.hpp>
+#include <gridmorph/plan/unstructured_options.hpp>
+#include <gridmorph/quality/quality.hpp>
+
+#include <compare>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph {
+
+/// How much of the quality is measured. automatic: a verdict for meshes of more than a million cells, else all.
+enum class QualityMode { automatic, full, fast };
+
+/// [guard]: when the result counts as good.
+struct GuardOptions : CellLimits {
+  bool write_inverted = false;  ///< write a mesh with inverted cells all the same
+  QualityMode quality = QualityMode::automatic;
+  int steps = 4;  ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
+};
+
+/// [output]: what comes with the coordinates.
+struct OutputOptions {
+  bool displacement = false;                    ///< displacement at the nodes, as a solution of the output mesh
+  bool quality = false;                         ///< quality measures in the cells, as a solution of the output mesh
+  std::optional<std::filesystem::path> report;  ///< JSON report
+  /// Folder for the wrap and the background mesh, before and after, of an unstructured morph.
+  std::optional<std::filesystem::path> stages;
+};
+
+/// One `field` rule, so that reports can say how far its nodes were from the points.
+struct FieldUse {
+  std::string where;  ///< "case.toml:14"
+  std::shared_ptr<PointField const> field;
+};
+
+/// [sequence]: meshes over time.
+struct SequenceOptions {
+  int steps = 0;
+  double period = 1;             ///< [time]
+  double periods = 1;            ///< that the steps are spread over
+  bool include_end = false;      ///< whether the last step is at the end of all periods, or a step short of it
+  std::vector<double> times;     ///< of the steps, ascending; empty: spread evenly
+  std::filesystem::path output;  ///< with "{step}" in its name: one file per step; without: one file with a series
+
+  /// Of step 0 ... steps - 1.
+  [[nodiscard]] double periods_at(int step) const {
+    return times.empty() ? periods * step / (include_end && steps > 1 ? steps - 1 : steps)
+                         : times[std::size_t(step)] / period;
+  }
+  [[nodiscard]] double time_at(int step) const {
+    return times.empty() ? period * periods_at(step) : times[std::size_t(step)];
+  }
+  [[nodiscard]] Moment moment(int step) const { return {periods_at(step), time_at(step), step + 1}; }
+};
+
+/// [background] file: a background mesh of the user's.
+struct BackgroundFile {
+  std::filesystem::path path;
+  /// Selectors of its patches.
+  std::vector<std::string> wrap = std::vector<std::string>(1, "wrap"), outer = std::vector<std::string>(1, "outer");
+};
+
+/// A key that stands in a case file.
+struct GivenKey {
+  std::string table;  ///< "", "mesh", "mesh axis", "motion", "motion modes", ...
+  std::string key;
+  int line = 0;
+
+  auto operator<=>(GivenKey const&) const = default;
+};
+
+struct CaseFile {
+  std::filesystem::path source;  ///< the case file itself, as given
+  std::filesystem::path input;   ///< relative paths are already joined with the directory of the case file
+  std::filesystem::path output;  ///< empty when the case file names none
+  std::optional<std::filesystem::path> side_file;  ///< patches and interfaces of the mesh (side_file.hpp)
+  std::vector<std::string> leave_out;              ///< bases and zones of the file that are no part of the mesh
+  std::optional<Axis> axis;                        ///< [mesh] axis as given; Motion::axis holds it too
+  Motion motion;
+  PlanOptions plan;
+  UnstructuredOptions unstructured;  ///< [near_field] and [background]; boundary layers and law are those of `plan`
+  std::optional<BackgroundFile> background;  ///< read and made part of `unstructured` by whoever morphs
+  GuardOptions guard;
+  OutputOptions output_options;
+  std::vector<FieldUse> fields;
+  std::optional<WheelCase> wheel;  ///< [wheel], for `gridmorph wheel`
+  std::vector<TimedRule> timed;    ///< per rule of `motion`
+  std::optional<SequenceOptions> sequence;
+  std::vector<std::filesystem::path> files;  ///< tables, targets, models, ... that its keys name and that are read
+  std::vector<GivenKey>
+      given;  ///< every key that was read, by table and line; what the mesh decides about (ignored_keys.hpp)
+};
+
+/// The rules of the case file at a moment: those that change with time as they are then, all others as they stand. Throws
+/// MotionError where an amplitude is not finite.
+Motion motion_at(CaseFile const& case_file, Moment const& when);
+
+/// Reads a case file and the displacement files that it names. Throws one ConfigError that lists every problem, each as
+/// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
+CaseFile read_case_file(std::filesystem::path const& path);
+
+/// The mesh that a case file names, and nothing more; nothing where the file is not usable.
+std::optional<std::filesystem::path> mesh_of_case_file(std::filesystem::path const& path);
+
+/// (table, key) pairs that the reader asked for, tables as "mesh", "mesh axis", "motion": what it knows, for checks of the docs.
+using CaseKeyUse = std::set<std::pair<std::string, std::string>>;
+
+/// The same from text; `path` names it in messages and anchors relative paths.
+/// `asked`, when given, is filled also when there are problems.
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked = nullptr);
+
+}  // namespace gridmorph

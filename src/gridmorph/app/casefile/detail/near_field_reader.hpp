@@ -1,0 +1,12 @@
+// [near_field] and [background] of case files: what is particular to unstructured meshes. Internal to casefile.
+#pragma once
+
+#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/casefile/detail/table_reader.hpp>
+
+namespace gridmorph::casefile {
+
+/// Reads both tables where they are; notes every problem.
+void read_near_field(TableReader& root, CaseFile& out);
+
+}  // namespace gridmorph::casefile

@@ -1,0 +1,59 @@
+// Displacement rules written as formulas of the baseline position (muParser).
+#pragma once
+
+#include <gridmorph/app/casefile/timed_rule.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/motion.hpp>
+
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+
+namespace gridmorph {
+
+/// In which directions the three expressions of a formula point.
+enum class FormulaFrame {
+  cartesian,   ///< dx, dy, dz along the coordinate axes
+  cylindrical  ///< dr [length], dtheta [rad], daxial [length] about the machine axis, moved along circles exactly
+};
+
+/// One component of a formula.
+struct FormulaComponent {
+  std::string key;         ///< "dx", for messages
+  std::string expression;  ///< empty: the component is zero
+  std::string where;       ///< "case.toml:14", for messages
+};
+
+/// Makes a rule from three expressions in x, y, z, r, theta and axial (position relative to the axis; theta in radians,
+/// right-handed about the axis, zero along the coordinate axis that follows the axis' dominant one in the cycle x, y, z;
+/// for an x axis theta = atan2(z, y)), the user's constants, `pi` and `deg` (pi / 180).
+///
+/// Problems of the expressions are added to `problems` with place, position and the nearest known name. The rule throws
+/// MotionError when a component is not finite, naming the point. Evaluations may come from several threads; they take
+/// turns. Cost per point: the expressions plus one square root and one atan2 where r or theta is used.
+FunctionRule make_formula(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
+                          std::map<std::string, double> const& constants, Axis const& axis, Problems& problems);
+
+/// The same at a moment of a sequence, with the variables `t` (time) and `step` (1, 2, ...), times a share of each component (so
+/// half of a turn by dtheta is a turn by half the angle).
+using FormulaAt = std::function<FunctionRule(double share, Moment const& when)>;
+FormulaAt make_formula_in_time(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
+                               std::map<std::string, double> const& constants, Axis const& axis, Problems& problems);
+
+/// A number that depends on `t`, `step` and the constants alone. Problems are added as above, also for names of the position.
+std::function<double(Moment const& when)> make_time_formula(FormulaComponent const& formula,
+                                                            std::map<std::string, double> const& constants,
+                                                            Problems& problems);
+
+/// Whether a name can be a constant of a formula: letters, digits and '_', not starting with a digit, and neither a
+/// variable, a built-in constant nor a function.
+bool is_free_formula_name(std::string const& name);
+
+/// Whether an expression uses t or step, that is, needs a sequence.
+bool uses_time(std::string const& expression);
+
+/// Whether an expression uses r, theta or axial, that is, needs the machine axis.
+bool uses_axis(std::string const& expression);
+
+}  // namespace gridmorph

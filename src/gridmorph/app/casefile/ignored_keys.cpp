@@ -1,0 +1,101 @@
+#include <gridmorph/app/casefile/ignored_keys.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace gridmorph {
+
+namespace {
+
+/// Notes each given key that has no effect.
+class Ignored {
+ public:
+  Ignored(CaseFile const& case_file, CaseUse const& use) : case_(case_file), use_(use) {}
+
+  void run() {
+    if (use_.unstructured)
+      of_unstructured();
+    else
+      of_structured();
+    if (use_.run == CaseUse::Run::wheel) of_wheel();
+    if (use_.run == CaseUse::Run::sequence)
+      refuse("mesh", "output", "names one file, and the meshes of a sequence go where output in [sequence] says");
+    if (use_.run == CaseUse::Run::morph)
+      refuse("motion modes", "harmonic", "says how often a shape oscillates in time, and there is no [sequence]");
+    fields();
+    std::stable_sort(lines_.begin(), lines_.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
+    Problems problems;
+    for (auto const& [line, text] : lines_) problems.add(text);
+    problems.throw_if_any<ConfigError>();
+  }
+
+ private:
+  void of_unstructured() {
+    std::string const why = "is for structured meshes, and '" + case_.input.string() + "' is unstructured";
+    refuse("", "volume", why + ": law in [background] and weights in [near_field] say there how the volume follows");
+    refuse("", "wheel", why);
+    refuse("mesh", "open_faces", why + ": boundary faces that no patch claims have to be given one in the mesh");
+    refuse("mesh", "matching_tolerance", why);
+    if (use_.run == CaseUse::Run::sequence)
+      refuse("output", "stages", "is for one morph, and a sequence of unstructured meshes writes none");
+    if (case_.background)
+      refuse("guard", "steps",
+             "plans every step on the mesh before it, and the background mesh of a file fits the first only");
+  }
+
+  void of_structured() {
+    std::string const why = "is for unstructured meshes, and '" + case_.input.string() + "' is structured";
+    refuse("", "near_field", why + ": [boundary_layer] says there how far the near field reaches");
+    refuse("", "background", why + ": law in [volume] says there how displacements fall off");
+    refuse("guard", "steps", why);
+    refuse("output", "stages", why + ": `gridmorph plan` prints the stages");
+    bool const turns = std::any_of(
+        case_.plan.boundary_layers.begin(), case_.plan.boundary_layers.end(),
+        [](auto const& l) { return l.mode == BoundaryLayer::Mode::rotate || l.mode == BoundaryLayer::Mode::blend; });
+    if (turns) refuse("boundary_layer", "mode", "\"rotate\" and \"blend\": " + why + "; use \"translate\"");
+  }
+
+  void of_wheel() {
+    refuse("", "sequence", "is for `gridmorph morph`, and a wheel is made at one time");
+    if (case_.output_options.displacement) refuse("output", "displacement", "is not written into wheels");
+    if (case_.output_options.quality) refuse("output", "quality", "is not written into wheels; the report has it");
+  }
+
+  /// What has no place in the format of the output.
+  void fields() {
+    if (use_.format == CaseUse::Format::cgns) return;
+    refuse("mesh", "leave_out", "names bases and zones of CGNS files");
+    std::string const why = fmt::format("is true, and {} files have no place for solutions; use a CGNS mesh",
+                                        use_.format == CaseUse::Format::su2 ? "SU2" : "PLOT3D");
+    if (case_.output_options.displacement) refuse("output", "displacement", why);
+    if (case_.output_options.quality) refuse("output", "quality", why);
+  }
+
+  void refuse(std::string_view table, std::string_view key, std::string const& why) {
+    for (auto const& given : case_.given) {
+      if (given.table != table || given.key != key) continue;
+      std::string const name = table.empty()                 ? fmt::format("[{}]", key)
+                               : table.starts_with("motion") ? fmt::format("[[motion]]{} {}", table.substr(6), key)
+                                                             : fmt::format("[{}] {}", table, key);
+      std::string const advice = why.find("; use ") == std::string::npos ? "; remove it" : "";
+      lines_.emplace_back(given.line, fmt::format("{}:{}: {} has no effect here: it {}{}", case_.source.string(),
+                                                  given.line, name, why, advice));
+    }
+  }
+
+  CaseFile const& case_;
+  CaseUse const& use_;
+  std::vector<std::pair<int, std::string>> lines_;
+};
+
+}  // namespace
+
+void refuse_ignored_keys(CaseFile const& case_file, CaseUse const& use) { Ignored(case_file, use).run(); }
+
+}  // namespace gridmorph

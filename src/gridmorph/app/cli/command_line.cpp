@@ -1,0 +1,177 @@
+#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/app/cli/command_line.hpp>
+#include <gridmorph/app/cli/help.hpp>
+#include <gridmorph/app/cli/version.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::cli {
+
+namespace {
+
+std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "wheel", "surface", "demo"};
+
+constexpr char const* exit_statuses =
+    "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
+    "machine; "
+    "4 not written, because cells are inverted.";
+
+void add_quality(CLI::App& command, CommandLine& out, char const* text) {
+  command.add_option("--quality", out.quality, text)->check(CLI::IsMember({"auto", "full", "fast"}));
+}
+
+/// What every command understands, before its name and after it.
+void add_common(CLI::App& app, CommandLine& out) {
+  app.add_flag("-q,--quiet", out.quiet,
+               "Print errors and warnings only, and what inspect, plan and quality are asked for");
+  app.add_flag("--json", out.json, "Print the result as JSON on standard output, and nothing else there");
+  app.add_option(
+         "-t,--threads", out.threads,
+         "Threads to compute with (default: OMP_NUM_THREADS, else what the machine and the size of the mesh allow)")
+      ->check(CLI::Range(1, 4096));
+}
+
+CLI::App* add_morph(CLI::App& app, CommandLine& out) {
+  auto* morph = app.add_subcommand("morph", "Morph a mesh as a case file says");
+  morph->add_option("case", out.input, "Case file (TOML)")->required();
+  morph->add_option("-o,--output", out.output, "Morphed mesh, instead of the case file's output");
+  morph->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
+  add_quality(*morph, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
+  morph->add_flag("--dry-run", out.dry_run, "Check everything and print the plan; write nothing");
+  return morph;
+}
+
+CLI::App* add_wheel(CLI::App& app, CommandLine& out) {
+  auto* wheel = app.add_subcommand("wheel", "Make a wheel of passages, each with its own blade, as a case file says");
+  wheel->add_option("case", out.input, "Case file (TOML) with [wheel]")->required();
+  wheel->add_option("-o,--output", out.output, "Mesh of the wheel, instead of the case file's output");
+  wheel->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
+  add_quality(*wheel, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
+  return wheel;
+}
+
+void add_leave_out(CLI::App& command, CommandLine& out) {
+  command
+      .add_option("--leave-out", out.leave_out,
+                  "A base or zone of a CGNS file that is no part of the mesh; may be repeated")
+      ->allow_extra_args(false);
+}
+
+CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
+  auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
+  inspect->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D or SU2)")->required();
+  inspect->add_option("--side-file", out.side_file,
+                      "Patches and interfaces (TOML), instead of the file beside the mesh");
+  add_leave_out(*inspect, out);
+  inspect->add_flag("--match", out.match, "Look for interfaces and periodicity where nothing is declared");
+  inspect->add_flag("!--no-periodic", out.match_periodic, "Look for interfaces only, not for periodicity");
+  inspect->add_option("--match-tolerance", out.match_tolerance, "Distance of points that match, of the smallest edge")
+      ->check(CLI::Range(1e-9, 0.25));
+  inspect->add_option("--write-side-file", out.write_side_file,
+                      "Look for interfaces and write them, and patches for what is left, to this file (TOML)");
+  inspect->add_option("--suggest", out.suggest, "Only a case file to start from, printed or written to a file")
+      ->expected(0, 1)
+      ->default_str("");
+  return inspect;
+}
+
+CLI::App* add_surface(CLI::App& app, CommandLine& out) {
+  auto* surface = app.add_subcommand(
+      "surface", "Write patches of a mesh as facets (STL) or as nodes (CSV, as a rule \"field\" reads them)");
+  surface->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D or SU2)")->required();
+  surface->add_option("-p,--patches", out.patches, "Patches, named as in case files (blade, type:wall, row1/per*)")
+      ->required();
+  surface->add_option("-o,--output", out.output, "NAME.stl or NAME.csv")->required();
+  surface->add_option("--split", out.split, "Cut each facet into N x N")->check(CLI::Range(1, 1000));
+  add_leave_out(*surface, out);
+  surface->add_flag("--ascii", out.ascii, "Text with all digits; binary STL has single precision");
+  return surface;
+}
+
+CLI::App* add_demo(CLI::App& app, CommandLine& out) {
+  auto* demo = app.add_subcommand("demo", "Write a built-in mesh and its case files, and morph it");
+  demo->add_option(
+          "name", out.demo_name,
+          "passage: one airfoil passage of a turbomachine (O4H); ball: a ball on a rope under a crane (hybrid); "
+          "turbine, slat, coil: "
+          "only the mesh of an example (water turbine in 7 zones, airfoil with slat and flap, heated tube in a duct)")
+      ->required();
+  demo->add_option("-n,--nodes", out.demo_nodes, "passage: nodes of the mesh (default 200000)")
+      ->check(CLI::Range(Index(10'000), Index(400'000'000)));
+  demo->add_option("-m,--motion", out.demo_motion, "passage: rotation, chord, or all (default)");
+  demo->add_option("-e,--elements", out.demo_elements, "ball: elements of the mesh (default 500000)")
+      ->check(CLI::Range(Index(50'000), Index(50'000'000)));
+  demo->add_option("-a,--angle", out.demo_angle_deg,
+                   "ball: how far it swings towards the mast, in degrees (default 30)");
+  demo->add_option("-d,--directory", out.demo_folder, "Folder for the files (default demo_<name>)");
+  return demo;
+}
+
+}  // namespace
+
+std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* argv) {
+  using Command = CommandLine::Command;
+  CommandLine out;
+  CLI::App app("gridmorph moves an existing CFD mesh to a new boundary shape and keeps its connectivity and quality.",
+               "gridmorph");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.footer(exit_statuses);
+  app.set_version_flag("--version", version_text, "Print the versions of gridmorph, Kokkos and CGNS, and stop");
+  add_common(app, out);
+  app.require_subcommand(1);
+  app.fallthrough();
+
+  std::vector<std::pair<CLI::App*, Command>> commands;
+  commands.emplace_back(add_morph(app, out), Command::morph);
+  commands.emplace_back(add_inspect(app, out), Command::inspect);
+  auto* plan = app.add_subcommand("plan", "Print stages and chains in order, with the reason for each rank");
+  plan->add_option("case", out.input, "Case file (TOML)")->required();
+  commands.emplace_back(plan, Command::plan);
+  auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
+  quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS, PLOT3D or SU2)")->required();
+  quality->add_option("morphed", out.second, "Morphed mesh");
+  add_quality(*quality, out, "full (default) or fast: a verdict in a fraction of the time");
+  add_leave_out(*quality, out);
+  commands.emplace_back(quality, Command::quality);
+  commands.emplace_back(add_wheel(app, out), Command::wheel);
+  commands.emplace_back(add_surface(app, out), Command::surface);
+  commands.emplace_back(add_demo(app, out), Command::demo);
+  for (auto const& [subcommand, command] : commands) {
+    add_common(*subcommand, out);
+    subcommand->footer(exit_statuses);
+  }
+
+  // CLI11 takes a misspelt command for a stray argument; say what it is.
+  for (int a = 1; a < argc; ++a) {
+    std::string const word = argv[a];
+    if (word.empty() || word.front() == '-') continue;
+    if (a > 1 && (std::string(argv[a - 1]) == "-t" || std::string(argv[a - 1]) == "--threads")) continue;
+    if (std::find(command_names.begin(), command_names.end(), word) == command_names.end())
+      return Stop{2, "unknown command '" + word + "'" + suggestion(word, command_names)};
+    break;
+  }
+
+  try {
+    app.parse(argc, argv);
+  } catch (CLI::ParseError const& e) {
+    if (e.get_exit_code() == 0) {
+      std::ostringstream text, errors;
+      app.exit(e, text, errors);
+      return Stop{0, text.str()};
+    }
+    return Stop{2, std::string(e.what()) + "; see gridmorph --help"};
+  }
+  for (auto const& [subcommand, command] : commands)
+    if (subcommand->parsed()) out.command = command;
+  if (out.json && out.suggest)
+    return Stop{2, "inspect: --suggest prints a case file and --json prints JSON; leave out one of them"};
+  return out;
+}
+
+}  // namespace gridmorph::cli

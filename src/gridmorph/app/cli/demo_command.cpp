@@ -1,0 +1,141 @@
+#include <generators/ball_demo.hpp>
+#include <generators/passage_demo.hpp>
+#include <generators/stand_ins.hpp>
+#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/app/cli/commands.hpp>
+#include <gridmorph/app/cli/morph_command.hpp>
+#include <gridmorph/app/cli/run_files.hpp>
+#include <gridmorph/app/cli/unstructured_morph.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+namespace {
+
+/// The report of a demo, beside the morphed mesh.
+std::filesystem::path report_of(std::filesystem::path morphed) { return morphed.replace_extension(".json"); }
+
+/// A folder that is there may hold links, devices, ... of the names that the demo writes.
+void check_demo_files(std::vector<std::filesystem::path> const& paths) {
+  RunFiles files;
+  for (auto const& path : paths) files.push_back({"demo file", path, true});
+  check_run_files({}, files);
+}
+
+/// The case file of a demo; its report goes beside the morphed mesh.
+CaseFile with_report(std::filesystem::path const& path, std::filesystem::path const& morphed) {
+  CaseFile case_file = read_case_file(path);
+  case_file.output_options.report = report_of(morphed);
+  return case_file;
+}
+
+int demo_passage(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  std::vector<PassageMotion> motions;
+  std::string const motion = options.demo_motion.value_or("all");
+  if (motion == "all")
+    motions = {rotated_sections(), chord_redesign()};
+  else
+    motions = {passage_motion(motion)};
+
+  std::vector<std::filesystem::path> outputs{folder / "passage.cgns"};
+  for (auto const& m : motions) {
+    PassageFiles const f = passage_files(folder, m);
+    outputs.insert(outputs.end(), {f.displacement, f.case_file, f.morphed, report_of(f.morphed)});
+  }
+  check_demo_files(outputs);
+  PassageOptions passage;
+  passage.nodes = options.demo_nodes.value_or(passage.nodes);
+  int status = done;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    terminal.progress(fmt::format("making the passage mesh with {} nodes", passage.nodes));
+    // The mesh is dropped before the morph reads it from its file: large demos need the memory.
+    PassageFiles const files = [&] {
+      Mesh const mesh = make_passage(passage);
+      return write_passage_demo(folder, passage, motions[m], mesh, m == 0 ? MeshFile::write : MeshFile::keep);
+    }();
+    terminal.say(fmt::format("{}\n== {} ==\n", m == 0 ? "" : "\n", files.case_file.string()));
+    status = std::max(status, morph_and_write(with_report(files.case_file, files.morphed), terminal));
+  }
+  return status;
+}
+
+int demo_ball(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  BallFiles const places = ball_files(folder);
+  check_demo_files({places.mesh, places.case_file, places.morphed, report_of(places.morphed)});
+  BallOptions ball;
+  ball.elements = options.demo_elements.value_or(ball.elements);
+  BallSwing swing;
+  swing.angle_deg = options.demo_angle_deg.value_or(swing.angle_deg);
+  terminal.progress(fmt::format("making the ball mesh with {} elements", ball.elements));
+  BallFiles const files = write_ball_demo(folder, ball, swing);
+  terminal.say(fmt::format("\n== {} ==\n", files.case_file.string()));
+  return morph_unstructured(with_report(files.case_file, files.morphed), terminal);
+}
+
+/// Meshes of examples, whose case files are not the command's to write.
+int demo_stand_in(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  terminal.progress(fmt::format("making the mesh of the {}", options.demo_name));
+  auto const path = write_stand_in(options.demo_name, folder);
+  terminal.say(fmt::format("mesh       {}\n", path.string()));
+  return done;
+}
+
+/// Options of the other demo would be ignored in silence.
+void refuse_options_of(char const* other, std::string const& chosen,
+                       std::vector<std::pair<char const*, bool>> const& given) {
+  for (auto const& [option, is_given] : given)
+    if (is_given)
+      throw ConfigError(fmt::format("{} is an option of the demo '{}', not of '{}'", option, other, chosen));
+}
+
+}  // namespace
+
+namespace {
+
+int run_demo(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  std::string const& name = options.demo_name;
+  if (name == "passage") {
+    refuse_options_of(
+        "ball", name,
+        {{"--elements", options.demo_elements.has_value()}, {"--angle", options.demo_angle_deg.has_value()}});
+    return demo_passage(options, folder, terminal);
+  }
+  if (name == "ball") {
+    refuse_options_of("passage", name,
+                      {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
+    return demo_ball(options, folder, terminal);
+  }
+  if (auto const& meshes = stand_in_names(); std::find(meshes.begin(), meshes.end(), name) != meshes.end()) {
+    refuse_options_of("passage", name,
+                      {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
+    refuse_options_of(
+        "ball", name,
+        {{"--elements", options.demo_elements.has_value()}, {"--angle", options.demo_angle_deg.has_value()}});
+    return demo_stand_in(options, folder, terminal);
+  }
+  throw ConfigError(
+      fmt::format("there is no demo '{}'{}", name, suggestion(name, {"passage", "ball", "turbine", "slat", "coil"})));
+}
+
+}  // namespace
+
+int run_demo_command(CommandLine const& options, Terminal& terminal) {
+  auto const folder =
+      options.demo_folder.empty() ? std::filesystem::path("demo_" + options.demo_name) : options.demo_folder;
+  int const status = run_demo(options, folder, terminal);
+  terminal.document({{"gridmorph", GRIDMORPH_VERSION},
+                     {"demo", options.demo_name},
+                     {"folder", folder.string()},
+                     {"morphs", terminal.take_documents()}});
+  return status;
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,117 @@
+// gridmorph: morph, inspect, plan, quality, wheel, surface, demo.
+//
+//   gridmorph inspect passage.cgns
+//   gridmorph plan case.toml
+//   gridmorph morph case.toml --report report.json
+//   gridmorph quality passage.cgns passage_morphed.cgns
+//   gridmorph wheel case.toml
+//   gridmorph demo passage --nodes 1000000
+//
+// Parses the command line, runs one command, and turns errors into messages and exit statuses.
+#include <gridmorph/app/cli/command_line.hpp>
+#include <gridmorph/app/cli/commands.hpp>
+#include <gridmorph/app/cli/kokkos_session.hpp>
+#include <gridmorph/app/cli/terminal.hpp>
+#include <gridmorph/app/cli/threads.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/output_file.hpp>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <string>
+#include <variant>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace {
+
+using namespace gridmorph::cli;
+
+int run(CommandLine const& options, Terminal& terminal) {
+  using Command = CommandLine::Command;
+  switch (options.command) {
+    case Command::morph: return run_morph_command(options, terminal);
+    case Command::inspect: return run_inspect_command(options, terminal);
+    case Command::plan: return run_plan_command(options, terminal);
+    case Command::quality: return run_quality_command(options, terminal);
+    case Command::wheel: return run_wheel_command(options, terminal);
+    case Command::surface: return run_surface_command(options, terminal);
+    case Command::demo: return run_demo_command(options, terminal);
+  }
+  return bad_input;
+}
+
+/// The exit status of work that prints through the terminal; errors become messages.
+template <class Work>
+int report_errors(Terminal& terminal, Work const& work) {
+  try {
+    int const status = work();
+    terminal.finish();
+    return status;
+  } catch (gridmorph::MachineError const& e) {
+    terminal.error(e.what());
+    return machine_failure;
+  } catch (gridmorph::Error const& e) {
+    terminal.error(e.what());
+    return bad_input;
+  } catch (std::bad_alloc const&) {
+    terminal.error("out of memory; use a machine with more memory, or a smaller mesh");
+    return machine_failure;
+  } catch (std::filesystem::filesystem_error const& e) {
+    terminal.error(e.what());
+    return machine_failure;
+  } catch (std::exception const& e) {
+    std::string const what = e.what();
+    bool const memory =
+        what.find("allocat") != std::string::npos;  // Kokkos reports failed allocations as runtime errors
+    terminal.error((memory ? "out of memory: " : "internal failure: ") + what);
+    return machine_failure;
+  }
+}
+
+/// Memory that was freed is kept and used again. Large arrays come and go from stage to stage; fresh pages, which the system
+/// clears first, cost as much as most stages do (a quarter of the time with 10 million elements, for an eighth more memory).
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_MAX, 0);  // what is mapped on its own goes back to the system at once
+  mallopt(M_TRIM_THRESHOLD, -1);
+  mallopt(M_TOP_PAD, 1 << 26);
+#endif
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  keep_freed_memory();
+  // A reader that goes away, or a file that may not grow, is an error to report, not a reason to die.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  gridmorph::io::remove_pending_on_signals();
+  auto const parsed = parse_command_line(argc, argv);
+  if (auto const* stop = std::get_if<Stop>(&parsed)) {
+    Terminal terminal(false);
+    if (stop->status != 0) {
+      terminal.error(stop->text);
+      return stop->status;
+    }
+    return report_errors(terminal, [&] {
+      terminal.result(stop->text);
+      return int(done);
+    });
+  }
+  wait_passively(argv);
+  auto const& options = std::get<CommandLine>(parsed);
+  Terminal terminal(options.quiet, options.json);
+  return report_errors(terminal, [&] {
+    KokkosSession const session(choose_threads(options));
+    return run(options, terminal);
+  });
+} catch (...) {  // what fails in reporting a failure, when memory has run out
+  std::fputs("gridmorph: error: internal failure\n", stderr);
+  return machine_failure;
+}

@@ -1,0 +1,11 @@
+#include <gridmorph/app/cli/commands.hpp>
+#include <gridmorph/app/cli/workflow.hpp>
+
+namespace gridmorph::cli {
+
+int run_plan_command(CommandLine const& options, Terminal& terminal) {
+  print_plan(read_case_file(options.input), terminal);
+  return done;
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,52 @@
+// The meshes of a sequence on disk: one file per step, or one file with a series. All of them appear, or none.
+#pragma once
+
+#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/output_file.hpp>
+#include <gridmorph/io/write_series.hpp>
+#include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+/// Whether the output names one file per step.
+bool one_file_per_step(SequenceOptions const& options);
+
+/// "blade_{step}.cgns" -> "blade_007.cgns" for step 6 of 100: as many digits as the last step needs. Without "{step}" the
+/// output as it is.
+std::filesystem::path step_path(SequenceOptions const& options, int step);
+
+class StepFiles {
+ public:
+  /// `mesh` must outlive the files.
+  StepFiles(CaseFile const& case_file, Mesh const& mesh);
+  /// One file per step; throws ConfigError for a series in one file.
+  StepFiles(CaseFile const& case_file, UnstructuredMesh const& mesh);
+  StepFiles(StepFiles const&) = delete;
+  StepFiles& operator=(StepFiles const&) = delete;
+
+  /// Writes the next step beside its place. Fields only with one file per step.
+  void add(Coordinates const& morphed, OutputFields const& fields);
+  /// Puts everything in place. Throws MachineError when a file cannot be renamed; those that were put in place before it
+  /// are taken away again.
+  void commit();
+
+ private:
+  /// A file beside the next step's place; its name.
+  std::string const& next_file();
+
+  CaseFile const& case_file_;
+  Mesh const* structured_ = nullptr;
+  UnstructuredMesh const* unstructured_ = nullptr;  ///< one of both
+  std::deque<io::OutputFile> files_;                ///< of the steps so far
+  std::optional<SeriesWriter> series_;
+};
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,107 @@
+#include <gridmorph/app/cli/terminal.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include <unistd.h>
+
+namespace gridmorph::cli {
+
+namespace {
+
+void prefixed(std::string_view kind, std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    std::size_t const end = text.find('\n');
+    std::string_view const line = text.substr(0, end);
+    if (!line.empty() && line.front() != ' ') out.append("gridmorph: ").append(kind).append(": ");
+    out.append(line).push_back('\n');
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  std::fwrite(out.data(), 1, out.size(), stderr);
+}
+
+}  // namespace
+
+constexpr double seconds_between_lines = 10;
+
+std::string json_text(nlohmann::json const& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+Terminal::Terminal(bool quiet, bool json)
+    : pace_(seconds_between_lines), quiet_(quiet), json_(json), interactive_(!quiet && isatty(STDERR_FILENO) != 0) {}
+Terminal::~Terminal() { clear_progress(); }
+
+void Terminal::to_standard_output(std::string_view text) {
+  clear_progress();
+  if (error_ != 0 || text.empty()) return;
+  errno = 0;
+  bool const ended = text.back() == '\n';
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || (!ended && std::fputc('\n', stdout) == EOF) ||
+      std::fflush(stdout) != 0)
+    error_ = errno != 0 ? errno : EIO;
+}
+
+void Terminal::result(std::string_view text) { to_standard_output(text); }
+
+void Terminal::say(std::string_view text) {
+  if (!quiet_ && !json_) to_standard_output(text);
+}
+
+void Terminal::document(nlohmann::json const& json) {
+  if (json_) documents_.push_back(json);
+}
+
+std::vector<nlohmann::json> Terminal::take_documents() { return std::exchange(documents_, {}); }
+
+void Terminal::warn(std::string_view text) {
+  clear_progress();
+  prefixed("warning", text);
+}
+
+void Terminal::error(std::string_view text) {
+  clear_progress();
+  prefixed("error", text);
+}
+
+void Terminal::expect(std::vector<double> costs) {
+  stages_.expect(std::move(costs));
+  begin_ = std::chrono::steady_clock::now();
+  pace_ = LogPace(seconds_between_lines);
+}
+
+void Terminal::progress(std::string_view text) { show(text, stages_.advance()); }
+
+void Terminal::progress(std::string_view text, double share) { show(text, share); }
+
+void Terminal::show(std::string_view text, std::optional<double> share) {
+  if (quiet_) return;
+  double const elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  if (!interactive_ && !pace_.due(elapsed)) return;
+  std::string const line = progress_text(text, share, elapsed);
+  clear_progress();
+  std::fprintf(stderr, interactive_ ? "%s ..." : "gridmorph: %s ...\n", line.c_str());
+  std::fflush(stderr);
+  shown_ = interactive_;
+}
+
+void Terminal::clear_progress() {
+  if (!shown_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+  shown_ = false;
+}
+
+void Terminal::finish() {
+  for (auto const& json : take_documents()) to_standard_output(json_text(json));
+  clear_progress();
+  if (error_ == 0 && std::fflush(stdout) != 0) error_ = errno;
+  if (error_ != 0 && error_ != EPIPE)
+    throw MachineError(std::string("standard output cannot be written: ") + std::strerror(error_));
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,265 @@
+#include <gridmorph/app/casefile/ignored_keys.hpp>
+#include <gridmorph/app/casefile/side_file.hpp>
+#include <gridmorph/app/cli/commands.hpp>
+#include <gridmorph/app/cli/diagnosis.hpp>
+#include <gridmorph/app/cli/near_field_mask.hpp>
+#include <gridmorph/app/cli/output_files.hpp>
+#include <gridmorph/app/cli/run_files.hpp>
+#include <gridmorph/app/cli/wheel_setup.hpp>
+#include <gridmorph/app/cli/wheel_text.hpp>
+#include <gridmorph/app/cli/workflow.hpp>
+#include <gridmorph/boundary/coverage.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/mapping/mapping_report.hpp>
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/wheel/seams.hpp>
+#include <gridmorph/wheel/turn.hpp>
+#include <gridmorph/wheel/wheel_mesh.hpp>
+
+#include <fmt/format.h>
+#include <Kokkos_Core.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+kernels::Field<double const> field(Coordinates const& c) { return {c.x.data(), c.y.data(), c.z.data()}; }
+
+/// Puts a zone of the sector where its passage stands. Cost: 48 bytes per node.
+void turn_zone(Exec const& exec, Zone const& zone, Turn const& turn, Coordinates const& from, Coordinates const& to) {
+  Kokkos::parallel_for(
+      "gridmorph::wheel::turn",
+      Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, zone.first_node, zone.first_node + zone.size()),
+      [=](Index n) { to.set(n, turn(from[n])); });
+}
+
+/// Morphs, measures, turns and writes a wheel, one passage at a time.
+class WheelRun {
+ public:
+  WheelRun(CaseFile const& case_file, Terminal& terminal)
+      : case_(case_file),
+        terminal_(terminal),
+        mesh_(read(case_file, terminal)),
+        links_(connect_and_check(mesh_, case_file.plan.topology)),
+        rows_(find_rows(mesh_, links_, case_file.motion.axis, case_file.plan.topology)),
+        setup_(wheel_setup(case_file, mesh_, rows_)),
+        wheel_(make_wheel_mesh(mesh_, links_, rows_, case_file.motion.axis, setup_.passages(),
+                               case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)) {
+    result_.nodes = wheel_.mesh.n_nodes();
+    time("read");
+  }
+
+  [[nodiscard]] Mesh const& mesh() const { return mesh_; }
+  [[nodiscard]] WheelMesh const& wheel() const { return wheel_; }
+  [[nodiscard]] WheelRows const& rows() const { return rows_; }
+  [[nodiscard]] WheelSetup const& setup() const { return setup_; }
+  [[nodiscard]] Diagnosis const& diagnosis() const { return worst_of_; }
+
+  WheelResult run(MeshFileWriter& writer) {
+    terminal_.progress("connecting zones, applying rules, planning");
+    WheelMotion const motion(mesh_, links_, rows_, setup_.motions, case_.plan, setup_.blades);
+    result_.notes = mesh_.notes;
+    result_.notes.insert(result_.notes.end(), motion.notes().begin(), motion.notes().end());
+    Morpher<Exec> const morpher(exec_, motion.plan(), field(mesh_.coordinates));
+    time("plan");
+    prepare_quality(motion.plan());
+    SharedNodes const shared(mesh_, links_, rows_, true);
+    std::vector<Seams> seams;
+    for (int r = 0; r < int(rows_.rows.size()); ++r)
+      seams.emplace_back(mesh_, shared, rows_, r, case_.motion.axis, setup_.blades[r].passages);
+
+    terminal_.expect({});
+    Coordinates const morphed(mesh_.n_nodes()), placed(mesh_.n_nodes());
+    int last = -1, zone = 0;
+    int const n_passages = wheel_.zones.back().passage + 1;
+    for (int p = 0; p < n_passages; ++p) {
+      terminal_.progress(fmt::format("passage {} of {}", p + 1, n_passages), double(p) / n_passages);
+      if (last < 0 || !motion.alike(p, last)) {
+        auto const boundary = motion.boundary(p);
+        morph(morpher, boundary, morphed);
+        last = p;
+        int same = 0;  // a passage like this one has been measured
+        while (same < p && !motion.alike(p, same)) ++same;
+        result_.passages.push_back(same < p ? result_.passages[same] : measure(boundary, morphed));
+      } else {
+        result_.passages.push_back(result_.passages.back());
+      }
+      result_.passages.back().blades = blades_of(p);
+      for (int n = zone; n < int(wheel_.zones.size()) && wheel_.zones[n].passage == p; ++n) {
+        int const z = wheel_.zones[n].zone;
+        turn_zone(exec_, mesh_.zones[z], Turn(case_.motion.axis, p, rows_.rows[rows_.row_of_zone[z]].passages), morphed,
+                  placed);
+      }
+      exec_.fence();
+      for (int r = 0; r < int(seams.size()); ++r)
+        if (p < setup_.blades[r].passages) close(seams[r], p, placed);
+      time("turn");
+      for (; zone < int(wheel_.zones.size()) && wheel_.zones[zone].passage == p; ++zone) {
+        Index const first = mesh_.zones[wheel_.zones[zone].zone].first_node;
+        writer.write_zone(zone, placed.x.data() + first, placed.y.data() + first, placed.z.data() + first);
+      }
+      time("write");
+    }
+    for (auto const& use : case_.fields) result_.notes.push_back(use.where + ": " + describe_mapping(*use.field));
+    return std::move(result_);
+  }
+
+ private:
+  static Mesh read(CaseFile const& case_file, Terminal& terminal) {
+    terminal.progress("reading " + case_file.input.string());
+    return load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
+  }
+
+  void time(std::string const& step) {
+    double const seconds = watch_.lap();
+    auto const at =
+        std::find_if(result_.times.begin(), result_.times.end(), [&](auto const& t) { return t.step == step; });
+    if (at != result_.times.end())
+      at->seconds += seconds;
+    else
+      result_.times.push_back({step, seconds, step != "plan" && step != "read"});
+  }
+
+  void prepare_quality(Plan const& plan) {
+    quality_.coordinates = views(mesh_.coordinates);
+    quality_.near_field = mask_view(near_field_mask(mesh_, plan));
+    quality_.walls = wall_faces(mesh_, measured_walls(mesh_, case_));
+    quality_.limits = case_.guard;
+    quality_.fast = wants_verdict(case_, first_cells(mesh_).back());
+    quality_.handedness = zone_handedness(exec_, mesh_, quality_.coordinates);
+    result_.baseline = measure_quality(exec_, mesh_, quality_);
+    quality_.baseline = quality_.coordinates;
+    time("quality");
+  }
+
+  void morph(Morpher<Exec> const& morpher, std::vector<Vec3> const& boundary, Coordinates const& morphed) {
+    Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
+                                                                                                       boundary.size());
+    morpher.apply(exec_, given, field(mesh_.coordinates), {morphed.x.data(), morphed.y.data(), morphed.z.data()});
+    exec_.fence();
+    time("morph");
+  }
+
+  PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed) {
+    PassageResult passage;
+    for (Vec3 const& u : boundary) passage.largest_displacement = std::max(passage.largest_displacement, norm(u));
+    quality_.coordinates = views(morphed);
+    passage.quality = measure_quality(exec_, mesh_, quality_);
+    passage.shortfalls = shortfalls(result_.baseline, passage.quality, thresholds_of(case_));
+    if (worst_of_.worst.empty() &&
+        passage.quality.near_field.newly_inverted + passage.quality.far_field.newly_inverted > 0)
+      worst_of_ = diagnose(case_, for_messages(mesh_), passage.quality, morphed);
+    time("quality");
+    return passage;
+  }
+
+  [[nodiscard]] std::vector<std::string> blades_of(int passage) const {
+    std::vector<std::string> out;
+    for (std::size_t r = 0; r < rows_.rows.size(); ++r)
+      if (rows_.rows[r].periodic() && passage < setup_.blades[r].passages)
+        out.push_back(setup_.names[setup_.blades[r].blades[passage]]);
+    return out;
+  }
+
+  /// Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
+  void close(Seams& seams, int passage, Coordinates const& placed) {
+    seams.close(passage, placed);
+    SeamGap const& gap = seams.largest_gap();
+    if (gap.distance > result_.gap.distance) result_.gap = gap;
+    double mismatch = 0;
+    for (Link const& link : links_.all) mismatch = std::max(mismatch, link.mismatch);
+    double const tolerance = 4 * mismatch + std::max(1e-8, case_.motion.conformity_tolerance) * links_.mesh_size;
+    if (gap.distance > tolerance)
+      throw MotionError(
+          fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
+                      "periodic side must move alike on both sides of the passage, in cylindrical components",
+                      gap.passage + 1, describe_node(mesh_, gap.node), gap.distance));
+  }
+
+  CaseFile const& case_;
+  Terminal& terminal_;
+  Diagnosis worst_of_;  ///< of the first passage with inverted cells
+  Stopwatch watch_;
+  Exec exec_;
+  WheelResult result_;
+  Mesh mesh_;
+  Links links_;
+  WheelRows rows_;
+  WheelSetup setup_;
+  WheelMesh wheel_;
+  QualityInput<Kokkos::HostSpace> quality_;
+};
+
+bool newly_inverted(WheelResult const& result) {
+  return std::any_of(result.passages.begin(), result.passages.end(), [](auto const& p) {
+    return p.quality.near_field.newly_inverted + p.quality.far_field.newly_inverted > 0;
+  });
+}
+
+std::string text_of(WheelRun const& run, WheelResult const& result) {
+  std::string text;
+  for (auto const& note : result.notes) text += "note: " + note + "\n";
+  text += describe_rows(run.mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
+  text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
+                      result.gap.distance);
+  return text + "\n" + format_times(result.times, result.nodes);
+}
+
+}  // namespace
+
+int run_wheel_command(CommandLine const& options, Terminal& terminal) {
+  CaseFile case_file = read_case_file(options.input);
+  set_quality(case_file, options.quality);
+  if (!case_file.wheel)
+    throw ConfigError(options.input.string() + ": no [wheel]; add [wheel] with output = \"wheel.cgns\"");
+  auto const output = options.output.value_or(case_file.wheel->output);
+  auto const report = options.report ? options.report : case_file.output_options.report;
+  if (output.empty())
+    throw ConfigError(options.input.string() +
+                      ": no output; add output = \"wheel.cgns\" to [wheel] or give --output FILE");
+  refuse_ignored_keys(case_file, {.run = CaseUse::Run::wheel});
+  RunFiles outputs = outputs_of(output, report);
+  outputs.front().what = "wheel";  // CGNS, whatever the sector is
+  check_run_files(inputs_of(case_file), outputs);
+
+  WheelRun run(case_file, terminal);
+  std::optional<MeshFileWriter> writer(std::in_place, output.string(), run.wheel().mesh);
+  WheelResult const result = run.run(*writer);
+  bool const written = !newly_inverted(result) || case_file.guard.write_inverted;
+  std::optional<PendingFile> pending;
+  nlohmann::json json = wheel_json(run.mesh(), run.rows(), run.setup(), result);
+  json["case_file"] = case_file.source.string();
+  json["input"] = case_file.input.string();
+  json["output"] = written ? nlohmann::json(output.string()) : nlohmann::json(nullptr);
+  if (report) pending.emplace(*report, json_text(json));
+  if (written) writer->commit();
+  writer.reset();
+  if (pending) pending->commit();
+
+  terminal.say(text_of(run, result));
+  terminal.document(json);
+  bool failed = !written;
+  for (std::size_t p = 0; p < result.passages.size(); ++p)
+    for (auto const& s : result.passages[p].shortfalls) {
+      if (s.severity != Shortfall::Severity::failure) continue;
+      failed = true;
+      terminal.warn(fmt::format("passage {}: {}", p + 1, s.message));
+    }
+  if (written)
+    terminal.say(fmt::format("\nwrote {}\n", output.string()));
+  else
+    terminal.error(refusal(output.string(), "cells are inverted that were not in the baseline", run.diagnosis(),
+                           "move the blades less, change [volume] or [boundary_layer]"));
+  return status_of_morph(written, failed);
+}
+
+}  // namespace gridmorph::cli

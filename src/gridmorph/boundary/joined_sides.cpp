@@ -1,0 +1,164 @@
+#include <gridmorph/boundary/joined_sides.hpp>
+
+#include <gridmorph/boundary/links.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr double same_point = 1e-7;  // of the size
+
+/// Number of the piece that each grid belongs to, from 0.
+std::vector<int> pieces_of(PatchSurface const& surface) {
+  std::vector<int> piece(surface.grids.size()), holds(surface.points.size(), -1);
+  std::iota(piece.begin(), piece.end(), 0);
+  for (std::size_t g = 0; g < surface.grids.size(); ++g)
+    for (int const v : surface.grids[g].vertex) {
+      if (holds[v] >= 0 && piece[holds[v]] != piece[g])
+        std::replace(piece.begin(), piece.end(), std::max(piece[g], piece[holds[v]]),
+                     std::min(piece[g], piece[holds[v]]));
+      holds[v] = int(g);
+    }
+  std::set<int> const used(piece.begin(), piece.end());
+  for (int& p : piece) p = int(std::distance(used.begin(), used.find(p)));
+  return piece;
+}
+
+class Joiner {
+ public:
+  Joiner(Mesh const& mesh, PatchSurface const& surface)
+      : surface_(surface), piece_(pieces_of(surface)), members_(1 + *std::max_element(piece_.begin(), piece_.end())) {
+    for (std::size_t g = 0; g < surface.grids.size(); ++g) {
+      auto& members = members_[piece_[g]];
+      members.insert(surface.grids[g].vertex.begin(), surface.grids[g].vertex.end());
+    }
+    if (members_.size() == 1) return;
+    for (Interface1to1 const& interface : mesh.interfaces) {
+      if (!interface.periodic) continue;
+      RigidTransform const transform = fitted_transform(mesh, interface);
+      transforms_.push_back(transform);
+      transforms_.push_back(transform.inverse());
+    }
+  }
+
+  [[nodiscard]] int n_pieces() const { return int(members_.size()); }
+
+  /// Where each piece goes when piece `home` stays.
+  [[nodiscard]] std::vector<std::optional<RigidTransform>> places(int home) const {
+    std::vector<std::optional<RigidTransform>> place(members_.size());
+    PointNumbers placed(same_point * surface_.size);
+    auto const put = [&](int piece, RigidTransform const* transform) {
+      for (int const v : members_[piece])
+        placed.add(transform ? (*transform)(surface_.points[v]) : surface_.points[v], v);
+      place[piece] = transform ? *transform : RigidTransform{};
+    };
+    put(home, nullptr);
+    for (bool found = true; found;) {
+      found = false;
+      for (int p = 0; p < n_pieces(); ++p) {
+        if (place[p]) continue;
+        RigidTransform const* best = nullptr;
+        int most = 1;  // a common edge has two vertices
+        for (RigidTransform const& transform : transforms_) {
+          int common = 0;
+          for (int const v : members_[p]) common += placed.find(transform(surface_.points[v])) >= 0 ? 1 : 0;
+          if (common > most) {
+            most = common;
+            best = &transform;
+          }
+        }
+        if (!best) continue;
+        put(p, best);
+        found = true;
+      }
+    }
+    return place;
+  }
+
+  [[nodiscard]] Vec3 middle(std::vector<std::optional<RigidTransform>> const& place) const {
+    Vec3 sum;
+    double count = 0;
+    for (int p = 0; p < n_pieces(); ++p) {
+      if (!place[p]) continue;
+      for (int const v : members_[p]) sum += (*place[p])(surface_.points[v]);
+      count += double(members_[p].size());
+    }
+    return (1 / count) * sum;
+  }
+
+  [[nodiscard]] JoinedSides join(int home, std::vector<std::optional<RigidTransform>> const& place) const {
+    JoinedSides out{surface_, {}, {}, {}};
+    out.surface.points.clear();
+    out.surface.numbers = PointNumbers(same_point * surface_.size);
+    out.vertex.assign(surface_.points.size(), -1);
+    auto const number = [&](int v, RigidTransform const* transform) {
+      Vec3 const x = transform ? (*transform)(surface_.points[v]) : surface_.points[v];
+      // What was apart before stays apart, however close: only what comes from another piece is looked for.
+      int n = transform ? out.surface.numbers.find(x) : -1;
+      if (n < 0) {
+        n = int(out.surface.points.size());
+        out.surface.points.push_back(x);
+      }
+      out.vertex[v] = n;
+    };
+    std::vector<int> order{home};
+    for (int p = 0; p < n_pieces(); ++p)
+      if (p != home) order.push_back(p);
+    for (int const p : order) {
+      bool const turned = p != home && place[p].has_value();
+      for (int const v : members_[p]) number(v, turned ? &*place[p] : nullptr);
+      for (int const v : members_[p]) out.surface.numbers.add(out.surface.points[out.vertex[v]], out.vertex[v]);
+    }
+    for (std::size_t g = 0; g < out.surface.grids.size(); ++g) {
+      int const p = piece_[g];
+      for (int& v : out.surface.grids[g].vertex) v = out.vertex[v];
+      out.turned.push_back(p != home && place[p].has_value() ? 1 : 0);
+      out.turn.push_back(out.turned.back() != 0 ? *place[p] : RigidTransform{});
+    }
+    return out;
+  }
+
+ private:
+  PatchSurface const& surface_;
+  std::vector<int> piece_;              ///< per grid
+  std::vector<std::set<int>> members_;  ///< vertices per piece
+  std::vector<RigidTransform> transforms_;
+};
+
+}  // namespace
+
+JoinedSides join_sides(Mesh const& mesh, PatchSurface const& surface, Vec3 const& near) {
+  Joiner const joiner(mesh, surface);
+  int home = 0;
+  auto place = joiner.places(home);
+  for (int p = 1; p < joiner.n_pieces(); ++p) {
+    if (!place[p]) continue;
+    auto other = joiner.places(p);
+    if (distance(joiner.middle(other), near) < distance(joiner.middle(place), near)) {
+      place = std::move(other);
+      home = p;
+    }
+  }
+  return joiner.join(home, place);
+}
+
+RigidTransform fitted_transform(Mesh const& mesh, Interface1to1 const& interface) {
+  Zone const &own = mesh.zones[interface.zone], &donor = mesh.zones[interface.donor_zone];
+  std::vector<Vec3> from, to;
+  IndexRange const& r = interface.range;
+  for (int k = r.begin[2]; k < r.end[2]; ++k)
+    for (int j = r.begin[1]; j < r.end[1]; ++j)
+      for (int i = r.begin[0]; i < r.end[0]; ++i) {
+        from.push_back(mesh.coordinates[own.node({i, j, k})]);
+        to.push_back(mesh.coordinates[donor.node(interface.to_donor(Index3{i, j, k}))]);
+      }
+  return fit_rigid_transform(from, to);
+}
+
+}  // namespace gridmorph

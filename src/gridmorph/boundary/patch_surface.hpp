@@ -1,0 +1,75 @@
+// The patches of a rule as one surface: nodes that coincide are one vertex, so that they move as one.
+#pragma once
+
+#include <gridmorph/boundary/patch_faces.hpp>
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace gridmorph {
+
+/// Finds points by position: the very same one, or one within a tolerance.
+class PointNumbers {
+ public:
+  explicit PointNumbers(double tolerance) : tolerance_(tolerance) {}
+
+  /// The number given to p, or to a point within the tolerance of it; -1 when there is none.
+  [[nodiscard]] int find(Vec3 const& p) const;
+  void add(Vec3 const& p, int number);
+
+ private:
+  struct Entry {
+    Vec3 point;
+    int number;
+  };
+  using Key = std::array<std::int64_t, 3>;
+  struct Hash {
+    std::size_t operator()(Key const& key) const;
+  };
+  [[nodiscard]] std::int64_t cell(double v) const;
+
+  double tolerance_;
+  std::unordered_map<Key, std::vector<Entry>, Hash> cells_;  ///< cells four tolerances wide
+};
+
+/// Corners of a facet, four or (the last is -1) three, in order around it.
+using GridFacet = std::array<int, 4>;
+
+/// Nodes of one patch as vertices of the surface.
+struct PatchGrid {
+  int patch = -1;
+  std::array<int, 2> extent{0, 0};  ///< along its two directions, the first one fastest
+  std::vector<int> vertex;          ///< (extent[0] * extent[1])
+  bool inward = false;              ///< direction 0 x direction 1 points out of the mesh, not into it
+  /// Of patches that are no grids (extent[1] is 1): their faces, and the places of `vertex` in the order of the file.
+  std::vector<GridFacet> faces;
+  std::vector<int> listed;
+
+  [[nodiscard]] int at(int a, int b) const { return vertex[std::size_t(a) + std::size_t(extent[0]) * b]; }
+};
+
+struct PatchSurface {
+  std::vector<Vec3> points;
+  std::vector<PatchGrid> grids;  ///< per patch, as given
+  double size = 0;               ///< diagonal of the bounding box
+  double tolerance = 0;          ///< nodes closer than this are one vertex
+  bool gridded = true;           ///< patches are grids; otherwise they have faces
+  bool lines = false;            ///< of two corners, in the plane of a 2-D mesh
+  PointNumbers numbers{0};
+
+  /// Patches must be faces of their zones; with `faces`, their first rows of nodes along i. Cost O(nodes).
+  PatchSurface(Mesh const& mesh, std::vector<int> const& patches, PatchFaces const* faces = nullptr);
+
+  /// The quadrilaterals; those with two corners in one vertex are triangles, those with fewer are left out. All are
+  /// right-handed about normals that point into the mesh.
+  [[nodiscard]] std::vector<GridFacet> facets() const;
+  /// Vertices next to one another along grid lines, or along the sides of faces; ascending, none twice.
+  [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
+};
+
+double box_diagonal(std::vector<Vec3> const& points);
+
+}  // namespace gridmorph

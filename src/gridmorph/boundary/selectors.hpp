@@ -1,0 +1,41 @@
+// What a selector of a motion rule names: patches and interfaces of a mesh.
+#pragma once
+
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridmorph {
+
+/// Whether text matches a pattern of literal characters, `*` (any run, also empty) and `?` (any one character).
+bool glob_match(std::string_view pattern, std::string_view text);
+
+/// Numbers in Mesh::patches and Mesh::interfaces, ascending.
+struct Selection {
+  std::vector<int> patches;
+  std::vector<int> interfaces;  ///< by family or `type:periodic`: periodic ones; by their own name: plain ones too
+  [[nodiscard]] bool empty() const { return patches.empty() && interfaces.empty(); }
+};
+
+/// `type:KIND` by kind; otherwise the first of these that the selector matches: families, BC names, connection and
+/// interface names. A selector with a `/` matches BC and connection names as "zone/name" as well. Empty when nothing
+/// matches. Throws MotionError for a KIND there is not.
+Selection select(Mesh const& mesh, std::string const& selector);
+
+/// Numbers of the patches a list of selectors names, ascending. Case-sensitive; family first, then BC name, then
+/// connection name: a selector that matches a family takes that family's patches only. "zone/name" addresses a BC or
+/// connection of one zone. Throws one MotionError for all selectors that name no patch; it lists what there is.
+std::vector<int> select_patches(Mesh const& mesh, std::vector<std::string> const& selectors);
+
+/// "families: ...; BC names: ...; connections: ...; types: ..." of what the mesh has, for messages.
+std::string describe_selectable(Mesh const& mesh);
+
+/// "'a', 'b', 'c' and 4 more".
+std::string quote_list(std::vector<std::string> const& names, std::size_t at_most = 30);
+
+/// Family name if there is one, otherwise the interface's own name: how users know it.
+std::string describe_interface(Mesh const& mesh, int interface);
+
+}  // namespace gridmorph

@@ -1,0 +1,71 @@
+// Positions and motions as a machine sees them: along its axis, away from it, and around it.
+#pragma once
+
+#include <gridmorph/geometry/axis.hpp>
+
+#include <cmath>
+
+namespace gridmorph {
+
+/// Where a point is in the meridional plane; the angle about the axis is left out, so that whatever is computed from it
+/// is the same for every periodic copy.
+struct MeridionalPoint {
+  double axial = 0;
+  double radius = 0;
+};
+
+/// A displacement in cylindrical components: lengths, and an angle right-handed about the axis.
+struct CylindricalMotion {
+  double axial = 0;
+  double radial = 0;
+  double angle_rad = 0;
+};
+
+/// The frame of a machine's axis.
+class CylindricalFrame {
+ public:
+  explicit CylindricalFrame(Axis const& axis)
+      : origin_(axis.origin), direction_((1 / norm(axis.direction)) * axis.direction) {}
+
+  [[nodiscard]] Vec3 const& origin() const { return origin_; }
+  [[nodiscard]] Vec3 const& direction() const { return direction_; }
+
+  [[nodiscard]] MeridionalPoint meridional(Vec3 const& p) const {
+    Vec3 const d = p - origin_;
+    double const a = dot(d, direction_);
+    return {a, norm(d - a * direction_)};
+  }
+
+  /// What displacement u does to point p. Every component is a product with u, so that u = 0 gives exact zeros.
+  [[nodiscard]] CylindricalMotion motion(Vec3 const& p, Vec3 const& u) const {
+    if (u == Vec3{0, 0, 0}) return {};
+    Vec3 const d = p - origin_;
+    Vec3 const q = d - dot(d, direction_) * direction_;
+    double const axial = dot(u, direction_);
+    Vec3 const v = u - axial * direction_;
+    double const radii = norm(q) + norm(q + v);
+    double const radial = radii > 0 ? (2 * dot(q, v) + dot(v, v)) / radii : 0.0;
+    return {axial, radial, std::atan2(dot(direction_, cross(q, v)), dot(q, q) + dot(q, v))};
+  }
+
+  /// The displacement of p that has these components: the inverse of motion(). Exactly zero for zero components; an
+  /// angle alone keeps axial position and radius to round-off.
+  [[nodiscard]] Vec3 displacement(Vec3 const& p, CylindricalMotion const& m) const {
+    Vec3 const d = p - origin_;
+    Vec3 const q = d - dot(d, direction_) * direction_;
+    double const s = std::sin(m.angle_rad), half = std::sin(0.5 * m.angle_rad);
+    Vec3 u = s * cross(direction_, q) + (-2 * half * half) * q;  // (R - I) q, with 1 - cos = 2 sin^2(angle / 2)
+    if (m.radial != 0) {
+      double const r = norm(q);
+      if (r > 0) u += (m.radial / r) * (q + u);
+    }
+    if (m.axial != 0) u += m.axial * direction_;
+    return u;
+  }
+
+ private:
+  Vec3 origin_;
+  Vec3 direction_;
+};
+
+}  // namespace gridmorph

@@ -1,0 +1,87 @@
+#include <gridmorph/geometry/target_tree.hpp>
+
+#include <gridmorph/geometry/facet_boxes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace gridmorph {
+
+Vec3 closest_on_triangle(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c) {
+  double to_b = 0, to_c = 0;
+  nearest_on_triangle(p, a, b, c, to_b, to_c);
+  // Along a side from one of its ends, so that corners come back to the bit.
+  if (to_c == 0) return to_b == 0 ? a : to_b == 1 ? b : a + to_b * (b - a);
+  if (to_c == 1) return c;
+  if (to_b == 0) return a + to_c * (c - a);
+  if (to_b == 1 - to_c) return b + to_c * (c - b);
+  return a + to_b * (b - a) + to_c * (c - a);
+}
+
+TargetTree::TargetTree(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles)
+    : points_(std::move(points)), triangles_(std::move(triangles)) {
+  if (triangles_.empty()) return;
+  std::vector<Facet> facets(triangles_.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (int c = 0; c < 3; ++c) facets[t].corner[c] = triangles_[t][c];
+  FacetBoxes tree(points_, facets);
+  boxes_ = std::move(tree.boxes);
+  order_ = std::move(tree.order);
+}
+
+Vec3 TargetTree::normal(int triangle) const {
+  auto const& t = triangles_[triangle];
+  return cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]);
+}
+
+template <class Accept>
+TargetTree::Hit TargetTree::search(Vec3 const& p, Accept const& accept) const {
+  Hit best;
+  double nearest = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, int>> waiting;
+  auto const wait = [&](int box) { waiting.emplace_back(boxes_[box].distance2(p), box); };
+  if (!boxes_.empty()) wait(0);
+  while (!waiting.empty()) {
+    auto const [away, b] = waiting.back();
+    waiting.pop_back();
+    if (away > nearest) continue;
+    FacetBox const& box = boxes_[b];
+    if (box.count == 0) {
+      wait(box.first);
+      wait(box.first + 1);
+      // The nearer one is looked at first.
+      if (auto const last = waiting.end() - 1, before = last - 1; before->first < last->first)
+        std::iter_swap(before, last);
+      continue;
+    }
+    for (int n = box.first; n < box.first + box.count; ++n) {
+      int const t = order_[n];
+      if (!accept(t)) continue;
+      auto const& [i, j, k] = triangles_[t];
+      Vec3 const q = closest_on_triangle(p, points_[i], points_[j], points_[k]);
+      double const d = dot(q - p, q - p);
+      if (d < nearest || (d == nearest && t < best.triangle)) {
+        nearest = d;
+        best = {t, q, 0};
+      }
+    }
+  }
+  if (best.triangle >= 0) best.distance = std::sqrt(nearest);
+  return best;
+}
+
+TargetTree::Hit TargetTree::closest(Vec3 const& p) const {
+  return search(p, [](int) { return true; });
+}
+
+TargetTree::Hit TargetTree::closest_of(Vec3 const& p, std::function<bool(int triangle)> const& accept) const {
+  return search(p, accept);
+}
+
+TargetTree::Hit TargetTree::closest_facing(Vec3 const& p, Vec3 const& direction) const {
+  return search(p, [&](int t) { return dot(normal(t), direction) > 0; });
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,31 @@
+// Motions that are too large for one plan.
+#pragma once
+
+#include <gridmorph/guard/guard.hpp>
+#include <gridmorph/plan/unstructured_options.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace gridmorph {
+
+struct StepOptions {
+  int steps = 2;
+  UnstructuredOptions plan;  ///< of every step; `motion` is found per step
+  RelaxOptions relax;
+  std::function<void(int step)> progress;  ///< called before each step, from 1; may be empty
+};
+
+/// Morphs in several steps, each planned on the mesh that the one before left, and smoothed around elements that it made bad
+/// (relax_bad_elements). Displacements that add up along straight lines shear what lies between a body that turns and a
+/// boundary that stands; steps follow the turn (MotionPath). Boundary conditions and slip surfaces are those of `prepared`; known
+/// nodes get `displacement` exactly.
+///
+/// The mesh's coordinates change on the way and are the baseline again when this returns or throws. Returns the new ones.
+/// Throws PlanError for a background mesh of the user's, which stands still while the walls move. Cost: a plan, an apply and
+/// a guard per step.
+Coordinates morph_in_steps(UnstructuredMesh& mesh, UnstructuredTopology const& topology,
+                           BoundaryFacePatches const& face_patches, PreparedUnstructured const& prepared,
+                           std::vector<Vec3> const& displacement, StepOptions const& options);
+
+}  // namespace gridmorph

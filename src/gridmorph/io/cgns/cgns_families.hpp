@@ -1,0 +1,28 @@
+// Families of a CGNS file: names, trees of names, and the boundary condition type a family stands for.
+#pragma once
+
+#include <gridmorph/io/cgns/cgns_file.hpp>
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridmorph::cgns {
+
+/// Names of all families of a base; members of a family tree as "Parent/Child".
+std::vector<std::string> family_names(Node const& base);
+
+/// FamilyName_t first, then AdditionalFamilyName_t, of a BC_t or connection node.
+std::vector<std::string> families_of(File const& file, Node const& owner);
+
+/// The BCType_t that a family stands for through its FamilyBC_t, or that of the nearest family above it in its tree.
+/// Names may be paths, with or without the base in front.
+std::optional<std::string> family_bc_type(File const& file, Node const& tree, Node const& base,
+                                          std::string const& name);
+
+/// The group a CGNS BCType_t name belongs to.
+PatchKind patch_kind(std::string_view bc_type);
+
+}  // namespace gridmorph::cgns

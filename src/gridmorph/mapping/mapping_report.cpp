@@ -1,0 +1,46 @@
+#include <gridmorph/mapping/mapping_report.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace gridmorph {
+
+std::string describe_mapping(PointField const& field) {
+  auto const m = field.mapping();
+  if (m.evaluated == m.coincident)
+    return fmt::format("{}: all {} node positions coincide with points of the file (largest distance {:.3g})",
+                       field.source(), m.evaluated, m.max);
+  std::string text = fmt::format(
+      "{}: {} of {} node positions coincide with points of the file, the others are {}; mapping distance mean {:.3g}, "
+      "largest {:.3g} at ({:.6g}, {:.6g}, {:.6g})",
+      field.source(), m.coincident, m.evaluated,
+      field.n_elements() > 0 ? fmt::format("mapped from its {} elements", field.n_elements()) : "interpolated", m.mean,
+      m.max, m.farthest.x, m.farthest.y, m.farthest.z);
+  if (m.extrapolated > 0)
+    text += fmt::format("; {} are beyond its edge, by {:.3g} at most, at ({:.6g}, {:.6g}, {:.6g})", m.extrapolated,
+                        m.max_beyond, m.farthest_beyond.x, m.farthest_beyond.y, m.farthest_beyond.z);
+  if (auto const e = field.leave_one_out(); e.tried > 0)
+    text += fmt::format("; leave-one-out error {:.2g} % of the largest displacement (rms {:.2g} %), worst at {}",
+                        100 * e.max, 100 * e.rms, field.where(e.worst));
+  return text;
+}
+
+nlohmann::json mapping_json(PointField const& field) {
+  auto const m = field.mapping();
+  nlohmann::json json{{"file", field.source()},
+                      {"nodes", field.size()},
+                      {"elements", field.n_elements()},
+                      {"fields", field.n_fields()},
+                      {"evaluated", m.evaluated},
+                      {"coincident", m.coincident},
+                      {"extrapolated", m.extrapolated},
+                      {"largest_extrapolation", m.max_beyond},
+                      {"mapping_distance", {{"mean", m.mean}, {"max", m.max}}},
+                      {"leave_one_out", nullptr}};
+  if (m.evaluated == m.coincident) return json;
+  if (auto const e = field.leave_one_out(); e.tried > 0)
+    json["leave_one_out"] = {{"tried", e.tried}, {"max", e.max}, {"rms", e.rms}};
+  return json;
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,57 @@
+// A displacement that oscillates: a mean and mode shapes with amplitude, frequency and phase.
+#pragma once
+
+#include <gridmorph/mapping/point_field.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace gridmorph {
+
+/// One mode shape, f real or f + i g complex.
+struct Mode {
+  StructuralModel model;   ///< nodes with f (displacement) and, of a complex mode, g (imaginary)
+  double amplitude = 1;    ///< times the shape of the file
+  double harmonic = 1;     ///< cycles per period
+  double phase_turns = 0;  ///< of a full turn: 0.25 is 90 degrees
+};
+
+/// u(t) = mean + sum_k amplitude_k (cos(a_k) f_k - sin(a_k) g_k), a_k = 2 pi (harmonic_k t + phase_turns_k), t in periods:
+/// the real part of (f + i g) exp(i a).
+///
+/// Modes on equal nodes and elements share one mapping, and stencils are kept: after the first time every further one costs
+/// O(nodes of the models) plus a lookup and some twenty multiply-adds per position. Elements turn with the sum of the modes
+/// on them. Memory: about 400 bytes per position. Evaluations may come from several threads.
+class ModalField {
+ public:
+  /// Throws ConfigError as PointField does.
+  ModalField(std::optional<StructuralModel> mean, std::vector<Mode> modes, FieldOptions options);
+
+  /// Displacement at `periods` (time over period). Throws MotionError as PointField does.
+  void at(double periods, std::span<Vec3 const> points, std::span<Vec3> displacement) const;
+
+  /// One per different model, for reports.
+  [[nodiscard]] std::vector<std::shared_ptr<PointField const>> const& fields() const { return fields_; }
+  [[nodiscard]] std::size_t n_modes() const { return modes_.size(); }
+
+ private:
+  struct Part {
+    std::size_t field = 0;  ///< in fields_
+    std::size_t real = 0;   ///< field number of f there
+    std::size_t imaginary = 0;
+    bool complex = false;
+    double amplitude = 1, harmonic = 0, phase_turns = 0;
+  };
+  std::vector<std::shared_ptr<PointField const>> fields_;
+  std::vector<Part> modes_;
+  std::optional<Part> mean_;
+};
+
+/// Cosine and sine of `turns` full turns; exactly 0, 1 and -1 at whole quarters.
+struct Oscillation {
+  double cosine, sine;
+};
+Oscillation oscillation(double turns);
+
+}  // namespace gridmorph

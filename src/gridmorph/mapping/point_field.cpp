@@ -1,0 +1,236 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/mapping/detail/merge_nodes.hpp>
+#include <gridmorph/mapping/facet_map.hpp>
+#include <gridmorph/mapping/point_field.hpp>
+#include <gridmorph/mapping/point_map.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+/// Nodes that leave-one-out tries.
+constexpr std::size_t largest_sample = 2000;
+
+struct PositionHash {
+  std::size_t operator()(Vec3 const& p) const {
+    std::uint64_t h = 0;
+    for (double const v : {p.x, p.y, p.z}) {
+      h = (h ^ std::bit_cast<std::uint64_t>(v == 0 ? 0.0 : v)) * 0x9e3779b97f4a7c15ull;  // 0.0 == -0.0
+      h ^= h >> 32;
+    }
+    return std::size_t(h);
+  }
+};
+
+}  // namespace
+
+struct PointField::Impl {
+  StructuralModel model;
+  FieldOptions options;
+  std::vector<std::vector<Vec3>> fields;
+  std::optional<PointMap> points;
+  std::optional<FacetMap> facets;
+
+  mutable std::mutex turn;
+  mutable std::unordered_map<Vec3, Stencil, PositionHash> kept;
+  mutable MappingDistance mapping;
+  mutable double sum = 0;
+
+  void scale();
+  void check(Vec3 const& q, Stencil const& stencil) const;
+  [[nodiscard]] Stencil make(Vec3 const& q) const;
+  void evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> points, std::span<Vec3> displacement) const;
+};
+
+void PointField::Impl::scale() {
+  PointCloud& nodes = model.nodes;
+  double const s = options.length_scale * options.factor;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (options.length_scale != 1) nodes.position[i] = options.length_scale * nodes.position[i];
+    bool finite = std::isfinite(norm(nodes.position[i]));
+    for (auto& field : fields) {
+      if (s != 1) field[i] = s * field[i];
+      finite = finite && std::isfinite(norm(field[i]));
+    }
+    if (!finite) throw ConfigError(nodes.where(i) + ": position or displacement is not finite after scaling");
+  }
+}
+
+void PointField::Impl::check(Vec3 const& q, Stencil const& stencil) const {
+  auto const refuse = [&](double d, std::string const& from, std::string_view key, double limit) {
+    throw MotionError(
+        fmt::format("{}: the node at ({:.9g}, {:.9g}, {:.9g}) is {:.6g} {}, farther than {} = {:.6g}; check units and "
+                    "position of the file",
+                    model.nodes.source, q.x, q.y, q.z, d, from, key, limit));
+  };
+  if (options.max_distance > 0 && stencil.distance > options.max_distance) {
+    auto const place = model.nodes.line[points->nearest(q).first];
+    refuse(stencil.distance, facets ? "from the elements" : fmt::format("from the nearest point (line {})", place),
+           "max_distance", options.max_distance);
+  }
+  if (options.max_extrapolation >= 0 && stencil.beyond > options.max_extrapolation)
+    refuse(stencil.beyond, facets ? "beyond the edge of the elements" : "beyond the edge of the points",
+           "max_extrapolation", options.max_extrapolation);
+}
+
+Stencil PointField::Impl::make(Vec3 const& q) const {
+  if (!std::isfinite(norm(q)))
+    throw MotionError(fmt::format("{}: asked for the displacement at ({}, {}, {}), which is not finite",
+                                  model.nodes.source, q.x, q.y, q.z));
+  Stencil out = facets ? facets->stencil(q) : points->stencil(q);
+  if (!out.coincident) check(q, out);
+  return out;
+}
+
+namespace {
+
+void count(MappingDistance& to, double& sum, Vec3 const& q, Stencil const& stencil) {
+  if (stencil.distance > to.max || to.evaluated == 0) {
+    to.max = stencil.distance;
+    to.farthest = q;
+  }
+  if (stencil.beyond > 0) {
+    ++to.extrapolated;
+    if (stencil.beyond > to.max_beyond) {
+      to.max_beyond = stencil.beyond;
+      to.farthest_beyond = q;
+    }
+  }
+  ++to.evaluated;
+  to.coincident += stencil.coincident ? 1 : 0;
+  sum += stencil.distance;
+}
+
+}  // namespace
+
+void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> at,
+                                std::span<Vec3> displacement) const {
+  std::vector<Vec3> rotation;
+  if (facets && options.turn_offset) rotation = nodal_rotations(model, field);
+  if (options.keep) {
+    std::lock_guard const lock(turn);
+    for (std::size_t n = 0; n < at.size(); ++n) {
+      auto known = kept.find(at[n]);
+      if (known == kept.end()) {
+        known = kept.emplace(at[n], make(at[n])).first;
+        count(mapping, sum, at[n], known->second);
+      }
+      displacement[n] = apply(known->second, field, rotation);
+    }
+    return;
+  }
+  MappingDistance here;
+  double here_sum = 0;
+  for (std::size_t n = 0; n < at.size(); ++n) {
+    Stencil const stencil = make(at[n]);
+    count(here, here_sum, at[n], stencil);
+    displacement[n] = apply(stencil, field, rotation);
+  }
+  std::lock_guard const lock(turn);
+  if (here.max > mapping.max || mapping.evaluated == 0) {
+    mapping.max = here.max;
+    mapping.farthest = here.farthest;
+  }
+  if (here.max_beyond > mapping.max_beyond) {
+    mapping.max_beyond = here.max_beyond;
+    mapping.farthest_beyond = here.farthest_beyond;
+  }
+  mapping.evaluated += here.evaluated;
+  mapping.coincident += here.coincident;
+  mapping.extrapolated += here.extrapolated;
+  sum += here_sum;
+}
+
+PointField::PointField(PointCloud cloud, FieldOptions const& options)
+    : PointField(StructuralModel{std::move(cloud), {}, {}, {}}, options) {}
+
+PointField::PointField(StructuralModel model, FieldOptions const& options, std::vector<std::vector<Vec3>> further)
+    : impl_(std::make_unique<Impl>()) {
+  if (model.nodes.size() == 0)
+    throw ConfigError(model.nodes.source + ": holds no points; expected lines of x, y, z, dx, dy, dz");
+  impl_->options = options;
+  impl_->fields.push_back(std::move(model.nodes.displacement));
+  for (auto& field : further) impl_->fields.push_back(std::move(field));
+  model.nodes.imaginary.clear();
+  impl_->model = std::move(model);
+  impl_->scale();
+  casefile::merge_nodes(impl_->model, impl_->fields);
+  impl_->points.emplace(impl_->model.nodes.position, options.extrapolation);
+  if (!impl_->model.facets.empty())
+    impl_->facets.emplace(impl_->model, options.extrapolation, impl_->points->coincidence());
+}
+
+PointField::~PointField() = default;
+PointField::PointField(PointField&&) noexcept = default;
+PointField& PointField::operator=(PointField&&) noexcept = default;
+
+void PointField::operator()(std::span<Vec3 const> points, std::span<Vec3> displacement) const {
+  impl_->evaluate(impl_->fields.front(), points, displacement);
+}
+
+void PointField::evaluate(std::span<double const> factors, std::span<Vec3 const> points,
+                          std::span<Vec3> displacement) const {
+  std::vector<Vec3> field(size());
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (factors[f] == 0) continue;
+    for (std::size_t n = 0; n < field.size(); ++n) field[n] += factors[f] * impl_->fields[f][n];
+  }
+  impl_->evaluate(field, points, displacement);
+}
+
+std::size_t PointField::size() const { return impl_->model.nodes.size(); }
+std::size_t PointField::n_elements() const { return impl_->model.facets.size(); }
+std::size_t PointField::n_fields() const { return impl_->fields.size(); }
+double PointField::coincidence() const { return impl_->points->coincidence(); }
+std::string const& PointField::source() const { return impl_->model.nodes.source; }
+std::string PointField::where(std::size_t node) const { return impl_->model.nodes.where(node); }
+std::vector<std::string> const& PointField::notes() const { return impl_->model.notes; }
+
+MappingDistance PointField::mapping() const {
+  std::lock_guard const lock(impl_->turn);
+  MappingDistance all = impl_->mapping;
+  if (all.evaluated > 0) all.mean = impl_->sum / double(all.evaluated);
+  return all;
+}
+
+MappingError PointField::leave_one_out() const {
+  MappingError worst;
+  auto const& position = impl_->model.nodes.position;
+  if (position.size() < 3) return worst;
+  std::vector<double> largest, square(impl_->fields.size(), 0.0);
+  for (auto const& field : impl_->fields) {
+    double size = 0;
+    for (Vec3 const& u : field) size = std::max(size, norm(u));
+    largest.push_back(size);
+  }
+  // Evenly through the file, whatever its order.
+  std::size_t const step = (position.size() + largest_sample - 1) / largest_sample;
+  for (std::size_t n = 0; n < position.size(); n += step) {
+    Stencil const stencil = impl_->points->stencil(position[n], n);
+    ++worst.tried;
+    for (std::size_t f = 0; f < impl_->fields.size(); ++f) {
+      if (largest[f] == 0) continue;
+      double const error = distance(apply(stencil, impl_->fields[f], {}), impl_->fields[f][n]) / largest[f];
+      square[f] += error * error;
+      if (error <= worst.max) continue;
+      worst.max = error;
+      worst.worst = n;
+    }
+  }
+  worst.rms = std::sqrt(*std::max_element(square.begin(), square.end()) / double(worst.tried));
+  return worst;
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,84 @@
+// Displacement at arbitrary positions from the nodes of a file: exact on them, mapped from the elements of the model where
+// it has them, and a local interpolation between points otherwise.
+#pragma once
+
+#include <gridmorph/mapping/point_cloud.hpp>
+#include <gridmorph/mapping/stencil.hpp>
+#include <gridmorph/mapping/structural_model.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+/// How far the positions asked for were from the model, over all evaluations so far (each position once where stencils are
+/// kept).
+struct MappingDistance {
+  std::int64_t evaluated = 0;
+  std::int64_t coincident = 0;    ///< took the displacement of a node as it stands in the file
+  double max = 0, mean = 0;       ///< distance to the nearest point, or to the elements [length]
+  Vec3 farthest;                  ///< where max was found
+  std::int64_t extrapolated = 0;  ///< beyond the edge of the model
+  double max_beyond = 0;          ///< largest distance from that edge [length]
+  Vec3 farthest_beyond;           ///< where max_beyond was found
+};
+
+/// Leave-one-out: the displacement of nodes of the model, interpolated from the others, against their own. Neighbours are
+/// twice as far apart as between nodes, so that on smooth fields this is about four times the error of the mapping.
+struct MappingError {
+  std::int64_t tried = 0;   ///< nodes; a sample of large models
+  double max = 0, rms = 0;  ///< share of the largest displacement of the field
+  std::size_t worst = 0;    ///< node number of max
+};
+
+/// Options of a field; lengths in units of the mesh.
+struct FieldOptions {
+  double length_scale = 1;  ///< multiplies positions and displacements: 1e-3 for a file in mm and a mesh in m
+  double factor = 1;        ///< multiplies displacements: the amplitude of a mode shape
+  double max_distance = 0;  ///< a position farther than this from every point or element is an error; 0: no limit
+  Extrapolation extrapolation = Extrapolation::linear;
+  double max_extrapolation = -1;  ///< a position farther than this beyond the edge is an error; negative: no limit
+  bool turn_offset = true;        ///< elements: the offset from their surface turns with them
+  bool keep = false;  ///< keep the stencil of every position, for evaluation of the same ones again and again
+};
+
+/// One or more displacement fields on the nodes of one model. A position within coincidence() of a node takes that node's
+/// displacement, bit for bit; else FacetMap maps it where the model has elements, and PointMap where it has none.
+/// Evaluations may come from several threads.
+class PointField {
+ public:
+  /// Throws ConfigError when two lines give one point different displacements (more than 1e-6 of the largest), when points
+  /// or displacements are not finite, or when elements have no area. Points given twice alike are kept once.
+  PointField(PointCloud cloud, FieldOptions const& options);
+  /// `further`: (fields)(nodes), more displacement fields on the nodes of the model, in units of the file.
+  PointField(StructuralModel model, FieldOptions const& options, std::vector<std::vector<Vec3>> further = {});
+  ~PointField();
+  PointField(PointField&&) noexcept;
+  PointField& operator=(PointField&&) noexcept;
+
+  /// Fills displacement[n] for points[n] from the first field. Throws MotionError beyond FieldOptions::max_distance and
+  /// max_extrapolation, naming the position.
+  void operator()(std::span<Vec3 const> points, std::span<Vec3> displacement) const;
+  /// The same from the sum of factors[f] * field f; fields whose factor is zero do not count at all.
+  void evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement) const;
+
+  [[nodiscard]] std::size_t size() const;        ///< nodes kept
+  [[nodiscard]] std::size_t n_elements() const;  ///< 0: a cloud of points
+  [[nodiscard]] std::size_t n_fields() const;
+  [[nodiscard]] double coincidence() const;  ///< 1e-7 of the size of the cloud or of its largest coordinate
+  [[nodiscard]] std::string const& source() const;
+  [[nodiscard]] std::string where(std::size_t node) const;  ///< "blade.csv:14"
+  [[nodiscard]] std::vector<std::string> const& notes() const;
+  [[nodiscard]] MappingDistance mapping() const;
+  /// Of the worst of the fields. Cost O(m log n) for a sample of m <= 2000 nodes.
+  [[nodiscard]] MappingError leave_one_out() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gridmorph

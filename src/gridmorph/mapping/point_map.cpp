@@ -1,0 +1,187 @@
+#include <gridmorph/geometry/symmetric_eigen.hpp>
+#include <gridmorph/mapping/detail/hull_distance.hpp>
+#include <gridmorph/mapping/detail/point_levels.hpp>
+#include <gridmorph/mapping/point_map.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace gridmorph {
+
+namespace {
+
+using casefile::Level;
+
+constexpr std::size_t n_neighbours = 13;  // per level
+/// A neighbourhood whose second principal variance is below this share of the first counts as a line.
+constexpr double line_like = 0.1;
+/// Variances below this share of the largest are no direction to fit a gradient in; smooth cut-off.
+constexpr double flat_like = 1e-6;
+/// From the centre of the neighbours no farther along a direction than this times their own reach along it.
+constexpr double largest_extrapolation = 2;
+/// Variances above this share of the largest are directions in which the points have an edge; the others are across the
+/// surface that they lie on.
+constexpr double spanned = 0.05;
+/// Beyond the neighbours by less than this share of their reach is rounding.
+constexpr double at_the_edge = 1e-6;
+
+struct Neighbours {
+  std::vector<std::size_t> number;
+  std::vector<Vec3> offset;
+
+  void add(Level const& level, Vec3 const& q, std::optional<std::size_t> without) {
+    std::array<std::size_t, n_neighbours + 1> found{};
+    std::array<double, n_neighbours + 1> squared{};
+    double const position[3] = {q.x, q.y, q.z};
+    std::size_t const n =
+        level.tree->knnSearch(position, n_neighbours + (without ? 1 : 0), found.data(), squared.data());
+    std::size_t const before = number.size();
+    for (std::size_t f = 0; f < n; ++f) {
+      std::size_t const i = level.number[found[f]];
+      auto const end = number.begin() + std::ptrdiff_t(before);
+      if (i == without || std::find(number.begin(), end, i) != end) continue;
+      number.push_back(i);
+      offset.push_back(level.position[found[f]] - q);
+    }
+  }
+};
+
+/// Weighted second moments about the weighted mean.
+struct Moments {
+  Vec3 centre;                     ///< weighted mean of the offsets
+  std::array<double, 3> variance;  ///< principal
+  Mat3 direction;                  ///< their directions, columns
+
+  Moments(std::vector<Vec3> const& offset, std::vector<double> const& weight) {
+    for (std::size_t i = 0; i < offset.size(); ++i) centre += weight[i] * offset[i];
+    Mat3 c{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+    for (std::size_t i = 0; i < offset.size(); ++i) {
+      Vec3 const d = offset[i] - centre;
+      double const a[3] = {d.x, d.y, d.z};
+      for (int r = 0; r < 3; ++r)
+        for (int s = 0; s < 3; ++s) c.m[r][s] += weight[i] * a[r] * a[s];
+    }
+    direction = casefile::eigenvectors(c, variance);
+  }
+  [[nodiscard]] double largest() const { return std::max({variance[0], variance[1], variance[2]}); }
+};
+
+Moments even_moments(Neighbours const& near) {
+  std::size_t const n = near.number.size();
+  return {near.offset, std::vector<double>(n, 1.0 / double(n))};
+}
+
+bool on_a_line(Neighbours const& near) {
+  auto variance = even_moments(near).variance;
+  std::sort(variance.begin(), variance.end());
+  return variance[1] < line_like * variance[2];
+}
+
+/// Franke-Little weights ((R - d) / (R d))^2, sum 1.
+std::vector<double> weights(std::vector<Vec3> const& offset) {
+  std::vector<double> w(offset.size());
+  double farthest = 0, sum = 0;
+  for (Vec3 const& o : offset) farthest = std::max(farthest, norm(o));
+  double const reach = 1.05 * farthest;
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    double const d = norm(offset[i]), ratio = (reach - d) / (reach * d);
+    w[i] = ratio * ratio;
+    sum += w[i];
+  }
+  for (double& v : w) v /= sum;
+  return w;
+}
+
+/// From the position to the closest place among its neighbours, along the surface or through the volume that they span;
+/// zero for a position between them.
+Vec3 to_the_edge(Neighbours const& near) {
+  Moments const m = even_moments(near);
+  std::vector<Vec3> spanned_part(near.offset.size());
+  double farthest = 0;
+  for (std::size_t i = 0; i < spanned_part.size(); ++i) {
+    farthest = std::max(farthest, norm(near.offset[i]));
+    for (int k = 0; k < 3; ++k) {
+      if (m.variance[k] < spanned * m.largest()) continue;
+      Vec3 const e = casefile::column(m.direction, k);
+      spanned_part[i] += dot(near.offset[i], e) * e;
+    }
+  }
+  return casefile::closest_in_hull(spanned_part, at_the_edge * farthest);
+}
+
+}  // namespace
+
+struct PointMap::Impl {
+  std::vector<std::unique_ptr<Level>> levels;  // all points first
+  Extrapolation extrapolation;
+  double coincidence = 0;
+};
+
+PointMap::PointMap(std::vector<Vec3> const& position, Extrapolation extrapolation) : impl_(std::make_unique<Impl>()) {
+  impl_->extrapolation = extrapolation;
+  Vec3 low = position.front(), high = low;
+  double magnitude = 0;
+  for (Vec3 const& p : position) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+  }
+  impl_->coincidence = 1e-7 * std::max(distance(low, high), magnitude);
+  impl_->levels = casefile::make_levels(position, 2 * n_neighbours);
+}
+
+PointMap::~PointMap() = default;
+PointMap::PointMap(PointMap&&) noexcept = default;
+PointMap& PointMap::operator=(PointMap&&) noexcept = default;
+
+double PointMap::coincidence() const { return impl_->coincidence; }
+
+std::pair<std::size_t, double> PointMap::nearest(Vec3 const& q) const {
+  double const position[3] = {q.x, q.y, q.z};
+  std::size_t number = 0;
+  double squared = 0;
+  impl_->levels.front()->tree->knnSearch(position, 1, &number, &squared);
+  return {number, std::sqrt(squared)};
+}
+
+Stencil PointMap::stencil(Vec3 const& q, std::optional<std::size_t> without) const {
+  Stencil out;
+  if (!without) {
+    auto const [number, d] = nearest(q);
+    out.reference = std::int32_t(number);
+    out.distance = d;
+    out.coincident = d <= impl_->coincidence;
+    if (out.coincident) return out;
+  }
+  Neighbours near;
+  for (auto const& level : impl_->levels) {
+    near.add(*level, q, without);
+    if (!on_a_line(near)) break;
+  }
+  std::vector<double> w = weights(near.offset);
+  Moments const m(near.offset, w);
+  std::vector<double> gradient(w.size(), 0.0);
+  double const cut = flat_like * m.largest();
+  Vec3 const edge = to_the_edge(near);
+  Vec3 const place = impl_->extrapolation == Extrapolation::nearest ? edge : Vec3{0, 0, 0};
+  for (int k = 0; k < 3; ++k) {
+    double const lambda = m.variance[k];
+    if (!(lambda > 0)) continue;
+    Vec3 const e = casefile::column(m.direction, k);
+    double reach = 0;
+    for (Vec3 const& o : near.offset) reach = std::max(reach, std::fabs(dot(o - m.centre, e)));
+    double const limit = largest_extrapolation * reach;
+    double const step = std::clamp(dot(place - m.centre, e), -limit, limit);
+    // lambda / (lambda^2 + cut^2) is 1 / lambda for directions that the points span and fades to zero for the others.
+    double const factor = step * lambda / (lambda * lambda + cut * cut);
+    for (std::size_t i = 0; i < w.size(); ++i) gradient[i] += factor * dot(near.offset[i] - m.centre, e);
+  }
+  out.reference = std::int32_t(near.number.front());
+  for (std::size_t i = 0; i < w.size(); ++i)
+    out.terms.push_back({std::int32_t(near.number[i]), w[i] * (1 + gradient[i]), 0});
+  out.beyond = norm(edge);
+  return out;
+}
+
+}  // namespace gridmorph

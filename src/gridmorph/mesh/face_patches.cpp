@@ -1,0 +1,136 @@
+// Which patch each boundary face of an unstructured mesh belongs to.
+#include <gridmorph/mesh/unstructured_topology.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+namespace gridmorph {
+
+namespace {
+
+class Claims {
+ public:
+  Claims(UnstructuredMesh const& mesh, UnstructuredTopology const& topology) : mesh_(mesh), topology_(topology) {
+    out_.patch.assign(std::size_t(topology.boundary.size()), BoundaryFacePatches::open);
+    out_.faces_of_patch.assign(mesh.patches.size(), 0);
+  }
+
+  BoundaryFacePatches run() {
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) listed_faces(int(p));
+    listed_nodes();
+    connections();
+    count();
+    open_faces();
+    return std::move(out_);
+  }
+
+ private:
+  void listed_faces(int p) {
+    auto const& patch = mesh_.patches[std::size_t(p)];
+    Index inside = 0, twice = 0;
+    int other = -1;
+    for (Index f = 0; f < patch.faces.size(); ++f) {
+      Index32 const face = find_boundary_face(topology_, patch.faces[f]);
+      if (face < 0) {
+        ++inside;
+        continue;
+      }
+      int& claim = out_.patch[std::size_t(face)];
+      if (claim >= 0 && claim != p && twice++ == 0) other = claim;
+      if (claim < 0) claim = p;
+    }
+    if (inside > 0)
+      out_.notes.push_back("patch " + describe_patch(mesh_, patch) + ": " + std::to_string(inside) + " of its " +
+                           std::to_string(patch.faces.size()) + " faces are not on the boundary of the elements");
+    if (twice > 0)
+      out_.problems.push_back("patch " + describe_patch(mesh_, patch) + ": " + std::to_string(twice) +
+                              " of its faces belong to patch " +
+                              describe_patch(mesh_, mesh_.patches[std::size_t(other)]) + " too");
+  }
+
+  void listed_nodes() {
+    std::vector<int> order;
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+      if (mesh_.patches[p].faces.size() == 0) order.push_back(int(p));
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+      return mesh_.patches[std::size_t(a)].nodes.size() < mesh_.patches[std::size_t(b)].nodes.size();
+    });
+    std::vector<char> listed(std::size_t(mesh_.n_nodes()), 0);
+    for (int const p : order) {
+      auto const& nodes = mesh_.patches[std::size_t(p)].nodes;
+      for (Index32 const n : nodes) listed[std::size_t(n)] = 1;
+      each_face_of(nodes, listed, [&](int& claim) {
+        if (claim == BoundaryFacePatches::open) claim = p;
+      });
+      for (Index32 const n : nodes) listed[std::size_t(n)] = 0;
+    }
+  }
+
+  void connections() {
+    std::vector<char> listed(std::size_t(mesh_.n_nodes()), 0);
+    for (auto const& c : mesh_.connections)
+      for (auto const* nodes : {&c.nodes, &c.donor_nodes}) {
+        for (Index32 const n : *nodes) listed[std::size_t(n)] = 1;
+        each_face_of(*nodes, listed, [&](int& claim) {
+          if (claim == BoundaryFacePatches::open) claim = BoundaryFacePatches::connection;
+        });
+        for (Index32 const n : *nodes) listed[std::size_t(n)] = 0;
+      }
+  }
+
+  template <class Function>
+  void each_face_of(std::vector<Index32> const& nodes, std::vector<char> const& listed, Function const& f) {
+    for (Index32 const node : nodes)
+      for (Index32 const face : topology_.faces_of_nodes[node]) {
+        auto const corners = topology_.boundary.nodes[face];
+        if (std::all_of(corners.begin(), corners.end(), [&](Index32 n) { return listed[std::size_t(n)] != 0; }))
+          f(out_.patch[std::size_t(face)]);
+      }
+  }
+
+  void count() {
+    for (int const p : out_.patch)
+      if (p >= 0) ++out_.faces_of_patch[std::size_t(p)];
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+      if (out_.faces_of_patch[p] == 0)
+        out_.notes.push_back("patch " + describe_patch(mesh_, mesh_.patches[p]) +
+                             ": has no face on the boundary of the elements");
+  }
+
+  void open_faces() {
+    for (auto const& zone : mesh_.zones) {
+      Index open = 0, first = -1;
+      for (Index f = 0; f < topology_.boundary.size(); ++f) {
+        Index const element = topology_.boundary.element[std::size_t(f)];
+        if (out_.patch[std::size_t(f)] != BoundaryFacePatches::open || element < zone.first_element ||
+            element >= zone.first_element + zone.n_elements)
+          continue;
+        if (open++ == 0) first = f;
+      }
+      if (open == 0) continue;
+      std::string nodes;
+      for (Index32 const n : topology_.boundary.nodes[first])
+        nodes += (nodes.empty() ? "" : ", ") + std::to_string(node_number_in_file(mesh_, n));
+      out_.problems.push_back(mesh_.source + ": zone '" + zone.name + "': " + std::to_string(open) +
+                              (open == 1 ? " boundary face belongs" : " boundary faces belong") +
+                              " to no patch and no connection, the first is that of " +
+                              describe_element(mesh_, topology_.boundary.element[std::size_t(first)]) + " with nodes " +
+                              nodes);
+    }
+    if (topology_.crowded_sides > 0)
+      out_.problems.push_back(mesh_.source + ": " + std::to_string(topology_.crowded_sides) +
+                              " sides of elements are shared by more than two elements; elements overlap");
+  }
+
+  UnstructuredMesh const& mesh_;
+  UnstructuredTopology const& topology_;
+  BoundaryFacePatches out_;
+};
+
+}  // namespace
+
+BoundaryFacePatches find_face_patches(UnstructuredMesh const& mesh, UnstructuredTopology const& topology) {
+  return Claims(mesh, topology).run();
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,116 @@
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/mesh/node_graph.hpp>
+#include <gridmorph/mesh/undeclared_connections.hpp>
+
+#include <algorithm>
+#include <compare>
+#include <iterator>
+#include <numeric>
+
+namespace gridmorph {
+
+namespace {
+
+class GraphMaker {
+ public:
+  GraphMaker(UnstructuredMesh const& mesh, CsrGraph const& elements_of_nodes)
+      : mesh_(mesh), elements_of_nodes_(elements_of_nodes), owner_(nodes_at_one_place(mesh)) {
+    for (Index32 n = 0; n < Index32(owner_.size()); ++n)
+      if (owner_[std::size_t(n)] != n) others_.push_back({owner_[std::size_t(n)], n});
+    std::sort(others_.begin(), others_.end());
+  }
+
+  NodeGraph run() && {
+    Index const n = mesh_.n_nodes();
+    CsrGraph lists;
+    lists.first.assign(std::size_t(n) + 1, 0);
+    // Every part keeps its lists to itself until it is known where they go.
+    constexpr Index part = 4096;
+    std::vector<std::vector<Index32>> found(std::size_t((n + part - 1) / part));
+    detail::for_all_parts("gridmorph::node_graph::find", Index(found.size()), [&](Index p) {
+      std::vector<Index32> ends;
+      for (Index node = p * part; node < std::min(n, (p + 1) * part); ++node) {
+        neighbours(Index32(node), ends);
+        lists.first[std::size_t(node) + 1] = std::ssize(ends);
+        found[std::size_t(p)].insert(found[std::size_t(p)].end(), ends.begin(), ends.end());
+      }
+    });
+    std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
+    lists.item.resize(std::size_t(lists.first.back()));
+    detail::for_all_parts("gridmorph::node_graph::join", Index(found.size()), [&](Index p) {
+      auto const& own = found[std::size_t(p)];
+      std::copy(own.begin(), own.end(), lists.item.begin() + lists.first[std::size_t(p * part)]);
+    });
+    return {std::move(owner_), std::move(lists)};
+  }
+
+ private:
+  struct Other {
+    Index32 owner, node;
+    auto operator<=>(Other const&) const = default;
+  };
+
+  /// Neighbours of a representative, ascending; none of another node.
+  void neighbours(Index32 node, std::vector<Index32>& ends) const {
+    ends.clear();
+    if (owner_[std::size_t(node)] != node) return;
+    add_ends(node, node, ends);
+    for (auto at = std::lower_bound(others_.begin(), others_.end(), Other{node, 0});
+         at != others_.end() && at->owner == node; ++at)
+      add_ends(at->node, node, ends);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  }
+
+  /// Owners of the other ends of all edges at a node; most of them once.
+  void add_ends(Index32 node, Index32 own, std::vector<Index32>& ends) const {
+    auto const add = [&](Index32 end) {
+      Index32 const other = owner_[std::size_t(end)];
+      // Lists are short as a rule; where they are long, the sort removes what stands there twice.
+      constexpr std::size_t short_list = 48;
+      if (other != own && (ends.size() > short_list || std::find(ends.begin(), ends.end(), other) == ends.end()))
+        ends.push_back(other);
+    };
+    for (Index32 const e : elements_of_nodes_[node]) {
+      ElementType const type = mesh_.elements.type[std::size_t(e)];
+      auto const nodes = mesh_.elements.corners(e);
+      if (type == ElementType::polyhedron) {
+        add_polyhedron(node, e, add);
+      } else if (type == ElementType::tetrahedron) {
+        for (std::size_t k = 0; k < 4; ++k) add(nodes[k]);
+      } else {
+        for (int k = 0; k < n_edges(type); ++k) {
+          Index32 const a = nodes[std::size_t(edge_corner(type, k, 0))],
+                        b = nodes[std::size_t(edge_corner(type, k, 1))];
+          if (a == node || b == node) add(a == node ? b : a);
+        }
+      }
+    }
+  }
+
+  template <class Add>
+  void add_polyhedron(Index32 node, Index element, Add const& add) const {
+    for (int s = 0; s < n_sides(mesh_, element); ++s) {
+      std::array<Index32, max_face_corners> room{};
+      auto const face = side_nodes(mesh_, element, s, room);
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        Index32 const next = face[(k + 1) % face.size()];
+        if (face[k] == node) add(next);
+        if (next == node) add(face[k]);
+      }
+    }
+  }
+
+  UnstructuredMesh const& mesh_;
+  CsrGraph const& elements_of_nodes_;
+  std::vector<Index32> owner_;
+  std::vector<Other> others_;  ///< nodes that are not their own owner
+};
+
+}  // namespace
+
+NodeGraph make_node_graph(UnstructuredMesh const& mesh, CsrGraph const& elements_of_nodes) {
+  return GraphMaker(mesh, elements_of_nodes).run();
+}
+
+}  // namespace gridmorph

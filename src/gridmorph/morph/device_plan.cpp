@@ -1,0 +1,196 @@
+#include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/core/large_pages.hpp>
+#include <gridmorph/morph/device_plan.hpp>
+
+#include <type_traits>
+
+namespace gridmorph::detail {
+namespace {
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T> const& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+/// What to add to the numbers of a stage's tables so that they count in the joined ones.
+struct Shift {
+  std::int32_t chain, segment, target, side, junction;
+  Index parameter, end_value, side_node, section;
+
+  explicit Shift(JoinedTables const& to)
+      : chain(std::int32_t(to.lines.chains.size())),
+        segment(std::int32_t(to.lines.segments.size())),
+        target(std::int32_t(to.lines.targets.size())),
+        side(std::int32_t(to.sides.sides.size())),
+        junction(std::int32_t(to.sides.junctions.size())),
+        parameter(to.lines.n_parameters),
+        end_value(to.lines.n_end_values),
+        side_node(Index(to.sides.t.size())),
+        section(Index(to.sides.section.size())) {}
+};
+
+void join_lines(LineTables const& from, Shift const& shift, LineTables& to) {
+  for (kernels::Chain c : from.chains) {
+    c.first_end_value += shift.end_value;
+    if (c.first_side >= 0) {
+      c.first_side += shift.side;
+      c.first_junction += shift.junction;
+      c.first_section += shift.section;
+    }
+    to.chains.push_back(c);
+  }
+  for (kernels::Tube tube : from.tubes) {
+    tube.chain += shift.chain;
+    tube.first_segment += shift.segment;
+    to.tubes.push_back(tube);
+  }
+  for (kernels::Segment segment : from.segments) {
+    for (std::int32_t& target : segment.target)
+      if (target >= 0) target += shift.target;
+    to.segments.push_back(segment);
+  }
+  for (kernels::ParameterTarget target : from.targets) {
+    target.first += shift.parameter;
+    to.targets.push_back(target);
+  }
+  to.n_parameters += from.n_parameters;
+  to.n_end_values += from.n_end_values;
+}
+
+void join_sides(SideTables const& from, Shift const& shift, SideTables& to) {
+  for (kernels::Side side : from.sides) {
+    side.chain += shift.chain;
+    side.first += shift.side_node;
+    to.sides.push_back(side);
+  }
+  append(to.junctions, from.junctions);
+  append(to.t, from.t);
+  append(to.section, from.section);
+}
+
+std::vector<kernels::SkeletonSweep> shifted(std::vector<kernels::SkeletonSweep> sweeps, Shift const& shift) {
+  for (kernels::SkeletonSweep& sweep : sweeps) {
+    sweep.chain += shift.chain;
+    if (sweep.t >= 0) sweep.t += shift.parameter;
+  }
+  return sweeps;
+}
+
+std::vector<kernels::NodeCopy> shifted(std::vector<kernels::NodeCopy> copies, Index destination) {
+  for (kernels::NodeCopy& copy : copies) copy.destination += destination;
+  return copies;
+}
+
+void collect_parts(std::vector<VolumePart> const& parts, Shift const& shift,
+                   std::vector<std::vector<kernels::VolumeTerm>>& of_box) {
+  for (VolumePart const& part : parts) {
+    kernels::VolumeTerm term = part.term;
+    term.chain += shift.chain;
+    term.end_value += shift.end_value;
+    if (term.t >= 0) term.t += shift.parameter;
+    of_box[part.box].push_back(term);
+  }
+}
+
+}  // namespace
+
+template <class Exec>
+DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<double const> x, int n_fields)
+    : fields(n_fields) {
+  using Range = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>;
+  surfaces = SlipSurfaceTable<Memory>(exec, plan.surfaces);
+  JoinedTables joined;
+  std::vector<std::vector<kernels::VolumeTerm>> of_box(plan.boxes.size());
+  auto copies = [&](std::vector<kernels::NodeCopy> const& list, char const* what) {
+    return WorkList<kernels::NodeCopy, Memory>(exec, list, Copy::items, what);
+  };
+  auto sweeps = [&](std::vector<kernels::SkeletonSweep> const& list) {
+    return WorkList<kernels::SkeletonSweep, Memory>(exec, list, Sweep::items, "sweeps");
+  };
+  for (Stage const& stage : plan.stages) {
+    Shift const shift(joined);
+    DeviceStage<Exec> device;
+    device.ends = copies(shifted(stage.ends, shift.end_value), "ends");
+    device.gathers = copies(shifted(stage.sides.gathers, shift.side_node), "gathers");
+    device.sweeps = sweeps(shifted(stage.sweeps, shift));
+    std::vector<kernels::SideLine> side_lines = stage.sides.lines;
+    for (kernels::SideLine& line : side_lines) line.side += shift.side;
+    device.side_lines = upload(exec, side_lines, "side_lines");
+    std::vector<std::int32_t> corrected = stage.sides.corrected;
+    for (std::int32_t& chain : corrected) chain += shift.chain;
+    device.corrected = upload(exec, corrected, "corrected");
+    collect_parts(stage.volume, shift, of_box);
+    join_lines(stage.lines, shift, joined.lines);
+    join_sides(stage.sides, shift, joined.sides);
+    stages.push_back(std::move(device));
+    // The host lists of this stage end here, and uploads may still read them.
+    compat::fence(exec, "gridmorph::Morpher (host tables of a stage may go)");
+  }
+  for (SpreadPass const& pass : plan.spreads) {
+    Shift const shift(joined);
+    DeviceSpread<Exec> device;
+    std::vector<kernels::SlipEnd> slip_ends = pass.ends;
+    for (kernels::SlipEnd& end : slip_ends) end.value += shift.end_value;
+    device.ends = upload(exec, slip_ends, "slip_ends");
+    device.baselines = Kokkos::View<kernels::SlipEndBaseline*, Memory>(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::slip_ends::baselines"),
+        slip_ends.size());
+    Kokkos::parallel_for("gridmorph::slip_ends::baselines", Range(exec, 0, Index(slip_ends.size())),
+                         kernels::SlipEndBaselines<Memory>{device.ends, surfaces.surfaces, x, device.baselines});
+    device.sweeps = sweeps(shifted(pass.sweeps, shift));
+    device.first_value = shift.end_value;
+    device.n_values = pass.lines.n_end_values;
+    collect_parts(pass.volume, shift, of_box);
+    join_lines(pass.lines, shift, joined.lines);
+    spreads.push_back(std::move(device));
+    compat::fence(exec, "gridmorph::Morpher (host tables of a pass may go)");
+  }
+  for (std::size_t b = 0; b < plan.boxes.size(); ++b) {
+    kernels::VolumeBox box = plan.boxes[b];
+    box.first_term = std::int32_t(joined.terms.size());
+    box.n_terms = std::int32_t(of_box[b].size());
+    append(joined.terms, of_box[b]);
+    joined.boxes.push_back(box);
+  }
+
+  lines.chains = upload(exec, joined.lines.chains, "chains");
+  lines.segments = upload(exec, joined.lines.segments, "segments");
+  sides.sides = upload(exec, joined.sides.sides, "sides");
+  sides.junctions = upload(exec, joined.sides.junctions, "junctions");
+  sides.t = upload(exec, joined.sides.t, "side_parameters");
+  std::vector<double> per_t(joined.sides.t.size(), 0);
+  for (std::size_t n = 0; n + 1 < per_t.size(); ++n)
+    if (double const step = joined.sides.t[n + 1] - joined.sides.t[n]; step > 0) per_t[n] = 1 / step;
+  sides.per_t = upload(exec, per_t, "side_parameters::inverse_steps");
+  sides.section = upload(exec, joined.sides.section, "section_parameters");
+  rotations = upload(exec, plan.rotations, "rotations");
+  boundary_slots = upload(exec, plan.boundary_slots, "boundary_slots");
+  boundary_projections = copies(plan.boundary_projections, "boundary_projections");
+  skeleton_nodes = copies(plan.skeleton_nodes, "skeleton_nodes");
+  boxes = WorkList<kernels::VolumeBox, Memory>(exec, joined.boxes, Volume::items, "boxes");
+  terms = upload(exec, joined.terms, "terms");
+  skeleton = Workspace<Memory>(exec, plan.n_slots, fields, "skeleton");
+  ends = Workspace<Memory>(exec, joined.lines.n_end_values, fields, "end_values");
+  residuals = Workspace<Memory>(exec, Index(joined.sides.t.size()), fields, "side_residuals");
+  sides.c = residuals.read()[0];
+
+  t = Kokkos::View<double*, Memory>(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::line_parameters"),
+      joined.lines.n_parameters);
+  if constexpr (std::is_same_v<Memory, Kokkos::HostSpace>) prefer_large_pages(t.data(), t.extent(0) * sizeof(double));
+  std::vector<kernels::Tube> with_parameters;
+  for (kernels::Tube const& tube : joined.lines.tubes)
+    if (joined.lines.chains[tube.chain].has_parameters()) with_parameters.push_back(tube);
+  WorkList<kernels::Tube, Memory> const tubes(exec, with_parameters, Parameters::items, "tubes");
+  lines.tubes = tubes.entries;
+  auto const targets = upload(exec, joined.lines.targets, "targets");
+  Kokkos::parallel_for("gridmorph::line_parameters", Range(exec, 0, tubes.n_items),
+                       Parameters{lines, targets, tubes.first_item, x, t.data()});
+  compat::fence(exec, "gridmorph::Morpher (host tables of the plan may go)");
+}
+
+#define GRIDMORPH_INSTANTIATE(Exec) template struct DevicePlan<Exec>;
+GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
+#undef GRIDMORPH_INSTANTIATE
+
+}  // namespace gridmorph::detail

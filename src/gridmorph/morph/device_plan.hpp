@@ -1,0 +1,117 @@
+// The tables of a plan in one memory space: those of all stages and finalize passes one after another, numbers shifted to
+// match, with what a morph needs for work besides.
+#pragma once
+
+#include <gridmorph/geometry/slip_surface.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/kernels/side_residual.hpp>
+#include <gridmorph/kernels/slip_end.hpp>
+#include <gridmorph/plan/plan.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace gridmorph::detail {
+
+template <class T, class Exec>
+Kokkos::View<T*, typename Exec::memory_space> upload(Exec const& exec, std::vector<T> const& host, char const* what) {
+  Kokkos::View<T*, typename Exec::memory_space> device(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, std::string("gridmorph::Morpher::") + what), host.size());
+  Kokkos::View<T const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const source(host.data(),
+                                                                                                  host.size());
+  if (!host.empty()) Kokkos::deep_copy(exec, device, source);
+  return device;
+}
+
+/// A list of work, each entry good for `items(entry)` work items.
+template <class T, class Memory>
+struct WorkList {
+  Kokkos::View<T*, Memory> entries;
+  Kokkos::View<Index*, Memory> first_item;
+  Index n_items = 0;
+
+  WorkList() = default;
+  template <class Exec, class Items>
+  WorkList(Exec const& exec, std::vector<T> const& list, Items const& items, char const* what) {
+    std::vector<Index> first{0};
+    for (T const& entry : list) first.push_back(first.back() + items(entry));
+    entries = upload(exec, list, what);
+    first_item = upload(exec, first, (std::string(what) + "::first_item").c_str());
+    n_items = first.back();
+  }
+};
+
+/// Three arrays per field, one field after another.
+template <class Memory>
+struct Workspace {
+  Kokkos::View<double*, Memory> values;
+  Index n = 0;
+
+  Workspace() = default;
+  template <class Exec>
+  Workspace(Exec const& exec, Index size, int fields, char const* what)
+      : values(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, std::string("gridmorph::Morpher::") + what),
+               3 * size * fields),
+        n(size) {}
+  [[nodiscard]] kernels::FieldBatch<double> batch() const {
+    return {{values.data(), values.data() + n, values.data() + 2 * n}, 3 * n};
+  }
+  [[nodiscard]] kernels::FieldBatch<double const> read() const {
+    return {{values.data(), values.data() + n, values.data() + 2 * n}, 3 * n};
+  }
+};
+
+template <class Exec>
+struct DeviceStage {
+  using Memory = typename Exec::memory_space;
+  WorkList<kernels::NodeCopy, Memory> ends, gathers;
+  WorkList<kernels::SkeletonSweep, Memory> sweeps;
+  Kokkos::View<kernels::SideLine*, Memory> side_lines;
+  Kokkos::View<std::int32_t*, Memory> corrected;
+};
+
+template <class Exec>
+struct DeviceSpread {
+  using Memory = typename Exec::memory_space;
+  Kokkos::View<kernels::SlipEnd*, Memory> ends;
+  Kokkos::View<kernels::SlipEndBaseline*, Memory> baselines;  ///< per end
+  WorkList<kernels::SkeletonSweep, Memory> sweeps;
+  Index first_value = 0, n_values = 0;
+};
+
+/// All stages' and passes' tables put one behind the other on the host, with their numbers shifted.
+struct JoinedTables {
+  LineTables lines;
+  SideTables sides;
+  std::vector<kernels::VolumeBox> boxes;
+  std::vector<kernels::VolumeTerm> terms;
+};
+
+template <class Exec>
+struct DevicePlan {
+  using Memory = typename Exec::memory_space;
+  using Shape = kernels::TileShape<Exec>;
+  using Copy = kernels::CopyNodes<Memory, Shape::row>;
+  using Sweep = kernels::SweepSkeleton<Memory, Shape::row, false>;
+  using Volume = kernels::VolumePass<Memory, Shape, false>;
+  using Parameters = kernels::LineParameters<Memory, Shape::lines>;
+
+  kernels::LineTable<Memory> lines;
+  kernels::SideTable<Memory> sides;
+  Kokkos::View<Mat3*, Memory> rotations;
+  SlipSurfaceTable<Memory> surfaces;
+  Kokkos::View<Index*, Memory> boundary_slots;
+  WorkList<kernels::NodeCopy, Memory> boundary_projections, skeleton_nodes;
+  std::vector<DeviceStage<Exec>> stages;
+  std::vector<DeviceSpread<Exec>> spreads;
+  WorkList<kernels::VolumeBox, Memory> boxes;
+  Kokkos::View<kernels::VolumeTerm*, Memory> terms;
+  Kokkos::View<double*, Memory> t;  ///< line parameters
+  Workspace<Memory> skeleton, ends, residuals;
+  int fields = 1;
+
+  DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<double const> x, int n_fields);
+};
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,32 @@
+// Where the edges of a surface go on a target: corners to corners, edges to edges by arc length.
+#pragma once
+
+#include <gridmorph/geometry/target_tree.hpp>
+#include <gridmorph/motion/target/feature_edges.hpp>
+
+#include <functional>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace gridmorph {
+
+struct EdgeImages {
+  std::vector<char> known;                  ///< per vertex
+  std::vector<Vec3> image;                  ///< per vertex; of known ones
+  std::set<std::pair<int, int>> edges;      ///< edges of the surface that have an image, smaller vertex first
+  std::set<std::pair<int, int>> on_target;  ///< edges of the target that they lie on, smaller vertex first
+  std::function<Vec3(Vec3 const&)> guess;   ///< where points between the edges go, roughly
+  int mapped = 0, unmapped = 0;             ///< lines of edges with and without a counterpart on the target
+};
+
+/// Maps every chain of feature edges of the surface that has a counterpart on the target. `guess` is a rough idea of where
+/// points of the surface go. Corners are where other than two edges meet, or two at more than 45 degrees; they are
+/// paired nearest first. A chain goes to the way between the images of its ends that stays beside it and leads through no
+/// other corner's image, with equal shares of arc length; a closed one to the loop beside it, turned so that its nodes move least. A chain whose image would be
+/// much farther than the target itself, or of another length (by more than half or double), has no counterpart.
+EdgeImages map_edges(std::vector<Vec3> const& points, std::vector<FeatureEdge> const& edges, TargetTree const& target,
+                     std::vector<FeatureEdge> const& target_edges, double size,
+                     std::function<Vec3(Vec3 const&)> const& guess);
+
+}  // namespace gridmorph

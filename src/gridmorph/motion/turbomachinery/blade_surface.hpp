@@ -1,0 +1,57 @@
+// A blade put together from its patches: spanwise grid lines, stitched into contours around the sections.
+#pragma once
+
+#include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/motion/turbomachinery/wall_curve.hpp>
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+struct BladeNode {
+  double m = 0;              ///< position along the flow path: the axial position where that is axial
+  double span = 0;           ///< span fraction: 0 at the hub, 1 at the case
+  CylindricalMotion motion;  ///< in the components of Annulus
+  Vec3 point;
+};
+
+/// Spanwise lines that follow one another around the sections.
+struct BladeContour {
+  std::vector<int> lines;
+  bool closed = false;  ///< the last line is followed by the first (O mesh); otherwise one side of an H mesh, or a C
+};
+
+struct BladeSurface {
+  std::vector<BladeNode> nodes;
+  std::vector<std::vector<int>> lines;  ///< nodes from hub to case
+  std::vector<BladeContour> contours;
+};
+
+/// What stitch_blade needs to know about nodes.
+struct BladeInput {
+  CylindricalFrame frame;
+  std::function<FlowPosition(MeridionalPoint const&)> position;
+  /// Distance from hub to case through a point.
+  std::function<double(MeridionalPoint const&)> height;
+  /// What the displacement of a point means for those that follow it: the components that are tabulated.
+  std::function<CylindricalMotion(Vec3 const& point, Vec3 const& displacement)> motion;
+  /// Displacements of the nodes of one patch, in patch_points order.
+  std::function<void(int patch, std::span<Vec3 const> points, std::span<Vec3> displacement)> displacement;
+};
+
+/// Stitches the structured ranges of the patches: finds which index direction of each runs spanwise, joins pieces that
+/// were split in span or around the section by their coincident nodes (1e-7 of the blade's size). Pieces that run
+/// nowhere spanwise (tip faces) are left out with a note. Throws MotionError when nothing is left or more than two
+/// surfaces meet in one line. Cost O(nodes log nodes).
+BladeSurface stitch_blade(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input,
+                          std::vector<std::string>& notes);
+
+/// Leaves out the contours of splitter blades: those that begin or end elsewhere along the flow than the longest one does,
+/// by more than 15 % of its chord. What is left are the sides of one blade, or copies of it. Returns how many were left out.
+/// Throws MotionError when a contour lies wholly before or behind the longest: that is another row.
+int leave_out_splitters(BladeSurface& blade);
+
+}  // namespace gridmorph

@@ -1,0 +1,222 @@
+#include <gridmorph/motion/turbomachinery/row_motion.hpp>
+
+#include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+std::vector<MeridionalPoint> meridional_points(Mesh const& mesh, CylindricalFrame const& frame,
+                                               std::vector<int> const& patches) {
+  std::vector<MeridionalPoint> out;
+  for (Vec3 const& p : patch_points(mesh, patches)) out.push_back(frame.meridional(p));
+  return out;
+}
+
+/// Zones that hold the blade or hang together with those by node-to-node interfaces.
+std::vector<bool> zones_of_row(Mesh const& mesh, std::vector<int> const& blades) {
+  std::vector<int> root(mesh.zones.size());
+  std::iota(root.begin(), root.end(), 0);
+  auto const find = [&](int z) {
+    while (root[z] != z) z = root[z] = root[root[z]];
+    return z;
+  };
+  for (Interface1to1 const& i : mesh.interfaces) root[find(i.zone)] = find(i.donor_zone);
+  std::set<int> roots;
+  for (int p : blades) roots.insert(find(mesh.patches[p].zone));
+  std::vector<bool> in_row(mesh.zones.size());
+  for (std::size_t z = 0; z < in_row.size(); ++z) in_row[z] = roots.contains(find(int(z)));
+  return in_row;
+}
+
+std::vector<int> surfaces_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, std::vector<bool> const& in_row) {
+  std::set<int> found;
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+    if (int const s = surfaces.of_patch[p]; s >= 0 && in_row[mesh.patches[p].zone]) found.insert(s);
+  return {found.begin(), found.end()};
+}
+
+BladeSections make_sections(Mesh const& mesh, std::vector<int> const& blades, CylindricalFrame const& frame,
+                            Annulus const& annulus, RowMotion::PatchDisplacement const& displacement,
+                            std::vector<std::string>& notes) {
+  // Across the flow, what counts is how far the blade departs from keeping its span fraction.
+  auto const motion = [&](Vec3 const& point, Vec3 const& u) {
+    return annulus.components(frame.meridional(point), frame.motion(point, u));
+  };
+  BladeInput const input{frame, [&annulus](MeridionalPoint const& p) { return annulus.position(p); },
+                         [&annulus](MeridionalPoint const& p) { return annulus.height(p); }, motion, displacement};
+  BladeSurface surface = stitch_blade(mesh, blades, input, notes);
+  if (int const left_out = leave_out_splitters(surface); left_out > 0)
+    notes.push_back("blade " + describe_patch(mesh, mesh.patches[blades.front()]) + ": " + std::to_string(left_out) +
+                    " contours of splitter blades are left out; inlet, exit and periodics follow the main blade");
+  BladeSections const sections(surface);
+  auto const closed =
+      std::count_if(surface.contours.begin(), surface.contours.end(), [](auto const& c) { return c.closed; });
+  notes.push_back("blade " + describe_patch(mesh, mesh.patches[blades.front()]) + ": " +
+                  std::to_string(surface.lines.size()) + " spanwise lines in " + std::to_string(closed) +
+                  " closed and " + std::to_string(std::ptrdiff_t(surface.contours.size()) - closed) +
+                  " open contours; span fractions " + std::to_string(sections.first_span()) + " to " +
+                  std::to_string(sections.last_span()) +
+                  (annulus.has_walls() ? " between hub and case" : " of its own radii") +
+                  (annulus.turns() ? ", along the flow path " : ", axial ") + std::to_string(sections.most_upstream()) +
+                  " to " + std::to_string(sections.most_downstream()));
+  return sections;
+}
+
+}  // namespace
+
+Annulus annulus_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
+                       std::vector<int> const& blades) {
+  std::vector<bool> const in_row = zones_of_row(mesh, blades);
+  return {surfaces, surfaces_of_row(mesh, surfaces, in_row), meridional_points(mesh, frame, blades),
+          [&] { return walls_of_row(mesh, surfaces, in_row, frame); }};
+}
+
+RowMotion::RowMotion(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,
+                     SlipSurfaces const& surfaces, PatchDisplacement const& displacement,
+                     std::vector<std::string>& notes)
+    : frame_(motion.axis),
+      row_zones_(zones_of_row(mesh, blades)),
+      annulus_(surfaces, surfaces_of_row(mesh, surfaces, row_zones_), meridional_points(mesh, frame_, blades),
+               [&] { return walls_of_row(mesh, surfaces, row_zones_, frame_); }),
+      sections_(make_sections(mesh, blades, frame_, annulus_, displacement, notes)),
+      middle_(0.5 * (sections_.most_upstream() + sections_.most_downstream())),
+      inlet_(find_end(mesh, motion, blades, -1, displacement)),
+      exit_(find_end(mesh, motion, blades, +1, displacement)) {}
+
+bool RowMotion::is_same_row(Mesh const& mesh, std::vector<int> const& blades, std::vector<int> const& others) const {
+  if (std::any_of(blades.begin(), blades.end(),
+                  [&](int p) { return std::binary_search(others.begin(), others.end(), p); }))
+    return true;
+  if (!std::all_of(others.begin(), others.end(), [&](int p) { return row_zones_[mesh.patches[p].zone]; })) return false;
+  double lo = inf, hi = -inf;
+  for (MeridionalPoint const& p : meridional_points(mesh, frame_, others)) {
+    double const m = annulus_.along(p);
+    lo = std::min(lo, m);
+    hi = std::max(hi, m);
+  }
+  return lo < sections_.most_downstream() && hi > sections_.most_upstream();
+}
+
+RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,
+                                   int side, PatchDisplacement const& displacement) const {
+  double const edge = side < 0 ? sections_.most_upstream() : sections_.most_downstream();
+  auto const beyond = [&](std::vector<MeridionalPoint> const& points, double limit) {
+    return std::all_of(points.begin(), points.end(),
+                       [&](auto const& p) { return side * (annulus_.along(p) - limit) > 0; });
+  };
+
+  std::vector<MeridionalPoint> sliding, others;
+  int first_sliding = -1;
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    Patch const& patch = mesh.patches[p];
+    auto const* slide = std::get_if<CircumferentialSlideRule>(&motion.patch_rule(int(p)));
+    if (slide != nullptr && is_same_row(mesh, blades, select_patches(mesh, slide->of))) {
+      auto const points = meridional_points(mesh, frame_, {int(p)});
+      if (beyond(points, middle_)) {
+        sliding.insert(sliding.end(), points.begin(), points.end());
+        if (first_sliding < 0) first_sliding = int(p);
+      } else if (std::any_of(points.begin(), points.end(),
+                             [&](auto const& q) { return side * (annulus_.along(q) - middle_) > 0; })) {
+        throw MotionError("patch " + describe_patch(mesh, patch) +
+                          " has the rule circumferential-slide but lies beside the blade's "
+                          "mid-chord at " +
+                          std::string(annulus_.turns() ? "flow path length " : "axial position ") +
+                          std::to_string(middle_) + "; only patches upstream or downstream of it can slide");
+      }
+    } else if (row_zones_[patch.zone] && (patch.kind != PatchKind::wall && patch.kind != PatchKind::symmetry &&
+                                          patch.kind != PatchKind::degenerate)) {
+      auto const points = meridional_points(mesh, frame_, {int(p)});
+      if (beyond(points, edge)) others.insert(others.end(), points.begin(), points.end());
+    }
+  }
+
+  End end;
+  end.slides = first_sliding >= 0;
+  if (end.slides) {
+    auto const with = select_patches(mesh, std::get<CircumferentialSlideRule>(motion.patch_rule(first_sliding)).of);
+    std::vector<std::string> known;  // the slide's own row says all this
+    if (with != blades)
+      end.slides_with =
+          std::make_shared<BladeSections const>(make_sections(mesh, with, frame_, annulus_, displacement, known));
+  }
+  std::vector<std::pair<double, double>> nodes;
+  for (MeridionalPoint const& p : end.slides ? sliding : others) {
+    FlowPosition const at = annulus_.position(p);
+    nodes.emplace_back(at.h, at.m);
+  }
+  try {
+    if (!nodes.empty()) end.m_of_span = RevolutionProfile::from_points(std::move(nodes));
+  } catch (MotionError const& e) {
+    // An end that does not move may have any shape: the taper then ends at the outermost position.
+    if (end.slides)
+      throw MotionError(
+          "patch " + describe_patch(mesh, mesh.patches[first_sliding]) +
+          " has the rule circumferential-slide, but its position along the flow (its axial position, where "
+          "that is axial) is not a function of the span fraction (here called axial position, and its "
+          "position along the flow radius): " +
+          e.what());
+  }
+  if (!end.m_of_span) end.m = outermost(mesh, side);
+  return end;
+}
+
+double RowMotion::outermost(Mesh const& mesh, int side) const {
+  double m = -side * inf;
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+    if (!row_zones_[z]) continue;
+    Zone const& zone = mesh.zones[z];
+    for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
+      double const here = annulus_.along(frame_.meridional(mesh.coordinates[n]));
+      m = side < 0 ? std::min(m, here) : std::max(m, here);
+    }
+  }
+  return m;
+}
+
+CylindricalMotion RowMotion::taper(End const& end, FlowPosition const& at, double edge_m, double chord_fraction) const {
+  CylindricalMotion const edge = sections_.motion(at.h, chord_fraction);
+  // Nodes of the end itself scatter about its fitted shape by `deviation`: within it, they are at the end.
+  double const margin = end.m_of_span ? end.m_of_span->deviation : 0;
+  double const x = end.at(at.h);
+  double const length = std::abs(edge_m - x) - margin;
+  double const w = length > 0 ? std::clamp((std::abs(at.m - x) - margin) / length, 0.0, 1.0) : 1.0;
+  bool const outside = (at.m - x) * (edge_m - x) <= 0;
+  double const share = outside ? 0.0 : w;
+  double const end_angle = !end.slides       ? 0
+                           : end.slides_with ? end.slides_with->motion(at.h, chord_fraction).angle_rad
+                                             : edge.angle_rad;
+  return {share * edge.axial, share * edge.radial, end_angle + share * (edge.angle_rad - end_angle)};
+}
+
+CylindricalMotion RowMotion::follow_motion(FlowPosition const& at) const {
+  double const leading = sections_.leading(at.h), trailing = sections_.trailing(at.h);
+  if (at.m < leading) return taper(inlet_, at, leading, 0);
+  if (at.m > trailing) return taper(exit_, at, trailing, 1);
+  return sections_.motion(at.h, (at.m - leading) / (trailing - leading));
+}
+
+bool RowMotion::is_upstream(Vec3 const& point) const { return annulus_.position(frame_.meridional(point)).m < middle_; }
+
+Vec3 RowMotion::slide(Vec3 const& point) const {
+  FlowPosition const at = annulus_.position(frame_.meridional(point));
+  CylindricalMotion const edge = sections_.motion(at.h, at.m < middle_ ? 0 : 1);
+  return frame_.displacement(point, {0, 0, edge.angle_rad});
+}
+
+Vec3 RowMotion::follow(Vec3 const& point) const {
+  MeridionalPoint const p = frame_.meridional(point);
+  return frame_.displacement(point, annulus_.motion(p, follow_motion(annulus_.position(p))));
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,149 @@
+#include <gridmorph/motion/turbomachinery/section_frame.hpp>
+
+#include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/plane_fit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+namespace gridmorph {
+
+namespace {
+
+Vec3 unit(Vec3 const& v) { return (1 / norm(v)) * v; }
+
+/// A unit vector across the given one.
+Vec3 across(Vec3 const& direction) {
+  Vec3 const d{std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};
+  Vec3 const least = d.x <= d.y && d.x <= d.z ? Vec3{1, 0, 0} : (d.y <= d.z ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
+  return unit(cross(direction, least));
+}
+
+/// Stitching looks at no motion here.
+BladeInput geometry_only(CylindricalFrame const& frame, std::function<FlowPosition(MeridionalPoint const&)> position,
+                         double height) {
+  return {frame, std::move(position), [height](MeridionalPoint const&) { return height; },
+          [](Vec3 const&, Vec3 const&) { return CylindricalMotion{}; },
+          [](int, std::span<Vec3 const>, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }};
+}
+
+class BladeFrame final : public SectionFrame {
+ public:
+  BladeFrame(CylindricalFrame const& frame, Annulus annulus, std::vector<Vec3> const& points)
+      : frame_(frame),
+        annulus_(std::move(annulus)),
+        first_(across(frame.direction())),
+        second_(cross(frame.direction(), first_)) {
+    for (Vec3 const& p : points) height_ += annulus_.height(frame_.meridional(p)) / double(points.size());
+  }
+
+  [[nodiscard]] SectionPoint at(Vec3 const& point) const override {
+    MeridionalPoint const m = frame_.meridional(point);
+    Vec3 const d = point - frame_.origin();
+    FlowPosition const at = annulus_.position(m);
+    return {at.h, at.m, std::atan2(dot(d, second_), dot(d, first_)), m.radius};
+  }
+  [[nodiscard]] Vec3 displacement(Vec3 const& point, double ds, double dt) const override {
+    return frame_.displacement(point, annulus_.motion(frame_.meridional(point), {ds, 0, dt}));
+  }
+  [[nodiscard]] double height() const override { return height_; }
+  [[nodiscard]] double period() const override { return 2 * std::numbers::pi; }
+  [[nodiscard]] BladeInput stitching() const override {
+    return geometry_only(
+        frame_, [this](MeridionalPoint const& m) { return annulus_.position(m); }, height_);
+  }
+
+ private:
+  CylindricalFrame frame_;
+  Annulus annulus_;
+  Vec3 first_, second_;  ///< with the axis, right-handed; angles count from the first towards the second
+  double height_ = 0;
+};
+
+class WingFrame final : public SectionFrame {
+ public:
+  WingFrame(Vec3 const& span, Vec3 const& flow, std::vector<Vec3> const& points)
+      : span_(unit(span)), streamwise_(unit(flow - dot(flow, span_) * span_)), normal_(cross(span_, streamwise_)) {
+    lo_ = std::numeric_limits<double>::infinity();
+    hi_ = -lo_;
+    for (Vec3 const& p : points) {
+      lo_ = std::min(lo_, dot(p, span_));
+      hi_ = std::max(hi_, dot(p, span_));
+    }
+    if (!(hi_ > lo_)) throw MotionError("the wing has no extent along its span direction; correct span");
+  }
+
+  [[nodiscard]] SectionPoint at(Vec3 const& p) const override {
+    return {(dot(p, span_) - lo_) / (hi_ - lo_), dot(p, streamwise_), dot(p, normal_), 1};
+  }
+  [[nodiscard]] Vec3 displacement(Vec3 const&, double ds, double dt) const override {
+    return ds * streamwise_ + dt * normal_;
+  }
+  [[nodiscard]] double height() const override { return hi_ - lo_; }
+  [[nodiscard]] double period() const override { return 0; }
+  [[nodiscard]] BladeInput stitching() const override {
+    // The position along an axis that runs spanwise is all that stitching asks for.
+    return geometry_only(
+        CylindricalFrame({{0, 0, 0}, span_}),
+        [this](MeridionalPoint const& m) {
+          return FlowPosition{0, (m.axial - lo_) / (hi_ - lo_)};
+        },
+        hi_ - lo_);
+  }
+
+ private:
+  Vec3 span_, streamwise_, normal_;
+  double lo_, hi_;
+};
+
+/// Direction of the longest extent: of the two points farthest apart, as found by going to the farthest point twice.
+Vec3 longest_extent(std::vector<Vec3> const& points) {
+  auto const farthest = [&](Vec3 const& from) {
+    return *std::max_element(points.begin(), points.end(),
+                             [&](Vec3 const& a, Vec3 const& b) { return distance(from, a) < distance(from, b); });
+  };
+  Vec3 const one = farthest(points.front()), other = farthest(one);
+  Vec3 const d = other - one, size{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
+  double const largest = size.x >= size.y && size.x >= size.z ? d.x : (size.y >= size.z ? d.y : d.z);
+  return largest < 0 ? -d : d;
+}
+
+Vec3 span_direction(Mesh const& mesh, std::vector<int> const& patches, std::vector<Vec3> const& points) {
+  for (Patch const& symmetry : mesh.patches) {
+    if (symmetry.kind != PatchKind::symmetry) continue;
+    bool const meets =
+        std::any_of(patches.begin(), patches.end(), [&](int p) { return share_nodes(mesh.patches[p], symmetry); });
+    if (!meets) continue;
+    std::vector<Vec3> plane;
+    for_each_node(mesh.zones[symmetry.zone], symmetry.range, [&](Index n) { plane.push_back(mesh.coordinates[n]); });
+    PlaneFit const fit = fit_plane(plane);
+    if (!fit.determined) continue;
+    double middle = 0;
+    for (Vec3 const& p : points) middle += dot(p - fit.origin, fit.normal);
+    return middle < 0 ? -fit.normal : fit.normal;
+  }
+  return longest_extent(points);
+}
+
+}  // namespace
+
+std::unique_ptr<SectionFrame> blade_frame(Mesh const& mesh, Axis const& axis, SlipSurfaces const& surfaces,
+                                          std::vector<int> const& blades) {
+  CylindricalFrame const frame(axis);
+  return std::make_unique<BladeFrame>(frame, annulus_of_row(mesh, surfaces, frame, blades), patch_points(mesh, blades));
+}
+
+std::unique_ptr<SectionFrame> wing_frame(Mesh const& mesh, SectionsRule const& rule, std::vector<int> const& patches) {
+  std::vector<Vec3> const points = patch_points(mesh, patches);
+  Vec3 const span = rule.span ? *rule.span : span_direction(mesh, patches, points);
+  if (norm(cross(span, rule.flow)) < 1e-3 * norm(span) * norm(rule.flow))
+    throw MotionError("the flow direction runs along the span direction (" + std::to_string(span.x) + ", " +
+                      std::to_string(span.y) + ", " + std::to_string(span.z) + "); give flow and span");
+  return std::make_unique<WingFrame>(span, rule.flow, points);
+}
+
+}  // namespace gridmorph

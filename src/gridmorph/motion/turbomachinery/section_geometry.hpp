@@ -1,0 +1,79 @@
+// Leading edge, trailing edge, chord line and camber of blades and wings along the span, found from their surfaces.
+#pragma once
+
+#include <gridmorph/motion/turbomachinery/section_frame.hpp>
+#include <gridmorph/motion/turbomachinery/span_table.hpp>
+
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+/// A section's chord line in its plane, from leading to trailing edge, and the length of a unit of t there.
+struct ChordLine {
+  double s = 0, t = 0;  ///< leading edge, t in the units of SectionPoint
+  double length = 0;
+  double cos_stagger = 1, sin_stagger = 0;  ///< stagger angle: from s towards t
+  double scale = 1;
+};
+
+/// A point of a section's plane relative to its leading edge: along the chord line and across it, as lengths.
+struct ChordPoint {
+  double along = 0;
+  double across = 0;
+};
+
+/// One blade or wing.
+///
+/// Sections are taken at evenly spaced span fractions from the spanwise grid lines (polynomials through four nodes).
+/// The leading and trailing edge of a section are the two points farthest apart, the leading one upstream. Where the
+/// surface has corners there (a line in which it turns by more than 50 degrees, an end of an open surface) within a
+/// tenth of the chord, the edge is the middle of the corners: one corner of a sharp edge, two of a blunt base.
+/// Otherwise it is found between grid lines by a parabola. R, the length of a unit of t, is the mean of the two. Camber is the mean of the two sides, measured across the
+/// chord line at equal chord fraction. Between the sections: C1 cubics.
+class SectionGeometry {
+ public:
+  /// One line along the span as it lies in the section frame.
+  struct Line {
+    std::vector<double> span;             ///< strictly increasing
+    std::vector<SpanTable::Value> place;  ///< s, t, unit
+    bool end = false;                     ///< of an open surface
+  };
+  /// Lines once around the sections. The second side of an H mesh has been turned onto the first.
+  struct Outline {
+    std::vector<Line> lines;
+    double shift = 0;        ///< t by which some of the lines were moved; 0: none
+    bool one_sided = false;  ///< only one side is there: it has a chord line and no camber
+  };
+
+  /// Throws MotionError when the lines have no span in common or the sections no length.
+  explicit SectionGeometry(Outline outline);
+
+  [[nodiscard]] ChordLine chord_line(double span) const;
+  /// Height of the camber line above the chord line at a chord fraction (clamped to 0 ... 1), as a length.
+  [[nodiscard]] double camber(double span, double chord_length, double chord_fraction) const;
+  [[nodiscard]] bool has_camber() const { return !camber_.empty(); }
+  /// Displacements of t of the images of this blade: 0, and the shift of an H mesh's second side.
+  [[nodiscard]] std::vector<double> const& images() const { return images_; }
+
+  [[nodiscard]] double first_span() const { return span_lo_; }
+  [[nodiscard]] double last_span() const { return span_hi_; }
+  /// "41 spanwise lines (O), span 0 to 1, chord ... " for notes.
+  [[nodiscard]] std::string const& description() const { return description_; }
+
+ private:
+  double span_lo_ = 0, span_hi_ = 0;
+  int n_sections_ = 0;
+  SpanTable edges_;             ///< s and t of the leading edge, s and t of the trailing edge
+  SpanTable scales_;            ///< scale
+  std::vector<double> camber_;  ///< (n_sections, n_chord) in chords, chord fastest
+  std::vector<double> images_;
+  std::string description_;
+};
+
+/// The blades or wings that the patches of one rule make up. Closed contours and those whose ends lie together are
+/// whole; two open ones are the sides of one blade in an H mesh, possibly a pitch apart. Throws MotionError otherwise.
+std::vector<SectionGeometry> find_sections(Mesh const& mesh, SectionFrame const& frame, std::vector<int> const& patches,
+                                           std::vector<std::string>& notes);
+
+}  // namespace gridmorph

@@ -1,0 +1,184 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/plan/blocks/boundary.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <set>
+
+namespace gridmorph {
+namespace {
+
+struct ExplicitFace {
+  int face_class = -1;
+  int rule = -1;
+  int patch = -1, interface = -1;
+};
+
+std::vector<ExplicitFace> explicit_faces(Topology const& topology, ResolvedMotion const& motion,
+                                         SurfaceMotion const& surface) {
+  std::vector<ExplicitFace> faces;
+  Blocks const& blocks = topology.blocks;
+  for (int c = 0; c < topology.lattice.n_classes(); ++c) {
+    int const patch = blocks.patch_of_face()[c], interface = blocks.interface_of_face()[c];
+    int const rule = patch >= 0 ? motion.patch[patch].rule : (interface >= 0 ? motion.interface[interface].rule : -1);
+    if (rule >= 0 && surface.is_explicit(rule)) faces.push_back({c, rule, patch, patch >= 0 ? -1 : interface});
+  }
+  return faces;
+}
+
+/// Calls visit(entity) for the face, its four edges and four corners (entities of the same zone).
+template <class Visit>
+void for_closure(Lattice const& lattice, int face_entity, Visit&& visit) {
+  int const zone = lattice.zone_of(face_entity);
+  Index3 const p = lattice.position(face_entity);
+  Index3 d{};
+  for (d[2] = -(p[2] % 2); d[2] <= p[2] % 2; ++d[2])
+    for (d[1] = -(p[1] % 2); d[1] <= p[1] % 2; ++d[1])
+      for (d[0] = -(p[0] % 2); d[0] <= p[0] % 2; ++d[0])
+        visit(lattice.entity(zone, {p[0] + d[0], p[1] + d[1], p[2] + d[2]}));
+}
+
+std::string requester(Mesh const& mesh, BoundaryRequests::Request const& r) {
+  return r.patch >= 0 ? describe_patch(mesh, mesh.patches[r.patch])
+                      : "'" + mesh.interfaces[r.interface].name + "' (periodic)";
+}
+
+std::string format(double v) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", v);
+  return text.data();
+}
+
+}  // namespace
+
+Index add_boundary_nodes(PlanContext const& context, int entity_class, Plan& plan) {
+  Lattice const& lattice = context.topology.lattice;
+  Index const first = Index(plan.boundary_nodes.size());
+  int const owner = lattice.copies(entity_class).front().entity;
+  auto const rows = context.skeleton.rows(owner);
+  if (!rows) return first;
+  IndexRange const r = lattice.nodes(owner);
+  Zone const& zone = context.mesh.zones[lattice.zone_of(owner)];
+  Index slot = rows->slot;
+  for (int k = r.begin[2]; k < r.end[2]; ++k)
+    for (int j = r.begin[1]; j < r.end[1]; ++j)
+      for (int i = r.begin[0]; i < r.end[0]; ++i) {
+        plan.boundary_nodes.push_back(zone.node({i, j, k}));
+        plan.boundary_slots.push_back(slot++);
+      }
+  if (auto const axis = lattice.axis_of(entity_class))
+    plan.boundary_projections.push_back({rows->slot, 1, rows->slot_q, rows->slot, 1, rows->slot_q, rows->n_p, rows->n_q,
+                                         context.rotations.number(onto(*axis))});
+  return first;
+}
+
+BoundaryRequests collect_boundary(PlanContext const& context, ResolvedMotion const& motion,
+                                  SurfaceMotion const& surface, std::vector<std::string> const& kind_order,
+                                  Known& known, Plan& plan) {
+  Mesh const& mesh = context.mesh;
+  Topology const& topology = context.topology;
+  Lattice const& lattice = topology.lattice;
+  std::vector<ExplicitFace> faces = explicit_faces(topology, motion, surface);
+  for (ExplicitFace const& face : faces) {
+    EndKind const kind = face.patch >= 0 ? end_kind(context.kinds[face.patch]) : periodic_end;
+    for_closure(lattice, lattice.copies(face.face_class).front().entity, [&](int entity) {
+      int const c = lattice.class_of(entity);
+      bool const better = !known(c) || kind_rank(kind, kind_order) < kind_rank(known.kind[c], kind_order);
+      known.known[c] = 1;
+      if (better) known.kind[c] = kind;
+    });
+  }
+
+  BoundaryRequests boundary;
+  std::vector<Index> first_node(lattice.n_classes(), -1);
+  for (int c = 0; c < lattice.n_classes(); ++c) {
+    if (!known(c)) continue;
+    first_node[c] = add_boundary_nodes(context, c, plan);
+  }
+
+  // The rule that outranks the others gives the value of a shared node, the earlier rule where ranks are equal.
+  std::stable_sort(faces.begin(), faces.end(), [&](ExplicitFace const& a, ExplicitFace const& b) {
+    return std::pair(motion.rules[a.rule].rank, a.rule) < std::pair(motion.rules[b.rule].rank, b.rule);
+  });
+  for (ExplicitFace const& face : faces) {
+    int const entity = lattice.copies(face.face_class).front().entity;
+    Zone const& zone = mesh.zones[lattice.zone_of(entity)];
+    for_closure(lattice, entity, [&](int part) {
+      int const c = lattice.class_of(part);
+      EntityCopy const& copy = lattice.copy_of(part);
+      IndexRange const own = lattice.nodes(lattice.copies(c).front().entity);
+      std::int32_t const rotation = copy.moved ? context.rotations.number(copy.transform.rotation) : -1;
+      Index boundary_node = first_node[c];
+      for (int k = own.begin[2]; k < own.end[2]; ++k)
+        for (int j = own.begin[1]; j < own.end[1]; ++j)
+          for (int i = own.begin[0]; i < own.end[0]; ++i)
+            boundary.requests.push_back({boundary_node++, zone.node(copy.from_owner(Index3{i, j, k})), rotation,
+                                         face.rule, face.patch, face.interface});
+    });
+  }
+  return boundary;
+}
+
+std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary, Plan const& plan,
+                                    ResolvedMotion const& motion, SurfaceMotion const& surface, double mesh_size) {
+  using Request = BoundaryRequests::Request;
+  auto const& requests = boundary.requests;
+  std::vector<Vec3> values(plan.boundary_nodes.size());
+  std::vector<int> given_by(plan.boundary_nodes.size(), -1);
+
+  struct Conflict {
+    double size = 0;
+    int first = 0, second = 0;
+    Index count = 0;
+    Vec3 a, b;
+  };
+  std::map<std::pair<std::string, std::string>, Conflict> conflicts;
+  double const tolerance = motion.conformity_tolerance * mesh_size;
+
+  for (std::size_t begin = 0; begin < requests.size();) {
+    std::size_t end = begin;
+    while (end < requests.size() && requests[end].rule == requests[begin].rule) ++end;
+    std::vector<Vec3> points(end - begin), u(end - begin);
+    for (std::size_t n = begin; n < end; ++n) points[n - begin] = mesh.coordinates[requests[n].node];
+    surface.displacement(requests[begin].rule, points, u);
+    for (std::size_t n = begin; n < end; ++n) {
+      Request const& r = requests[n];
+      Vec3 const v = r.rotation < 0 ? u[n - begin] : transpose(plan.rotations[r.rotation]) * u[n - begin];
+      if (given_by[r.boundary_node] < 0) {
+        given_by[r.boundary_node] = int(n);
+        values[r.boundary_node] = v;
+        continue;
+      }
+      Request const& first = requests[given_by[r.boundary_node]];
+      if (motion.rules[first.rule].rank < motion.rules[r.rule].rank) continue;
+      double const gap = distance(values[r.boundary_node], v);
+      if (gap <= tolerance) continue;
+      Conflict& c = conflicts[{requester(mesh, first), requester(mesh, r)}];
+      ++c.count;
+      if (gap > c.size) {
+        c.size = gap;
+        c.first = given_by[r.boundary_node];
+        c.second = int(n);
+        c.a = values[r.boundary_node];
+        c.b = v;
+      }
+    }
+    begin = end;
+  }
+
+  Problems problems;
+  for (auto const& [who, c] : conflicts) {
+    auto const vec = [](Vec3 const& v) { return "(" + format(v.x) + ", " + format(v.y) + ", " + format(v.z) + ")"; };
+    problems.add("patches " + who.first + " and " + who.second + " disagree on " + std::to_string(c.count) +
+                 " common nodes, most at " + describe_node(mesh, requests[c.first].node) + ": " + vec(c.a) + " from " +
+                 motion.rules[requests[c.first].rule].where + ", " + vec(c.b) + " from " +
+                 motion.rules[requests[c.second].rule].where + ", apart by " + format(c.size) +
+                 "; make the two motions agree there, let one of them slip, or give the rules different ranks");
+  }
+  problems.throw_if_any<MotionError>();
+  return values;
+}
+
+}  // namespace gridmorph

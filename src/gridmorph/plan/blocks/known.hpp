@@ -1,0 +1,30 @@
+// What is known while a plan is being made: which entities have their displacement, and what they rank as.
+#pragma once
+
+#include <gridmorph/plan/topology.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridmorph {
+
+/// Kinds that chain ends rank by: the patch kinds, then periodic.
+using EndKind = int;
+inline constexpr EndKind periodic_end = 100;
+inline constexpr EndKind unknown_end = -1;
+inline EndKind end_kind(PatchKind kind) { return kind == PatchKind::periodic ? periodic_end : int(kind); }
+inline std::string_view end_kind_name(EndKind kind) {
+  return kind == periodic_end ? "periodic" : (kind == unknown_end ? "open" : to_string(PatchKind(kind)));
+}
+
+/// Per entity class of the lattice.
+struct Known {
+  std::vector<char> known;
+  std::vector<EndKind> kind;
+
+  explicit Known(int n_classes) : known(n_classes, 0), kind(n_classes, unknown_end) {}
+  [[nodiscard]] bool operator()(int entity_class) const { return known[entity_class] != 0; }
+};
+
+}  // namespace gridmorph

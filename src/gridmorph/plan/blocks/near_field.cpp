@@ -1,0 +1,137 @@
+#include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/plan/blocks/line_walk.hpp>
+#include <gridmorph/plan/blocks/near_field.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace gridmorph {
+namespace {
+
+/// Cells from a wall node along its grid line until the arc length reaches `thickness`; runs through interfaces.
+int layers_to(Mesh const& mesh, Links const& links, LinePlace place, double thickness) {
+  double length = 0;
+  int layers = 0;
+  Index const limit = mesh.n_nodes();
+  while (length < thickness && layers < limit && advance(mesh, links, place, length)) ++layers;
+  return layers;
+}
+
+int median_layers(Mesh const& mesh, Links const& links, std::vector<int> const& walls, double thickness) {
+  std::vector<int> counts;
+  for (int p : walls) {
+    Patch const& patch = mesh.patches[p];
+    int const axis = normal_axis(patch.range);
+    int const step = patch.range.begin[axis] == 0 ? 1 : -1;
+    for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
+      for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
+        for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i)
+          counts.push_back(layers_to(mesh, links, {patch.zone, {i, j, k}, axis, step}, thickness));
+  }
+  std::nth_element(counts.begin(), counts.begin() + counts.size() / 2, counts.end());
+  return std::max(1, counts[counts.size() / 2]);
+}
+
+}  // namespace
+
+std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
+                                   SurfaceMotion const& surface, std::vector<PatchKind> const& kinds,
+                                   std::vector<BoundaryLayer> const& options) {
+  std::vector<NearField> fields;
+  for (BoundaryLayer const& option : options) {
+    if (option.mode != BoundaryLayer::Mode::translate && option.mode != BoundaryLayer::Mode::standard)
+      throw PlanError(
+          "boundary layer: the modes \"rotate\" and \"blend\" are for unstructured meshes; use \"translate\", or "
+          "remove mode");
+    NearField field;
+    if (option.walls.empty()) {
+      for (int p = 0; p < int(mesh.patches.size()); ++p) {
+        int const rule = motion.patch[p].rule;
+        if (kinds[p] == PatchKind::wall && rule >= 0 && surface.is_explicit(rule) &&
+            !std::holds_alternative<FixedRule>(motion.rules[rule].rule))
+          field.walls.push_back(p);
+      }
+      if (field.walls.empty())
+        throw PlanError("the boundary layer names no walls and no wall patch has a moving rule; name its walls");
+    } else {
+      field.walls = select_patches(mesh, option.walls);
+      for (int p : field.walls)
+        if (!surface.is_explicit(motion.patch[p].rule))
+          throw PlanError("boundary layer wall " + describe_patch(mesh, mesh.patches[p]) +
+                          " has no prescribed displacement (its rule is '" +
+                          std::string(rule_name(motion.patch_rule(p))) + "'); near fields need walls that are moved");
+    }
+    switch (option.extent) {
+      case BoundaryLayer::Extent::block: break;
+      case BoundaryLayer::Extent::layers: field.layers = std::max(1, option.layers); break;
+      case BoundaryLayer::Extent::thickness:
+        field.layers = median_layers(mesh, links, field.walls, option.thickness);
+        break;
+    }
+    fields.push_back(std::move(field));
+  }
+  return fields;
+}
+
+std::vector<CutPlane> near_field_limits(Mesh const& mesh, Links const& links, std::vector<NearField> const& fields) {
+  std::vector<CutPlane> planes;
+  Problems problems;
+  for (NearField const& field : fields) {
+    if (field.layers == 0) continue;
+    for (int p : field.walls) {
+      LayerLimit const limit = layer_limit(mesh, links, mesh.patches[p].zone, mesh.patches[p].range, field.layers);
+      planes.insert(planes.end(), limit.planes.begin(), limit.planes.end());
+      for (std::size_t n = 0; n < limit.hit_zones.size(); ++n)
+        problems.add("the near field of wall " + describe_patch(mesh, mesh.patches[p]) + ", " +
+                     std::to_string(field.layers) + " cells thick, reaches the boundary at " +
+                     describe_range(mesh, limit.hit_zones[n], limit.hit_patches[n]) + "; give it fewer layers");
+    }
+  }
+  problems.throw_if_any<PlanError>();
+  std::sort(planes.begin(), planes.end());
+  planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
+  return planes;
+}
+
+std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topology, Known const& known,
+                                          std::vector<NearField> const& fields) {
+  std::vector<StageChain> chains;
+  std::set<BlockFace> done;
+  Blocks const& blocks = topology.blocks;
+  Lattice const& lattice = topology.lattice;
+  // Nothing stops a walk off the wall but the domain's boundary.
+  Known const nothing(lattice.n_classes());
+  for (NearField const& field : fields) {
+    std::set<int> const walls(field.walls.begin(), field.walls.end());
+    for (int c = 0; c < lattice.n_classes(); ++c) {
+      int const patch = blocks.patch_of_face()[c];
+      if (patch < 0 || !walls.contains(patch)) continue;
+      BlockFace const wall = blocks.face_of(lattice.face_sides(c).front());
+      if (!done.insert(wall).second) continue;
+
+      int cells = 0;
+      std::optional<Chain> chain = walk_from(mesh, topology, nothing, wall, [&](Chain const& so_far) {
+        Chain one;
+        one.steps = {so_far.steps.back()};
+        cells += lay_out(topology, one).n_nodes[0] - 1;
+        return cells >= field.layers;
+      });
+      std::vector<int> outer;
+      if (chain) outer = blocks.face_entities(lattice, end_face(chain->steps.back(), 1));
+      int const beyond = outer.empty() ? -1 : blocks.patch_of_face()[lattice.class_of(outer.front())];
+      if (!chain || beyond >= 0)
+        throw PlanError("the near field of wall " + describe_patch(mesh, mesh.patches[patch]) +
+                        (beyond >= 0 ? " reaches patch " + describe_patch(mesh, mesh.patches[beyond])
+                                     : std::string(" comes to a boundary or back to itself")) +
+                        "; give its boundary layer fewer layers or a smaller thickness");
+      chain->first = {true, known.kind[c], patch};
+      chain->last = {};
+      chains.push_back({std::move(*chain), kernels::LineLaw::constant, true});
+    }
+  }
+  return chains;
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,30 @@
+// Stage 0: the near field of moving walls.
+#pragma once
+
+#include <gridmorph/plan/blocks/stage_builder.hpp>
+
+#include <vector>
+
+namespace gridmorph {
+
+/// The walls of one [boundary_layer] entry and how many cells its near field has (0: up to the first opposite block face).
+struct NearField {
+  std::vector<int> walls;  ///< patch numbers
+  int layers = 0;
+};
+
+/// Walls and layer counts from the options: an empty wall list takes every patch that ranks as a wall (`kinds`, see
+/// ranked_kinds()) and that an explicit rule other than `fixed` moves; a thickness becomes the median, over all wall nodes, of the layers that reach it.
+/// Throws PlanError for selectors that match no patch and near fields that reach another boundary.
+std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
+                                   SurfaceMotion const& surface, std::vector<PatchKind> const& kinds,
+                                   std::vector<BoundaryLayer> const& options);
+
+/// Planes that bound the near fields: to be cut, and kept when blocks are merged.
+std::vector<CutPlane> near_field_limits(Mesh const& mesh, Links const& links, std::vector<NearField> const& fields);
+
+/// Chains off the walls through the near fields, walls first. Throws PlanError when a near field has no opposite face.
+std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topology, Known const& known,
+                                          std::vector<NearField> const& fields);
+
+}  // namespace gridmorph

@@ -1,0 +1,57 @@
+// The skeleton: all nodes on faces, edges and corners of pieces. It carries the displacement from stage to stage; the nodes
+// inside pieces depend on nothing but the skeleton.
+//
+// Every entity class has its slots, in the order of its owner's nodes and in its owner's frame, so that nodes that
+// coincide share one displacement.
+#pragma once
+
+#include <gridmorph/kernels/node_copy.hpp>
+#include <gridmorph/plan/topology.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace gridmorph {
+
+/// Rotations used by the tables of a plan, without repeats.
+class RotationTable {
+ public:
+  explicit RotationTable(std::vector<Mat3>& table) : table_(table) {}
+  std::int32_t number(Mat3 const& m);
+
+ private:
+  std::vector<Mat3>& table_;
+};
+
+bool same_rotation(Mat3 const& a, Mat3 const& b);
+
+/// The nodes of one entity as rows: node (p, q) has slot + p + slot_q * q and zone index at + p * step_p + q * step_q.
+struct SkeletonRows {
+  int n_p = 1, n_q = 1;
+  Index slot = 0, slot_q = 0;
+  Index3 at{0, 0, 0}, step_p{0, 0, 0}, step_q{0, 0, 0};
+};
+
+class Skeleton {
+ public:
+  Skeleton(Mesh const& mesh, Lattice const& lattice);
+
+  [[nodiscard]] Index size() const { return n_slots_; }
+  /// First slot of a class of faces, edges or corners.
+  [[nodiscard]] Index first_slot(int entity_class) const { return first_slot_[entity_class]; }
+  /// Rows of one occurrence of an entity; nothing when it has no nodes.
+  [[nodiscard]] std::optional<SkeletonRows> rows(int entity) const;
+  /// From slots to all nodes of the mesh that belong to the skeleton, each in its zone's frame.
+  [[nodiscard]] std::vector<kernels::NodeCopy> to_nodes(RotationTable& rotations) const;
+
+ private:
+  Mesh const& mesh_;
+  Lattice const& lattice_;
+  std::vector<Index> first_slot_;
+  Index n_slots_ = 0;
+};
+
+/// The matrix that leaves of a displacement its part along a unit vector.
+Mat3 onto(Vec3 const& axis);
+
+}  // namespace gridmorph

@@ -1,0 +1,228 @@
+#include <gridmorph/plan/blocks/conflict.hpp>
+#include <gridmorph/plan/blocks/spread_plan.hpp>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace gridmorph {
+namespace {
+
+bool same_surface(SlipSurface const& a, SlipSurface const& b) {
+  return a.kind == b.kind && a.origin == b.origin && a.direction == b.direction && a.profile.knots == b.profile.knots &&
+         a.frame == b.frame && a.facets.points == b.facets.points;
+}
+
+/// Number of each patch's slip surface in `surfaces`, -1 for patches that do not slip.
+std::vector<int> surface_numbers(Mesh const& mesh, SurfaceMotion const& surface, std::vector<SlipSurface>& surfaces) {
+  std::vector<int> number(mesh.patches.size(), -1);
+  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+    std::optional<SlipSurface> const s = surface.slip_surface(p);
+    if (!s) continue;
+    auto const it = std::find_if(surfaces.begin(), surfaces.end(), [&](auto const& o) { return same_surface(o, *s); });
+    number[p] = int(it - surfaces.begin());
+    if (it == surfaces.end()) surfaces.push_back(*s);
+  }
+  return number;
+}
+
+/// A chain off a slip block face, slip end first, and how many of its steps are used.
+struct Candidate {
+  int rule = -1;
+  bool curved = false;
+  Chain chain;
+  int steps = 0;
+  [[nodiscard]] bool whole() const { return steps == int(chain.steps.size()); }
+};
+
+std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
+                                       std::vector<int> const& surface_of_patch,
+                                       std::vector<SlipSurface> const& surfaces) {
+  Lattice const& lattice = topology.lattice;
+  Blocks const& blocks = topology.blocks;
+  Known const nothing(lattice.n_classes());
+  std::vector<Candidate> candidates;
+  std::set<BlockFace> seen;
+  for (int c = 0; c < lattice.n_classes(); ++c) {
+    int const patch = blocks.patch_of_face()[c];
+    if (patch < 0 || surface_of_patch[patch] < 0) continue;
+    BlockFace const face = blocks.face_of(lattice.face_sides(c).front());
+    if (!seen.insert(face).second) continue;
+    // To the opposite boundary, or through one block where the way there would come back to one of its blocks.
+    Chain chain;
+    if (auto whole = find_chain(mesh, topology, nothing, face.block, face.axis)) {
+      bool const slip_first = end_face(whole->steps.front(), 0) == face;
+      chain = slip_first ? std::move(*whole) : reversed(std::move(*whole));
+    } else {
+      auto one = walk_from(mesh, topology, nothing, face, [](Chain const&) { return true; });
+      if (!one) continue;
+      chain = std::move(*one);
+    }
+    int const steps = int(chain.steps.size());
+    SlipKind const kind = surfaces[surface_of_patch[patch]].kind;
+    bool const curved = kind == SlipKind::revolution || kind == SlipKind::meridional || kind == SlipKind::facets;
+    candidates.push_back({motion.patch[patch].rule, curved, std::move(chain), steps});
+  }
+  return candidates;
+}
+
+/// Shortens the chains of one rule until their common region has no inner side: a node on a side that another block
+/// shares would move with the chain and the block's own nodes would not. Chains side by side get equal length.
+void close_sides(Topology const& topology, std::vector<Candidate*> const& group) {
+  Lattice const& lattice = topology.lattice;
+  Blocks const& blocks = topology.blocks;
+  using Place = std::pair<Candidate*, int>;  // chain, step
+  std::map<int, std::vector<Place>> beside;  // inner side face -> who has it
+  for (Candidate* c : group)
+    for (int m = 0; m < int(c->chain.steps.size()); ++m) {
+      ChainStep const& step = c->chain.steps[m];
+      for (int axis = 0; axis < 3; ++axis) {
+        if (step.to_chain.axis[axis] == 0) continue;
+        for (int side = 0; side < 2; ++side)
+          for (int const entity : blocks.face_entities(lattice, {step.block, axis, side})) {
+            int const face = lattice.class_of(entity);
+            if (blocks.patch_of_face()[face] < 0) beside[face].emplace_back(c, m);
+          }
+      }
+    }
+  for (bool changed = true; changed;) {
+    changed = false;
+    auto shorten = [&](Candidate* c, int steps) {
+      if (c->steps <= std::max(1, steps)) return;
+      c->steps = std::max(1, steps);
+      changed = true;
+    };
+    for (auto const& [face, places] : beside)
+      for (Place const& place : places) {
+        auto const [c, m] = place;
+        if (m >= c->steps) continue;
+        auto const other = std::find_if(places.begin(), places.end(),
+                                        [&](Place const& p) { return &p != &place && p.second < p.first->steps; });
+        if (other == places.end() || other->second != m)
+          shorten(c, m);
+        else
+          shorten(c, other->first->steps);
+      }
+  }
+}
+
+Chain used_part(Candidate const& c) {
+  Chain chain = c.chain;
+  if (!c.whole()) {
+    chain.steps.resize(c.steps);
+    chain.last = {};
+  }
+  return chain;
+}
+
+/// The chains of one rule, or of two rules whose chains are the same from end to end (hub and case).
+struct RuleChains {
+  std::set<int> rules;
+  bool curved = false;
+  std::vector<Chain> chains;
+};
+
+/// In the order they are to be spread. Planes and axial constraints come first: their corrections leave other planes
+/// alone, but not curved surfaces, which are put right last and by lines that lie in those planes.
+std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion const& motion,
+                                       std::vector<int> const& surface_of_patch, std::vector<Candidate>& candidates) {
+  using Key = std::pair<bool, int>;  // (curved, rule)
+  std::map<Key, std::vector<Candidate*>> groups;
+  for (Candidate& c : candidates) groups[{c.curved, c.rule}].push_back(&c);
+  std::map<Key, std::set<std::pair<int, int>>> whole_blocks;  // (block, axis), if all chains of the rule are whole
+  for (auto& [key, group] : groups) {
+    close_sides(topology, group);
+    auto& blocks = whole_blocks[key];
+    for (Candidate const* c : group)
+      for (ChainStep const& step : c->chain.steps)
+        if (c->whole()) blocks.insert({step.block, step.to_chain.inverse().axis[0]});
+    if (!std::all_of(group.begin(), group.end(), [](Candidate const* c) { return c->whole(); })) blocks.clear();
+  }
+  std::vector<RuleChains> lists;
+  std::map<Key, std::size_t> list_of;
+  for (auto const& [key, group] : groups) {
+    // Done with an earlier rule at the other end of the same chains?
+    auto const same = std::find_if(list_of.begin(), list_of.end(), [&, k = key](auto const& other) {
+      return !whole_blocks.at(k).empty() && whole_blocks.at(other.first) == whole_blocks.at(k);
+    });
+    if (same != list_of.end()) {
+      lists[same->second].rules.insert(key.second);
+      continue;
+    }
+    list_of[key] = lists.size();
+    RuleChains list;
+    list.rules.insert(key.second);
+    list.curved = key.first;
+    std::set<std::pair<int, int>> taken;  // a chain with both ends on this rule's patches is found twice
+    for (Candidate const* c : group) {
+      Chain chain = used_part(*c);
+      ChainStep const& first = chain.steps.front();
+      if (taken.contains({first.block, first.to_chain.inverse().axis[0]}) && c->whole()) continue;
+      for (ChainStep const& step : chain.steps) taken.insert({step.block, step.to_chain.inverse().axis[0]});
+      // The far end is put back too only where all chains are whole; otherwise its own rule does it.
+      bool const same_rule = chain.last.patch >= 0 && surface_of_patch[chain.last.patch] >= 0 &&
+                             motion.patch[chain.last.patch].rule == key.second;
+      if (whole_blocks.at(key).empty() && !same_rule) chain.last = {};
+      list.chains.push_back(std::move(chain));
+    }
+    lists.push_back(std::move(list));
+  }
+  return lists;
+}
+
+/// What a curved surface asks for, spread along lines on another curved surface, takes their nodes off it. So the passes of curved
+/// surfaces are swept there and back: each sweep leaves a small share of the disturbance of the one before.
+void sweep_again(std::vector<RuleChains>& lists) {
+  constexpr int sweeps = 2;
+  auto const first_curved = std::find_if(lists.begin(), lists.end(), [](RuleChains const& l) { return l.curved; });
+  std::vector<RuleChains> sweep(first_curved, lists.end());
+  if (sweep.size() < 2) return;
+  for (int n = 0; n < sweeps; ++n) {
+    std::reverse(sweep.begin(), sweep.end());
+    lists.insert(lists.end(), sweep.begin() + 1, sweep.end());
+  }
+}
+
+}  // namespace
+
+void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, SurfaceMotion const& surface,
+                  Known const& given, Plan& plan) {
+  Mesh const& mesh = context.mesh;
+  Topology const& topology = context.topology;
+  std::vector<int> const surface_of_patch = surface_numbers(mesh, surface, plan.surfaces);
+  if (plan.surfaces.empty()) return;
+  Known const nothing(topology.lattice.n_classes());
+  std::vector<Candidate> candidates = find_candidates(mesh, topology, motion, surface_of_patch, plan.surfaces);
+  // A node on several surfaces is put on those of earlier passes and its own: each correction is spread along the lines
+  // of its own rule.
+  std::vector<int> surface_so_far(mesh.patches.size(), -1);
+  std::vector<RuleChains> lists = chains_by_rule(topology, motion, surface_of_patch, candidates);
+  sweep_again(lists);
+  for (RuleChains& list : lists) {
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+      if (list.rules.contains(motion.patch[p].rule)) surface_so_far[p] = surface_of_patch[p];
+    while (!list.chains.empty()) {
+      Claims claims(topology, nothing);
+      std::vector<Chain> now, later;
+      for (Chain& chain : list.chains) (claims.add(chain) ? now : later).push_back(std::move(chain));
+      SpreadPass pass = build_spread(context, now, surface_so_far, given, plan);
+      std::map<std::pair<std::string, std::string>, int> ends;
+      for (Chain const& chain : now) {
+        auto name = [&](ChainEnd const& end) {
+          if (end.patch < 0) return std::string("an inner face");
+          Patch const& p = mesh.patches[end.patch];
+          return p.families.empty() ? p.name : p.families.front();
+        };
+        ++ends[{name(chain.first), name(chain.last)}];
+      }
+      for (auto const& [who, count] : ends)
+        pass.description.push_back(std::to_string(count) + " chains from " + who.first + " to " + who.second);
+      plan.spreads.push_back(std::move(pass));
+      list.chains = std::move(later);
+    }
+  }
+}
+
+}  // namespace gridmorph

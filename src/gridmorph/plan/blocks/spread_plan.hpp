@@ -1,0 +1,15 @@
+// Finalize, planned: which nodes are put back on their slip surfaces, and along which lines the correction is spread.
+#pragma once
+
+#include <gridmorph/plan/blocks/stage_builder.hpp>
+
+namespace gridmorph {
+
+/// Fills plan.surfaces and plan.spreads. Every block face on a slip patch starts a chain that runs through all blocks to
+/// the opposite boundary, or as far as the chains of its rule stay side by side: what leaves the chains sideways into
+/// other blocks must not move. Rules whose chains are the same from end to end (hub and case) share one pass; other rules
+/// have passes of their own, in their order. `given`: entities whose displacement the motion rules give.
+void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, SurfaceMotion const& surface,
+                  Known const& given, Plan& plan);
+
+}  // namespace gridmorph

@@ -1,0 +1,246 @@
+#include <gridmorph/plan/blocks/side_tables.hpp>
+#include <gridmorph/plan/blocks/stage_builder.hpp>
+
+#include <algorithm>
+#include <map>
+
+namespace gridmorph {
+
+int kind_rank(EndKind kind, std::vector<std::string> const& order) {
+  auto const it = std::find(order.begin(), order.end(), end_kind_name(kind));
+  return int(it - order.begin());
+}
+
+namespace {
+
+/// Appends the tubes and segments of a laid-out chain.
+void append_lines(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int number,
+                  LineTables& lines) {
+  for (int pb = 0; pb < layout.n[2]; ++pb)
+    for (int pa = 0; pa < layout.n[1]; ++pa) {
+      kernels::Tube tube{};
+      tube.chain = number;
+      tube.a_begin = layout.a_begin[pa];
+      tube.b_begin = layout.b_begin[pb];
+      tube.first_segment = std::int32_t(lines.segments.size());
+      tube.n_segments = layout.n[0];
+      for (int ps = 0; ps < layout.n[0]; ++ps)
+        lines.segments.push_back(make_segment(context.mesh, placed_box(context, chain, layout, ps, pa, pb)));
+      PieceNodes const nodes = piece_nodes(context.mesh, context.topology.lattice, layout.at(0, pa, pb));
+      tube.n_a = nodes.count[1];
+      tube.n_b = nodes.count[2];
+      lines.tubes.push_back(tube);
+    }
+}
+
+/// Makes the chain write every entity that `writes(entity)` grants it; `first_segment` is that of its first tube.
+template <class Writes>
+void append_writers(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int number,
+                    std::size_t first_segment, LineTables& lines, std::vector<kernels::SkeletonSweep>& sweeps,
+                    std::vector<VolumePart>& volume, Writes&& writes) {
+  std::size_t at = first_segment;
+  for (int pb = 0; pb < layout.n[2]; ++pb)
+    for (int pa = 0; pa < layout.n[1]; ++pa)
+      for (int ps = 0; ps < layout.n[0]; ++ps, ++at) {
+        PlacedBox const box = placed_box(context, chain, layout, ps, pa, pb);
+        ChainPiece const& piece = layout.at(ps, pa, pb);
+        for (int category = 0; category < 27; ++category) {
+          int const entity =
+              chain_entity(context.topology.lattice, piece, {category % 3, (category / 3) % 3, category / 9});
+          if (writes(entity))
+            add_writer(context, lines, sweeps, volume, number, box, piece.piece, entity, category, lines.segments[at]);
+        }
+      }
+}
+
+/// Calls visit(box, piece, entity, ca, cb) for the entities of the chain's face at its lower (end 0) or upper end, each
+/// once.
+template <class Visit>
+void for_end_entities(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int end,
+                      Visit&& visit) {
+  int const ps = end == 0 ? 0 : layout.n[0] - 1;
+  for (int pb = 0; pb < layout.n[2]; ++pb)
+    for (int pa = 0; pa < layout.n[1]; ++pa) {
+      PlacedBox const box = placed_box(context, chain, layout, ps, pa, pb);
+      for (int cb = pb == 0 ? 0 : 1; cb < 3; ++cb)
+        for (int ca = pa == 0 ? 0 : 1; ca < 3; ++ca)
+          visit(box, chain_entity(context.topology.lattice, layout.at(ps, pa, pb), {2 * end, ca, cb}));
+    }
+}
+
+kernels::Chain device_chain(ChainLayout const& layout, kernels::LineLaw law, bool open_end) {
+  kernels::Chain c{};
+  c.n_s = layout.n_nodes[0];
+  c.n_a = layout.n_nodes[1];
+  c.n_b = layout.n_nodes[2];
+  c.law = law;
+  c.open_end = open_end ? 1 : 0;
+  c.first_side = -1;
+  return c;
+}
+
+/// Turns the cross-section of a chain so that a and b run forward in memory, a through nearer nodes than b.
+Chain with_contiguous_a(PlanContext const& context, Chain chain) {
+  auto turn = [&](Orientation const& o) {
+    for (ChainStep& step : chain.steps) step.to_chain = step.to_chain.then(o);
+  };
+  auto strides = [&] {
+    return piece_nodes(context.mesh, context.topology.lattice, lay_out(context.topology, chain).pieces.front()).stride;
+  };
+  if (auto const s = strides(); std::abs(s[1]) > std::abs(s[2])) turn({{0, 2, 1}, {1, 1, 1}});
+  auto const s = strides();
+  turn({{0, 1, 2}, {1, s[1] < 0 ? -1 : 1, s[2] < 0 ? -1 : 1}});
+  return chain;
+}
+
+}  // namespace
+
+Stage build_stage(PlanContext const& context, std::vector<StageChain> const& chains, Known& known,
+                  std::vector<std::string> const& kind_order) {
+  Stage stage;
+  Lattice const& lattice = context.topology.lattice;
+  std::map<int, int> writer;       // entity class -> entity that is written
+  std::map<int, EndKind> becomes;  // entity class -> kind
+  for (StageChain const& entry : chains) {
+    Chain const chain = with_contiguous_a(context, entry.chain);
+    ChainLayout const layout = lay_out(context.topology, chain);
+    EndKind const kind =
+        entry.open_end || kind_rank(chain.first.kind, kind_order) <= kind_rank(chain.last.kind, kind_order)
+            ? chain.first.kind
+            : chain.last.kind;
+    int const number = int(stage.lines.chains.size());
+    std::size_t const first_segment = stage.lines.segments.size();
+    kernels::Chain device = device_chain(layout, entry.law, entry.open_end);
+    device.first_end_value = stage.lines.n_end_values;
+    stage.lines.n_end_values += 2 * device.section_size();
+    stage.lines.chains.push_back(device);
+    for (int end = 0; end < (entry.open_end ? 1 : 2); ++end)
+      for_end_entities(context, chain, layout, end, [&](PlacedBox const& box, int entity) {
+        add_gather(
+            context, box, entity, device.first_end_value + end * device.section_size(),
+            [&](Index3 const& at) { return at[1] + Index(device.n_a) * at[2]; }, stage.ends);
+      });
+    append_lines(context, chain, layout, number, stage.lines);
+    add_side_tables(context, chain, layout, known, number, stage);
+    append_writers(context, chain, layout, number, first_segment, stage.lines, stage.sweeps, stage.volume,
+                   [&](int entity) {
+                     int const c = lattice.class_of(entity);
+                     if (known(c)) return false;
+                     auto const [it, fresh] = becomes.try_emplace(c, kind);
+                     if (!fresh && kind_rank(kind, kind_order) < kind_rank(it->second, kind_order)) it->second = kind;
+                     return writer.try_emplace(c, entity).first->second == entity && fresh;
+                   });
+    for (ChainPiece const& p : layout.pieces) {
+      Piece const& piece = lattice.pieces()[p.piece];
+      IndexRange cells = piece.nodes;
+      for (int a = 0; a < 3; ++a) --cells.end[a];
+      stage.cells.push_back({piece.zone, cells});
+    }
+  }
+  for (auto const& [c, entity] : writer) {
+    known.known[c] = 1;
+    known.kind[c] = becomes.at(c);
+  }
+  return stage;
+}
+
+namespace {
+
+/// Slip surfaces of every entity class: faces have one, edges and corners up to three.
+std::map<int, std::vector<int>> surfaces_of_classes(Topology const& topology,
+                                                    std::vector<int> const& surface_of_patch) {
+  Lattice const& lattice = topology.lattice;
+  std::map<int, std::vector<int>> surfaces_of;
+  for (int c = 0; c < lattice.n_classes(); ++c) {
+    int const patch = topology.blocks.patch_of_face()[c];
+    if (patch < 0 || surface_of_patch[patch] < 0) continue;
+    for (EntityCopy const& copy : lattice.copies(c)) {
+      Index3 const p = lattice.position(copy.entity);
+      Index3 d{};
+      for (d[2] = -1; d[2] <= 1; ++d[2])
+        for (d[1] = -1; d[1] <= 1; ++d[1])
+          for (d[0] = -1; d[0] <= 1; ++d[0]) {
+            if ((p[0] % 2 == 0 && d[0] != 0) || (p[1] % 2 == 0 && d[1] != 0) || (p[2] % 2 == 0 && d[2] != 0)) continue;
+            auto& list = surfaces_of[lattice.class_of(
+                lattice.entity(lattice.zone_of(copy.entity), {p[0] + d[0], p[1] + d[1], p[2] + d[2]}))];
+            if (std::find(list.begin(), list.end(), surface_of_patch[patch]) == list.end())
+              list.push_back(surface_of_patch[patch]);
+          }
+    }
+  }
+  return surfaces_of;
+}
+
+/// The slip ends of one entity at an end of a chain.
+void add_slip_ends(PlanContext const& context, PlacedBox const& box, int entity, kernels::Chain const& chain, int end,
+                   std::vector<int> const& surfaces, double tolerance, std::vector<kernels::SlipEnd>& out) {
+  auto const rows = context.skeleton.rows(entity);
+  if (!rows) return;
+  EntityCopy const& copy = context.topology.lattice.copy_of(entity);
+  kernels::SlipEnd slip{};
+  slip.to_node = copy.moved ? context.rotations.number(copy.transform.rotation) : -1;
+  slip.to_chain = box.rotated ? context.rotations.number(transpose(box.rotation)) : -1;
+  slip.tolerance = tolerance;
+  for (std::size_t m = 0; m < 3; ++m) slip.surface[m] = m < surfaces.size() ? surfaces[m] : -1;
+  Zone const& zone = context.mesh.zones[box.zone];
+  for (int q = 0; q < rows->n_q; ++q)
+    for (int p = 0; p < rows->n_p; ++p) {
+      Index3 node{};
+      for (int d = 0; d < 3; ++d) node[d] = rows->at[d] + p * rows->step_p[d] + q * rows->step_q[d];
+      Index3 const at = box.position(node);
+      slip.node = zone.node(node);
+      slip.slot = rows->slot + p + q * rows->slot_q;
+      slip.value = chain.first_end_value + end * chain.section_size() + at[1] + Index(chain.n_a) * at[2];
+      out.push_back(slip);
+    }
+}
+
+/// How far given displacements may take nodes off their surfaces before they are put back. A surface fitted to nodes that scatter is
+/// tilted by their scatter over its size: a displacement along the true one leaves it by as much.
+double given_tolerance(std::vector<int> const& surfaces, Plan const& plan) {
+  double tolerance = 1e-10 * plan.mesh_size;
+  for (int const s : surfaces) {
+    SlipSurface const& surface = plan.surfaces[s];
+    tolerance = std::max(tolerance, std::min(2 * surface.baseline_deviation, 1e-6 * surface.size));
+  }
+  return tolerance;
+}
+
+}  // namespace
+
+SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains,
+                        std::vector<int> const& surface_of_patch, Known const& given, Plan const& plan) {
+  SpreadPass pass;
+  Lattice const& lattice = context.topology.lattice;
+  auto const surfaces_of = surfaces_of_classes(context.topology, surface_of_patch);
+  std::map<int, int> writer;
+  for (Chain const& entry : chains) {
+    Chain const chain = with_contiguous_a(context, entry);
+    ChainLayout const layout = lay_out(context.topology, chain);
+    int const number = int(pass.lines.chains.size());
+    std::size_t const first_segment = pass.lines.segments.size();
+    // Zero slope at both ends: the first spacings at the end walls keep their size.
+    kernels::Chain device = device_chain(layout, kernels::LineLaw::c1, false);
+    device.first_end_value = pass.lines.n_end_values;
+    pass.lines.n_end_values += 2 * device.section_size();
+    pass.lines.chains.push_back(device);
+    append_lines(context, chain, layout, number, pass.lines);
+    append_writers(context, chain, layout, number, first_segment, pass.lines, pass.sweeps, pass.volume,
+                   [&](int entity) {
+                     auto const [it, fresh] = writer.try_emplace(lattice.class_of(entity), entity);
+                     return fresh && it->second == entity;
+                   });
+    for (int end = 0; end < 2; ++end) {
+      int const patch = end == 0 ? chain.first.patch : chain.last.patch;
+      if (patch < 0 || surface_of_patch[patch] < 0) continue;
+      for_end_entities(context, chain, layout, end, [&](PlacedBox const& box, int entity) {
+        int const c = lattice.class_of(entity);
+        add_slip_ends(context, box, entity, device, end, surfaces_of.at(c),
+                      given(c) ? given_tolerance(surfaces_of.at(c), plan) : 0, pass.ends);
+      });
+    }
+  }
+  return pass;
+}
+
+}  // namespace gridmorph

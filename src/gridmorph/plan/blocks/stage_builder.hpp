@@ -1,0 +1,31 @@
+// Compiles chains into the flat tables of a stage.
+#pragma once
+
+#include <gridmorph/plan/blocks/chain_tables.hpp>
+
+#include <vector>
+
+namespace gridmorph {
+
+struct StageChain {
+  Chain chain;
+  kernels::LineLaw law = kernels::LineLaw::linear;
+  bool open_end = false;  ///< carry the first end's displacement to the last end
+};
+
+/// Tables of all chains; entities not known yet are written by the first chain that holds them. Marks them known with
+/// the chain's better end kind (as `kind_order` decides). Sides that are known get the transfinite correction.
+Stage build_stage(PlanContext const& context, std::vector<StageChain> const& chains, Known& known,
+                  std::vector<std::string> const& kind_order);
+
+/// Redistribution chains: every entity of the chains is written once, known or not. `given` are the entities whose
+/// displacement the motion rules give: they are honoured exactly while they stay within 1e-10 of the mesh size of
+/// their slip surfaces (or twice as far as nodes of the baseline scatter about them, up to 1e-6 of their size), and trimmed
+/// to them beyond that. Uses mesh_size and surfaces of `plan`.
+SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains,
+                        std::vector<int> const& surface_of_patch, Known const& given, Plan const& plan);
+
+/// Position of a kind in the priority's order; kinds that are not listed come after all that are.
+int kind_rank(EndKind kind, std::vector<std::string> const& order);
+
+}  // namespace gridmorph

@@ -1,0 +1,29 @@
+// Where columns end: as high as the boundary layer goes, but smoothly along the wall and not across narrow gaps.
+#pragma once
+
+#include <gridmorph/plan/elements/columns.hpp>
+#include <gridmorph/plan/elements/wall_distance.hpp>
+
+#include <vector>
+
+namespace gridmorph {
+
+/// How far what is as rigid as a moving wall may reach into a gap to another boundary, so that enough of the gap is left to take
+/// up the motion:
+///
+///     room = min(gap / 3, max(gap - 2 motion, gap / 10))
+double room_in_gap(double gap, double motion);
+
+/// (n_nodes) For wall nodes where the nearest other boundary lies ahead (within 60 degrees of where the column leads), its
+/// distance; infinite elsewhere: a boundary beside, on which the wall ends, leaves no gap. Cost O(nodes of columns).
+std::vector<double> gaps_ahead(Coordinates const& coordinates, Columns const& columns, NearestSource const& from_other);
+
+/// (n_nodes) Height of the column on each wall node, 0 where there is none: not above `most`, and without the jumps between
+/// neighbours whose columns end in different layers. What varies with the share of the height, and what begins at its end, must
+/// not jump. First the least of the neighbours, so that columns are hardly ever longer. Cost O(wall nodes).
+std::vector<double> smooth_heights(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most);
+
+/// Columns up to the given heights; what is above belongs to the layers.
+Columns cut(Columns const& columns, std::vector<double> const& height);
+
+}  // namespace gridmorph

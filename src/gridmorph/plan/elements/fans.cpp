@@ -1,0 +1,85 @@
+#include <gridmorph/plan/elements/fans.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::detail {
+
+namespace {
+
+/// The faces without those that have the nodes of one before: the other side of a wall between zones, whose normal is the opposite.
+std::vector<Index32> one_sided(UnstructuredTopology const& topology, NodeGraph const& graph,
+                               std::vector<Index32> const& faces) {
+  auto const owner = [&](Index32 n) { return graph.representative[std::size_t(n)]; };
+  bool const joined = std::any_of(faces.begin(), faces.end(), [&](Index32 f) {
+    auto const face = topology.boundary.nodes[f];
+    return std::any_of(face.begin(), face.end(), [&](Index32 n) { return owner(n) != n; });
+  });
+  if (!joined) return faces;
+  std::set<std::vector<Index32>> seen;
+  std::vector<Index32> out;
+  for (Index32 const f : faces) {
+    std::vector<Index32> owners;
+    for (Index32 const n : topology.boundary.nodes[f]) owners.push_back(owner(n));
+    std::sort(owners.begin(), owners.end());
+    if (seen.insert(std::move(owners)).second) out.push_back(f);
+  }
+  return out;
+}
+
+/// Calls visit(node, a, b) for every corner of every face.
+template <class Visit>
+void for_each_corner(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+                     std::vector<Index32> const& faces, Visit&& visit) {
+  auto const owner = [&](Index32 n) { return graph.representative[std::size_t(n)]; };
+  for (Index32 const f : faces) {
+    auto const face = topology.boundary.nodes[f];
+    std::size_t const n = face.size();
+    if (mesh.dimension == 2) {
+      for (Index32 const end : face) visit(owner(end), owner(face[0]), owner(face[1]));
+    } else {
+      for (std::size_t k = 0; k < n; ++k) visit(owner(face[k]), owner(face[(k + 1) % n]), owner(face[(k + n - 1) % n]));
+    }
+  }
+}
+
+}  // namespace
+
+CsrGraph wall_fans(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+                   std::vector<Index32> const& all_faces, std::vector<Index32> const& roots) {
+  std::vector<Index32> const faces = one_sided(topology, graph, all_faces);
+  std::vector<Index32> place(std::size_t(mesh.n_nodes()), -1);
+  for (std::size_t r = 0; r < roots.size(); ++r) place[std::size_t(roots[r])] = Index32(r);
+  CsrGraph fans;
+  fans.first.assign(roots.size() + 1, 0);
+  for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32, Index32) {
+    if (Index32 const r = place[std::size_t(n)]; r >= 0) fans.first[std::size_t(r) + 1] += 2;
+  });
+  for (std::size_t r = 0; r < roots.size(); ++r) fans.first[r + 1] += fans.first[r];
+  fans.item.resize(std::size_t(fans.first.back()));
+  std::vector<Index> next(fans.first.begin(), fans.first.end() - 1);
+  for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32 a, Index32 b) {
+    if (Index32 const r = place[std::size_t(n)]; r >= 0) {
+      fans.item[std::size_t(next[std::size_t(r)]++)] = a;
+      fans.item[std::size_t(next[std::size_t(r)]++)] = b;
+    }
+  });
+  return fans;
+}
+
+std::vector<Vec3> wall_normals(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                               NodeGraph const& graph, std::vector<Index32> const& all_faces) {
+  std::vector<Index32> const faces = one_sided(topology, graph, all_faces);
+  std::vector<Vec3> normal(std::size_t(mesh.n_nodes()));
+  Vec3 const across = plane_normal(mesh);
+  for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32 a, Index32 b) {
+    Vec3 const x = mesh.coordinates[n], p = mesh.coordinates[a], q = mesh.coordinates[b];
+    normal[std::size_t(n)] += mesh.dimension == 2 ? cross(q - p, across) : cross(p - x, q - x);
+  });
+  return normal;
+}
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,164 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/kernels/element_place.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/plan/elements/locate.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace gridmorph {
+
+namespace {
+
+/// Adds the weights of a polyhedron's corner nodes.
+void polyhedron_weights(UnstructuredMesh const& mesh, Location const& where, std::span<Index32 const> corners,
+                        std::vector<double>& weight) {
+  auto const& polyhedra = mesh.polyhedra;
+  auto const here = std::lower_bound(polyhedra.element.begin(), polyhedra.element.end(), where.element);
+  auto const number = std::size_t(here - polyhedra.element.begin());
+  double const of_face = where.local.x, of_begin = where.local.y, of_end = where.local.z;
+  double const of_all = 1 - of_face - of_begin - of_end;
+  std::fill(weight.begin(), weight.end(), of_all / double(corners.size()));
+  auto const add = [&](Index32 node, double w) {
+    auto const at = std::find(corners.begin(), corners.end(), node);
+    if (at != corners.end()) weight[std::size_t(at - corners.begin())] += w;
+  };
+  Index part = where.part;
+  for (Index f = polyhedra.first_face[number]; f < polyhedra.first_face[number + 1]; ++f) {
+    auto const face = polyhedra.faces[f];
+    auto const n = Index(face.size());
+    if (part >= n) {
+      part -= n;
+      continue;
+    }
+    for (Index32 const node : face) add(node, of_face / double(n));
+    add(face[std::size_t(part)], of_begin);
+    add(face[std::size_t((part + 1) % n)], of_end);
+    return;
+  }
+}
+
+void fill_weights(UnstructuredMesh const& mesh, Location const& where, std::vector<double>& weight) {
+  auto const corners = mesh.elements.corners(where.element);
+  ElementType const type = mesh.elements.type[std::size_t(where.element)];
+  weight.resize(corners.size());
+  if (type == ElementType::polyhedron) return polyhedron_weights(mesh, where, corners, weight);
+  ElementWeights const w = element_weights(type, where.local);
+  std::copy_n(w.of, corners.size(), weight.begin());
+}
+
+/// Calls visit(node, weight) for the corner nodes of a place whose weights count, each node once (collapsed elements name
+/// some more than once); these weights sum to one.
+template <class Visit>
+void for_each_item(UnstructuredMesh const& mesh, Location const& where, Visit const& visit) {
+  constexpr double negligible = 1e-9;
+  auto const corners = mesh.elements.corners(where.element);
+  ElementType const type = mesh.elements.type[std::size_t(where.element)];
+  ElementWeights some;
+  std::vector<double> many;
+  double* weight = some.of;
+  if (type == ElementType::polyhedron) {
+    fill_weights(mesh, where, many);
+    weight = many.data();
+  } else {
+    some = element_weights(type, where.local);
+    for (std::size_t k = 1; k < corners.size(); ++k)
+      for (std::size_t earlier = 0; earlier < k; ++earlier) {
+        if (corners[earlier] != corners[k]) continue;
+        weight[earlier] += weight[k];
+        weight[k] = 0;
+        break;
+      }
+  }
+  double sum = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    if (weight[k] >= negligible) sum += weight[k];
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    if (weight[k] >= negligible) visit(corners[k], weight[k] / sum);
+}
+
+void check(UnstructuredMesh const& mesh, Location const& where) {
+  if (where.element >= 0 && where.element < mesh.n_elements()) return;
+  throw MeshError(
+      "interpolation in '" + mesh.source +
+      "': a point has no element there; the elements to look in are none, or its coordinates are no numbers");
+}
+
+}  // namespace
+
+std::vector<double> corner_weights(UnstructuredMesh const& mesh, Location const& location) {
+  check(mesh, location);
+  std::vector<double> weight;
+  fill_weights(mesh, location, weight);
+  return weight;
+}
+
+Vec3 position(UnstructuredMesh const& mesh, Location const& location) {
+  auto const weight = corner_weights(mesh, location);
+  auto const corners = mesh.elements.corners(location.element);
+  Vec3 const origin = mesh.coordinates[corners[0]];
+  Vec3 sum;
+  for (std::size_t k = 1; k < corners.size(); ++k) sum += weight[k] * (mesh.coordinates[corners[k]] - origin);
+  return origin + sum;
+}
+
+InterpolationOperator interpolation_rows(UnstructuredMesh const& mesh, std::span<Location const> locations,
+                                         std::span<Index32 const> targets) {
+  if (targets.size() != locations.size())
+    throw MeshError("interpolation in '" + mesh.source + "': " + std::to_string(locations.size()) + " locations for " +
+                    std::to_string(targets.size()) + " targets");
+  for (Location const& where : locations) check(mesh, where);
+  InterpolationOperator rows;
+  rows.target.assign(targets.begin(), targets.end());
+  rows.first.resize(locations.size() + 1);
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Exec const exec;
+  Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>> const all(exec, 0, Index(locations.size()));
+  Kokkos::parallel_for("gridmorph::interpolation_rows::count", all, [&](Index const n) {
+    Index count = 0;
+    for_each_item(mesh, locations[std::size_t(n)], [&](Index32, double) { ++count; });
+    rows.first[std::size_t(n) + 1] = count;
+  });
+  compat::fence(exec, "gridmorph::interpolation_rows (counted)");
+  for (std::size_t n = 0; n < locations.size(); ++n) rows.first[n + 1] += rows.first[n];
+  rows.item.resize(std::size_t(rows.first.back()));
+  rows.weight.resize(std::size_t(rows.first.back()));
+  Kokkos::parallel_for("gridmorph::interpolation_rows::fill", all, [&](Index const n) {
+    auto at = std::size_t(rows.first[std::size_t(n)]);
+    for_each_item(mesh, locations[std::size_t(n)], [&](Index32 node, double w) {
+      rows.item[at] = node;
+      rows.weight[at++] = float(w);
+    });
+  });
+  compat::fence(exec, "gridmorph::interpolation_rows (read by the host)");
+  return rows;
+}
+
+LocateReport summarise(std::span<Location const> locations) {
+  LocateReport report;
+  for (std::size_t n = 0; n < locations.size(); ++n) {
+    Location const& where = locations[n];
+    double const distance = where.element < 0 ? unbounded : where.distance;
+    if (distance == 0) {
+      ++report.inside;
+      continue;
+    }
+    ++report.outside;
+    if (report.worst >= 0 && !(distance > report.largest_distance)) continue;
+    report.largest_distance = distance;
+    report.worst = Index(n);
+  }
+  return report;
+}
+
+std::string describe(LocateReport const& report, std::string const& points, std::string const& mesh) {
+  if (report.outside == 0) return {};
+  std::array<char, 32> distance{};
+  std::snprintf(distance.data(), distance.size(), "%.3g", report.largest_distance);
+  return std::to_string(report.outside) + " of " + std::to_string(report.inside + report.outside) + " " + points +
+         (report.outside == 1 ? " lies" : " lie") + " outside " + mesh + ", up to " + distance.data() +
+         " from it, and " + (report.outside == 1 ? "takes" : "take") + " the nearest place there";
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,226 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/core/sort_keys.hpp>
+#include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/plan/elements/locate.hpp>
+#include <gridmorph/plan/elements/locate_point.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace gridmorph {
+
+namespace detail {
+
+namespace {
+
+template <class Exec>
+using Range = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>;
+
+/// The box of an element's corners, further out by `tolerance`; empty where a corner is not a number.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION Box box_of(LocatorTables<MemorySpace> const& t, Index32 element) {
+  Box box;
+  Index const first = t.elements.first(element);
+  ElementType const type = t.elements.type(element);
+  Index const last = type == ElementType::polyhedron ? t.elements.first(element + 1) : first + n_corners(type);
+  for (Index n = first; n < last; ++n) {
+    Vec3 const x = node_at(t, t.elements.node(n));
+    if (!is_finite(x.x + x.y + x.z)) return {};
+    box.include(x);
+  }
+  if (first == last) return box;
+  Vec3 const more{t.tolerance, t.tolerance, t.tolerance};
+  return {box.low - more, box.high + more};
+}
+
+/// Sorts the candidates along the curve.
+template <class Exec>
+Kokkos::View<Index32*, typename Exec::memory_space> order_candidates(
+    Exec const& exec, LocatorTables<typename Exec::memory_space> const& tables,
+    Kokkos::View<Index32*, typename Exec::memory_space> const& candidates) {
+  KeyedIndices<typename Exec::memory_space> const list(candidates.extent(0), "gridmorph::ElementLocator::order");
+  Kokkos::parallel_for(
+      "gridmorph::ElementLocator::codes", Range<Exec>(exec, 0, Index(candidates.extent(0))),
+      KOKKOS_LAMBDA(Index const n) {
+        Index32 const element = candidates(n);
+        Box const box = box_of(tables, element);
+        list.key(n) = hilbert_code({0.5 * (box.low + box.high), tables.low, tables.steps});
+        list.number(n) = element;
+      });
+  return sort_keys(exec, list).number;
+}
+
+/// First group of each level, and of the one after the last.
+std::vector<Index> levels_of(Index n_things) {
+  std::vector<Index> first{0};
+  for (Index n = n_things; n > 0;) {
+    n = (n + BoxGroup::width - 1) / BoxGroup::width;
+    first.push_back(first.back() + n);
+    if (n == 1) break;
+  }
+  return first;
+}
+
+template <class Exec>
+void fill_tree(Exec const& exec, LocatorTables<typename Exec::memory_space>& tables) {
+  constexpr int width = BoxGroup::width;
+  Index const n = Index(tables.element.extent(0));
+  std::vector<Index> const first = levels_of(n);
+  tables.groups = Kokkos::View<BoxGroup*, typename Exec::memory_space>(
+      Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::ElementLocator::groups"), std::size_t(first.back()));
+  tables.tree.groups = tables.groups.data();
+  tables.tree.n_levels = int(first.size()) - 1;
+  for (int l = 0; l < tables.tree.n_levels; ++l) tables.tree.first[l] = first[std::size_t(l)];
+  auto const t = tables;
+  for (int level = 0; level < tables.tree.n_levels; ++level) {
+    Index const begin = first[std::size_t(level)], end = first[std::size_t(level) + 1];
+    Index const below = level == 0 ? 0 : first[std::size_t(level) - 1];
+    Index const n_below = level == 0 ? n : begin - below;
+    Kokkos::parallel_for(
+        "gridmorph::ElementLocator::boxes", Range<Exec>(exec, 0, end - begin), KOKKOS_LAMBDA(Index const g) {
+          BoxGroup& group = t.groups(begin + g);
+          for (int k = 0; k < width; ++k) {
+            Index const child = g * width + k;
+            if (child >= n_below) {
+              group.set_empty(k);
+              continue;
+            }
+            if (level > 0) {
+              group.set(k, t.groups(below + child));
+              continue;
+            }
+            Box const box = box_of(t, t.element(child));
+            if (box.low.x <= box.high.x)
+              group.set(k, box);
+            else
+              group.set_empty(k);
+          }
+        });
+  }
+}
+
+/// Points in Z order: neighbours look at the same boxes and elements.
+template <class Exec>
+Kokkos::View<Index32*, typename Exec::memory_space> order_points(
+    Exec const& exec, LocatorTables<typename Exec::memory_space> const& tables,
+    Kokkos::View<Vec3 const*, typename Exec::memory_space> const& points) {
+  KeyedIndices<typename Exec::memory_space> const list(points.extent(0), "gridmorph::ElementLocator::points");
+  Vec3 const low = tables.low, steps = tables.steps;
+  Kokkos::parallel_for(
+      "gridmorph::ElementLocator::codes", Range<Exec>(exec, 0, Index(points.extent(0))), KOKKOS_LAMBDA(Index const n) {
+        list.key(n) = z_code({points(n), low, steps});
+        list.number(n) = Index32(n);
+      });
+  return sort_keys(exec, list).number;
+}
+
+template <class Exec>
+void locate_points(Exec const& exec, LocatorTables<typename Exec::memory_space> const& tables,
+                   Kokkos::View<Vec3 const*, typename Exec::memory_space> const& points,
+                   Kokkos::View<Location*, typename Exec::memory_space> const& out) {
+  Index const n_points = Index(points.extent(0));
+  auto const order = order_points(exec, tables, points);
+  // Side by side first: a search waits for its point, a copy does not.
+  Kokkos::View<Vec3*, typename Exec::memory_space> const sorted(
+      Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::ElementLocator::sorted"), points.extent(0));
+  Kokkos::parallel_for(
+      "gridmorph::ElementLocator::sorted", Range<Exec>(exec, 0, n_points),
+      KOKKOS_LAMBDA(Index const n) { sorted(n) = points(order(n)); });
+  // In small parts: points outside take longer, and stand together.
+  Kokkos::parallel_for(
+      "gridmorph::locate",
+      Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Dynamic>>(exec, 0, n_points,
+                                                                                             Kokkos::ChunkSize(256)),
+      KOKKOS_LAMBDA(Index const n) { out(order(n)) = locate_point(tables, sorted(n)); });
+}
+
+template <class MemorySpace>
+Kokkos::View<double const*, MemorySpace> in_space(Coordinates::View const& component) {
+  return Kokkos::create_mirror_view_and_copy(MemorySpace(), component);
+}
+
+template <class Exec>
+LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, UnstructuredMesh const& mesh,
+                                                       std::span<Index32 const> elements) {
+  using MemorySpace = typename Exec::memory_space;
+  for (Index32 const e : elements)
+    if (e < 0 || e >= mesh.n_elements())
+      throw MeshError("element locator: there is no element " + std::to_string(e) + " in '" + mesh.source +
+                      "', which has " + std::to_string(mesh.n_elements()) + "; name elements by their number from 0");
+  if (mesh.coordinates.size() < mesh.n_nodes())
+    throw MeshError("element locator: '" + mesh.source + "' has " + std::to_string(mesh.n_nodes()) +
+                    " nodes, but coordinates of only " + std::to_string(mesh.coordinates.size()));
+  LocatorTables<MemorySpace> t;
+  t.elements = views<MemorySpace>(mesh.elements);
+  t.x = in_space<MemorySpace>(mesh.coordinates.x);
+  t.y = in_space<MemorySpace>(mesh.coordinates.y);
+  t.z = in_space<MemorySpace>(mesh.coordinates.z);
+  t.polyhedron = view_of<MemorySpace>(mesh.polyhedra.element, "gridmorph::ElementLocator::polyhedron");
+  t.polyhedron_face = view_of<MemorySpace>(mesh.polyhedra.first_face, "gridmorph::ElementLocator::polyhedron_face");
+  t.polyhedron_faces = views<MemorySpace>(mesh.polyhedra.faces);
+
+  MeshExtent const box = extent_of(mesh.coordinates);
+  Vec3 const size = box.high - box.low;
+  double largest = 0;
+  for (double const a : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z})
+    largest = std::max(largest, std::abs(a));
+  t.tolerance = 1e-12 * box.size() + 16 * std::numeric_limits<double>::epsilon() * largest;
+  // Cubes, so that neighbours on the curve are neighbours in space.
+  double const longest = std::max({size.x, size.y, size.z});
+  double const steps = longest > 0 ? double(1 << 21) / longest : 0;
+  t.low = box.low;
+  t.steps = {steps, steps, steps};
+  t.two_dimensional = mesh.dimension == 2;
+  if (t.two_dimensional) {
+    t.normal = plane_normal(mesh);
+    t.plane_point = mesh.coordinates.size() > 0 ? mesh.coordinates[0] : Vec3{};
+  }
+
+  Kokkos::View<Index32 const*, Kokkos::HostSpace> const candidates_h(elements.data(), elements.size());
+  Kokkos::View<Index32*, MemorySpace> const candidates(
+      Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::ElementLocator::candidates"), elements.size());
+  Kokkos::deep_copy(candidates, candidates_h);
+  t.element = order_candidates(exec, t, candidates);
+  fill_tree(exec, t);
+  compat::fence(exec, "gridmorph::ElementLocator (built)");
+  return t;
+}
+
+std::vector<Index32> all_elements(UnstructuredMesh const& mesh) {
+  std::vector<Index32> all(std::size_t(mesh.n_elements()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+}  // namespace
+
+}  // namespace detail
+
+template <class Exec>
+ElementLocator<Exec>::ElementLocator(Exec const& exec, UnstructuredMesh const& mesh, std::span<Index32 const> elements)
+    : tables_(detail::make_tables(exec, mesh, elements)) {}
+
+template <class Exec>
+ElementLocator<Exec>::ElementLocator(Exec const& exec, UnstructuredMesh const& mesh)
+    : tables_(detail::make_tables(exec, mesh, detail::all_elements(mesh))) {}
+
+template <class Exec>
+void ElementLocator<Exec>::locate(Exec const& exec, Kokkos::View<Vec3 const*, MemorySpace> points,
+                                  Kokkos::View<Location*, MemorySpace> out) const {
+  if (out.extent(0) < points.extent(0))
+    throw MeshError("element locator: " + std::to_string(points.extent(0)) + " points, but room for only " +
+                    std::to_string(out.extent(0)) + " locations");
+  detail::locate_points(exec, tables_, points, out);
+}
+
+#define GRIDMORPH_INSTANTIATE(Exec) template class ElementLocator<Exec>;
+GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
+#undef GRIDMORPH_INSTANTIATE
+
+}  // namespace gridmorph

@@ -1,0 +1,127 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/mesh/check_coordinates.hpp>
+#include <gridmorph/plan/elements/corner_means.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gridmorph::detail {
+
+namespace {
+
+void refuse_open_faces(BoundaryFacePatches const& face_patches) {
+  Problems problems;
+  for (auto const& problem : face_patches.problems) problems.add(problem);
+  problems.throw_if_any<MeshError>();
+}
+
+}  // namespace
+
+PreparedUnstructured UnstructuredPlanner::run() {
+  out_.plan.n_nodes = mesh_.n_nodes();
+  out_.plan.dimension = mesh_.dimension;
+  out_.plan.plane_normal = plane_normal(mesh_);
+  if (mesh_.dimension == 2 && !(std::abs(out_.plan.plane_normal.z) == 1))
+    throw MeshError("mesh " + mesh_.source + " is 2-D but does not lie in a plane z = constant; turn it into one");
+  timed(out_.report.seconds.boundary, [&] { take_boundary(); });
+  timed(out_.report.seconds.distances, [&] { measure_distances(); });
+  timed(out_.report.seconds.columns, [&] { find_columns(); });
+  timed(out_.report.seconds.wrap, [&] { find_regions(); });
+  timed(out_.report.seconds.layers, [&] { plan_layers(); });
+  timed(out_.report.seconds.background, [&] { plan_background(); });
+  timed(out_.report.seconds.location, [&] { plan_projections(); });
+  timed(out_.report.seconds.residual, [&] { plan_residual(); });
+  return std::move(out_);
+}
+
+void UnstructuredPlanner::take_boundary() {
+  BoundaryConditions const& b = out_.boundary;
+  UnstructuredPlan& plan = out_.plan;
+  out_.notes = b.notes;
+  plan.known = b.known;
+  plan.surfaces = b.surfaces;
+  plan.images = b.images;
+  plan.rotations = b.rotations;
+  is_known_ = drives_ = is_other_ = mask();
+  for (std::size_t k = 0; k < b.known.size(); ++k) {
+    is_known_[std::size_t(b.known[k])] = 1;
+    if (b.drives[k]) {
+      drives_[std::size_t(b.known[k])] = 1;
+      plan.driving.push_back(b.known[k]);
+      plan.driving_slots.push_back(Index32(k));
+    }
+  }
+  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
+    if (Index32 const o = owner(n); o != n) {
+      plan.copies.push_back(n);
+      plan.copied.push_back(o);
+    }
+  plan.middle = corner_means(mesh_, out_.graph);
+  reach_ = options_.motion >= 0 ? options_.motion : largest_displacement();
+}
+
+void UnstructuredPlanner::measure_distances() {
+  BoundaryConditions const& b = out_.boundary;
+  for (std::size_t k = 0; k < b.known.size(); ++k)
+    if (!b.drives[k]) is_other_[std::size_t(b.known[k])] = 1;
+  for (Index32 const n : b.slip_nodes) is_other_[std::size_t(n)] = 1;
+  for (auto const& image : b.images) is_other_[std::size_t(image.node)] = is_other_[std::size_t(image.owner)] = 1;
+  std::vector<Index32> walls, others;
+  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
+    if (drives_[std::size_t(n)]) {
+      walls.push_back(n);
+      // Where a moving wall ends on another boundary, both are at no distance.
+      is_other_[std::size_t(n)] = 0;
+    } else if (is_other_[std::size_t(n)]) {
+      others.push_back(n);
+    }
+  }
+  // Each is serial; side by side they take half the time.
+  for_all_parts("gridmorph::nearest_source", 2, [&](Index which) {
+    (which == 0 ? from_wall_ : from_other_) =
+        nearest_source(mesh_.coordinates, out_.graph, which == 0 ? walls : others);
+  });
+  // A wall that ends on another boundary has no gap to it.
+  for (Index32 const n : walls) gap_ = std::min(gap_, from_other_.distance[std::size_t(n)]);
+}
+
+double UnstructuredPlanner::largest_displacement() const {
+  double largest = 0;
+  for (Vec3 const& u : out_.boundary_displacement(mesh_)) largest = std::max(largest, norm(u));
+  return largest;
+}
+
+}  // namespace gridmorph::detail
+
+namespace gridmorph {
+
+PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                             BoundaryFacePatches const& face_patches, Motion const& motion,
+                             UnstructuredOptions const& options) {
+  check_coordinates(mesh, "gridmorph::prepare");
+  detail::refuse_open_faces(face_patches);
+  Stopwatch watch;
+  NodeGraph graph = make_node_graph(mesh, topology.elements_of_nodes);
+  BoundaryConditions boundary =
+      boundary_conditions(mesh, topology, face_patches, graph, motion, options.walls,
+                          options.motion >= 0 ? Displacements::any : Displacements::of_the_rules);
+  double const seconds = watch.lap();
+  auto out = prepare(mesh, topology, face_patches, std::move(graph), std::move(boundary), options);
+  out.report.seconds.boundary += seconds;
+  return out;
+}
+
+PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                             BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
+                             UnstructuredOptions const& options) {
+  check_coordinates(mesh, "gridmorph::prepare");
+  detail::refuse_open_faces(face_patches);
+  return detail::UnstructuredPlanner(mesh, topology, face_patches, std::move(graph), std::move(boundary), options)
+      .run();
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,113 @@
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/plan/elements/locate.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace gridmorph::detail {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+std::string text(double v) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.4g", v);
+  return buffer;
+}
+
+}  // namespace
+
+void UnstructuredPlanner::plan_background() {
+  UnstructuredPlan& plan = out_.plan;
+  if (!plan.background) {
+    if (out_.report.regions.n_far == 0) return;
+    take_background(make_background(*out_.report.wrap, options_.cells));
+  }
+  plan_outer_box();
+}
+
+void UnstructuredPlanner::plan_outer_box() {
+  UnstructuredPlan& plan = out_.plan;
+  // Any choice is made good by the residual, so a few thousand places to choose from are enough.
+  constexpr std::size_t most = 2000;
+  std::vector<Index32> slots;
+  for (std::size_t k = 0; k < plan.known.size(); ++k)
+    if (!out_.boundary.drives[k]) slots.push_back(Index32(k));
+  if (slots.empty()) return;
+  // By position: how nodes are numbered must not matter.
+  std::sort(slots.begin(), slots.end(), [&](Index32 a, Index32 b) {
+    Vec3 const p = mesh_.coordinates[plan.known[std::size_t(a)]], q = mesh_.coordinates[plan.known[std::size_t(b)]];
+    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+  });
+  std::size_t const step = slots.size() / most + 1;
+  WrapNodes const wrap = wrap_nodes(*plan.background, *plan.background_morph);
+  auto const& nodes = plan.background_morph->plan().boundary_nodes;
+  Mask is_wrap(nodes.size(), 0);
+  for (Index32 const b : wrap.boundary_node) is_wrap[std::size_t(b)] = 1;
+  for (std::size_t b = 0; b < nodes.size(); ++b) {
+    if (is_wrap[b]) continue;
+    Vec3 x = plan.background->mesh.coordinates[nodes[b]];
+    if (mesh_.dimension == 2) x.z = 0;
+    Index32 best = -1;
+    double nearest = infinity;
+    for (std::size_t k = 0; k < slots.size(); k += step)
+      if (double const d = distance(x, mesh_.coordinates[plan.known[std::size_t(slots[k])]]); d < nearest) {
+        nearest = d;
+        best = slots[k];
+      }
+    double const one = 1;
+    plan.outer.add(Index32(b), {&best, 1}, {&one, 1});
+  }
+}
+
+void UnstructuredPlanner::plan_projections() {
+  UnstructuredPlan& plan = out_.plan;
+  if (!plan.background) return;
+  project_wrap();
+  // Beyond the wrap the background mesh has the say, on partially wrapped elements too: layers went there only to surround the wrap's nodes.
+  Mask column = drives_;
+  for (Index32 const n : columns_.node) column[std::size_t(n)] = 1;
+  std::vector<Index32> far;
+  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
+    if (out_.graph.carries(n) && !out_.graph.neighbours[n].empty() && !column[std::size_t(n)] &&
+        !out_.report.regions.inside[std::size_t(n)])
+      far.push_back(n);
+  FarRows rows = background_rows(*plan.background, mesh_.coordinates, far);
+  out_.report.far_nodes = Index(far.size());
+  out_.report.far_outside = rows.n_outside;
+  plan.far = std::move(rows.rows);
+}
+
+void UnstructuredPlanner::project_wrap() {
+  UnstructuredPlan& plan = out_.plan;
+  WrapNodes const wrap = wrap_nodes(*plan.background, *plan.background_morph);
+  std::vector<Index32> candidates;
+  for (Index e = 0; e < mesh_.n_elements(); ++e)
+    if (out_.report.regions.element[std::size_t(e)] != Region::far) candidates.push_back(Index32(e));
+  Kokkos::View<Vec3*, Kokkos::HostSpace> points("gridmorph::wrap_nodes", wrap.position.size());
+  std::copy(wrap.position.begin(), wrap.position.end(), points.data());
+  Kokkos::View<Location*, Kokkos::HostSpace> found("gridmorph::wrap_locations", wrap.position.size());
+  Exec const exec;
+  ElementLocator<Exec> const locator(exec, mesh_, candidates);
+  locator.locate(exec, points, found);
+  compat::fence(exec, "gridmorph::locate wrap nodes");
+  plan.wrap = interpolation_rows(mesh_, {found.data(), found.extent(0)}, wrap.boundary_node);
+  for (Index32& n : plan.wrap.item) n = owner(n);
+  out_.report.wrap_nodes = Index(wrap.position.size());
+  for (std::size_t n = 0; n < found.extent(0); ++n)
+    if (found(n).distance > 0) {
+      ++out_.report.wrap_outside;
+      out_.report.wrap_distance = std::max(out_.report.wrap_distance, found(n).distance);
+    }
+  if (out_.report.wrap_outside > 0)
+    out_.notes.push_back(std::to_string(out_.report.wrap_outside) + " of " + std::to_string(out_.report.wrap_nodes) +
+                         " nodes of the wrap lie outside all elements (in solids or beyond the domain), at most " +
+                         text(out_.report.wrap_distance) + " away; they move as the nearest place of an element");
+}
+
+}  // namespace gridmorph::detail

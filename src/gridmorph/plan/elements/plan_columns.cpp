@@ -1,0 +1,132 @@
+#include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/plan/elements/column_heights.hpp>
+#include <gridmorph/plan/elements/fans.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gridmorph::detail {
+
+void UnstructuredPlanner::find_driving_faces() {
+  BoundaryConditions const& b = out_.boundary;
+  layer_of_patch_.assign(mesh_.patches.size(), -1);
+  for (std::size_t l = 0; l < options_.boundary_layers.size(); ++l) {
+    auto const& layer = options_.boundary_layers[l];
+    std::vector<int> const patches = layer.walls.empty() ? b.driving_patches : select_patches(b.outline, layer.walls);
+    for (int const p : patches) {
+      int& own = layer_of_patch_[std::size_t(p)];
+      if (own >= 0)
+        throw MotionError("two boundary layers name patch " + describe_patch(mesh_, mesh_.patches[std::size_t(p)]) +
+                          "; give each wall one");
+      own = int(l);
+      if (!std::binary_search(b.driving_patches.begin(), b.driving_patches.end(), p) &&
+          !std::binary_search(b.standing_patches.begin(), b.standing_patches.end(), p))
+        out_.notes.push_back("patch " + describe_patch(mesh_, mesh_.patches[std::size_t(p)]) +
+                             " has a boundary layer but drives no near field; its columns are not held");
+    }
+  }
+  for (Index f = 0; f < topology_.boundary.size(); ++f) {
+    int const p = face_patches_.patch[std::size_t(f)];
+    if (p >= 0 && std::binary_search(b.driving_patches.begin(), b.driving_patches.end(), p))
+      driving_faces_.push_back(Index32(f));
+  }
+  if (driving_faces_.empty())
+    throw MotionError(
+        "the moving walls have no faces on the boundary of the elements; their patches list nodes of other places");
+}
+
+void UnstructuredPlanner::find_columns() {
+  find_driving_faces();
+  std::vector<ColumnExtent> extents;
+  for (Index32 const f : driving_faces_) extents.push_back(extent_of_face(f));
+  columns_ = make_columns(mesh_, topology_, out_.graph, driving_faces_, extents, is_known_);
+  out_.report.n_columns = std::count_if(columns_.height.begin(), columns_.height.end(), [](double h) { return h > 0; });
+  columns_ = cut(columns_, smooth_heights(out_.graph, columns_, most_heights()));
+  for (double const h : columns_.height) out_.report.layer_height = std::max(out_.report.layer_height, h);
+  plan_columns();
+  find_standing_columns();
+}
+
+ColumnExtent UnstructuredPlanner::extent_of_face(Index32 face) const {
+  int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(face)])];
+  if (l < 0) return {};
+  auto const& layer = options_.boundary_layers[std::size_t(l)];
+  return {layer.extent, layer.layers, layer.thickness};
+}
+
+void UnstructuredPlanner::find_standing_columns() {
+  auto const& patches = out_.boundary.standing_patches;
+  std::vector<Index32> faces;
+  std::vector<ColumnExtent> extents;
+  for (Index f = 0; f < topology_.boundary.size(); ++f)
+    if (std::binary_search(patches.begin(), patches.end(), face_patches_.patch[std::size_t(f)])) {
+      faces.push_back(Index32(f));
+      extents.push_back(extent_of_face(Index32(f)));
+    }
+  Mask taken = is_known_;
+  for (Index32 const n : columns_.node) taken[std::size_t(n)] = 1;
+  standing_ = make_columns(mesh_, topology_, out_.graph, faces, extents, taken);
+  // Where a moving wall ends on one that stands, and across gaps, what stands gives way.
+  std::vector<double> most(std::size_t(mesh_.n_nodes()), infinity);
+  for (std::size_t n = 0; n < most.size(); ++n)
+    if (standing_.height[n] > 0 && std::isfinite(from_wall_.distance[n]))
+      most[n] = room_in_gap(from_wall_.distance[n], reach_);
+  standing_ = cut(standing_, smooth_heights(out_.graph, standing_, most));
+  std::vector<Index32> others, given;
+  for (Index32 const n : standing_.node) is_other_[std::size_t(n)] = 1;
+  Mask stands = mask();
+  for (Index32 const n : standing_.node) stands[std::size_t(n)] = 1;
+  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
+    if (!is_other_[std::size_t(n)]) continue;
+    others.push_back(n);
+    if (is_known_[std::size_t(n)] || stands[std::size_t(n)]) given.push_back(n);
+  }
+  // What is free to slide begins where these end.
+  bool const sliding = given.size() < others.size() && !given.empty();
+  for_all_parts("gridmorph::nearest_source", 2, [&](Index which) {
+    if (which == 0 && standing_.size() > 0) from_other_ = nearest_source(mesh_.coordinates, out_.graph, others);
+    if (which == 1 && sliding) from_given_ = nearest_source(mesh_.coordinates, out_.graph, given);
+  });
+}
+
+std::vector<double> UnstructuredPlanner::most_heights() const {
+  std::vector<double> most = gaps_ahead(mesh_.coordinates, columns_, from_other_);
+  for (double& m : most)
+    if (std::isfinite(m)) m = room_in_gap(m, reach_);
+  for (Index32 const f : driving_faces_)
+    if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])];
+        l >= 0 && options_.boundary_layers[std::size_t(l)].extent != BoundaryLayer::Extent::block)
+      for (Index32 const n : topology_.boundary.nodes[f]) most[std::size_t(owner(n))] = infinity;
+  return most;
+}
+
+void UnstructuredPlanner::plan_columns() {
+  using Mode = BoundaryLayer::Mode;
+  std::vector<Mode> mode(std::size_t(mesh_.n_nodes()), Mode::standard);
+  for (Index32 const f : driving_faces_)
+    if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])]; l >= 0)
+      for (Index32 const n : topology_.boundary.nodes[f])
+        mode[std::size_t(owner(n))] = options_.boundary_layers[std::size_t(l)].mode;
+  UnstructuredPlan& plan = out_.plan;
+  std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
+  for (std::size_t k = 0; k < plan.driving.size(); ++k) {
+    place[std::size_t(plan.driving[k])] = Index32(k);
+    plan.turns.push_back(mode[std::size_t(plan.driving[k])] == Mode::translate ? 0 : 1);
+  }
+  plan.fans = wall_fans(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
+  for (std::size_t k = 0; k < columns_.node.size(); ++k) {
+    Index32 const root = columns_.root[k];
+    double const s = std::min(1.0, columns_.above_wall[k] / columns_.height[std::size_t(root)]);
+    Mode const m = mode[std::size_t(root)];
+    // Smooth, and level at the wall: the first cells turn with it.
+    double const turn = m == Mode::translate ? 0 : m == Mode::blend ? 1 - s * s * (3 - 2 * s) : 1;
+    plan.columns.node.push_back(columns_.node[k]);
+    plan.columns.root.push_back(place[std::size_t(root)]);
+    plan.columns.turn.push_back(float(turn));
+  }
+}
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,79 @@
+#include <gridmorph/plan/elements/element_grades.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace gridmorph::detail {
+
+std::function<double(Index32, Index32)> UnstructuredPlanner::layer_weight() {
+  auto const length = [this](Index32 a, Index32 b) {
+    double const d = distance(mesh_.coordinates[a], mesh_.coordinates[b]);
+    return d > 0 ? d : std::numeric_limits<double>::min();
+  };
+  switch (options_.weight) {
+    case LayerWeight::uniform: return [](Index32, Index32) { return 1.0; };
+    case LayerWeight::inverse_distance: return [=](Index32 a, Index32 b) { return 1 / length(a, b); };
+    case LayerWeight::quality:
+      return [=, grade = node_grades(mesh_, topology_, out_.graph)](Index32 a, Index32 b) {
+        return (grade[std::size_t(a)] + grade[std::size_t(b)]) / length(a, b);
+      };
+    case LayerWeight::curvature:
+      return [=, this, bend = wall_curvature(mesh_, topology_, out_.graph, driving_faces_)](Index32 a, Index32 b) {
+        Index32 const wall = from_wall_.source[std::size_t(b)];
+        double const reach = wall < 0 ? 0 : from_wall_.distance[std::size_t(b)] * bend[std::size_t(wall)];
+        return 1 / (length(a, b) * (1 + reach) * (1 + reach));
+      };
+  }
+  return [](Index32, Index32) { return 1.0; };
+}
+
+void UnstructuredPlanner::plan_layers() {
+  UnstructuredPlan& plan = out_.plan;
+  Mask seeds = drives_;
+  for (Index32 const n : columns_.node) seeds[std::size_t(n)] = 1;
+  Mask wanted = near_;
+  for (std::size_t n = 0; n < seeds.size(); ++n)
+    if (seeds[n] || !out_.graph.carries(Index32(n))) wanted[n] = 0;
+  plan.near = make_layers(out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
+  plan_smooth_walls();
+  auto& layer = out_.report.layer;
+  layer.assign(seeds.size(), -1);
+  for (std::size_t n = 0; n < seeds.size(); ++n)
+    if (seeds[n]) layer[n] = 0;
+  for (int l = 0; l < plan.near.n_layers(); ++l)
+    for (Index r = plan.near.level[std::size_t(l)]; r < plan.near.level[std::size_t(l) + 1]; ++r) {
+      layer[std::size_t(plan.near.rows.target[std::size_t(r)])] = l + 1;
+      wanted[std::size_t(plan.near.rows.target[std::size_t(r)])] = 0;
+    }
+  out_.report.unreached = std::count(wanted.begin(), wanted.end(), 1);
+  if (out_.report.unreached > 0)
+    out_.notes.push_back(
+        std::to_string(out_.report.unreached) +
+        " nodes lie in the wrap but are joined to no moving wall by edges of elements; they follow the other "
+        "boundaries alone");
+}
+
+void UnstructuredPlanner::plan_smooth_walls() {
+  UnstructuredPlan& plan = out_.plan;
+  Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
+    if (!near_[std::size_t(n)]) continue;
+    Vec3 const x = mesh_.coordinates[n];
+    low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+    high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+  }
+  plan.walls = make_scatter_lattice(mesh_.coordinates, plan.driving, areas(plan.driving), mesh_.dimension, low, high);
+  double const reach = 4 * plan.walls.shape.spacing;
+  for (Index32 const n : plan.near.rows.target) {
+    double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);
+    plan.near_fade.push_back(float(1 - s * s * (3 - 2 * s)));
+  }
+}
+
+double UnstructuredPlanner::beyond_column(std::size_t n) const {
+  Index32 const wall = from_wall_.source[n];
+  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - columns_.height[std::size_t(wall)]);
+}
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,82 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/plan/elements/background_hole.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace gridmorph::detail {
+
+double UnstructuredPlanner::offset() {
+  OffsetHints hints;
+  hints.layer_height = out_.report.layer_height;
+  hints.motion = reach_;
+  double sum = 0;
+  Index count = 0;
+  Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+  for (Index32 const f : driving_faces_) {
+    auto const face = topology_.boundary.nodes[f];
+    for (std::size_t k = 0; k < face.size(); ++k, ++count) {
+      Vec3 const x = mesh_.coordinates[face[k]];
+      sum += distance(x, mesh_.coordinates[face[(k + 1) % face.size()]]);
+      low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+      high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+    }
+  }
+  hints.wall_edge = sum / double(count);
+  hints.body = norm(high - low);
+  // No gap at all cannot limit the wrap.
+  hints.gap = std::isfinite(gap_) && gap_ > hints.wall_edge ? gap_ : 0;
+  return options_.offset > 0 ? options_.offset : suggest_offset(hints);
+}
+
+void UnstructuredPlanner::find_regions() {
+  if (options_.background)
+    classify_by_background();
+  else
+    classify_by_wrap();
+  near_ = mask();
+  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
+    if (out_.report.regions.near[std::size_t(n)]) near_[std::size_t(owner(n))] = 1;
+  // Columns are kept whole, wherever the wrap ends.
+  for (Index32 const n : columns_.node) near_[std::size_t(n)] = 1;
+}
+
+void UnstructuredPlanner::classify_by_wrap() {
+  out_.report.offset = offset();
+  CsrGraph faces;
+  for (Index32 const f : driving_faces_) faces.add(topology_.boundary.nodes[f]);
+  WrapOptions wrap;
+  wrap.offset = out_.report.offset;
+  wrap.resolution = options_.resolution;
+  wrap.tube = options_.tube;
+  out_.report.wrap = make_wrap(mesh_, {&faces, 1}, wrap);
+  if (std::string const& note = out_.report.wrap->note; !note.empty())
+    out_.notes.push_back("the wrap is made of lattice cells: " + note);
+  out_.report.regions = classify(mesh_, *out_.report.wrap);
+}
+
+void UnstructuredPlanner::classify_by_background() {
+  take_background(*options_.background);
+  Background const& background = *out_.plan.background;
+  out_.report.regions =
+      classify_by_hole(mesh_, background, wrap_nodes(background, *out_.plan.background_morph).position);
+  Index astray = 0;
+  Index32 first = -1;
+  for (Index32 const n : out_.plan.driving)
+    if (!out_.report.regions.inside[std::size_t(n)] && astray++ == 0) first = n;
+  if (astray > 0)
+    throw MeshError("background mesh " + background.mesh.source +
+                    " does not go around the moving walls: " + std::to_string(astray) + " of their " +
+                    std::to_string(out_.plan.driving.size()) + " nodes lie in its cells or beyond its wrap, such as " +
+                    describe_node(mesh_, first) + "; leave a hole in it that holds them, its faces being the wrap");
+}
+
+void UnstructuredPlanner::take_background(Background background) {
+  out_.plan.background = std::move(background);
+  out_.plan.background_morph = prepare_background(*out_.plan.background, options_.law);
+}
+
+}  // namespace gridmorph::detail

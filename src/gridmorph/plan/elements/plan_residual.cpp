@@ -1,0 +1,151 @@
+#include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gridmorph::detail {
+
+void UnstructuredPlanner::plan_residual() {
+  UnstructuredPlan& plan = out_.plan;
+  plan_other_nodes();
+  plan.fade.assign(is_other_.size(), 0);
+  for (std::size_t n = 0; n < is_other_.size(); ++n)
+    if (out_.graph.carries(Index32(n)) && !drives_[n] && !is_other_[n]) plan.fade[n] = float(fade(n, from_other_));
+  // Columns are as rigid as their walls ask for.
+  for (Index32 const n : columns_.node) plan.fade[std::size_t(n)] = 0;
+  plan_start();
+  MeshExtent const box = extent_of(mesh_.coordinates);
+  std::vector<Index32> const boundary(plan.other.begin(), plan.other.end() - std::ptrdiff_t(standing_.node.size()));
+  plan.residual =
+      make_scatter_lattice(mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low, box.high);
+  if (plan.residual.empty()) return;
+  double const reach = 2 * plan.residual.shape.spacing;
+  Mask wanted = mask();
+  for (std::size_t n = 0; n < wanted.size(); ++n)
+    wanted[n] = plan.fade[n] != 0 && from_other_.distance[n] < reach ? 1 : 0;
+  plan.residual_detail =
+      make_layers(out_.graph, mesh_.coordinates, is_other_, wanted, from_other_.distance, inverse_distance());
+  for (Index32 const n : plan.residual_detail.rows.target) {
+    double const s = from_other_.distance[std::size_t(n)] / reach;
+    plan.detail_fade.push_back(float(plan.fade[std::size_t(n)] * (1 - s * s * (3 - 2 * s))));
+  }
+}
+
+void UnstructuredPlanner::plan_start() {
+  UnstructuredPlan& plan = out_.plan;
+  auto& start = plan.start;
+  Mask seeds = mask(), wanted = mask();
+  Index n_boundary = 0;
+  for (std::size_t k = 0; k < plan.other.size(); ++k) {
+    Index32 const n = plan.other[k];
+    bool const given = plan.other_slot[k] >= 0;
+    (given ? start.given : start.node).push_back(n);
+    (given ? seeds : wanted)[std::size_t(n)] = 1;
+    if (!given) continue;
+    start.given_slot.push_back(plan.other_slot[k]);
+    n_boundary += k + standing_.node.size() < plan.other.size() ? 1 : 0;
+  }
+  start.fade.assign(start.node.size(), 0);
+  start.detail_fade.assign(start.node.size(), 0);
+  if (start.node.empty() || n_boundary == 0) return;
+  MeshExtent const box = extent_of(mesh_.coordinates);
+  std::vector<Index32> const boundary(start.given.begin(), start.given.begin() + n_boundary);
+  // It is needed on surfaces alone, and what it misses passes along them.
+  constexpr Index most_nodes = 20'000;
+  start.residual = make_scatter_lattice(mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low,
+                                        box.high, most_nodes);
+  double const reach = 2 * start.residual.shape.spacing;
+  std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
+  for (std::size_t k = 0; k < start.node.size(); ++k) {
+    Index32 const n = start.node[k];
+    place[std::size_t(n)] = Index32(k);
+    start.fade[k] = drives_[std::size_t(n)] ? 0 : float(fade(std::size_t(n), from_given_));
+    if (!(from_given_.distance[std::size_t(n)] < reach)) wanted[std::size_t(n)] = 0;
+  }
+  start.detail = make_layers(out_.graph, mesh_.coordinates, seeds, wanted, from_given_.distance, inverse_distance());
+  for (Index32 const n : start.detail.rows.target) {
+    double const s = from_given_.distance[std::size_t(n)] / reach;
+    std::size_t const k = std::size_t(place[std::size_t(n)]);
+    start.detail_fade[k] = float(start.fade[k] * (1 - s * s * (3 - 2 * s)));
+  }
+}
+
+std::vector<double> UnstructuredPlanner::areas(std::vector<Index32> const& nodes) const {
+  std::vector<double> area(std::size_t(mesh_.n_nodes()), 0);
+  for (Index f = 0; f < topology_.boundary.size(); ++f) {
+    auto const face = topology_.boundary.nodes[f];
+    Vec3 const a = mesh_.coordinates[face[0]];
+    double size = 0;
+    if (mesh_.dimension == 2) size = distance(a, mesh_.coordinates[face[1]]);
+    for (std::size_t k = 1; mesh_.dimension == 3 && k + 1 < face.size(); ++k)
+      size += 0.5 * norm(cross(mesh_.coordinates[face[k]] - a, mesh_.coordinates[face[k + 1]] - a));
+    for (Index32 const n : face) area[std::size_t(owner(n))] += size / double(face.size());
+  }
+  double sum = 0;
+  Index count = 0;
+  for (double const a : area)
+    if (a > 0) {
+      sum += a;
+      ++count;
+    }
+  double const mean = count > 0 ? sum / double(count) : 1;
+  std::vector<double> out;
+  for (Index32 const n : nodes) out.push_back(area[std::size_t(n)] > 0 ? area[std::size_t(n)] : mean);
+  return out;
+}
+
+double UnstructuredPlanner::fade(std::size_t n, NearestSource const& from) const {
+  double const other = from.distance[n];
+  if (!std::isfinite(other)) return 0;
+  double const d = beyond_column(n);
+  if (!std::isfinite(d)) return 1;
+  return d + other > 0 ? d / (d + other) : 0;
+}
+
+void UnstructuredPlanner::plan_other_nodes() {
+  UnstructuredPlan& plan = out_.plan;
+  BoundaryConditions const& b = out_.boundary;
+  std::vector<Index32> slot(std::size_t(mesh_.n_nodes()), -1), slip(std::size_t(mesh_.n_nodes()), -1);
+  for (std::size_t k = 0; k < b.known.size(); ++k) slot[std::size_t(b.known[k])] = Index32(k);
+  for (std::size_t k = 0; k < b.slip_nodes.size(); ++k) slip[std::size_t(b.slip_nodes[k])] = Index32(k);
+  Mask stands = mask();
+  for (Index32 const n : standing_.node) stands[std::size_t(n)] = 1;
+  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
+    if (!is_other_[std::size_t(n)] || stands[std::size_t(n)]) continue;
+    plan.other.push_back(n);
+    plan.other_slot.push_back(slot[std::size_t(n)]);
+    if (slip[std::size_t(n)] >= 0) {
+      plan.other_surfaces.add(b.slip_surfaces[slip[std::size_t(n)]]);
+    } else {
+      plan.other_surfaces.add({});
+    }
+  }
+  for (std::size_t k = 0; k < standing_.node.size(); ++k) {
+    plan.other.push_back(standing_.node[k]);
+    plan.other_slot.push_back(slot[std::size_t(standing_.root[k])]);
+    plan.other_surfaces.add(slip[std::size_t(standing_.node[k])] >= 0
+                                ? b.slip_surfaces[slip[std::size_t(standing_.node[k])]]
+                                : std::span<Index32 const>{});
+  }
+  std::vector<std::pair<Index32, Index32>> by_owner;
+  for (std::size_t k = 0; k < b.images.size(); ++k) by_owner.emplace_back(b.images[k].owner, Index32(k));
+  std::sort(by_owner.begin(), by_owner.end());
+  for (std::size_t k = 0; k < by_owner.size();) {
+    std::vector<Index32> images;
+    Index32 const o = by_owner[k].first;
+    for (; k < by_owner.size() && by_owner[k].first == o; ++k) images.push_back(by_owner[k].second);
+    plan.image_owners.push_back(o);
+    plan.images_of_owner.add(images);
+  }
+}
+
+std::function<double(Index32, Index32)> UnstructuredPlanner::inverse_distance() const {
+  return [this](Index32 a, Index32 b) {
+    double const d = distance(mesh_.coordinates[a], mesh_.coordinates[b]);
+    return 1 / std::max(d, std::numeric_limits<double>::min());
+  };
+}
+
+}  // namespace gridmorph::detail

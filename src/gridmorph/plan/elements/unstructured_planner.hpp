@@ -1,0 +1,112 @@
+// The steps from an unstructured mesh to its plan, one file per step: make_unstructured_plan.cpp, then plan_columns.cpp,
+// plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
+#pragma once
+
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/plan/elements/columns.hpp>
+#include <gridmorph/plan/elements/wall_distance.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::detail {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// What the steps share; run() calls them in their order.
+class UnstructuredPlanner {
+ public:
+  UnstructuredPlanner(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                      BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
+                      UnstructuredOptions const& options)
+      : mesh_(mesh), topology_(topology), face_patches_(face_patches), options_(options) {
+    out_.graph = std::move(graph);
+    out_.boundary = std::move(boundary);
+  }
+  PreparedUnstructured run();
+
+ private:
+  using Mask = std::vector<std::uint8_t>;
+
+  template <class Step>
+  static void timed(double& seconds, Step&& step) {
+    Stopwatch watch;
+    step();
+    seconds = watch.lap();
+  }
+
+  [[nodiscard]] Mask mask() const { return Mask(std::size_t(mesh_.n_nodes()), 0); }
+  [[nodiscard]] Index32 owner(Index32 n) const { return out_.graph.representative[std::size_t(n)]; }
+
+  // make_unstructured_plan.cpp
+  void take_boundary();
+  void measure_distances();
+  [[nodiscard]] double largest_displacement() const;
+
+  // plan_columns.cpp
+  /// Faces of moving walls with the boundary layer that a user gave their patch.
+  void find_driving_faces();
+  void find_columns();
+  /// Columns are as long as a user says; otherwise they leave room in gaps.
+  [[nodiscard]] std::vector<double> most_heights() const;
+  void plan_columns();
+  /// Columns of walls that stand: they are held in place, as far as moving walls leave room.
+  void find_standing_columns();
+  /// The extent that a user gave the boundary layer on a face's patch, or the default one.
+  [[nodiscard]] ColumnExtent extent_of_face(Index32 face) const;
+
+  // plan_regions.cpp
+  double offset();
+  void find_regions();
+  void classify_by_wrap();
+  /// The user's background mesh says where the wrap is; the moving walls must be in it.
+  void classify_by_background();
+  void take_background(Background background);
+
+  // plan_layers.cpp
+  std::function<double(Index32, Index32)> layer_weight();
+  void plan_layers();
+  /// The smooth part covers the wrap; what it misses fades over a few of its cells.
+  void plan_smooth_walls();
+  /// Distance from the end of the column on the nearest wall node.
+  [[nodiscard]] double beyond_column(std::size_t n) const;
+
+  // plan_background.cpp
+  void plan_background();
+  /// The outer box moves as the prescribed boundary nearest to it: a mesh that is shifted as a whole is shifted exactly.
+  void plan_outer_box();
+  void plan_projections();
+  /// Wrap nodes in the elements that hold them; rows name representatives, so that layers reach their nodes.
+  void project_wrap();
+
+  // plan_residual.cpp
+  void plan_residual();
+  /// Share of each node in the area of the boundary; nodes that are on no boundary face have a mean one.
+  [[nodiscard]] std::vector<double> areas(std::vector<Index32> const& nodes) const;
+  /// d / (d + distance from `from`), d being the distance from the end of the moving wall's column.
+  [[nodiscard]] double fade(std::size_t n, NearestSource const& from) const;
+  std::function<double(Index32, Index32)> inverse_distance() const;
+  void plan_other_nodes();
+  /// What boundaries with a rule ask for, at nodes that slide or have images.
+  void plan_start();
+
+  UnstructuredMesh const& mesh_;
+  UnstructuredTopology const& topology_;
+  BoundaryFacePatches const& face_patches_;
+  UnstructuredOptions const& options_;
+  PreparedUnstructured out_;
+  std::vector<int> layer_of_patch_;
+  std::vector<Index32> driving_faces_;
+  Columns columns_, standing_;
+  Mask is_known_, drives_, is_other_, near_;
+  NearestSource from_wall_, from_other_;
+  NearestSource from_given_;  ///< boundaries beyond the moving walls that a rule displaces, and their columns
+  double gap_ = infinity;     ///< smallest one between moving walls and other boundaries
+  double reach_ = 0;          ///< largest displacement that the offset and columns reckon with
+};
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,88 @@
+// The wrap: cells of a coarse lattice around the moving walls of an unstructured mesh.
+//
+// What lies in it moves with the walls, element layer by element layer; between it and the outer box of the lattice a
+// structured background mesh carries the displacement (background.hpp). The wrap is simple on purpose: it walks over details
+// of the walls that are smaller than its cells.
+#pragma once
+
+#include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/plan/elements/tube.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gridmorph {
+
+struct WrapOptions {
+  double offset = 0;  ///< every point of the mesh that is closer to a moving wall is wrapped; positive
+  /// Coarse cells along the longest extent of the walls, their offset included. Few are best: the steps of a wrap oblique to
+  /// the axes send grid lines to different places, and the finer the steps, the steeper the displacement between those lines.
+  /// A rod along a space diagonal that turns by 30 degrees keeps all background cells sound with 3 cells, loses 0.3 % with 10.
+  int resolution = 4;
+  Index max_cells = 2000;  ///< of the lattice; coarser where the resolution asks for more
+  double margin = 0;       ///< how far the outer box lies beyond the mesh; more where the wrap would touch it
+  /// A tube around walls that are long rather than wide, where one fits and the mesh around it is sound; else (see Wrap::note)
+  /// cells of the lattice. Best for walls oblique to the axes: a swept wing, a diagonal rod.
+  bool tube = false;
+};
+
+struct Wrap {
+  int dimension = 3;                          ///< 2: one layer of cells in z, from -spacing / 2 to spacing / 2
+  double offset = 0;                          ///< WrapOptions::offset
+  double spacing = 0;                         ///< largest size of a cell around the walls
+  double layer = 0;                           ///< smallest
+  std::array<std::vector<double>, 3> planes;  ///< of the lattice, the outer box included, ascending
+  std::vector<std::uint8_t> inside;           ///< per cell, i fastest; never in the outermost cells (of x and y in 2-D)
+  std::optional<Tube> tube;       ///< the wrap, instead of cells: then the lattice is one cell, the outer box
+  std::string note;               ///< why it is not the tube that was asked for
+  std::vector<std::int32_t> sum;  ///< inside cells below each lattice node: what meets() looks up
+
+  [[nodiscard]] int cells(int axis) const { return int(planes[std::size_t(axis)].size()) - 1; }
+  [[nodiscard]] Index n_cells() const { return Index(cells(0)) * cells(1) * cells(2); }
+  [[nodiscard]] Index cell(Index3 const& c) const { return c[0] + Index(cells(0)) * (c[1] + Index(cells(1)) * c[2]); }
+  [[nodiscard]] Index3 index(Index cell) const {
+    return {int(cell % cells(0)), int(cell / cells(0) % cells(1)), int(cell / (Index(cells(0)) * cells(1)))};
+  }
+  [[nodiscard]] bool is_inside(Index3 const& c) const { return inside[std::size_t(cell(c))] != 0; }
+  [[nodiscard]] LatticeBox box(Index3 const& c) const;
+  /// The interval of an axis that holds a coordinate, by bisection; the first or last one beyond the ends.
+  [[nodiscard]] int interval(int axis, double coordinate) const;
+  /// The cell that holds a point; beyond the outer box one of the outermost. In 2-D z is not looked at.
+  [[nodiscard]] Index3 find(Vec3 const& point) const;
+  [[nodiscard]] bool contains(Vec3 const& point) const { return tube ? tube->contains(point) : is_inside(find(point)); }
+  /// Whether any point of a box is in the wrap, as contains() has it; of a tube see Tube::meets. Constant cost beyond the
+  /// bisection.
+  [[nodiscard]] bool meets(LatticeBox const& box) const;
+  [[nodiscard]] Index n_inside() const { return sum.empty() ? 0 : sum.back(); }
+};
+
+/// Wraps moving walls. `walls`: corner nodes of their faces (edges in 2-D). A cell is in the wrap when it comes closer to a
+/// wall than the offset (along each axis, so at most sqrt(3) times the offset in the cells' corners); then gaps of one cell
+/// are closed, enclosed hollows filled, and cells that touch only along an edge or at a corner joined by their neighbours.
+/// Lattice: even spacing where there are walls, offset included; single intervals between walls far apart and out to
+/// the outer box. Throws MeshError without walls, MotionError without a positive offset. Cost: linear in faces and cells.
+Wrap make_wrap(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options);
+
+/// What the offset of the wrap depends on; lengths, 0 where unknown.
+struct OffsetHints {
+  double layer_height = 0;  ///< of the prisms and hexahedra on the moving walls
+  double wall_edge = 0;     ///< typical edge length on the moving walls
+  double motion = 0;        ///< largest displacement
+  double body = 0;          ///< diagonal of the box around the moving walls
+  double gap = 0;           ///< smallest distance of moving walls from other boundaries they do not touch
+};
+
+/// An offset from the size of things,
+///
+///     offset = max(layer_height, min(max(2 layer_height, 2 wall_edge, motion / 8, body / 25), room)),
+///
+/// `room` being room_in_gap(gap, motion), a gap of 0 no limit: the layers move with their wall, a few elements outside them damp details of its motion, and of
+/// the way to other boundaries enough is left to take the motion up.
+double suggest_offset(OffsetHints const& hints);
+
+/// The cells of the wrap as hexahedra (quadrilaterals in 2-D) with its surface as patch "wrap", to look at.
+UnstructuredMesh wrap_mesh(Wrap const& wrap);
+
+}  // namespace gridmorph

@@ -1,0 +1,169 @@
+#include <gridmorph/plan/inverse_distance_field.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+/// Boundary nodes in groups of groups, halved at the median along their longest extent.
+struct Group {
+  Vec3 centre;  ///< weighted by area
+  double radius = 0, area = 0;
+  Index32 part[2] = {-1, -1};  ///< -1: a leaf
+  Index32 begin = 0, end = 0;  ///< of the ordered nodes
+  int height = 0;              ///< 0: a leaf
+};
+
+class Tree {
+ public:
+  Tree(Coordinates const& x, std::vector<Index32> const& nodes, std::vector<double> const& area)
+      : x_(x), nodes_(nodes), area_(area), order_(nodes.size()) {
+    std::iota(order_.begin(), order_.end(), Index32(0));
+    // By position: how nodes are numbered must not matter.
+    std::sort(order_.begin(), order_.end(), [&](Index32 a, Index32 b) {
+      Vec3 const p = x_[nodes_[std::size_t(a)]], q = x_[nodes_[std::size_t(b)]];
+      return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+    });
+    place_.resize(order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) place_[std::size_t(order_[k])] = Index32(k);
+    if (!nodes.empty()) make(0, Index32(nodes.size()));
+  }
+  std::vector<Group> groups;  ///< the root first
+
+  [[nodiscard]] Index32 item(Index32 k) const { return order_[std::size_t(k)]; }
+  [[nodiscard]] Index32 node(Index32 k) const { return nodes_[std::size_t(order_[std::size_t(k)])]; }
+  [[nodiscard]] double area(Index32 k) const { return area_[std::size_t(order_[std::size_t(k)])]; }
+
+ private:
+  static constexpr Index32 leaf_size = 4;
+  static double component(Vec3 const& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+  Index32 make(Index32 begin, Index32 end) {
+    Index32 const g = Index32(groups.size());
+    groups.emplace_back();
+    Group group;
+    group.begin = begin;
+    group.end = end;
+    Vec3 low = x_[node(begin)], high = low, sum;
+    for (Index32 k = begin; k < end; ++k) {
+      Vec3 const p = x_[node(k)];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      sum += area(k) * p;
+      group.area += area(k);
+    }
+    group.centre = (1 / group.area) * sum;
+    for (Index32 k = begin; k < end; ++k) group.radius = std::max(group.radius, distance(x_[node(k)], group.centre));
+    if (end - begin > leaf_size) {
+      Vec3 const extent = high - low;
+      int const axis = extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
+      Index32 const middle = (begin + end) / 2;
+      std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                       [&](Index32 a, Index32 b) {
+                         double const p = component(x_[nodes_[std::size_t(a)]], axis),
+                                      q = component(x_[nodes_[std::size_t(b)]], axis);
+                         return p < q || (p == q && place_[std::size_t(a)] < place_[std::size_t(b)]);
+                       });
+      group.part[0] = make(begin, middle);
+      group.part[1] = make(middle, end);
+      group.height = 1 + std::max(groups[std::size_t(group.part[0])].height, groups[std::size_t(group.part[1])].height);
+    }
+    groups[std::size_t(g)] = group;
+    return g;
+  }
+
+  Coordinates const& x_;
+  std::vector<Index32> const& nodes_;
+  std::vector<double> const& area_;
+  std::vector<Index32> order_, place_;  ///< by position, and where each is in that order
+};
+
+UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dimension, Index most_nodes) {
+  UniformLattice lattice;
+  lattice.low = low;
+  double const size[3] = {high.x - low.x, high.y - low.y, dimension == 2 ? 0 : high.z - low.z};
+  double spacing = std::max({size[0], size[1], size[2]}) / 4;
+  auto const fits = [&](double h) {
+    double n = 1;
+    for (double const s : size) n *= s > 0 ? std::ceil(s / h) + 1 : 1;
+    return n <= double(most_nodes);
+  };
+  while (fits(spacing / 1.1)) spacing /= 1.1;
+  lattice.spacing = spacing;
+  for (int a = 0; a < 3; ++a) lattice.nodes[a] = size[a] > 0 ? std::int32_t(std::ceil(size[a] / spacing)) + 1 : 1;
+  return lattice;
+}
+
+}  // namespace
+
+InverseDistanceField make_scatter_lattice(Coordinates const& coordinates, std::vector<Index32> const& nodes,
+                                          std::vector<double> const& area, int dimension, Vec3 const& low,
+                                          Vec3 const& high, Index most_nodes) {
+  InverseDistanceField out;
+  if (nodes.empty()) return out;
+  Tree const tree(coordinates, nodes, area);
+  out.n_groups = Index32(tree.groups.size());
+  for (Group const& group : tree.groups) out.centre.push_back(group.centre);
+  out.shape = lattice_over(low, high, dimension, most_nodes);
+  std::vector<Index32> items;
+  std::vector<double> weights;
+  std::vector<std::vector<Index32>> by_height(std::size_t(tree.groups.front().height) + 1);
+  for (std::size_t g = 0; g < tree.groups.size(); ++g)
+    by_height[std::size_t(tree.groups[g].height)].push_back(Index32(g));
+  for (Index32 const g : by_height[0]) {
+    items.clear();
+    weights.clear();
+    for (Index32 k = tree.groups[std::size_t(g)].begin; k < tree.groups[std::size_t(g)].end; ++k) {
+      items.push_back(tree.item(k));
+      weights.push_back(tree.area(k));
+    }
+    out.leaves.add(g, items, weights);
+  }
+  for (std::size_t h = 1; h < by_height.size(); ++h) {
+    for (Index32 const g : by_height[h]) {
+      Group const& group = tree.groups[std::size_t(g)];
+      double const parts[2] = {tree.groups[std::size_t(group.part[0])].area,
+                               tree.groups[std::size_t(group.part[1])].area};
+      out.groups.rows.add(g, group.part, parts);
+    }
+    out.groups.level.push_back(out.groups.rows.size());
+  }
+
+  double const nearest = 0.05 * out.shape.spacing;
+  // About a half, but no ratio of lengths in a lattice: round-off would break such ties.
+  constexpr double opening = 0.4917;
+  std::vector<Index32> open;
+  for (Index32 n = 0; n < Index32(out.shape.size()); ++n) {
+    Vec3 const x = out.shape.position(n);
+    items.clear();
+    weights.clear();
+    open.assign(1, 0);
+    while (!open.empty()) {
+      Index32 const g = open.back();
+      open.pop_back();
+      Group const& group = tree.groups[std::size_t(g)];
+      double const d = std::max(distance(x, group.centre), nearest);
+      if (group.part[0] >= 0 && group.radius > opening * d) {
+        open.push_back(group.part[1]);
+        open.push_back(group.part[0]);
+        continue;
+      }
+      items.push_back(g);
+      weights.push_back(group.area / (dimension == 2 ? d * d * d : d * d * d * d));
+    }
+    // Lengths may be tiny: only ratios of weights count.
+    double const largest = *std::max_element(weights.begin(), weights.end());
+    for (double& w : weights) w /= largest;
+    out.lattice.add(n, items, weights);
+  }
+  return out;
+}
+
+}  // namespace gridmorph

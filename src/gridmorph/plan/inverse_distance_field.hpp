@@ -1,0 +1,39 @@
+// A smooth field between scattered boundary values: how walls and other boundaries move, carried into the volume.
+#pragma once
+
+#include <gridmorph/kernels/uniform_lattice.hpp>
+#include <gridmorph/plan/layers.hpp>
+
+#include <array>
+#include <vector>
+
+namespace gridmorph {
+
+/// At each node of an even lattice the values of boundary nodes n are averaged with the weights
+///
+///     w_n = A_n / |x - x_n|^p,   p = 4 (3-D), 3 (2-D),   A_n: the node's share of the boundary's area,
+///
+/// inverse distance weighting (Shepard 1968; with areas and for meshes: Luke, Collins and Blades 2012), where far groups of nodes
+/// count as one, at their centre with their mean (a tree by position, opened where a group's radius exceeds about half its distance). In the
+/// cells the field is trilinear. So it is smooth, reaches a place by means over boundary parts as large as their distance, and
+/// reproduces constants to round-off.
+///
+/// All values are gathered: leaves of the tree from nodes, groups from their two parts level by level, lattice nodes from groups.
+struct InverseDistanceField {
+  InterpolationOperator leaves;   ///< boundary nodes (numbers in the mesh) -> groups
+  LayerRows groups;               ///< groups -> groups, from the smallest on
+  InterpolationOperator lattice;  ///< groups -> lattice nodes
+  Index32 n_groups = 0;
+  std::vector<Vec3> centre;  ///< of each group
+  UniformLattice shape;
+
+  [[nodiscard]] bool empty() const { return n_groups == 0; }
+};
+
+/// Over the box from low to high. nodes: boundary nodes; area: the share of each, positive. At most `most_nodes` lattice nodes.
+/// Cost O(n log n) in the nodes and in the lattice's nodes.
+InverseDistanceField make_scatter_lattice(Coordinates const& coordinates, std::vector<Index32> const& nodes,
+                                          std::vector<double> const& area, int dimension, Vec3 const& low,
+                                          Vec3 const& high, Index most_nodes = 100'000);
+
+}  // namespace gridmorph

@@ -1,0 +1,126 @@
+// The plan of an unstructured morph: every stage as rows of weighted means, ready to be applied many times.
+//
+//   boundary -> columns -> layers -> wrap -> background mesh -> far field -> what other boundaries ask for
+//
+// docs/unstructured.md has the method with its formulas. Everything here is plain host data; UnstructuredMorpher puts it on an
+// execution space. Node numbers are those of representatives (NodeGraph) unless said otherwise.
+#pragma once
+
+#include <gridmorph/motion/boundary_conditions.hpp>
+#include <gridmorph/plan/elements/background.hpp>
+#include <gridmorph/plan/elements/classify.hpp>
+#include <gridmorph/plan/elements/columns.hpp>
+#include <gridmorph/plan/elements/wrap.hpp>
+#include <gridmorph/plan/inverse_distance_field.hpp>
+#include <gridmorph/plan/layers.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/unstructured_options.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+/// How the nodes of a column follow their wall node.
+struct ColumnPlan {
+  std::vector<Index32> node;
+  std::vector<Index32> root;  ///< number in UnstructuredPlan::driving
+  std::vector<float> turn;  ///< share of the wall's rotation that the node makes: 0 translate, 1 rotate, between: blend
+};
+
+struct UnstructuredPlan {
+  Index n_nodes = 0;
+  Vec3 plane_normal{0, 0, 1};  ///< of a 2-D mesh
+  int dimension = 3;
+
+  std::vector<Index32> known;          ///< as in BoundaryConditions: the order of boundary displacements
+  std::vector<Index32> driving;        ///< nodes of moving walls, ascending
+  std::vector<Index32> driving_slots;  ///< where they are in `known`
+  std::vector<std::uint8_t> turns;     ///< (driving) whether the rotation of the wall there is followed
+  CsrGraph fans;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see detail/fans.hpp
+  ColumnPlan columns;
+  /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements what it misses.
+  InverseDistanceField walls;
+  LayerRows near;
+  std::vector<float> near_fade;  ///< per row of near: share of what the smooth part misses
+
+  std::optional<Background> background;  ///< absent where the near field is the whole mesh
+  std::optional<PreparedMorph> background_morph;
+  InterpolationOperator wrap;   ///< nodes -> Plan::boundary_nodes of the background
+  InterpolationOperator outer;  ///< `known` slots -> Plan::boundary_nodes of the background: what the outer box does
+  InterpolationOperator far;    ///< background nodes -> nodes outside the wrap
+
+  /// Boundary nodes beyond the moving walls: their residual (what is asked for minus the field so far) spreads over all nodes. After
+  /// them the nodes of columns on walls that stand, which ask for what their wall does.
+  std::vector<Index32> other;
+  std::vector<Index32> other_slot;  ///< in `known`, or -1
+  CsrGraph other_surfaces;          ///< slip surfaces, where not known
+  /// Nodes of `other` that slide or have images begin with the field so far and what the residual of those with a slot adds there:
+  /// beside a wall that stands they stand.
+  struct Start {
+    std::vector<Index32> given;       ///< nodes with a slot, boundary nodes first
+    std::vector<Index32> given_slot;  ///< in `known`
+    InverseDistanceField residual;    ///< of the boundary nodes among them
+    LayerRows detail;                 ///< what the lattice misses, out along the nodes that begin
+    std::vector<Index32> node;        ///< those
+    std::vector<float> fade, detail_fade;
+  } start;
+  std::vector<SlipSurface> surfaces;
+  std::vector<PeriodicImage> images;  ///< their owners and they are in `other`
+  std::vector<Index32> image_owners;  ///< ascending; known ones have no mean
+  CsrGraph images_of_owner;           ///< entries of `images`
+  std::vector<Mat3> rotations;
+  InverseDistanceField residual;
+  std::vector<float> fade;  ///< (n_nodes) share of the residual: d / (d + d_other), d from the end of the wall's column
+  /// What the lattice misses at boundaries, out over one of its cells.
+  LayerRows residual_detail;
+  std::vector<float> detail_fade;  ///< per row of residual_detail, share of the residual included
+
+  std::vector<Index32> copies, copied;  ///< nodes that coincide with a representative, and that
+  InterpolationOperator middle;         ///< further nodes of second-order elements: means of the corners around them
+};
+
+/// What was found on the way, for reports and pictures.
+struct UnstructuredReport {
+  double layer_height = 0;  ///< of the highest column
+  Index n_columns = 0;
+  double offset = 0;
+  std::optional<Wrap> wrap;
+  Classification regions;
+  std::vector<int> layer;                  ///< (n_nodes) 0 on moving walls and in columns, -1 in the far field
+  Index wrap_nodes = 0, wrap_outside = 0;  ///< of the wrap's nodes, those outside all elements
+  double wrap_distance = 0;                ///< largest distance of those
+  Index far_nodes = 0, far_outside = 0;
+  Index unreached = 0;  ///< near nodes that no chain of edges joins to a moving wall
+  struct Seconds {
+    double boundary = 0, columns = 0, distances = 0, wrap = 0, layers = 0, background = 0, location = 0, residual = 0;
+  } seconds{};
+};
+
+struct PreparedUnstructured {
+  NodeGraph graph;
+  BoundaryConditions boundary;
+  UnstructuredPlan plan;
+  UnstructuredReport report;
+  std::vector<std::string> notes;
+
+  /// Displacements of UnstructuredPlan::known by the rules; throws MotionError.
+  [[nodiscard]] std::vector<Vec3> boundary_displacement(UnstructuredMesh const& mesh) const {
+    return evaluate(mesh, boundary);
+  }
+};
+
+/// Resolves the rules and plans every stage. Throws MeshError for open boundary faces, MotionError, PlanError. Cost: linear in
+/// nodes and elements (n log n in those of boundaries and fences); about 1 kB of working memory per node.
+PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                             BoundaryFacePatches const& face_patches, Motion const& motion,
+                             UnstructuredOptions const& options);
+/// The same for rules that are resolved already, make_node_graph() and boundary_conditions() of the mesh: for several plans of
+/// one mesh.
+PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+                             BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
+                             UnstructuredOptions const& options);
+
+}  // namespace gridmorph

@@ -1,0 +1,110 @@
+// Tables that kernels over unstructured elements need; internal to the quality part.
+#pragma once
+
+#include <gridmorph/kernels/element_quality.hpp>
+#include <gridmorph/quality/detail/visit_chunks.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+
+#include <vector>
+
+namespace gridmorph::detail {
+
+/// A point in half a cache line: elements read their corners from all over the mesh, so x, y and z should come at once.
+struct alignas(32) PackedPoint {
+  double x, y, z;
+};
+
+template <class MemorySpace>
+using PackedPoints = Kokkos::View<PackedPoint const*, MemorySpace>;
+
+template <class Exec>
+PackedPoints<typename Exec::memory_space> pack(Exec const& exec, CoordinateViews<typename Exec::memory_space> const& c,
+                                               Index n_nodes) {
+  Kokkos::View<PackedPoint*, typename Exec::memory_space> const points(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::points"), std::size_t(n_nodes));
+  Kokkos::parallel_for(
+      "gridmorph::quality::pack", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n_nodes),
+      KOKKOS_LAMBDA(Index n) {
+        points(n) = PackedPoint{c.x(n), c.y(n), c.z(n)};
+      });
+  return points;
+}
+
+template <class MemorySpace>
+struct ElementTables {
+  ElementViews<MemorySpace> elements;
+  Vec3 plane_normal;
+
+  KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
+  KOKKOS_INLINE_FUNCTION ElementCorners corners(PackedPoints<MemorySpace> const& points, Index e) const {
+    return gather(e, [&](Index32 node) {
+      PackedPoint const p = points(node);
+      return Vec3{p.x, p.y, p.z};
+    });
+  }
+  /// For few elements: x, y and z come from three places.
+  KOKKOS_INLINE_FUNCTION ElementCorners corners(CoordinateViews<MemorySpace> const& c, Index e) const {
+    return gather(e, [&](Index32 node) { return Vec3{c.x(node), c.y(node), c.z(node)}; });
+  }
+
+ private:
+  template <class PointOf>
+  KOKKOS_INLINE_FUNCTION ElementCorners gather(Index e, PointOf const& point) const {
+    ElementCorners out;
+    Index const first = elements.first(e);
+    int const n = n_corners(elements.type(e));
+    for (int k = 0; k < n; ++k) out.at[k] = point(elements.node(first + k));
+    return out;
+  }
+};
+
+template <class MemorySpace>
+ElementTables<MemorySpace> element_tables(UnstructuredMesh const& mesh) {
+  return {views<MemorySpace>(mesh.elements), plane_normal(mesh)};
+}
+
+/// Elements zone after zone in chunks of cells_per_chunk; box_extent[0] counts those of the zone.
+inline std::vector<CellChunk> chunks_of(UnstructuredMesh const& mesh) {
+  std::vector<CellChunk> chunks;
+  for (int z = 0; z < int(mesh.zones.size()); ++z) {
+    Index const n = mesh.zones[std::size_t(z)].n_elements;
+    for (Index begin = 0; begin < n; begin += cells_per_chunk)
+      chunks.push_back(
+          {z, {0, 0, 0}, {int(n), 1, 1}, begin, begin + cells_per_chunk < n ? begin + cells_per_chunk : n});
+  }
+  return chunks;
+}
+
+inline std::vector<Index> first_elements(UnstructuredMesh const& mesh) {
+  std::vector<Index> first;
+  for (auto const& zone : mesh.zones) first.push_back(zone.first_element);
+  return first;
+}
+
+/// Largest volume ratio of element e to its neighbours; 1 without any, unbounded unless all volumes are positive.
+template <class VolumeView, class MemorySpace>
+KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, ElementViews<MemorySpace> const& elements,
+                                          CsrViews<MemorySpace> const& neighbours, Index e) {
+  double least = volumes(e), largest = least;
+  for (Index n = neighbours.first(e); n < neighbours.first(e + 1); ++n) {
+    Index32 const other = neighbours.item(n);
+    if (elements.type(other) == ElementType::polyhedron) continue;
+    least = smaller(least, volumes(other));
+    largest = larger(largest, volumes(other));
+  }
+  double const own = volumes(e);
+  if (!(least > 0)) return unbounded;
+  return larger(largest / own, own / least);
+}
+
+/// Elements on the other side of each side of each element, through connections too, where there is one.
+CsrGraph neighbour_lists(UnstructuredMesh const& mesh, UnstructuredTopology const& topology);
+
+/// `known` where it has an entry per element, else numbering_signs().
+std::vector<signed char> signs_of(UnstructuredMesh const& mesh, ElementSides const& sides,
+                                  std::vector<signed char> const& known);
+
+/// Throws MeshError unless each of the Views holds every node of the mesh.
+void check_size(UnstructuredMesh const& mesh, std::size_t nx, std::size_t ny, std::size_t nz, std::string const& what);
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,125 @@
+// The examples with unstructured meshes: walls where the case file asks for them, neighbours of a wall as one, nothing inverted.
+#include "example_run.hpp"
+
+#include <gridmorph/io/unstructured_io.hpp>
+
+#include <map>
+#include <set>
+#include <tuple>
+#include <vector>
+
+namespace gridmorph::testing {
+namespace {
+
+class UnstructuredExampleTest : public ExampleTest {
+ protected:
+  /// Runs the example; nothing may be inverted.
+  void run(std::string const& name, std::string const& mesh_file, std::string const& morphed_file) {
+    ASSERT_NO_FATAL_FAILURE(ExampleTest::run(name));
+    mesh = read_unstructured_mesh(mesh_of(name, mesh_file));
+    moved = read_unstructured_mesh(path(name + "/" + morphed_file)).coordinates;
+    ASSERT_EQ(mesh.n_nodes(), moved.size());
+  }
+
+  [[nodiscard]] std::vector<Index32> nodes_of(std::string const& patch_name) const {
+    for (auto const& patch : mesh.patches)
+      if (patch.name == patch_name) return patch_nodes(patch);
+    ADD_FAILURE() << "no patch " << patch_name;
+    return {};
+  }
+  [[nodiscard]] Vec3 displacement(Index32 n) const { return moved[n] - mesh.coordinates[n]; }
+
+  UnstructuredMesh mesh;
+  Coordinates moved;
+};
+
+using CoilExample = StandInTest<UnstructuredExampleTest>;
+INSTANTIATE_TEST_SUITE_P(Meshes, CoilExample, ::testing::Bool(), stand_in_or_not);
+
+TEST_P(CoilExample, HeatingCoilSagsAsABeamInBothZonesAlike) {
+  ASSERT_NO_FATAL_FAILURE(run("heating_coil", "heated_coil.cgns", "heating_coil_morphed.cgns"));
+  std::map<std::tuple<double, double, double>, Vec3> outside;
+  double lowest = 0;
+  for (auto const& wall : {"Default 1 Side FluidZone Part 1", "Default 1 Side SolidZone Part 2"})
+    for (Index32 const n : nodes_of(wall)) {
+      Vec3 const x = mesh.coordinates[n];
+      double const s = x.y < 0.65 ? (0.65 - x.y) / 1.5 : 0;
+      // The file keeps single precision.
+      EXPECT_NEAR(moved.z(n), x.z + 0.2 * (1.5 * s * s - 0.5 * s * s * s), 2e-7) << describe_node(mesh, n);
+      EXPECT_EQ(moved.x(n), x.x);
+      EXPECT_EQ(moved.y(n), x.y);
+      lowest = std::max(lowest, moved.z(n) - x.z);
+      Vec3 const& first = outside.emplace(std::tuple(x.x, x.y, x.z), moved[n]).first->second;
+      EXPECT_TRUE(first == moved[n]) << describe_node(mesh, n);
+    }
+  EXPECT_EQ(outside.size(), GetParam() ? 1752u : 2261u);
+  EXPECT_GT(lowest, GetParam() ? 0.19 : 0.199);
+}
+
+TEST_P(CoilExample, HeatingCoilDuctSlidesOnItsCylinders) {
+  ASSERT_NO_FATAL_FAILURE(run("heating_coil", "heated_coil.cgns", "heating_coil_morphed.cgns"));
+  // A duct of radius 1, and a body of radius 0.5 in it whose middle is read off the mesh. The stand-in's is held by a strut, whose sides are
+  // planes.
+  std::vector<Index32> duct, body, strut;
+  for (Index32 const n : nodes_of("FluidZone Default")) {
+    double const x = mesh.coordinates.x(n), y = mesh.coordinates.y(n), r = std::hypot(x, y);
+    if (GetParam() && y > 0 && std::abs(std::abs(x) - y * std::tan(std::acos(-1.0) / 18)) < 1e-6)
+      strut.push_back(n);
+    else
+      (r > 0.9 ? duct : body).push_back(n);
+  }
+  EXPECT_EQ(strut.empty(), !GetParam());
+  // A node of the strut's foot may slide on along the body.
+  for (Index32 const n : strut)
+    EXPECT_LT(std::min(std::abs(std::abs(moved.x(n)) - moved.y(n) * std::tan(std::acos(-1.0) / 18)),
+                       std::abs(std::hypot(moved.x(n), moved.y(n)) - 0.5)),
+              2e-4)
+        << describe_node(mesh, n);
+  double low = 1, high = -1;
+  for (Index32 const n : body) {
+    low = std::min(low, mesh.coordinates.y(n));
+    high = std::max(high, mesh.coordinates.y(n));
+  }
+  double slid = 0;
+  auto const expect_on = [&](std::vector<Index32> const& nodes, double y, double radius) {
+    ASSERT_GT(nodes.size(), 500u);
+    for (Index32 const n : nodes) {
+      ASSERT_NEAR(std::hypot(mesh.coordinates.x(n), mesh.coordinates.y(n) - y), radius, 1e-3);
+      // Smooth through facets as wide as an eighth of the radius.
+      EXPECT_NEAR(std::hypot(moved.x(n), moved.y(n) - y), std::hypot(mesh.coordinates.x(n), mesh.coordinates.y(n) - y),
+                  2e-4)
+          << describe_node(mesh, n);
+      slid = std::max(slid, norm(displacement(n)));
+    }
+  };
+  expect_on(duct, 0, 1);
+  expect_on(body, GetParam() ? 0 : (low + high) / 2, 0.5);
+  EXPECT_GT(slid, 0.1);
+  for (auto const* end : {"inflow", "outflow"})
+    for (Index32 const n : nodes_of(end)) EXPECT_TRUE(displacement(n) == Vec3()) << end;
+}
+
+TEST_F(UnstructuredExampleTest, TurbineBladeTurnsRigidlyAndPeriodicSidesMoveAsOne) {
+  ASSERT_NO_FATAL_FAILURE(run("vki_restagger", "mesh_vki_turbine.su2", "vki_restagger_morphed.su2"));
+  double const c = std::cos(5 * std::acos(-1.0) / 180), s = std::sin(5 * std::acos(-1.0) / 180);
+  auto const blade = nodes_of("airfoil");
+  EXPECT_EQ(blade.size(), 240u);
+  for (Index32 const n : blade) {
+    double const x = mesh.coordinates.x(n) - 0.018, y = mesh.coordinates.y(n) + 0.02;
+    EXPECT_NEAR(moved.x(n), 0.018 + c * x - s * y, 1e-16);
+    EXPECT_NEAR(moved.y(n), -0.02 + s * x + c * y, 1e-16);
+  }
+  double most = 0;
+  for (auto const& connection : mesh.connections)
+    for (std::size_t k = 0; k < connection.nodes.size(); ++k) {
+      Vec3 const a = displacement(connection.nodes[k]), b = displacement(connection.donor_nodes[k]);
+      EXPECT_LT(distance(a, b), 1e-16) << describe_node(mesh, connection.nodes[k]);
+      most = std::max(most, norm(a));
+    }
+  EXPECT_GT(most, 1e-4);
+  for (auto const* end : {"inflow", "outflow"})
+    for (Index32 const n : nodes_of(end)) EXPECT_TRUE(displacement(n) == Vec3()) << end;
+}
+
+}  // namespace
+}  // namespace gridmorph::testing

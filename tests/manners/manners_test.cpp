@@ -1,0 +1,266 @@
+// How the library behaves inside a program that profiles it: labels, allocations, fences, instances.
+#include "support/expect_error.hpp"
+#include "support/made_bodies.hpp"
+#include "support/morph_run.hpp"
+#include "support/motions.hpp"
+
+#include <gridmorph/morph/unstructured_morpher.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace gridmorph::test {
+namespace {
+
+namespace hooks = Kokkos::Tools::Experimental;
+
+/// What Kokkos reported while a Listener was alive.
+struct Record {
+  std::vector<std::string> kernels, allocations, fences, copies;
+};
+Record record;
+
+void on_kernel(char const* name, uint32_t, uint64_t*) { record.kernels.emplace_back(name); }
+void on_allocation(Kokkos_Profiling_SpaceHandle const, char const* name, void const*, uint64_t const) {
+  record.allocations.emplace_back(name);
+}
+void on_fence(char const* name, uint32_t const, uint64_t*) { record.fences.emplace_back(name); }
+void on_copy(Kokkos_Profiling_SpaceHandle, char const* to, void const*, Kokkos_Profiling_SpaceHandle, char const* from,
+             void const*, uint64_t) {
+  record.copies.push_back(std::string(to) + " <- " + from);
+}
+
+class Listener {
+ public:
+  Listener() {
+    record = {};
+    hooks::set_begin_parallel_for_callback(on_kernel);
+    hooks::set_begin_parallel_reduce_callback(on_kernel);
+    hooks::set_begin_parallel_scan_callback(on_kernel);
+    hooks::set_allocate_data_callback(on_allocation);
+    hooks::set_begin_fence_callback(on_fence);
+    hooks::set_begin_deep_copy_callback(on_copy);
+  }
+  ~Listener() {
+    hooks::set_begin_parallel_for_callback(nullptr);
+    hooks::set_begin_parallel_reduce_callback(nullptr);
+    hooks::set_begin_parallel_scan_callback(nullptr);
+    hooks::set_allocate_data_callback(nullptr);
+    hooks::set_begin_fence_callback(nullptr);
+    hooks::set_begin_deep_copy_callback(nullptr);
+  }
+  Listener(Listener const&) = delete;
+  Listener& operator=(Listener const&) = delete;
+};
+
+/// Kokkos itself fences around kernels while a tool listens.
+bool is_profiling_fence(std::string const& name) { return name.find("Profile") != std::string::npos; }
+
+void expect_labels(std::vector<std::string> const& names) {
+  std::regex const pattern("^(gridmorph::|Kokkos::).+");
+  for (auto const& name : names) EXPECT_TRUE(std::regex_match(name, pattern)) << "'" << name << "'";
+}
+
+using Exec = Kokkos::DefaultExecutionSpace;
+using Memory = Exec::memory_space;
+
+/// A morph with every kind of kernel: near field, sweeps, corrections, copies, periodic turns, slip surfaces.
+class Manners : public ::testing::Test {
+ protected:
+  static Sector sector() { return {}; }
+  Mesh mesh = annulus_sector(sector(), 1);
+  PreparedMorph prepared = [this] {
+    PlanOptions options;
+    options.boundary_layers = {{{"hub"}, BoundaryLayer::Extent::layers, 1, 0, BoundaryLayer::Mode::translate}};
+    Motion m = motion({rule({"hub", "case", "inlet"}, function_rule(turning_waves(sector(), 0.05))),
+                       rule({"outlet"}, FreeRule{FreeRule::Constraint::axial})});
+    m.axis = {sector().origin, sector().axis};
+    return prepare(mesh, m, options);
+  }();
+  Exec exec;
+  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
+  Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> batch{"gridmorph::test::batch", 1, boundary.extent(0)};
+  DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
+};
+
+TEST_F(Manners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
+  Listener const listener;
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  morpher.displace(exec, boundary, u.write());
+  morpher.apply(exec, boundary, x.read(), u.write());
+  exec.fence();
+  EXPECT_GE(record.kernels.size(), 8u);
+  EXPECT_GE(record.allocations.size(), 8u);
+  expect_labels(record.kernels);
+  expect_labels(record.allocations);
+  for (char const* kernel : {"gridmorph::boundary", "gridmorph::chain_ends", "gridmorph::side_residual",
+                             "gridmorph::skeleton_sweep", "gridmorph::skeleton_spread", "gridmorph::slip_ends",
+                             "gridmorph::skeleton_nodes", "gridmorph::volume", "gridmorph::line_parameters"})
+    EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
+}
+
+TEST_F(Manners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  exec.fence();
+  {
+    Listener const listener;
+    morpher.displace(exec, boundary, u.write());
+    morpher.apply(exec, boundary, x.read(), u.write());
+    morpher.velocity(exec, boundary, boundary, u.write());
+    morpher.displace(exec, batch, {u.write()});
+  }
+  EXPECT_EQ(record.allocations, std::vector<std::string>());
+  EXPECT_EQ(record.copies, std::vector<std::string>());
+  for (auto const& fence : record.fences) EXPECT_TRUE(is_profiling_fence(fence)) << fence;
+  EXPECT_FALSE(record.kernels.empty());
+}
+
+/// A list of another length than the plan wants is refused with both numbers, before any kernel.
+template <class Call>
+void expect_refused(std::size_t given, std::size_t needed, char const* list, Call const& call) {
+  Listener const listener;
+  expect_all_in(message_of<ConfigError>(call),
+                {"has " + std::to_string(given) + " entries", std::to_string(needed) + " boundary nodes", list});
+  EXPECT_TRUE(record.kernels.empty());
+}
+
+TEST_F(Manners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  std::size_t const n = boundary.extent(0);
+  for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
+    Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
+    Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> const lists("gridmorph::test::lists", 2, other);
+    auto const refused = [&](auto const& call) { expect_refused(other, n, "Plan::boundary_nodes", call); };
+    refused([&] { morpher.apply(exec, list, x.read(), u.write()); });
+    refused([&] { morpher.displace(exec, list, u.write()); });
+    refused([&] { morpher.displace(exec, lists, {u.write()}); });
+    refused([&] { morpher.velocity(exec, list, boundary, u.write()); });
+    refused([&] { morpher.velocity(exec, boundary, list, u.write()); });
+  }
+}
+
+TEST_F(Manners, MeshesWithoutAllTheirCoordinatesAreRefused) {
+  auto const refused = [](Mesh& m, std::initializer_list<std::string_view> words) {
+    expect_all_in(message_of<MeshError>([&] { (void)prepare(m, motion({rule({"*"}, FixedRule{})}), PlanOptions{}); }),
+                  words);
+  };
+  std::string const n = std::to_string(mesh.n_nodes()) + " nodes";
+  mesh.coordinates.z = {};
+  refused(mesh, {n, "for " + std::to_string(mesh.n_nodes()) + " (x)", " 0 (z)"});
+  mesh.coordinates = Coordinates(mesh.n_nodes() - 1);
+  refused(mesh, {n, std::to_string(mesh.n_nodes() - 1) + " (y)"});
+  mesh.coordinates = {};
+  refused(mesh, {n, "0 (x)", "set coordinates"});
+  Mesh nothing;
+  refused(nothing, {"no zones"});
+}
+
+TEST_F(Manners, EveryMorphRunsTheSameKernels) {
+  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  std::vector<std::string> first;
+  for (int n = 0; n < 3; ++n) {
+    Listener const listener;
+    morpher.displace(exec, boundary, u.write());
+    if (n == 0) first = record.kernels;
+    EXPECT_EQ(record.kernels, first);
+    Kokkos::deep_copy(boundary, Vec3{});
+  }
+}
+
+TEST_F(Manners, PlanningLaunchesOnTheHostOnlyWhatReadsTheWholeMesh) {
+  Listener const listener;
+  Mesh again = annulus_sector(sector(), 1);
+  record = {};
+  Motion const m =
+      motion({rule({"hub"}, FixedRule{}), rule({"case"}, FixedRule{}), rule({"inlet", "outlet"}, FreeRule{})});
+  PreparedMorph const p = prepare(again, m, {});
+  EXPECT_FALSE(p.boundary_displacement(again).empty());
+  for (auto const& kernel : record.kernels)
+    EXPECT_TRUE(kernel == "gridmorph::extent_of" || kernel == "gridmorph::largest_cosines") << kernel;
+}
+
+/// An unstructured morph with every kind of kernel: columns, layers, background mesh, other boundaries, nodes of two zones.
+class UnstructuredManners : public ::testing::Test {
+ protected:
+  static bool in_body(Vec3 const& x) { return x.x > 4 && x.x < 8 && x.y > 4 && x.y < 8 && x.z > 4 && x.z < 8; }
+  UnstructuredMesh mesh = in_two_zones(box_around({12, 12, 12}, in_body), [](Vec3 const& x) { return x.x < 6; });
+  PreparedUnstructured prepared = [this] {
+    UnstructuredTopology const topology = make_topology(mesh);
+    UnstructuredOptions options;
+    options.boundary_layers.push_back({.walls = {"body"}, .extent = BoundaryLayer::Extent::layers, .layers = 1});
+    return prepare(mesh, topology, find_face_patches(mesh, topology),
+                   motion({rule({"body"}, RigidRule{{}, {1, 0.5, 0}}), rule({"k_min"}, SlipRule{})}), options);
+  }();
+  Exec exec;
+  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
+  DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
+};
+
+TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
+  Listener const listener;
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  morpher.apply(exec, boundary, x.read(), u.write());
+  exec.fence();
+  EXPECT_GE(record.allocations.size(), 20u);
+  expect_labels(record.kernels);
+  expect_labels(record.allocations);
+  for (char const* kernel :
+       {"gridmorph::moving_walls", "gridmorph::wall_turn", "gridmorph::columns", "gridmorph::near", "gridmorph::volume",
+        "gridmorph::others", "gridmorph::residual", "gridmorph::copies", "gridmorph::move"})
+    EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
+}
+
+TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  exec.fence();
+  {
+    Listener const listener;
+    morpher.displace(exec, boundary, x.read(), u.write());
+    morpher.apply(exec, boundary, x.read(), u.write());
+  }
+  EXPECT_EQ(record.allocations, std::vector<std::string>());
+  EXPECT_EQ(record.copies, std::vector<std::string>());
+  for (auto const& fence : record.fences) EXPECT_TRUE(is_profiling_fence(fence)) << fence;
+  EXPECT_FALSE(record.kernels.empty());
+}
+
+TEST_F(UnstructuredManners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  std::size_t const n = boundary.extent(0);
+  for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
+    Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
+    auto const refused = [&](auto const& call) { expect_refused(other, n, "UnstructuredPlan::known", call); };
+    refused([&] { morpher.apply(exec, list, x.read(), u.write()); });
+    refused([&] { morpher.displace(exec, list, x.read(), u.write()); });
+  }
+}
+
+TEST_F(UnstructuredManners, MeshesWithoutCoordinatesAreRefused) {
+  UnstructuredTopology const topology = make_topology(mesh);
+  BoundaryFacePatches const face_patches = find_face_patches(mesh, topology);
+  mesh.coordinates = {};
+  expect_all_in(message_of<MeshError>([&] {
+                  (void)prepare(mesh, topology, face_patches, motion({rule({"body"}, RigidRule{{}, {1, 0.5, 0}})}),
+                                UnstructuredOptions{});
+                }),
+                {std::to_string(mesh.n_nodes()) + " nodes", "0 (x)"});
+}
+
+TEST_F(UnstructuredManners, EveryMorphRunsTheSameKernels) {
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  std::vector<std::string> first;
+  for (int n = 0; n < 3; ++n) {
+    Listener const listener;
+    morpher.displace(exec, boundary, x.read(), u.write());
+    if (n == 0) first = record.kernels;
+    EXPECT_EQ(record.kernels, first);
+    Kokkos::deep_copy(boundary, Vec3{});
+  }
+}
+
+}  // namespace
+}  // namespace gridmorph::test
