@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/text_table.hpp>
 #include <gridmorph/mapping/point_cloud.hpp>
+#include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/element_model.hpp>
-#include <gridmorph/io/text_table.hpp>
 #include <gridmorph/mapping/structural_model.hpp>
+#include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
 

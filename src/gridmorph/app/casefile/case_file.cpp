@@ -5,7 +5,7 @@
 #include <gridmorph/app/casefile/detail/wheel_reader.hpp>
 #include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/text_table.hpp>
+#include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
 #include <toml.hpp>

@@ -4,8 +4,8 @@
 #include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/io/text_table.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
 #include <toml.hpp>

@@ -1,5 +1,5 @@
 #include <gridmorph/app/casefile/target_file.hpp>
-#include <gridmorph/io/text_table.hpp>
+#include <gridmorph/mapping/text_table.hpp>
 
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>

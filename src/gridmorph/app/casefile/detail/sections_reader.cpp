@@ -1,6 +1,6 @@
 #include <gridmorph/app/casefile/detail/sections_reader.hpp>
 #include <gridmorph/app/casefile/suggest.hpp>
-#include <gridmorph/io/text_table.hpp>
+#include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/text_table.hpp>
+#include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
 
