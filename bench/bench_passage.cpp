@@ -110,42 +110,40 @@ void register_all() {
   add("workflow", 48, 40, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
     return [&, mesh] {
-      Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read());
-      morpher.apply(exec, mesh.boundary, mesh.read(), mesh.write());
+      Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
+      morpher.positions(exec, mesh.boundary, mesh);
     };
   });
   add("plan_made", 0, 32, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
-    return [&, mesh] { Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read()); };
+    return [&, mesh] { Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh); };
   });
   add("apply", 48, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read());
-    return [&, mesh, morpher] { morpher.apply(exec, mesh.boundary, mesh.read(), mesh.write()); };
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
+    return [&, mesh, morpher] { morpher.positions(exec, mesh.boundary, mesh); };
   });
   add("apply_to", 48, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read());
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
     std::decay_t<decltype(mesh)> const to(exec, p);
-    return [&, mesh, morpher, to] { morpher.apply(exec, mesh.boundary, mesh.read(), to.write()); };
+    return [&, mesh, morpher, to] { morpher.positions(exec, mesh.boundary, to); };
   });
   add("displace", 24, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read());
-    return [&, mesh, morpher] { morpher.displace(exec, mesh.boundary, mesh.write()); };
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
+    return [&, mesh, morpher] { morpher.displacements(exec, mesh.boundary, mesh); };
   });
   add("displace_4", 96, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
     using Memory = typename Exec::memory_space;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh.read(), {4});
-    Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> const boundary("gridmorph::bench::batch", 4,
-                                                                     mesh.boundary.extent(0));
-    for (int f = 0; f < 4; ++f) Kokkos::deep_copy(Kokkos::subview(boundary, f, Kokkos::ALL), mesh.boundary);
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh, {4});
     Index const n = p.mesh.n_nodes();
-    Kokkos::View<double*, Memory> const u("gridmorph::bench::u", 12 * n);
-    return [&, morpher, boundary, u, n] {
-      morpher.displace(exec, boundary, kernels::FieldBatch<double>{{u.data(), u.data() + n, u.data() + 2 * n}, 3 * n});
-    };
+    Kokkos::View<double* [4][3], Kokkos::LayoutLeft, Memory> const fields("gridmorph::bench::fields", n);
+    std::vector<typename Morpher<Exec>::In> const boundary(4, mesh.boundary);
+    std::vector<typename Morpher<Exec>::Out> u;
+    for (int f = 0; f < 4; ++f) u.emplace_back(Kokkos::subview(fields, Kokkos::ALL, f, Kokkos::ALL));
+    return [&, mesh, morpher, fields, boundary, u] { morpher.displacements(exec, boundary, u); };
   });
 }
 

@@ -91,15 +91,13 @@ int main(int argc, char** argv) {
   Kokkos::View<Vec3*, Exec::memory_space> const boundary("boundary displacement", nodes.size());
   gridmorph::Coordinates const& x = mesh.coordinates;
   gridmorph::Coordinates const now(mesh.n_nodes());
-  gridmorph::kernels::Field<double const> const reference{x.x.data(), x.y.data(), x.z.data()};
-  gridmorph::kernels::Field<double> const current{now.x.data(), now.y.data(), now.z.data()};
-  gridmorph::Morpher<Exec> const morpher(exec, prepared.plan(), reference);
+  gridmorph::Morpher<Exec> const morpher(exec, prepared.plan(), x);
   std::vector<Vec3> const mode = prepared.boundary_displacement(mesh);
   double worst = 0;
   for (int step = 0; step <= 8; ++step) {
     double const amplitude = 0.2 * std::sin(2 * std::numbers::pi * step / 8);
     for (std::size_t n = 0; n < nodes.size(); ++n) boundary(n) = amplitude * mode[n];
-    morpher.apply(exec, boundary, reference, current);
+    morpher.positions(exec, boundary, now);
     exec.fence();  // the solver would go on with its own kernels instead
 
     Index const middle = mesh.zones[0].node({extent[0] / 2, extent[1] / 2, 0});

@@ -62,9 +62,10 @@ struct Volume {
                    NodeArrays<typename Exec::memory_space> const& x) const {
     using Memory = typename Exec::memory_space;
     auto const d = device_plan(exec, prepared.plan(), x.read());
+    VectorView<Memory> const field(x);
     kernels::VolumePass<Memory, kernels::TileShape<Exec>, true> const kernel{
-        d->boxes.entries, d->terms,       d->boxes.first_item, d->lines.chains, d->rotations, d->sides,
-        d->t.data(),      d->ends.read(), d->residuals.read(), x.read(),        {x.write()}};
+        d->boxes.entries, d->terms,       d->boxes.first_item, d->lines.chains, d->rotations,   d->sides,
+        d->t.data(),      d->ends.read(), d->residuals.read(), field.array(),   {field.array()}};
     Touched const touched = touched_by_volume(prepared.plan());
     return {[=] { launch("gridmorph::bench::volume", exec, d->boxes.n_items, kernel); }, touched.nodes,
             48 + 8 * double(touched.parameters) / double(touched.nodes)};
@@ -76,11 +77,11 @@ struct Apply {
   Timed operator()(Exec const& exec, PreparedMorph const& prepared,
                    NodeArrays<typename Exec::memory_space> const& x) const {
     Plan const& plan = prepared.plan();
-    Morpher<Exec> const morpher(exec, plan, x.read());
+    Morpher<Exec> const morpher(exec, plan, x);
     Kokkos::View<Vec3*, typename Exec::memory_space> const boundary("gridmorph::bench::boundary",
                                                                     plan.boundary_nodes.size());
     Kokkos::deep_copy(exec, boundary, Vec3{1e-9, 2e-9, 3e-9});
-    return {[=] { morpher.apply(exec, boundary, x.read(), x.write()); }, plan.n_nodes,
+    return {[=] { morpher.positions(exec, boundary, x); }, plan.n_nodes,
             48 + 8 * double(touched_by_volume(plan).parameters) / double(plan.n_nodes)};
   }
 };
@@ -107,12 +108,14 @@ struct NodeCopies {
                    NodeArrays<typename Exec::memory_space> const& x) const {
     using Memory = typename Exec::memory_space;
     auto const d = device_plan(exec, prepared.plan(), x.read());
-    kernels::CopyNodes<Memory, kernels::TileShape<Exec>::row, true> const kernel{d->skeleton_nodes.entries,
-                                                                                 d->skeleton_nodes.first_item,
-                                                                                 d->rotations,
-                                                                                 d->skeleton.read().first,
-                                                                                 x.write(),
-                                                                                 x.read()};
+    VectorView<Memory> const field(x);
+    kernels::CopyNodes<Memory, kernels::TileShape<Exec>::row, kernels::VectorArray, true> const kernel{
+        d->skeleton_nodes.entries,
+        d->skeleton_nodes.first_item,
+        d->rotations,
+        d->skeleton.read().first,
+        field.array(),
+        field.array()};
     std::int64_t nodes = 0;
     for (auto const& copy : prepared.plan().skeleton_nodes) nodes += std::int64_t(copy.n_p) * copy.n_q;
     return {[=] { launch("gridmorph::bench::node_copy", exec, d->skeleton_nodes.n_items, kernel); }, nodes, 72};

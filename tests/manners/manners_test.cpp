@@ -20,11 +20,21 @@ namespace hooks = Kokkos::Tools::Experimental;
 
 /// What Kokkos reported while a Listener was alive.
 struct Record {
-  std::vector<std::string> kernels, allocations, fences, copies;
+  std::vector<std::string> kernels, allocations, fences, copies, regions;
+  std::vector<std::uint32_t> devices;  ///< and instances, of the kernels
+  int open_regions = 0;
 };
 Record record;
 
-void on_kernel(char const* name, uint32_t, uint64_t*) { record.kernels.emplace_back(name); }
+void on_kernel(char const* name, uint32_t device, uint64_t*) {
+  record.kernels.emplace_back(name);
+  record.devices.push_back(device);
+}
+void on_region(char const* name) {
+  record.regions.emplace_back(name);
+  ++record.open_regions;
+}
+void on_region_end() { --record.open_regions; }
 void on_allocation(Kokkos_Profiling_SpaceHandle const, char const* name, void const*, uint64_t const) {
   record.allocations.emplace_back(name);
 }
@@ -44,6 +54,8 @@ class Listener {
     hooks::set_allocate_data_callback(on_allocation);
     hooks::set_begin_fence_callback(on_fence);
     hooks::set_begin_deep_copy_callback(on_copy);
+    hooks::set_push_region_callback(on_region);
+    hooks::set_pop_region_callback(on_region_end);
   }
   ~Listener() {
     hooks::set_begin_parallel_for_callback(nullptr);
@@ -52,6 +64,8 @@ class Listener {
     hooks::set_allocate_data_callback(nullptr);
     hooks::set_begin_fence_callback(nullptr);
     hooks::set_begin_deep_copy_callback(nullptr);
+    hooks::set_push_region_callback(nullptr);
+    hooks::set_pop_region_callback(nullptr);
   }
   Listener(Listener const&) = delete;
   Listener& operator=(Listener const&) = delete;
@@ -83,15 +97,16 @@ class Manners : public ::testing::Test {
   }();
   Exec exec;
   Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
-  Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> batch{"gridmorph::test::batch", 1, boundary.extent(0)};
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
+  std::vector<Morpher<Exec>::In> two_in{boundary, boundary};
+  std::vector<Morpher<Exec>::Out> two_out{u, u};
 };
 
 TEST_F(Manners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
   Listener const listener;
-  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
-  morpher.displace(exec, boundary, u.write());
-  morpher.apply(exec, boundary, x.read(), u.write());
+  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
+  morpher.displacements(exec, boundary, u);
+  morpher.positions(exec, boundary, u);
   exec.fence();
   EXPECT_GE(record.kernels.size(), 8u);
   EXPECT_GE(record.allocations.size(), 8u);
@@ -104,14 +119,14 @@ TEST_F(Manners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
 }
 
 TEST_F(Manners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
-  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
   exec.fence();
   {
     Listener const listener;
-    morpher.displace(exec, boundary, u.write());
-    morpher.apply(exec, boundary, x.read(), u.write());
-    morpher.velocity(exec, boundary, boundary, u.write());
-    morpher.displace(exec, batch, {u.write()});
+    morpher.displacements(exec, boundary, u);
+    morpher.positions(exec, boundary, u);
+    morpher.velocities(exec, boundary, boundary, u);
+    morpher.displacements(exec, two_in, two_out);
   }
   EXPECT_EQ(record.allocations, std::vector<std::string>());
   EXPECT_EQ(record.copies, std::vector<std::string>());
@@ -129,17 +144,17 @@ void expect_refused(std::size_t given, std::size_t needed, char const* list, Cal
 }
 
 TEST_F(Manners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
-  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
   std::size_t const n = boundary.extent(0);
   for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
     Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
-    Kokkos::View<Vec3**, Kokkos::LayoutRight, Memory> const lists("gridmorph::test::lists", 2, other);
+    std::vector<Morpher<Exec>::In> const lists{boundary, list};
     auto const refused = [&](auto const& call) { expect_refused(other, n, "Plan::boundary_nodes", call); };
-    refused([&] { morpher.apply(exec, list, x.read(), u.write()); });
-    refused([&] { morpher.displace(exec, list, u.write()); });
-    refused([&] { morpher.displace(exec, lists, {u.write()}); });
-    refused([&] { morpher.velocity(exec, list, boundary, u.write()); });
-    refused([&] { morpher.velocity(exec, boundary, list, u.write()); });
+    refused([&] { morpher.positions(exec, list, u); });
+    refused([&] { morpher.displacements(exec, list, u); });
+    refused([&] { morpher.displacements(exec, lists, two_out); });
+    refused([&] { morpher.velocities(exec, list, boundary, u); });
+    refused([&] { morpher.velocities(exec, boundary, list, u); });
   }
 }
 
@@ -159,12 +174,42 @@ TEST_F(Manners, MeshesWithoutAllTheirCoordinatesAreRefused) {
   refused(nothing, {"no zones"});
 }
 
+TEST_F(Manners, StagesAreRegionsOfProfiles) {
+  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
+  Listener const listener;
+  morpher.positions(exec, boundary, u);
+  std::vector<std::string> expected;
+  for (Stage const& stage : prepared.plan().stages) expected.push_back("gridmorph::stage " + stage.name);
+  for (std::size_t n = 0; n < prepared.plan().spreads.size(); ++n) expected.emplace_back("gridmorph::slip surfaces");
+  expected.emplace_back("gridmorph::all nodes");
+  EXPECT_EQ(record.regions, expected);
+  EXPECT_EQ(record.open_regions, 0);
+}
+
+#ifdef KOKKOS_ENABLE_SERIAL
+/// Serial is not the default space where there is another: what is launched on the default instance shows.
+TEST_F(Manners, EverythingRunsOnTheInstanceThatIsHandedOver) {
+  Kokkos::Serial const other;
+  Coordinates const moved(mesh.n_nodes());
+  std::vector<Vec3> const given = prepared.boundary_displacement(mesh);
+  Kokkos::View<Vec3 const*, Kokkos::HostSpace> const host_boundary(given.data(), given.size());
+  Listener const listener;
+  Morpher<Kokkos::Serial> const morpher(other, prepared.plan(), mesh.coordinates, {2, true});
+  morpher.positions(other, host_boundary, moved);
+  morpher.displacements(other, host_boundary, moved);
+  morpher.velocities(other, host_boundary, host_boundary, moved);
+  EXPECT_FALSE(record.devices.empty());
+  for (std::size_t n = 0; n < record.devices.size(); ++n)
+    EXPECT_EQ(record.devices[n], hooks::device_id(other)) << record.kernels[n];
+}
+#endif
+
 TEST_F(Manners, EveryMorphRunsTheSameKernels) {
-  Morpher<Exec> const morpher(exec, prepared.plan(), x.read(), {2, true});
+  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
   std::vector<std::string> first;
   for (int n = 0; n < 3; ++n) {
     Listener const listener;
-    morpher.displace(exec, boundary, u.write());
+    morpher.displacements(exec, boundary, u);
     if (n == 0) first = record.kernels;
     EXPECT_EQ(record.kernels, first);
     Kokkos::deep_copy(boundary, Vec3{});

@@ -53,14 +53,14 @@ Morphed run_plan(Exec const& exec, Mesh const& mesh, Plan const& plan, std::vect
   }
   // On the host these are the arrays themselves, not copies.
   DeviceField<Memory> const x(mesh.coordinates), u(nothing);
-  Morpher<Exec> const morpher(exec, plan, x.read());
+  Morpher<Exec> const morpher(exec, plan, x);
   Morphed out;
-  morpher.displace(exec, upload<Memory>(boundary), u.write());
+  morpher.displacements(exec, upload<Memory>(boundary), u);
   exec.fence();
   out.displacement = u.host_copy();
   Coordinates nothing_yet(mesh.n_nodes());
   DeviceField<Memory> const moved(nothing_yet);
-  morpher.apply(exec, upload<Memory>(boundary), x.read(), moved.write());
+  morpher.positions(exec, upload<Memory>(boundary), moved);
   exec.fence();
   out.position = moved.host_copy();
   return out;

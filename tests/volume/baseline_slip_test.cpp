@@ -197,12 +197,11 @@ TEST(BaselineSlip, VelocityIsTheDerivativeOfTheDisplacement) {
   std::vector<Vec3> rate(here.size());
   for (std::size_t n = 0; n < rate.size(); ++n) rate[n] = (0.5 / h) * (after[n] - before[n]);
   DeviceField<Memory> const x(run.mesh.coordinates);
-  Morpher<Exec> const morpher(exec, run.plan(), x.read(), {.velocity = true});
+  Morpher<Exec> const morpher(exec, run.plan(), x, {.velocity = true});
   Coordinates v(run.mesh.n_nodes()), up(run.mesh.n_nodes()), down(run.mesh.n_nodes());
-  auto const field = [](Coordinates const& c) { return kernels::Field<double>{c.x.data(), c.y.data(), c.z.data()}; };
-  morpher.velocity(exec, upload<Memory>(here), upload<Memory>(rate), field(v));
-  morpher.displace(exec, upload<Memory>(after), field(up));
-  morpher.displace(exec, upload<Memory>(before), field(down));
+  morpher.velocities(exec, upload<Memory>(here), upload<Memory>(rate), v);
+  morpher.displacements(exec, upload<Memory>(after), up);
+  morpher.displacements(exec, upload<Memory>(before), down);
   exec.fence();
   double worst = 0;
   for (Index n = 0; n < v.size(); ++n) worst = std::max(worst, distance(v[n], (0.5 / h) * (up[n] - down[n])));

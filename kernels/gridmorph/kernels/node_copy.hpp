@@ -4,6 +4,7 @@
 
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/tile.hpp>
+#include <gridmorph/kernels/vector_array.hpp>
 
 namespace gridmorph::kernels {
 
@@ -23,14 +24,14 @@ KOKKOS_INLINE_FUNCTION Vec3 moved(Vec3 const& x, Vec3 const& u) {
 }
 
 /// One item per row of at most `Width` nodes of a copy. With `Move`, the destination gets baseline + matrix * source.
-template <class MemorySpace, int Width, bool Move = false>
+template <class MemorySpace, int Width, class Destination = Field<double>, bool Move = false>
 struct CopyNodes {
   Kokkos::View<NodeCopy const*, MemorySpace> copies;
   Kokkos::View<Index const*, MemorySpace> first_item;  ///< per copy, and one past the last
   Kokkos::View<Mat3 const*, MemorySpace> matrices;
   Field<double const> source;
-  Field<double> destination;
-  Field<double const> baseline = {};
+  Destination destination;
+  VectorArray baseline = {};
 
   static Index items(NodeCopy const& c) { return tiles(c.n_p, Width) * c.n_q; }
 

@@ -11,6 +11,7 @@
 #include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/row_correction.hpp>
 #include <gridmorph/kernels/tile.hpp>
+#include <gridmorph/kernels/vector_array.hpp>
 
 namespace gridmorph::kernels {
 
@@ -32,7 +33,7 @@ struct VolumeTerm {
   std::int32_t s[4], a[4], b[4];  ///< position of node (0, 0, 0) on the chain, and what a step along i, j, k adds
 };
 
-/// Several displacement fields over one plan, each in arrays of its own layout.
+/// Several displacement fields of the workspace, one behind the other.
 template <class T>
 struct FieldBatch {
   Field<T> first;
@@ -41,6 +42,9 @@ struct FieldBatch {
     return {first.x + f * stride, first.y + f * stride, first.z + f * stride, first.stride};
   }
 };
+
+/// Fields that one pass writes; they share what it reads.
+inline constexpr int most_fields_at_once = 8;
 
 /// One item per tile of a box. With `Move`, out = baseline + u; `baseline` and `out` may be the same arrays.
 template <class MemorySpace, class Shape, bool Move>
@@ -53,8 +57,8 @@ struct VolumePass {
   SideTable<MemorySpace> sides;
   double const* t;
   FieldBatch<double const> ends, residuals;
-  Field<double const> baseline;
-  FieldBatch<double> out;
+  VectorArray baseline;
+  VectorArray out[most_fields_at_once];
   int n_fields = 1;
 
   static constexpr int width = Shape::volume_i;
@@ -191,25 +195,32 @@ struct VolumePass {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void write(Index node, int n, Row& u, Field<double> const& to) const {
-    if (baseline.stride == 1 && to.stride == 1) {
-      write_component(n, u.x, baseline.x + node, to.x + node);
-      write_component(n, u.y, baseline.y + node, to.y + node);
-      write_component(n, u.z, baseline.z + node, to.z + node);
-    } else {
-      for (int w = 0; w < n; ++w) {
-        Vec3 v{u.x[w], u.y[w], u.z[w]};
-        if constexpr (Move) v = moved(baseline[node + w], v);
-        to.set(node + w, v);
-      }
-    }
-  }
-  /// The sum goes through the row: baseline and destination may be the same array, which would keep the compiler from
+  /// The sum goes through the row: baseline and destination may be the same arrays, which would keep the compiler from
   /// vectorising a loop that reads one and writes the other.
-  KOKKOS_INLINE_FUNCTION static void write_component(int n, double* u, double const* x, double* to) {
+  KOKKOS_INLINE_FUNCTION void write(Index node, int n, Row& u, VectorArray const& to) const {
     if constexpr (Move)
-      for (int w = 0; w < n; ++w) u[w] = moved(x[w], u[w]);
-    for (int w = 0; w < n; ++w) to[w] = u[w];
+      baseline.with_row(node, [&](auto const& x) {
+        add_component(n, x.x, x.stride, u.x);
+        add_component(n, x.y, x.stride, u.y);
+        add_component(n, x.z, x.stride, u.z);
+      });
+    to.with_row(node, [&](auto const& out) {
+      write_component(n, u.x, out.x, out.stride);
+      write_component(n, u.y, out.y, out.stride);
+      write_component(n, u.z, out.z, out.stride);
+    });
+  }
+  template <class Real>
+  KOKKOS_INLINE_FUNCTION static void add_component(int n, Real const* x, Index stride, double* u) {
+    with_step(stride, [&](auto step) {
+      for (int w = 0; w < n; ++w) u[w] = moved(double(x[w * step]), u[w]);
+    });
+  }
+  template <class Real>
+  KOKKOS_INLINE_FUNCTION static void write_component(int n, double const* u, Real* to, Index stride) {
+    with_step(stride, [&](auto step) {
+      for (int w = 0; w < n; ++w) to[w * step] = Real(u[w]);
+    });
   }
 };
 

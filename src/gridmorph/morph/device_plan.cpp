@@ -110,6 +110,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   for (Stage const& stage : plan.stages) {
     Shift const shift(joined);
     DeviceStage<Exec> device;
+    device.region = "gridmorph::stage " + stage.name;
     device.ends = copies(shifted(stage.ends, shift.end_value), "ends");
     device.gathers = copies(shifted(stage.sides.gathers, shift.side_node), "gathers");
     device.sweeps = sweeps(shifted(stage.sweeps, shift));

@@ -65,6 +65,7 @@ struct Workspace {
 template <class Exec>
 struct DeviceStage {
   using Memory = typename Exec::memory_space;
+  std::string region;  ///< name in profiles
   WorkList<kernels::NodeCopy, Memory> ends, gathers;
   WorkList<kernels::SkeletonSweep, Memory> sweeps;
   Kokkos::View<kernels::SideLine*, Memory> side_lines;

@@ -4,6 +4,7 @@
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
 
+#include <algorithm>
 #include <string>
 
 namespace gridmorph {
@@ -11,7 +12,7 @@ namespace {
 
 struct ScatterBoundary {
   Index const* slots;
-  Vec3 const* boundary;
+  kernels::VectorArray boundary;
   kernels::Field<double> u;
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u.set(slots[n], boundary[n]); }
 };
@@ -23,6 +24,56 @@ struct ZeroField {
 
 kernels::Field<double const> read(kernels::Field<double> const& f) { return {f.x, f.y, f.z, f.stride}; }
 
+void require_all_nodes(char const* who, Index given, Index needed) {
+  if (given != needed)
+    throw ConfigError(std::string(who) + ": vectors for " + std::to_string(given) + " nodes, and the plan's mesh has " +
+                      std::to_string(needed) + "; give one for each");
+}
+
+/// What is launched while this lives shows in profiles under a name of its own.
+class ProfilingRegion {
+ public:
+  explicit ProfilingRegion(std::string const& name) { Kokkos::Profiling::pushRegion(name); }
+  ~ProfilingRegion() { Kokkos::Profiling::popRegion(); }
+  ProfilingRegion(ProfilingRegion const&) = delete;
+  ProfilingRegion& operator=(ProfilingRegion const&) = delete;
+};
+
+/// Regions that are not of one stage.
+struct {
+  std::string slip = "gridmorph::slip surfaces", volume = "gridmorph::all nodes";
+} const region_names;
+
+struct CopyVectors {
+  kernels::VectorArray from;
+  kernels::Field<double> to;
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { to.set(n, from[n]); }
+};
+
+/// Component arrays of double: the caller's own, or a copy for the while that the Morpher is made.
+template <class Exec>
+struct FlatBaseline {
+  using Memory = typename Exec::memory_space;
+  Kokkos::View<double*, Memory> copy;
+  kernels::Field<double const> field;
+
+  FlatBaseline(Exec const& exec, ConstVectorView<Memory> const& x) {
+    kernels::VectorArray const& from = x.array();
+    if (from.zones == nullptr && !from.single) {
+      auto const pointer = [](void* p) { return static_cast<double const*>(p); };
+      field = {pointer(from.x), pointer(from.y), pointer(from.z), from.stride};
+      return;
+    }
+    Index const n = x.size();
+    copy = Kokkos::View<double*, Memory>(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::baseline"), 3 * n);
+    kernels::Field<double> const to{copy.data(), copy.data() + n, copy.data() + 2 * n};
+    Kokkos::parallel_for("gridmorph::baseline", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n),
+                         CopyVectors{from, to});
+    field = read(to);
+  }
+};
+
 }  // namespace
 
 template <class Exec>
@@ -30,7 +81,12 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   using Base = detail::DevicePlan<Exec>;
   using Shape = typename Base::Shape;
   using Range = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>;
-  using Base::Base;
+
+  In baseline;
+  Index n_nodes;
+
+  State(Exec const& exec, Plan const& plan, In const& x, FlatBaseline<Exec> const& flat, int n_fields)
+      : Base(exec, plan, flat.field, n_fields), baseline(x), n_nodes(plan.n_nodes) {}
 
   template <class Kernel>
   static void launch(char const* label, Exec const& exec, Index items, Kernel const& kernel) {
@@ -55,13 +111,14 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   }
 
   /// Displacement of the skeleton before slip surfaces ask for theirs: linear in the boundary displacement.
-  void skeleton_stages(Exec const& exec, int f, Vec3 const* boundary) const {
+  void skeleton_stages(Exec const& exec, int f, In const& boundary) const {
     kernels::Field<double> const u = this->skeleton.batch()[f], end_values = this->ends.batch()[f],
                                  c = this->residuals.batch()[f];
     launch("gridmorph::boundary", exec, Index(this->boundary_slots.extent(0)),
-           ScatterBoundary{this->boundary_slots.data(), boundary, u});
+           ScatterBoundary{this->boundary_slots.data(), boundary.array(), u});
     copy("gridmorph::boundary::axis", exec, this->boundary_projections, u, u);
     for (auto const& stage : this->stages) {
+      ProfilingRegion const region(stage.region);
       copy("gridmorph::chain_ends", exec, stage.ends, u, end_values);
       if (Index const n_lines = Index(stage.side_lines.extent(0)); n_lines > 0) {
         kernels::SideTable<MemorySpace> const table = side_table(f);
@@ -91,87 +148,115 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
                                                   this->skeleton.read()[of], this->skeleton.read()[f], end_values});
   }
 
-  void displacement_of_skeleton(Exec const& exec, int f, Vec3 const* boundary) const {
+  void displacement_of_skeleton(Exec const& exec, int f, In const& boundary) const {
     skeleton_stages(exec, f, boundary);
     for (auto const& pass : this->spreads) {
+      ProfilingRegion const region(region_names.slip);
       slip_ends<false>(exec, pass, f, f);
       sweep<true>(exec, pass.sweeps, f);
     }
   }
 
-  /// All nodes from the skeleton: its own, and those inside pieces. Fields first_field ... first_field + n - 1 go to out.
+  /// All nodes from the skeleton: its own, and those inside pieces. Fields first_field, ... go to out[0], ...
   template <bool Move>
-  void write(Exec const& exec, int first_field, int n, kernels::Field<double const> const& x,
-             kernels::FieldBatch<double> const& out) const {
-    for (int f = 0; f < n; ++f)
-      launch("gridmorph::skeleton_nodes", exec, this->skeleton_nodes.n_items,
-             kernels::CopyNodes<MemorySpace, Shape::row, Move>{this->skeleton_nodes.entries,
-                                                               this->skeleton_nodes.first_item, this->rotations,
-                                                               this->skeleton.read()[first_field + f], out[f], x});
+  void write(Exec const& exec, int first_field, std::span<Out const> out) const {
+    for (std::size_t done = 0; done < out.size(); done += kernels::most_fields_at_once)
+      write_at_once<Move>(exec, first_field + int(done),
+                          out.subspan(done, std::min<std::size_t>(out.size() - done, kernels::most_fields_at_once)));
+  }
+  template <bool Move>
+  void write_at_once(Exec const& exec, int first_field, std::span<Out const> out) const {
+    ProfilingRegion const region(region_names.volume);
+    kernels::VectorArray const x = Move ? baseline.array() : kernels::VectorArray{};
     auto from = [&](auto const& work) {
       return kernels::FieldBatch<double const>{work.read()[first_field], work.read().stride};
     };
-    launch("gridmorph::volume", exec, this->boxes.n_items,
-           kernels::VolumePass<MemorySpace, Shape, Move>{
-               this->boxes.entries, this->terms, this->boxes.first_item, this->lines.chains, this->rotations,
-               this->sides, this->t.data(), from(this->ends), from(this->residuals), x, out, n});
+    kernels::VolumePass<MemorySpace, Shape, Move> volume{this->boxes.entries,
+                                                         this->terms,
+                                                         this->boxes.first_item,
+                                                         this->lines.chains,
+                                                         this->rotations,
+                                                         this->sides,
+                                                         this->t.data(),
+                                                         from(this->ends),
+                                                         from(this->residuals),
+                                                         x,
+                                                         {},
+                                                         0};
+    for (Out const& field : out) {
+      launch("gridmorph::skeleton_nodes", exec, this->skeleton_nodes.n_items,
+             kernels::CopyNodes<MemorySpace, Shape::row, kernels::VectorArray, Move>{
+                 this->skeleton_nodes.entries, this->skeleton_nodes.first_item, this->rotations,
+                 this->skeleton.read()[first_field + volume.n_fields], field.array(), x});
+      volume.out[volume.n_fields++] = field.array();
+    }
+    launch("gridmorph::volume", exec, this->boxes.n_items, volume);
   }
 
-  void require_boundary(std::size_t given, char const* what) const {
-    require_boundary_size(what, given, this->boundary_slots.extent(0), "Plan::boundary_nodes");
+  /// All that can be asked before anything is enqueued.
+  void require(char const* who, std::span<In const> boundary, std::span<Out const> out, int n_fields) const {
+    if (boundary.size() != out.size())
+      throw ConfigError(std::string(who) + ": " + std::to_string(boundary.size()) + " boundary displacements and " +
+                        std::to_string(out.size()) + " fields to write; give as many");
+    if (n_fields > this->fields)
+      throw ConfigError(std::string(who) + " needs room for " + std::to_string(n_fields) + " fields and was made for " +
+                        std::to_string(this->fields) + "; ask for it in MorpherOptions");
+    for (In const& given : boundary) require_boundary(who, given);
+    for (Out const& field : out) require_all_nodes(who, field.size(), n_nodes);
   }
-
-  void require_fields(int n, char const* what) const {
-    if (n > this->fields)
-      throw ConfigError(std::string("gridmorph::Morpher::") + what + " needs room for " + std::to_string(n) +
-                        " fields and was made for " + std::to_string(this->fields) + "; ask for it in MorpherOptions");
+  void require_boundary(char const* who, In const& given) const {
+    require_boundary_size(who, std::size_t(given.size()), this->boundary_slots.extent(0), "Plan::boundary_nodes");
+  }
+  template <bool Move>
+  void run(char const* who, Exec const& exec, std::span<In const> boundary, std::span<Out const> out) const {
+    require(who, boundary, out, int(out.size()));
+    for (std::size_t f = 0; f < boundary.size(); ++f) displacement_of_skeleton(exec, int(f), boundary[f]);
+    write<Move>(exec, 0, out);
   }
 };
 
 template <class Exec>
-Morpher<Exec>::Morpher(Exec const& exec, Plan const& plan, kernels::Field<double const> x,
-                       MorpherOptions const& options)
-    : state_(std::make_shared<State>(exec, plan, x, std::max(options.fields, options.velocity ? 2 : 1))) {}
-
-template <class Exec>
-void Morpher<Exec>::apply(Exec const& exec, Boundary boundary, kernels::Field<double const> x,
-                          kernels::Field<double> moved) const {
-  state_->require_boundary(boundary.extent(0), "gridmorph::Morpher::apply");
-  state_->displacement_of_skeleton(exec, 0, boundary.data());
-  state_->template write<true>(exec, 0, 1, x, {moved});
+Morpher<Exec>::Morpher(Exec const& exec, Plan const& plan, In const& baseline, MorpherOptions const& options) {
+  require_all_nodes("gridmorph::Morpher", baseline.size(), plan.n_nodes);
+  state_ = std::make_shared<State>(exec, plan, baseline, FlatBaseline<Exec>(exec, baseline),
+                                   std::max(options.fields, options.velocity ? 2 : 1));
 }
 
 template <class Exec>
-void Morpher<Exec>::displace(Exec const& exec, Boundary boundary, kernels::Field<double> u) const {
-  state_->require_boundary(boundary.extent(0), "gridmorph::Morpher::displace");
-  state_->displacement_of_skeleton(exec, 0, boundary.data());
-  state_->template write<false>(exec, 0, 1, {}, {u});
+void Morpher<Exec>::positions(Exec const& exec, In const& boundary, Out const& moved) const {
+  state_->template run<true>("gridmorph::Morpher::positions", exec, {&boundary, 1}, {&moved, 1});
 }
 
 template <class Exec>
-void Morpher<Exec>::displace(Exec const& exec, BoundaryBatch boundary, kernels::FieldBatch<double> u) const {
-  int const n = int(boundary.extent(0));
-  state_->require_fields(n, "displace");
-  state_->require_boundary(boundary.extent(1), "gridmorph::Morpher::displace");
-  for (int f = 0; f < n; ++f) state_->displacement_of_skeleton(exec, f, boundary.data() + f * boundary.stride(0));
-  state_->template write<false>(exec, 0, n, {}, u);
+void Morpher<Exec>::positions(Exec const& exec, std::span<In const> boundary, std::span<Out const> moved) const {
+  state_->template run<true>("gridmorph::Morpher::positions", exec, boundary, moved);
 }
 
 template <class Exec>
-void Morpher<Exec>::velocity(Exec const& exec, Boundary boundary, Boundary rate, kernels::Field<double> v) const {
+void Morpher<Exec>::displacements(Exec const& exec, In const& boundary, Out const& u) const {
+  state_->template run<false>("gridmorph::Morpher::displacements", exec, {&boundary, 1}, {&u, 1});
+}
+
+template <class Exec>
+void Morpher<Exec>::displacements(Exec const& exec, std::span<In const> boundary, std::span<Out const> u) const {
+  state_->template run<false>("gridmorph::Morpher::displacements", exec, boundary, u);
+}
+
+template <class Exec>
+void Morpher<Exec>::velocities(Exec const& exec, In const& boundary, In const& rate, Out const& v) const {
   State const& s = *state_;
-  s.require_fields(2, "velocity");
-  s.require_boundary(boundary.extent(0), "gridmorph::Morpher::velocity");
-  s.require_boundary(rate.extent(0), "gridmorph::Morpher::velocity (rate)");
-  s.skeleton_stages(exec, 0, boundary.data());
-  s.skeleton_stages(exec, 1, rate.data());
+  s.require("gridmorph::Morpher::velocities", {&boundary, 1}, {&v, 1}, 2);
+  s.require_boundary("gridmorph::Morpher::velocities (rate)", rate);
+  s.skeleton_stages(exec, 0, boundary);
+  s.skeleton_stages(exec, 1, rate);
   for (auto const& pass : s.spreads) {
+    ProfilingRegion const region(region_names.slip);
     s.template slip_ends<true>(exec, pass, 1, 0);
     s.template slip_ends<false>(exec, pass, 0, 0);
     s.template sweep<true>(exec, pass.sweeps, 0);
     s.template sweep<true>(exec, pass.sweeps, 1);
   }
-  s.template write<false>(exec, 1, 1, {}, {v});
+  s.template write<false>(exec, 1, {&v, 1});
 }
 
 #define GRIDMORPH_INSTANTIATE(Exec) template class Morpher<Exec>;

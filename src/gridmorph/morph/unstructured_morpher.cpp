@@ -96,8 +96,12 @@ struct UnstructuredMorpher<Exec>::State {
     }
     background_boundary =
         View<Space, Vec3>("gridmorph::background_boundary", plan.background_morph->plan().boundary_nodes.size());
-    background.emplace(exec, plan.background_morph->plan(), read(background_x));
+    background.emplace(exec, plan.background_morph->plan(), components(background_x));
     compat::fence(exec, "gridmorph::UnstructuredMorpher (background uploaded)");
+  }
+  [[nodiscard]] VectorView<Space> components(Kokkos::View<double*, Space> const& v) const {
+    auto const part = [&](Index c) { return Kokkos::subview(v, std::pair(c * n_background, (c + 1) * n_background)); };
+    return {part(0), part(1), part(2)};
   }
   [[nodiscard]] kernels::Field<double const> read(Kokkos::View<double*, Space> const& v) const {
     return {v.data(), v.data() + n_background, v.data() + 2 * n_background, 1};
@@ -142,9 +146,7 @@ struct UnstructuredMorpher<Exec>::State {
   void far_field(Exec const& exec, Boundary const& boundary) const {
     gather(exec, outer, 0, outer.size(), boundary, background_boundary);
     gather(exec, wrap, 0, wrap.size(), u, background_boundary);
-    background->displace(exec, background_boundary,
-                         kernels::Field<double>{background_u.data(), background_u.data() + n_background,
-                                                background_u.data() + 2 * n_background, 1});
+    background->displacements(exec, background_boundary, components(background_u));
     gather(exec, far, read(background_u), u);
   }
 

@@ -3,7 +3,6 @@
 #include <gridmorph/app/cli/near_field_mask.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
-#include <gridmorph/kernels/field.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/trim_note.hpp>
@@ -38,18 +37,13 @@ struct Engine::Impl {
 
   /// Made once: tables, workspace and line parameters serve every displacement.
   Morpher<Exec> const& morpher(Exec const& exec) {
-    Coordinates const& x = mesh.coordinates;
-    if (!kept_morpher)
-      kept_morpher.emplace(exec, plan(), kernels::Field<double const>{x.x.data(), x.y.data(), x.z.data()});
+    if (!kept_morpher) kept_morpher.emplace(exec, plan(), mesh.coordinates);
     return *kept_morpher;
   }
   void apply(Exec const& exec, std::vector<Vec3> const& boundary, Coordinates const& morphed) {
-    Coordinates const& x = mesh.coordinates;
-    kernels::Field<double const> const from{x.x.data(), x.y.data(), x.z.data()};
-    kernels::Field<double> const to{morphed.x.data(), morphed.y.data(), morphed.z.data()};
     Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
                                                                                                        boundary.size());
-    morpher(exec).apply(exec, given, from, to);
+    morpher(exec).positions(exec, given, morphed);
     exec.fence();
   }
 

@@ -32,8 +32,6 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-kernels::Field<double const> field(Coordinates const& c) { return {c.x.data(), c.y.data(), c.z.data()}; }
-
 /// Puts a zone of the sector where its passage stands. Cost: 48 bytes per node.
 void turn_zone(Exec const& exec, Zone const& zone, Turn const& turn, Coordinates const& from, Coordinates const& to) {
   Kokkos::parallel_for(
@@ -69,7 +67,7 @@ class WheelRun {
     WheelMotion const motion(mesh_, links_, rows_, setup_.motions, case_.plan, setup_.blades);
     result_.notes = mesh_.notes;
     result_.notes.insert(result_.notes.end(), motion.notes().begin(), motion.notes().end());
-    Morpher<Exec> const morpher(exec_, motion.plan(), field(mesh_.coordinates));
+    Morpher<Exec> const morpher(exec_, motion.plan(), mesh_.coordinates);
     time("plan");
     prepare_quality(motion.plan());
     SharedNodes const shared(mesh_, links_, rows_, true);
@@ -144,7 +142,7 @@ class WheelRun {
   void morph(Morpher<Exec> const& morpher, std::vector<Vec3> const& boundary, Coordinates const& morphed) {
     Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
                                                                                                        boundary.size());
-    morpher.apply(exec_, given, field(mesh_.coordinates), {morphed.x.data(), morphed.y.data(), morphed.z.data()});
+    morpher.positions(exec_, given, morphed);
     exec_.fence();
     time("morph");
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/turbomachinery/wall_curve.hpp>
 
 #include <functional>
