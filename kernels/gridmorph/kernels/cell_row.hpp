@@ -64,7 +64,7 @@ struct CellRow {
   }
 };
 
-/// Calls f.operator()<T>(n) for the cells n, n + 1, ... of a row of `count`, until all are done: with T = Lanes<W> and,
+/// Calls `f.operator()<T>(n)` for the cells n, n + 1, ... of a row of `count`, until all are done: with T = Lanes<W> and,
 /// where the row is shorter than W, with T = double. The last lanes may take cells a second time.
 template <int W, class Function>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_lanes(int count, Function const& f) {
@@ -159,7 +159,7 @@ KOKKOS_FORCEINLINE_FUNCTION PlaneShape<T> load_shape(RowPlanes<16, N> const& pla
           {planes.template get<T>(14, n), planes.template get<T>(15, n)}};
 }
 
-/// Calls f.operator()<T>(n, shape) with the CellShape of the cells n, n + 1, ... of a row of at most N.
+/// Calls `f.operator()<T>(n, shape)` with the CellShape of the cells n, n + 1, ... of a row of at most N.
 template <int W, int N, class Function>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_shape(CellRow const& row, Function const& f) {
   RowPlanes<16, N> planes;
