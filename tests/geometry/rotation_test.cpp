@@ -1,0 +1,126 @@
+// Rotations found in matrices, and the turns of walls, against the matrix of Rodrigues.
+#include "support/random.hpp"
+
+#include <gridmorph/geometry/rotation.hpp>
+#include <gridmorph/kernels/wall_turn.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gridmorph::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Vec3 direction(Random& random) {
+  Vec3 v = random.vector(1);
+  while (norm(v) < 0.1) v = random.vector(1);
+  return (1 / norm(v)) * v;
+}
+
+/// Angle times axis to the matrix, by its definition.
+Mat3 matrix_of(Vec3 const& turn) {
+  double const angle = norm(turn);
+  return angle > 0 ? rotation_matrix((1 / angle) * turn, angle) : Mat3();
+}
+
+double difference(Mat3 const& a, Mat3 const& b) {
+  double largest = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) largest = std::max(largest, std::abs(a.m[i][j] - b.m[i][j]));
+  return largest;
+}
+
+Mat3 random_matrix(Random& random) { return from_columns(random.vector(1), random.vector(1), random.vector(1)); }
+
+TEST(Matrices, CofactorsTurnAreasAndInversesUndo) {
+  Random random(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    Mat3 a = random_matrix(random);
+    // Every second one is singular: one column is a sum of the others.
+    if (trial % 2 == 0) a = from_columns(a * Vec3{1, 0, 0}, a * Vec3{0, 1, 0}, a * Vec3{1, 1, 0});
+    Vec3 const x = random.vector(1), y = random.vector(1);
+    EXPECT_LT(distance(cofactor(a) * cross(x, y), cross(a * x, a * y)), 1e-14);
+    EXPECT_NEAR(determinant(a) * dot(x, cross(y, {1, 0, 0})), dot(a * x, cross(a * y, a * Vec3{1, 0, 0})), 1e-14);
+    if (trial % 2 == 1 && std::abs(determinant(a)) > 0.01) {
+      EXPECT_LT(difference(a * inverse(a), Mat3()), 1e-12);
+    }
+  }
+}
+
+TEST(PolarRotation, OfARotatedStretchIsTheRotation) {
+  Random random(2);
+  for (int trial = 0; trial < 50; ++trial) {
+    Mat3 const r = matrix_of(random.between(0, pi) * direction(random)), q = matrix_of(2 * direction(random));
+    Mat3 stretch;
+    for (int k = 0; k < 3; ++k) stretch.m[k][k] = random.between(0.1, 5);
+    EXPECT_LT(difference(polar_rotation(r * (q * (stretch * transpose(q)))), r), 1e-13);
+  }
+}
+
+TEST(RotationVector, IsAngleTimesAxisAtAllAngles) {
+  Random random(3);
+  for (double const angle : {1e-12, 1e-6, 0.3, 1.5, 2.8, 3.0, pi - 1e-6, pi - 1e-9})
+    for (int trial = 0; trial < 20; ++trial) {
+      Vec3 const v = angle * direction(random);
+      EXPECT_LT(distance(rotation_vector(matrix_of(v)), v), 1e-13) << angle;
+      EXPECT_LT(difference(rotation_by(v), matrix_of(v)), 1e-15);
+    }
+  for (Vec3 const& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{0.6, 0, -0.8}}) {
+    Vec3 const half_turn = rotation_vector(matrix_of(pi * axis));  // either sense
+    EXPECT_NEAR(std::abs(dot(half_turn, axis)), pi, 1e-14);
+  }
+  EXPECT_EQ(rotation_vector(Mat3()), Vec3{});
+  EXPECT_EQ(difference(rotation_by({}), Mat3()), 0);
+}
+
+TEST(WallTurn, TakesOneDirectionToTheOtherOnTheShortestWay) {
+  Random random(4);
+  for (int trial = 0; trial < 50; ++trial) {
+    Vec3 const a = direction(random), b = direction(random);
+    Vec3 const turn = kernels::turn_between(random.between(0.1, 9) * a, random.between(0.1, 9) * b);
+    EXPECT_LT(distance(matrix_of(turn) * a, b), 1e-14);
+    EXPECT_NEAR(norm(turn), std::acos(dot(a, b)), 1e-7);
+    EXPECT_NEAR(dot(turn, a), 0, 1e-14);
+  }
+  EXPECT_EQ(kernels::turn_between({1, 2, 3}, {2, 4, 6}), Vec3{});
+  EXPECT_EQ(kernels::turn_between({1, 2, 3}, {-1, -2, -3}), Vec3{});
+  EXPECT_EQ(kernels::turn_between({}, {1, 0, 0}), Vec3{});
+}
+
+TEST(WallTurn, SharesAndGradientsAreThoseOfTheRotation) {
+  Random random(5);
+  for (double const angle : {0.0, 1e-9, 0.2, 2.0, 3.1})
+    for (double const share : {0.0, 0.3, 1.0}) {
+      Vec3 const turn = angle * direction(random), v = random.vector(3);
+      Vec3 const moved = matrix_of(share * turn) * v - v;
+      EXPECT_LT(distance(kernels::turned_by(turn, share, v), moved), 2e-15 * norm(v));
+      EXPECT_LT(distance(kernels::turn_gradient(turn) * v, matrix_of(turn) * v - v), 2e-15 * norm(v));
+    }
+  EXPECT_EQ(kernels::turned_by({}, 1, {1, 2, 3}), Vec3{});
+  // Small turns do not drown in the vector they turn.
+  Vec3 const small = kernels::turned_by({0, 0, 1e-12}, 1, {1, 0, 0});
+  EXPECT_NEAR(small.y, 1e-12, 1e-24);
+  EXPECT_NEAR(small.x, -0.5e-24, 1e-30);
+}
+
+TEST(WallTurn, OneAfterAnotherIsTheProductOfTheirMatrices) {
+  Random random(6);
+  for (int trial = 0; trial < 100; ++trial) {
+    Vec3 const first = random.between(0, pi) * direction(random), next = random.between(0, pi) * direction(random);
+    Vec3 const both = kernels::turn_then(first, next);
+    EXPECT_LT(difference(matrix_of(both), matrix_of(next) * matrix_of(first)), 1e-14);
+    EXPECT_LE(norm(both), pi + 1e-12);
+  }
+  Vec3 const v{0.1, -0.7, 0.4};
+  EXPECT_EQ(kernels::turn_then({}, {}), Vec3{});
+  EXPECT_EQ(kernels::turn_then(v, {}), v);
+  EXPECT_EQ(kernels::turn_then({}, v), v);
+  EXPECT_LT(norm(kernels::turn_then(v, -v)), 1e-15);
+}
+
+}  // namespace
+}  // namespace gridmorph::test

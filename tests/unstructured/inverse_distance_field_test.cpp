@@ -1,0 +1,197 @@
+// The smooth field between boundary values: the sum over all of them, constants, and the same field however they are numbered.
+#include "support/random.hpp"
+
+#include <gridmorph/morph/detail/inverse_distance_views.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace gridmorph::test {
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+/// The lattice points on the surface of a cube of side n: full of equal distances.
+std::vector<Vec3> cube_surface(int n) {
+  std::vector<Vec3> points;
+  for (int k = 0; k <= n; ++k)
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i)
+        if (i == 0 || i == n || j == 0 || j == n || k == 0 || k == n)
+          points.push_back({double(i), double(j), double(k)});
+  return points;
+}
+
+/// Boundary nodes with their areas; node number k is points[order[k]].
+struct Sources {
+  std::vector<Vec3> point;
+  std::vector<double> area;
+
+  explicit Sources(std::vector<Vec3> const& points, std::vector<int> const& order = {}) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      Vec3 const p = points[order.empty() ? k : std::size_t(order[k])];
+      point.push_back(p);
+      area.push_back(1 + 0.1 * std::sin(p.x + 2 * p.y + 3 * p.z));
+    }
+  }
+  [[nodiscard]] InverseDistanceField planned(int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes) const {
+    Coordinates x(Index(point.size()));
+    std::vector<Index32> nodes;
+    for (std::size_t k = 0; k < point.size(); ++k) {
+      x.set(Index(k), point[k]);
+      nodes.push_back(Index32(k));
+    }
+    return make_scatter_lattice(x, nodes, area, dimension, low, high, most_nodes);
+  }
+};
+
+/// Values at the nodes of the lattice.
+std::vector<Vec3> on_lattice(InverseDistanceField const& planned, std::vector<Vec3> const& values) {
+  Kokkos::View<Vec3*, Kokkos::HostSpace> const given("given", values.size());
+  std::copy(values.begin(), values.end(), given.data());
+  detail::InverseDistanceViews<Kokkos::HostSpace, Vec3> const views(planned);
+  Exec const exec;
+  views.run(exec, given);
+  exec.fence();
+  return {views.value.data(), views.value.data() + views.value.extent(0)};
+}
+
+using Function = Vec3 (*)(Vec3 const&);
+
+std::vector<Vec3> values_at(std::vector<Vec3> const& points, Function value) {
+  std::vector<Vec3> out;
+  for (Vec3 const& p : points) out.push_back(value(p));
+  return out;
+}
+
+/// Values on the lattice over twice the cube.
+std::vector<Vec3> field(std::vector<Vec3> const& points, std::vector<int> const& order, Function value) {
+  Sources const sources(points, order);
+  return on_lattice(sources.planned(3, {-4, -4, -4}, {12, 12, 12}, 4000), values_at(sources.point, value));
+}
+
+std::vector<int> in_order(std::size_t n) {
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+/// Against the sum over all sources. A group of radius r that counts as one at distance d has r <= d / 2. Its weight w' = A / d^p
+/// stands for weights w = A_n / |x - x_n|^p with (1/2)^p <= w' / w <= (3/2)^p, and the mean v' of the whole obeys sum w' (v - v') = 0, so
+///
+///     |sum w v / sum w - v'| = |sum (w - w') (v - v')| / sum w <= ((3/2)^p - 1) sum w |v - v'| / sum w
+///
+/// at nodes of the lattice where even the smallest groups, whose nodes are never looked at one by one, are that far. `typical`: root
+/// mean square of the error over that of the mean deviation sum w |v - v'| / sum w. It is no small share of it: across a group at twice its
+/// radius weights change by 3^p, and its mean takes no notice. The field is meant to be smooth and between its values, not
+/// to be that sum.
+void expect_direct_sum(Sources const& sources, int dimension, Function value, double spacing, double typical) {
+  int const p = dimension == 2 ? 3 : 4;
+  auto const planned =
+      sources.planned(dimension, {-4, -4, dimension == 2 ? 0. : -4}, {12, 12, dimension == 2 ? 0. : 12}, 1000);
+  auto const values = values_at(sources.point, value);
+  auto const found = on_lattice(planned, values);
+  double squares = 0, spread = 0;
+  Index far = 0;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    Vec3 const x = planned.shape.position(std::int64_t(n));
+    double sum = 0, away = 0, nearest = 1e300;
+    Vec3 direct;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      double const d = distance(x, sources.point[k]), w = sources.area[k] / std::pow(d, p);
+      nearest = std::min(nearest, d);
+      sum += w;
+      direct += w * values[k];
+      away += w * distance(values[k], found[n]);
+    }
+    if (nearest < 4 * spacing) continue;
+    ++far;
+    double const error = distance((1 / sum) * direct, found[n]);
+    EXPECT_LE(error, (std::pow(1.5, p) - 1) * away / sum + 1e-6);
+    squares += error * error;
+    spread += away * away / (sum * sum);
+  }
+  ASSERT_GT(far, 100);
+  EXPECT_LT(std::sqrt(squares / spread), typical);
+  EXPECT_GT(squares, 0) << "no group counts as one";
+}
+
+TEST(InverseDistanceField, IsTheSumOverAllSourcesNearlyEnough) {
+  Function const smooth = [](Vec3 const& x) { return Vec3{x.x, 0.1 * x.y * x.z, std::sin(0.5 * x.x + 0.3 * x.y)}; };
+  for (int const n : {8, 12}) {
+    std::vector<Vec3> cube;
+    for (Vec3 const& q : cube_surface(n)) cube.push_back((8. / n) * q);
+    expect_direct_sum(Sources(cube), 3, smooth, 8. / n, 0.25);
+    // A curve in a plane.
+    std::vector<Vec3> ellipse;
+    for (int k = 0; k < 12 * n; ++k)
+      ellipse.push_back({4 + 4 * std::cos(k * 0.5236 / n), 4 + 2 * std::sin(k * 0.5236 / n), 0});
+    expect_direct_sum(Sources(ellipse), 2, smooth, 2. / n, 0.5);
+  }
+}
+
+TEST(InverseDistanceField, OfOneSourceIsItsValueAndOfTwoTheirMean) {
+  Function const itself = [](Vec3 const& x) { return x; };
+  for (Vec3 const& v : on_lattice(Sources({{1, 2, 3}}).planned(3, {0, 0, 0}, {4, 4, 4}, 200), {{5, 6, 7}}))
+    EXPECT_EQ(v, (Vec3{5, 6, 7}));
+  // Up to four are one group, wherever they are.
+  Sources const two({{1, 2, 3}, {3, 2, 1}});
+  Vec3 const mean = 1 / (two.area[0] + two.area[1]) * (two.area[0] * two.point[0] + two.area[1] * two.point[1]);
+  for (Vec3 const& v : on_lattice(two.planned(3, {0, 0, 0}, {4, 4, 4}, 200), values_at(two.point, itself)))
+    EXPECT_LT(distance(v, mean), 1e-6);
+  EXPECT_TRUE(Sources({}).planned(3, {0, 0, 0}, {4, 4, 4}, 200).empty());
+}
+
+TEST(InverseDistanceField, TheLatticeCoversItsBoxWithAtMostTheNodesAllowed) {
+  Sources const sources({{1, 2, 0}, {3, 2, 0}});
+  for (Index const most : {200, 5000})
+    for (int const dimension : {2, 3}) {
+      Vec3 const low{-1, 0, 0}, high{7, 2, dimension == 2 ? 0. : 3.};
+      UniformLattice const lattice = sources.planned(dimension, low, high, most).shape;
+      EXPECT_LE(lattice.size(), most);
+      EXPECT_GT(lattice.size(), most / 3);
+      EXPECT_EQ(lattice.position(0), low);
+      Vec3 const beyond = lattice.position(lattice.size() - 1) - high;
+      for (double const b : {beyond.x, beyond.y, beyond.z}) {
+        EXPECT_GE(b, -1e-12);
+        EXPECT_LT(b, lattice.spacing);
+      }
+    }
+}
+
+TEST(InverseDistanceField, ConstantsStayConstant) {
+  auto const points = cube_surface(8);
+  for (Vec3 const& v : field(points, in_order(points.size()), [](Vec3 const&) { return Vec3{1, -2, 0.5}; })) {
+    EXPECT_LT(norm(v - Vec3{1, -2, 0.5}), 1e-12);
+  }
+}
+
+TEST(InverseDistanceField, NumberingOfTheNodesDoesNotMatter) {
+  auto const points = cube_surface(8);
+  auto const value = [](Vec3 const& p) { return Vec3{std::sin(p.x), p.y * p.z / 10, std::cos(p.x + p.y)}; };
+  auto const expected = field(points, in_order(points.size()), value);
+  Random random(7);
+  for (int trial = 0; trial < 3; ++trial) {
+    auto order = in_order(points.size());
+    random.shuffle(order);
+    auto const found = field(points, order, value);
+    ASSERT_EQ(found.size(), expected.size());
+    // Weights are kept in single precision.
+    for (std::size_t n = 0; n < found.size(); ++n) EXPECT_LT(norm(found[n] - expected[n]), 1e-6);
+  }
+}
+
+TEST(InverseDistanceField, ValuesLieBetweenThoseGiven) {
+  auto const points = cube_surface(6);
+  for (Vec3 const& v : field(points, in_order(points.size()), [](Vec3 const& p) { return Vec3{p.x, 0, 1}; })) {
+    EXPECT_GE(v.x, 0);
+    EXPECT_LE(v.x, 6);
+    EXPECT_LT(std::abs(v.y), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace gridmorph::test
