@@ -60,7 +60,7 @@ struct BoundaryFacePatches {
 
   std::vector<int> patch;             ///< (boundary faces) number in UnstructuredMesh::patches, or one of the constants
   std::vector<Index> faces_of_patch;  ///< (patches) boundary faces each of them got
-  std::vector<std::string> problems;  ///< what a morph would refuse: faces that nothing face_patches, claimed twice
+  std::vector<std::string> problems;  ///< what a morph would refuse: faces that no patch has, or two
   std::vector<std::string> notes;     ///< faces of patches inside the mesh, ...
 };
 

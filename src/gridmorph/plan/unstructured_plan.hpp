@@ -113,7 +113,7 @@ struct PreparedUnstructured {
 };
 
 /// Resolves the rules and plans every stage. Throws MeshError for open boundary faces, MotionError, PlanError. Cost: linear in
-/// nodes and elements (n log n in those of boundaries and fences); about 1 kB of working memory per node.
+/// nodes and elements (n log n in those of boundaries and partially wrapped ones); about 1 kB of working memory per node.
 PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, Motion const& motion,
                              UnstructuredOptions const& options);
