@@ -24,7 +24,7 @@ struct Bulb {
   }
 };
 
-TEST_F(ExampleTest, BulbSwellsTheNoseOfThePassagesBlade) {
+TEST_F(Example, BulbSwellsTheNoseOfThePassagesBlade) {
   ASSERT_NO_FATAL_FAILURE(morph("bulb_passage", "passage.cgns"));
   Bulb const bulb{1, 0.024, 0.06, 0.446, -0.048, -0.0255, -0.13};
   double largest = 0, forward = 0;
@@ -42,7 +42,7 @@ TEST_F(ExampleTest, BulbSwellsTheNoseOfThePassagesBlade) {
   for (std::string const fixed : {"inlet", "outlet"}) expect_fixed(fixed);
 }
 
-TEST_F(ExampleTest, BulbSwellsTheNosesOfTheVanesAndOfNothingElse) {
+TEST_F(Example, BulbSwellsTheNosesOfTheVanesAndOfNothingElse) {
   if (test::reduced()) GTEST_SKIP() << "the stage takes long, and other tests have it";
   ASSERT_NO_FATAL_FAILURE(morph("bulb_vane", "axial_turbine_stage_H.cgns"));
   expect_periodic_copies_move_alike(0);
@@ -61,7 +61,7 @@ TEST_F(ExampleTest, BulbSwellsTheNosesOfTheVanesAndOfNothingElse) {
   for (std::string const fixed : {"INLET", "OUTLET", "MIXING", "BLADE2"}) expect_fixed(fixed);
 }
 
-using WheelExample = StandInTest<ExampleTest>;
+using WheelExample = StandInTest<Example>;
 INSTANTIATE_TEST_SUITE_P(Meshes, WheelExample, ::testing::Bool(), stand_in_or_not);
 
 TEST_P(WheelExample, KaplanWheelClosesAndItsThirdRunnerBladeOpensLess) {

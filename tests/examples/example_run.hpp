@@ -41,7 +41,7 @@ inline Cylindrical cylindrical(Vec3 const& p, int axis) {
 /// Angle in (-pi, pi].
 inline double wrapped(double angle) { return std::remainder(angle, 2 * std::acos(-1.0)); }
 
-class ExampleTest : public ::testing::Test {
+class Example : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string pattern = (std::filesystem::temp_directory_path() / "gridmorph-examples-XXXXXX").string();

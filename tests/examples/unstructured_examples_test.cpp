@@ -11,11 +11,11 @@
 namespace gridmorph::testing {
 namespace {
 
-class UnstructuredExampleTest : public ExampleTest {
+class UnstructuredExample : public Example {
  protected:
   /// Runs the example; nothing may be inverted.
   void run(std::string const& name, std::string const& mesh_file, std::string const& morphed_file) {
-    ASSERT_NO_FATAL_FAILURE(ExampleTest::run(name));
+    ASSERT_NO_FATAL_FAILURE(Example::run(name));
     mesh = read_unstructured_mesh(mesh_of(name, mesh_file));
     moved = read_unstructured_mesh(path(name + "/" + morphed_file)).coordinates;
     ASSERT_EQ(mesh.n_nodes(), moved.size());
@@ -33,7 +33,7 @@ class UnstructuredExampleTest : public ExampleTest {
   Coordinates moved;
 };
 
-using CoilExample = StandInTest<UnstructuredExampleTest>;
+using CoilExample = StandInTest<UnstructuredExample>;
 INSTANTIATE_TEST_SUITE_P(Meshes, CoilExample, ::testing::Bool(), stand_in_or_not);
 
 TEST_P(CoilExample, HeatingCoilSagsAsABeamInBothZonesAlike) {
@@ -99,7 +99,7 @@ TEST_P(CoilExample, HeatingCoilDuctSlidesOnItsCylinders) {
     for (Index32 const n : nodes_of(end)) EXPECT_TRUE(displacement(n) == Vec3()) << end;
 }
 
-TEST_F(UnstructuredExampleTest, TurbineBladeTurnsRigidlyAndPeriodicSidesMoveAsOne) {
+TEST_F(UnstructuredExample, TurbineBladeTurnsRigidlyAndPeriodicSidesMoveAsOne) {
   ASSERT_NO_FATAL_FAILURE(run("vki_restagger", "mesh_vki_turbine.su2", "vki_restagger_morphed.su2"));
   double const c = std::cos(5 * std::acos(-1.0) / 180), s = std::sin(5 * std::acos(-1.0) / 180);
   auto const blade = nodes_of("airfoil");

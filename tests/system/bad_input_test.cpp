@@ -4,11 +4,11 @@
 namespace gridmorph::testing {
 namespace {
 
-using BadInputTest = CommandTest;
+using BadInput = CommandTest;
 
 std::string const still = "[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n";
 
-TEST_F(BadInputTest, MissingFiles) {
+TEST_F(BadInput, MissingFiles) {
   expect_bad_input(gridmorph("morph nowhere.toml"), {"nowhere.toml", "does not exist"});
   expect_bad_input(gridmorph("inspect nowhere.cgns"), {"nowhere.cgns"});
   expect_bad_input(gridmorph("quality nowhere.cgns"), {"nowhere.cgns"});
@@ -17,7 +17,7 @@ TEST_F(BadInputTest, MissingFiles) {
   expect_bad_input(gridmorph("morph case.toml"), {"gone.cgns"});
 }
 
-TEST_F(BadInputTest, FilesThatAreNoMesh) {
+TEST_F(BadInput, FilesThatAreNoMesh) {
   write("text.cgns", "this is not a mesh\n");
   write("empty.cgns", "");
   expect_bad_input(gridmorph("inspect text.cgns"), {"text.cgns", "not a CGNS file"});
@@ -25,7 +25,7 @@ TEST_F(BadInputTest, FilesThatAreNoMesh) {
   expect_bad_input(gridmorph("morph passage.cgns"), {"passage.cgns", "not a text file"});
 }
 
-TEST_F(BadInputTest, TruncatedMesh) {
+TEST_F(BadInput, TruncatedMesh) {
   std::string const whole = contents(path("passage.cgns"));
   for (double const share : {0.02, 0.3, 0.9}) {
     write("cut.cgns", whole.substr(0, std::size_t(share * double(whole.size()))));
@@ -33,42 +33,42 @@ TEST_F(BadInputTest, TruncatedMesh) {
   }
 }
 
-TEST_F(BadInputTest, UnknownKeysWithLineAndNearestKey) {
+TEST_F(BadInput, UnknownKeysWithLineAndNearestKey) {
   write_case("case.toml", still + "[volum]\nlaw = \"linear\"\n");
   expect_bad_input(gridmorph("morph case.toml"), {"case.toml:8: ", "'volum'", "'volume'"});
 }
 
-TEST_F(BadInputTest, EveryProblemOfACaseFileAtOnce) {
+TEST_F(BadInput, EveryProblemOfACaseFileAtOnce) {
   write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"rigit\"\n[volume]\nlaw = 3\n");
   Outcome const run = gridmorph("morph case.toml");
   expect_bad_input(run, {"case.toml:7: ", "case.toml:9: "});
   EXPECT_EQ(run.error_lines().size(), 2u);
 }
 
-TEST_F(BadInputTest, PatchesThatAreNotThere) {
+TEST_F(BadInput, PatchesThatAreNotThere) {
   write_case("case.toml", "[[motion]]\npatches = [\"balde\"]\nrule = \"fixed\"\n");
   expect_bad_input(gridmorph("morph case.toml"), {"case.toml:5", "balde", "blade", "hub"});
 }
 
-TEST_F(BadInputTest, PatchWithoutARuleInAStrictCaseFile) {
+TEST_F(BadInput, PatchWithoutARuleInAStrictCaseFile) {
   write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"fixed\"\n", "default = \"error\"\n");
   expect_bad_input(gridmorph("morph case.toml"), {"hub"});
 }
 
-TEST_F(BadInputTest, TwoRulesForOnePatch) {
+TEST_F(BadInput, TwoRulesForOnePatch) {
   write_case("case.toml",
              "[[motion]]\npatches = [\"blade\"]\nrule = \"fixed\"\n[[motion]]\npatches = [\"bl*\"]\nrule = \"free\"\n");
   expect_bad_input(gridmorph("morph case.toml"), {"case.toml:5", "case.toml:8", "blade"});
 }
 
-TEST_F(BadInputTest, RulesThatDisagreeWherePatchesMeet) {
+TEST_F(BadInput, RulesThatDisagreeWherePatchesMeet) {
   write_case("case.toml",
              "[[motion]]\npatches = [\"inlet\"]\nrule = \"rigid\"\ntranslation = [-0.01, 0, 0]\n"
              "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"fixed\"\n");
   expect_bad_input(gridmorph("morph case.toml"), {"inlet", "hub"});
 }
 
-TEST_F(BadInputTest, DisplacementFilesThatCannotBeUsed) {
+TEST_F(BadInput, DisplacementFilesThatCannotBeUsed) {
   std::string const field = "[[motion]]\npatches = [\"blade\"]\nrule = \"field\"\nfile = \"d.csv\"\n";
   write_case("case.toml", field);
   expect_bad_input(gridmorph("morph case.toml"), {"case.toml:8: ", "d.csv", "does not exist"});
@@ -78,12 +78,12 @@ TEST_F(BadInputTest, DisplacementFilesThatCannotBeUsed) {
   expect_bad_input(gridmorph("morph case.toml"), {"d.csv:2", "line 1"});
 }
 
-TEST_F(BadInputTest, FormulasThatAreNotFiniteOnTheSurface) {
+TEST_F(BadInput, FormulasThatAreNotFiniteOnTheSurface) {
   write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndx = \"sqrt(-1 - x*x)\"\n");
   expect_bad_input(gridmorph("morph case.toml"), {"case.toml:8: ", "nan", "x = "});
 }
 
-TEST_F(BadInputTest, OutputsThatCannotBe) {
+TEST_F(BadInput, OutputsThatCannotBe) {
   write_case("case.toml", still);
   expect_bad_input(gridmorph("morph case.toml -o passage.cgns"), {"is the input"});
   expect_bad_input(gridmorph("morph case.toml -o no/such/folder/m.cgns"), {"no/such/folder", "does not exist"});

@@ -8,9 +8,9 @@
 namespace gridmorph::testing {
 namespace {
 
-using CommandLineTest = CommandTest;
+using CommandLine = CommandTest;
 
-TEST_F(CommandLineTest, HelpAndVersionSucceed) {
+TEST_F(CommandLine, HelpAndVersionSucceed) {
   EXPECT_EQ(gridmorph("--version").status, 0);
   EXPECT_NE(gridmorph("--version").out.find("gridmorph "), std::string::npos);
   Outcome const help = gridmorph("--help");
@@ -20,7 +20,7 @@ TEST_F(CommandLineTest, HelpAndVersionSucceed) {
   EXPECT_EQ(gridmorph("morph --help").status, 0);
 }
 
-TEST_F(CommandLineTest, WrongCommandLinesAreBadInput) {
+TEST_F(CommandLine, WrongCommandLinesAreBadInput) {
   expect_bad_input(gridmorph(""), {"subcommand"});
   expect_bad_input(gridmorph("morhp rotation.toml"), {"'morhp'", "'morph'"});
   expect_bad_input(gridmorph("morph"), {"case"});
@@ -36,12 +36,12 @@ TEST_F(CommandLineTest, WrongCommandLinesAreBadInput) {
   expect_bad_input(gridmorph("demo ball --elements 60000 --angle 100 -d none"), {"100 degrees", "crane"});
 }
 
-TEST_F(CommandLineTest, OptionsMayStandBeforeAndAfterTheCommand) {
+TEST_F(CommandLine, OptionsMayStandBeforeAndAfterTheCommand) {
   EXPECT_EQ(gridmorph("--threads 1 inspect passage.cgns").status, 0);
   EXPECT_EQ(gridmorph("inspect passage.cgns --threads 2 --quiet").status, 0);
 }
 
-TEST_F(CommandLineTest, InspectNamesWhatACaseFileCouldName) {
+TEST_F(CommandLine, InspectNamesWhatACaseFileCouldName) {
   Outcome const run = gridmorph("inspect passage.cgns");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
@@ -51,7 +51,7 @@ TEST_F(CommandLineTest, InspectNamesWhatACaseFileCouldName) {
   EXPECT_EQ(run.out.find('\x1b'), std::string::npos) << "colours into a pipe";
 }
 
-TEST_F(CommandLineTest, InspectAsJsonSaysTheSame) {
+TEST_F(CommandLine, InspectAsJsonSaysTheSame) {
   Outcome const run = gridmorph("inspect --json passage.cgns");
   ASSERT_EQ(run.status, 0) << run.err;
   auto const json = nlohmann::json::parse(run.out);
@@ -69,7 +69,7 @@ TEST_F(CommandLineTest, InspectAsJsonSaysTheSame) {
   EXPECT_TRUE(found);
 }
 
-TEST_F(CommandLineTest, TheCaseFileThatInspectSuggestsIsReadAndRuns) {
+TEST_F(CommandLine, TheCaseFileThatInspectSuggestsIsReadAndRuns) {
   auto const json = nlohmann::json::parse(gridmorph("inspect --json passage.cgns").out);
   write("suggested.toml", json["case_file"]);
   CaseFile const c = read_case_file(path("suggested.toml"));
@@ -79,14 +79,14 @@ TEST_F(CommandLineTest, TheCaseFileThatInspectSuggestsIsReadAndRuns) {
   EXPECT_TRUE(std::filesystem::exists(path("passage_morphed.cgns")));
 }
 
-TEST_F(CommandLineTest, PlanPrintsStagesAndWritesNothing) {
+TEST_F(CommandLine, PlanPrintsStagesAndWritesNothing) {
   Outcome const run = gridmorph("plan rotation.toml");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.out.find("near field"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(path("passage_rotation.cgns")));
 }
 
-TEST_F(CommandLineTest, QualityMeasuresOneMeshAndRefusesToCompareDifferentOnes) {
+TEST_F(CommandLine, QualityMeasuresOneMeshAndRefusesToCompareDifferentOnes) {
   Outcome const one = gridmorph("quality passage.cgns");
   EXPECT_EQ(one.status, 0) << one.err;
   EXPECT_NE(one.out.find("determinant"), std::string::npos);
@@ -98,7 +98,7 @@ TEST_F(CommandLineTest, QualityMeasuresOneMeshAndRefusesToCompareDifferentOnes) 
   expect_bad_input(gridmorph("quality passage.cgns other/passage.cgns"), {"zone", "baseline"});
 }
 
-TEST_F(CommandLineTest, QuietDemoPrintsNothingAndLeavesItsFiles) {
+TEST_F(CommandLine, QuietDemoPrintsNothingAndLeavesItsFiles) {
   Outcome const run = gridmorph("demo passage -n 10000 -m chord -d here --quiet --threads 2");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out, "");
@@ -106,13 +106,13 @@ TEST_F(CommandLineTest, QuietDemoPrintsNothingAndLeavesItsFiles) {
     EXPECT_TRUE(std::filesystem::exists(path("here") / name)) << name;
 }
 
-TEST_F(CommandLineTest, AReaderThatGoesAwayIsNoFailure) {
+TEST_F(CommandLine, AReaderThatGoesAwayIsNoFailure) {
   Outcome const run = shell("( $G inspect --json passage.cgns; echo $? >status ) | true");
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(contents(path("status")), "0\n");
 }
 
-TEST_F(CommandLineTest, AnOutputThatCannotBeWrittenIsAFailureOfTheMachine) {
+TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsAFailureOfTheMachine) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
   Outcome const run = shell("$G inspect passage.cgns >/dev/full");
   EXPECT_EQ(run.status, 3);

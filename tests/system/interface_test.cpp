@@ -12,7 +12,7 @@ namespace {
 
 std::vector<std::string> const commands{"morph", "inspect", "plan", "quality", "wheel", "surface", "demo"};
 
-class InterfaceTest : public CommandTest {
+class CommandInterface : public CommandTest {
  protected:
   /// Cases for every command: a motion of the blade, once for the passage alone and once for a wheel.
   void SetUp() override {
@@ -58,7 +58,7 @@ class InterfaceTest : public CommandTest {
   }
 };
 
-TEST_F(InterfaceTest, EveryCommandPrintsItsResultAsJsonAndNothingElse) {
+TEST_F(CommandInterface, EveryCommandPrintsItsResultAsJsonAndNothingElse) {
   for (auto const& [arguments, key] : runs()) {
     Outcome const run = gridmorph(arguments + " --json");
     EXPECT_EQ(run.status, 0) << arguments << "\n" << run.err;
@@ -71,14 +71,14 @@ TEST_F(InterfaceTest, EveryCommandPrintsItsResultAsJsonAndNothingElse) {
   EXPECT_EQ(demo["morphs"][0]["output"], "twice/passage_rotation.cgns");
 }
 
-TEST_F(InterfaceTest, TheJsonOfAMorphIsItsReport) {
+TEST_F(CommandInterface, TheJsonOfAMorphIsItsReport) {
   Outcome const run = gridmorph("morph case.toml --json --report report.json");
   ASSERT_EQ(run.status, 0) << run.err;
   auto printed = nlohmann::json::parse(run.out), written = nlohmann::json::parse(contents(path("report.json")));
   EXPECT_EQ(printed, written);
 }
 
-TEST_F(InterfaceTest, QuietRunsPrintOnlyWhatWasAskedFor) {
+TEST_F(CommandInterface, QuietRunsPrintOnlyWhatWasAskedFor) {
   for (auto const& [arguments, key] : runs()) {
     Outcome const run = gridmorph("-q " + arguments);
     EXPECT_EQ(run.status, 0) << arguments << "\n" << run.err;
@@ -90,19 +90,19 @@ TEST_F(InterfaceTest, QuietRunsPrintOnlyWhatWasAskedFor) {
   }
 }
 
-TEST_F(InterfaceTest, ErrorsLeaveStandardOutputEmptyWithJsonToo) {
+TEST_F(CommandInterface, ErrorsLeaveStandardOutputEmptyWithJsonToo) {
   expect_bad_input(gridmorph("--json morph nowhere.toml"), {"nowhere.toml"});
   expect_bad_input(gridmorph("--json inspect passage.cgns --suggest"), {"--suggest", "--json"});
 }
 
-TEST_F(InterfaceTest, TheVersionSaysWhatTheProgramIsMadeOf) {
+TEST_F(CommandInterface, TheVersionSaysWhatTheProgramIsMadeOf) {
   std::string const out = gridmorph("--version").out;
   EXPECT_TRUE(std::regex_search(out, std::regex("^gridmorph [0-9.]+( \\(commit [0-9a-f]+(-dirty)?\\))?\n"))) << out;
   EXPECT_TRUE(std::regex_search(out, std::regex("\nKokkos [0-9]+\\.[0-9]+\\.[0-9]+, backend [A-Za-z]+"))) << out;
   EXPECT_TRUE(std::regex_search(out, std::regex("\nCGNS [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << out;
 }
 
-TEST_F(InterfaceTest, HelpBeginsWithExamplesAndEndsWithTheDocs) {
+TEST_F(CommandInterface, HelpBeginsWithExamplesAndEndsWithTheDocs) {
   for (auto const& command : commands) {
     Outcome const help = gridmorph(command + " --help");
     EXPECT_EQ(help.status, 0);
@@ -122,7 +122,7 @@ TEST_F(InterfaceTest, HelpBeginsWithExamplesAndEndsWithTheDocs) {
     EXPECT_NE(gridmorph(command + " --help").out.find("SU2"), std::string::npos) << command;
 }
 
-TEST_F(InterfaceTest, TheManualPageHasEveryCommandAndOption) {
+TEST_F(CommandInterface, TheManualPageHasEveryCommandAndOption) {
   std::string const page = contents(GRIDMORPH_SOURCE "/docs/gridmorph.1");
   ASSERT_FALSE(page.empty());
   std::string plain;  // "\-\-json" -> "--json"
@@ -140,7 +140,7 @@ TEST_F(InterfaceTest, TheManualPageHasEveryCommandAndOption) {
   }
 }
 
-TEST_F(InterfaceTest, BashCompletesCommandsOptionsAndFiles) {
+TEST_F(CommandInterface, BashCompletesCommandsOptionsAndFiles) {
   auto const complete = [&](std::string const& words) {
     Outcome const run =
         shell("gridmorph() { :; }; PATH=$(dirname $G):$PATH bash -c '. " GRIDMORPH_SOURCE
@@ -163,7 +163,7 @@ TEST_F(InterfaceTest, BashCompletesCommandsOptionsAndFiles) {
   EXPECT_EQ(complete("gridmorph demo passage --motion r"), std::set<std::string>{"rotation"});
 }
 
-TEST_F(InterfaceTest, ThreadsWaitPassivelyUnlessTheUserSaysHow) {
+TEST_F(CommandInterface, ThreadsWaitPassivelyUnlessTheUserSaysHow) {
   std::string const bare = "env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT -u KMP_BLOCKTIME OMP_DISPLAY_ENV=true ";
   auto const starts = [](Outcome const& run) {
     std::size_t n = 0;
@@ -186,7 +186,7 @@ TEST_F(InterfaceTest, ThreadsWaitPassivelyUnlessTheUserSaysHow) {
   EXPECT_EQ(starts(shell(bare + "$G --help")), 1U);
 }
 
-TEST_F(InterfaceTest, KeysWithoutAnEffectOnTheMeshAreErrorsBeforeAnyWork) {
+TEST_F(CommandInterface, KeysWithoutAnEffectOnTheMeshAreErrorsBeforeAnyWork) {
   std::string const flat = contents(path("flat.toml")), round = contents(path("case.toml"));
   write("flat.toml", flat + "[volume]\nlaw = \"c1\"\n[output]\nquality = true\n");
   for (std::string const command : {"morph", "plan", "morph --dry-run"})

@@ -14,9 +14,9 @@
 namespace gridmorph::testing {
 namespace {
 
-using MorphRunTest = CommandTest;
+using MorphRun = CommandTest;
 
-TEST_F(MorphRunTest, WritesMeshAndReportAndPrintsTheTable) {
+TEST_F(MorphRun, WritesMeshAndReportAndPrintsTheTable) {
   Outcome const run = gridmorph("morph rotation.toml --report r.json");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
@@ -29,7 +29,7 @@ TEST_F(MorphRunTest, WritesMeshAndReportAndPrintsTheTable) {
   EXPECT_EQ(json["fields"].at(0)["evaluated"], json["fields"].at(0)["coincident"]);
 }
 
-TEST_F(MorphRunTest, HonoursTheDisplacementFileExactly) {
+TEST_F(MorphRun, HonoursTheDisplacementFileExactly) {
   ASSERT_EQ(gridmorph("morph rotation.toml").status, 0);
   Mesh const before = read_mesh(path("passage.cgns").string());
   Mesh const after = read_mesh(path("passage_rotation.cgns").string());
@@ -53,7 +53,7 @@ TEST_F(MorphRunTest, HonoursTheDisplacementFileExactly) {
   EXPECT_GT(moved, 0);
 }
 
-TEST_F(MorphRunTest, ZeroMotionLeavesEveryCoordinateBitIdentical) {
+TEST_F(MorphRun, ZeroMotionLeavesEveryCoordinateBitIdentical) {
   write_case("case.toml",
              "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndtheta = \"0*r\"\n"
              "[[motion]]\npatches = [\"inlet\", \"outlet\"]\nrule = \"circumferential-slide\"\nof = \"blade\"\n"
@@ -65,7 +65,7 @@ TEST_F(MorphRunTest, ZeroMotionLeavesEveryCoordinateBitIdentical) {
     ASSERT_EQ(before.coordinates[n], after.coordinates[n]) << describe_node(before, n);
 }
 
-TEST_F(MorphRunTest, ThreadsDoNotChangeTheResult) {
+TEST_F(MorphRun, ThreadsDoNotChangeTheResult) {
   ASSERT_EQ(gridmorph("morph rotation.toml -o out1.cgns --threads 1").status, 0);
   ASSERT_EQ(gridmorph("morph rotation.toml -o out2.cgns --threads 2").status, 0);
   Mesh const one = read_mesh(path("out1.cgns").string()), two = read_mesh(path("out2.cgns").string());
@@ -73,7 +73,7 @@ TEST_F(MorphRunTest, ThreadsDoNotChangeTheResult) {
 }
 
 /// inspect's case file moves every wall by zero through the whole engine: rules, chains, projection.
-TEST_F(MorphRunTest, SuggestedCaseFilesLeaveRealMeshesBitIdentical) {
+TEST_F(MorphRun, SuggestedCaseFilesLeaveRealMeshesBitIdentical) {
   for (std::string const name : {"axial_turbine_stage_H", "water_turbine", "slotted_airfoil", "axialTurbine_7blk",
                                  "multi", "mdo_tutorial_000_vol", "717_wl_L2"}) {
     auto const mesh = test::shared_mesh(name + ".cgns");
@@ -91,7 +91,7 @@ TEST_F(MorphRunTest, SuggestedCaseFilesLeaveRealMeshesBitIdentical) {
 }
 
 /// Its interfaces match to 5 % of a wall cell, and hundreds of faces belong to nothing: the suggestion deals with both.
-TEST_F(MorphRunTest, SuggestedCaseFilesPlanOnMeshesWithGaps) {
+TEST_F(MorphRun, SuggestedCaseFilesPlanOnMeshesWithGaps) {
   std::filesystem::copy(test::shared_mesh("rotorstator.cgns"), path("rotorstator.cgns"));
   Outcome const inspected = gridmorph("inspect rotorstator.cgns --suggest");
   ASSERT_EQ(inspected.status, 0) << inspected.err;
@@ -101,7 +101,7 @@ TEST_F(MorphRunTest, SuggestedCaseFilesPlanOnMeshesWithGaps) {
   EXPECT_EQ(gridmorph("plan suggested.toml").status, 0);
 }
 
-TEST_F(MorphRunTest, EveryStepIsTimedInTheOutputAndInTheReport) {
+TEST_F(MorphRun, EveryStepIsTimedInTheOutputAndInTheReport) {
   Outcome const run = gridmorph("morph rotation.toml --report r.json");
   ASSERT_EQ(run.status, 0) << run.err;
   auto const text = contents(path("r.json"));
@@ -121,13 +121,13 @@ TEST_F(MorphRunTest, EveryStepIsTimedInTheOutputAndInTheReport) {
   EXPECT_NEAR(times["total_seconds"].get<double>(), sum, 1e-12);
 }
 
-TEST_F(MorphRunTest, QuietPrintsNothing) {
+TEST_F(MorphRun, QuietPrintsNothing) {
   Outcome const run = gridmorph("--quiet morph rotation.toml");
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(run.out + run.err, "");
 }
 
-TEST_F(MorphRunTest, DryRunPrintsThePlanAndWritesNothing) {
+TEST_F(MorphRun, DryRunPrintsThePlanAndWritesNothing) {
   Outcome const run = gridmorph("morph rotation.toml --dry-run --report out.json");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.out.find("near field"), std::string::npos);
@@ -135,7 +135,7 @@ TEST_F(MorphRunTest, DryRunPrintsThePlanAndWritesNothing) {
   expect_nothing_written();
 }
 
-TEST_F(MorphRunTest, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
+TEST_F(MorphRun, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
   std::string const torn =
       "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndtheta = \"0.2*sin(200*axial)\"\n"
       "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n";
@@ -151,14 +151,14 @@ TEST_F(MorphRunTest, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
   EXPECT_TRUE(std::filesystem::exists(path("out.cgns")));
 }
 
-TEST_F(MorphRunTest, AThresholdThatIsNotMetGivesStatusOneAndTheMesh) {
+TEST_F(MorphRun, AThresholdThatIsNotMetGivesStatusOneAndTheMesh) {
   std::string text = contents(path("rotation.toml"));
   write("strict.toml", text + "\n[guard]\nmin_determinant = 0.99\n");
   EXPECT_EQ(gridmorph("morph strict.toml").status, 1);
   EXPECT_TRUE(std::filesystem::exists(path("passage_rotation.cgns")));
 }
 
-TEST_F(MorphRunTest, AnglesThatShearTakesAwayFallShort) {
+TEST_F(MorphRun, AnglesThatShearTakesAwayFallShort) {
   std::string const text = contents(path("rotation.toml"));
   write("strict.toml", text + "\n[guard]\nmin_angle_deg = 60\n");
   Outcome const angle = gridmorph("morph strict.toml");
@@ -176,7 +176,7 @@ TEST_F(MorphRunTest, AnglesThatShearTakesAwayFallShort) {
   EXPECT_NE(still.out.find("was so in the baseline"), std::string::npos) << still.out;
 }
 
-TEST_F(MorphRunTest, AVerdictGivesTheStatusOfTheFullMeasurement) {
+TEST_F(MorphRun, AVerdictGivesTheStatusOfTheFullMeasurement) {
   for (std::string const guard : {"", "min_determinant = 0.99\n"}) {
     write("case.toml", contents(path("rotation.toml")) + "\n[guard]\n" + guard +
                            "quality = \"fast\"\n[output]\nreport = \"r.json\"\n");
@@ -200,7 +200,7 @@ TEST_F(MorphRunTest, AVerdictGivesTheStatusOfTheFullMeasurement) {
   EXPECT_NE(compared.out.find("minimum angle"), std::string::npos);
 }
 
-TEST_F(MorphRunTest, WhatLooksLikeTheCauseIsSaid) {
+TEST_F(MorphRun, WhatLooksLikeTheCauseIsSaid) {
   // Millimetres in a mesh in metres, in the displacements alone and in the points too.
   std::istringstream lines(contents(path("rotation.csv")));
   std::string line, both, displacements;
@@ -242,7 +242,7 @@ TEST_F(MorphRunTest, WhatLooksLikeTheCauseIsSaid) {
   expect_cause(gridmorph("morph case.toml"), 2, "periodic interfaces turn about (1, 0, 0)");
 }
 
-TEST_F(MorphRunTest, ATerminalShowsPercentAndALogOfAShortRunNothing) {
+TEST_F(MorphRun, ATerminalShowsPercentAndALogOfAShortRunNothing) {
   EXPECT_EQ(gridmorph("morph rotation.toml").err, "");
   if (shell("script --version").status != 0) GTEST_SKIP() << "needs script(1) for a terminal";
   Outcome const run = shell("script -qec \"$G morph rotation.toml\" /dev/null");
@@ -251,7 +251,7 @@ TEST_F(MorphRunTest, ATerminalShowsPercentAndALogOfAShortRunNothing) {
   EXPECT_EQ(shell("script -qec \"$G -q morph rotation.toml\" /dev/null").out, "");
 }
 
-TEST_F(MorphRunTest, ADiskThatIsFullIsAFailureOfTheMachineAndLeavesNothing) {
+TEST_F(MorphRun, ADiskThatIsFullIsAFailureOfTheMachineAndLeavesNothing) {
   // A limit on the size of files stands in for the full disk.
   Outcome const run = shell("ulimit -f 64; $G morph rotation.toml -o out.cgns");
   EXPECT_EQ(run.status, 3) << run.err;

@@ -8,7 +8,7 @@
 namespace gridmorph::testing {
 namespace {
 
-class Plot3dRunTest : public CommandTest {
+class Plot3dRun : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
@@ -36,7 +36,7 @@ class Plot3dRunTest : public CommandTest {
   Mesh mesh_;
 };
 
-TEST_F(Plot3dRunTest, MovesToTheBitAsTheCgnsMeshDoes) {
+TEST_F(Plot3dRun, MovesToTheBitAsTheCgnsMeshDoes) {
   ASSERT_EQ(gridmorph("morph rotation.toml -o moved.cgns").status, 0);
   Mesh const expected = read_mesh(path("moved.cgns").string());
   std::string text = contents(path("rotation.toml"));
@@ -59,7 +59,7 @@ TEST_F(Plot3dRunTest, MovesToTheBitAsTheCgnsMeshDoes) {
   }
 }
 
-TEST_F(Plot3dRunTest, TheSideFileOfABareMeshMakesItWhole) {
+TEST_F(Plot3dRun, TheSideFileOfABareMeshMakesItWhole) {
   test::write_bytes(path("bare.p3d"), test::Plot3dFile({}).bytes(mesh_));
   Outcome const before = gridmorph("inspect bare.p3d");
   EXPECT_EQ(before.status, 0) << before.err;
@@ -75,7 +75,7 @@ TEST_F(Plot3dRunTest, TheSideFileOfABareMeshMakesItWhole) {
   EXPECT_EQ(gridmorph("inspect bare.p3d").out.find("Problems"), std::string::npos);
 }
 
-TEST_F(Plot3dRunTest, SolutionsHaveNoPlaceInAGridFile) {
+TEST_F(Plot3dRun, SolutionsHaveNoPlaceInAGridFile) {
   write_plot3d({});
   write("case.toml",
         "[mesh]\ninput = \"passage.p3d\"\noutput = \"out.p3d\"\nopen_faces = \"open\"\n"
@@ -83,7 +83,7 @@ TEST_F(Plot3dRunTest, SolutionsHaveNoPlaceInAGridFile) {
   expect_bad_input(gridmorph("morph case.toml"), {"case.toml", "PLOT3D", "quality"});
 }
 
-TEST_F(Plot3dRunTest, ProblemsOfTheSideFileAreReportedWithTheirLines) {
+TEST_F(Plot3dRun, ProblemsOfTheSideFileAreReportedWithTheirLines) {
   write_plot3d({}, "formatt = 1\n");
   expect_bad_input(gridmorph("inspect passage.p3d"), {"passage.toml:1", "unknown key 'formatt'", "format"});
   write_plot3d({}, "format = \"formatted\"\n");

@@ -10,7 +10,7 @@ namespace {
 
 std::string const still = "[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n";
 
-class RunFilesTest : public CommandTest {
+class RunFiles : public CommandTest {
  protected:
   /// Bad input that names what is wrong, and leaves every file of the folder as it was.
   void expect_refused(std::string const& arguments, std::vector<std::string> const& words) const {
@@ -39,7 +39,7 @@ class RunFilesTest : public CommandTest {
   }
 };
 
-TEST_F(RunFilesTest, NoInputIsTakenForAnOutput) {
+TEST_F(RunFiles, NoInputIsTakenForAnOutput) {
   write("table.csv", contents(path("rotation.csv")));
   write("side.toml", "");
   write("case.toml",
@@ -65,7 +65,7 @@ TEST_F(RunFilesTest, NoInputIsTakenForAnOutput) {
   expect_refused("wheel wheel.toml", {"case file"});
 }
 
-TEST_F(RunFilesTest, NoStepOfASequenceTakesThePlaceOfAnInput) {
+TEST_F(RunFiles, NoStepOfASequenceTakesThePlaceOfAnInput) {
   write("wave_2.csv", contents(path("rotation.csv")));
   write("case.toml",
         "[mesh]\ninput = \"passage.cgns\"\naxis = \"x\"\n[sequence]\nsteps = 3\noutput = \"wave_{step}.csv\"\n"
@@ -74,7 +74,7 @@ TEST_F(RunFilesTest, NoStepOfASequenceTakesThePlaceOfAnInput) {
   expect_refused("morph case.toml -o other_{step}.cgns -r ./other_3.cgns", {"other_3.cgns", "same file"});
 }
 
-TEST_F(RunFilesTest, NoStageTakesThePlaceOfTheMesh) {
+TEST_F(RunFiles, NoStageTakesThePlaceOfTheMesh) {
   std::filesystem::create_directory(path("stages"));
   write("stages/wrap.cgns",
         "NDIME= 2\nNELEM= 1\n9 0 1 2 3\nNPOIN= 4\n0 0\n1 0\n1 1\n0 1\nNMARK= 1\nMARKER_TAG= wall\nMARKER_ELEMS= 4\n"
@@ -84,7 +84,7 @@ TEST_F(RunFilesTest, NoStageTakesThePlaceOfTheMesh) {
   expect_refused("morph case.toml", {"stages/wrap.cgns", "never overwritten"});
 }
 
-TEST_F(RunFilesTest, TwoOutputsAreTwoFiles) {
+TEST_F(RunFiles, TwoOutputsAreTwoFiles) {
   write_case("case.toml", still);
   ASSERT_EQ(shell("mkdir sub && ln -s sub also && touch one.cgns && ln -s one.cgns two.json").status, 0);
   expect_refused("morph case.toml -o new.cgns -r ./new.cgns", {"same file"});
@@ -92,7 +92,7 @@ TEST_F(RunFilesTest, TwoOutputsAreTwoFiles) {
   expect_refused("morph case.toml -o one.cgns -r two.json", {"same file"});
 }
 
-TEST_F(RunFilesTest, OutputsAreOrdinaryFiles) {
+TEST_F(RunFiles, OutputsAreOrdinaryFiles) {
   write_case("case.toml", still);
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   ASSERT_EQ(shell("ln -s pipe link").status, 0);
@@ -103,7 +103,7 @@ TEST_F(RunFilesTest, OutputsAreOrdinaryFiles) {
   EXPECT_TRUE(std::filesystem::is_fifo(path("pipe")));
 }
 
-TEST_F(RunFilesTest, InputsThatArePipesAreRefusedAtOnce) {
+TEST_F(RunFiles, InputsThatArePipesAreRefusedAtOnce) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   ASSERT_EQ(shell("ln -s pipe pipe.toml && ln -s pipe pipe.stl").status, 0);
   auto const refused = [&](std::string const& arguments) {
@@ -124,7 +124,7 @@ TEST_F(RunFilesTest, InputsThatArePipesAreRefusedAtOnce) {
   }
 }
 
-TEST_F(RunFilesTest, TablesAndCaseFilesWithoutEndAreRefusedAtOnce) {
+TEST_F(RunFiles, TablesAndCaseFilesWithoutEndAreRefusedAtOnce) {
   std::string keys = "[mesh]\ninput = \"passage.cgns\"\n", columns = "x";
   for (int k = 0; k < 30'000; ++k) keys += "key_" + std::to_string(k) + " = 1\n";
   for (int c = 0; c < 1'000'000; ++c) columns += ",c" + std::to_string(c);
@@ -141,7 +141,7 @@ TEST_F(RunFilesTest, TablesAndCaseFilesWithoutEndAreRefusedAtOnce) {
   }
 }
 
-TEST_F(RunFilesTest, AFileThatIsReplacedKeepsItsPermissions) {
+TEST_F(RunFiles, AFileThatIsReplacedKeepsItsPermissions) {
   write_case("case.toml", still);
   write("out.cgns", "old");
   write("report.json", "old");
@@ -152,7 +152,7 @@ TEST_F(RunFilesTest, AFileThatIsReplacedKeepsItsPermissions) {
   EXPECT_EQ(int(std::filesystem::status(path("report.json")).permissions()), 0604);
 }
 
-TEST_F(RunFilesTest, NamesMayBeAsLongAsTheFileSystemAllows) {
+TEST_F(RunFiles, NamesMayBeAsLongAsTheFileSystemAllows) {
   write_case("case.toml", still);
   std::string const name = std::string(250, 'n') + ".cgns";
   EXPECT_EQ(gridmorph("morph case.toml -o " + name + " -r " + std::string(250, 'r') + ".json").status, 0);
@@ -168,7 +168,7 @@ std::string stopped_by(std::string const& signal) {
          signal + " $p; wait $p";
 }
 
-TEST_F(RunFilesTest, ARunThatIsEndedLeavesNothingBehindAndTheNextOneClearsAwayWhatAKilledOneLeft) {
+TEST_F(RunFiles, ARunThatIsEndedLeavesNothingBehindAndTheNextOneClearsAwayWhatAKilledOneLeft) {
   write("case.toml",
         "[mesh]\ninput = \"passage.cgns\"\naxis = \"x\"\n[sequence]\nsteps = 5000\noutput = \"series.cgns\"\n"
         "[[motion]]\npatches = [\"blade\"]\nrule = \"field\"\nmodes = [ { file = \"rotation.csv\", amplitude = 0.001 } "
@@ -188,7 +188,7 @@ TEST_F(RunFilesTest, ARunThatIsEndedLeavesNothingBehindAndTheNextOneClearsAwayWh
   EXPECT_TRUE(left_behind().empty());
 }
 
-TEST_F(RunFilesTest, HelpThatCannotBePrintedIsAFailureOfTheMachine) {
+TEST_F(RunFiles, HelpThatCannotBePrintedIsAFailureOfTheMachine) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   EXPECT_EQ(shell("$G --help >/dev/full").status, 3);
   EXPECT_EQ(shell("$G --version >/dev/full").status, 3);

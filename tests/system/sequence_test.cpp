@@ -11,7 +11,7 @@
 namespace gridmorph::testing {
 namespace {
 
-class SequenceTest : public CommandTest {
+class SequenceRun : public CommandTest {
  protected:
   /// A case on the passage: the displacement of `rotation.toml`'s file as a mode shape.
   void write_sequence(std::string const& sequence, std::string const& mode, std::string const& rest = "") const {
@@ -37,7 +37,7 @@ class SequenceTest : public CommandTest {
   }
 };
 
-TEST_F(SequenceTest, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
+TEST_F(SequenceRun, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
   write_sequence("steps = 8\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0.4, phase_deg = 30");
   Outcome const run = gridmorph("morph case.toml");
   ASSERT_EQ(run.status, 0) << run.err;
@@ -58,7 +58,7 @@ TEST_F(SequenceTest, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
   }
 }
 
-TEST_F(SequenceTest, ManyStepsDriftByNothing) {
+TEST_F(SequenceRun, ManyStepsDriftByNothing) {
   // Ten periods of four steps: each of the four times comes round ten times, and a quarter of a period is no motion at all.
   write_sequence("steps = 40\nperiods = 10\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0.4");
   Outcome const run = gridmorph("morph case.toml");
@@ -78,7 +78,7 @@ TEST_F(SequenceTest, ManyStepsDriftByNothing) {
             0);
 }
 
-TEST_F(SequenceTest, OneFileHoldsTheSameStepsAsOneFileEach) {
+TEST_F(SequenceRun, OneFileHoldsTheSameStepsAsOneFileEach) {
   write_sequence("steps = 3\nperiod = 0.5\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0.4");
   ASSERT_EQ(gridmorph("morph case.toml").status, 0);
   Outcome const run = gridmorph("morph case.toml -o out_series.cgns --report r.json");
@@ -106,14 +106,14 @@ TEST_F(SequenceTest, OneFileHoldsTheSameStepsAsOneFileEach) {
   EXPECT_EQ(json.at("fields").at(0).at("evaluated"), json.at("fields").at(0).at("coincident"));
 }
 
-TEST_F(SequenceTest, ZeroAmplitudeLeavesEveryStepBitIdentical) {
+TEST_F(SequenceRun, ZeroAmplitudeLeavesEveryStepBitIdentical) {
   write_sequence("steps = 3\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0, phase_deg = 12");
   ASSERT_EQ(gridmorph("morph case.toml").status, 0);
   for (int step = 1; step <= 3; ++step)
     expect_same(mesh("out_" + std::to_string(step) + ".cgns"), mesh("passage.cgns"));
 }
 
-TEST_F(SequenceTest, AStepThatInvertsKeepsAllFilesFromAppearing) {
+TEST_F(SequenceRun, AStepThatInvertsKeepsAllFilesFromAppearing) {
   for (std::string const output : {"out_{step}.cgns", "out.cgns"}) {
     write_sequence("steps = 4\noutput = \"" + output + "\"\n", ", amplitude = 40, phase_deg = 90");
     Outcome const run = gridmorph("morph case.toml --report out.json");
@@ -125,7 +125,7 @@ TEST_F(SequenceTest, AStepThatInvertsKeepsAllFilesFromAppearing) {
   }
 }
 
-TEST_F(SequenceTest, EveryStepIsJudgedByTheLimits) {
+TEST_F(SequenceRun, EveryStepIsJudgedByTheLimits) {
   write_sequence("steps = 4\noutput = \"out.cgns\"\n", ", amplitude = 0.2", "[guard]\nmax_loss = 0.0001\n");
   Outcome const run = gridmorph("morph case.toml --report out.json");
   EXPECT_EQ(run.status, 1) << run.err;
@@ -136,7 +136,7 @@ TEST_F(SequenceTest, EveryStepIsJudgedByTheLimits) {
   EXPECT_GT(count, 1);
 }
 
-TEST_F(SequenceTest, ARampOfARuleGivesTheMeshesOfItsShares) {
+TEST_F(SequenceRun, ARampOfARuleGivesTheMeshesOfItsShares) {
   std::string const rest =
       "[[motion]]\npatches = [\"inlet\", \"outlet\"]\nrule = \"circumferential-slide\"\nof = \"blade\"\n"
       "[[motion]]\npatches = [\"type:periodic\"]\nrule = \"follow\"\nof = \"blade\"\n"
@@ -160,7 +160,7 @@ TEST_F(SequenceTest, ARampOfARuleGivesTheMeshesOfItsShares) {
   }
 }
 
-TEST_F(SequenceTest, ContouredEndWallsLieOnTheirProfileAndTheBladeGoesWithThem) {
+TEST_F(SequenceRun, ContouredEndWallsLieOnTheirProfileAndTheBladeGoesWithThem) {
   write("case.toml",
         "[mesh]\ninput = \"passage.cgns\"\naxis = \"x\"\noutput = \"out.cgns\"\n"
         "[[motion]]\npatches = \"hub\"\nrule = \"contour\"\nprofile = [[-1, 0.44], [-0.16, 0.44], [0, 0.45], [0.2, "
@@ -201,7 +201,7 @@ TEST_F(SequenceTest, ContouredEndWallsLieOnTheirProfileAndTheBladeGoesWithThem) 
   each("case", [&](Vec3 const& p, Vec3 const& q) { EXPECT_LT(distance(p, q), 1e-12); });
 }
 
-TEST_F(SequenceTest, ADiskThatIsFullLeavesNothing) {
+TEST_F(SequenceRun, ADiskThatIsFullLeavesNothing) {
   for (std::string const output : {"out_{step}.cgns", "out.cgns"}) {
     write_sequence("steps = 4\noutput = \"" + output + "\"\n", ", amplitude = 0.2");
     Outcome const run = shell("ulimit -f 64; $G morph case.toml");
@@ -210,7 +210,7 @@ TEST_F(SequenceTest, ADiskThatIsFullLeavesNothing) {
   }
 }
 
-TEST_F(SequenceTest, ProblemsAreKnownBeforeAnyWork) {
+TEST_F(SequenceRun, ProblemsAreKnownBeforeAnyWork) {
   write_sequence("steps = 4\n", "");
   expect_bad_input(gridmorph("morph case.toml"), {"no output", "[sequence]"});
   write_sequence("steps = 4\noutput = \"nowhere/out_{step}.cgns\"\n", "");

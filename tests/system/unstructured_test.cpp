@@ -12,7 +12,7 @@
 namespace gridmorph::testing {
 namespace {
 
-class UnstructuredTest : public CommandTest {
+class UnstructuredRun : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
@@ -29,7 +29,7 @@ class UnstructuredTest : public CommandTest {
   }
 };
 
-TEST_F(UnstructuredTest, InspectSaysWhatThereIs) {
+TEST_F(UnstructuredRun, InspectSaysWhatThereIs) {
   Outcome const run = gridmorph("inspect mesh.su2 --quiet");
   EXPECT_EQ(run.status, 0) << run.err;
   for (auto const* part :
@@ -41,7 +41,7 @@ TEST_F(UnstructuredTest, InspectSaysWhatThereIs) {
   EXPECT_TRUE(json["problems"].empty());
 }
 
-TEST_F(UnstructuredTest, TheCaseFileThatInspectSuggestsIsReadAndRuns) {
+TEST_F(UnstructuredRun, TheCaseFileThatInspectSuggestsIsReadAndRuns) {
   Outcome const run = gridmorph("inspect mesh.su2 --suggest suggested.toml");
   EXPECT_EQ(run.status, 0) << run.err;
   Outcome const morph = gridmorph("morph suggested.toml");
@@ -51,7 +51,7 @@ TEST_F(UnstructuredTest, TheCaseFileThatInspectSuggestsIsReadAndRuns) {
   EXPECT_NE(json["case_file"].get<std::string>().find("wall"), std::string::npos);
 }
 
-TEST_F(UnstructuredTest, QualityComparesAndFallsShortWhereElementsTurnOver) {
+TEST_F(UnstructuredRun, QualityComparesAndFallsShortWhereElementsTurnOver) {
   EXPECT_EQ(gridmorph("quality mesh.su2").status, 0);
   Outcome const moved = gridmorph("quality mesh.su2 moved.su2 --json --quiet");
   EXPECT_EQ(moved.status, 0) << moved.err;
@@ -62,7 +62,7 @@ TEST_F(UnstructuredTest, QualityComparesAndFallsShortWhereElementsTurnOver) {
   EXPECT_EQ(gridmorph("quality mesh.su2 turned.su2").status, 1);
 }
 
-TEST_F(UnstructuredTest, MorphAndPlanAskForAWallThatMoves) {
+TEST_F(UnstructuredRun, MorphAndPlanAskForAWallThatMoves) {
   write("case.toml",
         "[mesh]\ninput = \"mesh.su2\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n");
   for (auto const* command : {"morph case.toml", "plan case.toml"})
@@ -277,7 +277,7 @@ std::string hybrid_square() {
                             at_body, body, at_outer, outer);
 }
 
-TEST_F(UnstructuredTest, AHybridMeshNumberedBothWaysIsMovedAndItsInvertedElementsAreSeen) {
+TEST_F(UnstructuredRun, AHybridMeshNumberedBothWaysIsMovedAndItsInvertedElementsAreSeen) {
   write("hybrid.su2", hybrid_square());
   auto const move = [&](double by, std::string const& guard) {
     write("case.toml",
@@ -306,13 +306,13 @@ TEST_F(UnstructuredTest, AHybridMeshNumberedBothWaysIsMovedAndItsInvertedElement
   EXPECT_EQ(move(6, "write_inverted = true\n").status, 1);
 }
 
-TEST_F(UnstructuredTest, OtherMeshesAreNoBaselines) {
+TEST_F(UnstructuredRun, OtherMeshesAreNoBaselines) {
   expect_bad_input(gridmorph("quality mesh.su2 passage.cgns"), {"is unstructured and 'passage.cgns' is not"});
   write("other.su2", "NDIME= 2\nNELEM= 1\n5 0 1 2\nNPOIN= 3\n0 0\n1 0\n0 1\n");
   expect_bad_input(gridmorph("quality mesh.su2 other.su2"), {"not the same mesh"});
 }
 
-TEST_F(UnstructuredTest, DamagedFilesNameTheLine) {
+TEST_F(UnstructuredRun, DamagedFilesNameTheLine) {
   std::string const whole = text("0.5");
   write("cut.su2", whole.substr(0, whole.find("0.5 1\n1 1")));
   expect_bad_input(gridmorph("inspect cut.su2"), {"cut.su2:", "the file ends after 7 of 9 points"});
