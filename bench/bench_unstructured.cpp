@@ -27,8 +27,8 @@
 
 #include <generators/ball_demo.hpp>
 #include <gridmorph/mesh/file_order.hpp>
-#include <gridmorph/morph/detail/inverse_distance_views.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/stages/smooth_field.hpp>
 #include <gridmorph/morph/unstructured_morpher.hpp>
 
 #include <algorithm>
@@ -143,9 +143,10 @@ struct Layers {
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
     using Memory = typename ExecutionSpace::memory_space;
     BallCase const& ball = ball_case(state.range(0));
-    detail::LayerViews<Memory> const near(ball.plan().near);
+    auto const near = stages::upload(exec, ball.plan().near, "gridmorph::bench::near");
     Kokkos::View<Vec3*, Memory> const u("gridmorph::bench::u", std::size_t(ball.mesh.n_nodes()));
-    double const mean = time_iterations(state, exec, [&] { near.run(exec, u); });
+    double const mean = time_iterations(
+        state, exec, [&] { kernels::interpolate_layers("gridmorph::bench::layers", exec, near, u.data()); });
     set_ball_rates(state, exec, mean, ball.mesh, bytes_of(ball.plan().near.rows));
     state.counters["layers"] = ball.plan().near.n_layers();
     state.counters["rows/s"] = double(near.rows.size()) / mean;
@@ -157,10 +158,11 @@ struct Project {
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
     using Memory = typename ExecutionSpace::memory_space;
     BallCase const& ball = ball_case(state.range(0));
-    InterpolationViews<Memory> const far(ball.plan().far);
+    auto const far = stages::upload(exec, ball.plan().far, "gridmorph::bench::far");
     NodeArrays<Memory> const background(ball.plan().background->mesh.coordinates);
     Kokkos::View<Vec3*, Memory> const u("gridmorph::bench::u", std::size_t(ball.mesh.n_nodes()));
-    double const mean = time_iterations(state, exec, [&] { gather(exec, far, background.read(), u); });
+    double const mean = time_iterations(
+        state, exec, [&] { kernels::interpolate("gridmorph::bench::far", exec, far, background.read(), u.data()); });
     set_ball_rates(state, exec, mean, ball.mesh, bytes_of(ball.plan().far));
     state.counters["rows/s"] = double(far.size()) / mean;
   }
@@ -171,15 +173,16 @@ struct Scatter {
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
     using Memory = typename ExecutionSpace::memory_space;
     BallCase const& ball = ball_case(state.range(0));
-    detail::InverseDistanceViews<Memory, detail::AffineMotion> const walls(ball.plan().walls);
-    Kokkos::View<detail::AffineMotion*, Memory> const given("gridmorph::bench::given", ball.plan().driving.size());
-    double const mean = time_iterations(state, exec, [&] { walls.run(exec, given); });
+    stages::SmoothField<ExecutionSpace, kernels::AffineMotion> const walls(exec, ball.plan().walls,
+                                                                           "gridmorph::bench::walls");
+    Kokkos::View<kernels::AffineMotion*, Memory> const given("gridmorph::bench::given", ball.plan().driving.size());
+    double const mean = time_iterations(state, exec, [&] { walls.enqueue(exec, given.data()); });
     auto const& plan = ball.plan().walls;
-    constexpr double item = 8 + sizeof(detail::AffineMotion);
+    constexpr double item = 8 + sizeof(kernels::AffineMotion);
     set_ball_rates(state, exec, mean, ball.mesh,
                    item * double(plan.leaves.item.size() + plan.groups.rows.item.size() + plan.lattice.item.size()));
     state.counters["wall nodes"] = double(ball.plan().driving.size());
-    state.counters["lattice"] = double(walls.rows.size());
+    state.counters["lattice"] = double(plan.lattice.size());
   }
 };
 
@@ -206,12 +209,11 @@ struct Apply {
     using Memory = typename ExecutionSpace::memory_space;
     BallCase const& ball = ball_case(state.range(0), in_order);
     UnstructuredPlan const& plan = ball.plan();
-    UnstructuredMorpher<ExecutionSpace> const morpher(exec, plan);
     NodeArrays<Memory> const baseline(ball.mesh.coordinates), morphed(ball.mesh.coordinates);
-    auto const boundary =
-        detail::copy_of<Memory>(ball.prepared().boundary_displacement(ball.mesh), "gridmorph::bench::boundary");
-    double const mean =
-        time_iterations(state, exec, [&] { morpher.apply(exec, boundary, baseline.read(), morphed.write()); });
+    UnstructuredMorpher<ExecutionSpace> const morpher(exec, plan, baseline);
+    auto const given = ball.prepared().boundary_displacement(ball.mesh);
+    auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
+    double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, boundary, morphed); });
     double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows);
     set_ball_rates(state, exec, mean, ball.mesh, rows + (60 + 48 + 220) * double(ball.mesh.n_nodes()));
   }

@@ -94,13 +94,13 @@ int main(int argc, char** argv) {
   gridmorph::UnstructuredMesh const mesh = box_around_a_body();
   gridmorph::check_mesh(mesh);
   gridmorph::UnstructuredTopology const topology = gridmorph::make_topology(mesh);
-  gridmorph::BoundaryFacePatches const claims = gridmorph::find_face_patches(mesh, topology);
+  gridmorph::BoundaryFacePatches const face_patches = gridmorph::find_face_patches(mesh, topology);
   gridmorph::Motion motion;
   motion.rules.push_back({{"body"}, gridmorph::RigidRule{{}, {0, 0, 1}}, 0, "unstructured_loop"});
   gridmorph::UnstructuredOptions options;
   options.motion = 2;  // the largest displacement there will be: the wrap leaves room for it
   gridmorph::PreparedUnstructured const prepared = gridmorph::prepare(mesh, topology, face_patches, motion, options);
-  gridmorph::UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  gridmorph::UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, mesh.coordinates);
 
   // Every step: displacement of the boundary nodes in, positions of all nodes out, always from the reference mesh.
   auto const& nodes = prepared.plan.known;
@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
   for (int step = 0; step <= 8; ++step) {
     double const amplitude = 2 * std::sin(2 * std::numbers::pi * step / 8);
     for (std::size_t k = 0; k < nodes.size(); ++k) boundary(k) = amplitude * heave[k];
-    morpher.apply(exec, boundary, {x.x.data(), x.y.data(), x.z.data()}, {now.x.data(), now.y.data(), now.z.data()});
+    morpher.positions(exec, boundary, now);
     exec.fence();  // the solver would go on with its own kernels instead
 
     double largest = 0;

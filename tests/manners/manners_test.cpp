@@ -243,12 +243,14 @@ class UnstructuredManners : public ::testing::Test {
   Exec exec;
   Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
+  std::vector<UnstructuredMorpher<Exec>::In> two_in{boundary, boundary};
+  std::vector<UnstructuredMorpher<Exec>::Out> two_out{u, u};
 };
 
 TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
   Listener const listener;
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
-  morpher.apply(exec, boundary, x.read(), u.write());
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x);
+  morpher.positions(exec, boundary, u);
   exec.fence();
   EXPECT_GE(record.allocations.size(), 20u);
   expect_labels(record.kernels);
@@ -260,12 +262,14 @@ TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
 }
 
 TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x, {1, true});
   exec.fence();
   {
     Listener const listener;
-    morpher.displace(exec, boundary, x.read(), u.write());
-    morpher.apply(exec, boundary, x.read(), u.write());
+    morpher.displacements(exec, boundary, u);
+    morpher.positions(exec, boundary, u);
+    morpher.velocities(exec, boundary, boundary, u);
+    morpher.displacements(exec, two_in, two_out);
   }
   EXPECT_EQ(record.allocations, std::vector<std::string>());
   EXPECT_EQ(record.copies, std::vector<std::string>());
@@ -273,14 +277,48 @@ TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence
   EXPECT_FALSE(record.kernels.empty());
 }
 
+TEST_F(UnstructuredManners, StagesAreRegionsOfProfiles) {
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x);
+  Listener const listener;
+  morpher.positions(exec, boundary, u);
+  std::vector<std::string> own;
+  for (auto const& region : record.regions)
+    if (region.find("gridmorph::stage ") != 0 && region != "gridmorph::all nodes") own.push_back(region);
+  EXPECT_EQ(own, (std::vector<std::string>{"gridmorph::WallMotion", "gridmorph::NearField", "gridmorph::FarField",
+                                           "gridmorph::OtherBoundaries", "gridmorph::JoinedNodes"}));
+  EXPECT_EQ(record.open_regions, 0);
+}
+
+#ifdef KOKKOS_ENABLE_SERIAL
+TEST_F(UnstructuredManners, EverythingRunsOnTheInstanceThatIsHandedOver) {
+  Kokkos::Serial const other;
+  Coordinates const moved(mesh.n_nodes());
+  std::vector<Vec3> const given = prepared.boundary_displacement(mesh);
+  Kokkos::View<Vec3 const*, Kokkos::HostSpace> const host_boundary(given.data(), given.size());
+  Listener const listener;
+  UnstructuredMorpher<Kokkos::Serial> const morpher(other, prepared.plan, mesh.coordinates, {1, true});
+  morpher.positions(other, host_boundary, moved);
+  morpher.displacements(other, host_boundary, moved);
+  morpher.velocities(other, host_boundary, host_boundary, moved);
+  EXPECT_FALSE(record.devices.empty());
+  for (std::size_t n = 0; n < record.devices.size(); ++n)
+    // Kokkos copies long lists of the host on its default space, whatever the instance.
+    if (record.kernels[n].find("Kokkos::Impl::host_space_deepcopy") != 0) {
+      EXPECT_EQ(record.devices[n], hooks::device_id(other)) << record.kernels[n];
+    }
+}
+#endif
+
 TEST_F(UnstructuredManners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x, {1, true});
   std::size_t const n = boundary.extent(0);
   for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
     Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
     auto const refused = [&](auto const& call) { expect_refused(other, n, "UnstructuredPlan::known", call); };
-    refused([&] { morpher.apply(exec, list, x.read(), u.write()); });
-    refused([&] { morpher.displace(exec, list, x.read(), u.write()); });
+    refused([&] { morpher.positions(exec, list, u); });
+    refused([&] { morpher.displacements(exec, list, u); });
+    refused([&] { morpher.velocities(exec, list, boundary, u); });
+    refused([&] { morpher.velocities(exec, boundary, list, u); });
   }
 }
 
@@ -296,11 +334,11 @@ TEST_F(UnstructuredManners, MeshesWithoutCoordinatesAreRefused) {
 }
 
 TEST_F(UnstructuredManners, EveryMorphRunsTheSameKernels) {
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan);
+  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x);
   std::vector<std::string> first;
   for (int n = 0; n < 3; ++n) {
     Listener const listener;
-    morpher.displace(exec, boundary, x.read(), u.write());
+    morpher.displacements(exec, boundary, u);
     if (n == 0) first = record.kernels;
     EXPECT_EQ(record.kernels, first);
     Kokkos::deep_copy(boundary, Vec3{});

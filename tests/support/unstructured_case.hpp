@@ -32,7 +32,7 @@ struct UnstructuredCase {
   [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
     UnstructuredMorphed out{prepare(mesh, topology, face_patches, motion, options), {}, Coordinates(mesh.n_nodes())};
     out.boundary = out.prepared.boundary_displacement(mesh);
-    apply_on_host(UnstructuredMorpher<Host>(Host(), out.prepared.plan), out.boundary, mesh.coordinates, out.x);
+    apply_on_host(UnstructuredMorpher<Host>(Host(), out.prepared.plan, mesh.coordinates), out.boundary, out.x);
     return out;
   }
 

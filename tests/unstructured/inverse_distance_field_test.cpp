@@ -1,7 +1,7 @@
 // The smooth field between boundary values: the sum over all of them, constants, and the same field however they are numbered.
 #include "support/random.hpp"
 
-#include <gridmorph/morph/detail/inverse_distance_views.hpp>
+#include <gridmorph/morph/stages/smooth_field.hpp>
 
 #include <gtest/gtest.h>
 
@@ -49,14 +49,13 @@ struct Sources {
 };
 
 /// Values at the nodes of the lattice.
-std::vector<Vec3> on_lattice(InverseDistanceField const& planned, std::vector<Vec3> const& values) {
-  Kokkos::View<Vec3*, Kokkos::HostSpace> const given("given", values.size());
-  std::copy(values.begin(), values.end(), given.data());
-  detail::InverseDistanceViews<Kokkos::HostSpace, Vec3> const views(planned);
+template <class Value>
+std::vector<Vec3> on_lattice(InverseDistanceField const& planned, std::vector<Value> const& values) {
   Exec const exec;
-  views.run(exec, given);
+  stages::SmoothField<Exec, Value> const smooth(exec, planned, "gridmorph::test::smooth");
+  smooth.enqueue(exec, values.data());
   exec.fence();
-  return {views.value.data(), views.value.data() + views.value.extent(0)};
+  return {smooth.values().data(), smooth.values().data() + smooth.values().extent(0)};
 }
 
 using Function = Vec3 (*)(Vec3 const&);
@@ -167,6 +166,17 @@ TEST(InverseDistanceField, ConstantsStayConstant) {
   for (Vec3 const& v : field(points, in_order(points.size()), [](Vec3 const&) { return Vec3{1, -2, 0.5}; })) {
     EXPECT_LT(norm(v - Vec3{1, -2, 0.5}), 1e-12);
   }
+}
+
+TEST(InverseDistanceField, OfOneRigidMotionIsThatMotion) {
+  Mat3 const gradient{{{-0.1, -0.4, 0.2}, {0.4, -0.1, 0}, {-0.2, 0.1, -0.05}}};
+  Sources const sources(cube_surface(6));
+  std::vector<kernels::AffineMotion> motions;
+  for (Vec3 const& p : sources.point) motions.push_back({Vec3{1, 2, 3} + gradient * p, gradient});
+  InverseDistanceField const planned = sources.planned(3, {-4, -4, -4}, {12, 12, 12}, 4000);
+  auto const found = on_lattice(planned, motions);
+  for (Index n = 0; n < planned.shape.size(); ++n)
+    EXPECT_LT(distance(found[std::size_t(n)], Vec3{1, 2, 3} + gradient * planned.shape.position(n)), 1e-6) << n;
 }
 
 TEST(InverseDistanceField, NumberingOfTheNodesDoesNotMatter) {

@@ -52,7 +52,12 @@ KOKKOS_INLINE_FUNCTION void walk_line(LineTable<MemorySpace> const& lines, Tube 
   });
 }
 
-/// One item per tile of at most `Width` neighbouring lines of a tube.
+/// All parameters of a set of lines: one item per tile of at most `Width` neighbouring lines of a tube.
+///
+/// Edges are measured row by row along memory. Where lines run across it, a row is one position of all lines of the tile; where
+/// they run along it, a piece of one line, and their sums follow for four lines at once, since each waits for the one
+/// before. Sums go to where the parameters are kept, and are divided by the lengths of their lines while they are still in
+/// cache.
 template <class MemorySpace, int Width>
 struct LineParameters {
   LineTable<MemorySpace> lines;
@@ -67,205 +72,161 @@ struct LineParameters {
     int const number = entry_of(first_item, item);
     Tube const& tube = lines.tubes(number);
     Index const local = item - first_item(number), per_row = tiles(tube.n_a, Width);
-    Tile const tile{tube, int(local % per_row) * Width, int(local / per_row)};
-    int const n = tile.a + Width < tube.n_a ? Width : tube.n_a - tile.a;
-    double sum[Width];
+    int const a = int(local % per_row) * Width, b = int(local / per_row);
+    int const n = a + Width < tube.n_a ? Width : tube.n_a - a;
     Index const along = lines.segments(tube.first_segment).stride_s;
     if (Width > 1 && x.stride == 1 && (along == 1 || along == -1)) {
-      for (int w = 0; w < n; w += 4) sum_along(tile, w, n - w < 4 ? n - w : 4, sum);
-      divide_along(tile, n, sum);
+      for (int w = 0; w < n; w += 4) measure<Block<true>>({tube, a + w, b, n - w < 4 ? n - w : 4});
     } else {
-      sum_across(tile, n, sum);
-      divide_across(tile, n, sum);
+      measure<Block<false>>({tube, a, b, n});
     }
   }
 
  private:
+  /// Lines (a ... a + n - 1, b) of a tube.
   struct Tile {
     Tube const& tube;
-    int a, b;  ///< first line
+    int a, b, n;
   };
 
-  /// Calls put(destination of line w = 0, stride over lines, first w, one past the last w) for the lines of a tile that
-  /// want the parameter of node k of a segment.
-  template <class Put>
-  KOKKOS_INLINE_FUNCTION void for_targets(Tile const& tile, Segment const& s, int k, int n, Put const& put) const {
-    int const cs = end_category(k, s.count), cb = end_category(tile.b, tile.tube.n_b);
-    int w = 0;
-    while (w < n) {
-      int const ca = end_category(tile.a + w, tile.tube.n_a);
-      int end = w + 1;
-      if (ca == 1) end = tile.a + n < tile.tube.n_a ? n : n - 1;
-      int const number = s.target[cs + 3 * (ca + 3 * cb)];
-      if (number >= 0) {
-        ParameterTarget const& to = targets(number);
-        put(to.first + k * to.stride_s + tile.a * to.stride_a + tile.b * to.stride_b, to.stride_a, w, end);
-      }
-      w = end;
-    }
-  }
+  /// How many lines and nodes are measured at once.
+  template <bool Along>
+  struct Block {
+    static constexpr bool along = Along;
+    static constexpr int lines = Along ? 4 : Width, nodes = Along && Width > 1 ? 128 : 1;
+  };
 
-  /// Arc lengths of n lines side by side, node by node: for lines across memory.
-  KOKKOS_INLINE_FUNCTION void sum_across(Tile const& tile, int n, double* sum) const {
-    double px[Width], py[Width], pz[Width];
-    for (int w = 0; w < n; ++w) sum[w] = 0;
+  /// Parameters of n_s nodes from position s of a segment on, of n_a lines from line a of a tile on: that of node (s, a) is kept
+  /// at t.
+  struct Piece {
+    double* t;
+    Index stride_s, stride_a;
+    int s, n_s, a, n_a;
+  };
+
+  template <class Block>
+  KOKKOS_INLINE_FUNCTION void measure(Tile const& tile) const {
+    double length[Block::lines * Block::nodes] = {}, sum[Block::lines] = {};
     for (int m = 0; m < tile.tube.n_segments; ++m) {
-      Segment const& s = lines.segments(tile.tube.first_segment + m);
-      Index const step = s.stride_a * x.stride;
-      for (int k = 0; k < s.count; ++k) {
-        Index const first = (s.first + k * s.stride_s + tile.a * s.stride_a + tile.b * s.stride_b) * x.stride;
-        double const *const xx = x.x + first, *const xy = x.y + first, *const xz = x.z + first;
-        if (k == 0) {
-          for (int w = 0; w < n; ++w) {
-            px[w] = xx[w * step];
-            py[w] = xy[w * step];
-            pz[w] = xz[w * step];
-          }
-        } else if (step == 1) {
-          add_edges(n, xx, xy, xz, Constant<1>(), px, py, pz, sum);
-        } else {
-          add_edges(n, xx, xy, xz, step, px, py, pz, sum);
-        }
-        for_targets(tile, s, k, n, [&](Index to, Index stride, int begin, int end) {
-          if (stride == 1)
-            for (int w = begin; w < end; ++w) t[to + w] = sum[w];
-          else
-            for (int w = begin; w < end; ++w) t[to + w * stride] = sum[w];
+      Segment const& segment = lines.segments(tile.tube.first_segment + m);
+      for (int begin = 0; begin < segment.count; begin += Block::nodes) {
+        int const n = begin + Block::nodes < segment.count ? Block::nodes : segment.count - begin;
+        measure_rows<Block>(tile, segment, begin, n, length, sum);
+        for_pieces(tile, segment, begin, begin + n, [&](Piece const& piece) {
+          for_rows<Block>(piece, [&](double* to, auto stride, int n_row, int s, int w) {
+            double const* const from = Block::along ? length + w * Block::nodes + (s - begin) : sum + w;
+            for (int i = 0; i < n_row; ++i) to[i * stride] = from[i];
+          });
         });
       }
     }
+    divide<Block>(tile, sum);
   }
 
-  template <class Step>
-  KOKKOS_INLINE_FUNCTION static void add_edges(int n, double const* xx, double const* xy, double const* xz, Step step,
-                                               double* px, double* py, double* pz, double* sum) {
-    for (int w = 0; w < n; ++w) {
-      double const hx = xx[w * step], hy = xy[w * step], hz = xz[w * step];
-      double const dx = px[w] - hx, dy = py[w] - hy, dz = pz[w] - hz;
-      sum[w] += sqrt_of(dx * dx + dy * dy + dz * dz);
-      px[w] = hx;
-      py[w] = hy;
-      pz[w] = hz;
-    }
-  }
-
-  /// Arc lengths of up to four lines that run along memory: lengths of edges first, side by side, then the running sums,
-  /// four at a time because each waits for the addition before it.
-  KOKKOS_INLINE_FUNCTION void sum_along(Tile const& tile, int w0, int n, double* sum) const {
-    constexpr int chunk = Width > 1 ? 128 : 1;
-    double edge[4][chunk];
-    for (int w = 0; w < 4; ++w)
-      for (int c = 0; c < chunk; ++c) edge[w][c] = 0;
-    double running[4] = {0, 0, 0, 0};
-    for (int m = 0; m < tile.tube.n_segments; ++m) {
-      Segment const& s = lines.segments(tile.tube.first_segment + m);
-      for (int k0 = 0; k0 < s.count; k0 += chunk) {
-        int const length = s.count - k0 < chunk ? s.count - k0 : chunk;
-        for (int w = 0; w < n; ++w) {
-          Index const first = s.first + k0 * s.stride_s + (tile.a + w0 + w) * s.stride_a + tile.b * s.stride_b;
-          double const *const xx = x.x + first, *const xy = x.y + first, *const xz = x.z + first;
-          if (s.stride_s == 1) {
-            edges_of(k0 == 0 ? 1 : 0, length, xx, xy, xz, Constant<1>(), edge[w]);
-          } else {
-            edges_of(k0 == 0 ? 1 : 0, length, xx, xy, xz, s.stride_s, edge[w]);
-          }
-          if (k0 == 0) edge[w][0] = 0;
-        }
-        for (int c = 0; c < length; ++c)
-          for (int w = 0; w < 4; ++w) edge[w][c] = running[w] += edge[w][c];
-        for (int w = 0; w < n; ++w)
-          for_runs({tile.tube, tile.a + w0 + w, tile.b}, s, k0, k0 + length,
-                   [&](Index to, Index stride, int begin, int end) {
-                     double const* const from = edge[w] + (begin - k0);
-                     if (stride == 1)
-                       for (int l = 0; l < end - begin; ++l) t[to + l] = from[l];
-                     else
-                       for (int l = 0; l < end - begin; ++l) t[to + l * stride] = from[l];
-                   });
+  /// Adds the edges that end at the n nodes of a block to the sums of its lines; none ends at the first node of a segment.
+  /// length: of rows along lines, the sums up to each node.
+  template <class Block>
+  KOKKOS_INLINE_FUNCTION void measure_rows(Tile const& tile, Segment const& segment, int begin, int n, double* length,
+                                           double* sum) const {
+    Index const back = segment.stride_s * x.stride;
+    Index const first =
+        (segment.first + begin * segment.stride_s + tile.a * segment.stride_a + tile.b * segment.stride_b) * x.stride;
+    if constexpr (Block::along) {
+      for (int w = 0; w < tile.n; ++w) {
+        double* const row = length + w * Block::nodes;
+        row[0] = 0;
+        edges_of_row(begin > 0 ? 0 : 1, n, first + w * segment.stride_a, back, back,
+                     [&](int i, double edge) { row[i] = edge; });
       }
+      for (int c = 0; c < n; ++c)
+        for (int w = 0; w < Block::lines; ++w) length[w * Block::nodes + c] = sum[w] += length[w * Block::nodes + c];
+    } else if (begin > 0) {
+      edges_of_row(0, tile.n, first, back, segment.stride_a * x.stride, [&](int i, double edge) { sum[i] += edge; });
     }
-    for (int w = 0; w < n; ++w) sum[w0 + w] = running[w];
   }
-  /// Calls put(destination of node `begin`, stride, begin, end) for the runs of nodes [k0, k1) of a segment on one line
-  /// whose parameters are wanted: its ends by themselves, its inside in a row.
+
+  /// Calls put(i, length of the edge that ends at a node) for nodes i `step` apart.
   template <class Put>
-  KOKKOS_INLINE_FUNCTION void for_runs(Tile const& line, Segment const& s, int k0, int k1, Put const& put) const {
-    int const across = 3 * (end_category(line.a, line.tube.n_a) + 3 * end_category(line.b, line.tube.n_b));
-    for (int k = k0; k < k1;) {
-      int const cs = end_category(k, s.count);
-      int end = k + 1;
-      if (cs == 1) end = k1 < s.count ? k1 : k1 - 1;
-      int const number = s.target[cs + across];
-      if (number >= 0) {
-        ParameterTarget const& to = targets(number);
-        put(to.first + k * to.stride_s + line.a * to.stride_a + line.b * to.stride_b, to.stride_s, k, end);
+  KOKKOS_INLINE_FUNCTION void edges_of_row(int begin, int end, Index first, Index back, Index step,
+                                           Put const& put) const {
+    double const *const xx = x.x + first, *const xy = x.y + first, *const xz = x.z + first;
+    auto const walk = [&](auto const stride) {
+      using std::sqrt;
+      for (int i = begin; i < end; ++i) {
+        Index const here = i * stride, before = here - back;
+        double const dx = xx[before] - xx[here], dy = xy[before] - xy[here], dz = xz[before] - xz[here];
+        put(i, sqrt(dx * dx + dy * dy + dz * dz));
       }
-      k = end;
-    }
+    };
+    if (step == 1)
+      walk(Constant<1>());
+    else
+      walk(step);
   }
 
-  template <class Step>
-  KOKKOS_INLINE_FUNCTION static void edges_of(int begin, int length, double const* xx, double const* xy,
-                                              double const* xz, Step step, double* edge) {
-    for (int c = begin; c < length; ++c) {
-      double const dx = xx[(c - 1) * step] - xx[c * step], dy = xy[(c - 1) * step] - xy[c * step],
-                   dz = xz[(c - 1) * step] - xz[c * step];
-      edge[c] = sqrt_of(dx * dx + dy * dy + dz * dz);
-    }
-  }
-
-  /// Arc lengths to fractions, tile still in cache.
-  KOKKOS_INLINE_FUNCTION void divide_across(Tile const& tile, int n, double const* sum) const {
-    double per_length[Width] = {};  // compilers do not see that n lines are all that is used
-    bool all = true;
-    for (int w = 0; w < n; ++w) {
+  /// Arc lengths to fractions.
+  template <class Block>
+  KOKKOS_INLINE_FUNCTION void divide(Tile const& tile, double const* sum) const {
+    double per_length[Block::lines] = {};
+    bool poles = false;
+    for (int w = 0; w < tile.n; ++w) {
       per_length[w] = sum[w] > 0 ? 1 / sum[w] : 0;
-      all = all && sum[w] > 0;
+      poles = poles || !(sum[w] > 0);
     }
     int const last = lines.chains(tile.tube.chain).n_s - 1;
     double const per_node = 1 / double(last);
     for (int m = 0; m < tile.tube.n_segments; ++m) {
-      Segment const& s = lines.segments(tile.tube.first_segment + m);
-      for (int k = 0; k < s.count; ++k)
-        for_targets(tile, s, k, n, [&](Index to, Index stride, int begin, int end) {
-          int const position = s.begin + k;
-          if (position == last)
-            for (int w = begin; w < end; ++w) t[to + w * stride] = 1;
-          else if (!all)
-            for (int w = begin; w < end; ++w)
-              t[to + w * stride] = sum[w] > 0 ? t[to + w * stride] * per_length[w] : position * per_node;
-          else if (stride == 1)
-            for (int w = begin; w < end; ++w) t[to + w] *= per_length[w];
+      Segment const& segment = lines.segments(tile.tube.first_segment + m);
+      for_pieces(tile, segment, 0, segment.count, [&](Piece const& piece) {
+        for_rows<Block>(piece, [&](double* to, auto stride, int n_row, int s, int w) {
+          if (segment.begin + s == last)
+            for (int i = 0; i < n_row; ++i) to[i * stride] = 1;
+          else if (poles)
+            for (int i = 0; i < n_row; ++i) {
+              int const line = Block::along ? w : w + i, position = segment.begin + s + (Block::along ? i : 0);
+              to[i * stride] = sum[line] > 0 ? to[i * stride] * per_length[line] : position * per_node;
+            }
           else
-            for (int w = begin; w < end; ++w) t[to + w * stride] *= per_length[w];
+            for (int i = 0; i < n_row; ++i) to[i * stride] *= per_length[Block::along ? w : w + i];
         });
+      });
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void divide_along(Tile const& tile, int n, double const* sum) const {
-    int const last = lines.chains(tile.tube.chain).n_s - 1;
-    double const per_node = 1 / double(last);
-    for (int w = 0; w < n; ++w) {
-      double const per_length = sum[w] > 0 ? 1 / sum[w] : 0;
-      for (int m = 0; m < tile.tube.n_segments; ++m) {
-        Segment const& s = lines.segments(tile.tube.first_segment + m);
-        for_runs({tile.tube, tile.a + w, tile.b}, s, 0, s.count, [&](Index to, Index stride, int begin, int end) {
-          if (s.begin + begin == last)
-            t[to] = 1;
-          else if (!(sum[w] > 0))
-            for (int k = begin; k < end; ++k) t[to + (k - begin) * stride] = (s.begin + k) * per_node;
-          else if (stride == 1)
-            for (int l = 0; l < end - begin; ++l) t[to + l] *= per_length;
-          else
-            for (int l = 0; l < end - begin; ++l) t[to + l * stride] *= per_length;
-        });
+  /// Calls visit(piece) for the parts of nodes [begin, end) of a segment, on the lines of a tile, whose parameters are wanted:
+  /// ends and sides of the segment by themselves, its inside in one.
+  template <class Visit>
+  KOKKOS_INLINE_FUNCTION void for_pieces(Tile const& tile, Segment const& segment, int begin, int end,
+                                         Visit const& visit) const {
+    int const cb = end_category(tile.b, tile.tube.n_b), inside_a = tile.tube.n_a - 1 - tile.a;
+    for (int s = begin, s_end; s < end; s = s_end) {
+      int const cs = end_category(s, segment.count);
+      s_end = cs != 1 ? s + 1 : end < segment.count ? end : segment.count - 1;
+      for (int w = 0, w_end; w < tile.n; w = w_end) {
+        int const ca = end_category(tile.a + w, tile.tube.n_a);
+        w_end = ca != 1 ? w + 1 : tile.n < inside_a ? tile.n : inside_a;
+        int const number = segment.target[cs + 3 * (ca + 3 * cb)];
+        if (number < 0) continue;
+        ParameterTarget const& to = targets(number);
+        visit(Piece{t + to.first + s * to.stride_s + (tile.a + w) * to.stride_a + tile.b * to.stride_b, to.stride_s,
+                    to.stride_a, s, s_end - s, w, w_end - w});
       }
     }
   }
 
-  KOKKOS_INLINE_FUNCTION static double sqrt_of(double v) {
-    using std::sqrt;
-    return sqrt(v);
+  /// Calls visit(first parameter, stride, how many, s, line) for each row of a piece, as a block has them.
+  template <class Block, class Visit>
+  KOKKOS_INLINE_FUNCTION static void for_rows(Piece const& piece, Visit const& visit) {
+    Index const stride = Block::along ? piece.stride_s : piece.stride_a;
+    int const rows = Block::along ? piece.n_a : piece.n_s, n = Block::along ? piece.n_s : piece.n_a;
+    for (int row = 0; row < rows; ++row) {
+      double* const to = piece.t + row * (Block::along ? piece.stride_a : piece.stride_s);
+      int const s = piece.s + (Block::along ? 0 : row), w = piece.a + (Block::along ? row : 0);
+      if (stride == 1)
+        visit(to, Constant<1>(), n, s, w);
+      else
+        visit(to, stride, n, s, w);
+    }
   }
 };
 

@@ -1,4 +1,4 @@
-// Sliding along the edge where several slip surfaces meet.
+// What all surfaces that a node slides on ask of its displacement, and sliding along the edge where several of them meet.
 #pragma once
 
 #include <gridmorph/kernels/slip_surface.hpp>
@@ -40,6 +40,30 @@ KOKKOS_INLINE_FUNCTION AcrossEdge slide_along_edge(int count, Surfaces const& su
     if (done || n + 1 == max_steps) return across;
     last = length;
   }
+}
+
+/// The displacement u of a baseline node, corrected for all of its `count` surfaces; with `Rate` also its rate of change.
+/// surface(m), own(m): as above.
+///
+/// Surfaces are applied in turn; planes at right angles, and surfaces of revolution with planes across or along their axis,
+/// are exact after one round. Where that does not settle in three rounds the node slides along their common edge. The rate
+/// after that is the one before without its components across the edge: exact but for the curvature of the surfaces over the
+/// length of the steps.
+template <bool Rate, class Surfaces, class Offsets>
+KOKKOS_INLINE_FUNCTION void constrain_to_all(int count, Surfaces const& surface, Offsets const& own,
+                                             Vec3 const& baseline, Vec3& u, Vec3& rate) {
+  constexpr int max_rounds = 3;
+  for (int round = 0; round < (count > 1 ? max_rounds : 1); ++round) {
+    Vec3 const before = u;
+    for (int m = 0; m < count; ++m) {
+      if constexpr (Rate) rate = surface(m).constrain_rate(baseline, own(m), u, rate);
+      u = surface(m).constrain(baseline, own(m), u);
+    }
+    if (count < 2 || u == before) return;
+  }
+  AcrossEdge const across = slide_along_edge(count, surface, own, baseline, u);
+  if constexpr (Rate)
+    for (int k = 0; k < across.count; ++k) rate = rate - dot(rate, across.direction[k]) * across.direction[k];
 }
 
 }  // namespace gridmorph::kernels

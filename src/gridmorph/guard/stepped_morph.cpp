@@ -49,7 +49,7 @@ Coordinates morph_in_steps(UnstructuredMesh& mesh, UnstructuredTopology const& t
     }
     auto const now = prepare(mesh, topology, face_patches, prepared.graph, prepared.boundary, plan);
     Coordinates const moved(mesh.n_nodes());
-    apply_on_host(UnstructuredMorpher<Exec>(Exec(), now.plan), given, mesh.coordinates, moved);
+    apply_on_host(UnstructuredMorpher<Exec>(Exec(), now.plan, mesh.coordinates), given, moved);
     // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more bad
     // elements.
     (void)relax_bad_elements(mesh, topology, now, moved, options.relax);

@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/morph/detail/baseline.hpp>
 #include <gridmorph/morph/device_plan.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
@@ -9,6 +10,10 @@
 
 namespace gridmorph {
 namespace {
+
+using detail::FlatBaseline;
+using detail::ProfilingRegion;
+using detail::require_all_nodes;
 
 struct ScatterBoundary {
   Index const* slots;
@@ -24,55 +29,10 @@ struct ZeroField {
 
 kernels::Field<double const> read(kernels::Field<double> const& f) { return {f.x, f.y, f.z, f.stride}; }
 
-void require_all_nodes(char const* who, Index given, Index needed) {
-  if (given != needed)
-    throw ConfigError(std::string(who) + ": vectors for " + std::to_string(given) + " nodes, and the plan's mesh has " +
-                      std::to_string(needed) + "; give one for each");
-}
-
-/// What is launched while this lives shows in profiles under a name of its own.
-class ProfilingRegion {
- public:
-  explicit ProfilingRegion(std::string const& name) { Kokkos::Profiling::pushRegion(name); }
-  ~ProfilingRegion() { Kokkos::Profiling::popRegion(); }
-  ProfilingRegion(ProfilingRegion const&) = delete;
-  ProfilingRegion& operator=(ProfilingRegion const&) = delete;
-};
-
 /// Regions that are not of one stage.
 struct {
   std::string slip = "gridmorph::slip surfaces", volume = "gridmorph::all nodes";
 } const region_names;
-
-struct CopyVectors {
-  kernels::VectorArray from;
-  kernels::Field<double> to;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { to.set(n, from[n]); }
-};
-
-/// Component arrays of double: the caller's own, or a copy for the while that the Morpher is made.
-template <class Exec>
-struct FlatBaseline {
-  using Memory = typename Exec::memory_space;
-  Kokkos::View<double*, Memory> copy;
-  kernels::Field<double const> field;
-
-  FlatBaseline(Exec const& exec, ConstVectorView<Memory> const& x) {
-    kernels::VectorArray const& from = x.array();
-    if (from.zones == nullptr && !from.single) {
-      auto const pointer = [](void* p) { return static_cast<double const*>(p); };
-      field = {pointer(from.x), pointer(from.y), pointer(from.z), from.stride};
-      return;
-    }
-    Index const n = x.size();
-    copy = Kokkos::View<double*, Memory>(
-        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::baseline"), 3 * n);
-    kernels::Field<double> const to{copy.data(), copy.data() + n, copy.data() + 2 * n};
-    Kokkos::parallel_for("gridmorph::baseline", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n),
-                         CopyVectors{from, to});
-    field = read(to);
-  }
-};
 
 }  // namespace
 

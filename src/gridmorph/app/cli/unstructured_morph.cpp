@@ -33,10 +33,10 @@ void move_nodes(UnstructuredRun& out, Terminal& terminal, bool keep_background) 
   auto const boundary = out.prepared->boundary_displacement(out.loaded.mesh);
   out.times.push_back({"boundary", watch.lap(), false});
   terminal.progress("morphing");
-  UnstructuredMorpher<Exec> const morpher(Exec(), out.prepared->plan);
+  UnstructuredMorpher<Exec> const morpher(Exec(), out.prepared->plan, out.loaded.mesh.coordinates);
   out.result.morphed = Coordinates(out.loaded.mesh.n_nodes());
   out.times.push_back({"upload", watch.lap(), true});
-  apply_on_host(morpher, boundary, out.loaded.mesh.coordinates, out.result.morphed);
+  apply_on_host(morpher, boundary, out.result.morphed);
   out.times.push_back({"morph", watch.lap(), true});
   if (!keep_background || !out.prepared->plan.background) return;
   Coordinates const& x = out.prepared->plan.background->mesh.coordinates;

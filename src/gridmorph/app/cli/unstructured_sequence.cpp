@@ -30,7 +30,10 @@ constexpr std::size_t most_notes = 8;
 class Stepper {
  public:
   Stepper(CaseFile const& case_file, UnstructuredRun& run, Terminal& terminal)
-      : case_file_(case_file), run_(run), terminal_(terminal), morpher_(exec_, run.prepared->plan) {
+      : case_file_(case_file),
+        run_(run),
+        terminal_(terminal),
+        morpher_(exec_, run.prepared->plan, run.loaded.mesh.coordinates) {
     run_.result.morphed = Coordinates(run_.loaded.mesh.n_nodes());
   }
 
@@ -39,7 +42,7 @@ class Stepper {
     auto const motion = motion_at(case_file_, case_file_.sequence->moment(step));
     displacement_ = evaluate(run_.loaded.mesh, run_.prepared->boundary, motion);
     Coordinates const& moved = run_.result.morphed;
-    apply_on_host(morpher_, displacement_, run_.loaded.mesh.coordinates, moved);
+    apply_on_host(morpher_, displacement_, moved);
     auto const& l = run_.loaded;
     RelaxOptions const options{.signs = l.signs};
     relaxed_ = std::max(relaxed_, relax_bad_elements(l.mesh, l.topology, *run_.prepared, moved, options).before);

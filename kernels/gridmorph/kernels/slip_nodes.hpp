@@ -1,0 +1,61 @@
+// What boundaries beyond the moving walls ask of their nodes: the displacement of a rule, or of the nodes themselves as the
+// surfaces that they slide on let it be (slip_edge.hpp).
+//
+// Cost per node: 12 bytes of tables, 24 of coordinates, 24 read and 24 written; a node that slides as slip_surface.hpp says.
+#pragma once
+
+#include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/launch.hpp>
+#include <gridmorph/kernels/slip_edge.hpp>
+#include <gridmorph/kernels/vector_array.hpp>
+
+namespace gridmorph::kernels {
+
+template <class MemorySpace>
+struct SlipNodeTable {
+  Kokkos::View<std::int32_t const*, MemorySpace> node, slot;  ///< slot: of the given displacement, -1: its own
+  Kokkos::View<Index const*, MemorySpace> first;              ///< (n_nodes + 1)
+  Kokkos::View<std::int32_t const*, MemorySpace> surface;     ///< those of entry k from first(k) on
+  Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
+};
+
+/// asked: with the nodes' own displacements on entry. With `Rate` also the rates of change.
+template <class MemorySpace, bool Rate>
+struct AskNodes {
+  SlipNodeTable<MemorySpace> table;
+  VectorArray boundary, boundary_rate;
+  Field<double const> x;
+  Vec3 *asked, *asked_rate;
+
+  [[nodiscard]] Index size() const { return Index(table.node.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
+    Index const n = table.node(k), slot = table.slot(k), from = table.first(k);
+    Vec3 u = slot >= 0 ? boundary[slot] : asked[n], rate;
+    if constexpr (Rate) rate = slot >= 0 ? boundary_rate[slot] : asked_rate[n];
+    int const count = int(table.first(k + 1) - from);
+    if (count > 0) {
+      Vec3 const baseline = x[n];
+      Surfaces const surface{table, from};
+      constrain_to_all<Rate>(count, surface, Offsets{surface, baseline}, baseline, u, rate);
+    }
+    asked[n] = u;
+    if constexpr (Rate) asked_rate[n] = rate;
+  }
+
+ private:
+  /// What constrain_to_all() asks of one node.
+  struct Surfaces {
+    SlipNodeTable<MemorySpace> const& table;
+    Index from;
+    KOKKOS_INLINE_FUNCTION SlipSurfaceView const& operator()(int m) const {
+      return table.surfaces(table.surface(from + m));
+    }
+  };
+  struct Offsets {
+    Surfaces const& surface;
+    Vec3 const& baseline;
+    KOKKOS_INLINE_FUNCTION double operator()(int m) const { return surface(m).own_offset(baseline); }
+  };
+};
+
+}  // namespace gridmorph::kernels

@@ -1,0 +1,85 @@
+// Third stage of an unstructured morph: from the wrap through the background mesh to the nodes outside.
+#pragma once
+
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
+
+#include <utility>
+
+namespace gridmorph::stages {
+
+template <class Exec>
+class FarField {
+ public:
+  static inline std::string const region = "gridmorph::FarField";
+
+  /// The plan has a background mesh.
+  FarField(Exec const& exec, UnstructuredPlan const& plan, bool with_rate)
+      : wrap_(upload(exec, plan.wrap, name("wrap"))),
+        outer_(upload(exec, plan.outer, name("outer"))),
+        far_(upload(exec, plan.far, name("far"))),
+        u_(exec, plan.background->mesh.n_nodes(), name("u")),
+        boundary_(room_for<Vec3>(exec, plan.background_morph->plan().boundary_nodes.size(), name("boundary"))),
+        rate_(room_for<Vec3>(exec, with_rate ? boundary_.extent(0) : 0, name("rate"))),
+        morpher_(exec, plan.background_morph->plan(), uploaded(exec, plan.background->mesh.coordinates).vectors(),
+                 {1, with_rate}) {}
+
+  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
+    set_boundary(exec, f, boundary_);
+    morpher_.displacements(exec, boundary_, u_.vectors());
+    kernels::interpolate("gridmorph::far", exec, far_, u_.read(), f.u.data());
+  }
+
+  void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
+    set_boundary(exec, f, boundary_);
+    set_boundary(exec, r, rate_);
+    morpher_.velocities(exec, boundary_, rate_, u_.vectors());
+    kernels::interpolate("gridmorph::far", exec, far_, u_.read(), r.u.data());
+    enqueue(exec, x, f);
+  }
+
+  /// Of the background's nodes, by the last call.
+  [[nodiscard]] kernels::Field<double const> displacement() const { return u_.read(); }
+
+ private:
+  using Memory = typename Exec::memory_space;
+  static std::string name(char const* what) { return region + "::" + what; }
+
+  /// Three arrays over the nodes of the background, one after another.
+  struct Arrays {
+    List<Exec, double> values;
+    Index n;
+
+    Arrays(Exec const& exec, Index n_nodes, std::string const& what)
+        : values(room_for<double>(exec, std::size_t(3 * n_nodes), what)), n(n_nodes) {}
+    [[nodiscard]] List<Exec, double> component(Index c) const {
+      return Kokkos::subview(values, std::pair(c * n, (c + 1) * n));
+    }
+    [[nodiscard]] VectorView<Memory> vectors() const { return {component(0), component(1), component(2)}; }
+    [[nodiscard]] kernels::Field<double const> read() const {
+      return {values.data(), values.data() + n, values.data() + 2 * n};
+    }
+  };
+  /// displacements() of the Morpher does not read them again.
+  static Arrays uploaded(Exec const& exec, Coordinates const& x) {
+    Arrays const to(exec, x.size(), name("coordinates"));
+    Index c = 0;
+    for (auto const& from : {x.x, x.y, x.z}) {
+      Kokkos::deep_copy(exec, to.component(c++), from);
+    }
+    return to;
+  }
+
+  void set_boundary(Exec const& exec, StageField<Exec> const& f, List<Exec, Vec3> const& boundary) const {
+    kernels::interpolate("gridmorph::outer_box", exec, outer_, f.boundary, boundary.data());
+    kernels::interpolate("gridmorph::wrap", exec, wrap_, f.u.data(), boundary.data());
+  }
+
+  kernels::InterpolationTable<Memory> wrap_, outer_, far_;
+  Arrays u_;
+  List<Exec, Vec3> boundary_, rate_;
+  Morpher<Exec> morpher_;
+};
+
+}  // namespace gridmorph::stages

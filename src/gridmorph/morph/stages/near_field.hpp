@@ -1,0 +1,44 @@
+// Second stage of an unstructured morph: the walls' motion between them, smooth, and layer by layer what that misses.
+#pragma once
+
+#include <gridmorph/kernels/lattice_field.hpp>
+#include <gridmorph/morph/stages/smooth_field.hpp>
+#include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
+
+namespace gridmorph::stages {
+
+/// Linear in the walls' motions.
+template <class Exec>
+class NearField {
+ public:
+  static inline std::string const region = "gridmorph::NearField";
+
+  NearField(Exec const& exec, UnstructuredPlan const& plan)
+      : seeds_{upload(exec, plan.driving, name("driving")), upload(exec, plan.columns.node, name("columns"))},
+        walls_(exec, plan.walls, name("walls")),
+        layers_(upload(exec, plan.near, name("layers"))),
+        fade_(upload(exec, plan.near_fade, name("fade"))) {}
+
+  void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    using kernels::launch;
+    walls_.enqueue(exec, f.frames.data());
+    for (auto const& nodes : seeds_)
+      launch("gridmorph::near::missing", exec,
+             kernels::FieldMisses<Memory>{nodes, walls_.field(), x, f.u.data(), f.work.data()});
+    kernels::interpolate_layers("gridmorph::near::layers", exec, layers_, f.work.data());
+    launch("gridmorph::near", exec,
+           kernels::FieldAndMissing<Memory>{layers_.rows.target, fade_, walls_.field(), x, f.work.data(), f.u.data()});
+  }
+
+ private:
+  using Memory = typename Exec::memory_space;
+  static std::string name(char const* what) { return region + "::" + what; }
+
+  List<Exec, Index32> seeds_[2];  ///< on moving walls and in their columns
+  SmoothField<Exec, kernels::AffineMotion> walls_;
+  kernels::LayerTable<Memory> layers_;
+  List<Exec, float> fade_;
+};
+
+}  // namespace gridmorph::stages

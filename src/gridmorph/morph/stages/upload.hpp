@@ -1,0 +1,57 @@
+// Host tables of a plan in the memory of an execution space. Copies are enqueued: the host tables must stay until the
+// instance has been fenced.
+#pragma once
+
+#include <gridmorph/core/csr_graph.hpp>
+#include <gridmorph/kernels/inverse_distance.hpp>
+#include <gridmorph/plan/interpolation_operator.hpp>
+#include <gridmorph/plan/inverse_distance_field.hpp>
+#include <gridmorph/plan/layers.hpp>
+
+#include <Kokkos_Core.hpp>
+
+#include <string>
+#include <vector>
+
+namespace gridmorph::stages {
+
+template <class Exec, class T>
+using List = Kokkos::View<T*, typename Exec::memory_space>;
+
+/// Workspace, at first zero: nodes of the background's outer box that no boundary moves stay so.
+template <class T, class Exec>
+List<Exec, T> room_for(Exec const& exec, std::size_t n, std::string const& label) {
+  return List<Exec, T>(Kokkos::view_alloc(exec, label), n);
+}
+
+template <class Exec, class T>
+List<Exec, T> upload(Exec const& exec, std::vector<T> const& host, std::string const& label) {
+  List<Exec, T> const device(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, label), host.size());
+  Kokkos::View<T const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const from(host.data(),
+                                                                                                host.size());
+  if (!host.empty()) Kokkos::deep_copy(exec, device, from);
+  return device;
+}
+
+template <class Exec>
+kernels::InterpolationTable<typename Exec::memory_space> upload(Exec const& exec, InterpolationOperator const& rows,
+                                                                std::string const& label) {
+  return {upload(exec, rows.target, label + "::target"), upload(exec, rows.first, label + "::first"),
+          upload(exec, rows.item, label + "::item"), upload(exec, rows.weight, label + "::weight")};
+}
+
+template <class Exec>
+kernels::LayerTable<typename Exec::memory_space> upload(Exec const& exec, LayerRows const& layers,
+                                                        std::string const& label) {
+  return {upload(exec, layers.rows, label), layers.level};
+}
+
+template <class Exec>
+kernels::InverseDistanceTable<typename Exec::memory_space> upload(Exec const& exec, InverseDistanceField const& field,
+                                                                  std::string const& label) {
+  return {upload(exec, field.leaves, label + "::leaves"), upload(exec, field.groups, label + "::groups"),
+          upload(exec, field.lattice, label + "::lattice"), upload(exec, field.centre, label + "::centre"),
+          field.shape};
+}
+
+}  // namespace gridmorph::stages

@@ -1,0 +1,71 @@
+// First stage of an unstructured morph: the moving walls, how they turn, and the columns of cells on them.
+#pragma once
+
+#include <gridmorph/kernels/column_motion.hpp>
+#include <gridmorph/kernels/listed_nodes.hpp>
+#include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
+
+namespace gridmorph::stages {
+
+template <class Exec>
+class WallMotion {
+ public:
+  static inline std::string const region = "gridmorph::WallMotion";
+
+  WallMotion(Exec const& exec, UnstructuredPlan const& plan, bool with_rate)
+      : known_(upload(exec, plan.known, name("known"))),
+        slots_(upload(exec, plan.driving_slots, name("driving_slots"))),
+        wall_{upload(exec, plan.driving, name("driving")),
+              upload(exec, plan.fans.first, name("fans::first")),
+              upload(exec, plan.fans.item, name("fans::item")),
+              upload(exec, plan.turns, name("turns")),
+              plan.dimension == 2,
+              plan.plane_normal},
+        columns_{upload(exec, plan.columns.node, name("columns::node")),
+                 upload(exec, plan.columns.root, name("columns::root")),
+                 upload(exec, plan.columns.turn, name("columns::share"))},
+        turn_(room_for<Vec3>(exec, plan.driving.size(), name("turn"))),
+        turn_rate_(room_for<Vec3>(exec, with_rate ? plan.driving.size() : 0, name("turn_rate"))) {}
+
+  void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    set(exec, f);
+    follow<Vec3>(exec, {x}, {x, f.u.data()}, turn_, x, f);
+  }
+
+  /// Rotations are not linear: their exact derivative.
+  void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
+    enqueue(exec, x, f);
+    set(exec, r);
+    follow<kernels::DualVec3>(exec, {x}, {x, f.u.data(), r.u.data()}, turn_rate_, x, r);
+  }
+
+ private:
+  using Memory = typename Exec::memory_space;
+  static std::string name(char const* what) { return region + "::" + what; }
+
+  void set(Exec const& exec, StageField<Exec> const& f) const {
+    using kernels::launch;
+    launch("gridmorph::rest", exec, 0, Index(f.u.extent(0)), kernels::RestNodes{f.u.data()});
+    launch("gridmorph::moving_walls", exec, kernels::SetFromSlots<Memory>{slots_, known_, f.boundary, f.u.data()});
+  }
+
+  template <class V>
+  void follow(Exec const& exec, kernels::Positions<V> const& baseline, kernels::Positions<V> const& moved,
+              List<Exec, Vec3> const& turn, Baseline const& x, StageField<Exec> const& f) const {
+    using kernels::launch;
+    Vec3 const *const turns = turn_.data(), *const rates = turn_rate_.data();
+    launch("gridmorph::wall_turn", exec, kernels::WallTurn<Memory, V>{wall_, baseline, moved, turn.data()});
+    launch("gridmorph::wall_frames", exec,
+           kernels::WallFrames<Memory, V>{wall_, turns, rates, f.u.data(), f.frames.data()});
+    launch("gridmorph::columns", exec,
+           kernels::MoveColumns<Memory, V>{columns_, wall_.node, turns, rates, x, f.u.data()});
+  }
+
+  List<Exec, Index32> known_, slots_;
+  kernels::WallTable<Memory> wall_;
+  kernels::ColumnTable<Memory> columns_;
+  List<Exec, Vec3> turn_, turn_rate_;
+};
+
+}  // namespace gridmorph::stages
