@@ -17,7 +17,9 @@ using Case = UnstructuredCase;
 using Exec = Case::Host;
 using Vectors = std::vector<Vec3>;
 
-Kokkos::View<Vec3 const*, Kokkos::HostSpace> view(Vectors const& v) { return {v.data(), v.size()}; }
+Kokkos::View<Vec3 const*, Kokkos::HostSpace> view(Vectors const& v) {
+  return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(v.data(), v.size());
+}
 
 /// A case, planned for a motion, with its displacements and velocities on the host.
 struct Planned {

@@ -1,0 +1,217 @@
+// How walls turn and what stands on them, against matrices of rotation and differences.
+#include "kernels/tables.hpp"
+#include "support/random.hpp"
+
+#include <gridmorph/kernels/column_motion.hpp>
+#include <gridmorph/kernels/wall_turn.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace gridmorph::test {
+namespace {
+
+using kernels::Dual;
+using kernels::DualVec3;
+
+/// exp([turn]x) by its series: knows no sines.
+Mat3 matrix_of(Vec3 const& turn) {
+  Mat3 const skew{{{0, -turn.z, turn.y}, {turn.z, 0, -turn.x}, {-turn.y, turn.x, 0}}};
+  Mat3 sum, term;
+  for (int n = 1; n < 40; ++n) {
+    term = term * skew;
+    for (auto& row : term.m)
+      for (double& v : row) v /= n;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) sum.m[i][j] += term.m[i][j];
+  }
+  return sum;
+}
+
+TEST(Turns, TurnedByIsTheMatrixExponential) {
+  Random random(1);
+  for (int n = 0; n < 200; ++n) {
+    Vec3 const turn = random.vector(1.7), v = random.vector(1);
+    double const share = random.between(0, 1);
+    EXPECT_LT(distance(v + kernels::turned_by(turn, share, v), matrix_of(share * turn) * v), 1e-14);
+  }
+  EXPECT_EQ(kernels::turned_by(Vec3{}, 1, Vec3{1, 2, 3}), Vec3{});
+}
+
+TEST(Turns, BetweenTwoDirectionsIsTheSmallestRotation) {
+  Random random(2);
+  for (int n = 0; n < 200; ++n) {
+    Vec3 const before = random.vector(2), after = random.vector(3);
+    Vec3 const turn = kernels::turn_between(before, after);
+    Vec3 const there = matrix_of(turn) * before;
+    EXPECT_LT(distance((1 / norm(there)) * there, (1 / norm(after)) * after), 1e-13);
+    EXPECT_NEAR(dot(turn, before), 0, 1e-13);
+    EXPECT_LE(norm(turn), std::numbers::pi);
+  }
+  Vec3 const x{1, 0, 0};
+  EXPECT_EQ(kernels::turn_between(x, 2 * x), Vec3{});
+  EXPECT_EQ(kernels::turn_between(x, -x), Vec3{}) << "no one axis";
+  EXPECT_EQ(kernels::turn_between(x, Vec3{}), Vec3{});
+}
+
+TEST(Turns, OneAfterTheOtherMultiplyAsMatricesDo) {
+  Random random(3);
+  for (int n = 0; n < 200; ++n) {
+    Vec3 const first = random.vector(1.8), next = random.vector(1.8), v = random.vector(1);
+    Vec3 const both = kernels::turn_then(first, next);
+    EXPECT_LT(distance(matrix_of(both) * v, matrix_of(next) * (matrix_of(first) * v)), 1e-13);
+    EXPECT_LE(norm(both), std::numbers::pi + 1e-14);
+  }
+  EXPECT_EQ(kernels::turn_then(Vec3{}, Vec3{}), Vec3{});
+}
+
+/// f(a + h a', b + h b') by differences, against duals.
+template <class F>
+void expect_rates(F const& f, Vec3 const& a, Vec3 const& a_rate, Vec3 const& b, Vec3 const& b_rate) {
+  double const h = 1e-5;
+  DualVec3 const found = f(DualVec3{a, a_rate}, DualVec3{b, b_rate});
+  Vec3 const difference = (0.5 / h) * (f(a + h * a_rate, b + h * b_rate) - f(a - h * a_rate, b - h * b_rate));
+  EXPECT_LT(distance(found.rate, difference), 1e-8 * (1 + norm(difference)));
+  EXPECT_LT(distance(found.value, f(a, b)), 1e-14 * (1 + norm(found.value)));
+}
+
+TEST(Turns, RatesAreDerivativesAlsoWhereNothingTurnsYet) {
+  auto const between = [](auto const& a, auto const& b) { return kernels::turn_between(a, b); };
+  auto const then = [](auto const& a, auto const& b) { return kernels::turn_then(a, b); };
+  auto const by = [](auto const& a, auto const& b) { return kernels::turned_by(a, 0.7, b); };
+  Random random(4);
+  for (int n = 0; n < 100; ++n) {
+    Vec3 const a = random.vector(0.8), b = random.vector(0.8);
+    if (norm(a) < 0.3 || norm(b) < 0.3) continue;  // differences are no measure there
+    Vec3 const p = random.vector(1), q = random.vector(1);
+    if (norm(kernels::turn_between(a, b)) < 2.5) expect_rates(between, a, p, b, q);
+    expect_rates(between, a, p, 2 * a, q);
+    expect_rates(then, a, p, b, q);
+    expect_rates(then, Vec3{}, p, b, q);
+    expect_rates(then, a, p, Vec3{}, q);
+    expect_rates(then, Vec3{}, p, Vec3{}, q);
+    expect_rates(by, a, p, b, q);
+    expect_rates(by, Vec3{}, p, b, q);
+  }
+}
+
+/// A wall node (number 0) in a ring of six, all off any plane; numbers 7 and 8 stand above it.
+struct Wall {
+  Arrays x{9};
+  kernels::WallTable<Host> table;
+  std::vector<Vec3> u{9}, rate{9};
+
+  explicit Wall(bool flat) {
+    Random random(5);
+    for (int n = 0; n < 9; ++n) {
+      double const angle = (n - 1) * std::numbers::pi / 3;
+      bool const ring = n > 0 && n < 7;
+      x.x[n] = (ring ? std::cos(angle) : 0) + random.between(-0.1, 0.1);
+      x.y[n] = (ring ? std::sin(angle) : 0) + random.between(-0.1, 0.1);
+      x.z[n] = flat ? 0 : (n > 6 ? 0.3 * (n - 6) : 0) + random.between(-0.1, 0.1);
+    }
+    std::vector<std::int32_t> const pairs =
+        flat ? std::vector<std::int32_t>{4, 0, 0, 1} : std::vector<std::int32_t>{1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 1};
+    table = {view<std::int32_t>({0}),
+             view<Index>({0, Index(pairs.size())}),
+             view(pairs),
+             view<std::uint8_t>({1}),
+             flat,
+             {0, 0, 1}};
+  }
+  void turn(Vec3 const& by, Vec3 const& shift) {
+    for (int n = 0; n < 9; ++n) u[n] = shift + matrix_of(by) * x.read()[n] - x.read()[n];
+  }
+  [[nodiscard]] Vec3 turn_found() {
+    Vec3 found;
+    kernels::WallTurn<Host, Vec3>{table, {x.read()}, {x.read(), u.data()}, &found}(0);
+    return found;
+  }
+  [[nodiscard]] Vec3 rate_found() {
+    Vec3 found;
+    kernels::WallTurn<Host, DualVec3>{table, {x.read()}, {x.read(), u.data(), rate.data()}, &found}(0);
+    return found;
+  }
+};
+
+TEST(WallTurn, OfARigidWallIsItsRotation) {
+  for (Vec3 const& turn : {Vec3{0.3, -0.2, 0.5}, Vec3{1.5, 1, -0.4}, Vec3{0, 0, 2.9}, Vec3{1e-7, 0, 0}, Vec3{}}) {
+    Wall wall(false);
+    wall.turn(turn, {3, -1, 2});
+    EXPECT_LT(distance(wall.turn_found(), turn), 1e-13);
+  }
+  for (double const angle : {0.4, -2.5}) {
+    Wall wall(true);
+    wall.turn({0, 0, angle}, {1, 1, 0});
+    EXPECT_LT(distance(wall.turn_found(), {0, 0, angle}), 1e-14);
+  }
+}
+
+TEST(WallTurn, IsZeroWhereItIsNotFollowed) {
+  Wall wall(false);
+  wall.table.turns = view<std::uint8_t>({0});
+  wall.turn({0.3, 0, 0}, {});
+  EXPECT_EQ(wall.turn_found(), Vec3{});
+  wall.rate.assign(9, {1, 2, 3});
+  EXPECT_EQ(wall.rate_found(), Vec3{});
+}
+
+TEST(WallTurn, HasTheRateThatDifferencesHave) {
+  Random random(6);
+  for (bool const flat : {false, true})
+    for (double const size : {0.0, 0.1}) {
+      Wall wall(flat);
+      auto const in_plane = [&](Vec3 v) { return flat ? Vec3{v.x, v.y, 0} : v; };
+      if (size > 0) wall.turn({0, 0, 0.8}, {});
+      for (int n = 0; n < 9; ++n) {
+        wall.u[n] += in_plane(random.vector(size));
+        wall.rate[n] = in_plane(random.vector(1));
+      }
+      Vec3 const rate = wall.rate_found();
+      std::vector<Vec3> const u = wall.u;
+      double const h = 1e-5;
+      Vec3 sides[2];
+      for (int s = 0; s < 2; ++s) {
+        for (int n = 0; n < 9; ++n) wall.u[n] = u[n] + (s == 0 ? -h : h) * wall.rate[n];
+        sides[s] = wall.turn_found();
+      }
+      EXPECT_LT(distance(rate, (0.5 / h) * (sides[1] - sides[0])), 1e-8) << flat << " " << size;
+    }
+}
+
+TEST(WallFrames, AreTheMotionAroundTheWall) {
+  Wall wall(false);
+  Vec3 const turn{0.3, -0.9, 0.5};
+  wall.turn(turn, {3, -1, 2});
+  kernels::AffineMotion frame;
+  kernels::WallFrames<Host, Vec3>{wall.table, &turn, nullptr, wall.u.data(), &frame}(0);
+  Vec3 const x0 = wall.x.read()[0];
+  for (int n = 0; n < 9; ++n) EXPECT_LT(distance(kernels::value_at(frame, x0, wall.x.read()[n]), wall.u[n]), 1e-14);
+}
+
+TEST(MoveColumns, TakeTheirShareOfTheWallsRotation) {
+  Wall wall(false);
+  Vec3 const turn{0.3, -0.9, 0.5}, x0 = wall.x.read()[0];
+  wall.turn(turn, {3, -1, 2});
+  Vec3 const whole = wall.u[8], root = wall.u[0];
+  for (float const share : {0.f, 0.5f, 1.f}) {
+    kernels::MoveColumns<Host, Vec3> const kernel{
+        {view<std::int32_t>({8}), view<std::int32_t>({0}), view<float>({share})},
+        wall.table.node,
+        &turn,
+        nullptr,
+        wall.x.read(),
+        wall.u.data()};
+    EXPECT_EQ(kernel.size(), 1);
+    kernel(0);
+    Vec3 const away = wall.x.read()[8] - x0;
+    EXPECT_LT(distance(wall.u[8], root + matrix_of(double(share) * turn) * away - away), 1e-14) << share;
+  }
+  EXPECT_LT(distance(wall.u[8], whole), 1e-14) << "as the wall itself";
+}
+
+}  // namespace
+}  // namespace gridmorph::test
