@@ -49,7 +49,7 @@ struct Sources {
 };
 
 /// Values at the nodes of the lattice.
-template <class Value>
+template <class Value = Vec3>
 std::vector<Vec3> on_lattice(InverseDistanceField const& planned, std::vector<Value> const& values) {
   Exec const exec;
   stages::SmoothField<Exec, Value> const smooth(exec, planned, "gridmorph::test::smooth");
