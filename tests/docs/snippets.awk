@@ -11,13 +11,14 @@ BEGIN {
   marked = 1
 }
 /^```/ && within {
-  if (marked) printf "%snamespace snippet_%d {\nusing namespace gridmorph;\nvoid run(%s) {\n%s}\n}  // namespace snippet_%d\n\n", includes, n, parameters, code, n
+  printf "%snamespace snippet_%d {\nusing namespace gridmorph;\nvoid run(%s) {\n%s}\n}  // namespace snippet_%d\n\n", includes, n, parameters, code, n
   within = 0
   marked = 0
   parameters = ""
   next
 }
 /^```cpp$/ {
+  if (!marked) printf "#error \"%s:%d: say above the block what it takes for granted: <!-- snippet: parameters -->\"\n", FILENAME, FNR
   within = 1
   ++n
   includes = ""

@@ -1,8 +1,7 @@
-// Rotations found in matrices, and the turns of walls, against the matrix of Rodrigues.
+// Rotations found in matrices, against the matrix of Rodrigues.
 #include "support/random.hpp"
 
 #include <gridmorph/geometry/rotation.hpp>
-#include <gridmorph/kernels/wall_turn.hpp>
 
 #include <gtest/gtest.h>
 
@@ -75,51 +74,6 @@ TEST(RotationVector, IsAngleTimesAxisAtAllAngles) {
   }
   EXPECT_EQ(rotation_vector(Mat3()), Vec3{});
   EXPECT_EQ(difference(rotation_by({}), Mat3()), 0);
-}
-
-TEST(WallTurn, TakesOneDirectionToTheOtherOnTheShortestWay) {
-  Random random(4);
-  for (int trial = 0; trial < 50; ++trial) {
-    Vec3 const a = direction(random), b = direction(random);
-    Vec3 const turn = kernels::turn_between(random.between(0.1, 9) * a, random.between(0.1, 9) * b);
-    EXPECT_LT(distance(matrix_of(turn) * a, b), 1e-14);
-    EXPECT_NEAR(norm(turn), std::acos(dot(a, b)), 1e-7);
-    EXPECT_NEAR(dot(turn, a), 0, 1e-14);
-  }
-  EXPECT_EQ(kernels::turn_between({1, 2, 3}, {2, 4, 6}), Vec3{});
-  EXPECT_EQ(kernels::turn_between({1, 2, 3}, {-1, -2, -3}), Vec3{});
-  EXPECT_EQ(kernels::turn_between({}, {1, 0, 0}), Vec3{});
-}
-
-TEST(WallTurn, SharesAndGradientsAreThoseOfTheRotation) {
-  Random random(5);
-  for (double const angle : {0.0, 1e-9, 0.2, 2.0, 3.1})
-    for (double const share : {0.0, 0.3, 1.0}) {
-      Vec3 const turn = angle * direction(random), v = random.vector(3);
-      Vec3 const moved = matrix_of(share * turn) * v - v;
-      EXPECT_LT(distance(kernels::turned_by(turn, share, v), moved), 2e-15 * norm(v));
-      EXPECT_LT(distance(kernels::turn_gradient(turn) * v, matrix_of(turn) * v - v), 2e-15 * norm(v));
-    }
-  EXPECT_EQ(kernels::turned_by({}, 1, {1, 2, 3}), Vec3{});
-  // Small turns do not drown in the vector they turn.
-  Vec3 const small = kernels::turned_by({0, 0, 1e-12}, 1, {1, 0, 0});
-  EXPECT_NEAR(small.y, 1e-12, 1e-24);
-  EXPECT_NEAR(small.x, -0.5e-24, 1e-30);
-}
-
-TEST(WallTurn, OneAfterAnotherIsTheProductOfTheirMatrices) {
-  Random random(6);
-  for (int trial = 0; trial < 100; ++trial) {
-    Vec3 const first = random.between(0, pi) * direction(random), next = random.between(0, pi) * direction(random);
-    Vec3 const both = kernels::turn_then(first, next);
-    EXPECT_LT(difference(matrix_of(both), matrix_of(next) * matrix_of(first)), 1e-14);
-    EXPECT_LE(norm(both), pi + 1e-12);
-  }
-  Vec3 const v{0.1, -0.7, 0.4};
-  EXPECT_EQ(kernels::turn_then({}, {}), Vec3{});
-  EXPECT_EQ(kernels::turn_then(v, {}), v);
-  EXPECT_EQ(kernels::turn_then({}, v), v);
-  EXPECT_LT(norm(kernels::turn_then(v, -v)), 1e-15);
 }
 
 }  // namespace
