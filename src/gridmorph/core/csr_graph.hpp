@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/core/index.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -43,15 +44,19 @@ struct CsrViews {
 
 namespace detail {
 
-template <class MemorySpace, class T>
-Kokkos::View<T const*, MemorySpace> view_of(std::vector<T> const& list, [[maybe_unused]] char const* label) {
+template <class Exec, class T>
+Kokkos::View<T const*, typename Exec::memory_space> view_of([[maybe_unused]] Exec const& exec,
+                                                            std::vector<T> const& list,
+                                                            [[maybe_unused]] char const* label) {
+  using MemorySpace = typename Exec::memory_space;
   Kokkos::View<T const*, Kokkos::HostSpace> const host(list.data(), list.size());
   if constexpr (std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
     return host;
   } else {
-    Kokkos::View<T*, MemorySpace> device(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)),
+    Kokkos::View<T*, MemorySpace> device(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, std::string(label)),
                                          list.size());
-    Kokkos::deep_copy(device, host);
+    Kokkos::deep_copy(exec, device, host);
+    compat::fence(exec, "gridmorph::view_of (the list may go)");
     return device;
   }
 }
@@ -59,11 +64,11 @@ Kokkos::View<T const*, MemorySpace> view_of(std::vector<T> const& list, [[maybe_
 }  // namespace detail
 
 /// The lists in a memory space that kernels can read: copied, unless that is the host's, where the Views only look at them
-/// (the lists must then outlive the Views). Fences when it copies.
-template <class MemorySpace>
-CsrViews<MemorySpace> views(CsrGraph const& lists) {
-  return {detail::view_of<MemorySpace>(lists.first, "gridmorph::CsrGraph::first"),
-          detail::view_of<MemorySpace>(lists.item, "gridmorph::CsrGraph::item")};
+/// (the lists must then outlive the Views). Fences `exec` when it copies.
+template <class Exec>
+CsrViews<typename Exec::memory_space> views(Exec const& exec, CsrGraph const& lists) {
+  return {detail::view_of(exec, lists.first, "gridmorph::CsrGraph::first"),
+          detail::view_of(exec, lists.item, "gridmorph::CsrGraph::item")};
 }
 
 }  // namespace gridmorph

@@ -151,11 +151,11 @@ struct ElementViews {
 };
 
 /// The same for elements.
-template <class MemorySpace>
-ElementViews<MemorySpace> views(Elements const& elements) {
-  return {detail::view_of<MemorySpace>(elements.type, "gridmorph::Elements::type"),
-          detail::view_of<MemorySpace>(elements.nodes.first, "gridmorph::Elements::first"),
-          detail::view_of<MemorySpace>(elements.nodes.item, "gridmorph::Elements::node")};
+template <class Exec>
+ElementViews<typename Exec::memory_space> views(Exec const& exec, Elements const& elements) {
+  return {detail::view_of(exec, elements.type, "gridmorph::Elements::type"),
+          detail::view_of(exec, elements.nodes.first, "gridmorph::Elements::first"),
+          detail::view_of(exec, elements.nodes.item, "gridmorph::Elements::node")};
 }
 
 }  // namespace gridmorph

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/kernels/element_quality.hpp>
+#include <gridmorph/kernels/vector_array.hpp>
 #include <gridmorph/quality/detail/visit_chunks.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
@@ -46,6 +47,9 @@ struct ElementTables {
   KOKKOS_INLINE_FUNCTION ElementCorners corners(CoordinateViews<MemorySpace> const& c, Index e) const {
     return gather(e, [&](Index32 node) { return Vec3{c.x(node), c.y(node), c.z(node)}; });
   }
+  KOKKOS_INLINE_FUNCTION ElementCorners corners(kernels::VectorArray const& x, Index e) const {
+    return gather(e, [&](Index32 node) { return x[node]; });
+  }
 
  private:
   template <class PointOf>
@@ -58,9 +62,9 @@ struct ElementTables {
   }
 };
 
-template <class MemorySpace>
-ElementTables<MemorySpace> element_tables(UnstructuredMesh const& mesh) {
-  return {views<MemorySpace>(mesh.elements), plane_normal(mesh)};
+template <class Exec>
+ElementTables<typename Exec::memory_space> element_tables(Exec const& exec, UnstructuredMesh const& mesh) {
+  return {views(exec, mesh.elements), plane_normal(mesh)};
 }
 
 /// Elements zone after zone in chunks of cells_per_chunk; box_extent[0] counts those of the zone.

@@ -18,7 +18,7 @@ std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
   detail::check_size(mesh, mesh.coordinates.x.extent(0), mesh.coordinates.y.extent(0), mesh.coordinates.z.extent(0),
                      "coordinates of the mesh");
   std::vector<signed char> sign(std::size_t(mesh.n_elements()), 0);
-  auto const tables = detail::element_tables<Kokkos::HostSpace>(mesh);
+  auto const tables = detail::element_tables(exec, mesh);
   auto const coordinates = detail::pack(exec, views(mesh.coordinates), mesh.n_nodes());
   detail::for_all("gridmorph::volume_signs", mesh.n_elements(), [&](Index e) {
     ElementType const type = tables.type(e);
@@ -88,9 +88,9 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Unstructured
   using MemorySpace = typename Exec::memory_space;
   bool const against_baseline = input.baseline.x.extent(0) > 0;
   std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
-  auto const tables = detail::element_tables<MemorySpace>(mesh);
+  auto const tables = detail::element_tables(exec, mesh);
   auto const first_element = detail::upload(exec, "gridmorph::quality::zones", detail::first_elements(mesh));
-  auto const signs = detail::view_of<MemorySpace>(sign_of, "gridmorph::quality::signs");
+  auto const signs = detail::view_of(exec, sign_of, "gridmorph::quality::signs");
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
   bool const fast = input.fast;
   Kokkos::View<double*, MemorySpace> volumes = input.fields.of[int(Measure::volume)];
@@ -155,7 +155,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Unstructured
   if (fast) return sums_on_host();
 
   CsrGraph const neighbours_h = detail::neighbour_lists(mesh, topology);
-  auto const neighbours = views<MemorySpace>(neighbours_h);
+  auto const neighbours = views(exec, neighbours_h);
   Kokkos::View<double const*, MemorySpace> const all_volumes = volumes;
   Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());

@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <map>
+#include <tuple>
+#include <utility>
 
 namespace gridmorph::cgns {
 
@@ -20,47 +22,7 @@ std::string text(std::vector<std::int64_t> const& transform) {
   return out + "]";
 }
 
-/// +1 where a step out of the own zone through its face leads into the donor at growing index, -1 where at falling index;
-/// as a factor on the own step.
-int sign_through(IndexRange const& own, int own_normal, IndexRange const& donor, int donor_normal) {
-  bool const own_first = own.begin[own_normal] == 0;
-  bool const donor_first = donor.begin[donor_normal] == 0;
-  return own_first == donor_first ? -1 : 1;
-}
-
-/// Whether the entries are +-1, +-2, +-3 in some order; fills o.
-bool as_orientation(std::array<int, 3> const& transform, Orientation& o) {
-  std::array<bool, 3> used{};
-  for (int a = 0; a < 3; ++a) {
-    int const axis = std::abs(transform[a]) - 1;
-    if (axis < 0 || axis > 2 || used[axis]) return false;
-    used[axis] = true;
-    o.axis[a] = axis;
-    o.sign[a] = transform[a] > 0 ? 1 : -1;
-  }
-  return true;
-}
-
 int direction(int from, int to) { return to < from ? -1 : 1; }
-
-/// Replaces a single zero; false if there are several, or no axis is left for it.
-bool rebuild_zero(std::array<int, 3>& t, Corners const& own, Corners const& other, int normal, int sign_of_normal) {
-  int zero = -1;
-  int left = 6;  // 1 + 2 + 3
-  for (int a = 0; a < 3; ++a) {
-    if (t[a] == 0 && zero >= 0) return false;
-    if (t[a] == 0) zero = a;
-    left -= std::abs(t[a]);
-  }
-  if (zero < 0) return true;
-  if (left < 1 || left > 3) return false;
-  int const axis = left - 1;
-  int const sign = zero == normal
-                       ? sign_of_normal
-                       : direction(own.begin[zero], own.end[zero]) * direction(other.begin[axis], other.end[axis]);
-  t[zero] = sign * left;
-  return true;
-}
 
 }  // namespace
 
@@ -96,39 +58,19 @@ Joined join(ZoneLayout const& zone, Corners const& own, ZoneLayout const& donor,
   }
   // The missing direction of 2-D zones: both were given their second plane on the same side.
   if (zone.flat_axis >= 0 && zone.index_dimension == 3) t[zone.flat_axis] = donor.flat_axis + 1;
-  int const sign_of_normal = sign_through(range, *normal, donor_range, *donor_normal);
-  Orientation orientation;
-  if (!rebuild_zero(t, own, other, *normal, sign_of_normal) || !as_orientation(t, orientation))
-    return refuse(wrong, with_transform + ": the Transform is not a signed permutation of the axes");
-  if (orientation.axis[*normal] != *donor_normal)
-    return refuse(wrong, with_transform + ": the Transform carries the face normal " + "ijk"[*normal] + " to " +
-                             "ijk"[orientation.axis[*normal]] + ", but the donor range is on a face normal to " +
-                             "ijk"[*donor_normal]);
-  for (int a = 0; a < 3; ++a)
-    if (range.extent(a) != donor_range.extent(orientation.axis[a]))
-      return refuse(wrong, with_transform + ": the donor range has another shape (" + std::to_string(range.extent(a)) +
-                               " nodes along " + "ijk"[a] + ", " +
-                               std::to_string(donor_range.extent(orientation.axis[a])) + " along donor " +
-                               "ijk"[orientation.axis[a]] + ")");
+  // Flat axes have two planes in the mesh, whatever the file says of them.
+  auto const in_mesh = [](ZoneLayout const& z, Corners corners) {
+    if (z.flat_axis >= 0) std::tie(corners.begin[z.flat_axis], corners.end[z.flat_axis]) = std::pair(1, 2);
+    return corners;
+  };
   Joined out;
+  std::string why;
+  auto const map = detail::join_faces({in_mesh(zone, own), range, *normal},
+                                      {in_mesh(donor, other), donor_range, *donor_normal}, t, why);
+  if (!map) return refuse(wrong, with_transform + ": " + why);
   out.range = range;
-  if (orientation.sign[*normal] != sign_of_normal) orientation.sign[*normal] = sign_of_normal;
-
-  // As the standard says, from Begin to Begin; where End then misses End, the donor range was written in ascending order.
-  IndexMap const as_declared{orientation,
-                             {own.begin[0] - 1, own.begin[1] - 1, own.begin[2] - 1},
-                             {other.begin[0] - 1, other.begin[1] - 1, other.begin[2] - 1}};
-  Index3 const end = as_declared(Index3{own.end[0] - 1, own.end[1] - 1, own.end[2] - 1});
-  out.to_donor = {orientation, range.begin, as_declared(range.begin)};
-  if (end != Index3{other.end[0] - 1, other.end[1] - 1, other.end[2] - 1}) {
-    for (int a = 0; a < 3; ++a) {
-      int const d = orientation.axis[a];
-      out.to_donor.donor_origin[d] = orientation.sign[a] > 0 ? donor_range.begin[d] : donor_range.end[d] - 1;
-    }
-    out.why = with_transform + ": PointRangeDonor does not run as Transform says; taken as a range without direction";
-  }
-  // The own normal is the same node plane throughout, and so is the donor's.
-  out.to_donor.donor_origin[*donor_normal] = donor_range.begin[*donor_normal];
+  out.to_donor = *map;
+  if (!why.empty()) out.why = with_transform + ": " + why;
   return out;
 }
 
@@ -188,7 +130,7 @@ Joined join_lists(ZoneLayout const& zone, PointSet const& own, IndexRange const&
   int const donor_normal = *face_normal(donor, donor_face.range);
   Orientation o;
   o.axis[normal] = donor_normal;
-  o.sign[normal] = sign_through(own_face, normal, donor_face.range, donor_normal);
+  o.sign[normal] = detail::sign_through(own_face, normal, donor_face.range, donor_normal);
   for (int a = 0; a < 3; ++a) {
     if (a == normal) continue;
     if (a == zone.flat_axis) {
@@ -207,7 +149,7 @@ Joined join_lists(ZoneLayout const& zone, PointSet const& own, IndexRange const&
   }
   std::array<int, 3> t{};
   for (int a = 0; a < 3; ++a) t[a] = o.sign[a] * (o.axis[a] + 1);
-  if (!as_orientation(t, o)) return refuse(skipped, "its lists are no signed permutation of the axes");
+  if (!detail::as_orientation(t, o)) return refuse(skipped, "its lists are no signed permutation of the axes");
   for (auto const& [p, q] : image) {
     Index3 expected = o.apply(minus(p, corner));
     Index3 found = minus(q, corner_image);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/io/cgns/cgns_layout.hpp>
+#include <gridmorph/mesh/point_ranges.hpp>
 
 #include <optional>
 #include <string>
@@ -9,12 +10,8 @@
 
 namespace gridmorph::cgns {
 
-/// Two opposite corners, 1-based and inclusive as in the file; begin may exceed end. Along an axis the file does not have
-/// (2-D zones) both are 1.
-struct Corners {
-  Index3 begin{1, 1, 1};
-  Index3 end{1, 1, 1};
-};
+/// As in the file. Along an axis the file does not have (2-D zones) both corners are 1.
+using Corners = PointRange;
 
 /// "[1:33, 1:1, 9:5]", in the file's direction and with as many axes as the file has.
 std::string to_string(Corners const& corners, int index_dimension);

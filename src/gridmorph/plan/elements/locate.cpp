@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 #include <vector>
 
 namespace gridmorph {
@@ -140,9 +141,18 @@ void locate_points(Exec const& exec, LocatorTables<typename Exec::memory_space> 
       KOKKOS_LAMBDA(Index const n) { out(order(n)) = locate_point(tables, sorted(n)); });
 }
 
-template <class MemorySpace>
-Kokkos::View<double const*, MemorySpace> in_space(Coordinates::View const& component) {
-  return Kokkos::create_mirror_view_and_copy(MemorySpace(), component);
+template <class Exec>
+Kokkos::View<double const*, typename Exec::memory_space> in_space(Exec const& exec,
+                                                                  Coordinates::View const& component) {
+  if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>) {
+    return component;
+  } else {
+    Kokkos::View<double*, typename Exec::memory_space> copy(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::ElementLocator::coordinates"),
+        component.extent(0));
+    Kokkos::deep_copy(exec, copy, component);
+    return copy;
+  }
 }
 
 template <class Exec>
@@ -157,13 +167,13 @@ LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, Unstruc
     throw MeshError("element locator: '" + mesh.source + "' has " + std::to_string(mesh.n_nodes()) +
                     " nodes, but coordinates of only " + std::to_string(mesh.coordinates.size()));
   LocatorTables<MemorySpace> t;
-  t.elements = views<MemorySpace>(mesh.elements);
-  t.x = in_space<MemorySpace>(mesh.coordinates.x);
-  t.y = in_space<MemorySpace>(mesh.coordinates.y);
-  t.z = in_space<MemorySpace>(mesh.coordinates.z);
-  t.polyhedron = view_of<MemorySpace>(mesh.polyhedra.element, "gridmorph::ElementLocator::polyhedron");
-  t.polyhedron_face = view_of<MemorySpace>(mesh.polyhedra.first_face, "gridmorph::ElementLocator::polyhedron_face");
-  t.polyhedron_faces = views<MemorySpace>(mesh.polyhedra.faces);
+  t.elements = views(exec, mesh.elements);
+  t.x = in_space(exec, mesh.coordinates.x);
+  t.y = in_space(exec, mesh.coordinates.y);
+  t.z = in_space(exec, mesh.coordinates.z);
+  t.polyhedron = view_of(exec, mesh.polyhedra.element, "gridmorph::ElementLocator::polyhedron");
+  t.polyhedron_face = view_of(exec, mesh.polyhedra.first_face, "gridmorph::ElementLocator::polyhedron_face");
+  t.polyhedron_faces = views(exec, mesh.polyhedra.faces);
 
   MeshExtent const box = extent_of(mesh.coordinates);
   Vec3 const size = box.high - box.low;
@@ -184,8 +194,8 @@ LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, Unstruc
 
   Kokkos::View<Index32 const*, Kokkos::HostSpace> const candidates_h(elements.data(), elements.size());
   Kokkos::View<Index32*, MemorySpace> const candidates(
-      Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::ElementLocator::candidates"), elements.size());
-  Kokkos::deep_copy(candidates, candidates_h);
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::ElementLocator::candidates"), elements.size());
+  Kokkos::deep_copy(exec, candidates, candidates_h);
   t.element = order_candidates(exec, t, candidates);
   fill_tree(exec, t);
   compat::fence(exec, "gridmorph::ElementLocator (built)");

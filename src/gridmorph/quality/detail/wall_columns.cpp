@@ -109,10 +109,9 @@ WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, Unstr
   for (std::size_t g = 0; g < names.size(); ++g) {
     WallTable const table = wall_table(mesh, topology, faces[g]);
     Index const n = Index(table.node.size());
-    WallViews<MemorySpace> const wall{view_of<MemorySpace>(table.node, "gridmorph::quality::wall_node"),
-                                      view_of<MemorySpace>(table.next, "gridmorph::quality::wall_next"),
-                                      views<MemorySpace>(table.faces_of_node), views<MemorySpace>(table.face_nodes),
-                                      normal};
+    WallViews<MemorySpace> const wall{view_of(exec, table.node, "gridmorph::quality::wall_node"),
+                                      view_of(exec, table.next, "gridmorph::quality::wall_next"),
+                                      views(exec, table.faces_of_node), views(exec, table.face_nodes), normal};
     Kokkos::View<WallNodePair*, MemorySpace> nodes(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::wall_nodes"), n);
     auto const now = input.coordinates;
