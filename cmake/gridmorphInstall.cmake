@@ -1,4 +1,4 @@
-# Install and package files: find_package(gridmorph [COMPONENTS core io app]).
+# Install and package files: find_package(gridmorph [COMPONENTS core io]).
 include(CMakePackageConfigHelpers)
 
 set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/gridmorph")
@@ -19,8 +19,10 @@ if(GRIDMORPH_ENABLE_IO)
   install(FILES "${PROJECT_SOURCE_DIR}/cmake/FindCGNS.cmake" DESTINATION "${package_folder}")
 endif()
 if(GRIDMORPH_ENABLE_CLI)
-  gridmorph_install(app gridmorph_app)
   install(TARGETS gridmorph_cli)
+  if(BUILD_SHARED_LIBS)
+    install(TARGETS gridmorph_app)
+  endif()
   install(FILES "${PROJECT_SOURCE_DIR}/docs/gridmorph.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
   install(FILES "${PROJECT_SOURCE_DIR}/scripts/completion/gridmorph.bash"
           DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME gridmorph)

@@ -1,15 +1,25 @@
-# Warnings for our own targets; never exported. -Wno-restrict: gcc 12 sees an overlap in every "text" + std::string (gcc
-# bug 105651).
-add_library(gridmorph_warnings INTERFACE)
+# Options of our own targets; never exported. -Wno-restrict: gcc 12 sees an overlap in every "text" + std::string (gcc
+# bug 105651). Fused multiply-adds chosen by the optimiser make results depend on inlining and vectorisation, so that backends, or two
+# orientations of one line, round differently.
+add_library(gridmorph_own_options INTERFACE)
 target_compile_options(
-  gridmorph_warnings
+  gridmorph_own_options
   INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>:-Wall -Wextra>
             $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>
-            $<$<AND:$<BOOL:${GRIDMORPH_WARNINGS_AS_ERRORS}>,$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>>:-Werror>)
+            $<$<AND:$<BOOL:${GRIDMORPH_WARNINGS_AS_ERRORS}>,$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>>:-Werror>
+            $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>:-ffp-contract=off>)
+# The name of what rounds in public headers: see kernels/vec3.hpp.
+target_compile_definitions(gridmorph_own_options INTERFACE GRIDMORPH_ARITHMETIC=own_arithmetic)
+# nvcc goes by another option for device code. nvcc_wrapper is a GNU compiler to CMake, so the option itself is the question.
+include(CheckCXXCompilerFlag)
+check_cxx_compiler_flag(--fmad=false GRIDMORPH_COMPILER_IS_NVCC)
+if(GRIDMORPH_COMPILER_IS_NVCC)
+  target_compile_options(gridmorph_own_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:--fmad=false>)
+endif()
 
 # What every compiled target of ours shares.
 function(gridmorph_target_defaults target)
-  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:gridmorph_warnings>)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:gridmorph_own_options>)
   set_target_properties(${target} PROPERTIES CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
 endfunction()
 

@@ -5,9 +5,7 @@
 // Prints how many elements are inverted that were not before, and the smallest determinant in parentheses. Made the table of
 // docs/unstructured.md, "Large rotations".
 #include <generators/sphere.hpp>
-#include <gridmorph/geometry/rigid_transform.hpp>
-#include <gridmorph/guard/stepped_morph.hpp>
-#include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/gridmorph.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -39,10 +37,10 @@ struct SphereCase {
     rule.patches = {"sphere"};
     rule.rule = gridmorph::RigidRule{turn.rotation, turn.translation};
     rule.where = "sphere_turns";
-    auto const prepared = gridmorph::prepare(mesh, topology, face_patches, motion, {});
+    gridmorph::MorphPlan const plan(mesh, motion);
     gridmorph::StepOptions options;
     options.steps = steps;
-    return gridmorph::morph_in_steps(mesh, topology, face_patches, prepared, prepared.boundary_displacement(mesh),
+    return gridmorph::morph_in_steps(mesh, topology, face_patches, *plan.elements(), plan.boundary_displacement(),
                                      options);
   }
 

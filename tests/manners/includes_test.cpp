@@ -47,7 +47,7 @@ TEST(Includes, PointDownwards) {
   auto const includes = all_includes();
   ASSERT_GT(includes.size(), 500u) << "the sources are not where they were";
   for (auto const& [from, what] : includes) {
-    if (what == "version.hpp") continue;
+    if (what == "version.hpp" || from == "gridmorph.hpp") continue;  // has no folder; may include all
     ASSERT_TRUE(place.contains(folder_of(from))) << from << ": a folder that has no place in the order yet";
     ASSERT_TRUE(place.contains(folder_of(what))) << from << " includes " << what;
     EXPECT_LE(place[folder_of(what)], place[folder_of(from)]) << from << " includes " << what;

@@ -4,6 +4,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/guard/guard.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <gtest/gtest.h>

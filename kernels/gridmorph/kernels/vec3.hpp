@@ -8,6 +8,12 @@
 
 #include <cmath>
 
+// The linker keeps one copy of each inline function that two sources compile. What rounds has another name in sources of the
+// library than in those of its users, so that its results do not depend on the compiler options of theirs.
+#ifndef GRIDMORPH_ARITHMETIC
+#define GRIDMORPH_ARITHMETIC arithmetic_of_the_user
+#endif
+
 namespace gridmorph {
 
 struct Vec3 {
@@ -20,6 +26,13 @@ struct Vec3 {
     return *this;
   }
 };
+
+/// Row-major 3x3 matrix.
+struct Mat3 {
+  double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+};
+
+inline namespace GRIDMORPH_ARITHMETIC {
 
 KOKKOS_INLINE_FUNCTION Vec3 operator+(Vec3 const& a, Vec3 const& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 KOKKOS_INLINE_FUNCTION Vec3 operator-(Vec3 const& a, Vec3 const& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -37,11 +50,6 @@ KOKKOS_INLINE_FUNCTION double norm(Vec3 const& a) {
   return sqrt(dot(a, a));
 }
 KOKKOS_INLINE_FUNCTION double distance(Vec3 const& a, Vec3 const& b) { return norm(a - b); }
-
-/// Row-major 3x3 matrix.
-struct Mat3 {
-  double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-};
 
 KOKKOS_INLINE_FUNCTION Vec3 operator*(Mat3 const& a, Vec3 const& v) {
   return {a.m[0][0] * v.x + a.m[0][1] * v.y + a.m[0][2] * v.z, a.m[1][0] * v.x + a.m[1][1] * v.y + a.m[1][2] * v.z,
@@ -61,5 +69,7 @@ KOKKOS_INLINE_FUNCTION Mat3 transpose(Mat3 const& a) {
     for (int j = 0; j < 3; ++j) t.m[i][j] = a.m[j][i];
   return t;
 }
+
+}  // namespace GRIDMORPH_ARITHMETIC
 
 }  // namespace gridmorph

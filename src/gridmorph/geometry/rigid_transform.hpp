@@ -10,15 +10,10 @@ struct RigidTransform {
   Mat3 rotation;
   Vec3 translation;
 
-  [[nodiscard]] Vec3 operator()(Vec3 const& x) const { return rotation * x + translation; }
-  [[nodiscard]] RigidTransform inverse() const {
-    Mat3 const rt = transpose(rotation);
-    return {rt, -(rt * translation)};
-  }
+  [[nodiscard]] Vec3 operator()(Vec3 const& x) const;
+  [[nodiscard]] RigidTransform inverse() const;
   /// First this, then next.
-  [[nodiscard]] RigidTransform then(RigidTransform const& next) const {
-    return {next.rotation * rotation, next.rotation * translation + next.translation};
-  }
+  [[nodiscard]] RigidTransform then(RigidTransform const& next) const;
 };
 
 /// Rotation by angle_rad about the unit vector direction (Rodrigues), right-handed.

@@ -5,6 +5,17 @@
 
 namespace gridmorph {
 
+Vec3 RigidTransform::operator()(Vec3 const& x) const { return rotation * x + translation; }
+
+RigidTransform RigidTransform::inverse() const {
+  Mat3 const rt = transpose(rotation);
+  return {rt, -(rt * translation)};
+}
+
+RigidTransform RigidTransform::then(RigidTransform const& next) const {
+  return {next.rotation * rotation, next.rotation * translation + next.translation};
+}
+
 namespace {
 
 Vec3 row(Mat3 const& a, int r) { return {a.m[r][0], a.m[r][1], a.m[r][2]}; }

@@ -1,6 +1,7 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/kernels/element_quality.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>

@@ -1,11 +1,13 @@
 // After a morph: displacements smoothed where elements came out bad.
 #pragma once
 
-#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <vector>
 
 namespace gridmorph {
+
+struct PreparedUnstructured;  ///< MorphPlan::elements()
 
 struct RelaxOptions {
   double share = 0.2;              ///< an element is bad when its determinant is not above this share of the baseline's

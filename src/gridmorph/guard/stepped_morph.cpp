@@ -2,6 +2,7 @@
 #include <gridmorph/guard/motion_path.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <algorithm>
 

@@ -2,8 +2,10 @@
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/morph/detail/baseline.hpp>
 #include <gridmorph/morph/device_plan.hpp>
+#include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
+#include <gridmorph/plan/prepare.hpp>
 
 #include <algorithm>
 #include <string>
@@ -33,6 +35,13 @@ kernels::Field<double const> read(kernels::Field<double> const& f) { return {f.x
 struct {
   std::string slip = "gridmorph::slip surfaces", volume = "gridmorph::all nodes";
 } const region_names;
+
+Plan const& blocks_of(MorphPlan const& plan) {
+  if (plan.blocks() == nullptr)
+    throw ConfigError(
+        "gridmorph::Morpher: the plan is that of an unstructured mesh; give it to an UnstructuredMorpher");
+  return plan.blocks()->plan();
+}
 
 }  // namespace
 
@@ -181,6 +190,10 @@ Morpher<Exec>::Morpher(Exec const& exec, Plan const& plan, In const& baseline, M
   state_ = std::make_shared<State>(exec, plan, baseline, FlatBaseline<Exec>(exec, baseline),
                                    std::max(options.fields, options.velocity ? 2 : 1));
 }
+
+template <class Exec>
+Morpher<Exec>::Morpher(Exec const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options)
+    : Morpher(exec, blocks_of(plan), baseline, options) {}
 
 template <class Exec>
 void Morpher<Exec>::positions(Exec const& exec, In const& boundary, Out const& moved) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gridmorph/mesh/vector_view.hpp>
-#include <gridmorph/plan/plan.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -10,6 +9,9 @@
 #include <span>
 
 namespace gridmorph {
+
+class MorphPlan;
+struct Plan;
 
 struct MorpherOptions {
   int fields = 1;         ///< displacement fields that one call may take
@@ -21,7 +23,7 @@ struct MorpherOptions {
 /// else only enqueues kernels on the instance it is given: no allocation, no fence, no copy, no host decision.
 ///
 /// Vectors are Views of any layout, double or float (mesh/vector_view.hpp), computed with in double. `boundary` has one
-/// vector for each of Plan::boundary_nodes, in that order, each in the frame of its node; all others have one for each node of the
+/// vector for each of MorphPlan::boundary_nodes(), in that order, each in the frame of its node; all others have one for each node of the
 /// mesh. A View of another length is a ConfigError with both numbers, before anything is enqueued.
 ///
 /// Memory: 8 bytes per node of the far field and 8 per node and finalize pass, plus about 50 bytes per node on the faces of
@@ -35,6 +37,7 @@ class Morpher {
   using Out = VectorView<MemorySpace>;
 
   /// The arrays of the baseline are not copied: positions() reads them again.
+  Morpher(ExecutionSpace const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options = {});
   Morpher(ExecutionSpace const& exec, Plan const& plan, In const& baseline, MorpherOptions const& options = {});
 
   /// moved(n) = x(n) + u(n) for every node, bit for bit x(n) where it does not move. `moved` may be the baseline itself, which

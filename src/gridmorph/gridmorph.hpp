@@ -1,0 +1,13 @@
+// All of the library's core that a solver needs, in one header.
+#pragma once
+
+#include <gridmorph/boundary/find_interfaces.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/guard/stepped_morph.hpp>
+#include <gridmorph/mesh/point_ranges.hpp>
+#include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/motion/rigid_motion.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/quality/validity.hpp>
+#include <gridmorph/version.hpp>

@@ -1,0 +1,123 @@
+#include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
+
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace gridmorph {
+
+struct MorphPlan::State {
+  std::optional<PreparedMorph> blocks;
+  std::optional<PreparedUnstructured> elements;
+  std::vector<Vec3> displacement;
+  std::vector<std::string> mesh_notes;
+};
+
+MorphPlan::MorphPlan(Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
+  auto state = std::make_shared<State>();
+  Mesh completed = mesh;  // shares the coordinates
+  state->blocks = prepare(completed, motion, options);
+  state->displacement = state->blocks->boundary_displacement(completed);
+  state->mesh_notes = completed.notes;
+  state_ = std::move(state);
+}
+
+MorphPlan::MorphPlan(UnstructuredMesh const& mesh, Motion const& motion, UnstructuredOptions const& options) {
+  check_mesh(mesh);
+  UnstructuredTopology const topology = make_topology(mesh);
+  auto state = std::make_shared<State>();
+  state->elements = prepare(mesh, topology, find_face_patches(mesh, topology), motion, options);
+  state->displacement = state->elements->boundary_displacement(mesh);
+  state_ = std::move(state);
+}
+
+Index MorphPlan::n_nodes() const { return blocks() ? blocks()->plan().n_nodes : elements()->plan.n_nodes; }
+
+std::vector<Index> MorphPlan::boundary_nodes() const {
+  if (blocks()) return blocks()->plan().boundary_nodes;
+  auto const& known = elements()->plan.known;
+  return {known.begin(), known.end()};
+}
+
+std::vector<Vec3> const& MorphPlan::boundary_displacement() const { return state_->displacement; }
+
+std::vector<std::string> MorphPlan::notes() const {
+  if (elements()) return elements()->notes;
+  std::vector<std::string> out = state_->mesh_notes;
+  for (auto const* list : {&blocks()->motion.notes, &blocks()->surface.notes(), &blocks()->plan().notes})
+    out.insert(out.end(), list->begin(), list->end());
+  return out;
+}
+
+PreparedMorph const* MorphPlan::blocks() const { return state_->blocks ? &*state_->blocks : nullptr; }
+PreparedUnstructured const* MorphPlan::elements() const { return state_->elements ? &*state_->elements : nullptr; }
+
+namespace {
+
+/// Where kernels can read it: the View itself, or a copy.
+template <class Exec, class T>
+Kokkos::View<T*, typename Exec::memory_space> reachable(Exec const& exec, char const* label,
+                                                        Kokkos::View<T*, Kokkos::HostSpace> const& host) {
+  if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>) {
+    return host;
+  } else {
+    Kokkos::View<T*, typename Exec::memory_space> copy(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, label),
+                                                       host.extent(0));
+    Kokkos::deep_copy(exec, copy, host);
+    return copy;
+  }
+}
+
+/// run(boundary, x): moves x to the new positions, given the displacement of the boundary.
+template <class Exec, class Run>
+Coordinates moved_by(Exec const& exec, MorphPlan const& plan, Coordinates const& baseline, Run const& run) {
+  Coordinates const out(baseline.size());
+  Kokkos::deep_copy(exec, out.x, baseline.x);
+  Kokkos::deep_copy(exec, out.y, baseline.y);
+  Kokkos::deep_copy(exec, out.z, baseline.z);
+  std::vector<Vec3> u = plan.boundary_displacement();
+  Kokkos::View<Vec3*, Kokkos::HostSpace> const given(u.data(), u.size());
+  auto const boundary = reachable(exec, "gridmorph::morph::boundary", given);
+  auto const x = reachable(exec, "gridmorph::morph::x", out.x), y = reachable(exec, "gridmorph::morph::y", out.y),
+             z = reachable(exec, "gridmorph::morph::z", out.z);
+  run(boundary, x, y, z);
+  Kokkos::deep_copy(exec, out.x, x);
+  Kokkos::deep_copy(exec, out.y, y);
+  Kokkos::deep_copy(exec, out.z, z);
+  compat::fence(exec, "gridmorph::morph (the host reads the coordinates)");
+  return out;
+}
+
+}  // namespace
+
+template <class Exec>
+Coordinates morph(Exec const& exec, Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
+  MorphPlan const plan(mesh, motion, options);
+  return moved_by(exec, plan, mesh.coordinates, [&](auto const& boundary, auto const& x, auto const& y, auto const& z) {
+    VectorView<typename Exec::memory_space> const all(x, y, z);
+    Morpher<Exec>(exec, plan.blocks()->plan(), all).positions(exec, boundary, all);
+  });
+}
+
+template <class Exec>
+Coordinates morph(Exec const& exec, UnstructuredMesh const& mesh, Motion const& motion,
+                  UnstructuredOptions const& options) {
+  MorphPlan const plan(mesh, motion, options);
+  return moved_by(exec, plan, mesh.coordinates, [&](auto const& boundary, auto const& x, auto const& y, auto const& z) {
+    VectorView<typename Exec::memory_space> const all(x, y, z);
+    UnstructuredMorpher<Exec>(exec, plan.elements()->plan, all).positions(exec, boundary, all);
+  });
+}
+
+#define GRIDMORPH_INSTANTIATE(Exec)                                                        \
+  template Coordinates morph(Exec const&, Mesh const&, Motion const&, PlanOptions const&); \
+  template Coordinates morph(Exec const&, UnstructuredMesh const&, Motion const&, UnstructuredOptions const&);
+GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
+#undef GRIDMORPH_INSTANTIATE
+
+}  // namespace gridmorph
