@@ -14,6 +14,10 @@
 namespace gridmorph::test {
 namespace {
 
+Mat3 from_columns(Vec3 const& a, Vec3 const& b, Vec3 const& c) {
+  return {{{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}}};
+}
+
 /// Somewhere, at some angle.
 RigidTransform placed(Random& random) { return {rotation_by(random.vector(2)), random.vector(5)}; }
 

@@ -33,30 +33,13 @@ double difference(Mat3 const& a, Mat3 const& b) {
   return largest;
 }
 
-Mat3 random_matrix(Random& random) { return from_columns(random.vector(1), random.vector(1), random.vector(1)); }
-
-TEST(Matrices, CofactorsTurnAreasAndInversesUndo) {
-  Random random(1);
-  for (int trial = 0; trial < 50; ++trial) {
-    Mat3 a = random_matrix(random);
-    // Every second one is singular: one column is a sum of the others.
-    if (trial % 2 == 0) a = from_columns(a * Vec3{1, 0, 0}, a * Vec3{0, 1, 0}, a * Vec3{1, 1, 0});
-    Vec3 const x = random.vector(1), y = random.vector(1);
-    EXPECT_LT(distance(cofactor(a) * cross(x, y), cross(a * x, a * y)), 1e-14);
-    EXPECT_NEAR(determinant(a) * dot(x, cross(y, {1, 0, 0})), dot(a * x, cross(a * y, a * Vec3{1, 0, 0})), 1e-14);
-    if (trial % 2 == 1 && std::abs(determinant(a)) > 0.01) {
-      EXPECT_LT(difference(a * inverse(a), Mat3()), 1e-12);
-    }
-  }
-}
-
-TEST(PolarRotation, OfARotatedStretchIsTheRotation) {
+TEST(NearestRotation, OfARotatedStretchIsTheRotation) {
   Random random(2);
   for (int trial = 0; trial < 50; ++trial) {
     Mat3 const r = matrix_of(random.between(0, pi) * direction(random)), q = matrix_of(2 * direction(random));
     Mat3 stretch;
     for (int k = 0; k < 3; ++k) stretch.m[k][k] = random.between(0.1, 5);
-    EXPECT_LT(difference(polar_rotation(r * (q * (stretch * transpose(q)))), r), 1e-13);
+    EXPECT_LT(difference(nearest_rotation(r * (q * (stretch * transpose(q)))), r), 1e-13);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "invariants/checks.hpp"
 
+#include <gridmorph/geometry/rotation.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <set>

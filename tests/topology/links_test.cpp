@@ -1,6 +1,7 @@
 // Interfaces: matched nodes, fitted periodic transforms, refusals.
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/plan/topology.hpp>
 
 #include "support/expect_error.hpp"

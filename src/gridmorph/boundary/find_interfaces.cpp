@@ -1,11 +1,11 @@
 #include <gridmorph/boundary/detail/plausible_periodic.hpp>
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 #include <tuple>
@@ -126,14 +126,6 @@ std::vector<Interface1to1> assemble(SurfaceCells const& cells, std::vector<CellP
   return out;
 }
 
-std::string text(double v) {
-  std::array<char, 32> out{};
-  std::snprintf(out.data(), out.size(), "%.6g", v);
-  return out.data();
-}
-
-std::string text(Vec3 const& v) { return "(" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + ")"; }
-
 Periodic declared(topology::PeriodicMatch const& match) {
   return match.rotation ? periodic_rotation(match.origin, match.direction, match.angle_rad)
                         : periodic_translation(match.transform.translation);
@@ -145,7 +137,7 @@ FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options) {
   check_coordinates(mesh, "gridmorph::find_interfaces");
   if (!(options.tolerance > 0 && options.tolerance <= 0.25))
     throw MeshError("the tolerance for matching points is a share of the smallest edge, between 0 and 0.25, found " +
-                    text(options.tolerance));
+                    to_text(options.tolerance, 6));
   FoundInterfaces out;
   SurfaceCells cells(mesh);
   auto const add = [&](std::vector<CellPair> const& pairs, std::optional<Periodic> const& periodic) {
@@ -176,10 +168,10 @@ FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options) {
     auto const& match = matches[m];
     std::string what = std::to_string(match.pairs.size()) + " pairs of face cells match by ";
     if (match.rotation)
-      what += "a rotation of " + text(match.angle_rad * 180 / std::numbers::pi) + " degrees about " +
-              text(match.direction) + " through " + text(match.origin);
+      what += "a rotation of " + to_text(match.angle_rad * 180 / std::numbers::pi, 6) + " degrees about " +
+              to_text(match.direction, 6) + " through " + to_text(match.origin, 6);
     else
-      what += "the translation " + text(match.transform.translation);
+      what += "the translation " + to_text(match.transform.translation, 6);
     if (!judged[m].taken)
       what += "; not taken as periodic: " + judged[m].why;
     else if (!match.rotation)

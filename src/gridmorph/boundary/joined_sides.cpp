@@ -1,9 +1,10 @@
 #include <gridmorph/boundary/joined_sides.hpp>
 
-#include <gridmorph/boundary/links.hpp>
+#include <gridmorph/boundary/link_nodes.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
+#include <gridmorph/geometry/rotation.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,18 +17,14 @@ constexpr double same_point = 1e-7;  // of the size
 
 /// Number of the piece that each grid belongs to, from 0.
 std::vector<int> pieces_of(PatchSurface const& surface) {
-  std::vector<int> piece(surface.grids.size()), holds(surface.points.size(), -1);
-  std::iota(piece.begin(), piece.end(), 0);
+  std::vector<int> holds(surface.points.size(), -1);
+  DisjointSets<int> pieces(surface.grids.size());
   for (std::size_t g = 0; g < surface.grids.size(); ++g)
     for (int const v : surface.grids[g].vertex) {
-      if (holds[v] >= 0 && piece[holds[v]] != piece[g])
-        std::replace(piece.begin(), piece.end(), std::max(piece[g], piece[holds[v]]),
-                     std::min(piece[g], piece[holds[v]]));
+      if (holds[v] >= 0) pieces.join(holds[v], int(g));
       holds[v] = int(g);
     }
-  std::set<int> const used(piece.begin(), piece.end());
-  for (int& p : piece) p = int(std::distance(used.begin(), used.find(p)));
-  return piece;
+  return pieces.set_numbers();
 }
 
 class Joiner {
@@ -149,15 +146,11 @@ JoinedSides join_sides(Mesh const& mesh, PatchSurface const& surface, Vec3 const
 }
 
 RigidTransform fitted_transform(Mesh const& mesh, Interface1to1 const& interface) {
-  Zone const &own = mesh.zones[interface.zone], &donor = mesh.zones[interface.donor_zone];
   std::vector<Vec3> from, to;
-  IndexRange const& r = interface.range;
-  for (int k = r.begin[2]; k < r.end[2]; ++k)
-    for (int j = r.begin[1]; j < r.end[1]; ++j)
-      for (int i = r.begin[0]; i < r.end[0]; ++i) {
-        from.push_back(mesh.coordinates[own.node({i, j, k})]);
-        to.push_back(mesh.coordinates[donor.node(interface.to_donor(Index3{i, j, k}))]);
-      }
+  for_each_pair(mesh, interface, [&](Index own, Index donor) {
+    from.push_back(mesh.coordinates[own]);
+    to.push_back(mesh.coordinates[donor]);
+  });
   return fit_rigid_transform(from, to);
 }
 

@@ -38,7 +38,4 @@ Links connect(Mesh const& mesh, TopologyOptions const& options);
 /// coincide are in the result all the same (their faces are claimed), those with ranges that cannot be are not.
 Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& problems);
 
-/// The rigid transform that maps from[n] onto to[n] best in the least-squares sense.
-RigidTransform fit_rigid_transform(std::vector<Vec3> const& from, std::vector<Vec3> const& to);
-
 }  // namespace gridmorph

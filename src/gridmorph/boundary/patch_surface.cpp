@@ -1,10 +1,10 @@
 #include <gridmorph/boundary/patch_surface.hpp>
 
 #include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace gridmorph {
 
@@ -33,47 +33,10 @@ bool points_out_of_mesh(Mesh const& mesh, Patch const& patch) {
 
 }  // namespace
 
-std::size_t PointNumbers::Hash::operator()(Key const& key) const {
-  std::uint64_t h = 0;
-  for (std::int64_t const v : key) h = ((h ^ std::uint64_t(v)) * 0x9e3779b97f4a7c15ull) ^ (h >> 29);
-  return std::size_t(h);
-}
-
-std::int64_t PointNumbers::cell(double v) const {
-  double const c = tolerance_ > 0 ? std::floor(v / (4 * tolerance_)) : 0;
-  // Beyond this cells are wider than they say, which costs time only.
-  constexpr double most = 9e18;
-  return std::int64_t(std::clamp(c, -most, most));
-}
-
-int PointNumbers::find(Vec3 const& p) const {
-  int best = -1;
-  double nearest = std::numeric_limits<double>::infinity();
-  // A sphere of the tolerance touches at most two cells along each axis.
-  Key const lo{cell(p.x - tolerance_), cell(p.y - tolerance_), cell(p.z - tolerance_)};
-  Key const hi{cell(p.x + tolerance_), cell(p.y + tolerance_), cell(p.z + tolerance_)};
-  for (std::int64_t i = lo[0]; i <= hi[0]; ++i)
-    for (std::int64_t j = lo[1]; j <= hi[1]; ++j)
-      for (std::int64_t k = lo[2]; k <= hi[2]; ++k)
-        if (auto const found = cells_.find({i, j, k}); found != cells_.end())
-          for (Entry const& e : found->second)
-            if (double const d = distance(p, e.point); d <= tolerance_ && d < nearest) {
-              nearest = d;
-              best = e.number;
-            }
-  return best;
-}
-
-void PointNumbers::add(Vec3 const& p, int number) { cells_[{cell(p.x), cell(p.y), cell(p.z)}].push_back({p, number}); }
-
 double box_diagonal(std::vector<Vec3> const& points) {
-  if (points.empty()) return 0;
-  Vec3 lo = points.front(), hi = lo;
-  for (Vec3 const& p : points) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-  }
-  return distance(lo, hi);
+  Box box;
+  for (Vec3 const& p : points) box.include(p);
+  return points.empty() ? 0 : distance(box.low, box.high);
 }
 
 PatchSurface::PatchSurface(Mesh const& mesh, std::vector<int> const& patches, PatchFaces const* faces)
@@ -106,13 +69,8 @@ PatchSurface::PatchSurface(Mesh const& mesh, std::vector<int> const& patches, Pa
       if (range.extent(axis) > 1) grid.extent[d++] = range.extent(axis);
     for_each_node(mesh.zones[patch.zone], range, [&](Index n) {
       Vec3 const x = mesh.coordinates[n];
-      int number = numbers.find(x);
-      if (number < 0) {
-        number = int(points.size());
-        points.push_back(x);
-        numbers.add(x, number);
-      }
-      grid.vertex.push_back(number);
+      grid.vertex.push_back(numbers.find_or_add(x, int(points.size())));
+      if (grid.vertex.back() == int(points.size())) points.push_back(x);
     });
     if (gridded) {
       grid.inward = points_out_of_mesh(mesh, patch);

@@ -2,38 +2,13 @@
 #pragma once
 
 #include <gridmorph/boundary/patch_faces.hpp>
+#include <gridmorph/geometry/point_numbers.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <array>
-#include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 namespace gridmorph {
-
-/// Finds points by position: the very same one, or one within a tolerance.
-class PointNumbers {
- public:
-  explicit PointNumbers(double tolerance) : tolerance_(tolerance) {}
-
-  /// The number given to p, or to a point within the tolerance of it; -1 when there is none.
-  [[nodiscard]] int find(Vec3 const& p) const;
-  void add(Vec3 const& p, int number);
-
- private:
-  struct Entry {
-    Vec3 point;
-    int number;
-  };
-  using Key = std::array<std::int64_t, 3>;
-  struct Hash {
-    std::size_t operator()(Key const& key) const;
-  };
-  [[nodiscard]] std::int64_t cell(double v) const;
-
-  double tolerance_;
-  std::unordered_map<Key, std::vector<Entry>, Hash> cells_;  ///< cells four tolerances wide
-};
 
 /// Corners of a facet, four or (the last is -1) three, in order around it.
 using GridFacet = std::array<int, 4>;

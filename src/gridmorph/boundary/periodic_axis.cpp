@@ -1,4 +1,3 @@
-#include <gridmorph/boundary/links.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 

@@ -1,4 +1,5 @@
 #include <gridmorph/geometry/facet_boxes.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -8,21 +9,20 @@ namespace {
 
 double component(Vec3 const& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-void include(Vec3 const& p, Vec3& low, Vec3& high) {
-  low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-  high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-}
+int n_corners(std::array<int, 4> const& facet) { return facet[3] < 0 ? 3 : 4; }
 
 }  // namespace
 
-FacetBoxes::FacetBoxes(std::vector<Vec3> const& points, std::vector<Facet> const& facets) : order(facets.size()) {
+FacetBoxes::FacetBoxes(std::vector<Vec3> const& points, std::vector<std::array<int, 4>> const& facets)
+    : order(facets.size()) {
+  if (facets.empty()) return;
   constexpr int per_leaf = 4;
   std::iota(order.begin(), order.end(), 0);
   std::vector<Vec3> centre;
-  for (Facet const& f : facets) {
+  for (auto const& f : facets) {
     Vec3 sum;
-    for (int q = 0; q < f.n_corners(); ++q) sum += points[f.corner[q]];
-    centre.push_back((1.0 / f.n_corners()) * sum);
+    for (int q = 0; q < n_corners(f); ++q) sum += points[f[q]];
+    centre.push_back((1.0 / n_corners(f)) * sum);
   }
   struct Part {
     int box, begin, end;
@@ -32,16 +32,15 @@ FacetBoxes::FacetBoxes(std::vector<Vec3> const& points, std::vector<Facet> const
   while (!pending.empty()) {
     auto const [number, begin, end] = pending.back();
     pending.pop_back();
-    Vec3 const start = points[facets[order[begin]].corner[0]];
-    FacetBox box{start, start, begin, end - begin};
-    Vec3 low = centre[order[begin]], high = low;
+    Box of_corners, of_centres;
     for (int n = begin; n < end; ++n) {
-      Facet const& f = facets[order[n]];
-      for (int q = 0; q < f.n_corners(); ++q) include(points[f.corner[q]], box.low, box.high);
-      include(centre[order[n]], low, high);
+      auto const& f = facets[order[n]];
+      for (int q = 0; q < n_corners(f); ++q) of_corners.include(points[f[q]]);
+      of_centres.include(centre[order[n]]);
     }
+    FacetBox box{of_corners.low, of_corners.high, begin, end - begin};
     if (end - begin > per_leaf) {
-      Vec3 const extent = high - low;
+      Vec3 const extent = of_centres.high - of_centres.low;
       int axis = extent.y > extent.x ? 1 : 0;
       if (extent.z > component(extent, axis)) axis = 2;
       int const middle = begin + (end - begin) / 2;

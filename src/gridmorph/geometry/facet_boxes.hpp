@@ -3,18 +3,44 @@
 
 #include <gridmorph/kernels/facet_tree.hpp>
 
+#include <array>
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
 
-/// Boxes over the flat facets, and the order in which their leaves list them: order[n] is the facet at place n. Halved
+/// Boxes over facets, and the order in which their leaves list them: order[n] is the facet at place n. Halved
 /// along the longest side of the box of their centres, so that the depth is that of a balanced tree, whatever they are.
 /// Depends on positions alone, ties on facet numbers. Cost O(n log n).
 struct FacetBoxes {
   std::vector<FacetBox> boxes;
   std::vector<int> order;
 
-  FacetBoxes(std::vector<Vec3> const& points, std::vector<Facet> const& facets);
+  FacetBoxes() = default;
+  /// Corners of the facets, four or (the last is -1) three.
+  FacetBoxes(std::vector<Vec3> const& points, std::vector<std::array<int, 4>> const& facets);
+
+  /// Calls look(facet) in about the order of the distances of the facets' boxes from p, as long as those are not larger than
+  /// limit(), the square of the best distance so far. Host.
+  template <class Look, class Limit>
+  void for_each_nearer(Vec3 const& p, Look const& look, Limit const& limit) const {
+    std::array<std::pair<double, int>, FacetTreeView::max_depth + 1> waiting;  // one per level that was passed, and two
+    std::size_t n_waiting = 0;
+    auto const wait = [&](int box) { waiting[n_waiting++] = {boxes[std::size_t(box)].distance2(p), box}; };
+    if (!boxes.empty()) wait(0);
+    while (n_waiting > 0) {
+      auto const [away, b] = waiting[--n_waiting];
+      if (away > limit()) continue;
+      FacetBox const& box = boxes[std::size_t(b)];
+      for (int n = box.first; n < box.first + box.count; ++n) look(order[std::size_t(n)]);
+      if (box.count > 0) continue;
+      wait(box.first);
+      wait(box.first + 1);
+      // The nearer one is looked at first.
+      if (waiting[n_waiting - 2].first < waiting[n_waiting - 1].first)
+        std::swap(waiting[n_waiting - 2], waiting[n_waiting - 1]);
+    }
+  }
 };
 
 }  // namespace gridmorph

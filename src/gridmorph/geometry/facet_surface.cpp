@@ -36,7 +36,7 @@ FacetSurface FacetSurface::from_facets(FacetList const& list, FacetOptions const
     }
 
   FacetSurface surface;
-  FacetBoxes tree(topology.points, facets);
+  FacetBoxes tree(topology.points, topology.facets);
   surface.boxes = std::move(tree.boxes);
   std::vector<std::int32_t> place(facets.size());
   for (std::size_t n = 0; n < facets.size(); ++n) place[tree.order[n]] = std::int32_t(n);

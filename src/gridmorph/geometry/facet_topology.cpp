@@ -1,6 +1,8 @@
 #include <gridmorph/geometry/facet_topology.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/point_numbers.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +11,6 @@
 #include <numeric>
 #include <string>
 #include <tuple>
-#include <unordered_map>
 
 namespace gridmorph {
 namespace {
@@ -47,35 +48,17 @@ std::vector<int> coincident(FacetList const& list, double tolerance) {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return before(list.points[a], list.points[b]); });
 
-  using Cell = std::array<long long, 3>;
-  struct Hash {
-    std::size_t operator()(Cell const& c) const {
-      return std::size_t(c[0] * 73856093LL ^ c[1] * 19349663LL ^ c[2] * 83492791LL);
-    }
-  };
-  double const width = tolerance > 0 ? tolerance : 1;
-  auto const cell = [&](Vec3 const& p) {
-    return Cell{(long long)(std::floor(p.x / width)), (long long)(std::floor(p.y / width)),
-                (long long)(std::floor(p.z / width))};
-  };
-  std::unordered_map<Cell, std::vector<int>, Hash> kept;
+  PointNumbers kept(tolerance);
   std::vector<int> stands_for(n);
   for (int const i : order) {
-    Cell const at = cell(list.points[i]);
     int found = -1;
-    for (long long dz = -1; dz <= 1; ++dz)
-      for (long long dy = -1; dy <= 1; ++dy)
-        for (long long dx = -1; dx <= 1; ++dx) {
-          auto const there = kept.find({at[0] + dx, at[1] + dy, at[2] + dz});
-          if (there == kept.end()) continue;
-          for (int const k : there->second) {
-            double const apart = distance(list.points[k], list.points[i]);
-            bool const one = apart == 0 || apart <= std::min(reach[i], reach[k]);
-            if (one && (found < 0 || before(list.points[k], list.points[found]))) found = k;
-          }
-        }
+    kept.for_each_near(list.points[i], [&](Vec3 const& p, int k) {
+      double const apart = distance(p, list.points[i]);
+      bool const one = apart == 0 || apart <= std::min(reach[i], reach[k]);
+      if (one && (found < 0 || before(p, list.points[found]))) found = k;
+    });
     stands_for[i] = found < 0 ? i : found;
-    if (found < 0) kept[at].push_back(i);
+    if (found < 0) kept.add(list.points[i], i);
   }
   return stands_for;
 }
@@ -110,13 +93,10 @@ Vec3 FacetTopology::area(int facet) const {
 }
 
 void FacetTopology::weld(FacetList const& list, double relative) {
-  Vec3 low{}, high{};
-  if (!list.points.empty()) low = high = list.points.front();
-  for (Vec3 const& p : list.points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  std::vector<int> const stands_for = coincident(list, relative * distance(low, high));
+  Box box;
+  for (Vec3 const& p : list.points) box.include(p);
+  double const size = list.points.empty() ? 0 : distance(box.low, box.high);
+  std::vector<int> const stands_for = coincident(list, relative * size);
   std::vector<int> kept;
   std::vector<char> used(list.points.size(), 0);
   for (auto const& facet : list.facets)

@@ -15,7 +15,7 @@ struct PlaneFit {
   bool determined = true;  ///< false when the points lie on one line (or are one): any plane through it fits
 };
 
-/// Least squares: the eigenvector of the smallest eigenvalue of the covariance (Jacobi rotations, exact for points on a
+/// Least squares: the eigenvector of the smallest eigenvalue of the covariance (exact for points on a
 /// coordinate plane). Precondition: points is not empty. Cost O(points).
 PlaneFit fit_plane(std::span<Vec3 const> points);
 

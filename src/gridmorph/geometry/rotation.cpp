@@ -1,6 +1,7 @@
 #include <gridmorph/geometry/rotation.hpp>
 
-#include <algorithm>
+#include <gridmorph/geometry/symmetric_eigen.hpp>
+
 #include <cmath>
 
 namespace gridmorph {
@@ -18,47 +19,73 @@ RigidTransform RigidTransform::then(RigidTransform const& next) const {
 
 namespace {
 
-Vec3 row(Mat3 const& a, int r) { return {a.m[r][0], a.m[r][1], a.m[r][2]}; }
-
-Vec3 mean(std::span<Vec3 const> points) {
+Vec3 mean_of(std::span<Vec3 const> points) {
   Vec3 sum;
   for (Vec3 const& p : points) sum += p;
   return (1 / double(points.size())) * sum;
 }
 
+/// Eigenvectors are quaternions (w, x, y, z); s[a][b] = sum of from_a to_b.
+SymmetricEigen<4> quaternions(SmallMatrix<3> const& s) {
+  return symmetric_eigen<4>(
+      {{{s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]},
+        {s[1][2] - s[2][1], s[0][0] - s[1][1] - s[2][2], s[0][1] + s[1][0], s[2][0] + s[0][2]},
+        {s[2][0] - s[0][2], s[0][1] + s[1][0], -s[0][0] + s[1][1] - s[2][2], s[1][2] + s[2][1]},
+        {s[0][1] - s[1][0], s[2][0] + s[0][2], s[1][2] + s[2][1], -s[0][0] - s[1][1] + s[2][2]}}});
+}
+
+Mat3 rotation_of(std::array<double, 4> const& quaternion) {
+  auto const [w, x, y, z] = quaternion;
+  double const l = w * w + x * x + y * y + z * z;
+  return {{{(w * w + x * x - y * y - z * z) / l, 2 * (x * y - w * z) / l, 2 * (x * z + w * y) / l},
+           {2 * (x * y + w * z) / l, (w * w - x * x + y * y - z * z) / l, 2 * (y * z - w * x) / l},
+           {2 * (x * z - w * y) / l, 2 * (y * z + w * x) / l, (w * w - x * x - y * y + z * z) / l}}};
+}
+
+struct Correlation {
+  Vec3 from, to;  ///< means
+  SmallMatrix<3> sum{};
+
+  Correlation(std::span<Vec3 const> before, std::span<Vec3 const> after) : from(mean_of(before)), to(mean_of(after)) {
+    for (std::size_t n = 0; n < before.size(); ++n) {
+      Vec3 const f = before[n] - from, t = after[n] - to;
+      std::array<double, 3> const fv{f.x, f.y, f.z}, tv{t.x, t.y, t.z};
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b) sum[a][b] += fv[a] * tv[b];
+    }
+  }
+  [[nodiscard]] double size() const {
+    double squares = 0;
+    for (auto const& row : sum)
+      for (double const v : row) squares += v * v;
+    return std::sqrt(squares);
+  }
+  [[nodiscard]] double determinant() const {
+    auto const row = [&](std::size_t r) { return Vec3{sum[r][0], sum[r][1], sum[r][2]}; };
+    return dot(row(0), cross(row(1), row(2)));
+  }
+};
+
 }  // namespace
 
-Mat3 from_columns(Vec3 const& a, Vec3 const& b, Vec3 const& c) {
-  return {{{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}}};
+Mat3 rotation_matrix(Vec3 const& direction, double angle_rad) {
+  double const s = std::sin(angle_rad), c = std::cos(angle_rad), v = 1 - c;
+  auto const [x, y, z] = direction;
+  return {{{c + x * x * v, x * y * v - z * s, x * z * v + y * s},
+           {y * x * v + z * s, c + y * y * v, y * z * v - x * s},
+           {z * x * v - y * s, z * y * v + x * s, c + z * z * v}}};
 }
 
-Mat3 cofactor(Mat3 const& a) {
-  Vec3 const x = row(a, 0), y = row(a, 1), z = row(a, 2);
-  return transpose(from_columns(cross(y, z), cross(z, x), cross(x, y)));
+RigidTransform rotation_about(Vec3 const& origin, Vec3 const& direction, double angle_rad) {
+  Mat3 const r = rotation_matrix((1 / norm(direction)) * direction, angle_rad);
+  return {r, origin - r * origin};
 }
 
-double determinant(Mat3 const& a) { return dot(row(a, 0), cross(row(a, 1), row(a, 2))); }
-
-Mat3 inverse(Mat3 const& a) {
-  Vec3 const x = row(a, 0), y = row(a, 1), z = row(a, 2);
-  Vec3 const u = cross(y, z), v = cross(z, x), w = cross(x, y);
-  double const scale = 1 / dot(x, u);
-  return from_columns(scale * u, scale * v, scale * w);
-}
-
-Mat3 polar_rotation(Mat3 x) {
-  for (int n = 0; n < 30; ++n) {
-    Mat3 const t = transpose(inverse(x));
-    double change = 0;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        double const next = 0.5 * (x.m[i][j] + t.m[i][j]);
-        change = std::max(change, std::fabs(next - x.m[i][j]));
-        x.m[i][j] = next;
-      }
-    if (change < 1e-15) break;
-  }
-  return x;
+Mat3 nearest_rotation(Mat3 const& m) {
+  SmallMatrix<3> s{};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b) s[a][b] = m.m[b][a];
+  return rotation_of(quaternions(s).vector[0]);
 }
 
 Vec3 rotation_vector(Mat3 const& r) {
@@ -80,34 +107,22 @@ Mat3 rotation_by(Vec3 const& v) {
   return angle > 0 ? rotation_matrix((1 / angle) * v, angle) : Mat3();
 }
 
+RigidTransform fit_rigid_transform(std::span<Vec3 const> from, std::span<Vec3 const> to) {
+  Correlation const c(from, to);
+  Mat3 const r = rotation_of(quaternions(c.sum).vector[0]);
+  return {r, c.to - r * c.from};
+}
+
 std::optional<RigidFit> rigid_fit(std::span<Vec3 const> before, std::span<Vec3 const> after) {
   if (before.empty()) return {};
-  RigidFit fit{mean(before), mean(after), {}};
-  Mat3 h{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
-  for (std::size_t n = 0; n < before.size(); ++n) {
-    Vec3 const x = before[n] - fit.from, y = after[n] - fit.to;
-    for (int j = 0; j < 3; ++j) {
-      double const xj = j == 0 ? x.x : j == 1 ? x.y : x.z;
-      h.m[0][j] += y.x * xj;
-      h.m[1][j] += y.y * xj;
-      h.m[2][j] += y.z * xj;
-    }
-  }
-  double size = 0;
-  for (auto const& r : h.m)
-    for (double const value : r) size += value * value;
-  size = std::sqrt(size);
-  if (!(size > 0)) return {};
-  for (auto& r : h.m)
-    for (double& value : r) value /= size;
-  constexpr double smallest = 1e-9;  // where all directions were alike it would be 0.2
-  if (determinant(h) < -smallest) return {};
-  Mat3 const c = cofactor(h);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) h.m[i][j] += c.m[i][j];
-  if (!(determinant(h) > smallest)) return {};
-  fit.rotation = polar_rotation(h);
-  return fit;
+  Correlation const c(before, after);
+  double const size = c.size();
+  // With singular values a >= b >= c of the sum, negative c where it mirrors, the two greatest eigenvalues are a + b + c and a - b - c.
+  constexpr double mirrored = 1e-9, alone = 6e-5;
+  if (!(size > 0) || c.determinant() < -mirrored * size * size * size) return {};
+  auto const q = quaternions(c.sum);
+  if (!(q.value[0] - q.value[1] > alone * size)) return {};
+  return RigidFit{c.from, c.to, rotation_of(q.vector[0])};
 }
 
 }  // namespace gridmorph

@@ -8,22 +8,20 @@
 
 namespace gridmorph {
 
-Mat3 from_columns(Vec3 const& a, Vec3 const& b, Vec3 const& c);
-
-/// Determinants and products of two rows each: cofactor(a) = det(a) transpose(inverse(a)), for singular matrices too.
-Mat3 cofactor(Mat3 const& a);
-double determinant(Mat3 const& a);
-/// Inverse of a matrix whose determinant is not zero.
-Mat3 inverse(Mat3 const& a);
-
-/// The rotation of a deformation with a positive determinant: Newton's iteration X <- (X + X^-T) / 2 (N. J. Higham,
-/// "Computing the polar decomposition - with applications", SIAM J. Sci. Stat. Comput. 7 (1986)).
-Mat3 polar_rotation(Mat3 x);
+/// The rotation R that makes the trace of R^T m greatest, and so |R - m| smallest: of a deformation with a positive
+/// determinant its polar rotation. The unit quaternion is the eigenvector of the greatest eigenvalue of a symmetric 4x4
+/// matrix of sums of entries of m (Horn, "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4
+/// (1987)). Symmetric positive matrices give exactly the identity.
+Mat3 nearest_rotation(Mat3 const& m);
 
 /// Angle times axis of a rotation; the identity gives exactly zero.
 Vec3 rotation_vector(Mat3 const& rotation);
 /// The rotation by |v| about v.
 Mat3 rotation_by(Vec3 const& v);
+
+/// The rigid transform that maps from[n] onto to[n] best in the least-squares sense; for points on a line one of those that
+/// do. As many points in both, one at least. Cost: O(points).
+RigidTransform fit_rigid_transform(std::span<Vec3 const> from, std::span<Vec3 const> to);
 
 /// Points that move like a rigid body, as nearly as they do: x -> to + rotation (x - from).
 struct RigidFit {
@@ -31,9 +29,7 @@ struct RigidFit {
   Mat3 rotation;
 };
 
-/// The rotation is the polar one of H / |H| + cofactor(H / |H|), H the sum of (x' - to)(x - from)^T; the second part adds the
-/// normal where all points lie in a plane, and changes nothing where they move rigidly. Nothing for points on a line, and for
-/// a motion that mirrors them. Cost: O(points).
+/// The same fit; nothing where it is not the only one (points on a line), and for a motion that mirrors the points.
 std::optional<RigidFit> rigid_fit(std::span<Vec3 const> before, std::span<Vec3 const> after);
 
 }  // namespace gridmorph

@@ -1,7 +1,5 @@
 #include <gridmorph/geometry/target_tree.hpp>
 
-#include <gridmorph/geometry/facet_boxes.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,13 +20,9 @@ Vec3 closest_on_triangle(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const
 
 TargetTree::TargetTree(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles)
     : points_(std::move(points)), triangles_(std::move(triangles)) {
-  if (triangles_.empty()) return;
-  std::vector<Facet> facets(triangles_.size());
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (int c = 0; c < 3; ++c) facets[t].corner[c] = triangles_[t][c];
-  FacetBoxes tree(points_, facets);
-  boxes_ = std::move(tree.boxes);
-  order_ = std::move(tree.order);
+  std::vector<std::array<int, 4>> facets;
+  for (auto const& t : triangles_) facets.push_back({t[0], t[1], t[2], -1});
+  tree_ = FacetBoxes(points_, facets);
 }
 
 Vec3 TargetTree::normal(int triangle) const {
@@ -40,34 +34,17 @@ template <class Accept>
 TargetTree::Hit TargetTree::search(Vec3 const& p, Accept const& accept) const {
   Hit best;
   double nearest = std::numeric_limits<double>::infinity();
-  std::vector<std::pair<double, int>> waiting;
-  auto const wait = [&](int box) { waiting.emplace_back(boxes_[box].distance2(p), box); };
-  if (!boxes_.empty()) wait(0);
-  while (!waiting.empty()) {
-    auto const [away, b] = waiting.back();
-    waiting.pop_back();
-    if (away > nearest) continue;
-    FacetBox const& box = boxes_[b];
-    if (box.count == 0) {
-      wait(box.first);
-      wait(box.first + 1);
-      // The nearer one is looked at first.
-      if (auto const last = waiting.end() - 1, before = last - 1; before->first < last->first)
-        std::iter_swap(before, last);
-      continue;
+  auto const look = [&](int t) {
+    if (!accept(t)) return;
+    auto const& [i, j, k] = triangles_[t];
+    Vec3 const q = closest_on_triangle(p, points_[i], points_[j], points_[k]);
+    double const d = dot(q - p, q - p);
+    if (d < nearest || (d == nearest && t < best.triangle)) {
+      nearest = d;
+      best = {t, q, 0};
     }
-    for (int n = box.first; n < box.first + box.count; ++n) {
-      int const t = order_[n];
-      if (!accept(t)) continue;
-      auto const& [i, j, k] = triangles_[t];
-      Vec3 const q = closest_on_triangle(p, points_[i], points_[j], points_[k]);
-      double const d = dot(q - p, q - p);
-      if (d < nearest || (d == nearest && t < best.triangle)) {
-        nearest = d;
-        best = {t, q, 0};
-      }
-    }
-  }
+  };
+  tree_.for_each_nearer(p, look, [&] { return nearest; });
   if (best.triangle >= 0) best.distance = std::sqrt(nearest);
   return best;
 }

@@ -1,7 +1,7 @@
 // Closest points on a surface of triangles, on the host.
 #pragma once
 
-#include <gridmorph/kernels/facet_tree.hpp>
+#include <gridmorph/geometry/facet_boxes.hpp>
 
 #include <array>
 #include <functional>
@@ -45,8 +45,7 @@ class TargetTree {
 
   std::vector<Vec3> points_;
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<FacetBox> boxes_;
-  std::vector<int> order_;  ///< triangles as the leaves list them
+  FacetBoxes tree_;
 };
 
 }  // namespace gridmorph

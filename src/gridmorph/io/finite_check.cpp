@@ -1,18 +1,14 @@
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/mesh/extent.hpp>
-
-#include <array>
-#include <cstdio>
 
 namespace gridmorph::io {
 
 std::string unusable_nodes(std::string const& where, Index count, std::string const& zone, std::string const& first,
                            Vec3 const& at) {
-  std::array<char, 120> point{};
-  std::snprintf(point.data(), point.size(), "(%.9g, %.9g, %.9g)", at.x, at.y, at.z);
   return where + ": " + std::to_string(count) + (count == 1 ? " node" : " nodes") + " of zone '" + zone +
          "' have coordinates that are not finite numbers or larger than 1e100, the first is " + first + " at " +
-         point.data() + "; repair the mesh where it was made";
+         to_text(at, 9) + "; repair the mesh where it was made";
 }
 
 void check_finite(Mesh const& mesh, Coordinates const& coordinates, std::string const& where, Problems& problems) {

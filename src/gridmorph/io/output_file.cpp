@@ -229,6 +229,14 @@ void OutputFile::copy_from(std::string const& input) const {
   if (!to.close()) throw MachineError(output_ + ": cannot be written: " + system_reason());
 }
 
+void OutputFile::write(std::string_view bytes) const {
+  errno = 0;
+  Descriptor file(::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC));
+  if (file.get() < 0 || !write_all(file.get(), bytes.data(), bytes.size()) ||
+      ::ftruncate(file.get(), off_t(bytes.size())) != 0 || !file.close())
+    throw MachineError(output_ + ": cannot be written: " + system_reason() + "; check space and permissions");
+}
+
 void OutputFile::reserve(std::uint64_t bytes) const {
   auto const size = fs::file_size(temporary_);
   Descriptor const file(::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC));

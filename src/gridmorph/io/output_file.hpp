@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace gridmorph::io {
 
@@ -30,6 +31,9 @@ class OutputFile {
 
   /// Fills the temporary file with the bytes of another. Throws IoError (input) or MachineError (disk full, ...).
   void copy_from(std::string const& input) const;
+  /// Makes the temporary file hold these bytes and nothing else. What takes the place of a longer text needs no more room on
+  /// the disk. Throws MachineError.
+  void write(std::string_view bytes) const;
   /// Makes sure that the temporary file can grow by that many bytes, and leaves it as long as it was. Throws MachineError.
   ///
   /// Called before a library writes: HDF5 cannot close a file that it failed to write, and the CGNS library then mistakes

@@ -1,5 +1,7 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/mapping/detail/facet_tree.hpp>
+#include <gridmorph/core/text.hpp>
+#include <gridmorph/geometry/facet_boxes.hpp>
+#include <gridmorph/mapping/detail/facet_shape.hpp>
 #include <gridmorph/mapping/facet_map.hpp>
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -17,7 +20,6 @@ namespace {
 
 using casefile::FacetPoint;
 using casefile::FacetShape;
-using casefile::FacetTree;
 
 constexpr std::size_t most_problems = 10;
 /// An element whose area is below this share of its longest side squared is a line.
@@ -49,13 +51,20 @@ double longest_side(std::vector<Vec3> const& corners) {
 struct FacetMap::Impl {
   std::vector<Vec3> position;
   std::vector<StructuralFacet> facets;
+  std::vector<FacetShape> shapes;
   std::vector<std::array<bool, 4>> free_side;  // no other element has it
   Extrapolation extrapolation;
   double coincidence;
-  std::unique_ptr<FacetTree> tree;
+  FacetBoxes tree;  // a bilinear surface lies inside the hull of its corners, so that their boxes hold the elements
 
+  struct Hit {
+    int facet = -1;
+    FacetPoint point;
+  };
+  /// The closest facet; of equally close ones that with the lowest number. Cost O(log n).
+  [[nodiscard]] Hit closest(Vec3 const& q) const;
   void find_free_sides();
-  [[nodiscard]] bool at_free_side(FacetTree::Hit const& hit) const;
+  [[nodiscard]] bool at_free_side(Hit const& hit) const;
 };
 
 FacetMap::FacetMap(StructuralModel const& model, Extrapolation extrapolation, double coincidence)
@@ -64,23 +73,20 @@ FacetMap::FacetMap(StructuralModel const& model, Extrapolation extrapolation, do
   impl_->facets = model.facets;
   impl_->extrapolation = extrapolation;
   impl_->coincidence = coincidence;
-  std::vector<FacetShape> shapes;
-  std::vector<std::vector<Vec3>> corners;
+  std::vector<std::array<int, 4>> nodes;
   Problems problems;
   for (StructuralFacet const& facet : model.facets) {
-    corners.push_back(corners_of(model, facet));
-    shapes.push_back(shape_of(corners.back()));
-    double const side = longest_side(corners.back());
-    if (norm(shapes.back().area_vector()) > no_area * side * side) continue;
-    Vec3 const& p = corners.back().front();
-    problems.add(
-        fmt::format("{}:{}: the element at ({:.6g}, {:.6g}, {:.6g}) has no area; remove it or correct its "
-                    "nodes",
-                    model.elements, facet.place, p.x, p.y, p.z));
+    auto const corners = corners_of(model, facet);
+    nodes.push_back(facet.node);
+    impl_->shapes.push_back(shape_of(corners));
+    double const side = longest_side(corners);
+    if (norm(impl_->shapes.back().area_vector()) > no_area * side * side) continue;
+    problems.add(fmt::format("{}:{}: the element at {} has no area; remove it or correct its nodes", model.elements,
+                             facet.place, to_text(corners.front(), 6)));
     if (problems.messages().size() >= most_problems) break;
   }
   problems.throw_if_any<ConfigError>();
-  impl_->tree = std::make_unique<FacetTree>(std::move(shapes), corners);
+  impl_->tree = FacetBoxes(impl_->position, nodes);
   impl_->find_free_sides();
 }
 
@@ -102,16 +108,27 @@ void FacetMap::Impl::find_free_sides() {
   }
 }
 
-bool FacetMap::Impl::at_free_side(FacetTree::Hit const& hit) const {
+FacetMap::Impl::Hit FacetMap::Impl::closest(Vec3 const& q) const {
+  Hit best;
+  best.point.squared = std::numeric_limits<double>::max();
+  auto const look = [&](int f) {
+    FacetPoint const p = shapes[f].closest(q);
+    if (p.squared < best.point.squared || (p.squared == best.point.squared && f < best.facet)) best = {f, p};
+  };
+  tree.for_each_nearer(q, look, [&] { return best.point.squared; });
+  return best;
+}
+
+bool FacetMap::Impl::at_free_side(Hit const& hit) const {
   for (int s = 0; s < facets[hit.facet].corners(); ++s)
-    if (free_side[hit.facet][s] && tree->facet(hit.facet).on_side(hit.point, s)) return true;
+    if (free_side[hit.facet][s] && shapes[hit.facet].on_side(hit.point, s)) return true;
   return false;
 }
 
 Stencil FacetMap::stencil(Vec3 const& q) const {
-  FacetTree::Hit const hit = impl_->tree->closest(q);
+  Impl::Hit const hit = impl_->closest(q);
   StructuralFacet const& facet = impl_->facets[hit.facet];
-  FacetShape const& shape = impl_->tree->facet(hit.facet);
+  FacetShape const& shape = impl_->shapes[hit.facet];
   FacetPoint const& p = hit.point;
   int const n = facet.corners();
   Stencil out;

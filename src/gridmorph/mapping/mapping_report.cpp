@@ -1,3 +1,4 @@
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
 
 #include <fmt/format.h>
@@ -12,13 +13,13 @@ std::string describe_mapping(PointField const& field) {
                        field.source(), m.evaluated, m.max);
   std::string text = fmt::format(
       "{}: {} of {} node positions coincide with points of the file, the others are {}; mapping distance mean {:.3g}, "
-      "largest {:.3g} at ({:.6g}, {:.6g}, {:.6g})",
+      "largest {:.3g} at {}",
       field.source(), m.coincident, m.evaluated,
       field.n_elements() > 0 ? fmt::format("mapped from its {} elements", field.n_elements()) : "interpolated", m.mean,
-      m.max, m.farthest.x, m.farthest.y, m.farthest.z);
+      m.max, to_text(m.farthest, 6));
   if (m.extrapolated > 0)
-    text += fmt::format("; {} are beyond its edge, by {:.3g} at most, at ({:.6g}, {:.6g}, {:.6g})", m.extrapolated,
-                        m.max_beyond, m.farthest_beyond.x, m.farthest_beyond.y, m.farthest_beyond.z);
+    text += fmt::format("; {} are beyond its edge, by {:.3g} at most, at {}", m.extrapolated, m.max_beyond,
+                        to_text(m.farthest_beyond, 6));
   if (auto const e = field.leave_one_out(); e.tried > 0)
     text += fmt::format("; leave-one-out error {:.2g} % of the largest displacement (rms {:.2g} %), worst at {}",
                         100 * e.max, 100 * e.rms, field.where(e.worst));

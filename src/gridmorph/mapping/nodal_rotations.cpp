@@ -29,6 +29,12 @@ Frame frame_of(std::array<Vec3, 4> const& x, int corners) {
   return f;
 }
 
+void add_product(Mat3& f, Vec3 const& to, Vec3 const& from) {
+  double const t[3] = {to.x, to.y, to.z}, s[3] = {from.x, from.y, from.z};
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) f.m[r][c] += t[r] * s[c];
+}
+
 }  // namespace
 
 std::vector<Vec3> nodal_rotations(StructuralModel const& model, std::span<Vec3 const> displacement) {
@@ -49,9 +55,11 @@ std::vector<Vec3> nodal_rotations(StructuralModel const& model, std::span<Vec3 c
     Frame const change = frame_of(u, n);
     bool const still = change.a == Vec3{0, 0, 0} && change.b == Vec3{0, 0, 0};
     Vec3 const turned = still ? Vec3{0, 0, 0} : after.normal - before.normal;
-    Mat3 f = from_columns(change.a, change.b, turned) * inverse(from_columns(before.a, before.b, before.normal));
-    for (int d = 0; d < 3; ++d) f.m[d][d] += 1;
-    Vec3 const w = before.area * rotation_vector(polar_rotation(f));
+    Mat3 f;
+    add_product(f, change.a, (1 / before.area) * cross(before.b, before.normal));
+    add_product(f, change.b, (1 / before.area) * cross(before.normal, before.a));
+    add_product(f, turned, before.normal);
+    Vec3 const w = before.area * rotation_vector(nearest_rotation(f));
     for (int c = 0; c < n; ++c) {
       rotation[facet.node[c]] += w;
       weight[facet.node[c]] += before.area;

@@ -18,7 +18,6 @@ namespace {
 using casefile::Lines;
 using casefile::most_problems_per_file;
 using casefile::split;
-using casefile::to_number;
 
 constexpr std::size_t n_required = 6, n_known = 10;
 constexpr std::array<std::string_view, n_known> column_names{"x",  "y",     "z",     "dx",    "dy",

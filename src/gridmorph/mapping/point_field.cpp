@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/mapping/detail/merge_nodes.hpp>
 #include <gridmorph/mapping/facet_map.hpp>
 #include <gridmorph/mapping/point_field.hpp>
@@ -71,9 +72,8 @@ void PointField::Impl::scale() {
 void PointField::Impl::check(Vec3 const& q, Stencil const& stencil) const {
   auto const refuse = [&](double d, std::string const& from, std::string_view key, double limit) {
     throw MotionError(
-        fmt::format("{}: the node at ({:.9g}, {:.9g}, {:.9g}) is {:.6g} {}, farther than {} = {:.6g}; check units and "
-                    "position of the file",
-                    model.nodes.source, q.x, q.y, q.z, d, from, key, limit));
+        fmt::format("{}: the node at {} is {:.6g} {}, farther than {} = {:.6g}; check units and position of the file",
+                    model.nodes.source, to_text(q, 9), d, from, key, limit));
   };
   if (options.max_distance > 0 && stencil.distance > options.max_distance) {
     auto const place = model.nodes.line[points->nearest(q).first];

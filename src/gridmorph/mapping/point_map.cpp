@@ -1,4 +1,5 @@
 #include <gridmorph/geometry/symmetric_eigen.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mapping/detail/hull_distance.hpp>
 #include <gridmorph/mapping/detail/point_levels.hpp>
 #include <gridmorph/mapping/point_map.hpp>
@@ -47,35 +48,28 @@ struct Neighbours {
   }
 };
 
-/// Weighted second moments about the weighted mean.
-struct Moments {
-  Vec3 centre;                     ///< weighted mean of the offsets
-  std::array<double, 3> variance;  ///< principal
-  Mat3 direction;                  ///< their directions, columns
-
-  Moments(std::vector<Vec3> const& offset, std::vector<double> const& weight) {
-    for (std::size_t i = 0; i < offset.size(); ++i) centre += weight[i] * offset[i];
-    Mat3 c{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
-    for (std::size_t i = 0; i < offset.size(); ++i) {
-      Vec3 const d = offset[i] - centre;
-      double const a[3] = {d.x, d.y, d.z};
-      for (int r = 0; r < 3; ++r)
-        for (int s = 0; s < 3; ++s) c.m[r][s] += weight[i] * a[r] * a[s];
-    }
-    direction = casefile::eigenvectors(c, variance);
-  }
-  [[nodiscard]] double largest() const { return std::max({variance[0], variance[1], variance[2]}); }
+/// Weighted second moments about the weighted mean of offsets.
+struct Spread {
+  Vec3 centre;
+  PrincipalAxes axes;
 };
 
-Moments even_moments(Neighbours const& near) {
+Spread spread_of(std::vector<Vec3> const& offset, std::vector<double> const& weight) {
+  Vec3 centre;
+  for (std::size_t i = 0; i < offset.size(); ++i) centre += weight[i] * offset[i];
+  Moments moments;
+  for (std::size_t i = 0; i < offset.size(); ++i) moments.add(weight[i], offset[i] - centre);
+  return {centre, PrincipalAxes(moments)};
+}
+
+Spread even_spread(Neighbours const& near) {
   std::size_t const n = near.number.size();
-  return {near.offset, std::vector<double>(n, 1.0 / double(n))};
+  return spread_of(near.offset, std::vector<double>(n, 1.0 / double(n)));
 }
 
 bool on_a_line(Neighbours const& near) {
-  auto variance = even_moments(near).variance;
-  std::sort(variance.begin(), variance.end());
-  return variance[1] < line_like * variance[2];
+  auto const& moment = even_spread(near).axes.moment;
+  return moment[1] < line_like * moment[0];
 }
 
 /// Franke-Little weights ((R - d) / (R d))^2, sum 1.
@@ -96,14 +90,14 @@ std::vector<double> weights(std::vector<Vec3> const& offset) {
 /// From the position to the closest place among its neighbours, along the surface or through the volume that they span;
 /// zero for a position between them.
 Vec3 to_the_edge(Neighbours const& near) {
-  Moments const m = even_moments(near);
+  PrincipalAxes const axes = even_spread(near).axes;
   std::vector<Vec3> spanned_part(near.offset.size());
   double farthest = 0;
   for (std::size_t i = 0; i < spanned_part.size(); ++i) {
     farthest = std::max(farthest, norm(near.offset[i]));
     for (int k = 0; k < 3; ++k) {
-      if (m.variance[k] < spanned * m.largest()) continue;
-      Vec3 const e = casefile::column(m.direction, k);
+      if (axes.moment[k] < spanned * axes.moment[0]) continue;
+      Vec3 const e = axes.direction[k];
       spanned_part[i] += dot(near.offset[i], e) * e;
     }
   }
@@ -120,14 +114,13 @@ struct PointMap::Impl {
 
 PointMap::PointMap(std::vector<Vec3> const& position, Extrapolation extrapolation) : impl_(std::make_unique<Impl>()) {
   impl_->extrapolation = extrapolation;
-  Vec3 low = position.front(), high = low;
+  Box box;
   double magnitude = 0;
   for (Vec3 const& p : position) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    box.include(p);
     magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
   }
-  impl_->coincidence = 1e-7 * std::max(distance(low, high), magnitude);
+  impl_->coincidence = 1e-7 * std::max(distance(box.low, box.high), magnitude);
   impl_->levels = casefile::make_levels(position, 2 * n_neighbours);
 }
 
@@ -160,22 +153,22 @@ Stencil PointMap::stencil(Vec3 const& q, std::optional<std::size_t> without) con
     if (!on_a_line(near)) break;
   }
   std::vector<double> w = weights(near.offset);
-  Moments const m(near.offset, w);
+  auto const [centre, axes] = spread_of(near.offset, w);
   std::vector<double> gradient(w.size(), 0.0);
-  double const cut = flat_like * m.largest();
+  double const cut = flat_like * axes.moment[0];
   Vec3 const edge = to_the_edge(near);
   Vec3 const place = impl_->extrapolation == Extrapolation::nearest ? edge : Vec3{0, 0, 0};
   for (int k = 0; k < 3; ++k) {
-    double const lambda = m.variance[k];
+    double const lambda = axes.moment[k];
     if (!(lambda > 0)) continue;
-    Vec3 const e = casefile::column(m.direction, k);
+    Vec3 const e = axes.direction[k];
     double reach = 0;
-    for (Vec3 const& o : near.offset) reach = std::max(reach, std::fabs(dot(o - m.centre, e)));
+    for (Vec3 const& o : near.offset) reach = std::max(reach, std::fabs(dot(o - centre, e)));
     double const limit = largest_extrapolation * reach;
-    double const step = std::clamp(dot(place - m.centre, e), -limit, limit);
+    double const step = std::clamp(dot(place - centre, e), -limit, limit);
     // lambda / (lambda^2 + cut^2) is 1 / lambda for directions that the points span and fades to zero for the others.
     double const factor = step * lambda / (lambda * lambda + cut * cut);
-    for (std::size_t i = 0; i < w.size(); ++i) gradient[i] += factor * dot(near.offset[i] - m.centre, e);
+    for (std::size_t i = 0; i < w.size(); ++i) gradient[i] += factor * dot(near.offset[i] - centre, e);
   }
   out.reference = std::int32_t(near.number.front());
   for (std::size_t i = 0; i < w.size(); ++i)

@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/element_model.hpp>
+#include <gridmorph/io/file_check.hpp>
 #include <gridmorph/mapping/structural_model.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 #include <unordered_map>
 
@@ -20,15 +20,11 @@ namespace {
 using casefile::Lines;
 using casefile::most_problems_per_file;
 
-/// HDF5 and ADF files say what they are in their first bytes.
 bool is_cgns(std::filesystem::path const& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;  // the reader of texts says why
-  std::ifstream in(path, std::ios::binary);
-  std::array<char, 8> head{};
-  in.read(head.data(), head.size());
-  std::string_view const bytes(head.data(), std::size_t(in.gcount()));
-  return bytes == "\x89HDF\r\n\x1a\n" || bytes.substr(0, 7) == "@(#)ADF";
+  // Of what is no file, or empty, the reader of texts says why.
+  return std::filesystem::is_regular_file(path, error) && !std::filesystem::is_empty(path, error) &&
+         cgns::is_cgns(path.string());
 }
 
 /// Numbers of the nodes by their ids.
@@ -63,7 +59,7 @@ bool read_whole_numbers(std::vector<std::string_view> const& fields, std::string
   numbers.clear();
   for (std::string_view const field : fields) {
     if (field.empty() && numbers.size() == 4 && fields.size() == 5) break;
-    auto const number = casefile::to_number(field);
+    auto const number = to_number(field);
     if (!number || *number != std::floor(*number) || std::fabs(*number) > 9e15) {
       problems.add(fmt::format("{}: \"{}\" is not a whole number; an element is id, n1, n2, n3 or id, n1, n2, n3, n4",
                                where, field.substr(0, 40)));
@@ -110,8 +106,7 @@ std::vector<StructuralFacet> parse_elements(std::string_view text, std::string c
     if (first) separator = casefile::separator_of(lines.line());
     casefile::split(lines.line(), separator, fields);
     std::string const where = fmt::format("{}:{}", source, lines.number());
-    if (first &&
-        std::none_of(fields.begin(), fields.end(), [](auto f) { return casefile::to_number(f).has_value(); })) {
+    if (first && std::none_of(fields.begin(), fields.end(), [](auto f) { return to_number(f).has_value(); })) {
       static constexpr std::array<std::string_view, 4> nodes_of_header{"n1", "n2", "n3", "n4"};
       bool good = fields.size() == 4 || fields.size() == 5;
       for (std::size_t f = 1; f < fields.size() && good; ++f)

@@ -1,13 +1,11 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/read_file.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <cmath>
-#include <fstream>
 #include <system_error>
 
 namespace gridmorph::casefile {
@@ -41,20 +39,6 @@ char separator_of(std::string_view line) {
   for (char const c : {';', ','})
     if (line.find(c) != std::string_view::npos) return c;
   return ' ';
-}
-
-std::optional<double> to_number(std::string_view field) {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
-  double value = 0;
-  auto const [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error == std::errc::result_out_of_range && end == field.data() + field.size()) {
-    // Too small to represent is zero for a length; too large is not a number of use.
-    std::size_t const exponent = field.find_first_of("eE");
-    bool const tiny = exponent != std::string_view::npos && field.find('-', exponent) != std::string_view::npos;
-    return tiny ? 0.0 : HUGE_VAL;
-  }
-  if (error != std::errc() || end != field.data() + field.size() || field.empty()) return std::nullopt;
-  return value;
 }
 
 std::string plain_name(std::string_view field) {
@@ -91,15 +75,7 @@ std::string read_text_file(std::filesystem::path const& path, std::string_view w
         fmt::format("{} '{}' is no ordinary file (a device, a pipe or a socket); give a file", what, path.string()));
   if (auto const size = std::filesystem::file_size(path, error); !error && size > most)
     throw ConfigError(fmt::format("{} '{}' has {} bytes, too many for one; is it a mesh?", what, path.string(), size));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ConfigError(fmt::format("{} '{}' cannot be opened; check its permissions", what, path.string()));
-  std::string text;
-  auto const size = std::filesystem::file_size(path, error);
-  if (!error) text.reserve(size);
-  std::array<char, 1 << 16> chunk;
-  while (in.read(chunk.data(), chunk.size()) || in.gcount() > 0) text.append(chunk.data(), std::size_t(in.gcount()));
-  if (in.bad()) throw ConfigError(fmt::format("{} '{}' cannot be read to its end", what, path.string()));
-  return text;
+  return io::read_file(path.string());
 }
 
 }  // namespace gridmorph::casefile

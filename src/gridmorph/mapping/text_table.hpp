@@ -1,10 +1,11 @@
 // Tables in text files: lines of numbers under an optional header. Internal to casefile.
 #pragma once
 
+#include <gridmorph/core/text.hpp>
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,9 +26,6 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
 
 /// ';' or ',' where the line has one, else a blank (tabs count as blanks).
 char separator_of(std::string_view line);
-
-/// A number, or nothing. HUGE_VAL when it is too large to represent; too small is zero.
-std::optional<double> to_number(std::string_view field);
 
 /// A header's name for a column as it is compared: lower case, without quotes and blanks.
 std::string plain_name(std::string_view field);

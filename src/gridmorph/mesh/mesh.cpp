@@ -21,19 +21,6 @@ std::string to_string(IndexRange const& range) {
   return text + "]";
 }
 
-Mat3 rotation_matrix(Vec3 const& direction, double angle_rad) {
-  double const s = std::sin(angle_rad), c = std::cos(angle_rad), v = 1 - c;
-  auto const [x, y, z] = direction;
-  return {{{c + x * x * v, x * y * v - z * s, x * z * v + y * s},
-           {y * x * v + z * s, c + y * y * v, y * z * v - x * s},
-           {z * x * v - y * s, z * y * v + x * s, c + z * z * v}}};
-}
-
-RigidTransform rotation_about(Vec3 const& origin, Vec3 const& direction, double angle_rad) {
-  Mat3 const r = rotation_matrix((1 / norm(direction)) * direction, angle_rad);
-  return {r, origin - r * origin};
-}
-
 Periodic periodic_rotation(Vec3 const& center, Vec3 const& direction, double angle_rad) {
   Periodic out;
   out.rotation_center = center;

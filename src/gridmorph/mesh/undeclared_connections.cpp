@@ -1,3 +1,4 @@
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/mesh/coincident_pairs.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
@@ -58,23 +59,15 @@ std::vector<Index> open_nodes(UnstructuredMesh const& mesh) {
 }  // namespace
 
 std::vector<Index32> nodes_at_one_place(UnstructuredMesh const& mesh) {
-  std::vector<Index32> root = coincident_nodes(mesh);
-  if (mesh.zones.size() < 2) return root;
+  DisjointSets<Index32> sets(coincident_nodes(mesh));
+  if (mesh.zones.size() < 2) return sets.roots();
   bool const single =
       std::any_of(mesh.zones.begin(), mesh.zones.end(), [](auto const& zone) { return zone.single_precision; });
   auto const pairs = coincident_pairs(
       mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of_node(n); },
       coincidence_tolerance(mesh.size(), single));
-  auto const find = [&](Index32 n) {
-    while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
-    return n;
-  };
-  for (auto const& [a, b] : pairs) {
-    Index32 const p = find(Index32(a)), q = find(Index32(b));
-    root[std::size_t(std::max(p, q))] = std::min(p, q);
-  }
-  for (Index32 n = 0; n < Index32(root.size()); ++n) root[std::size_t(n)] = find(n);
-  return root;
+  for (auto const& [a, b] : pairs) sets.join(Index32(a), Index32(b));
+  return sets.roots();
 }
 
 std::string describe(UnstructuredMesh const& mesh, TouchingPatches const& pair) {

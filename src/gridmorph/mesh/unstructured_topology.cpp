@@ -1,9 +1,9 @@
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/core/index_buckets.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 namespace gridmorph {
@@ -201,21 +201,12 @@ Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index
 }
 
 std::vector<Index32> coincident_nodes(UnstructuredMesh const& mesh) {
-  std::vector<Index32> root(std::size_t(mesh.n_nodes()));
-  std::iota(root.begin(), root.end(), 0);
-  auto const find = [&](Index32 n) {
-    while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
-    return n;
-  };
+  DisjointSets<Index32> sets(std::size_t(mesh.n_nodes()));
   for (auto const& c : mesh.connections) {
     if (c.periodic) continue;
-    for (std::size_t p = 0; p < c.nodes.size(); ++p) {
-      Index32 const a = find(c.nodes[p]), b = find(c.donor_nodes[p]);
-      root[std::size_t(std::max(a, b))] = std::min(a, b);
-    }
+    for (std::size_t p = 0; p < c.nodes.size(); ++p) sets.join(c.nodes[p], c.donor_nodes[p]);
   }
-  for (Index32 n = 0; n < Index32(root.size()); ++n) root[std::size_t(n)] = find(n);
-  return root;
+  return sets.roots();
 }
 
 std::vector<std::uint8_t> periodic_nodes(UnstructuredMesh const& mesh) {

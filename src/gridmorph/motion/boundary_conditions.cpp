@@ -2,29 +2,17 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <set>
 
 namespace gridmorph {
 
 namespace {
-
-std::string text(Vec3 const& v) {
-  char buffer[120];
-  std::snprintf(buffer, sizeof buffer, "(%.6g, %.6g, %.6g)", v.x, v.y, v.z);
-  return buffer;
-}
-
-std::string text(double v) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.6g", v);
-  return buffer;
-}
 
 std::string label(MotionRule const& rule, std::size_t r) {
   return "rule " + std::to_string(r + 1) + " (" + std::string(rule_name(rule.rule)) +
@@ -176,7 +164,7 @@ class Finder {
       for (Vec3 const& p : list.points)
         surface.baseline_deviation = std::max(surface.baseline_deviation, surface.facets.closest_point(p).distance);
       out_.notes.push_back(who + ": its own surface, smooth through " + std::to_string(surface.facets.facets.size()) +
-                           " facets; nodes are within " + text(surface.baseline_deviation) + " of it");
+                           " facets; nodes are within " + to_text(surface.baseline_deviation, 6) + " of it");
     }
     for (Vec3 const& p : list.points) surface.size = std::max(surface.size, distance(p, surface.origin));
     for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
@@ -455,9 +443,9 @@ std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions con
     auto const& first = requests[std::size_t(c.first)];
     auto const& second = requests[std::size_t(c.second)];
     problems.add("patches " + who.first + " and " + who.second + " disagree on " + std::to_string(c.count) +
-                 " common nodes, most at " + describe_node(mesh, first.node) + ": " + text(c.a) + " from " +
-                 boundary.motion.rules[std::size_t(first.rule)].where + ", " + text(c.b) + " from " +
-                 boundary.motion.rules[std::size_t(second.rule)].where + ", apart by " + text(c.size) +
+                 " common nodes, most at " + describe_node(mesh, first.node) + ": " + to_text(c.a, 6) + " from " +
+                 boundary.motion.rules[std::size_t(first.rule)].where + ", " + to_text(c.b, 6) + " from " +
+                 boundary.motion.rules[std::size_t(second.rule)].where + ", apart by " + to_text(c.size, 6) +
                  "; make the two motions agree there, let one of them slip, or give the rules different ranks");
   }
   problems.throw_if_any<MotionError>();

@@ -1,12 +1,11 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/motion/contour.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 namespace gridmorph {
@@ -54,12 +53,9 @@ class Contour {
   }
 
   [[noreturn]] void refuse(Vec3 const& p, char const* what, double size, char const* what_to_do) const {
-    std::array<char, 120> place{}, number{};
     auto const [axial, radius] = frame_.meridional(p);
-    std::snprintf(place.data(), place.size(), "(%.9g, %.9g, %.9g), axial %.6g, radius %.6g, ", p.x, p.y, p.z, axial,
-                  radius);
-    std::snprintf(number.data(), number.size(), "%.3g", size);
-    throw MotionError(where_ + ": contour: the node at " + place.data() + what + number.data() + what_to_do);
+    throw MotionError(where_ + ": contour: the node at " + to_text(p, 9) + ", axial " + to_text(axial, 6) +
+                      ", radius " + to_text(radius, 6) + ", " + what + to_text(size, 3) + what_to_do);
   }
 
   CylindricalFrame frame_;

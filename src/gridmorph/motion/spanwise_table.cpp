@@ -1,3 +1,4 @@
+#include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/motion.hpp>
 
 #include <algorithm>
@@ -35,14 +36,13 @@ double SpanwiseTable::at(double span) const {
   if (stations.empty()) return 0;
   if (span <= stations.front().first || stations.size() < 2) return stations.front().second;
   if (span >= stations.back().first) return stations.back().second;
-  auto const above = std::upper_bound(stations.begin(), stations.end(), span,
-                                      [](double h, auto const& station) { return h < station.first; });
-  std::size_t const n = std::size_t(above - stations.begin()) - 1;
-  double const width = stations[n + 1].first - stations[n].first, t = (span - stations[n].first) / width, q = 1 - t;
-  double const rise = stations[n + 1].second - stations[n].second;
-  if (interpolation == Interpolation::linear) return stations[n].second + t * rise;
-  return stations[n].second +
-         (t * t * (3 - 2 * t) * rise + width * t * q * (q * slope(stations, n) - t * slope(stations, n + 1)));
+  std::size_t const n = std::size_t(piece_at(
+      int(stations.size()), [&](int k) { return stations[std::size_t(k)].first; }, span));
+  auto const [from, a] = stations[n];
+  auto const [to, b] = stations[n + 1];
+  double const width = to - from, t = (span - from) / width;
+  if (interpolation == Interpolation::linear) return a + t * (b - a);
+  return cubic_piece(a, b, slope(stations, n), slope(stations, n + 1), width, t);
 }
 
 bool SpanwiseTable::is_zero() const {

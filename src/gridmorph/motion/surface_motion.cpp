@@ -2,6 +2,7 @@
 
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/target/target_motion.hpp>
@@ -10,18 +11,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 namespace gridmorph {
 
 namespace {
-
-std::string to_text(Vec3 const& v) {
-  char text[120];
-  std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", v.x, v.y, v.z);
-  return text;
-}
 
 std::vector<std::string> const* blades_of(Rule const& rule) {
   if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule)) return &slide->of;
@@ -144,7 +138,8 @@ struct SurfaceMotion::Impl {
     }
     for (std::size_t n = 0; n < points.size(); ++n)
       if (!std::isfinite(out[n].x) || !std::isfinite(out[n].y) || !std::isfinite(out[n].z))
-        throw MotionError(label(r) + " gives the point " + to_text(points[n]) + " the displacement " + to_text(out[n]) +
+        throw MotionError(label(r) + " gives the point " + to_text(points[n], 9) + " the displacement " +
+                          to_text(out[n], 9) +
                           ", which is not finite; correct the rule, or narrow "
                           "the patches it names");
   }

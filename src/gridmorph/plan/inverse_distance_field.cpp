@@ -1,3 +1,4 @@
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -51,18 +52,18 @@ class Tree {
     Group group;
     group.begin = begin;
     group.end = end;
-    Vec3 low = x_[node(begin)], high = low, sum;
+    Box box;
+    Vec3 sum;
     for (Index32 k = begin; k < end; ++k) {
       Vec3 const p = x_[node(k)];
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      box.include(p);
       sum += area(k) * p;
       group.area += area(k);
     }
     group.centre = (1 / group.area) * sum;
     for (Index32 k = begin; k < end; ++k) group.radius = std::max(group.radius, distance(x_[node(k)], group.centre));
     if (end - begin > leaf_size) {
-      Vec3 const extent = high - low;
+      Vec3 const extent = box.high - box.low;
       int const axis = extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
       Index32 const middle = (begin + end) / 2;
       std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,

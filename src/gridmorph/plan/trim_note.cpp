@@ -1,6 +1,6 @@
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/plan/trim_note.hpp>
 
-#include <cstdio>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -29,10 +29,8 @@ std::optional<std::string> trim_note(Mesh const& mesh, Plan const& plan, std::ve
       }
     }
   if (off.empty()) return std::nullopt;
-  char size[32];
-  std::snprintf(size, sizeof size, "%.3g", worst);
   return "the given displacement takes " + std::to_string(off.size()) + " nodes off their slip surfaces, most " +
-         describe_node(mesh, where) + ", by " + size +
+         describe_node(mesh, where) + ", by " + to_text(worst, 3) +
          "; they are put back, and the correction is spread along the span";
 }
 

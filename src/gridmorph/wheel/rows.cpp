@@ -1,23 +1,17 @@
 #include <gridmorph/wheel/rows.hpp>
 
 #include <gridmorph/boundary/link_nodes.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/wheel/turn.hpp>
 
 #include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <numeric>
 
 namespace gridmorph {
 
 namespace {
-
-std::string format(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 std::string describe(Mesh const& mesh, Link const& link) {
   return "periodic interface '" + mesh.interfaces[link.interface].name + "' (" +
@@ -31,23 +25,13 @@ double angle_about(Vec3 const& d, Mat3 const& r) {
 }
 
 WheelRows connected_zones(Mesh const& mesh, Links const& links) {
-  std::vector<int> root(mesh.zones.size());
-  std::iota(root.begin(), root.end(), 0);
-  auto const find = [&](int z) {
-    while (root[z] != z) z = root[z] = root[root[z]];
-    return z;
-  };
-  for (Link const& l : links.all) root[find(l.zone)] = find(l.donor_zone);
+  DisjointSets<int> sets(mesh.zones.size());
+  for (Link const& l : links.all) sets.join(l.zone, l.donor_zone);
   WheelRows out;
-  out.row_of_zone.assign(mesh.zones.size(), -1);
-  std::vector<int> row_of_root(mesh.zones.size(), -1);
+  out.row_of_zone = sets.set_numbers();
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
-    int& row = row_of_root[find(z)];
-    if (row < 0) {
-      row = int(out.rows.size());
-      out.rows.emplace_back();
-    }
-    out.row_of_zone[z] = row;
+    std::size_t const row = std::size_t(out.row_of_zone[z]);
+    if (row == out.rows.size()) out.rows.emplace_back();
     out.rows[row].zones.push_back(z);
   }
   return out;
@@ -87,10 +71,10 @@ WheelRows find_rows(Mesh const& mesh, Links const& links, Axis const& axis, Topo
       problems.add(describe(mesh, link) +
                    " does not turn about the axis of [mesh]; a wheel needs rotational periodicity about it");
     else if (worst > tolerance)
-      problems.add(describe(mesh, link) + " turns by " + format(angle * 180 / std::numbers::pi) + " degrees, and " +
+      problems.add(describe(mesh, link) + " turns by " + to_text(angle * 180 / std::numbers::pi, 6) + " degrees, and " +
                    std::to_string(passages) + " passages do not make a whole wheel about the axis: a turn by 360 / " +
-                   std::to_string(passages) + " degrees leaves " + describe_node(mesh, at) + " " + format(worst) +
-                   " from its periodic partner (tolerance " + format(tolerance) + "); check the axis of [mesh]");
+                   std::to_string(passages) + " degrees leaves " + describe_node(mesh, at) + " " + to_text(worst, 6) +
+                   " from its periodic partner (tolerance " + to_text(tolerance, 6) + "); check the axis of [mesh]");
     else if (row_passages > 1 && row_passages != passages)
       problems.add(describe(mesh, link) + " turns by 360 / " + std::to_string(passages) +
                    " degrees, another one of its row by 360 / " + std::to_string(row_passages) +

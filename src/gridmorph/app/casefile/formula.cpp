@@ -1,5 +1,6 @@
 #include <gridmorph/app/casefile/formula.hpp>
 #include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/core/text.hpp>
 
 #include <fmt/format.h>
 #include <muParser.h>
@@ -217,9 +218,9 @@ class Formula {
     if (r == 0) {
       if (dr != 0)
         throw MotionError(fmt::format(
-            "{}: formula {} = \"{}\" is {} at ({:.9g}, {:.9g}, {:.9g}) on the axis, where the "
-            "radial direction is not defined; make it zero there",
-            components_[0].where, components_[0].key, components_[0].expression, dr, point.x, point.y, point.z));
+            "{}: formula {} = \"{}\" is {} at {} on the axis, where the radial direction is not defined; make it zero "
+            "there",
+            components_[0].where, components_[0].key, components_[0].expression, dr, to_text(point, 9)));
       return daxial * cylinder_.axis;
     }
     double const theta = variables_[4][i];

@@ -1,12 +1,12 @@
 #include <gridmorph/app/casefile/open_patches.hpp>
 #include <gridmorph/boundary/coincident_nodes.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace gridmorph {
@@ -16,16 +16,6 @@ namespace {
 constexpr double smooth = 0.866;  // cosine of 30 degrees
 constexpr double limit = 1e-6;    // of the mesh size
 
-struct Box {
-  Vec3 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-           std::numeric_limits<double>::infinity()};
-  Vec3 high = -low;
-  void add(Vec3 const& p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-};
-
 /// Two nodes of an edge by their numbers as coincident points, and the normal of the cell that ends there, into the mesh.
 struct Edge {
   std::pair<Index, Index> nodes;
@@ -33,24 +23,13 @@ struct Edge {
   Vec3 normal;
 };
 
-class Groups {
- public:
-  explicit Groups(std::size_t n) : root_(n) { std::iota(root_.begin(), root_.end(), std::size_t(0)); }
-  std::size_t find(std::size_t p) {
-    while (root_[p] != p) p = root_[p] = root_[root_[p]];
-    return p;
-  }
-  void join(std::size_t a, std::size_t b) { root_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
-
- private:
-  std::vector<std::size_t> root_;
-};
+using Groups = DisjointSets<std::size_t>;
 
 class Namer {
  public:
   Namer(Mesh const& mesh, std::size_t first)
       : mesh_(mesh), first_(first), n_(mesh.patches.size() - first), number_(coincident_nodes(mesh)) {
-    for (Index n = 0; n < mesh.n_nodes(); ++n) whole_.add(mesh.coordinates[n]);
+    for (Index n = 0; n < mesh.n_nodes(); ++n) whole_.include(mesh.coordinates[n]);
     size_ = distance(whole_.low, whole_.high);
   }
 
@@ -65,17 +44,17 @@ class Namer {
     });
     std::vector<Box> box(n_);
     for (std::size_t p = 0; p < n_; ++p)
-      each_node(p, [&](Index n) { box[smoothly.find(p)].add(mesh_.coordinates[n]); });
+      each_node(p, [&](Index n) { box[smoothly.root(p)].include(mesh_.coordinates[n]); });
 
     std::vector<std::string> plane(n_);
     std::vector<char> inside(n_, 0);
     for (std::size_t p = 0; p < n_; ++p) {
-      std::size_t const g = smoothly.find(p);
+      std::size_t const g = smoothly.root(p);
       plane[p] = plane_at_limit(box[g]);
       inside[p] = plane[p].empty() && directions_inside(box[g]) >= (mesh_.two_dimensional ? 1 : 2) ? 1 : 0;
     }
     Groups bodies(n_);
-    for (std::size_t p = 0; p < n_; ++p) bodies.join(p, smoothly.find(p));
+    for (std::size_t p = 0; p < n_; ++p) bodies.join(p, smoothly.root(p));
     each_meeting(edges, [&](Edge const& a, Edge const& b) {
       if (inside[a.patch] && inside[b.patch] && !is_pole(a.patch) && !is_pole(b.patch)) bodies.join(a.patch, b.patch);
     });
@@ -171,7 +150,7 @@ class Namer {
     for (std::size_t p = 0; p < n_; ++p)
       if (plane[p].empty() && !is_pole(p)) {
         auto& of_kind = number[std::size_t(inside[p])];
-        of_kind.try_emplace(bodies.find(p), int(of_kind.size()) + 1);
+        of_kind.try_emplace(bodies.root(p), int(of_kind.size()) + 1);
       }
     std::vector<std::string> out;
     for (std::size_t p = 0; p < n_; ++p) {
@@ -182,7 +161,7 @@ class Namer {
       else if (!plane[p].empty())
         out.push_back(plane[p]);
       else
-        out.push_back(of_kind.size() == 1 ? word : word + " " + std::to_string(of_kind.at(bodies.find(p))));
+        out.push_back(of_kind.size() == 1 ? word : word + " " + std::to_string(of_kind.at(bodies.root(p))));
     }
     return out;
   }

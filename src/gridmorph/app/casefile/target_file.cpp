@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <system_error>
@@ -34,19 +33,6 @@ std::vector<std::string_view> words_of(std::string_view line) {
     out.push_back(line.substr(0, end));
     line.remove_prefix(end);
   }
-}
-
-/// Nothing when it is no number, or too large for one.
-std::optional<double> number_of(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || end != word.data() + word.size()) return std::nullopt;
-  if (error == std::errc::result_out_of_range)
-    return word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos
-               ? std::optional<double>(0.0)
-               : std::nullopt;
-  return error == std::errc() && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 /// Goes through the lines of a text. A header, a line without any number before the first point, is passed over.
@@ -77,7 +63,7 @@ class PointLines {
         return {Kind::comment, line, {}};
       }
       auto const words = words_of(line);
-      bool const any = std::any_of(words.begin(), words.end(), [](auto w) { return number_of(w).has_value(); });
+      bool const any = std::any_of(words.begin(), words.end(), [](auto w) { return finite_number(w).has_value(); });
       if (!any && !started_) {
         started_ = true;
         continue;
@@ -102,7 +88,7 @@ class PointLines {
     }
     std::array<double, 3> value{};
     for (std::size_t c = 0; c < 3; ++c) {
-      auto const v = number_of(words[words.size() - 3 + c]);
+      auto const v = finite_number(words[words.size() - 3 + c]);
       if (!v) {
         problems_.add(fmt::format("{}:{}: {} = \"{}\" is not a finite number", source_, number_, "xyz"[c],
                                   words[words.size() - 3 + c].substr(0, 40)));

@@ -1,6 +1,6 @@
 #include <gridmorph/app/cli/diagnosis.hpp>
 #include <gridmorph/app/cli/mesh_summary.hpp>
-#include <gridmorph/boundary/link_nodes.hpp>
+#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/report/measure_text.hpp>

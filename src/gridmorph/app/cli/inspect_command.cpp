@@ -7,6 +7,7 @@
 #include <gridmorph/app/cli/workflow.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
@@ -16,9 +17,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -72,12 +71,6 @@ int inspect_unstructured(CommandLine const& options, Terminal& terminal) {
   return done;
 }
 
-std::string contents(std::filesystem::path const& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return std::move(text).str();
-}
-
 void check_files(CommandLine const& options) {
   RunFiles outputs;
   if (options.suggest && !options.suggest->empty()) outputs.push_back({"case file", *options.suggest});
@@ -102,7 +95,8 @@ void find_and_add(CommandLine const& options, Mesh& mesh, Terminal& terminal) {
   mesh.notes.insert(mesh.notes.end(), found.notes.begin(), found.notes.end());
   if (options.write_side_file) {
     auto const present = options.side_file ? options.side_file : find_side_file(options.input);
-    PendingFile(*options.write_side_file, side_file_text(mesh, found, present ? contents(*present) : std::string()))
+    PendingFile(*options.write_side_file,
+                side_file_text(mesh, found, present ? io::read_file(present->string()) : std::string()))
         .commit();
   }
   mesh.interfaces.insert(mesh.interfaces.end(), found.interfaces.begin(), found.interfaces.end());

@@ -2,8 +2,8 @@
 #include <gridmorph/app/cli/mesh_summary.hpp>
 #include <gridmorph/boundary/coincident_nodes.hpp>
 #include <gridmorph/boundary/coverage.hpp>
-#include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/boundary/links.hpp>
+#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/core/error.hpp>
 

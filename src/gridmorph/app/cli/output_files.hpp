@@ -18,17 +18,17 @@ inline constexpr std::size_t room_for_a_time = 128;
 class PendingFile {
  public:
   /// Writes the text. Throws MachineError when that fails (disk full, no permission).
-  PendingFile(std::filesystem::path const& path, std::string const& text);
+  PendingFile(std::filesystem::path const& path, std::string const& text)
+      : file_(std::make_unique<io::OutputFile>(path.string())) {
+    replace(text);
+  }
 
   /// Puts another text in the place of the first one. A text that is no longer than that needs no more room on the disk.
-  void replace(std::string const& text);
-  void commit();
+  void replace(std::string const& text) { file_->write(text); }
+  void commit() { file_->commit(); }
 
  private:
-  void put(std::string const& text, char const* mode) const;
-
   std::unique_ptr<io::OutputFile> file_;
-  std::filesystem::path path_;
 };
 
 }  // namespace gridmorph::cli

@@ -1,4 +1,5 @@
 #include <gridmorph/boundary/detail/plausible_periodic.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>
 #include <array>
@@ -61,17 +62,13 @@ class Judge {
  public:
   Judge(SurfaceCells const& cells, std::vector<PeriodicMatch> const& matches, std::vector<std::uint8_t> const& open)
       : cells_(cells), matches_(matches), open_(open) {
-    constexpr double inf = std::numeric_limits<double>::infinity();
-    Vec3 low{inf, inf, inf}, high{-inf, -inf, -inf};
+    Box box;
     for (Index c = 0; c < cells.size(); ++c) {
       CellShape const s = cells.shape(c);
       if (open[std::size_t(c)] != 0 && !cells.on_plane_of_layer(c)) open_area_ += area_of(s).area;
-      for (auto const& p : s.corner) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-      }
+      for (Vec3 const& p : s.corner) box.include(p);
     }
-    size_ = distance(low, high);
+    size_ = distance(box.low, box.high);
   }
 
   std::vector<Judgement> run() {

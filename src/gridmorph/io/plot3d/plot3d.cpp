@@ -5,6 +5,7 @@
 #include <gridmorph/io/plot3d/plot3d.hpp>
 #include <gridmorph/io/plot3d/plot3d_layout.hpp>
 #include <gridmorph/io/plot3d/plot3d_text.hpp>
+#include <gridmorph/io/read_file.hpp>
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,6 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 
@@ -46,11 +46,7 @@ File open(std::string const& path, std::string const& stated_words) {
     out.layout = detect_binary(path, stated);
     return out;
   }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw IoError(path + ": cannot be opened for reading: " + std::strerror(errno));
-  std::ostringstream whole;
-  whole << in.rdbuf();
-  out.text = std::move(whole).str();
+  out.text = io::read_file(path);
   out.numbers = read_text(out.text, path, stated);
   out.layout = out.numbers.file;
   return out;
@@ -198,14 +194,6 @@ void gather(Mesh const& mesh, std::size_t z, int axis, double const* source, std
       out.push_back(source[zone.first_node + a * p.step[0] + b * p.step[1]]);
 }
 
-void write_text(std::string const& path, std::string const& output, std::string const& text) {
-  errno = 0;
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out.write(text.data(), std::streamsize(text.size()));
-  out.close();
-  if (!out) throw MachineError(output + ": cannot be written: " + std::strerror(errno));
-}
-
 void write_binary(std::string const& path, std::string const& output, File const& file, cgns::Layout const& zones,
                   Mesh const& mesh, Coordinates const& morphed) {
   errno = 0;
@@ -273,7 +261,7 @@ void write(std::string const& input, std::string const& output, Mesh const& mesh
         gather(mesh, z, zones.zones[z].flat_axis, components(morphed)[c], values);
         coordinates[z].insert(coordinates[z].end(), values.begin(), values.end());
       }
-    write_text(target.path(), output, replace_coordinates(file.text, input, file.numbers, coordinates));
+    target.write(replace_coordinates(file.text, input, file.numbers, coordinates));
   } else {
     target.copy_from(input);
     write_binary(target.path(), output, file, zones, mesh, morphed);

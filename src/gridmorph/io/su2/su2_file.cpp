@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/periodic_transform.hpp>
+#include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/su2/su2_parser.hpp>
 #include <gridmorph/io/unstructured_check.hpp>
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
@@ -20,17 +20,6 @@
 namespace gridmorph::su2 {
 
 namespace {
-
-std::string contents(std::string const& path) {
-  std::error_code failure;
-  if (!std::filesystem::is_regular_file(path, failure)) throw IoError(path + ": is not an ordinary file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(path + ": cannot be opened for reading: " + std::strerror(errno));
-  std::string text(std::size_t(std::filesystem::file_size(path)), '\0');
-  if (!text.empty() && !file.read(text.data(), std::streamsize(text.size())))
-    throw IoError(path + ": cannot be read: " + std::strerror(errno));
-  return text;
-}
 
 ElementType element_type(int vtk) {
   switch (vtk) {
@@ -246,13 +235,6 @@ class Builder {
   UnstructuredMesh mesh_;
 };
 
-void write_all(std::string const& path, std::string const& output, std::string_view bytes) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  errno = 0;
-  if (!file.write(bytes.data(), std::streamsize(bytes.size())) || !file.flush())
-    throw MachineError(output + ": cannot be written: " + std::strerror(errno) + "; check space and permissions");
-}
-
 }  // namespace
 
 bool is_su2(std::string const& path) {
@@ -277,7 +259,7 @@ bool is_su2(std::string const& path) {
 }
 
 UnstructuredMesh read(std::string const& path) {
-  std::string const text = contents(path);
+  std::string const text = io::read_file(path);
   std::vector<std::string> notes;
   auto zones = parse(path, text, notes);
   return Builder(path, std::move(zones), std::move(notes)).run();
@@ -285,7 +267,7 @@ UnstructuredMesh read(std::string const& path) {
 
 void write_morphed(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
                    Coordinates const& morphed) {
-  std::string const text = contents(input);
+  std::string const text = io::read_file(input);
   std::string out;
   out.reserve(text.size() + text.size() / 8);
   std::size_t copied = 0;
@@ -311,8 +293,7 @@ void write_morphed(std::string const& input, std::string const& output, Unstruct
     throw IoError(input + ": holds other zones or points than the mesh; give the file that the mesh was read from");
   out.append(text, copied);
   io::OutputFile target(output);
-  target.reserve(out.size());
-  write_all(target.path(), output, out);
+  target.write(out);
   target.commit();
 }
 

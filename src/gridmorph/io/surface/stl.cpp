@@ -1,17 +1,14 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/io/output_file.hpp>
+#include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/surface/surface_io.hpp>
 
 #include <array>
 #include <bit>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 
 namespace gridmorph {
@@ -30,21 +27,6 @@ void put(std::string& out, std::uint32_t v) {
 }
 void put(std::string& out, Vec3 const& v) {
   for (double const c : {v.x, v.y, v.z}) put(out, std::bit_cast<std::uint32_t>(float(c)));
-}
-
-std::string whole_file(std::string const& path) {
-  namespace fs = std::filesystem;
-  std::error_code failure;
-  auto const status = fs::status(path, failure);
-  if (!fs::exists(status)) throw IoError(path + ": no such file; check the name and the folder it is looked up from");
-  if (!fs::is_regular_file(status)) throw IoError(path + ": is not an ordinary file; name an STL file");
-  auto const size = fs::file_size(path, failure);
-  std::ifstream file(path, std::ios::binary);
-  if (failure || !file) throw IoError(path + ": cannot be opened for reading; check its permissions");
-  std::string text(std::size_t(size), '\0');
-  if (size > 0 && !file.read(text.data(), std::streamsize(size))) throw IoError(path + ": cannot be read to its end");
-  if (text.empty()) throw IoError(path + ": is empty; expected an STL file");
-  return text;
 }
 
 TargetGeometry parse_binary(std::string const& bytes, std::uint32_t n, std::string const& path) {
@@ -132,17 +114,9 @@ class AsciiReader {
   }
   double number(bool must_be_finite) {
     auto const word = words_.next();
-    std::string_view digits = word;
-    if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
-    double value = 0;
-    auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    bool const read = !digits.empty() && end == digits.data() + digits.size() &&
-                      (error == std::errc() || error == std::errc::result_out_of_range);
-    // Out of range: from_chars leaves the value alone; so small a number is zero, a large one is caught as wrong.
-    bool const large = error == std::errc::result_out_of_range && digits.find("e-") == std::string_view::npos &&
-                       digits.find("E-") == std::string_view::npos;
-    if (!read || (must_be_finite && (large || !std::isfinite(value)))) fail("expected a number", word);
-    return value;
+    auto const value = to_number(word);
+    if (!value || (must_be_finite && !std::isfinite(*value))) fail("expected a number", word);
+    return *value;
   }
   void facet() {
     expect("normal");
@@ -176,7 +150,8 @@ TargetGeometry parse_ascii_stl(std::string_view text, std::string const& source)
 }
 
 TargetGeometry read_stl(std::string const& path) {
-  std::string const bytes = whole_file(path);
+  std::string const bytes = io::read_file(path);
+  if (bytes.empty()) throw IoError(path + ": is empty; expected an STL file");
   std::optional<std::uint64_t> declared;
   if (bytes.size() >= header_size) {
     declared = little_endian(reinterpret_cast<unsigned char const*>(bytes.data()) + 80);
@@ -229,10 +204,7 @@ void write_stl(std::string const& path, SurfaceTriangles const& surface, StlForm
   }
   if (format == StlFormat::ascii) bytes += "endsolid gridmorph\n";
   io::OutputFile target(path);
-  errno = 0;
-  std::ofstream file(target.path(), std::ios::binary);
-  if (!file.write(bytes.data(), std::streamsize(bytes.size())) || !file.flush())
-    throw MachineError(path + ": cannot be written: " + std::strerror(errno));
+  target.write(bytes);
   target.commit();
 }
 

@@ -1,11 +1,12 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
+#include <gridmorph/geometry/point_numbers.hpp>
 #include <gridmorph/mapping/detail/merge_nodes.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 
 namespace gridmorph::casefile {
 
@@ -21,18 +22,9 @@ double largest(std::vector<Vec3> const& field) {
 
 /// For every node the first one at its position.
 std::vector<std::size_t> first_at_position(std::vector<Vec3> const& p) {
-  std::vector<std::size_t> order(p.size()), first(p.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (p[a].x != p[b].x) return p[a].x < p[b].x;
-    if (p[a].y != p[b].y) return p[a].y < p[b].y;
-    if (p[a].z != p[b].z) return p[a].z < p[b].z;
-    return a < b;
-  });
-  for (std::size_t n = 0, group = 0; n < order.size(); ++n) {
-    if (!(p[order[group]] == p[order[n]])) group = n;
-    first[order[n]] = order[group];
-  }
+  PointNumbers numbers(0);
+  std::vector<std::size_t> first;
+  for (std::size_t n = 0; n < p.size(); ++n) first.push_back(std::size_t(numbers.find_or_add(p[n], int(n))));
   return first;
 }
 
@@ -59,12 +51,10 @@ void merge_nodes(StructuralModel& model, std::vector<std::vector<Vec3>>& fields)
     double const limit = conflict * largest(field);
     for (std::size_t b = 0; b < first.size(); ++b) {
       std::size_t const a = first[b];
-      Vec3 const ua = field[a], ub = field[b], p = nodes.position[b];
-      if (a != b && distance(ua, ub) > limit)
-        throw ConfigError(
-            fmt::format("{}: the point ({:.9g}, {:.9g}, {:.9g}) moves by ({:.6g}, {:.6g}, {:.6g}), but by ({:.6g}, "
-                        "{:.6g}, {:.6g}) in line {}; give each point one displacement",
-                        nodes.where(b), p.x, p.y, p.z, ub.x, ub.y, ub.z, ua.x, ua.y, ua.z, nodes.line[a]));
+      if (a != b && distance(field[a], field[b]) > limit)
+        throw ConfigError(fmt::format(
+            "{}: the point {} moves by {}, but by {} in line {}; give each point one displacement", nodes.where(b),
+            to_text(nodes.position[b], 9), to_text(field[b], 6), to_text(field[a], 6), nodes.line[a]));
     }
   }
   std::vector<std::int32_t> number(first.size());

@@ -2,11 +2,11 @@
 
 #include <gridmorph/boundary/joined_sides.hpp>
 #include <gridmorph/boundary/patch_facets.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/geometry/facet_topology.hpp>
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace gridmorph {
@@ -41,14 +41,11 @@ std::vector<std::vector<int>> smoothly_joined(Mesh const& mesh, std::vector<int>
       if (a != b) balance[{std::min(a, b), std::max(a, b)}] += edge.crease ? -1 : 1;
     }
   }
-  std::vector<int> group(patches.size());
-  std::iota(group.begin(), group.end(), 0);
+  DisjointSets<int> groups(patches.size());
   for (auto const& [pair, smooth] : balance)
-    if (smooth > 0 && group[pair.first] != group[pair.second])
-      std::replace(group.begin(), group.end(), std::max(group[pair.first], group[pair.second]),
-                   std::min(group[pair.first], group[pair.second]));
+    if (smooth > 0) groups.join(pair.first, pair.second);
   std::map<int, std::vector<int>> members;
-  for (std::size_t m = 0; m < patches.size(); ++m) members[group[m]].push_back(patches[m]);
+  for (std::size_t m = 0; m < patches.size(); ++m) members[groups.root(int(m))].push_back(patches[m]);
   std::vector<std::vector<int>> out;
   for (auto& [number, list_of] : members) out.push_back(std::move(list_of));
   return out;

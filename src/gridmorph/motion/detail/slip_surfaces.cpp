@@ -3,16 +3,16 @@
 #include <gridmorph/boundary/patch_facets.hpp>
 #include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
 #include <gridmorph/motion/detail/baseline_facets.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
-#include <numeric>
 
 namespace gridmorph {
 
@@ -22,12 +22,6 @@ using Patches = std::vector<int>;
 
 /// How far nodes may lie off a profile of revolution, as a share of the wall's size (radius or extent along the axis).
 constexpr double profile_tolerance = 1e-3;
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", v);
-  return text;
-}
 
 std::string describe(Mesh const& mesh, Patches const& patches) {
   std::vector<std::string> names;
@@ -67,12 +61,7 @@ std::vector<Patches> meridionally_connected(Mesh const& mesh, CylindricalFrame c
   }
   std::sort(marks.begin(), marks.end(), [](Mark const& a, Mark const& b) { return a.at.axial < b.at.axial; });
 
-  Patches root(patches.size());
-  std::iota(root.begin(), root.end(), 0);
-  auto const find = [&](int m) {
-    while (root[m] != m) m = root[m] = root[root[m]];
-    return m;
-  };
+  DisjointSets<int> sets(patches.size());
   // Along one circumferential line marks repeat; looking back as far as the tolerance reaches would be quadratic, so
   // the latest mark of each member is kept per radius cell of the current axial window.
   std::map<long long, std::map<int, Mark>> window;
@@ -93,11 +82,11 @@ std::vector<Patches> meridionally_connected(Mesh const& mesh, CylindricalFrame c
         for (auto const& [member, m] : near->second)
           if (member != mark.member && mark.at.axial - m.at.axial <= tolerance &&
               std::abs(mark.at.radius - m.at.radius) <= tolerance)
-            root[find(member)] = find(mark.member);
+            sets.join(member, mark.member);
     window[cell].insert_or_assign(mark.member, mark);
   }
   std::map<int, Patches> groups;
-  for (std::size_t m = 0; m < patches.size(); ++m) groups[find(int(m))].push_back(patches[m]);
+  for (std::size_t m = 0; m < patches.size(); ++m) groups[sets.root(int(m))].push_back(patches[m]);
   std::vector<Patches> out;
   for (auto& [r, members] : groups) out.push_back(std::move(members));
   std::sort(out.begin(), out.end());
@@ -187,8 +176,8 @@ class Finder {
       return;
     }
     if (double const limit = flat(fit.extent, points); surface.baseline_deviation > limit) {
-      problems_.add(who + " is up to " + number(surface.baseline_deviation) + " off " +
-                    (given ? "the given plane" : "the nearest plane") + " (allowed: " + number(limit) +
+      problems_.add(who + " is up to " + to_text(surface.baseline_deviation, 3) + " off " +
+                    (given ? "the given plane" : "the nearest plane") + " (allowed: " + to_text(limit, 3) +
                     "); give it another rule, such as fixed" + (given ? ", or another plane" : ""));
       return;
     }
@@ -225,7 +214,7 @@ class Finder {
         notes_.push_back("slip " + describe(mesh_, members) + ": its own surface, smooth through " +
                          std::to_string(surface.facets.facets.size()) + " facets (periodic copies included), " +
                          std::to_string(creases / 2) + " edges are creases; nodes are within " +
-                         number(surface.baseline_deviation) + " of it");
+                         to_text(surface.baseline_deviation, 3) + " of it");
         store(std::move(surface), members, points);
       }
     } catch (MotionError const& e) {
@@ -300,7 +289,7 @@ class Finder {
     surface.baseline_deviation = surface.profile.deviation;
     size = std::max(size, surface.profile.knots.back().axial - surface.profile.knots.front().axial);
     if (surface.baseline_deviation > profile_tolerance * size)
-      throw MotionError("its nodes are up to " + number(surface.baseline_deviation) +
+      throw MotionError("its nodes are up to " + to_text(surface.baseline_deviation, 3) +
                         " off the nearest surface of revolution about the "
                         "axis; check the axis, or give another rule");
     note(members, surface, "profile of revolution through");
@@ -322,11 +311,12 @@ class Finder {
       for (Vec3 const& p : patch_points(mesh_, {patch})) {
         double const off = distance(p, surface.view().project(p));
         if (off > profile_tolerance * size && off > surface.baseline_deviation)
-          far = describe(mesh_, {patch}) + " is up to " + number(off) + " off the given profile, most at " + place(p);
+          far =
+              describe(mesh_, {patch}) + " is up to " + to_text(off, 3) + " off the given profile, most at " + place(p);
         surface.baseline_deviation = std::max(surface.baseline_deviation, off);
       }
     if (!far.empty()) {
-      problems_.add(where_ + ": patch " + far + " (allowed: " + number(profile_tolerance * size) +
+      problems_.add(where_ + ": patch " + far + " (allowed: " + to_text(profile_tolerance * size, 3) +
                     "); nodes that slip stay on the wall as it is: give its own profile or none; to move the wall onto "
                     "this profile, use the rule contour");
       return;
@@ -337,8 +327,7 @@ class Finder {
 
   std::string place(Vec3 const& p) const {
     auto const [axial, radius] = frame_.meridional(p);
-    return "(" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + "), axial " + number(axial) + ", radius " +
-           number(radius);
+    return to_text(p, 3) + ", axial " + to_text(axial, 3) + ", radius " + to_text(radius, 3);
   }
 
   /// Of a wall of revolution: its largest radius, or its extent along the axis where that is more.
@@ -354,15 +343,15 @@ class Finder {
   }
 
   static std::string end(SlipSurface const& s, ProfileKnot const& k) {
-    if (s.kind == SlipSurface::Kind::revolution) return "axial " + number(k.axial);
-    return "(axial " + number(s.frame.axial(k.axial, k.radius)) + ", radius " +
-           number(s.frame.radius(k.axial, k.radius)) + ")";
+    if (s.kind == SlipSurface::Kind::revolution) return "axial " + to_text(k.axial, 3);
+    return "(axial " + to_text(s.frame.axial(k.axial, k.radius), 3) + ", radius " +
+           to_text(s.frame.radius(k.axial, k.radius), 3) + ")";
   }
 
   void note(Patches const& patches, SlipSurface const& s, char const* what) {
     notes_.push_back("slip " + describe(mesh_, patches) + ": " + what + " " + std::to_string(s.profile.knots.size()) +
                      " points, " + end(s, s.profile.knots.front()) + " to " + end(s, s.profile.knots.back()) +
-                     "; nodes are within " + number(s.baseline_deviation) + " of it");
+                     "; nodes are within " + to_text(s.baseline_deviation, 3) + " of it");
   }
 
   Mesh const& mesh_;

@@ -1,6 +1,7 @@
 #include <gridmorph/motion/target/section_profile.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/cubic_piece.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -161,14 +162,13 @@ Vec3 SectionProfile::slope(int n, int side) const {
 Vec3 SectionProfile::at_length(double s) const {
   double const whole = length_.back(), same = 1e-9 * whole;
   s -= std::floor(s / whole) * whole;
-  int n = int(std::upper_bound(length_.begin(), length_.end(), s) - length_.begin()) - 1;
-  n = std::clamp(n, 0, size() - 1);
+  int const n = piece_at(
+      int(length_.size()), [&](int k) { return length_[k]; }, s);
   if (s - length_[n] <= same) return points_[n];
   if (length_[n + 1] - s <= same) return points_[wrap(n + 1)];
   double const h = length_[n + 1] - length_[n], t = (s - length_[n]) / h;
-  Vec3 const &p = points_[n], &q = points_[wrap(n + 1)];
-  Vec3 const u = h * slope(n, +1), v = h * slope(wrap(n + 1), -1);
-  return p + (t * t * (3 - 2 * t)) * (q - p) + (t * (1 - t) * (1 - t)) * u + (t * t * (t - 1)) * v;
+  int const next = wrap(n + 1);
+  return cubic_piece(points_[n], points_[next], slope(n, +1), slope(next, -1), h, t);
 }
 
 }  // namespace gridmorph

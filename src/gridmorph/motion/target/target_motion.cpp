@@ -2,13 +2,13 @@
 
 #include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/target/target_nodes.hpp>
 #include <gridmorph/motion/target/target_profile.hpp>
 #include <gridmorph/motion/target/target_projection.hpp>
 #include <gridmorph/motion/target/target_sections.hpp>
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace gridmorph {
@@ -75,13 +75,8 @@ TargetTree target_facets(TargetGeometry const& target, std::string const& name) 
   std::vector<Vec3> points;
   std::vector<int> number;
   for (Vec3 const& p : all) {
-    int n = numbers.find(p);
-    if (n < 0) {
-      n = int(points.size());
-      points.push_back(p);
-      numbers.add(p, n);
-    }
-    number.push_back(n);
+    number.push_back(numbers.find_or_add(p, int(points.size())));
+    if (number.back() == int(points.size())) points.push_back(p);
   }
   std::vector<std::array<int, 3>> kept;
   for (auto const& t : triangles) {
@@ -178,12 +173,9 @@ void TargetMotion::map_faces(Mesh const& mesh, TargetRule const& rule, std::vect
 void TargetMotion::displacement(std::span<Vec3 const> points, std::span<Vec3> out) const {
   for (std::size_t n = 0; n < points.size(); ++n) {
     int const v = surface_.numbers.find(points[n]);
-    if (v < 0) {
-      char text[120];
-      std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", points[n].x, points[n].y, points[n].z);
-      throw MotionError(name_ + ": the point " + text +
+    if (v < 0)
+      throw MotionError(name_ + ": the point " + to_text(points[n], 9) +
                         " is no node of its patches; a target says where they go and nothing else");
-    }
     out[n] = share_ == 1 ? displacement_[v] : share_ * displacement_[v];
   }
 }

@@ -1,12 +1,12 @@
 #include <gridmorph/motion/target/target_nodes.hpp>
 
-#include <gridmorph/boundary/links.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
+#include <gridmorph/geometry/rotation.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace gridmorph {
@@ -15,12 +15,6 @@ namespace {
 
 /// Targets of coincident nodes may differ by this share of the surface's size: files in single precision.
 constexpr double same_place = 1e-6;
-
-std::string to_text(Vec3 const& v) {
-  std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), "(%.9g, %.9g, %.9g)", v.x, v.y, v.z);
-  return text.data();
-}
 
 /// How a patch is laid over a grid of its size.
 struct Layout {
@@ -183,7 +177,7 @@ std::optional<std::vector<Vec3>> match_grids(PatchSurface const& surface, std::v
     if (!matcher.place(patch, found)) return std::nullopt;
   if (matcher.gap > same_place * surface.size)
     throw MotionError(name + ": the grids that were matched with the patches come apart at the node " +
-                      to_text(surface.points[matcher.gap_vertex]) + " of patch " +
+                      to_text(surface.points[matcher.gap_vertex], 9) + " of patch " +
                       describe_patch(mesh, mesh.patches[matcher.gap_patch]) + " by " + std::to_string(matcher.gap) +
                       "; give a target whose pieces meet where the patches do, or mapping = \"projection\"");
   std::string note = name + ": mapped node for node";
@@ -210,10 +204,10 @@ std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> con
         placed[v] = 1;
         target[v] = t;
       } else if (distance(t, target[v]) > same_place * surface.size) {
-        throw MotionError(name + ": the node " + to_text(surface.points[v]) + " of patch " +
+        throw MotionError(name + ": the node " + to_text(surface.points[v], 9) + " of patch " +
                           describe_patch(mesh, mesh.patches[patch.patch]) +
-                          " coincides with one listed before, but goes to " + to_text(t) + " (point " +
-                          std::to_string(n) + ") instead of " + to_text(target[v]) +
+                          " coincides with one listed before, but goes to " + to_text(t, 9) + " (point " +
+                          std::to_string(n) + ") instead of " + to_text(target[v], 9) +
                           "; nodes that coincide need one target");
       }
     }

@@ -103,10 +103,8 @@ Strip make_strip(Segments const& segments, double width) {
   std::vector<std::array<int, 3>> triangles;
   Strip strip;
   auto const number = [&](Vec3 const& p) {
-    int n = numbers.find(p);
-    if (n >= 0) return n;
-    n = int(points.size());
-    numbers.add(p, n);
+    int const fresh = int(points.size()), n = numbers.find_or_add(p, fresh);
+    if (n < fresh) return n;
     for (double const side : {0.0, -width, width}) points.push_back({p.x, p.y, p.z + side});
     return n;
   };

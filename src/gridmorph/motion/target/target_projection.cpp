@@ -1,5 +1,7 @@
 #include <gridmorph/motion/target/target_projection.hpp>
 
+#include <gridmorph/core/text.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/motion/target/edge_images.hpp>
 #include <gridmorph/motion/target/feature_edges.hpp>
 #include <gridmorph/motion/target/surface_pieces.hpp>
@@ -9,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <map>
@@ -25,13 +26,10 @@ std::vector<GridFacet> as_facets(std::vector<std::array<int, 3>> const& triangle
   return out;
 }
 
-std::pair<Vec3, Vec3> box_of(std::vector<Vec3> const& points) {
-  Vec3 lo = points.front(), hi = lo;
-  for (Vec3 const& p : points) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-  }
-  return {lo, hi};
+Box box_of(std::vector<Vec3> const& points) {
+  Box box;
+  for (Vec3 const& p : points) box.include(p);
+  return box;
 }
 
 }  // namespace
@@ -257,11 +255,9 @@ std::vector<Vec3> project_to_target(PatchSurface const& surface, TargetTree cons
   auto displacement = projection.run();
   if (auto const folded = projection.folded(); !folded.empty()) {
     Vec3 const& at = surface.points[folded.front()[0]];
-    char place[100];
-    std::snprintf(place, sizeof place, "(%.6g, %.6g, %.6g)", at.x, at.y, at.z);
     notes.push_back(
         name + ": " + std::to_string(folded.size()) + " facets of the patches fold on the target, the first at " +
-        place +
+        to_text(at, 6) +
         "; another crease_angle_deg may help, or a target with the parametrisation of the mesh (mapping nodes "
         "or sections)");
   }

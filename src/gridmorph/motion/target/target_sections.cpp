@@ -2,6 +2,7 @@
 
 #include <gridmorph/boundary/joined_sides.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/target/section_profile.hpp>
 #include <gridmorph/motion/target/section_rows.hpp>
 #include <gridmorph/motion/target/surface_spread.hpp>
@@ -53,20 +54,17 @@ class Loft {
 
   /// The point of column p at span coordinate w; beyond the ends along the straight line through the last two.
   [[nodiscard]] Vec3 at(SectionPosition const& p, double w) const {
-    int lo = 0, hi = size() - 1;
-    double const range = span(hi, p) - span(lo, p), same = 1e-9 * range;
-    while (hi - lo > 1) {
-      int const mid = (lo + hi) / 2;
-      (span(mid, p) <= w ? lo : hi) = mid;
-    }
+    double const range = span(size() - 1, p) - span(0, p), same = 1e-9 * range;
+    int const lo = piece_at(
+                  size(), [&](int k) { return span(k, p); }, w),
+              hi = std::min(lo + 1, size() - 1);
     double const a = span(lo, p), b = span(hi, p);
     Vec3 const at_a = profiles_[lo].at(p), at_b = profiles_[hi].at(p);
     if (std::fabs(w - a) <= same) return at_a;
     if (std::fabs(w - b) <= same) return at_b;
     double const t = (w - a) / (b - a);
     if (t < 0 || t > 1 || size() == 2) return at_a + t * (at_b - at_a);
-    Vec3 const u = (b - a) * slope(lo, p), v = (b - a) * slope(hi, p);
-    return at_a + (t * t * (3 - 2 * t)) * (at_b - at_a) + (t * (1 - t) * (1 - t)) * u + (t * t * (t - 1)) * v;
+    return cubic_piece(at_a, at_b, slope(lo, p), slope(hi, p), b - a, t);
   }
 
   /// Flat facets between the points of neighbouring sections.

@@ -3,45 +3,16 @@
 #include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/detail/spanwise_lines.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
 
 namespace gridmorph {
 
 namespace {
-
-/// Numbers points so that points closer than the tolerance get one number: a hash grid of that cell size.
-class MergedPoints {
- public:
-  explicit MergedPoints(double tolerance) : tolerance_(tolerance) {}
-
-  /// The number of a known point within the tolerance of p, or `fresh`, which p then has.
-  int find_or_add(Vec3 const& p, int fresh) {
-    Cell const c = cell(p);
-    for (long long i = c[0] - 1; i <= c[0] + 1; ++i)
-      for (long long j = c[1] - 1; j <= c[1] + 1; ++j)
-        for (long long k = c[2] - 1; k <= c[2] + 1; ++k)
-          if (auto const known = cells_.find({i, j, k}); known != cells_.end())
-            for (auto const& [q, n] : known->second)
-              if (distance(p, q) <= tolerance_) return n;
-    cells_[c].emplace_back(p, fresh);
-    return fresh;
-  }
-
- private:
-  using Cell = std::array<long long, 3>;
-  Cell cell(Vec3 const& p) const {
-    auto const floor = [this](double v) { return (long long)(std::floor(v / tolerance_)); };
-    return {floor(p.x), floor(p.y), floor(p.z)};
-  }
-  double tolerance_;
-  std::map<Cell, std::vector<std::pair<Vec3, int>>> cells_;
-};
 
 class Stitcher {
  public:
@@ -51,40 +22,23 @@ class Stitcher {
   }
 
   BladeSurface run() {
-    if (lines_.empty())
+    if (lines_.lines().empty())
       throw MotionError(
           "no surface grid line of the blade runs spanwise: "
           "check the axis, and that `of` names its sides");
-    join_in_span();
+    lines_.join_in_span();
+    blade_.lines = lines_.lines();
     join_around();
     return std::move(blade_);
   }
 
  private:
-  using Line = std::vector<int>;
-
   /// One patch as a grid of points: direction 0 varies fastest.
   struct Piece {
     std::array<int, 2> extent{};
     std::vector<Vec3> points;
     std::vector<double> span;
-    [[nodiscard]] int at(int direction, int line, int along) const {
-      return direction == 0 ? along + extent[0] * line : line + extent[0] * along;
-    }
   };
-
-  /// How much of the length of the lines along a direction goes into span, both as fractions of the blade's height.
-  static double spanwise_share(Piece const& piece, int direction, double height) {
-    double risen = 0, length = 0;
-    for (int line = 0; line < piece.extent[1 - direction]; ++line) {
-      int const n = piece.extent[direction];
-      risen +=
-          std::abs(piece.span[piece.at(direction, line, n - 1)] - piece.span[piece.at(direction, line, 0)]) * height;
-      for (int k = 0; k + 1 < n; ++k)
-        length += distance(piece.points[piece.at(direction, line, k)], piece.points[piece.at(direction, line, k + 1)]);
-    }
-    return length > 0 ? risen / length : 0;
-  }
 
   void add_patch(int p) {
     Patch const& patch = mesh_.patches[p];
@@ -105,9 +59,10 @@ class Stitcher {
       piece.span.push_back(at.h);
       height += input_.height(m) / double(piece.points.size());
     }
-    std::array<double, 2> const share{spanwise_share(piece, 0, height), spanwise_share(piece, 1, height)};
-    int const direction = share[0] > share[1] ? 0 : 1;
-    if (!(share[direction] > 0.3)) {
+    int const direction = detail::spanwise_direction(
+        piece.extent, [&](int n) { return piece.points[n]; },
+        [&](int a, int b) { return std::abs(piece.span[b] - piece.span[a]) * height; });
+    if (direction < 0) {
       notes_.push_back("patch " + describe_patch(mesh_, patch) +
                        " has no spanwise grid lines (a tip face?) and is left "
                        "out of the blade's sections");
@@ -117,67 +72,26 @@ class Stitcher {
   }
 
   void add_lines(Piece const& piece, int direction, std::vector<BladeNode> const& nodes) {
-    int const n_lines = piece.extent[1 - direction], n = piece.extent[direction];
-    int previous = -1;
+    int const n_lines = piece.extent[1 - direction];
     for (int l = 0; l < n_lines; ++l) {
-      bool const upwards = piece.span[piece.at(direction, l, 0)] <= piece.span[piece.at(direction, l, n - 1)];
-      Line line;
-      for (int k = 0; k < n; ++k) {
-        int const local = piece.at(direction, l, upwards ? k : n - 1 - k);
+      auto nodes_of_line = detail::grid_line(piece.extent, direction, l);
+      if (piece.span[nodes_of_line.front()] > piece.span[nodes_of_line.back()])
+        std::reverse(nodes_of_line.begin(), nodes_of_line.end());
+      std::vector<int> line;
+      for (int const local : nodes_of_line) {
         int number = int(blade_.nodes.size());
         // Only nodes on the outline of a piece can be nodes of another piece too.
-        if (l == 0 || l == n_lines - 1 || k == 0 || k == n - 1)
-          number = numbers_.find_or_add(piece.points[local], number);
+        bool const end = local == nodes_of_line.front() || local == nodes_of_line.back();
+        if (l == 0 || l == n_lines - 1 || end) number = numbers_.find_or_add(piece.points[local], number);
         if (number == int(blade_.nodes.size())) blade_.nodes.push_back(nodes[local]);
         if (line.empty() || line.back() != number) line.push_back(number);
       }
-      int const own = add_unique(lines_, known_lines_, std::move(line));
-      if (previous >= 0 && previous != own) beside_.insert(std::minmax(previous, own));
-      previous = own;
+      lines_.add(std::move(line), l == 0);
     }
-  }
-
-  static int add_unique(std::vector<Line>& lines, std::map<Line, int>& known, Line line) {
-    auto const [at, fresh] = known.try_emplace(line, int(lines.size()));
-    if (fresh) lines.push_back(std::move(line));
-    return at->second;
-  }
-
-  /// A line that ends where another begins continues in it.
-  void join_in_span() {
-    std::map<int, int> begins_at;
-    std::set<int> ends;
-    for (std::size_t l = 0; l < lines_.size(); ++l) {
-      begins_at.try_emplace(lines_[l].front(), int(l));
-      ends.insert(lines_[l].back());
-    }
-    std::vector<int> whole(lines_.size(), -1);
-    std::map<Line, int> known;
-    for (std::size_t l = 0; l < lines_.size(); ++l) {
-      if (ends.contains(lines_[l].front())) continue;  // has something below it
-      Line line = lines_[l];
-      std::vector<int> parts{int(l)};
-      for (auto next = begins_at.find(line.back()); next != begins_at.end() && parts.size() <= lines_.size();
-           next = begins_at.find(line.back())) {
-        parts.push_back(next->second);
-        line.insert(line.end(), lines_[next->second].begin() + 1, lines_[next->second].end());
-      }
-      int const number = add_unique(blade_.lines, known, std::move(line));
-      for (int part : parts)
-        if (whole[part] < 0) whole[part] = number;
-    }
-    std::set<std::pair<int, int>> joined;
-    for (auto const& [a, b] : beside_)
-      if (whole[a] >= 0 && whole[b] >= 0 && whole[a] != whole[b]) joined.insert(std::minmax(whole[a], whole[b]));
-    beside_ = std::move(joined);
   }
 
   void join_around() {
-    std::vector<std::vector<int>> neighbours(blade_.lines.size());
-    for (auto const& [a, b] : beside_) {
-      neighbours[a].push_back(b);
-      neighbours[b].push_back(a);
-    }
+    auto const neighbours = lines_.neighbours();
     for (std::size_t l = 0; l < neighbours.size(); ++l)
       if (neighbours[l].size() > 2) {
         BladeNode const& node = blade_.nodes[blade_.lines[l].front()];
@@ -208,11 +122,9 @@ class Stitcher {
   Mesh const& mesh_;
   BladeInput const& input_;
   std::vector<std::string>& notes_;
-  MergedPoints numbers_;
+  PointNumbers numbers_;
   BladeSurface blade_;
-  std::vector<Line> lines_;
-  std::map<Line, int> known_lines_;
-  std::set<std::pair<int, int>> beside_;  ///< lines that follow one another around the section
+  detail::SpanwiseLines lines_;
 };
 
 }  // namespace

@@ -2,12 +2,12 @@
 
 #include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 
 namespace gridmorph {
@@ -25,17 +25,12 @@ std::vector<MeridionalPoint> meridional_points(Mesh const& mesh, CylindricalFram
 
 /// Zones that hold the blade or hang together with those by node-to-node interfaces.
 std::vector<bool> zones_of_row(Mesh const& mesh, std::vector<int> const& blades) {
-  std::vector<int> root(mesh.zones.size());
-  std::iota(root.begin(), root.end(), 0);
-  auto const find = [&](int z) {
-    while (root[z] != z) z = root[z] = root[root[z]];
-    return z;
-  };
-  for (Interface1to1 const& i : mesh.interfaces) root[find(i.zone)] = find(i.donor_zone);
+  DisjointSets<int> rows(mesh.zones.size());
+  for (Interface1to1 const& i : mesh.interfaces) rows.join(i.zone, i.donor_zone);
   std::set<int> roots;
-  for (int p : blades) roots.insert(find(mesh.patches[p].zone));
+  for (int p : blades) roots.insert(rows.root(mesh.patches[p].zone));
   std::vector<bool> in_row(mesh.zones.size());
-  for (std::size_t z = 0; z < in_row.size(); ++z) in_row[z] = roots.contains(find(int(z)));
+  for (std::size_t z = 0; z < in_row.size(); ++z) in_row[z] = roots.contains(rows.root(int(z)));
   return in_row;
 }
 

@@ -1,11 +1,11 @@
 #include <gridmorph/motion/turbomachinery/section_geometry.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/turbomachinery/section_interpolation.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -26,12 +26,6 @@ struct Point {
 };
 Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
 double length(Point a) { return std::hypot(a.x, a.y); }
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", v);
-  return text;
-}
 
 Sample place_at(SectionGeometry::Line const& line, double h) {
   LocalPolynomial const p([&](int n) { return line.span[n]; }, int(line.span.size()),
@@ -202,8 +196,8 @@ SectionGeometry::SectionGeometry(Outline outline) {
     most_nodes = std::max(most_nodes, line.span.size());
   }
   if (lines.size() < 3 || !(span_hi_ > span_lo_))
-    throw MotionError("its spanwise grid lines have no span in common (" + number(span_lo_) + " to " +
-                      number(span_hi_) + "); name whole sides of one blade or wing");
+    throw MotionError("its spanwise grid lines have no span in common (" + to_text(span_lo_, 4) + " to " +
+                      to_text(span_hi_, 4) + "); name whole sides of one blade or wing");
   n_sections_ = int(std::clamp<std::size_t>(2 * most_nodes - 1, 33, 129));
   auto const span_of = [&](int k) { return span_lo_ + (span_hi_ - span_lo_) * k / (n_sections_ - 1); };
 
@@ -229,7 +223,7 @@ SectionGeometry::SectionGeometry(Outline outline) {
     leading = find.leading(section, trailing.at);
     double const chord = length(trailing.at - leading.at);
     if (!(chord > 0))
-      throw MotionError("at span fraction " + number(h) + " the section has no chord; check axis, span and flow");
+      throw MotionError("at span fraction " + to_text(h, 4) + " the section has no chord; check axis, span and flow");
     shortest = std::min(shortest, chord);
     longest = std::max(longest, chord);
     edges_.add(h, {leading.at.x, leading.at.y / section.scale, trailing.at.x, trailing.at.y / section.scale});
@@ -250,11 +244,11 @@ SectionGeometry::SectionGeometry(Outline outline) {
   };
   ChordLine const root = chord_line(span_lo_), tip = chord_line(span_hi_);
   auto const degrees = [](ChordLine const& c) {
-    return number(std::atan2(c.sin_stagger, c.cos_stagger) * 180 / std::numbers::pi);
+    return to_text(std::atan2(c.sin_stagger, c.cos_stagger) * 180 / std::numbers::pi, 4);
   };
-  description_ = std::to_string(lines.size()) + " spanwise lines, span fractions " + number(span_lo_) + " to " +
-                 number(span_hi_) + ", chord " + number(shortest) + " to " + number(longest) + ", stagger " +
-                 degrees(root) + " to " + degrees(tip) + " degrees, leading edge " + edge(find.leading) +
+  description_ = std::to_string(lines.size()) + " spanwise lines, span fractions " + to_text(span_lo_, 4) + " to " +
+                 to_text(span_hi_, 4) + ", chord " + to_text(shortest, 4) + " to " + to_text(longest, 4) +
+                 ", stagger " + degrees(root) + " to " + degrees(tip) + " degrees, leading edge " + edge(find.leading) +
                  ", trailing edge " + edge(find.trailing);
 }
 
@@ -339,7 +333,7 @@ SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<Secti
     if (!(image.spread < 1e-6 * period))
       throw MotionError(
           "its two open sides share neither leading nor trailing edge, nor lie a pitch apart (distances vary by " +
-          number(image.spread) + "); name the two sides of one blade row, or each blade in a rule of its own");
+          to_text(image.spread, 4) + "); name the two sides of one blade row, or each blade in a rule of its own");
     if (std::abs(image.mean) > 1e-9) outline.shift = image.mean;
     for (auto& line : other)
       for (auto& p : line.place) p[1] -= outline.shift;

@@ -1,6 +1,7 @@
 // Interpolation along sections and across tables of them.
 #pragma once
 
+#include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/turbomachinery/span_table.hpp>
 
 #include <algorithm>
@@ -26,13 +27,8 @@ struct LocalPolynomial {
   /// x must be strictly increasing; `value` within it is interpolated.
   template <class X>
   LocalPolynomial(X const& x, int n, double value) {
-    int lo = 0, hi = n - 1;
-    while (hi - lo > 1) {
-      int const mid = (lo + hi) / 2;
-      (x(mid) <= value ? lo : hi) = mid;
-    }
     count = std::min(n, 4);
-    first = std::clamp(lo - 1, 0, n - count);
+    first = std::clamp(piece_at(n, x, value) - 1, 0, n - count);
     for (int j = 0; j < count; ++j) {
       weight[j] = 1;
       for (int k = 0; k < count; ++k)

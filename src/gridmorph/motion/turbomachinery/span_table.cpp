@@ -1,3 +1,4 @@
+#include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/turbomachinery/span_table.hpp>
 
 #include <algorithm>
@@ -17,14 +18,12 @@ double SpanTable::slope(int n, int q) const {
 SpanTable::Value SpanTable::at(double span) const {
   if (span <= span_.front() || span_.size() < 2) return value_.front();
   if (span >= span_.back()) return value_.back();
-  int const lo = int(std::upper_bound(span_.begin(), span_.end(), span) - span_.begin()) - 1;
+  int const lo = piece_at(
+      int(span_.size()), [&](int k) { return span_[k]; }, span);
   double const h = span_[lo + 1] - span_[lo], t = (span - span_[lo]) / h;
   Value out{};
-  for (int q = 0; q < 4; ++q) {
-    double const rise = value_[lo + 1][q] - value_[lo][q];
-    out[q] = value_[lo][q] +
-             (rise * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * slope(lo, q) - t * slope(lo + 1, q)));
-  }
+  for (int q = 0; q < 4; ++q)
+    out[q] = cubic_piece(value_[lo][q], value_[lo + 1][q], slope(lo, q), slope(lo + 1, q), h, t);
   return out;
 }
 

@@ -1,9 +1,9 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/plan/blocks/boundary.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <map>
 #include <set>
 
@@ -43,12 +43,6 @@ void for_closure(Lattice const& lattice, int face_entity, Visit&& visit) {
 std::string requester(Mesh const& mesh, BoundaryRequests::Request const& r) {
   return r.patch >= 0 ? describe_patch(mesh, mesh.patches[r.patch])
                       : "'" + mesh.interfaces[r.interface].name + "' (periodic)";
-}
-
-std::string format(double v) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", v);
-  return text.data();
 }
 
 }  // namespace
@@ -170,11 +164,10 @@ std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& bo
 
   Problems problems;
   for (auto const& [who, c] : conflicts) {
-    auto const vec = [](Vec3 const& v) { return "(" + format(v.x) + ", " + format(v.y) + ", " + format(v.z) + ")"; };
     problems.add("patches " + who.first + " and " + who.second + " disagree on " + std::to_string(c.count) +
-                 " common nodes, most at " + describe_node(mesh, requests[c.first].node) + ": " + vec(c.a) + " from " +
-                 motion.rules[requests[c.first].rule].where + ", " + vec(c.b) + " from " +
-                 motion.rules[requests[c.second].rule].where + ", apart by " + format(c.size) +
+                 " common nodes, most at " + describe_node(mesh, requests[c.first].node) + ": " + to_text(c.a, 6) +
+                 " from " + motion.rules[requests[c.first].rule].where + ", " + to_text(c.b, 6) + " from " +
+                 motion.rules[requests[c.second].rule].where + ", apart by " + to_text(c.size, 6) +
                  "; make the two motions agree there, let one of them slip, or give the rules different ranks");
   }
   problems.throw_if_any<MotionError>();

@@ -1,3 +1,4 @@
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/mesh/extent.hpp>
@@ -5,7 +6,6 @@
 #include <gridmorph/plan/elements/locate.hpp>
 
 #include <algorithm>
-#include <limits>
 
 namespace gridmorph {
 
@@ -28,12 +28,9 @@ std::vector<Location> places(UnstructuredMesh const& mesh, std::vector<Vec3> con
 
 Classification classify_by_hole(UnstructuredMesh const& mesh, Background const& background,
                                 std::vector<Vec3> const& wrap_nodes) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-  for (Vec3 const& p : wrap_nodes) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  Box box;
+  for (Vec3 const& p : wrap_nodes) box.include(p);
+  auto const& [low, high] = box;
   std::vector<Index32> candidates;
   std::vector<Vec3> points;
   for (Index32 n = 0; n < Index32(mesh.n_nodes()); ++n) {

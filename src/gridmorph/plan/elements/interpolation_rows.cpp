@@ -1,11 +1,10 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/kernels/element_place.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace gridmorph {
 
@@ -154,11 +153,10 @@ LocateReport summarise(std::span<Location const> locations) {
 
 std::string describe(LocateReport const& report, std::string const& points, std::string const& mesh) {
   if (report.outside == 0) return {};
-  std::array<char, 32> distance{};
-  std::snprintf(distance.data(), distance.size(), "%.3g", report.largest_distance);
   return std::to_string(report.outside) + " of " + std::to_string(report.inside + report.outside) + " " + points +
-         (report.outside == 1 ? " lies" : " lie") + " outside " + mesh + ", up to " + distance.data() +
-         " from it, and " + (report.outside == 1 ? "takes" : "take") + " the nearest place there";
+         (report.outside == 1 ? " lies" : " lie") + " outside " + mesh + ", up to " +
+         to_text(report.largest_distance, 3) + " from it, and " + (report.outside == 1 ? "takes" : "take") +
+         " the nearest place there";
 }
 
 }  // namespace gridmorph

@@ -1,9 +1,9 @@
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -13,12 +13,6 @@ namespace gridmorph::detail {
 namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
-
-std::string text(double v) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.4g", v);
-  return buffer;
-}
 
 }  // namespace
 
@@ -107,7 +101,7 @@ void UnstructuredPlanner::project_wrap() {
   if (out_.report.wrap_outside > 0)
     out_.notes.push_back(std::to_string(out_.report.wrap_outside) + " of " + std::to_string(out_.report.wrap_nodes) +
                          " nodes of the wrap lie outside all elements (in solids or beyond the domain), at most " +
-                         text(out_.report.wrap_distance) + " away; they move as the nearest place of an element");
+                         to_text(out_.report.wrap_distance, 4) + " away; they move as the nearest place of an element");
 }
 
 }  // namespace gridmorph::detail

@@ -1,3 +1,4 @@
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/plan/elements/element_grades.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
@@ -56,14 +57,11 @@ void UnstructuredPlanner::plan_layers() {
 
 void UnstructuredPlanner::plan_smooth_walls() {
   UnstructuredPlan& plan = out_.plan;
-  Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
-    if (!near_[std::size_t(n)]) continue;
-    Vec3 const x = mesh_.coordinates[n];
-    low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
-    high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
-  }
-  plan.walls = make_scatter_lattice(mesh_.coordinates, plan.driving, areas(plan.driving), mesh_.dimension, low, high);
+  Box box;
+  for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
+    if (near_[std::size_t(n)]) box.include(mesh_.coordinates[n]);
+  plan.walls =
+      make_scatter_lattice(mesh_.coordinates, plan.driving, areas(plan.driving), mesh_.dimension, box.low, box.high);
   double const reach = 4 * plan.walls.shape.spacing;
   for (Index32 const n : plan.near.rows.target) {
     double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/plan/elements/background_hole.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
@@ -15,18 +16,17 @@ double UnstructuredPlanner::offset() {
   hints.motion = reach_;
   double sum = 0;
   Index count = 0;
-  Vec3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+  Box box;
   for (Index32 const f : driving_faces_) {
     auto const face = topology_.boundary.nodes[f];
     for (std::size_t k = 0; k < face.size(); ++k, ++count) {
       Vec3 const x = mesh_.coordinates[face[k]];
       sum += distance(x, mesh_.coordinates[face[(k + 1) % face.size()]]);
-      low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
-      high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+      box.include(x);
     }
   }
   hints.wall_edge = sum / double(count);
-  hints.body = norm(high - low);
+  hints.body = distance(box.low, box.high);
   // No gap at all cannot limit the wrap.
   hints.gap = std::isfinite(gap_) && gap_ > hints.wall_edge ? gap_ : 0;
   return options_.offset > 0 ? options_.offset : suggest_offset(hints);

@@ -1,3 +1,4 @@
+#include <gridmorph/geometry/symmetric_eigen.hpp>
 #include <gridmorph/plan/elements/tube.hpp>
 
 #include <algorithm>
@@ -115,21 +116,6 @@ struct Faces {
   }
 };
 
-/// Eigenvector of the largest eigenvalue of a symmetric matrix, by squaring it often.
-Vec3 principal_axis(Mat3 m) {
-  for (int n = 0; n < 40; ++n) {
-    double trace = m.m[0][0] + m.m[1][1] + m.m[2][2];
-    if (!(trace > 0)) return {0, 0, 1};
-    for (auto& row : m.m)
-      for (double& value : row) value /= trace;
-    m = m * m;
-  }
-  Vec3 best;
-  for (auto const& row : m.m)
-    if (Vec3 const r{row[0], row[1], row[2]}; norm(r) > norm(best)) best = r;
-  return normalized(best);
-}
-
 class Fitter {
  public:
   Fitter(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, double offset)
@@ -162,15 +148,9 @@ class Fitter {
       area += a;
     });
     mean = (1 / area) * mean;
-    Mat3 spread;
-    for (auto& row : spread.m)
-      for (double& value : row) value = 0;
-    faces_.for_all([&](auto const&, Vec3 const& middle, double a) {
-      Vec3 const d = middle - mean;
-      for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0; c < 3; ++c) spread.m[r][c] += a * component(d, r) * component(d, c);
-    });
-    tube_.axis = principal_axis(spread);
+    Moments spread;
+    faces_.for_all([&](auto const&, Vec3 const& middle, double a) { spread.add(a, middle - mean); });
+    tube_.axis = PrincipalAxes(spread).direction[0];
     std::size_t nearest = 2;
     for (std::size_t a = 0; a < 3; ++a)
       if (std::abs(component(tube_.axis, a)) > std::abs(component(tube_.axis, nearest)) + 1e-9) nearest = a;

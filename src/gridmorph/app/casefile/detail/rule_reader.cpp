@@ -5,6 +5,7 @@
 #include <gridmorph/app/casefile/formula.hpp>
 #include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/contour.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/section_share.hpp>
@@ -278,11 +279,12 @@ std::function<double(Moment const&)> amplitude_table(std::vector<std::pair<doubl
   return [stations = std::move(stations), smooth](Moment const& when) {
     if (when.time <= stations.front().first) return stations.front().second;
     if (when.time >= stations.back().first) return stations.back().second;
-    auto const after = std::upper_bound(stations.begin(), stations.end(), when.time,
-                                        [](double time, auto const& station) { return time < station.first; });
-    auto const before = after - 1;
-    double const s = (when.time - before->first) / (after->first - before->first);
-    return before->second + (smooth ? s * s * (3 - 2 * s) : s) * (after->second - before->second);
+    auto const time = [&](int k) { return stations[std::size_t(k)].first; };
+    std::size_t const n = std::size_t(piece_at(int(stations.size()), time, when.time));
+    auto const [from, a] = stations[n];
+    auto const [to, b] = stations[n + 1];
+    double const width = to - from, t = (when.time - from) / width;
+    return smooth ? cubic_piece(a, b, 0.0, 0.0, width, t) : a + t * (b - a);
   };
 }
 

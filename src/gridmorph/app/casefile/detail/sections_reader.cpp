@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -48,30 +47,9 @@ std::string_view unquoted(std::string_view text) {
 
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
-  char const separator = line.find(';') != std::string_view::npos ? ';' : ',';
-  if (line.find(separator) != std::string_view::npos) {
-    for (std::size_t end = 0; end != std::string_view::npos; line.remove_prefix(end + 1)) {
-      end = line.find(separator);
-      cells.push_back(unquoted(line.substr(0, end)));
-      if (end == std::string_view::npos) break;
-    }
-    return cells;
-  }
-  for (line = unquoted(line); !line.empty(); line = unquoted(line)) {
-    std::size_t const end = std::min(line.find_first_of(" \t"), line.size());
-    cells.push_back(line.substr(0, end));
-    line.remove_prefix(end);
-  }
+  split(line, separator_of(line), cells);
+  for (auto& cell : cells) cell = unquoted(cell);
   return cells;
-}
-
-std::optional<double> finite_number(std::string_view cell) {
-  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
-  double value = 0;
-  auto const [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size() || cell.empty() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
 }
 
 /// The value of a key: one number for the whole span, or [[span, value], ...].
@@ -131,15 +109,9 @@ std::vector<SpanwiseColumn> parse_spanwise_columns(std::string_view text, std::s
   std::vector<SpanwiseColumn> columns;
   std::size_t span_column = 0;
   Problems problems;
-  constexpr std::size_t most_problems = 10;
-  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // byte order mark of spreadsheet programs
-  for (std::int64_t number = 1; !text.empty() && problems.messages().size() < most_problems; ++number) {
-    std::size_t const end = std::min(text.find('\n'), text.size());
-    std::string_view const line = unquoted(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.empty() || line.front() == '#') continue;
-    std::string const where = fmt::format("{}:{}", source, number);
-    auto const cells = cells_of(line);
+  for (Lines lines(text); problems.messages().size() < most_problems_per_file && lines.next();) {
+    std::string const where = fmt::format("{}:{}", source, lines.number());
+    auto const cells = cells_of(lines.line());
     if (columns.empty()) {
       if (cells.size() > most_columns)
         throw ConfigError(fmt::format("{}: more than {} columns; is it a table?", where, most_columns));

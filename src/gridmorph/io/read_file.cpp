@@ -1,0 +1,31 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/read_file.hpp>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+namespace gridmorph::io {
+
+std::string read_file(std::string const& path) {
+  namespace fs = std::filesystem;
+  std::error_code failure;
+  auto const status = fs::status(path, failure);
+  if (!fs::exists(status)) throw IoError(path + ": no such file; check the name and the folder it is looked up from");
+  if (!fs::is_regular_file(status)) throw IoError(path + ": is not an ordinary file");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw IoError(path + ": cannot be opened for reading: " + std::strerror(errno));
+  std::string text;
+  if (auto const size = fs::file_size(path, failure); !failure) text.reserve(size);
+  std::array<char, 1 << 16> chunk;
+  while (file.read(chunk.data(), chunk.size()) || file.gcount() > 0)
+    text.append(chunk.data(), std::size_t(file.gcount()));
+  if (file.bad()) throw IoError(path + ": cannot be read to its end: " + std::strerror(errno));
+  return text;
+}
+
+}  // namespace gridmorph::io

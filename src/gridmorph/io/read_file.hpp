@@ -1,0 +1,11 @@
+// Whole files.
+#pragma once
+
+#include <string>
+
+namespace gridmorph::io {
+
+/// All bytes of an ordinary file (a pipe would block for ever). Throws IoError beginning with the path.
+std::string read_file(std::string const& path);
+
+}  // namespace gridmorph::io
