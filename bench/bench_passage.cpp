@@ -33,7 +33,7 @@ struct Passage {
       : options(of_size(nodes)),
         mesh(make_passage(options)),
         prepared(plan(options, mesh)),
-        boundary(prepared.boundary_displacement(mesh)) {
+        boundary(prepared.boundary_displacement()) {
     for (Stage const& stage : prepared.plan().stages) n_parameters += stage.lines.n_parameters;
     for (SpreadPass const& pass : prepared.plan().spreads) n_parameters += pass.lines.n_parameters;
   }
@@ -42,7 +42,7 @@ struct Passage {
     options.nodes = std::max<std::int64_t>(nodes, 10'000);
     return options;
   }
-  static PreparedMorph plan(PassageOptions const& options, Mesh& mesh) {
+  static PreparedMorph plan(PassageOptions const& options, Mesh const& mesh) {
     PassageMotion const section = rotated_sections();
     Motion motion;
     motion.axis = {{0, 0, 0}, {1, 0, 0}};

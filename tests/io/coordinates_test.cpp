@@ -60,7 +60,7 @@ TEST_F(CoordinatesInFiles, RindPlanesAreLeftOutOnReadingAndLeftAloneOnWriting) {
     auto const out = folder_.file("out.cgns");
     write_morphed(path_, out, mesh, mesh.coordinates);
     EXPECT_EQ(dump_tree(path_), dump_tree(out));
-    Coordinates const zero(mesh.n_nodes());
+    Coordinates zero(mesh.n_nodes());
     for (Index m = 0; m < zero.size(); ++m) zero.set(m, {0, 0, 0});
     write_morphed(path_, out, mesh, zero);
     EXPECT_EQ(read_mesh(out).coordinates[5], (Vec3{0, 0, 0}));

@@ -4,9 +4,9 @@
 #include "io_support.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns/linked_files.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/morphed_file.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
 
 #include <hdf5.h>
 
@@ -228,7 +228,7 @@ TEST_F(HostileHdf5, ArraysFarLargerThanTheFileAreRefused) {
 }
 
 TEST_F(HostileHdf5, FilesThatLinksLeadToAreKnown) {
-  EXPECT_TRUE(linked_files(path_).empty());
+  EXPECT_TRUE(look_at_mesh(path_).linked.empty());
   std::string const grid = folder_.file("grid.cgns");
   write_bytes(grid, bytes_of(path_));
   change([&](hid_t file) {
@@ -237,8 +237,8 @@ TEST_F(HostileHdf5, FilesThatLinksLeadToAreKnown) {
     H5Lcreate_external("grid.cgns", (zone_ + "/GridCoordinates").c_str(), file,
                        (zone_ + "/GridCoordinates/ link").c_str(), H5P_DEFAULT, H5P_DEFAULT);
   });
-  ASSERT_EQ(linked_files(path_).size(), 1u);
-  EXPECT_TRUE(std::filesystem::equivalent(linked_files(path_)[0], grid));
+  ASSERT_EQ(look_at_mesh(path_).linked.size(), 1u);
+  EXPECT_TRUE(std::filesystem::equivalent(look_at_mesh(path_).linked[0], grid));
   expect_same_coordinates(read_mesh(path_).coordinates, mesh_.coordinates);
   expect_unwritable({x_, "is a link"});
   std::filesystem::remove(grid);
@@ -287,7 +287,7 @@ TEST(HostileAdf, DataOfTwoNodesAreRefused) {
 TEST(HostileCoordinates, NodesFarBeyondAnyMeshAreNamed) {
   TemporaryFolder const folder;
   std::string const path = folder.file("mesh.cgns");
-  Mesh const mesh = LatticeBuilder({{{{0, 2}, {0, 2}, {0, 2}}}}, 4).build();
+  Mesh mesh = LatticeBuilder({{{{0, 2}, {0, 2}, {0, 2}}}}, 4).build();
   for (double const huge : {5e154, -1e101, 1e300}) {
     Vec3 const before = mesh.coordinates[3];
     mesh.coordinates.set(3, {before.x, huge, before.z});

@@ -96,7 +96,7 @@ class Manners : public ::testing::Test {
     return prepare(mesh, m, options);
   }();
   Exec exec;
-  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
+  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement());
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
   std::vector<Morpher<Exec>::In> two_in{boundary, boundary};
   std::vector<Morpher<Exec>::Out> two_out{u, u};
@@ -191,7 +191,7 @@ TEST_F(Manners, StagesAreRegionsOfProfiles) {
 TEST_F(Manners, EverythingRunsOnTheInstanceThatIsHandedOver) {
   Kokkos::Serial const other;
   Coordinates const moved(mesh.n_nodes());
-  std::vector<Vec3> const given = prepared.boundary_displacement(mesh);
+  std::vector<Vec3> const given = prepared.boundary_displacement();
   Kokkos::View<Vec3 const*, Kokkos::HostSpace> const host_boundary(given.data(), given.size());
   Listener const listener;
   Morpher<Kokkos::Serial> const morpher(other, prepared.plan(), mesh.coordinates, {2, true});
@@ -218,12 +218,12 @@ TEST_F(Manners, EveryMorphRunsTheSameKernels) {
 
 TEST_F(Manners, PlanningLaunchesOnTheHostOnlyWhatReadsTheWholeMesh) {
   Listener const listener;
-  Mesh again = annulus_sector(sector(), 1);
+  Mesh const again = annulus_sector(sector(), 1);
   record = {};
   Motion const m =
       motion({rule({"hub"}, FixedRule{}), rule({"case"}, FixedRule{}), rule({"inlet", "outlet"}, FreeRule{})});
   PreparedMorph const p = prepare(again, m, {});
-  EXPECT_FALSE(p.boundary_displacement(again).empty());
+  EXPECT_FALSE(p.boundary_displacement().empty());
   for (auto const& kernel : record.kernels)
     EXPECT_TRUE(kernel == "gridmorph::extent_of" || kernel == "gridmorph::largest_cosines") << kernel;
 }

@@ -233,7 +233,7 @@ struct PlacedHub {
   explicit PlacedHub(bool single) {
     RowMesh row;
     row.add(end_wall("hub", 0, 201, 9));
-    Mesh const mesh = row.finish(placed);
+    Mesh mesh = row.finish(placed);
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
       Vec3 p = mesh.coordinates[n];
       if (single) p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};

@@ -279,5 +279,20 @@ TEST(Plan, SaysWhereZonesTouchWithoutAnInterface) {
   }
 }
 
+TEST(Prepare, CompletesTheBoundaryInWhatItReturnsAndLeavesTheMeshAsItIs) {
+  Mesh mesh = box({5, 4, 4}, Shape::straight, 1);
+  mesh.patches.pop_back();
+  auto const patches = mesh.patches.size();
+  PlanOptions options;
+  options.topology.open_faces = "open";
+  PreparedMorph const prepared = prepare(mesh, motion({rule({"*"}, FixedRule{})}), options);
+  EXPECT_EQ(mesh.patches.size(), patches);
+  EXPECT_TRUE(mesh.notes.empty());
+  ASSERT_EQ(prepared.mesh.patches.size(), patches + 1);
+  EXPECT_EQ(prepared.mesh.patches.back().name, "open");
+  EXPECT_EQ(prepared.mesh.coordinates.x.data(), mesh.coordinates.x.data());
+  EXPECT_EQ(prepared.boundary_displacement().size(), prepared.plan().boundary_nodes.size());
+}
+
 }  // namespace
 }  // namespace gridmorph::test

@@ -59,7 +59,7 @@ TEST(SmallestAngle, IsThatOfTheCellCornersOfEveryMesh) {
 TEST(SmallestAngle, EdgesWithoutLengthHaveNone) { expect_reference(o_grid(0, 7), whole_zones(o_grid(0, 7))); }
 
 TEST(SmallestAngle, NodesOutsideTheBoxDoNotCount) {
-  Mesh const mesh = box({7, 6, 5}, Shape::curved, 8);
+  Mesh mesh = box({7, 6, 5}, Shape::curved, 8);
   double const nan = std::numeric_limits<double>::quiet_NaN();
   NodeBox const inner{0, {{2, 1, 1}, {5, 5, 4}}};
   double const expected = reference(mesh, inner);
@@ -72,7 +72,7 @@ TEST(SmallestAngle, IsAChosenOneInAShearedBoxAndARightOneInAStraightBox) {
   Mesh const straight = box({4, 4, 4}, Shape::straight, 0);
   EXPECT_NEAR(largest_cosines(straight, whole_zones(straight)).front(), 0, 1e-15);
   double const angle_rad = 0.3;
-  Mesh const sheared = box({4, 4, 4}, Shape::straight, 0);
+  Mesh sheared = box({4, 4, 4}, Shape::straight, 0);
   for (Index n = 0; n < sheared.n_nodes(); ++n) {
     Vec3 const p = sheared.coordinates[n];
     sheared.coordinates.set(n, {p.x + p.z / std::tan(angle_rad), p.y, p.z});

@@ -78,11 +78,11 @@ struct Outcome {
 };
 
 template <class Exec = Kokkos::DefaultHostExecutionSpace>
-Outcome morph(Mesh mesh, Motion const& motion, PlanOptions const& options = {}, Exec const& exec = {}) {
+Outcome morph(Mesh const& mesh, Motion const& motion, PlanOptions const& options = {}, Exec const& exec = {}) {
   PreparedMorph prepared = prepare(mesh, motion, options);
-  std::vector<Vec3> boundary = prepared.boundary_displacement(mesh);
+  std::vector<Vec3> boundary = prepared.boundary_displacement();
   Morphed morphed = run_plan(exec, mesh, prepared.plan(), boundary);
-  return {std::move(mesh), std::move(prepared), std::move(boundary), std::move(morphed)};
+  return {prepared.mesh, std::move(prepared), std::move(boundary), std::move(morphed)};
 }
 
 inline bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }

@@ -151,6 +151,20 @@ TEST_F(UnstructuredSequence, EveryStepHasTheFieldsThatAreAskedFor) {
   }
 }
 
+TEST_F(UnstructuredSequence, ASeriesInOneFileKeepsTheBaselineAsItsFirstGrid) {
+  write_mesh(path("ring.cgns").string(), read_unstructured_mesh(path("ring.su2").string()));
+  write_case("out.cgns", 0.5);
+  std::string text = contents(path("case.toml"));
+  text.replace(text.find("ring.su2"), 8, "ring.cgns");
+  write("case.toml", text);
+  Outcome const run = gridmorph("morph case.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("wrote out.cgns (4 steps)"), std::string::npos) << run.out;
+  auto const before = coordinates("ring.cgns"), after = coordinates("out.cgns");
+  for (Index n = 0; n < before.size(); ++n) EXPECT_EQ(after[n], before[n]) << n;
+  EXPECT_NE(contents(path("out.cgns")).find("GridCoordinates_4"), std::string::npos);
+}
+
 TEST_F(UnstructuredSequence, AStepThatInvertsOrASeriesInOneFileLeavesNothing) {
   write_case("out_{step}.su2", 30);
   Outcome const run = gridmorph("morph case.toml");

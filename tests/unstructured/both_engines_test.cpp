@@ -47,8 +47,7 @@ TEST_P(BothEngines, MoveTheBoundaryAlikeAndTurnNothingOver) {
   UnstructuredCase const hexahedra(as_hexahedra(blocks));
   PreparedMorph const prepared = prepare(blocks, file.motion, file.plan);
   Coordinates const structured =
-      run_plan(Kokkos::DefaultHostExecutionSpace(), blocks, prepared.plan(), prepared.boundary_displacement(blocks))
-          .position;
+      run_plan(Kokkos::DefaultHostExecutionSpace(), blocks, prepared.plan(), prepared.boundary_displacement()).position;
   UnstructuredOptions options = file.unstructured;
   options.boundary_layers = file.plan.boundary_layers;
   UnstructuredMorphed const other = hexahedra.guarded_morph(file.motion, options);

@@ -7,6 +7,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
@@ -118,6 +119,36 @@ TEST_P(UnstructuredCgns, MorphedFilesDifferInTheirCoordinatesAlone) {
   // No motion: the same bytes in every node.
   write_morphed(input, output, mesh, mesh.coordinates);
   EXPECT_EQ(dump_tree(output), before);
+}
+
+TEST_P(UnstructuredCgns, ASeriesHoldsEveryStepAsTheFileNumbersNodes) {
+  auto const mesh = mixed_box();
+  auto ordered = mesh;
+  reorder(ordered, order_by_position(mesh));
+  auto const input = folder_.file("in.cgns"), output = folder_.file("series.cgns");
+  write_mesh(input, mesh, {.format = GetParam()});
+  std::vector<double> const times{0, 0.25, 1};
+  SeriesWriter writer(input, output, ordered, times);
+  for (double const t : times) {
+    Coordinates moved(mesh.n_nodes());
+    for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, ordered.coordinates[n] + Vec3{0, 0, 3 * t});
+    writer.add(moved);
+  }
+  writer.commit();
+  auto const before = dump_tree(input), after = dump_tree(output);
+  for (auto const& [path, text] : before) {
+    ASSERT_TRUE(after.contains(path)) << path;
+    EXPECT_EQ(after.at(path), text) << path;
+  }
+  for (std::size_t step = 0; step < times.size(); ++step) {
+    auto const bytes = payload(after.at("/Base/box/GridCoordinates_" + std::to_string(step + 1) + "/CoordinateZ"));
+    ASSERT_EQ(bytes.size(), sizeof(double) * std::size_t(mesh.n_nodes()));
+    std::vector<double> z(std::size_t(mesh.n_nodes()));
+    std::memcpy(z.data(), bytes.data(), bytes.size());
+    for (Index n = 0; n < mesh.n_nodes(); ++n)
+      EXPECT_EQ(z[std::size_t(n)], mesh.coordinates.z(n) + 3 * times[step]) << step << " " << n;
+  }
+  EXPECT_TRUE(after.contains("/Base/box/ZoneIterativeData/GridCoordinatesPointers"));
 }
 
 TEST_P(UnstructuredCgns, FieldsAreAddedPerNodeAndPerElement) {

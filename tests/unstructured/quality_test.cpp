@@ -225,7 +225,7 @@ TEST(UnstructuredQuality, AFlippedElementIsInvertedAndAHealedOneIsSoundHoweverEl
     input.coordinates = views(p.mesh.coordinates);
     EXPECT_EQ(p.measure(input).far_field.inverted, 0) << way;
     // A node among the triangles goes through the side across.
-    Coordinates const torn(p.mesh.n_nodes());
+    Coordinates torn(p.mesh.n_nodes());
     Index node = -1;
     for (Index n = 0; n < p.mesh.n_nodes(); ++n) {
       torn.set(n, p.mesh.coordinates[n]);
@@ -295,7 +295,7 @@ TEST(UnstructuredQuality, FlatElementsOfEveryTypeAreNeitherInvertedNorSound) {
     QualityRegion const r = p.measure(input).far_field;
     EXPECT_EQ(r.flat, r.cells / 4);
     EXPECT_EQ(r.inverted, 0);
-    Coordinates const after(p.mesh.n_nodes());
+    Coordinates after(p.mesh.n_nodes());
     for (Index n = 0; n < p.mesh.n_nodes(); ++n) {
       Vec3 const x = p.mesh.coordinates[n];
       after.set(n, {x.x + 0.01 * x.y, x.y, x.z > 2.5 ? 3 - (x.z - 3) : x.z});
@@ -312,7 +312,7 @@ TEST(UnstructuredQuality, FlatElementsOfEveryTypeAreNeitherInvertedNorSound) {
 
 TEST(UnstructuredQuality, AVerdictSaysWhatTheFullMeasurementSays) {
   Prepared const p(to_prisms_and_tetrahedra(unit_box({6, 5, 7}), 3));
-  Coordinates const after(p.mesh.n_nodes());
+  Coordinates after(p.mesh.n_nodes());
   for (Index n = 0; n < p.mesh.n_nodes(); ++n) {
     Vec3 const x = p.mesh.coordinates[n];
     after.set(n, x + Vec3{x.z > 3.5 ? 4.0 : 0.0, 0, x.x == 3 && x.y == 2 ? 0.9 : 0.0});

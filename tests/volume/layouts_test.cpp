@@ -176,7 +176,7 @@ TEST_F(Layouts, ZonesApartWithThreeArraysEach) {
 /// What is computed with coordinates and displacements in single precision: in double from them, and rounded once.
 TEST_F(Layouts, SinglePrecisionIsRoundedOnceOnTheWayOut) {
   auto const rounded = [](double v) { return double(float(v)); };
-  Coordinates const x(mesh.n_nodes()), expected(mesh.n_nodes());
+  Coordinates x(mesh.n_nodes()), expected(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
     Vec3 const p = mesh.coordinates[n];
     x.set(n, {rounded(p.x), rounded(p.y), rounded(p.z)});

@@ -194,7 +194,7 @@ TEST(Morpher, TakesSeveralFieldsAtOnceAndGivesEachWhatItGetsAlone) {
   Exec const exec;
   SlidingSector s;
   constexpr int n_fields = 10;  // more than one pass takes
-  std::vector<Vec3> const given = s.prepared.boundary_displacement(s.mesh);
+  std::vector<Vec3> const given = s.prepared.boundary_displacement();
   std::vector<std::vector<Vec3>> alone(n_fields, given);
   for (int f = 0; f < n_fields; ++f)
     for (std::size_t n = 0; n < given.size(); ++n) alone[f][n] = (1 - 0.12 * f) * given[n];
@@ -224,7 +224,7 @@ TEST(Morpher, GridVelocityIsTheDerivativeOfTheDisplacement) {
   using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;
   SlidingSector s;
-  std::vector<Vec3> const given = s.prepared.boundary_displacement(s.mesh);
+  std::vector<Vec3> const given = s.prepared.boundary_displacement();
   std::vector<Vec3> rate(given.size());
   for (std::size_t n = 0; n < given.size(); ++n) {
     Vec3 const p = s.mesh.coordinates[s.prepared.plan().boundary_nodes[n]];

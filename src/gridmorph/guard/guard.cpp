@@ -14,7 +14,7 @@ namespace {
 class Relaxation {
  public:
   Relaxation(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, PreparedUnstructured const& prepared,
-             Coordinates const& morphed, RelaxOptions const& options)
+             Coordinates& morphed, RelaxOptions const& options)
       : mesh_(mesh),
         topology_(topology),
         prepared_(prepared),
@@ -181,7 +181,7 @@ class Relaxation {
   UnstructuredMesh const& mesh_;
   UnstructuredTopology const& topology_;
   PreparedUnstructured const& prepared_;
-  Coordinates const& x_;
+  Coordinates& x_;
   RelaxOptions const& options_;
   std::vector<signed char> signs_;
   std::vector<std::uint8_t> held_;
@@ -190,7 +190,7 @@ class Relaxation {
 }  // namespace
 
 RelaxReport relax_bad_elements(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                               PreparedUnstructured const& prepared, Coordinates const& morphed,
+                               PreparedUnstructured const& prepared, Coordinates& morphed,
                                RelaxOptions const& options) {
   return Relaxation(mesh, topology, prepared, morphed, options).run();
 }

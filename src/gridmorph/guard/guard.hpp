@@ -30,7 +30,7 @@ struct RelaxReport {
 /// the next ones have half as many sweeps. Explicit, deterministic; cost: the determinants of all elements once,
 /// per round those around the nodes that move.
 RelaxReport relax_bad_elements(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                               PreparedUnstructured const& prepared, Coordinates const& morphed,
+                               PreparedUnstructured const& prepared, Coordinates& morphed,
                                RelaxOptions const& options = {});
 
 }  // namespace gridmorph

@@ -12,23 +12,9 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-/// Gives a mesh its coordinates back.
-class KeepCoordinates {
- public:
-  explicit KeepCoordinates(UnstructuredMesh& mesh) : mesh_(mesh), kept_(mesh.coordinates) {}
-  ~KeepCoordinates() { mesh_.coordinates = kept_; }
-  KeepCoordinates(KeepCoordinates const&) = delete;
-  KeepCoordinates& operator=(KeepCoordinates const&) = delete;
-  [[nodiscard]] Coordinates const& kept() const { return kept_; }
-
- private:
-  UnstructuredMesh& mesh_;
-  Coordinates kept_;
-};
-
 }  // namespace
 
-Coordinates morph_in_steps(UnstructuredMesh& mesh, UnstructuredTopology const& topology,
+Coordinates morph_in_steps(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                            BoundaryFacePatches const& face_patches, PreparedUnstructured const& prepared,
                            std::vector<Vec3> const& displacement, StepOptions const& options) {
   if (options.plan.background)
@@ -36,29 +22,29 @@ Coordinates morph_in_steps(UnstructuredMesh& mesh, UnstructuredTopology const& t
         "a background mesh of your own stands still while the walls move: it serves one step alone; leave it out to "
         "morph in "
         "steps");
-  KeepCoordinates const baseline(mesh);
   MotionPath const path(mesh.coordinates, prepared.graph, prepared.boundary, displacement);
   auto const& known = prepared.plan.known;
   UnstructuredOptions plan = options.plan;
+  UnstructuredMesh now = mesh;
   for (int step = 1; step <= options.steps; ++step) {
     if (options.progress) options.progress(step);
     auto given = path.at(double(step) / options.steps);
     plan.motion = 0;
     for (std::size_t k = 0; k < given.size(); ++k) {
-      given[k] = baseline.kept()[known[k]] + given[k] - mesh.coordinates[known[k]];
+      given[k] = mesh.coordinates[known[k]] + given[k] - now.coordinates[known[k]];
       plan.motion = std::max(plan.motion, norm(given[k]));
     }
-    auto const now = prepare(mesh, topology, face_patches, prepared.graph, prepared.boundary, plan);
-    Coordinates const moved(mesh.n_nodes());
-    apply_on_host(UnstructuredMorpher<Exec>(Exec(), now.plan, mesh.coordinates), given, moved);
+    auto const step_plan = prepare(now, topology, face_patches, prepared.graph, prepared.boundary, plan);
+    Coordinates moved(mesh.n_nodes());
+    apply_on_host(UnstructuredMorpher<Exec>(Exec(), step_plan.plan, now.coordinates), given, moved);
     // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more bad
     // elements.
-    (void)relax_bad_elements(mesh, topology, now, moved, options.relax);
-    mesh.coordinates = moved;
+    (void)relax_bad_elements(now, topology, step_plan, moved, options.relax);
+    now.coordinates = moved;
   }
-  Coordinates const moved = mesh.coordinates;
+  Coordinates moved = now.coordinates;
   // Steps round, their sum is given.
-  for (std::size_t k = 0; k < known.size(); ++k) moved.set(known[k], baseline.kept()[known[k]] + displacement[k]);
+  for (std::size_t k = 0; k < known.size(); ++k) moved.set(known[k], mesh.coordinates[known[k]] + displacement[k]);
   for (std::size_t k = 0; k < prepared.plan.copies.size(); ++k)
     if (std::binary_search(known.begin(), known.end(), prepared.plan.copied[k]))
       moved.set(prepared.plan.copies[k], moved[prepared.plan.copied[k]]);

@@ -21,10 +21,9 @@ struct StepOptions {
 /// boundary that stands; steps follow the turn (MotionPath). Boundary conditions and slip surfaces are those of `prepared`; known
 /// nodes get `displacement` exactly.
 ///
-/// The mesh's coordinates change on the way and are the baseline again when this returns or throws. Returns the new ones.
-/// Throws PlanError for a background mesh of the user's, which stands still while the walls move. Cost: a plan, an apply and
-/// a guard per step.
-Coordinates morph_in_steps(UnstructuredMesh& mesh, UnstructuredTopology const& topology,
+/// Returns the new coordinates. Throws PlanError for a background mesh of the user's, which stands still while the walls move.
+/// Cost: a plan, an apply and a guard per step, and room for a second list of elements, whose coordinates move on the way.
+Coordinates morph_in_steps(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
                            BoundaryFacePatches const& face_patches, PreparedUnstructured const& prepared,
                            std::vector<Vec3> const& displacement, StepOptions const& options);
 

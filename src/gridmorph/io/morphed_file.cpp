@@ -25,6 +25,16 @@ void check_same_mesh(File const& file, Layout const& layout, Mesh const& mesh) {
   problems.throw_if_any<IoError>();
 }
 
+void check_same_mesh(File const& file, Layout const& layout, UnstructuredMesh const& mesh) {
+  Problems problems;
+  bool same = layout.zones.size() == mesh.zones.size();
+  for (std::size_t z = 0; same && z < mesh.zones.size(); ++z)
+    same = layout.zones[z].name == mesh.zones[z].name && layout.zones[z].nodes_in_file() == mesh.zones[z].n_nodes;
+  if (!same) problems.add(file.path() + ": holds other zones than the mesh; give the file that the mesh was read from");
+  check_own_coordinates(file, layout, problems);
+  problems.throw_if_any<IoError>();
+}
+
 void check_own_coordinates(File const& file, Layout const& layout, Problems& problems) {
   std::map<std::pair<unsigned long, std::uint64_t>, Node const*> owners;
   for (auto const& zone : layout.zones)

@@ -13,6 +13,7 @@ namespace gridmorph::cgns {
 
 /// Throws IoError unless the file holds the mesh it is said to hold; also for coordinates that live in another file.
 void check_same_mesh(File const& file, Layout const& layout, Mesh const& mesh);
+void check_same_mesh(File const& file, Layout const& layout, UnstructuredMesh const& mesh);
 
 /// Adds what keeps coordinates from being replaced in a copy of the file: arrays that are links, that two nodes share, or that are not
 /// stored in the type that their node says.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace gridmorph {
 
@@ -86,23 +87,23 @@ UnstructuredMesh read_cgns(std::string const& path, std::vector<std::string> con
   return mesh;
 }
 
-bool is_cgns(std::string const& path) {
-  try {
-    cgns::check_file(path);
-    return true;
-  } catch (IoError const&) {
-    return false;  // the reader of that file says why
-  }
+void collect_linked(cgns::Node const& node, std::set<std::string>& files) {
+  if (!node.file.empty()) files.insert(node.file);
+  for (auto const& child : node.children) collect_linked(child, files);
 }
 
 }  // namespace
 
-MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leave_out) {
-  if (su2::is_su2(path)) return MeshKind::unstructured;
-  refuse_other_format(path);
-  if (!is_cgns(path)) return MeshKind::structured;
+MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out) {
+  MeshFileFacts out;
+  out.format = mesh_format(path);
+  if (out.format == MeshFormat::su2) out.kind = MeshKind::unstructured;
+  if (out.format != MeshFormat::cgns) return out;
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
+  std::set<std::string> linked;
+  collect_linked(tree, linked);
+  out.linked.assign(linked.begin(), linked.end());
   std::string structured, unstructured;
   for (auto const* base : tree.all("CGNSBase_t"))
     for (auto const* zone : base->all("Zone_t")) {
@@ -115,7 +116,12 @@ MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leav
         unstructured.substr(1, 200) +
         "); such hybrid files cannot be handled, write the two kinds into files of their own, or name the zones "
         "or the base of one kind in leave_out");
-  return unstructured.empty() ? MeshKind::structured : MeshKind::unstructured;
+  if (!unstructured.empty()) out.kind = MeshKind::unstructured;
+  return out;
+}
+
+MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leave_out) {
+  return look_at_mesh(path, leave_out).kind;
 }
 
 UnstructuredMesh read_unstructured_mesh(std::string const& path, ReadOptions const& options) {

@@ -2,14 +2,27 @@
 // promises.
 #pragma once
 
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <string>
+#include <vector>
 
 namespace gridmorph {
 
 enum class MeshKind { structured, unstructured };
+
+/// What is known of a mesh file before it is read.
+struct MeshFileFacts {
+  MeshFormat format = MeshFormat::cgns;
+  MeshKind kind = MeshKind::structured;
+  std::vector<std::string>
+      linked;  ///< other files that links of a CGNS file lead to, as far as they are there; ascending
+};
+
+/// Opens a CGNS file once and reads its tree. Throws as mesh_kind() does.
+MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out = {});
 
 /// What a file holds, from its first bytes and its zone types. Files that are neither CGNS nor SU2 count as structured, so
 /// that read_mesh() says what it makes of them. Throws IoError for a file that mixes structured and unstructured zones.

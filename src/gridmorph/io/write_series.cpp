@@ -2,14 +2,18 @@
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/morphed_file.hpp>
+#include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
+#include <gridmorph/io/unstructured_check.hpp>
 #include <gridmorph/io/write_series.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 
 #include <array>
 #include <cstdint>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <variant>
 
 namespace gridmorph {
 
@@ -44,10 +48,27 @@ void refuse_series(cgns::File const& file, cgns::Layout const& layout, std::size
   problems.throw_if_any<IoError>();
 }
 
+using MeshOfSeries = std::variant<Mesh const*, UnstructuredMesh const*>;
+
+cgns::Layout layout_of(cgns::File const& file, cgns::Node const& tree, MeshOfSeries mesh) {
+  if (auto const* blocks = std::get_if<Mesh const*>(&mesh)) return cgns::zones_of(file, tree, **blocks);
+  return cgns::unstructured_zones_of(file, tree, *std::get<UnstructuredMesh const*>(mesh));
+}
+
+template <class AnyMesh>
+void check_input(std::string const& input, AnyMesh const& mesh, std::size_t steps) {
+  cgns::File const file(input, cgns::File::Mode::read);
+  auto const tree = file.tree();
+  auto const layout = layout_of(file, tree, &mesh);
+  cgns::check_same_mesh(file, layout, mesh);
+  refuse_series(file, layout, steps);
+}
+
 }  // namespace
 
 struct SeriesWriter::Impl {
-  Mesh const& mesh;
+  MeshOfSeries mesh;
+  std::vector<Index> first_node;  ///< per zone, and of all at the end
   std::size_t steps;
   std::size_t written = 0;
   io::OutputFile target;
@@ -57,21 +78,28 @@ struct SeriesWriter::Impl {
   std::vector<double> plane;
   std::vector<float> single;
 
-  Impl(std::string const& input, std::string const& output, Mesh const& m, std::vector<double> const& times)
+  Impl(std::string const& input, std::string const& output, MeshOfSeries m, std::vector<double> const& times)
       : mesh(m), steps(times.size()), target(output) {
+    std::visit(
+        [&](auto const* any) {
+          for (auto const& zone : any->zones) first_node.push_back(zone.first_node);
+          first_node.push_back(any->n_nodes());
+        },
+        mesh);
     if (times.empty()) throw MeshError(output + ": a series needs at least one step");
     target.copy_from(input);
     target.reserve(bytes_needed());
     file.emplace(target.path(), cgns::File::Mode::modify);
     tree = file->tree();
-    layout = cgns::zones_of(*file, tree, mesh);
+    layout = layout_of(*file, tree, mesh);
     add_iterative_data(times);
   }
 
   [[nodiscard]] std::uint64_t bytes_needed() const {
-    std::uint64_t const nodes_per_step = 4 * mesh.zones.size(), once = 4 * mesh.zones.size() + 4;
-    return steps * (cgns::File::bytes_per_node * nodes_per_step + 3 * sizeof(double) * std::uint64_t(mesh.n_nodes())) +
-           cgns::File::bytes_per_node * once + steps * name_length * mesh.zones.size();
+    std::uint64_t const zones = first_node.size() - 1, nodes_per_step = 4 * zones, once = 4 * zones + 4;
+    return steps *
+               (cgns::File::bytes_per_node * nodes_per_step + 3 * sizeof(double) * std::uint64_t(first_node.back())) +
+           cgns::File::bytes_per_node * once + steps * name_length * zones;
   }
 
   void add_iterative_data(std::vector<double> const& times) {
@@ -104,21 +132,28 @@ struct SeriesWriter::Impl {
   void add(Coordinates const& morphed) {
     if (written == steps)
       throw MeshError(target.path() + ": more steps than the " + std::to_string(steps) + " times of the series");
-    if (morphed.size() != mesh.n_nodes())
+    if (morphed.size() != first_node.back())
       throw MeshError("the array of morphed coordinates has " + std::to_string(morphed.size()) +
-                      " values, but the mesh asks for " + std::to_string(mesh.n_nodes()));
+                      " values, but the mesh asks for " + std::to_string(first_node.back()));
     Problems problems;
-    io::check_finite(mesh, morphed, "step " + std::to_string(written + 1) + " of the series", problems);
+    std::string const where = "step " + std::to_string(written + 1) + " of the series";
+    std::visit([&](auto const* any) { io::check_finite(*any, morphed, where, problems); }, mesh);
     problems.throw_if_any<MeshError>();
-    std::array<double const*, 3> const arrays{morphed.x.data(), morphed.y.data(), morphed.z.data()};
-    for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+    auto const* const* elements = std::get_if<UnstructuredMesh const*>(&mesh);
+    Coordinates const ordered = elements != nullptr ? in_file_order(**elements, morphed) : morphed;
+    auto const arrays = io::components(ordered);
+    for (std::size_t z = 0; z < layout.zones.size(); ++z) {
       auto const& place = layout.zones[z];
       double const grid = file->create(file->id(*place.node), grid_name(written, steps), "GridCoordinates_t");
       std::vector<Index> sizes(place.extent.begin(), place.extent.begin() + place.index_dimension);
       for (int c = 0; c < 3; ++c) {
         if (place.array[c] == nullptr) continue;
-        cgns::with_file_nodes(place, mesh.zones[z], arrays[c] + mesh.zones[z].first_node, plane,
-                              [&](double const* values) { write(grid, place, c, sizes, values); });
+        auto const* source = arrays[std::size_t(c)] + first_node[z];
+        auto const put = [&](double const* values) { write(grid, place, c, sizes, values); };
+        if (elements != nullptr)
+          put(source);
+        else
+          cgns::with_file_nodes(place, std::get<Mesh const*>(mesh)->zones[z], source, plane, put);
       }
     }
     ++written;
@@ -136,14 +171,16 @@ struct SeriesWriter::Impl {
 
 SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh,
                            std::vector<double> const& times) {
-  {
-    cgns::File const file(input, cgns::File::Mode::read);
-    auto const tree = file.tree();
-    auto const layout = cgns::zones_of(file, tree, mesh);
-    cgns::check_same_mesh(file, layout, mesh);
-    refuse_series(file, layout, times.size());
-  }
-  impl_ = std::make_unique<Impl>(input, output, mesh, times);
+  check_input(input, mesh, times.size());
+  impl_ = std::make_unique<Impl>(input, output, &mesh, times);
+}
+
+SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
+                           std::vector<double> const& times) {
+  if (!cgns::is_cgns(input))
+    throw IoError(output + ": SU2 files hold one mesh; write one file per step, or use a CGNS mesh");
+  check_input(input, mesh, times.size());
+  impl_ = std::make_unique<Impl>(input, output, &mesh, times);
 }
 
 SeriesWriter::~SeriesWriter() = default;

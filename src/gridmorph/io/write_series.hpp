@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <memory>
 #include <string>
@@ -22,8 +23,10 @@ namespace gridmorph {
 class SeriesWriter {
  public:
   /// `times`: of all steps, ascending. `output` may not be the input. Throws IoError when the input is not the file of the
-  /// mesh or holds a series of several steps, MachineError when there is no room for all steps.
+  /// mesh, holds a series of several steps, or is no CGNS file; MachineError when there is no room for all steps.
   SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh, std::vector<double> const& times);
+  SeriesWriter(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
+               std::vector<double> const& times);
   ~SeriesWriter();
   SeriesWriter(SeriesWriter&&) noexcept;
   SeriesWriter& operator=(SeriesWriter&&) = delete;

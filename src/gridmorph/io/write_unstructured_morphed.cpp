@@ -16,24 +16,13 @@ namespace gridmorph {
 
 namespace {
 
-/// The file must hold the mesh it is said to hold; also refuses coordinates that live in another file.
-void check_same_mesh(cgns::File const& file, cgns::Layout const& layout, UnstructuredMesh const& mesh) {
-  Problems problems;
-  bool same = layout.zones.size() == mesh.zones.size();
-  for (std::size_t z = 0; same && z < mesh.zones.size(); ++z)
-    same = layout.zones[z].name == mesh.zones[z].name && layout.zones[z].nodes_in_file() == mesh.zones[z].n_nodes;
-  if (!same) problems.add(file.path() + ": holds other zones than the mesh; give the file that the mesh was read from");
-  cgns::check_own_coordinates(file, layout, problems);
-  problems.throw_if_any<IoError>();
-}
-
 void write_cgns(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
                 Coordinates const& morphed, OutputFields const& fields) {
   cgns::Node original;
   {
     cgns::File const file(input, cgns::File::Mode::read);
     original = file.tree();
-    check_same_mesh(file, cgns::unstructured_zones_of(file, original, mesh), mesh);
+    cgns::check_same_mesh(file, cgns::unstructured_zones_of(file, original, mesh), mesh);
   }
   io::OutputFile target(output);
   target.copy_from(input);

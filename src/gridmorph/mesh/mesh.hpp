@@ -100,7 +100,7 @@ struct Coordinates {
   explicit Coordinates(Index n_nodes);
   [[nodiscard]] Index size() const { return Index(x.extent(0)); }
   [[nodiscard]] Vec3 operator[](Index n) const { return {x(n), y(n), z(n)}; }
-  void set(Index n, Vec3 const& p) const {
+  void set(Index n, Vec3 const& p) {
     x(n) = p.x;
     y(n) = p.y;
     z(n) = p.z;

@@ -15,15 +15,12 @@ struct MorphPlan::State {
   std::optional<PreparedMorph> blocks;
   std::optional<PreparedUnstructured> elements;
   std::vector<Vec3> displacement;
-  std::vector<std::string> mesh_notes;
 };
 
 MorphPlan::MorphPlan(Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
   auto state = std::make_shared<State>();
-  Mesh completed = mesh;  // shares the coordinates
-  state->blocks = prepare(completed, motion, options);
-  state->displacement = state->blocks->boundary_displacement(completed);
-  state->mesh_notes = completed.notes;
+  state->blocks = prepare(mesh, motion, options);
+  state->displacement = state->blocks->boundary_displacement();
   state_ = std::move(state);
 }
 
@@ -48,7 +45,7 @@ std::vector<Vec3> const& MorphPlan::boundary_displacement() const { return state
 
 std::vector<std::string> MorphPlan::notes() const {
   if (elements()) return elements()->notes;
-  std::vector<std::string> out = state_->mesh_notes;
+  std::vector<std::string> out = blocks()->mesh.notes;
   for (auto const* list : {&blocks()->motion.notes, &blocks()->surface.notes(), &blocks()->plan().notes})
     out.insert(out.end(), list->begin(), list->end());
   return out;

@@ -144,7 +144,7 @@ kernels::Field<double const> UnstructuredMorpher<Exec>::background_displacement(
 }
 
 void apply_on_host(UnstructuredMorpher<Kokkos::DefaultHostExecutionSpace> const& morpher,
-                   std::span<Vec3 const> boundary, Coordinates const& moved) {
+                   std::span<Vec3 const> boundary, Coordinates& moved) {
   Kokkos::DefaultHostExecutionSpace const exec;
   morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(boundary.data(), boundary.size()), moved);
   compat::fence(exec, "gridmorph::apply_on_host (read by the host)");

@@ -61,6 +61,6 @@ class UnstructuredMorpher {
 
 /// positions() on lists and coordinates of the host; waits. moved: as many nodes as the mesh.
 void apply_on_host(UnstructuredMorpher<Kokkos::DefaultHostExecutionSpace> const& morpher,
-                   std::span<Vec3 const> boundary, Coordinates const& moved);
+                   std::span<Vec3 const> boundary, Coordinates& moved);
 
 }  // namespace gridmorph

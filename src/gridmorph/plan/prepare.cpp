@@ -6,9 +6,10 @@
 
 namespace gridmorph {
 
-PreparedMorph prepare(Mesh& mesh, Motion const& motion, PlanOptions const& options) {
-  check_coordinates(mesh, "gridmorph::prepare");
+PreparedMorph prepare(Mesh const& given, Motion const& motion, PlanOptions const& options) {
+  check_coordinates(given, "gridmorph::prepare");
   Stopwatch watch;
+  Mesh mesh = given;
   PreparedMorph::Seconds seconds;
   Links links = connect_and_check(mesh, options.topology);
   seconds.topology = watch.lap();
@@ -17,7 +18,7 @@ PreparedMorph prepare(Mesh& mesh, Motion const& motion, PlanOptions const& optio
   seconds.rules = watch.lap();
   PlannedMorph planned = make_plan(mesh, links, resolved, surface, options);
   seconds.plan = watch.lap();
-  return {std::move(links), std::move(resolved), std::move(surface), std::move(planned), seconds};
+  return {std::move(mesh), std::move(links), std::move(resolved), std::move(surface), std::move(planned), seconds};
 }
 
 }  // namespace gridmorph

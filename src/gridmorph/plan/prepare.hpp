@@ -8,6 +8,8 @@ namespace gridmorph {
 
 /// Everything that is known before a displacement is evaluated.
 struct PreparedMorph {
+  Mesh
+      mesh;  ///< with the patches that it lacked, for poles and open faces, and notes on them; its coordinates are shared
   Links links;
   ResolvedMotion motion;
   SurfaceMotion surface;
@@ -22,13 +24,13 @@ struct PreparedMorph {
 
   [[nodiscard]] Plan const& plan() const { return planned.plan; }
   /// Displacements of Plan::boundary_nodes by the rules. Throws MotionError (see evaluate_boundary).
-  [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& mesh) const {
+  [[nodiscard]] std::vector<Vec3> boundary_displacement() const {
     return evaluate_boundary(mesh, planned.boundary, planned.plan, motion, surface, links.mesh_size);
   }
 };
 
-/// Connects the zones, completes and checks the boundary, resolves the rules and plans. Adds patches to the mesh for
-/// poles and, where asked for, open faces. Throws MeshError, MotionError or PlanError.
-PreparedMorph prepare(Mesh& mesh, Motion const& motion, PlanOptions const& options);
+/// Connects the zones, completes and checks the boundary (patches for poles and, where asked for, open faces), resolves the
+/// rules and plans. Throws MeshError, MotionError or PlanError.
+PreparedMorph prepare(Mesh const& mesh, Motion const& motion, PlanOptions const& options);
 
 }  // namespace gridmorph

@@ -24,6 +24,11 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
     throw MeshError("near-field mask: it holds " + std::to_string(input.near_field.extent(0)) + " cells, the mesh '" +
                     mesh.source + "' has " + std::to_string(first.back()));
 
+  for (std::size_t m = 0; m < n_measures; ++m)
+    if (Index const size = Index(input.fields.of[m].extent(0)); size > 0 && size < first.back())
+      throw MeshError("field of " + std::string(to_string(Measure(m))) + ": it has room for " + std::to_string(size) +
+                      " cells, the mesh '" + mesh.source + "' has " + std::to_string(first.back()));
+
   if (input.handedness.size() != mesh.zones.size()) {
     auto known = input;
     known.handedness = zone_handedness(exec, mesh, against_baseline ? input.baseline : input.coordinates);
@@ -35,8 +40,11 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
   auto const zones = detail::upload(exec, "gridmorph::quality::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
   auto const neighbours = detail::upload_neighbours(exec, mesh);
-  Kokkos::View<double*, MemorySpace> volumes(
-      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volumes"), first.back());
+  auto const fields = input.fields;
+  Kokkos::View<double*, MemorySpace> volumes = input.fields.of[int(Measure::volume)];
+  if (volumes.extent(0) == 0)
+    volumes = Kokkos::View<double*, MemorySpace>(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volumes"), first.back());
   Kokkos::View<detail::PartialSums*, MemorySpace> const sums(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::sums"), table.size());
 
@@ -62,6 +70,17 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
           before = detail::cell_row(baseline, zone, row);
           row_relative_displacements<lanes>(before, now, relative);
         }
+        auto const write = [&](Measure measure, double const* values) {
+          auto const& field = fields.of[int(measure)];
+          if (field.extent(0) > 0)
+            for (int n = 0; n < row.count; ++n) field(cell + n) = values[n];
+        };
+        write(Measure::aspect_ratio, m.aspect_ratio);
+        write(Measure::determinant_2x2x2, m.determinant_2x2x2);
+        write(Measure::determinant_3x3x3, m.determinant_3x3x3);
+        write(Measure::minimum_angle_deg, m.minimum_angle_deg);
+        write(Measure::equiangle_skewness, m.equiangle_skewness);
+        if (against_baseline) write(Measure::relative_displacement, relative);
         detail::for_each_region_run(
             has_near_field ? near_field.data() + cell : nullptr, row.count, [&](int r, int begin, int end) {
               auto& region = s.region[r];
@@ -88,6 +107,7 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
       });
 
   Kokkos::View<double const*, MemorySpace> const all_volumes = volumes;
+  auto const ratio_field = fields.of[int(Measure::volume_ratio)];
   Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());
   detail::visit_chunks(
@@ -98,6 +118,8 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
         Index const cell = detail::first_cell(zone, row);
         double ratio[length];
         detail::worst_volume_ratios<length>(all_volumes, zone, neighbours, row, ratio);
+        if (ratio_field.extent(0) > 0)
+          for (int n = 0; n < row.count; ++n) ratio_field(cell + n) = ratio[n];
         detail::for_each_region_run(has_near_field ? near_field.data() + cell : nullptr, row.count,
                                     [&](int r, int begin, int end) {
                                       s.region[r].template add<lanes>(ratio + begin, end - begin, cell + begin,

@@ -168,6 +168,15 @@ std::vector<WallFace> wall_faces(Mesh const& mesh, std::span<int const> patches)
 /// Masks and fields per cell are numbered this way.
 std::vector<Index> first_cells(Mesh const& mesh);
 
+/// Values in single cells, written on the way: (n_cells) for each measure that is wanted, empty Views for the others.
+/// Zero for polyhedra; the relative displacement is left alone where there is no baseline.
+template <class MemorySpace>
+struct CellFields {
+  Kokkos::View<double*, MemorySpace> of[n_measures];
+
+  [[nodiscard]] Kokkos::View<double*, MemorySpace>& operator[](Measure m) { return of[int(m)]; }
+};
+
 /// What is measured.
 template <class MemorySpace>
 struct QualityInput {
@@ -178,8 +187,9 @@ struct QualityInput {
   Kokkos::View<std::uint8_t const*, MemorySpace> near_field;
   std::vector<WallFace> walls;
   CellLimits limits = {};            ///< what cells are judged by against the baseline
-  bool fast = false;                 ///< only a verdict: a third of the time and no memory per cell
+  bool fast = false;                 ///< only a verdict: a third of the time and no memory per cell; no fields
   std::vector<int> handedness = {};  ///< zone_handedness() of the baseline; left empty, it is found again
+  CellFields<MemorySpace> fields = {};
 };
 
 /// +1 or -1 per zone: the sign that makes most corner Jacobians of a zone positive. Left-handed zones are valid CGNS;
@@ -193,15 +203,15 @@ std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
 /// with their baseline one by one; the rest of the baseline is read for relative displacements and walls only.
 ///
 /// Throws MeshError when Views are shorter than the mesh, or a wall or interface lies outside its zone.
-/// Memory: 8 bytes per cell for volumes, below 1 byte per cell for partial sums, 48 bytes per
+/// Memory: 8 bytes per cell for volumes (that field, where it is wanted), below 1 byte per cell for partial sums, 48 bytes per
 /// node of the walls.
 /// Cost: one pass over the cells (about 1000 flops each, as many cells at once as the registers hold), one over the volumes.
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
                               QualityInput<typename Exec::memory_space> const& input);
 
-/// Values of the given measures in every cell, (n_cells) each, in the order asked for: for output and plots.
-/// `volume_ratio` makes a temporary field of volumes. `near_field` and `walls` of the input are not used.
+/// Values of the given measures in every cell, (n_cells) each, in the order asked for, and nothing else: measure_quality() with
+/// fields.
 template <class Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, Mesh const& mesh, QualityInput<typename Exec::memory_space> const& input,

@@ -9,15 +9,6 @@
 
 namespace gridmorph {
 
-/// Values in single elements, written on the way: (n_elements) for each measure that is wanted, empty Views for the others.
-/// Zero for polyhedra; the relative displacement is left alone where there is no baseline.
-template <class MemorySpace>
-struct ElementFields {
-  Kokkos::View<double*, MemorySpace> of[n_measures];
-
-  [[nodiscard]] Kokkos::View<double*, MemorySpace>& operator[](Measure m) { return of[int(m)]; }
-};
-
 /// What is measured.
 template <class MemorySpace>
 struct UnstructuredQualityInput {
@@ -31,7 +22,7 @@ struct UnstructuredQualityInput {
   std::vector<int> walls;
   /// numbering_signs() of the baseline; left empty, they are found again, from the coordinates of the mesh.
   std::vector<signed char> signs;
-  ElementFields<MemorySpace> fields;
+  CellFields<MemorySpace> fields;
   CellLimits limits = {};  ///< what elements are judged by against the baseline
   bool fast = false;       ///< only a verdict: half the time and no memory per element; no fields
 };

@@ -18,7 +18,7 @@ Seams::Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows,
   }
 }
 
-void Seams::close(int passage, Coordinates const& x) {
+void Seams::close(int passage, Coordinates& x) {
   for (auto const& m : members_) {
     bool const axis = on_axis_[m.group] != 0;
     int const count = axis ? 0 : passage + m.offset;

@@ -27,7 +27,7 @@ class Seams {
   Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows, int row, Axis const& axis, int passages);
 
   /// Replaces the positions of the row's nodes that an earlier one decides; positions are in the wheel's frame.
-  void close(int passage, Coordinates const& x);
+  void close(int passage, Coordinates& x);
 
   [[nodiscard]] SeamGap const& largest_gap() const { return gap_; }
 

@@ -39,9 +39,9 @@ class Ignored {
   void of_unstructured() {
     std::string const why = "is for structured meshes, and '" + case_.input.string() + "' is unstructured";
     refuse("", "volume", why + ": law in [background] and weights in [near_field] say there how the volume follows");
-    refuse("", "wheel", why);
+    refuse("", "wheel", why + ": passages are joined along the faces of blocks");
     refuse("mesh", "open_faces", why + ": boundary faces that no patch claims have to be given one in the mesh");
-    refuse("mesh", "matching_tolerance", why);
+    refuse("mesh", "matching_tolerance", why + ": connections pair nodes there, which are taken as they are paired");
     if (use_.run == CaseUse::Run::sequence)
       refuse("output", "stages", "is for one morph, and a sequence of unstructured meshes writes none");
     if (case_.background)
@@ -53,7 +53,7 @@ class Ignored {
     std::string const why = "is for unstructured meshes, and '" + case_.input.string() + "' is structured";
     refuse("", "near_field", why + ": [boundary_layer] says there how far the near field reaches");
     refuse("", "background", why + ": law in [volume] says there how displacements fall off");
-    refuse("guard", "steps", why);
+    refuse("guard", "steps", why + ": displacements follow grid lines there, and steps add up to what one gives");
     refuse("output", "stages", why + ": `gridmorph plan` prints the stages");
     bool const turns = std::any_of(
         case_.plan.boundary_layers.begin(), case_.plan.boundary_layers.end(),

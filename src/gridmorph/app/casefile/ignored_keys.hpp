@@ -2,13 +2,14 @@
 #pragma once
 
 #include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/io/file_kind.hpp>
 
 namespace gridmorph {
 
 /// What a case file is used for, known once its mesh has been looked at.
 struct CaseUse {
   enum class Run { morph, sequence, wheel };
-  enum class Format { cgns, plot3d, su2 };
+  using Format = MeshFormat;
   bool unstructured = false;
   Run run = Run::morph;
   Format format = Format::cgns;

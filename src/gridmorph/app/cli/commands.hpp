@@ -1,6 +1,7 @@
 // The six commands. Each returns the exit status 0, 1 or 4 and throws for the others (main maps errors to 2 and 3).
 #pragma once
 
+#include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/app/cli/command_line.hpp>
 #include <gridmorph/app/cli/terminal.hpp>
 
@@ -17,6 +18,9 @@ enum ExitStatus : int {
 inline int status_of_morph(bool written, bool short_of_thresholds) {
   return !written ? not_written : short_of_thresholds ? falls_short : done;
 }
+
+/// "auto", "full" or "fast" of the command line takes the place of the case file's.
+void set_quality(CaseFile& case_file, std::optional<std::string> const& mode);
 
 int run_morph_command(CommandLine const& options, Terminal& terminal);
 int run_inspect_command(CommandLine const& options, Terminal& terminal);

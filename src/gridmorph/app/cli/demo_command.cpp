@@ -3,9 +3,8 @@
 #include <generators/stand_ins.hpp>
 #include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/app/cli/commands.hpp>
-#include <gridmorph/app/cli/morph_command.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
-#include <gridmorph/app/cli/unstructured_morph.hpp>
+#include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
 
 #include <fmt/format.h>
@@ -30,11 +29,11 @@ void check_demo_files(std::vector<std::filesystem::path> const& paths) {
   check_run_files({}, files);
 }
 
-/// The case file of a demo; its report goes beside the morphed mesh.
-CaseFile with_report(std::filesystem::path const& path, std::filesystem::path const& morphed) {
+/// Morphs the case file of a demo; its report goes beside the morphed mesh.
+int morph_demo(std::filesystem::path const& path, std::filesystem::path const& morphed, Terminal& terminal) {
   CaseFile case_file = read_case_file(path);
   case_file.output_options.report = report_of(morphed);
-  return case_file;
+  return morph_once(case_file, checked_mesh_file(case_file, CaseUse::Run::morph), terminal);
 }
 
 int demo_passage(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
@@ -62,7 +61,7 @@ int demo_passage(CommandLine const& options, std::filesystem::path const& folder
       return write_passage_demo(folder, passage, motions[m], mesh, m == 0 ? MeshFile::write : MeshFile::keep);
     }();
     terminal.say(fmt::format("{}\n== {} ==\n", m == 0 ? "" : "\n", files.case_file.string()));
-    status = std::max(status, morph_and_write(with_report(files.case_file, files.morphed), terminal));
+    status = std::max(status, morph_demo(files.case_file, files.morphed, terminal));
   }
   return status;
 }
@@ -77,7 +76,7 @@ int demo_ball(CommandLine const& options, std::filesystem::path const& folder, T
   terminal.progress(fmt::format("making the ball mesh with {} elements", ball.elements));
   BallFiles const files = write_ball_demo(folder, ball, swing);
   terminal.say(fmt::format("\n== {} ==\n", files.case_file.string()));
-  return morph_unstructured(with_report(files.case_file, files.morphed), terminal);
+  return morph_demo(files.case_file, files.morphed, terminal);
 }
 
 /// Meshes of examples, whose case files are not the command's to write.

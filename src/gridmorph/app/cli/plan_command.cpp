@@ -1,5 +1,5 @@
 #include <gridmorph/app/cli/commands.hpp>
-#include <gridmorph/app/cli/workflow.hpp>
+#include <gridmorph/app/run.hpp>
 
 namespace gridmorph::cli {
 

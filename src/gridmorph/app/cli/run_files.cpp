@@ -1,7 +1,6 @@
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns/linked_files.hpp>
 #include <gridmorph/io/file_kind.hpp>
 
 #include <fmt/format.h>
@@ -48,12 +47,8 @@ std::string_view format_of(RunFile const& file, RunFiles const& inputs) {
   if (file.what == "report") return "JSON";
   if (file.what == "case file" || file.what == "side file") return "TOML";
   if (file.what == "wheel") return to_string(MeshFormat::cgns);
-  if (file.what != "output") return {};
-  for (auto const& input : inputs) try {
-      if (input.what == "input mesh") return to_string(mesh_format(input.path.string()));
-    } catch (IoError const&) {  // its reader says why
-    }
-  return {};
+  if (file.what != "output" || inputs.empty()) return {};
+  return inputs.front().format;
 }
 
 /// An ending that stands for another format is a mistake, or would become one.
@@ -67,21 +62,15 @@ std::string wrong_ending(RunFile const& file, RunFiles const& inputs) {
 
 }  // namespace
 
-RunFiles inputs_of_mesh(fs::path const& mesh, std::optional<fs::path> const& side_file) {
-  RunFiles files{{"input mesh", mesh}};
-  std::error_code error;
-  bool const there = fs::is_regular_file(mesh, error);
-  if (there)
-    for (auto const& file : linked_files(mesh.string())) files.push_back({"file that the mesh links to", file});
-  if (side_file)
-    files.push_back({"side file", *side_file});
-  else if (there)
-    if (auto const found = find_side_file(mesh)) files.push_back({"side file", *found});
+RunFiles inputs_of_mesh(MeshSource const& mesh, std::optional<fs::path> const& side_file) {
+  RunFiles files{{"input mesh", mesh.path, false, to_string(mesh.format)}};
+  for (auto const& file : mesh.linked) files.push_back({"file that the mesh links to", file});
+  if (auto const side = side_file ? side_file : find_side_file(mesh.path)) files.push_back({"side file", *side});
   return files;
 }
 
-RunFiles inputs_of(CaseFile const& case_file) {
-  RunFiles files = inputs_of_mesh(case_file.input, case_file.side_file);
+RunFiles inputs_of(CaseFile const& case_file, MeshSource const& mesh) {
+  RunFiles files = inputs_of_mesh(mesh, case_file.side_file);
   files.push_back({"case file", case_file.source});
   for (auto const& file : case_file.files) files.push_back({"input file", file});
   return files;

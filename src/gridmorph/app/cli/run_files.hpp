@@ -1,7 +1,7 @@
 // All files of a run, looked at together before any work: no output may take the place of an input or of another output.
 #pragma once
 
-#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/any_mesh.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -13,15 +13,16 @@ namespace gridmorph::cli {
 struct RunFile {
   std::string what;  ///< for messages: "input mesh", "report"
   std::filesystem::path path;
-  bool folder_is_made = false;  ///< of an output: its folder need not be there
+  bool folder_is_made = false;   ///< of an output: its folder need not be there
+  std::string_view format = {};  ///< of the input mesh
 };
 using RunFiles = std::vector<RunFile>;
 
 /// A mesh and what is read with it: its side file (the one beside it when none is given), and files that it links to.
-RunFiles inputs_of_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem::path> const& side_file = {});
+RunFiles inputs_of_mesh(MeshSource const& mesh, std::optional<std::filesystem::path> const& side_file = {});
 
 /// The case file, its mesh, and every file that it names to be read.
-RunFiles inputs_of(CaseFile const& case_file);
+RunFiles inputs_of(CaseFile const& case_file, MeshSource const& mesh);
 
 /// A mesh and, where there is one, the report of the run that writes it.
 RunFiles outputs_of(std::filesystem::path const& output, std::optional<std::filesystem::path> const& report);

@@ -1,6 +1,5 @@
 #include <gridmorph/app/cli/step_files.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 
 #include <fmt/format.h>
 
@@ -34,32 +33,18 @@ std::filesystem::path step_path(SequenceOptions const& options, int step) {
   return options.output.parent_path() / name;
 }
 
-StepFiles::StepFiles(CaseFile const& case_file, Mesh const& mesh) : case_file_(case_file), structured_(&mesh) {
+StepFiles::StepFiles(CaseFile const& case_file, AnyMesh const& mesh) : case_file_(case_file), mesh_(mesh) {
   auto const& options = *case_file.sequence;
-  if (!one_file_per_step(options))
-    series_.emplace(case_file.input.string(), options.output.string(), mesh, times_of(options));
-}
-
-StepFiles::StepFiles(CaseFile const& case_file, UnstructuredMesh const& mesh)
-    : case_file_(case_file), unstructured_(&mesh) {
-  if (!one_file_per_step(*case_file.sequence))
-    throw ConfigError(
-        fmt::format("{}: a series in one file is for structured meshes, and '{}' is unstructured; write one file per "
-                    "step, output = \"step_{{step}}{}\" in [sequence]",
-                    case_file.source.string(), case_file.input.string(), case_file.input.extension().string()));
-}
-
-std::string const& StepFiles::next_file() {
-  return files_.emplace_back(step_path(*case_file_.sequence, int(files_.size())).string()).path();
+  if (!one_file_per_step(options)) series_.emplace(mesh.series(case_file.input, options.output, times_of(options)));
 }
 
 void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
-  if (series_)
+  if (series_) {
     series_->add(morphed);
-  else if (unstructured_ != nullptr)
-    write_morphed(case_file_.input.string(), next_file(), *unstructured_, morphed, fields);
-  else
-    write_morphed(case_file_.input.string(), next_file(), *structured_, morphed, fields);
+    return;
+  }
+  auto const& file = files_.emplace_back(step_path(*case_file_.sequence, int(files_.size())).string());
+  mesh_.write(case_file_.input, file.path(), morphed, fields);
 }
 
 void StepFiles::commit() {

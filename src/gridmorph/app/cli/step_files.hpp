@@ -1,12 +1,8 @@
 // The meshes of a sequence on disk: one file per step, or one file with a series. All of them appear, or none.
 #pragma once
 
-#include <gridmorph/app/casefile/case_file.hpp>
-#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/app/any_mesh.hpp>
 #include <gridmorph/io/output_file.hpp>
-#include <gridmorph/io/write_series.hpp>
-#include <gridmorph/mesh/mesh.hpp>
-#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <deque>
 #include <filesystem>
@@ -26,9 +22,7 @@ std::filesystem::path step_path(SequenceOptions const& options, int step);
 class StepFiles {
  public:
   /// `mesh` must outlive the files.
-  StepFiles(CaseFile const& case_file, Mesh const& mesh);
-  /// One file per step; throws ConfigError for a series in one file.
-  StepFiles(CaseFile const& case_file, UnstructuredMesh const& mesh);
+  StepFiles(CaseFile const& case_file, AnyMesh const& mesh);
   StepFiles(StepFiles const&) = delete;
   StepFiles& operator=(StepFiles const&) = delete;
 
@@ -39,13 +33,9 @@ class StepFiles {
   void commit();
 
  private:
-  /// A file beside the next step's place; its name.
-  std::string const& next_file();
-
   CaseFile const& case_file_;
-  Mesh const* structured_ = nullptr;
-  UnstructuredMesh const* unstructured_ = nullptr;  ///< one of both
-  std::deque<io::OutputFile> files_;                ///< of the steps so far
+  AnyMesh const& mesh_;
+  std::deque<io::OutputFile> files_;  ///< of the steps so far
   std::optional<SeriesWriter> series_;
 };
 

@@ -1,17 +1,13 @@
-#include <gridmorph/app/casefile/ignored_keys.hpp>
+#include <gridmorph/app/block_mesh.hpp>
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/app/cli/commands.hpp>
-#include <gridmorph/app/cli/diagnosis.hpp>
-#include <gridmorph/app/cli/near_field_mask.hpp>
-#include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/app/cli/wheel_setup.hpp>
 #include <gridmorph/app/cli/wheel_text.hpp>
-#include <gridmorph/app/cli/workflow.hpp>
+#include <gridmorph/app/run.hpp>
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
-#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/wheel/seams.hpp>
@@ -33,11 +29,11 @@ namespace {
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
 /// Puts a zone of the sector where its passage stands. Cost: 48 bytes per node.
-void turn_zone(Exec const& exec, Zone const& zone, Turn const& turn, Coordinates const& from, Coordinates const& to) {
+void turn_zone(Exec const& exec, Zone const& zone, Turn const& turn, Coordinates const& from, Coordinates& to) {
   Kokkos::parallel_for(
       "gridmorph::wheel::turn",
       Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, zone.first_node, zone.first_node + zone.size()),
-      [=](Index n) { to.set(n, turn(from[n])); });
+      [&](Index n) { to.set(n, turn(from[n])); });
 }
 
 /// Morphs, measures, turns and writes a wheel, one passage at a time.
@@ -51,7 +47,8 @@ class WheelRun {
         rows_(find_rows(mesh_, links_, case_file.motion.axis, case_file.plan.topology)),
         setup_(wheel_setup(case_file, mesh_, rows_)),
         wheel_(make_wheel_mesh(mesh_, links_, rows_, case_file.motion.axis, setup_.passages(),
-                               case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)) {
+                               case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
+        sector_(mesh_) {
     result_.nodes = wheel_.mesh.n_nodes();
     time("read");
   }
@@ -76,7 +73,7 @@ class WheelRun {
       seams.emplace_back(mesh_, shared, rows_, r, case_.motion.axis, setup_.blades[r].passages);
 
     terminal_.expect({});
-    Coordinates const morphed(mesh_.n_nodes()), placed(mesh_.n_nodes());
+    Coordinates morphed(mesh_.n_nodes()), placed(mesh_.n_nodes());
     int last = -1, zone = 0;
     int const n_passages = wheel_.zones.back().passage + 1;
     for (int p = 0; p < n_passages; ++p) {
@@ -117,29 +114,17 @@ class WheelRun {
     return load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
   }
 
-  void time(std::string const& step) {
-    double const seconds = watch_.lap();
-    auto const at =
-        std::find_if(result_.times.begin(), result_.times.end(), [&](auto const& t) { return t.step == step; });
-    if (at != result_.times.end())
-      at->seconds += seconds;
-    else
-      result_.times.push_back({step, seconds, step != "plan" && step != "read"});
-  }
+  void time(std::string const& step) { add_time(result_.times, step, watch_.lap(), step != "plan" && step != "read"); }
 
   void prepare_quality(Plan const& plan) {
-    quality_.coordinates = views(mesh_.coordinates);
-    quality_.near_field = mask_view(near_field_mask(mesh_, plan));
-    quality_.walls = wall_faces(mesh_, measured_walls(mesh_, case_));
+    add_near_field(quality_, mesh_, plan, case_);
     quality_.limits = case_.guard;
-    quality_.fast = wants_verdict(case_, first_cells(mesh_).back());
-    quality_.handedness = zone_handedness(exec_, mesh_, quality_.coordinates);
-    result_.baseline = measure_quality(exec_, mesh_, quality_);
-    quality_.baseline = quality_.coordinates;
+    quality_.fast = wants_verdict(case_, mesh_.n_cells());
+    result_.baseline = sector_.measure(quality_);
     time("quality");
   }
 
-  void morph(Morpher<Exec> const& morpher, std::vector<Vec3> const& boundary, Coordinates const& morphed) {
+  void morph(Morpher<Exec> const& morpher, std::vector<Vec3> const& boundary, Coordinates& morphed) {
     Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
                                                                                                        boundary.size());
     morpher.positions(exec_, given, morphed);
@@ -150,11 +135,10 @@ class WheelRun {
   PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed) {
     PassageResult passage;
     for (Vec3 const& u : boundary) passage.largest_displacement = std::max(passage.largest_displacement, norm(u));
-    quality_.coordinates = views(morphed);
-    passage.quality = measure_quality(exec_, mesh_, quality_);
+    quality_.morphed = &morphed;
+    passage.quality = sector_.measure(quality_);
     passage.shortfalls = shortfalls(result_.baseline, passage.quality, thresholds_of(case_));
-    if (worst_of_.worst.empty() &&
-        passage.quality.near_field.newly_inverted + passage.quality.far_field.newly_inverted > 0)
+    if (worst_of_.worst.empty() && newly_inverted(passage.quality) > 0)
       worst_of_ = diagnose(case_, for_messages(mesh_), passage.quality, morphed);
     time("quality");
     return passage;
@@ -169,7 +153,7 @@ class WheelRun {
   }
 
   /// Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
-  void close(Seams& seams, int passage, Coordinates const& placed) {
+  void close(Seams& seams, int passage, Coordinates& placed) {
     seams.close(passage, placed);
     SeamGap const& gap = seams.largest_gap();
     if (gap.distance > result_.gap.distance) result_.gap = gap;
@@ -194,13 +178,13 @@ class WheelRun {
   WheelRows rows_;
   WheelSetup setup_;
   WheelMesh wheel_;
-  QualityInput<Kokkos::HostSpace> quality_;
+  BlockMesh sector_;  ///< the same mesh, to measure
+  QualityWanted quality_;
 };
 
-bool newly_inverted(WheelResult const& result) {
-  return std::any_of(result.passages.begin(), result.passages.end(), [](auto const& p) {
-    return p.quality.near_field.newly_inverted + p.quality.far_field.newly_inverted > 0;
-  });
+bool any_inverted(WheelResult const& result) {
+  return std::any_of(result.passages.begin(), result.passages.end(),
+                     [](auto const& p) { return newly_inverted(p.quality) > 0; });
 }
 
 std::string text_of(WheelRun const& run, WheelResult const& result) {
@@ -224,40 +208,45 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   if (output.empty())
     throw ConfigError(options.input.string() +
                       ": no output; add output = \"wheel.cgns\" to [wheel] or give --output FILE");
-  refuse_ignored_keys(case_file, {.run = CaseUse::Run::wheel});
+  MeshSource const file = checked_mesh_file(case_file, CaseUse::Run::wheel);
   RunFiles outputs = outputs_of(output, report);
   outputs.front().what = "wheel";  // CGNS, whatever the sector is
-  check_run_files(inputs_of(case_file), outputs);
+  check_run_files(inputs_of(case_file, file), outputs);
 
   WheelRun run(case_file, terminal);
-  std::optional<MeshFileWriter> writer(std::in_place, output.string(), run.wheel().mesh);
-  WheelResult const result = run.run(*writer);
-  bool const written = !newly_inverted(result) || case_file.guard.write_inverted;
-  std::optional<PendingFile> pending;
-  nlohmann::json json = wheel_json(run.mesh(), run.rows(), run.setup(), result);
-  json["case_file"] = case_file.source.string();
-  json["input"] = case_file.input.string();
-  json["output"] = written ? nlohmann::json(output.string()) : nlohmann::json(nullptr);
-  if (report) pending.emplace(*report, json_text(json));
-  if (written) writer->commit();
-  writer.reset();
-  if (pending) pending->commit();
-
-  terminal.say(text_of(run, result));
-  terminal.document(json);
-  bool failed = !written;
+  MeshFileWriter writer(output.string(), run.wheel().mesh);
+  WheelResult const result = run.run(writer);
+  bool const written = !any_inverted(result) || case_file.guard.write_inverted;
+  std::vector<std::string> failures;
   for (std::size_t p = 0; p < result.passages.size(); ++p)
-    for (auto const& s : result.passages[p].shortfalls) {
-      if (s.severity != Shortfall::Severity::failure) continue;
-      failed = true;
-      terminal.warn(fmt::format("passage {}: {}", p + 1, s.message));
-    }
-  if (written)
-    terminal.say(fmt::format("\nwrote {}\n", output.string()));
-  else
-    terminal.error(refusal(output.string(), "cells are inverted that were not in the baseline", run.diagnosis(),
-                           "move the blades less, change [volume] or [boundary_layer]"));
-  return status_of_morph(written, failed);
+    for (auto const& s : result.passages[p].shortfalls)
+      if (s.severity == Shortfall::Severity::failure)
+        failures.push_back(fmt::format("passage {}: {}", p + 1, s.message));
+  return conclude({.output = output,
+                   .report = report,
+                   .written = written,
+                   .falls_short = !failures.empty(),
+                   .json =
+                       [&] {
+                         nlohmann::json json = wheel_json(run.mesh(), run.rows(), run.setup(), result);
+                         json["case_file"] = case_file.source.string();
+                         json["input"] = case_file.input.string();
+                         return json;
+                       },
+                   .write =
+                       [&] {
+                         if (written) writer.commit();
+                       },
+                   .text = [&] { return text_of(run, result); },
+                   .wrote = fmt::format("\nwrote {}\n", output.string()),
+                   .also_wrote = {},
+                   .warnings = failures,
+                   .refusal =
+                       [&] {
+                         return refusal(output.string(), "cells are inverted that were not in the baseline",
+                                        run.diagnosis(), "move the blades less, " + BlockMesh::traits().change);
+                       }},
+                  terminal);
 }
 
 }  // namespace gridmorph::cli

@@ -87,7 +87,7 @@ class LatticeMesh {
     mesh_.interfaces.push_back(std::move(face));
   }
 
-  void set_coordinates(Index3 const& s) const {
+  void set_coordinates(Index3 const& s) {
     int const number = lattice_.zone[std::size_t(lattice_.box(s))];
     if (number < 0) return;
     Zone const& zone = mesh_.zones[std::size_t(number)];
@@ -214,7 +214,7 @@ Background make_background(Mesh mesh, std::vector<std::string> wrap, std::vector
   return out;
 }
 
-PreparedMorph prepare_background(Background& background, Law law) {
+PreparedMorph prepare_background(Background const& background, Law law) {
   Motion motion;
   // Values come from elsewhere: the rule says only that they are given.
   FunctionRule const given{"displacement of the wrap",

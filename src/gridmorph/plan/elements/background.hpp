@@ -50,9 +50,8 @@ Background make_background(Wrap const& wrap, int cells = 4, double growth = 1.4)
 /// structured engine's defaults say. Throws MotionError for selectors that name nothing.
 Background make_background(Mesh mesh, std::vector<std::string> wrap, std::vector<std::string> outer);
 
-/// The plan of a background: displacements given on the wrap, zero on the outer patches, 2-D sides free. May add patches to
-/// the mesh, see prepare().
-PreparedMorph prepare_background(Background& background, Law law = Law::linear);
+/// The plan of a background: displacements given on the wrap, zero on the outer patches, 2-D sides free.
+PreparedMorph prepare_background(Background const& background, Law law = Law::linear);
 
 /// The nodes of the wrap, each point once.
 struct WrapNodes {

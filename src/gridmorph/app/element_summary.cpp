@@ -1,68 +1,15 @@
-#include <gridmorph/app/casefile/side_file.hpp>
+// What inspect says of unstructured meshes.
 #include <gridmorph/app/cli/boundary_guess.hpp>
-#include <gridmorph/app/cli/inspect_text.hpp>
 #include <gridmorph/app/cli/mesh_summary.hpp>
-#include <gridmorph/app/cli/unstructured_mesh.hpp>
+#include <gridmorph/app/element_mesh.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
-#include <gridmorph/core/error.hpp>
-#include <gridmorph/mesh/file_order.hpp>
-#include <gridmorph/mesh/undeclared_connections.hpp>
-#include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace gridmorph::cli {
-
-LoadedMesh load_unstructured(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
-                             std::vector<std::string> const& leave_out) {
-  LoadedMesh out;
-  out.mesh = load_unstructured_mesh(path, side_file, leave_out);
-  if (is_scattered(out.mesh)) reorder(out.mesh, order_by_position(out.mesh));
-  out.topology = make_topology(out.mesh);
-  out.face_patches = find_face_patches(out.mesh, out.topology);
-  out.problems = out.face_patches.problems;
-  auto const signs = volume_signs(out.mesh);
-  out.signs = numbering_signs(out.mesh, out.topology.sides, signs);
-  for (auto const& negative : negative_elements(out.mesh, signs))
-    out.remarks.push_back(out.mesh.source + ": " + describe(out.mesh, negative));
-  if (out.mesh.dimension == 2 && std::fabs(plane_normal(out.mesh).z) != 1)
-    out.problems.push_back(out.mesh.source + ": is 2-D but does not lie in a plane z = constant; turn it into one");
-  constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
-  for (auto const& pair : undeclared_connections(out.mesh, tolerance * out.mesh.size()))
-    out.mesh.notes.push_back(out.mesh.source + ": " + describe(out.mesh, pair));
-  return out;
-}
-
-QualityReport measure_mesh(LoadedMesh const& loaded, std::optional<Coordinates> const& morphed, bool fast) {
-  UnstructuredQualityInput<Kokkos::HostSpace> input;
-  input.signs = loaded.signs;
-  input.fast = fast;
-  input.coordinates = views(morphed ? *morphed : loaded.mesh.coordinates);
-  if (morphed) input.baseline = views(loaded.mesh.coordinates);
-  for (int p = 0; p < int(loaded.mesh.patches.size()); ++p)
-    if (loaded.mesh.patches[std::size_t(p)].kind == PatchKind::wall) input.walls.push_back(p);
-  return measure_quality(Kokkos::DefaultHostExecutionSpace(), loaded.mesh, loaded.topology, loaded.face_patches, input);
-}
-
-Coordinates coordinates_of_same_mesh(UnstructuredMesh const& a, UnstructuredMesh b) {
-  bool same = a.zones.size() == b.zones.size();
-  for (std::size_t z = 0; same && z < a.zones.size(); ++z)
-    same = a.zones[z].n_nodes == b.zones[z].n_nodes && a.zones[z].n_elements == b.zones[z].n_elements;
-  if (same) {
-    if (!a.file_order.node.empty()) reorder(b, a.file_order);
-    same = a.elements.type == b.elements.type && a.elements.nodes.item == b.elements.nodes.item;
-  }
-  if (!same)
-    throw MeshError(
-        fmt::format("'{}' ({} nodes, {} elements) and '{}' ({} nodes, {} elements) are not the same mesh; "
-                    "compare a mesh with its own baseline",
-                    a.source, a.n_nodes(), a.n_elements(), b.source, b.n_nodes(), b.n_elements()));
-  return b.coordinates;
-}
 
 namespace {
 
@@ -130,17 +77,10 @@ std::string periodic_text(PeriodicSummary const& p) {
                      p.translation.z);
 }
 
-std::vector<std::string> all_notes(LoadedMesh const& loaded) {
-  auto notes = loaded.mesh.notes;
-  notes.insert(notes.end(), loaded.face_patches.notes.begin(), loaded.face_patches.notes.end());
-  return notes;
-}
-
 }  // namespace
 
-std::string inspect_text(LoadedMesh const& loaded, MeshSummary const& summary, std::string const& quality,
-                         SnippetOptions const& options) {
-  auto const& mesh = loaded.mesh;
+std::string ElementMesh::text(MeshSummary const& summary, std::string const& quality,
+                              SnippetOptions const& options) const {
   std::string text = fmt::format("{}: unstructured, {}-D, {} zone{}, {} nodes, {} elements ({})\n", mesh.source,
                                  mesh.dimension, mesh.zones.size(), mesh.zones.size() == 1 ? "" : "s", mesh.n_nodes(),
                                  mesh.n_elements(), types_text(mesh, -1));
@@ -162,14 +102,13 @@ std::string inspect_text(LoadedMesh const& loaded, MeshSummary const& summary, s
         fmt::format("  {} (zone {} to zone {}): {} pairs of nodes, at most {:.3g} apart{}\n", c.name,
                     mesh.zones[std::size_t(c.zone)].name, mesh.zones[std::size_t(c.donor_zone)].name, c.nodes.size(),
                     largest_mismatch(mesh, c), c.periodic ? "; " + periodic_text(describe_connection(mesh, c)) : "");
-  text += list_text("Notes of the reader", all_notes(loaded));
-  text += list_text("Remarks", loaded.remarks);
-  text += list_text("Problems that stop a morph", loaded.problems);
+  text += list_text("Notes of the reader", notes());
+  text += list_text("Remarks", remarks);
+  text += list_text("Problems that stop a morph", problems);
   return text + "\n" + quality + "\nA case file to start from\n\n" + case_snippet(summary, options);
 }
 
-nlohmann::json inspect_json(LoadedMesh const& loaded, MeshSummary const& summary, SnippetOptions const& options) {
-  auto const& mesh = loaded.mesh;
+nlohmann::json ElementMesh::json(MeshSummary const& summary, SnippetOptions const& options) const {
   auto const vector = [](Vec3 const& v) { return nlohmann::json{v.x, v.y, v.z}; };
   auto const box_json = [&](Box const& box) {
     return box.low.x <= box.high.x ? nlohmann::json{{"min", vector(box.low)}, {"max", vector(box.high)}}
@@ -189,9 +128,9 @@ nlohmann::json inspect_json(LoadedMesh const& loaded, MeshSummary const& summary
                       {"elements", mesh.n_elements()},
                       {"types", types_json(-1)},
                       {"families", mesh.families},
-                      {"notes", all_notes(loaded)},
-                      {"problems", loaded.problems},
-                      {"remarks", loaded.remarks},
+                      {"notes", notes()},
+                      {"problems", problems},
+                      {"remarks", remarks},
                       {"case_file", case_snippet(summary, options)}};
   json["zones"] = nlohmann::json::array();
   for (std::size_t z = 0; z < mesh.zones.size(); ++z)
@@ -214,7 +153,7 @@ nlohmann::json inspect_json(LoadedMesh const& loaded, MeshSummary const& summary
                                   {"kind", to_string(patch.kind)},
                                   {"bc_type", patch.bc_type},
                                   {"zone", mesh.zones[std::size_t(patch.zone)].name},
-                                  {"faces", loaded.face_patches.faces_of_patch[p]},
+                                  {"faces", face_patches.faces_of_patch[p]},
                                   {"nodes", nodes.size()},
                                   {"box", box_json(box_of(mesh, nodes))}});
   }
@@ -237,7 +176,7 @@ nlohmann::json inspect_json(LoadedMesh const& loaded, MeshSummary const& summary
 namespace {
 
 /// Mean and smallest distance of the corners opposite a boundary face from it: the height of the first cell.
-void measure_heights(LoadedMesh const& loaded, std::vector<int> const& boundary_of_patch,
+void measure_heights(ElementMesh const& loaded, std::vector<int> const& boundary_of_patch,
                      std::vector<BoundarySummary>& boundaries) {
   auto const& mesh = loaded.mesh;
   auto const& faces = loaded.topology.boundary;
@@ -310,8 +249,7 @@ void join_by_position(UnstructuredMesh const& mesh, std::vector<BoundarySummary>
 
 }  // namespace
 
-MeshSummary summarize(LoadedMesh const& loaded) {
-  auto const& mesh = loaded.mesh;
+MeshSummary ElementMesh::summary() const {
   MeshSummary out;
   out.unstructured = true;
   out.source = mesh.source;
@@ -349,7 +287,7 @@ MeshSummary summarize(LoadedMesh const& loaded) {
     once(found->names, patch.name);
     if (!patch.bc_type.empty()) once(found->bc_types, patch.bc_type);
     found->patches.push_back(p);
-    found->faces += loaded.face_patches.faces_of_patch[std::size_t(p)];
+    found->faces += face_patches.faces_of_patch[std::size_t(p)];
     auto const nodes = patch_nodes(patch);
     found->nodes += Index(nodes.size());
     auto& points = shapes[b].patches.emplace_back();
@@ -361,7 +299,7 @@ MeshSummary summarize(LoadedMesh const& loaded) {
     }
   }
   join_by_position(mesh, out.boundaries, nodes_of_boundary);
-  measure_heights(loaded, boundary_of_patch, out.boundaries);
+  measure_heights(*this, boundary_of_patch, out.boundaries);
   guess_roles(mesh.coordinates, shapes, out);
   find_touching(out.boundaries, nodes_of_boundary, mesh.n_nodes());
   return out;

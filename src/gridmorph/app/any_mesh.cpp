@@ -1,0 +1,56 @@
+#include <gridmorph/app/any_mesh.hpp>
+#include <gridmorph/app/block_mesh.hpp>
+#include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/mapping/mapping_report.hpp>
+
+namespace gridmorph::cli {
+
+namespace {
+
+/// "determinant_2x2x2" -> "Determinant2x2x2", as solution fields of CGNS files are called.
+std::string field_name(Measure measure) {
+  std::string out;
+  bool upper = true;
+  for (char const c : to_string(measure)) {
+    if (c != '_') out += upper && c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
+    upper = c == '_';
+  }
+  return out;
+}
+
+}  // namespace
+
+CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<Measure const> measures, Index n_cells) {
+  CellFields<Kokkos::HostSpace> fields;
+  out.clear();
+  for (Measure const m : measures) {
+    auto const unit = m == Measure::minimum_angle_deg ? FieldUnit::degree : FieldUnit::number;
+    auto& values = out.emplace_back(field_name(m), std::vector<double>(std::size_t(n_cells)), unit).values;
+    fields[m] = Kokkos::View<double*, Kokkos::HostSpace>(values.data(), values.size());
+  }
+  return fields;
+}
+
+std::vector<std::string> mapping_notes(CaseFile const& case_file) {
+  std::vector<std::string> notes;
+  for (auto const& use : case_file.fields) {
+    notes.insert(notes.end(), use.field->notes().begin(), use.field->notes().end());
+    notes.push_back(use.where + ": " + describe_mapping(*use.field));
+  }
+  return notes;
+}
+
+KindTraits const& MeshSource::traits() const {
+  return kind == MeshKind::unstructured ? ElementMesh::traits() : BlockMesh::traits();
+}
+
+MeshSource look_at(std::filesystem::path const& path, std::vector<std::string> const& leave_out) {
+  return {look_at_mesh(path.string(), leave_out), path, leave_out};
+}
+
+std::unique_ptr<AnyMesh> load(MeshSource const& file, std::optional<std::filesystem::path> const& side_file) {
+  if (file.kind == MeshKind::unstructured) return std::make_unique<ElementMesh>(file.path, side_file, file.leave_out);
+  return std::make_unique<BlockMesh>(file.path, side_file, file.leave_out);
+}
+
+}  // namespace gridmorph::cli

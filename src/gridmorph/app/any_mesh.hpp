@@ -1,0 +1,169 @@
+// A mesh of either kind, as commands and runs see it. What differs by kind stands behind the two classes here: blocks are in
+// block_mesh.cpp and block_plan.cpp, elements in element_mesh.cpp and element_plan.cpp.
+#pragma once
+
+#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/cli/diagnosis.hpp>
+#include <gridmorph/app/cli/inspect_text.hpp>
+#include <gridmorph/guard/guard.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/surface/surface_io.hpp>
+#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/write_series.hpp>
+#include <gridmorph/quality/quality.hpp>
+#include <gridmorph/report/step_times.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+/// What of a mesh is measured, and against what.
+struct QualityWanted {
+  Coordinates const* morphed = nullptr;  ///< measured against the mesh, or the mesh itself where there is none
+  /// (n_cells), nonzero near moving walls; empty: all cells are far.
+  Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> near_field = {};
+  std::vector<int> walls = {};  ///< patches whose first cells are measured, beside those of walls
+  CellLimits limits = {};
+  bool fast = false;                         ///< a verdict is enough
+  std::vector<CellField>* fields = nullptr;  ///< those that go into output meshes, filled on the way
+};
+
+/// Facets of patches, or their nodes.
+struct PatchesAsSurface {
+  std::vector<Vec3> nodes;
+  SurfaceTriangles facets;
+  std::size_t patches = 0;
+};
+
+/// What to look for where a mesh lacks interfaces.
+struct MatchOptions {
+  double tolerance = 0.01;
+  bool periodic = true;
+  std::optional<std::filesystem::path> side_file;  ///< where what was found goes: after `present`, its text so far
+  std::string present;
+};
+
+/// What became of the plan's stages and targets.
+struct PlanOutcome {
+  std::string text;                ///< stages, above the quality tables
+  std::vector<std::string> notes;  ///< how far targets were missed
+  nlohmann::json json;             ///< for the report
+};
+
+/// A mesh that is planned for the motion of a case file. Boundary displacements are in the order of the plan.
+class AnyPlan {
+ public:
+  virtual ~AnyPlan() = default;
+
+  /// Displacement of the boundary by the rules as they are at a moment; null: as they stand. Throws MotionError.
+  [[nodiscard]] virtual std::vector<Vec3> displacement(Moment const* when) = 0;
+  /// Moves the mesh from its baseline. `times`: gets what this took, where it is wanted.
+  virtual void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) = 0;
+  /// Smooths around cells that came out bad.
+  virtual RelaxReport relax(Coordinates& /*morphed*/) const { return {}; }
+  /// The same motion in several steps, each planned on the mesh before it; nothing where this plan has but one.
+  [[nodiscard]] virtual std::optional<Coordinates> morph_in_steps(
+      std::vector<Vec3> const& /*displacement*/, int /*steps*/,
+      std::function<void(int step)> const& /*progress*/) const {
+    return {};
+  }
+
+  /// Quality with the near field and the walls of this plan in `wanted`.
+  [[nodiscard]] virtual QualityReport measure(QualityWanted wanted) const = 0;
+  /// `verdict`: that is all that is wanted; `at_once`: this is the motion as the rules stand, no step of a sequence.
+  [[nodiscard]] virtual PlanOutcome outcome(Coordinates const& morphed, bool verdict, bool at_once) const = 0;
+  /// Pictures of the stages, where this kind of plan has any.
+  virtual void write_stages(std::filesystem::path const& /*folder*/, Coordinates const& /*morphed*/) const {}
+
+  /// Defaults taken, facts found on the way, up to now.
+  [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
+  /// Of planning.
+  [[nodiscard]] virtual StepTimes times() const = 0;
+  /// For `gridmorph plan`.
+  [[nodiscard]] virtual std::string text() const = 0;
+  [[nodiscard]] virtual nlohmann::json json() const = 0;
+  /// A line or two above the results of a morph; may be empty.
+  [[nodiscard]] virtual std::string headline() const { return {}; }
+  [[nodiscard]] virtual MeshForMessages for_messages() const = 0;
+};
+
+/// Room for measures as fields of an output mesh, for measure_quality() to fill.
+CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<Measure const> measures, Index n_cells);
+
+/// How far nodes were from the models of `field` rules, and what was left out of these.
+std::vector<std::string> mapping_notes(CaseFile const& case_file);
+
+/// Words and shares of time that differ by kind.
+struct KindTraits {
+  std::string cells;        ///< "cells" or "elements"
+  std::string planning;     ///< what is said while planning
+  bool guards;              ///< whether relax() does anything
+  std::string change;       ///< what helps where cells are inverted: in one morph
+  std::string change_many;  ///< and in a sequence
+  std::vector<double>
+      costs;  ///< of reading, planning, boundary, volume, (guard,) quality, writing: measured with millions of nodes
+};
+
+class AnyMesh {
+ public:
+  virtual ~AnyMesh() = default;
+
+  [[nodiscard]] virtual KindTraits const& kind() const = 0;
+  [[nodiscard]] virtual Coordinates const& coordinates() const = 0;
+  [[nodiscard]] Index n_nodes() const { return coordinates().size(); }
+  [[nodiscard]] virtual Index n_cells() const = 0;
+
+  [[nodiscard]] virtual QualityReport measure(QualityWanted const& wanted) const = 0;
+  /// Those of another file of this mesh, as this one numbers them. Throws MeshError where it holds another mesh.
+  [[nodiscard]] virtual Coordinates coordinates_of(std::filesystem::path const& path,
+                                                   std::vector<std::string> const& leave_out) const = 0;
+  /// Adds interfaces that points say. Throws MeshError where this kind of mesh has none.
+  virtual void match(MatchOptions const& options) = 0;
+
+  [[nodiscard]] virtual MeshSummary summary() const = 0;
+  /// What inspect shows; `quality`: a table in it.
+  [[nodiscard]] virtual std::string text(MeshSummary const& summary, std::string const& quality,
+                                         SnippetOptions const& options) const = 0;
+  [[nodiscard]] virtual nlohmann::json json(MeshSummary const& summary, SnippetOptions const& options) const = 0;
+  /// Facets with normals into the mesh, `split` pieces along each side; or nodes, each once.
+  [[nodiscard]] virtual PatchesAsSurface surface(std::vector<std::string> const& selectors, bool as_facets,
+                                                 int split) const = 0;
+
+  /// The file `input`, which this was read from, with other coordinates: write_morphed(), SeriesWriter.
+  virtual void write(std::filesystem::path const& input, std::filesystem::path const& output,
+                     Coordinates const& morphed, OutputFields const& fields) const = 0;
+  [[nodiscard]] virtual SeriesWriter series(std::filesystem::path const& input, std::filesystem::path const& output,
+                                            std::vector<double> const& times) const = 0;
+
+  /// Connects, checks, resolves rules, plans. The mesh must outlive the plan. Throws MeshError, MotionError, PlanError.
+  [[nodiscard]] virtual std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const = 0;
+};
+
+/// What is known of a mesh file before it is read.
+struct MeshSource : MeshFileFacts {
+  std::filesystem::path path;
+  std::vector<std::string> leave_out;
+
+  [[nodiscard]] KindTraits const& traits() const;
+};
+
+/// The one place that asks what kind a mesh is. Throws IoError.
+MeshSource look_at(std::filesystem::path const& path, std::vector<std::string> const& leave_out);
+
+/// Reads the mesh with its side file: the one given, or that beside it.
+std::unique_ptr<AnyMesh> load(MeshSource const& file, std::optional<std::filesystem::path> const& side_file);
+inline std::unique_ptr<AnyMesh> load(std::filesystem::path const& path,
+                                     std::optional<std::filesystem::path> const& side_file,
+                                     std::vector<std::string> const& leave_out) {
+  return load(look_at(path, leave_out), side_file);
+}
+
+}  // namespace gridmorph::cli

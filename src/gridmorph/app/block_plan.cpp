@@ -1,0 +1,162 @@
+// The steps between a structured mesh with motion rules and morphed coordinates.
+#include <gridmorph/app/block_mesh.hpp>
+#include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/trim_note.hpp>
+#include <gridmorph/report/target_text.hpp>
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+class BlockPlan final : public AnyPlan {
+ public:
+  BlockPlan(BlockMesh const& mesh, CaseFile const& case_file)
+      : case_file_(case_file),
+        prepared_(prepare(mesh.mesh(), case_file.motion, case_file.plan)),
+        mesh_(prepared_.mesh) {}
+
+  std::vector<Vec3> displacement(Moment const* when) override {
+    evaluated_ = true;
+    if (when == nullptr) {
+      auto out = prepared_.boundary_displacement();
+      trimmed_ = trim_note(prepared_.mesh, prepared_.plan(), out);
+      return out;
+    }
+    ResolvedMotion resolved = prepared_.motion;
+    Motion const motion = motion_at(case_file_, *when);
+    for (std::size_t r = 0; r < motion.rules.size(); ++r) resolved.rules[r].rule = motion.rules[r].rule;
+    // Slides and followers take their motion over from the blade's as it is now.
+    SurfaceMotion const surface(prepared_.mesh, resolved);
+    return evaluate_boundary(prepared_.mesh, prepared_.planned.boundary, prepared_.plan(), resolved, surface,
+                             prepared_.links.mesh_size);
+  }
+
+  void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) override {
+    Stopwatch watch;
+    // Made once: tables, workspace and line parameters serve every displacement.
+    if (!morpher_) morpher_.emplace(exec_, prepared_.plan(), mesh_.coordinates());
+    Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(
+        displacement.data(), displacement.size());
+    morpher_->positions(exec_, given, morphed);
+    exec_.fence();
+    if (times != nullptr) times->push_back({"morph", watch.lap(), true});
+  }
+
+  [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
+    add_near_field(wanted, prepared_.mesh, prepared_.plan(), case_file_);
+    return mesh_.measure(wanted);
+  }
+
+  [[nodiscard]] PlanOutcome outcome(Coordinates const& morphed, bool verdict, bool at_once) const override {
+    PlanOutcome out;
+    auto const targets = at_once ? prepared_.surface.target_reach(prepared_.mesh, morphed) : std::vector<TargetReach>();
+    for (auto const& target : targets) out.notes.push_back(describe_reach(prepared_.mesh, target));
+    out.json["targets"] = targets_json(prepared_.mesh, targets);
+    out.json["stages"] = nlohmann::json::array();
+    if (verdict) return out;
+    for (auto const& stage : prepared_.plan().stages) {
+      CellValue const worst = min_determinant(exec_, mesh_.mesh(), views(morphed), mesh_.handedness(), stage.cells);
+      nlohmann::json json{{"name", stage.name}, {"min_determinant", nullptr}};
+      if (worst.zone >= 0) {
+        auto const& zone = mesh_.mesh().zones[std::size_t(worst.zone)].name;
+        json["min_determinant"] = {{"value", worst.value},
+                                   {"zone", zone},
+                                   {"cell", {worst.cell[0] + 1, worst.cell[1] + 1, worst.cell[2] + 1}}};
+        out.text += fmt::format("stage {}: smallest determinant {:.4g}, {}\n", stage.name, worst.value,
+                                describe_cell(zone, worst.cell));
+      }
+      out.json["stages"].push_back(std::move(json));
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::vector<std::string> notes() const override {
+    std::vector<std::string> out = prepared_.mesh.notes;
+    auto const append = [&](auto const& more) { out.insert(out.end(), more.begin(), more.end()); };
+    append(prepared_.motion.notes);
+    append(prepared_.surface.notes());
+    append(prepared_.plan().notes);
+    if (trimmed_) out.push_back(*trimmed_);
+    if (evaluated_) append(mapping_notes(case_file_));
+    return out;
+  }
+  [[nodiscard]] StepTimes times() const override {
+    auto const& seconds = prepared_.seconds;
+    return {{"topology", seconds.topology}, {"rules", seconds.rules}, {"plan", seconds.plan}};
+  }
+
+  [[nodiscard]] std::string text() const override {
+    std::string text;
+    for (auto const& note : notes()) text += "note: " + note + "\n";
+    return text + (text.empty() ? "" : "\n") + describe(prepared_.plan());
+  }
+
+  /// Name of each stage, one line per chain, how many cells it morphs; finalize passes at the end.
+  [[nodiscard]] nlohmann::json json() const override {
+    nlohmann::json list = nlohmann::json::array();
+    for (auto const& stage : prepared_.plan().stages) {
+      Index cells = 0;
+      for (CellBox const& box : stage.cells) {
+        Index inside = 1;
+        for (int a = 0; a < 3; ++a) inside *= box.cells.extent(a);
+        cells += inside;
+      }
+      list.push_back({{"name", stage.name}, {"chains", stage.description}, {"cells", cells}});
+    }
+    for (auto const& pass : prepared_.plan().spreads)
+      list.push_back({{"name", "slip surfaces"}, {"chains", pass.description}, {"cells", 0}});
+    return {{"stages", std::move(list)}};
+  }
+
+  [[nodiscard]] MeshForMessages for_messages() const override { return cli::for_messages(prepared_.mesh); }
+
+ private:
+  CaseFile const& case_file_;
+  Exec exec_;
+  PreparedMorph prepared_;
+  BlockMesh mesh_;  ///< with the patches that planning added
+  std::optional<Morpher<Exec>> morpher_;
+  bool evaluated_ = false;
+  std::optional<std::string> trimmed_;  ///< of the rules as they stand
+};
+
+}  // namespace
+
+void add_near_field(QualityWanted& wanted, Mesh const& mesh, Plan const& plan, CaseFile const& case_file) {
+  Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const mask("gridmorph::cli::near_field", std::size_t(mesh.n_cells()));
+  std::vector<Index> const first = first_cells(mesh);
+  for (auto const& box : plan.near_field) {
+    Zone const& zone = mesh.zones[std::size_t(box.zone)];
+    Index const ni = zone.extent[0] - 1, nj = zone.extent[1] - 1;
+    for (int k = box.cells.begin[2]; k < box.cells.end[2]; ++k)
+      for (int j = box.cells.begin[1]; j < box.cells.end[1]; ++j)
+        for (int i = box.cells.begin[0]; i < box.cells.end[0]; ++i)
+          mask(first[std::size_t(box.zone)] + i + ni * (j + nj * k)) = 1;
+  }
+  wanted.near_field = mask;
+  for (auto const& layer : case_file.plan.boundary_layers)
+    if (!layer.walls.empty())
+      for (int const p : select_patches(mesh, layer.walls)) wanted.walls.push_back(p);
+}
+
+std::unique_ptr<AnyPlan> BlockMesh::plan(CaseFile const& case_file) const {
+  try {
+    return std::make_unique<BlockPlan>(*this, case_file);
+  } catch (MotionError const& e) {  // rules about an axis fail in many ways when it is not the machine's
+    auto const cause = axis_mismatch(mesh_, case_file.motion.axis);
+    if (!cause) throw;
+    throw MotionError(fmt::format("{}\n  likely cause: {}", e.what(), *cause));
+  }
+}
+
+}  // namespace gridmorph::cli

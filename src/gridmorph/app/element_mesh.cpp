@@ -1,0 +1,132 @@
+#include <gridmorph/app/casefile/side_file.hpp>
+#include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/boundary/boundary_outline.hpp>
+#include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/mesh/undeclared_connections.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace gridmorph::cli {
+
+namespace {
+
+constexpr std::array element_fields{Measure::aspect_ratio, Measure::determinant_3x3x3, Measure::minimum_angle_deg,
+                                    Measure::equiangle_skewness, Measure::relative_displacement};
+
+}  // namespace
+
+KindTraits const& ElementMesh::traits() {
+  static KindTraits const traits{.cells = "elements",
+                                 .planning = "finding wrap and layers, making the background mesh, locating nodes",
+                                 .guards = true,
+                                 .change = "change [near_field], set steps",
+                                 .change_many = "[near_field] or [boundary_layer]",
+                                 .costs = {25, 40, 1, 2, 8, 10, 15}};
+  return traits;
+}
+
+ElementMesh::ElementMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
+                         std::vector<std::string> const& leave_out)
+    : mesh(load_unstructured_mesh(path, side_file, leave_out)) {
+  if (is_scattered(mesh)) reorder(mesh, order_by_position(mesh));
+  topology = make_topology(mesh);
+  face_patches = find_face_patches(mesh, topology);
+  problems = face_patches.problems;
+  auto const volumes = volume_signs(mesh);
+  signs = numbering_signs(mesh, topology.sides, volumes);
+  for (auto const& negative : negative_elements(mesh, volumes))
+    remarks.push_back(mesh.source + ": " + describe(mesh, negative));
+  if (mesh.dimension == 2 && std::fabs(plane_normal(mesh).z) != 1)
+    problems.push_back(mesh.source + ": is 2-D but does not lie in a plane z = constant; turn it into one");
+  constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
+  for (auto const& pair : undeclared_connections(mesh, tolerance * mesh.size()))
+    mesh.notes.push_back(mesh.source + ": " + describe(mesh, pair));
+}
+
+std::vector<std::string> ElementMesh::notes() const {
+  auto out = mesh.notes;
+  out.insert(out.end(), face_patches.notes.begin(), face_patches.notes.end());
+  return out;
+}
+
+QualityReport ElementMesh::measure(QualityWanted const& wanted) const {
+  UnstructuredQualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(wanted.morphed != nullptr ? *wanted.morphed : mesh.coordinates);
+  if (wanted.morphed != nullptr) input.baseline = views(mesh.coordinates);
+  input.near_field = wanted.near_field;
+  std::set<int> walls(wanted.walls.begin(), wanted.walls.end());
+  for (int p = 0; p < int(mesh.patches.size()); ++p)
+    if (mesh.patches[std::size_t(p)].kind == PatchKind::wall) walls.insert(p);
+  input.walls.assign(walls.begin(), walls.end());
+  input.signs = signs;
+  input.limits = wanted.limits;
+  input.fast = wanted.fast;
+  if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, element_fields, mesh.n_elements());
+  return measure_quality(Kokkos::DefaultHostExecutionSpace(), mesh, topology, face_patches, input);
+}
+
+Coordinates ElementMesh::coordinates_of(std::filesystem::path const& path,
+                                        std::vector<std::string> const& leave_out) const {
+  if (look_at(path, leave_out).kind != MeshKind::unstructured)
+    throw MeshError(fmt::format("'{}' is unstructured and '{}' is not; compare a mesh with its own baseline",
+                                mesh.source, path.string()));
+  ReadOptions options;
+  options.leave_out = leave_out;
+  UnstructuredMesh other = read_unstructured_mesh(path.string(), options);
+  bool same = mesh.zones.size() == other.zones.size();
+  for (std::size_t z = 0; same && z < mesh.zones.size(); ++z)
+    same = mesh.zones[z].n_nodes == other.zones[z].n_nodes && mesh.zones[z].n_elements == other.zones[z].n_elements;
+  if (same) {
+    if (!mesh.file_order.node.empty()) reorder(other, mesh.file_order);
+    same = mesh.elements.type == other.elements.type && mesh.elements.nodes.item == other.elements.nodes.item;
+  }
+  if (!same)
+    throw MeshError(
+        fmt::format("'{}' ({} nodes, {} elements) and '{}' ({} nodes, {} elements) are not the same mesh; "
+                    "compare a mesh with its own baseline",
+                    mesh.source, mesh.n_nodes(), mesh.n_elements(), other.source, other.n_nodes(), other.n_elements()));
+  return other.coordinates;
+}
+
+void ElementMesh::match(MatchOptions const& /*options*/) {
+  throw MeshError(mesh.source + ": is an unstructured mesh; --match and --write-side-file are for structured ones");
+}
+
+PatchesAsSurface ElementMesh::surface(std::vector<std::string> const& selectors, bool as_facets, int split) const {
+  auto const nodes_of_patch = nodes_of_patches(mesh, topology, face_patches);
+  auto const patches = select_patches(boundary_outline(mesh, nodes_of_patch), selectors);
+  PatchesAsSurface out;
+  out.patches = patches.size();
+  if (!as_facets) {
+    auto const representative = coincident_nodes(mesh);
+    std::vector<Index32> nodes;
+    for (int const p : patches)
+      for (Index32 const n : nodes_of_patch[std::size_t(p)]) nodes.push_back(representative[std::size_t(n)]);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    for (Index32 const n : nodes) out.nodes.push_back(mesh.coordinates[n]);
+    return out;
+  }
+  if (mesh.dimension == 2)
+    throw ConfigError(mesh.source + ": is 2-D, its boundary has no facets; write its nodes (--output NAME.csv)");
+  if (split != 1)
+    throw ConfigError("--split cuts the quadrilaterals of structured meshes; leave it out for an unstructured one");
+  auto const& boundary = topology.boundary;
+  for (Index f = 0; f < boundary.size(); ++f) {
+    if (std::find(patches.begin(), patches.end(), face_patches.patch[std::size_t(f)]) == patches.end()) continue;
+    auto const face = boundary.nodes[f];
+    int const first = int(out.facets.points.size());
+    for (Index32 const n : face) out.facets.points.push_back(mesh.coordinates[n]);
+    for (int k = 2; k < int(face.size()); ++k) out.facets.triangles.push_back({first, first + k, first + k - 1});
+  }
+  return out;
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,211 @@
+// The steps between an unstructured mesh with motion rules and morphed coordinates.
+#include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/guard/stepped_morph.hpp>
+#include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+double largest_of(std::vector<Vec3> const& displacement) {
+  double largest = 0;
+  for (Vec3 const& u : displacement) largest = std::max(largest, norm(u));
+  return largest;
+}
+
+class ElementPlan final : public AnyPlan {
+ public:
+  ElementPlan(ElementMesh const& mesh, CaseFile const& case_file)
+      : mesh_(mesh), case_file_(case_file), options_(options_of(case_file)) {
+    Problems problems;
+    for (auto const& problem : mesh.face_patches.problems) problems.add(problem);
+    problems.throw_if_any<MeshError>();
+    Stopwatch watch;
+    NodeGraph graph = make_node_graph(mesh.mesh, mesh.topology.elements_of_nodes);
+    bool const any = case_file.sequence || options_.motion >= 0;
+    auto boundary = boundary_conditions(mesh.mesh, mesh.topology, mesh.face_patches, graph, case_file.motion,
+                                        options_.walls, any ? Displacements::any : Displacements::of_the_rules);
+    if (auto const& sequence = case_file.sequence) {  // the offset of the wrap reckons with all steps
+      options_.motion = 0;
+      for (int step = 0; step < sequence->steps; ++step)
+        options_.motion = std::max(
+            options_.motion, largest_of(evaluate(mesh.mesh, boundary, motion_at(case_file, sequence->moment(step)))));
+    } else {
+      displacement_ = evaluate(mesh.mesh, boundary);
+      if (options_.motion < 0) options_.motion = largest_of(displacement_);
+    }
+    double const seconds = watch.lap();
+    prepared_ = prepare(mesh.mesh, mesh.topology, mesh.face_patches, std::move(graph), std::move(boundary), options_);
+    prepared_.report.seconds.boundary += seconds;
+    planning_ = seconds + watch.lap();
+  }
+
+  std::vector<Vec3> displacement(Moment const* when) override {
+    return when == nullptr ? displacement_ : evaluate(mesh_.mesh, prepared_.boundary, motion_at(case_file_, *when));
+  }
+
+  void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) override {
+    Stopwatch watch;
+    if (!morpher_) {
+      morpher_.emplace(Exec(), prepared_.plan, mesh_.coordinates());
+      if (times != nullptr) times->push_back({"upload", watch.lap(), true});
+    }
+    apply_on_host(*morpher_, displacement, morphed);
+    if (times != nullptr) times->push_back({"morph", watch.lap(), true});
+  }
+
+  RelaxReport relax(Coordinates& morphed) const override {
+    return relax_bad_elements(mesh_.mesh, mesh_.topology, prepared_, morphed, {.signs = mesh_.signs});
+  }
+
+  [[nodiscard]] std::optional<Coordinates> morph_in_steps(
+      std::vector<Vec3> const& displacement, int steps, std::function<void(int step)> const& progress) const override {
+    if (options_.background) return {};
+    return gridmorph::morph_in_steps(mesh_.mesh, mesh_.topology, mesh_.face_patches, prepared_, displacement,
+                                     {steps, options_, {.signs = mesh_.signs}, progress});
+  }
+
+  [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
+    auto const& regions = prepared_.report.regions.element;
+    Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const near("gridmorph::cli::near_field", regions.size());
+    for (std::size_t e = 0; e < regions.size(); ++e) near(e) = regions[e] == Region::far ? 0 : 1;
+    wanted.near_field = near;
+    wanted.walls = prepared_.boundary.driving_patches;
+    return mesh_.measure(wanted);
+  }
+
+  [[nodiscard]] PlanOutcome outcome(Coordinates const& /*morphed*/, bool /*verdict*/, bool /*at_once*/) const override {
+    return {{}, {}, json()};
+  }
+
+  void write_stages(std::filesystem::path const& folder, Coordinates const& morphed) const override {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+      throw MachineError(
+          fmt::format("the folder '{}' for the stages cannot be made: {}", folder.string(), error.message()));
+    auto const path = [&](std::size_t n) { return (folder / stage_names[n]).string(); };
+    write_regions(path(0), morphed);
+    if (prepared_.report.wrap) write_mesh(path(1), wrap_mesh(*prepared_.report.wrap));
+    if (!prepared_.plan.background) return;
+    Mesh background = prepared_.plan.background->mesh;
+    write_mesh(path(2), background);
+    Coordinates moved(background.n_nodes());
+    auto const u = morpher_->background_displacement();
+    for (Index n = 0; n < moved.size(); ++n) moved.set(n, background.coordinates[n] + u[n]);
+    background.coordinates = moved;
+    write_mesh(path(3), background);
+  }
+
+  [[nodiscard]] std::vector<std::string> notes() const override {
+    auto out = mesh_.notes();
+    for (auto const& more : {prepared_.notes, mapping_notes(case_file_)})
+      out.insert(out.end(), more.begin(), more.end());
+    return out;
+  }
+  [[nodiscard]] StepTimes times() const override { return {{"plan", planning_, true}}; }
+
+  [[nodiscard]] std::string text() const override {
+    std::string text;
+    for (auto const& note : notes()) text += "note: " + note + "\n";
+    return text + headline();
+  }
+
+  [[nodiscard]] nlohmann::json json() const override {
+    auto const& r = prepared_.report;
+    auto const& p = prepared_.plan;
+    nlohmann::json plan{
+        {"offset", r.offset},
+        {"columns", r.n_columns},
+        {"layer_height", r.layer_height},
+        {"elements", {{"near", r.regions.n_near}, {"fence", r.regions.n_partial}, {"far", r.regions.n_far}}},
+        {"layers", p.near.n_layers()},
+        {"background",
+         {{"zones", p.background ? p.background->mesh.zones.size() : 0},
+          {"nodes", p.background ? p.background->mesh.n_nodes() : 0}}},
+        {"wrap_nodes", r.wrap_nodes},
+        {"wrap_nodes_outside", r.wrap_outside},
+        {"wrap_largest_distance", r.wrap_distance},
+        {"far_nodes", r.far_nodes},
+        {"far_nodes_outside", r.far_outside},
+        {"unreached_nodes", r.unreached},
+        {"seconds",
+         {{"boundary", r.seconds.boundary},
+          {"columns", r.seconds.columns},
+          {"distances", r.seconds.distances},
+          {"wrap", r.seconds.wrap},
+          {"layers", r.seconds.layers},
+          {"background", r.seconds.background},
+          {"location", r.seconds.location},
+          {"residual", r.seconds.residual}}}};
+    return {{"elements", mesh_.mesh.n_elements()}, {"plan", std::move(plan)}};
+  }
+
+  [[nodiscard]] std::string headline() const override {
+    auto const& r = prepared_.report;
+    auto const& p = prepared_.plan;
+    std::string text = fmt::format(
+        "near field: {}, {} columns up to {:.4g} high, {} near elements, {} on the fence, {} far; {} layers\n",
+        r.wrap ? fmt::format("offset {:.4g}", r.offset) : std::string("the hole of the background mesh"), r.n_columns,
+        r.layer_height, r.regions.n_near, r.regions.n_partial, r.regions.n_far, p.near.n_layers());
+    if (p.background)
+      text += fmt::format(
+          "background mesh: {} zones, {} nodes; {} on the wrap; {} nodes of the mesh take their displacement from it\n",
+          p.background->mesh.zones.size(), p.background->mesh.n_nodes(), r.wrap_nodes, r.far_nodes);
+    return text;
+  }
+
+  [[nodiscard]] MeshForMessages for_messages() const override {
+    return cli::for_messages(mesh_.mesh, prepared_.boundary);
+  }
+
+ private:
+  static UnstructuredOptions options_of(CaseFile const& case_file) {
+    UnstructuredOptions options = case_file.unstructured;
+    options.boundary_layers = case_file.plan.boundary_layers;
+    if (auto const& own = case_file.background)
+      options.background =
+          std::make_shared<Background const>(make_background(read_mesh(own->path.string()), own->wrap, own->outer));
+    return options;
+  }
+
+  /// The morphed mesh with its regions (0 near, 1 partially wrapped, 2 far), layers and displacements.
+  void write_regions(std::string const& path, Coordinates const& morphed) const {
+    if (mesh_.mesh.polyhedra.element.size() > 0) return;  // they cannot be written anew
+    OutputFields fields;
+    fields.displacement = true;
+    CellField region{"Region", {}};
+    for (Region const r : prepared_.report.regions.element) region.values.push_back(double(2 - int(r)));
+    fields.cells.push_back(std::move(region));
+    auto const& layer = prepared_.report.layer;
+    fields.nodes.push_back({"Layer", std::vector<double>(layer.begin(), layer.end())});
+    write_mesh(path, mesh_.mesh, morphed, fields);
+  }
+
+  ElementMesh const& mesh_;
+  CaseFile const& case_file_;
+  UnstructuredOptions options_;
+  PreparedUnstructured prepared_;
+  std::vector<Vec3> displacement_;  ///< by the rules as they stand; empty in a sequence
+  std::optional<UnstructuredMorpher<Exec>> morpher_;
+  double planning_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<AnyPlan> ElementMesh::plan(CaseFile const& case_file) const {
+  return std::make_unique<ElementPlan>(*this, case_file);
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,289 @@
+#include <gridmorph/app/cli/commands.hpp>
+#include <gridmorph/app/cli/output_files.hpp>
+#include <gridmorph/app/cli/run_files.hpp>
+#include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/app/run.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/mapping/mapping_report.hpp>
+#include <gridmorph/report/quality_json.hpp>
+#include <gridmorph/report/quality_table.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace gridmorph::cli {
+
+MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run) {
+  MeshSource file = look_at(case_file.input, case_file.leave_out);
+  refuse_ignored_keys(case_file, {file.kind == MeshKind::unstructured, run, file.format});
+  return file;
+}
+
+QualityThresholds thresholds_of(CaseFile const& case_file) {
+  QualityThresholds out;
+  out.cells = case_file.guard;
+  return out;
+}
+
+bool wants_verdict(CaseFile const& case_file, Index cells) {
+  constexpr Index many = 1'000'000;
+  if (case_file.output_options.quality) return false;
+  QualityMode const mode = case_file.guard.quality;
+  return mode == QualityMode::fast || (mode == QualityMode::automatic && cells > many);
+}
+
+Index newly_inverted(QualityReport const& quality) {
+  return quality.near_field.newly_inverted + quality.far_field.newly_inverted;
+}
+
+void add_time(StepTimes& times, std::string const& step, double seconds, bool every_node) {
+  auto const at = std::find_if(times.begin(), times.end(), [&](StepTime const& t) { return t.step == step; });
+  if (at != times.end())
+    at->seconds += seconds;
+  else
+    times.push_back({step, seconds, every_node});
+}
+
+Run::Run(CaseFile const& case_file, MeshSource const& file, Terminal& terminal)
+    : case_file_(case_file), terminal_(terminal) {
+  Stopwatch watch;
+  terminal.progress("reading " + case_file.input.string());
+  mesh_ = load(file, case_file.side_file);
+  times.push_back({"read", watch.lap(), true});
+  terminal.progress(mesh_->kind().planning);
+  plan_ = mesh_->plan(case_file);
+  notes = plan_->notes();
+  for (auto& time : plan_->times()) times.push_back(std::move(time));
+  wanted_.limits = case_file.guard;
+  wanted_.fast = wants_verdict(case_file, mesh_->n_cells());
+  result_.morphed = Coordinates(mesh_->n_nodes());
+  result_.fields.displacement = case_file.output_options.displacement;
+}
+
+void Run::measure_baseline() {
+  if (!wanted_.fast) baseline_ = plan_->measure(wanted_);
+}
+
+RelaxReport Run::morph(Moment const* when, StepTimes* took) {
+  Stopwatch watch;
+  if (took != nullptr) terminal_.progress("moving the boundary");
+  displacement_ = plan_->displacement(when);
+  if (took != nullptr) {
+    took->push_back({"boundary", watch.lap()});
+    terminal_.progress("morphing the volume");
+  }
+  plan_->morph(displacement_, result_.morphed, took);
+  watch.lap();
+  if (!mesh_->kind().guards) return {};
+  if (took != nullptr) terminal_.progress("looking for bad " + mesh_->kind().cells);
+  RelaxReport const report = plan_->relax(result_.morphed);
+  if (took != nullptr) took->push_back({"guard", watch.lap(), true});
+  return report;
+}
+
+void Run::measure() {
+  QualityWanted wanted = wanted_;
+  wanted.morphed = &result_.morphed;
+  if (case_file_.output_options.quality) wanted.fields = &result_.fields.cells;
+  result_.quality = plan_->measure(wanted);
+}
+
+TriedSteps Run::try_steps() {
+  TriedSteps tried;
+  Index const in_one = newly_inverted(result_.quality);
+  std::string const& cells = mesh_->kind().cells;
+  Result best;
+  int best_steps = 1;
+  for (int steps = 2; steps <= case_file_.guard.steps && newly_inverted(result_.quality) > 0; ++steps) {
+    auto const progress = [&](int step) {
+      terminal_.progress(fmt::format("{} are inverted; morphing in steps, {} of {}", cells, step, steps));
+    };
+    std::optional<Coordinates> morphed;
+    try {
+      morphed = plan_->morph_in_steps(displacement_, steps, progress);
+      if (!morphed) return tried;
+    } catch (Error const& e) {
+      // There is a result: a mesh on the way that cannot be planned on is no reason to lose it.
+      tried.notes.push_back(fmt::format("in {} steps the motion cannot be planned: {}", steps, e.what()));
+      continue;
+    }
+    best = std::exchange(result_, {std::move(*morphed), {}, {case_file_.output_options.displacement, {}, {}}});
+    measure();
+    if (newly_inverted(result_.quality) >= newly_inverted(best.quality))
+      std::swap(result_, best);
+    else
+      best_steps = steps;
+  }
+  if (in_one == 0 || case_file_.guard.steps < 2) return tried;
+  Index const left = newly_inverted(result_.quality);
+  tried.text =
+      best_steps == 1
+          ? fmt::format("{} {} are inverted, and up to {} steps leave no fewer", in_one, cells, case_file_.guard.steps)
+          : fmt::format("{} {} were inverted in one step; in {} steps, each planned on the mesh before it, {} {}",
+                        in_one, cells, best_steps, left == 0 ? "none" : std::to_string(left), left <= 1 ? "is" : "are");
+  return tried;
+}
+
+std::vector<Shortfall> Run::shortfalls_of(QualityReport const& quality) const {
+  return shortfalls(baseline_, quality, thresholds_of(case_file_));
+}
+
+nlohmann::json Run::json(QualityReport const& quality, PlanOutcome const& outcome) const {
+  nlohmann::json json = quality_json(baseline_, quality, thresholds_of(case_file_));
+  json["gridmorph"] = GRIDMORPH_VERSION;
+  json["case_file"] = case_file_.source.string();
+  json["input"] = case_file_.input.string();
+  json["nodes"] = mesh_->n_nodes();
+  json["times"] = times_json(times, mesh_->n_nodes());
+  json["notes"] = notes;
+  json["fields"] = nlohmann::json::array();
+  for (auto const& use : case_file_.fields) {
+    json["fields"].push_back(mapping_json(*use.field));
+    json["fields"].back()["rule"] = use.where;
+  }
+  json.update(outcome.json);
+  return json;
+}
+
+std::string Run::head() const {
+  std::string text;
+  for (auto const& note : notes) text += "note: " + note + "\n";
+  return text + plan_->headline();
+}
+
+std::string Run::tables(QualityReport const& quality, PlanOutcome const& outcome) const {
+  std::string text = outcome.text + (outcome.text.empty() ? "" : "\n");
+  text += format_table(baseline_, quality, thresholds_of(case_file_));
+  if (!quality.fast) text += "\n" + format_short_table(baseline_, quality);
+  return text + "\n" + format_times(times, mesh_->n_nodes());
+}
+
+std::string Run::refusal_of(std::filesystem::path const& output, std::string const& what,
+                            std::string const& advice) const {
+  return refusal(output.string(), what + " inverted that were not in the baseline",
+                 diagnose(case_file_, plan_->for_messages(), result_.quality, result_.morphed), advice);
+}
+
+int conclude(Ending const& ending, Terminal& terminal) {
+  auto const report = [&] {
+    nlohmann::json json = ending.json();
+    json["output"] = ending.written ? nlohmann::json(ending.output.string()) : nlohmann::json(nullptr);
+    return json;
+  };
+  // The report waits beside its place until the mesh is there: both appear, or none. It has room to spare for the time
+  // that writing the mesh takes.
+  std::optional<PendingFile> pending;
+  if (ending.report) pending.emplace(*ending.report, json_text(report()) + std::string(room_for_a_time, '\n'));
+  if (ending.written) terminal.progress("writing " + ending.output.string());
+  ending.write();
+  nlohmann::json const json = report();
+  if (pending) {
+    pending->replace(json_text(json));
+    pending->commit();
+  }
+  terminal.say(ending.text() + (ending.written ? ending.wrote : std::string()) + ending.also_wrote);
+  terminal.document(json);
+  for (auto const& warning : ending.warnings) terminal.warn(warning);
+  if (!ending.written) terminal.error(ending.refusal());
+  return status_of_morph(ending.written, ending.falls_short);
+}
+
+std::string wrote_report(std::optional<std::filesystem::path> const& report) {
+  return report ? fmt::format("wrote {}\n", report->string()) : std::string();
+}
+
+std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls) {
+  std::vector<std::string> out;
+  for (auto const& s : shortfalls) out.push_back(s.message);
+  return out;
+}
+
+int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& terminal) {
+  auto const& options = case_file.output_options;
+  RunFiles outputs = outputs_of(case_file.output, options.report);
+  if (options.stages)
+    for (char const* name : stage_names) outputs.push_back({"stage", *options.stages / name, true});
+  check_run_files(inputs_of(case_file, file), outputs);
+  terminal.expect(file.traits().costs);
+  Run run(case_file, file, terminal);
+  RelaxReport const relaxed = run.morph(nullptr, &run.times);
+  run.notes = run.plan().notes();
+  if (relaxed.before > 0)
+    run.notes.push_back(fmt::format(
+        "{} elements had lost four fifths of their determinant or more; displacements around them are smoothed in {} "
+        "rounds, {} are left",
+        relaxed.before, relaxed.rounds, relaxed.after));
+  terminal.progress("measuring quality");
+  Stopwatch watch;
+  run.measure_baseline();
+  run.measure();
+  run.times.push_back({"quality", watch.lap(), true});
+  if (newly_inverted(run.quality()) > 0) {
+    terminal.expect({});  // how many steps it will take is not known
+    auto const tried = run.try_steps();
+    run.notes.insert(run.notes.end(), tried.notes.begin(), tried.notes.end());
+    if (!tried.text.empty()) {
+      run.notes.push_back(tried.text);
+      run.times.push_back({"steps", watch.lap(), true});
+    }
+  }
+  watch.lap();
+  PlanOutcome const outcome = run.plan().outcome(run.morphed(), run.quality().fast, true);
+  run.notes.insert(run.notes.end(), outcome.notes.begin(), outcome.notes.end());
+  add_time(run.times, "quality", watch.lap());
+
+  bool const written = newly_inverted(run.quality()) == 0 || case_file.guard.write_inverted;
+  auto const shortfalls = run.shortfalls_of(run.quality());
+  if (written) run.times.push_back({"write", 0, true});
+  std::string stages;
+  if (options.stages) stages = fmt::format("wrote wrap and background mesh to {}\n", options.stages->string());
+  return conclude({.output = case_file.output,
+                   .report = options.report,
+                   .written = written,
+                   .falls_short = any_failure(shortfalls),
+                   .json = [&] { return run.json(run.quality(), outcome); },
+                   .write =
+                       [&] {
+                         watch.lap();
+                         if (written) {
+                           run.mesh().write(case_file.input, case_file.output, run.morphed(), run.fields());
+                           add_time(run.times, "write", watch.lap());
+                         }
+                         if (options.stages) run.plan().write_stages(*options.stages, run.morphed());
+                       },
+                   .text =
+                       [&] {
+                         // Notes of a plan without a headline go straight on to what follows.
+                         return run.head() + (run.plan().headline().empty() ? "" : "\n") +
+                                run.tables(run.quality(), outcome);
+                       },
+                   .wrote = fmt::format("\nwrote {}\n", case_file.output.string()),
+                   .also_wrote = wrote_report(options.report) + stages,
+                   .warnings = terminal.quiet() ? messages_of(shortfalls) : std::vector<std::string>(),
+                   .refusal =
+                       [&] {
+                         return run.refusal_of(case_file.output, file.traits().cells + " are",
+                                               "move the boundary less, " + file.traits().change);
+                       }},
+                  terminal);
+}
+
+void print_plan(CaseFile const& case_file, Terminal& terminal) {
+  MeshSource const file =
+      checked_mesh_file(case_file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph);
+  Run const run(case_file, file, terminal);
+  nlohmann::json json = run.plan().json();
+  json["gridmorph"] = GRIDMORPH_VERSION;
+  json["case_file"] = case_file.source.string();
+  json["input"] = case_file.input.string();
+  json["nodes"] = run.mesh().n_nodes();
+  json["notes"] = run.notes;
+  json["times"] = times_json(run.times, run.mesh().n_nodes());
+  terminal.document(json);
+  if (!terminal.json()) terminal.result(run.plan().text() + "\n" + format_times(run.times, run.mesh().n_nodes()));
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,119 @@
+// One case file from mesh file to morphed meshes, quality and report, for both kinds of mesh:
+//
+//   read -> rules, plan -> (boundary -> volume -> guard -> quality -> more steps where needed) per moment -> files, report
+#pragma once
+
+#include <gridmorph/app/any_mesh.hpp>
+#include <gridmorph/app/casefile/ignored_keys.hpp>
+#include <gridmorph/app/cli/terminal.hpp>
+#include <gridmorph/report/shortfalls.hpp>
+
+namespace gridmorph::cli {
+
+/// The mesh file of a case file, once no key of that is without effect on such a mesh and run. Throws ConfigError.
+MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run);
+
+/// [guard] as thresholds of the quality report.
+QualityThresholds thresholds_of(CaseFile const& case_file);
+/// Whether a verdict is all that is wanted of the quality of so many cells.
+bool wants_verdict(CaseFile const& case_file, Index cells);
+/// Cells turned inside out that were sound in the baseline.
+Index newly_inverted(QualityReport const& quality);
+/// Adds to a step of that name, the last one where there is none.
+void add_time(StepTimes& times, std::string const& step, double seconds, bool every_node = true);
+
+/// What came of morphing in steps.
+struct TriedSteps {
+  std::string text;  ///< how many cells were inverted in one step, and in how many are left; empty: not tried
+  std::vector<std::string> notes;  ///< numbers of steps that could not be planned
+};
+
+/// A mesh with its plan, and what was made of it last.
+class Run {
+ public:
+  /// Reads and plans. The case file must outlive the run.
+  Run(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
+
+  /// Unless a verdict is all that is wanted.
+  void measure_baseline();
+  /// Morphs by the rules as they are at a moment, as they stand where there is none, and smooths around cells that came out bad.
+  /// `times`: gets what it took.
+  RelaxReport morph(Moment const* when = nullptr, StepTimes* times = nullptr);
+  /// Quality of the result, and fields on the way.
+  void measure();
+  /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the best stays
+  /// the result.
+  TriedSteps try_steps();
+
+  [[nodiscard]] AnyMesh const& mesh() const { return *mesh_; }
+  [[nodiscard]] AnyPlan const& plan() const { return *plan_; }
+  [[nodiscard]] Coordinates const& morphed() const { return result_.morphed; }
+  [[nodiscard]] OutputFields const& fields() const { return result_.fields; }
+  [[nodiscard]] QualityReport const& quality() const { return result_.quality; }
+
+  /// Of this quality against the baseline.
+  [[nodiscard]] std::vector<Shortfall> shortfalls_of(QualityReport const& quality) const;
+  /// The report, less the name of the output.
+  [[nodiscard]] nlohmann::json json(QualityReport const& quality, PlanOutcome const& outcome) const;
+  /// Notes and headline; a blank line after them where there are any.
+  [[nodiscard]] std::string head() const;
+  /// Stages, quality tables and times.
+  [[nodiscard]] std::string tables(QualityReport const& quality, PlanOutcome const& outcome) const;
+  /// Why the result is not written. `what` is inverted, `advice`: what to do.
+  [[nodiscard]] std::string refusal_of(std::filesystem::path const& output, std::string const& what,
+                                       std::string const& advice) const;
+
+  std::vector<std::string> notes;
+  StepTimes times;
+
+ private:
+  struct Result {
+    Coordinates morphed;
+    QualityReport quality;
+    OutputFields fields;
+  };
+
+  CaseFile const& case_file_;
+  Terminal& terminal_;
+  std::unique_ptr<AnyMesh> mesh_;
+  std::unique_ptr<AnyPlan> plan_;
+  QualityWanted wanted_;
+  QualityReport baseline_;  ///< without cells where only a verdict was asked for
+  std::vector<Vec3> displacement_;
+  Result result_;
+};
+
+/// How a run ends: meshes and report appear together, or a message says why not.
+struct Ending {
+  std::filesystem::path output;
+  std::optional<std::filesystem::path> report;
+  bool written = false;  ///< the meshes are wanted
+  bool falls_short = false;
+  std::function<nlohmann::json()> json;  ///< the report, less the name of the output
+  std::function<void()> write;           ///< puts meshes in place, where they are wanted
+  std::function<std::string()> text;     ///< for people
+  std::string wrote;                     ///< after it, where the meshes are written
+  std::string also_wrote;                ///< after that, in any case
+  std::vector<std::string> warnings = {};
+  std::function<std::string()> refusal;
+};
+
+/// Returns the exit status.
+int conclude(Ending const& ending, Terminal& terminal);
+
+/// "wrote report.json"; empty without a report.
+std::string wrote_report(std::optional<std::filesystem::path> const& report);
+/// What quiet runs are told, since no table says it.
+std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls);
+
+/// `gridmorph morph`: one mesh. Writes it and the report, prints the tables. Throws ConfigError before any work when an output
+/// cannot be written where it should.
+int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
+/// The same for every step of [sequence] from one plan: a table of the steps, the quality of the worst. Nothing is written when a
+/// step has cells inverted that were not in the baseline, unless the case file says so.
+int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
+
+/// `gridmorph plan`: the plan of a case file, notes first.
+void print_plan(CaseFile const& case_file, Terminal& terminal);
+
+}  // namespace gridmorph::cli
