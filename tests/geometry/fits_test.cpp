@@ -26,7 +26,7 @@ SmallMatrix<N> random_symmetric(Random& random) {
 template <std::size_t N>
 void expect_eigen(SmallMatrix<N> const& a, SymmetricEigen<N> const& eigen, double size) {
   for (std::size_t k = 0; k < N; ++k) {
-    if (k > 0) EXPECT_GE(eigen.value[k - 1], eigen.value[k]);
+    EXPECT_TRUE(k == 0 || eigen.value[k - 1] >= eigen.value[k]);
     for (std::size_t r = 0; r < N; ++r) {
       double product = 0, length = 0;
       for (std::size_t c = 0; c < N; ++c) product += a[r][c] * eigen.vector[k][c];

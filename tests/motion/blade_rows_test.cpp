@@ -431,7 +431,8 @@ TEST(BladeRow, AFlatInletWithoutPatchIsFoundAtTheMostUpstreamNodes) {
 }
 
 TEST(BladeRow, SinglePrecisionCoordinatesChangeTheMotionBySinglePrecision) {
-  Mesh const mesh = row_mesh(Blade::o_cut), rounded = row_mesh(Blade::o_cut);
+  Mesh const mesh = row_mesh(Blade::o_cut);
+  Mesh rounded = row_mesh(Blade::o_cut);
   for (Index n = 0; n < rounded.n_nodes(); ++n) {
     Vec3 const p = rounded.coordinates[n];
     rounded.coordinates.set(n, {double(float(p.x)), double(float(p.y)), double(float(p.z))});

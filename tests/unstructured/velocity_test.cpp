@@ -206,7 +206,7 @@ TEST(UnstructuredBatches, AreTheFieldsOneByOneBitForBit) {
 
 /// Coordinates and displacements in single precision, interleaved: what comes out is the field in double, rounded.
 TEST(UnstructuredBatches, OtherLayoutsGiveTheSameField) {
-  Case const c = box();
+  Case c = box();
   for (Index n = 0; n < c.mesh.n_nodes(); ++n) c.mesh.coordinates.set(n, 0.5 * c.mesh.coordinates[n]);
   Planned const p(c, motion_of({rule_for({"body"}, translation({0.25, 0, 0}))}), one_layer());
   Vectors const given(p.prepared.plan.known.size(), Vec3{0.25, 0.5, 0});

@@ -72,8 +72,12 @@ class ElementPlan final : public AnyPlan {
   [[nodiscard]] std::optional<Coordinates> morph_in_steps(
       std::vector<Vec3> const& displacement, int steps, std::function<void(int step)> const& progress) const override {
     if (options_.background) return {};
-    return gridmorph::morph_in_steps(mesh_.mesh, mesh_.topology, mesh_.face_patches, prepared_, displacement,
-                                     {steps, options_, {.signs = mesh_.signs}, progress});
+    StepOptions options;
+    options.steps = steps;
+    options.plan = options_;
+    options.relax.signs = mesh_.signs;
+    options.progress = progress;
+    return gridmorph::morph_in_steps(mesh_.mesh, mesh_.topology, mesh_.face_patches, prepared_, displacement, options);
   }
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
