@@ -1,6 +1,6 @@
 // The test support itself: scrambled meshes are valid meshes of the same nodes.
-#include "support/mesh_builders.hpp"
 #include "support/scramble.hpp"
+#include "support/mesh_builders.hpp"
 
 #include <gridmorph/boundary/links.hpp>
 
