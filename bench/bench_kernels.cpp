@@ -76,9 +76,9 @@ struct LineParameters {
     detail::WorkList<kernels::Tube, Memory> const tubes(exec, {{0, 0, 0, n, n, 0, 1}}, Kernel::items, "tubes");
     NodeArrays<Memory> const x(mesh.coordinates);
     Kokkos::View<double*, Memory> const t("gridmorph::bench::t", mesh.n_nodes());
-    Kernel const kernel{{detail::upload(exec, std::vector{chain}, "chains"), tubes.entries,
-                         detail::upload(exec, std::vector{segment}, "segments")},
-                        detail::upload(exec, std::vector{target}, "targets"),
+    Kernel const kernel{{detail::table(exec, std::vector{chain}, "chains"), tubes.entries,
+                         detail::table(exec, std::vector{segment}, "segments")},
+                        detail::table(exec, std::vector{target}, "targets"),
                         tubes.first_item,
                         x.read(),
                         t.data()};
@@ -132,8 +132,8 @@ struct SlipEnds {
     }
     detail::Workspace<Memory> const u(exec, n, 1, "u"), values(exec, n, 1, "values");
     Kokkos::deep_copy(exec, u.values, 1e-3);
-    kernels::SlipEndValues<Memory, false> const kernel{detail::upload(exec, ends, "slip_ends"),
-                                                       detail::upload(exec, baselines, "baselines"),
+    kernels::SlipEndValues<Memory, false> const kernel{detail::table(exec, ends, "slip_ends"),
+                                                       detail::table(exec, baselines, "baselines"),
                                                        surfaces.surfaces,
                                                        {},
                                                        u.read().first,

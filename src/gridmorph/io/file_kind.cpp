@@ -211,9 +211,4 @@ std::string_view format_of_ending(std::string_view path) {
   return found == endings.end() ? std::string_view() : found->format;
 }
 
-bool ending_fits(std::string_view path, MeshFormat format) {
-  auto const stands_for = format_of_ending(path);
-  return stands_for.empty() || stands_for == to_string(format);
-}
-
 }  // namespace gridmorph

@@ -22,7 +22,4 @@ void refuse_other_format(std::string const& path);
 /// The format that the ending of a file name stands for ("VTK", "STL", "CGNS", ...); empty where it says nothing certain.
 std::string_view format_of_ending(std::string_view path);
 
-/// Whether a name may be given to a mesh in this format: its ending stands for it, or for nothing certain.
-bool ending_fits(std::string_view path, MeshFormat format);
-
 }  // namespace gridmorph

@@ -116,10 +116,10 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     device.sweeps = sweeps(shifted(stage.sweeps, shift));
     std::vector<kernels::SideLine> side_lines = stage.sides.lines;
     for (kernels::SideLine& line : side_lines) line.side += shift.side;
-    device.side_lines = upload(exec, side_lines, "side_lines");
+    device.side_lines = table(exec, side_lines, "side_lines");
     std::vector<std::int32_t> corrected = stage.sides.corrected;
     for (std::int32_t& chain : corrected) chain += shift.chain;
-    device.corrected = upload(exec, corrected, "corrected");
+    device.corrected = table(exec, corrected, "corrected");
     collect_parts(stage.volume, shift, of_box);
     join_lines(stage.lines, shift, joined.lines);
     join_sides(stage.sides, shift, joined.sides);
@@ -132,7 +132,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     DeviceSpread<Exec> device;
     std::vector<kernels::SlipEnd> slip_ends = pass.ends;
     for (kernels::SlipEnd& end : slip_ends) end.value += shift.end_value;
-    device.ends = upload(exec, slip_ends, "slip_ends");
+    device.ends = table(exec, slip_ends, "slip_ends");
     device.baselines = Kokkos::View<kernels::SlipEndBaseline*, Memory>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::slip_ends::baselines"),
         slip_ends.size());
@@ -154,22 +154,22 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     joined.boxes.push_back(box);
   }
 
-  lines.chains = upload(exec, joined.lines.chains, "chains");
-  lines.segments = upload(exec, joined.lines.segments, "segments");
-  sides.sides = upload(exec, joined.sides.sides, "sides");
-  sides.junctions = upload(exec, joined.sides.junctions, "junctions");
-  sides.t = upload(exec, joined.sides.t, "side_parameters");
+  lines.chains = table(exec, joined.lines.chains, "chains");
+  lines.segments = table(exec, joined.lines.segments, "segments");
+  sides.sides = table(exec, joined.sides.sides, "sides");
+  sides.junctions = table(exec, joined.sides.junctions, "junctions");
+  sides.t = table(exec, joined.sides.t, "side_parameters");
   std::vector<double> per_t(joined.sides.t.size(), 0);
   for (std::size_t n = 0; n + 1 < per_t.size(); ++n)
     if (double const step = joined.sides.t[n + 1] - joined.sides.t[n]; step > 0) per_t[n] = 1 / step;
-  sides.per_t = upload(exec, per_t, "side_parameters::inverse_steps");
-  sides.section = upload(exec, joined.sides.section, "section_parameters");
-  rotations = upload(exec, plan.rotations, "rotations");
-  boundary_slots = upload(exec, plan.boundary_slots, "boundary_slots");
+  sides.per_t = table(exec, per_t, "side_parameters::inverse_steps");
+  sides.section = table(exec, joined.sides.section, "section_parameters");
+  rotations = table(exec, plan.rotations, "rotations");
+  boundary_slots = table(exec, plan.boundary_slots, "boundary_slots");
   boundary_projections = copies(plan.boundary_projections, "boundary_projections");
   skeleton_nodes = copies(plan.skeleton_nodes, "skeleton_nodes");
   boxes = WorkList<kernels::VolumeBox, Memory>(exec, joined.boxes, Volume::items, "boxes");
-  terms = upload(exec, joined.terms, "terms");
+  terms = table(exec, joined.terms, "terms");
   skeleton = Workspace<Memory>(exec, plan.n_slots, fields, "skeleton");
   ends = Workspace<Memory>(exec, joined.lines.n_end_values, fields, "end_values");
   residuals = Workspace<Memory>(exec, Index(joined.sides.t.size()), fields, "side_residuals");
@@ -184,7 +184,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     if (joined.lines.chains[tube.chain].has_parameters()) with_parameters.push_back(tube);
   WorkList<kernels::Tube, Memory> const tubes(exec, with_parameters, Parameters::items, "tubes");
   lines.tubes = tubes.entries;
-  auto const targets = upload(exec, joined.lines.targets, "targets");
+  auto const targets = table(exec, joined.lines.targets, "targets");
   Kokkos::parallel_for("gridmorph::line_parameters", Range(exec, 0, tubes.n_items),
                        Parameters{lines, targets, tubes.first_item, x, t.data()});
   compat::fence(exec, "gridmorph::Morpher (host tables of the plan may go)");

@@ -2,6 +2,7 @@
 // match, with what a morph needs for work besides.
 #pragma once
 
+#include <gridmorph/core/enqueue_copy.hpp>
 #include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/kernels/side_residual.hpp>
@@ -14,14 +15,11 @@
 
 namespace gridmorph::detail {
 
+/// A table of a Morpher; see enqueue_copy().
 template <class T, class Exec>
-Kokkos::View<T*, typename Exec::memory_space> upload(Exec const& exec, std::vector<T> const& host, char const* what) {
-  Kokkos::View<T*, typename Exec::memory_space> device(
-      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, std::string("gridmorph::Morpher::") + what), host.size());
-  Kokkos::View<T const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const source(host.data(),
-                                                                                                  host.size());
-  if (!host.empty()) Kokkos::deep_copy(exec, device, source);
-  return device;
+Kokkos::View<T*, typename Exec::memory_space> table(Exec const& exec, std::vector<T> const& host,
+                                                    std::string const& what) {
+  return enqueue_copy(exec, host, "gridmorph::Morpher::" + what);
 }
 
 /// A list of work, each entry good for `items(entry)` work items.
@@ -36,8 +34,8 @@ struct WorkList {
   WorkList(Exec const& exec, std::vector<T> const& list, Items const& items, char const* what) {
     std::vector<Index> first{0};
     for (T const& entry : list) first.push_back(first.back() + items(entry));
-    entries = upload(exec, list, what);
-    first_item = upload(exec, first, (std::string(what) + "::first_item").c_str());
+    entries = table(exec, list, what);
+    first_item = table(exec, first, std::string(what) + "::first_item");
     n_items = first.back();
   }
 };

@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/morph/detail/baseline.hpp>
 #include <gridmorph/morph/device_plan.hpp>
 #include <gridmorph/morph/morph.hpp>
@@ -16,6 +17,7 @@ namespace {
 using detail::FlatBaseline;
 using detail::ProfilingRegion;
 using detail::require_all_nodes;
+using detail::require_as_many;
 
 struct ScatterBoundary {
   Index const* slots;
@@ -49,7 +51,6 @@ template <class Exec>
 struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   using Base = detail::DevicePlan<Exec>;
   using Shape = typename Base::Shape;
-  using Range = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>;
 
   In baseline;
   Index n_nodes;
@@ -57,14 +58,10 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   State(Exec const& exec, Plan const& plan, In const& x, FlatBaseline<Exec> const& flat, int n_fields)
       : Base(exec, plan, flat.field, n_fields), baseline(x), n_nodes(plan.n_nodes) {}
 
-  template <class Kernel>
-  static void launch(char const* label, Exec const& exec, Index items, Kernel const& kernel) {
-    if (items > 0) Kokkos::parallel_for(label, Range(exec, 0, items), kernel);
-  }
   void copy(char const* label, Exec const& exec, detail::WorkList<kernels::NodeCopy, MemorySpace> const& list,
             kernels::Field<double> const& from, kernels::Field<double> const& to) const {
-    launch(label, exec, list.n_items,
-           typename Base::Copy{list.entries, list.first_item, this->rotations, read(from), to});
+    kernels::launch(label, exec, 0, list.n_items,
+                    typename Base::Copy{list.entries, list.first_item, this->rotations, read(from), to});
   }
   [[nodiscard]] kernels::SideTable<MemorySpace> side_table(int f) const {
     kernels::SideTable<MemorySpace> table = this->sides;
@@ -73,18 +70,18 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   }
   template <bool Add>
   void sweep(Exec const& exec, detail::WorkList<kernels::SkeletonSweep, MemorySpace> const& list, int f) const {
-    launch(Add ? "gridmorph::skeleton_spread" : "gridmorph::skeleton_sweep", exec, list.n_items,
-           kernels::SweepSkeleton<MemorySpace, Shape::row, Add>{list.entries, list.first_item, this->lines.chains,
-                                                                this->rotations, side_table(f), this->t.data(),
-                                                                this->ends.read()[f], this->skeleton.batch()[f]});
+    kernels::launch(Add ? "gridmorph::skeleton_spread" : "gridmorph::skeleton_sweep", exec, 0, list.n_items,
+                    kernels::SweepSkeleton<MemorySpace, Shape::row, Add>{
+                        list.entries, list.first_item, this->lines.chains, this->rotations, side_table(f),
+                        this->t.data(), this->ends.read()[f], this->skeleton.batch()[f]});
   }
 
   /// Displacement of the skeleton before slip surfaces ask for theirs: linear in the boundary displacement.
   void skeleton_stages(Exec const& exec, int f, In const& boundary) const {
     kernels::Field<double> const u = this->skeleton.batch()[f], end_values = this->ends.batch()[f],
                                  c = this->residuals.batch()[f];
-    launch("gridmorph::boundary", exec, Index(this->boundary_slots.extent(0)),
-           ScatterBoundary{this->boundary_slots.data(), boundary.array(), u});
+    kernels::launch("gridmorph::boundary", exec, 0, Index(this->boundary_slots.extent(0)),
+                    ScatterBoundary{this->boundary_slots.data(), boundary.array(), u});
     copy("gridmorph::boundary::axis", exec, this->boundary_projections, u, u);
     for (auto const& stage : this->stages) {
       ProfilingRegion const region(stage.region);
@@ -93,12 +90,12 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
         kernels::SideTable<MemorySpace> const table = side_table(f);
         auto const& chains = this->lines.chains;
         copy("gridmorph::side_residual::known", exec, stage.gathers, u, c);
-        launch("gridmorph::side_residual", exec, n_lines,
-               kernels::SideResidual<MemorySpace>{chains, table, stage.side_lines, read(end_values), c});
-        launch("gridmorph::side_residual::edges", exec, 4 * Index(stage.corrected.extent(0)),
-               kernels::EdgeFill<MemorySpace>{chains, table, stage.corrected, c});
-        launch("gridmorph::side_residual::sides", exec, n_lines,
-               kernels::SideFill<MemorySpace>{chains, table, stage.side_lines, c});
+        kernels::launch("gridmorph::side_residual", exec, 0, n_lines,
+                        kernels::SideResidual<MemorySpace>{chains, table, stage.side_lines, read(end_values), c});
+        kernels::launch("gridmorph::side_residual::edges", exec, 0, 4 * Index(stage.corrected.extent(0)),
+                        kernels::EdgeFill<MemorySpace>{chains, table, stage.corrected, c});
+        kernels::launch("gridmorph::side_residual::sides", exec, 0, n_lines,
+                        kernels::SideFill<MemorySpace>{chains, table, stage.side_lines, c});
       }
       sweep<false>(exec, stage.sweeps, f);
     }
@@ -109,10 +106,10 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   void slip_ends(Exec const& exec, detail::DeviceSpread<Exec> const& pass, int f, int of) const {
     kernels::Field<double> const end_values = this->ends.batch()[f];
     Index const first = pass.first_value;
-    launch("gridmorph::slip_ends::clear", exec, pass.n_values,
-           ZeroField{{end_values.x + first, end_values.y + first, end_values.z + first}});
-    launch(
-        "gridmorph::slip_ends", exec, Index(pass.ends.extent(0)),
+    kernels::launch("gridmorph::slip_ends::clear", exec, 0, pass.n_values,
+                    ZeroField{{end_values.x + first, end_values.y + first, end_values.z + first}});
+    kernels::launch(
+        "gridmorph::slip_ends", exec, 0, Index(pass.ends.extent(0)),
         kernels::SlipEndValues<MemorySpace, Rate>{pass.ends, pass.baselines, this->surfaces.surfaces, this->rotations,
                                                   this->skeleton.read()[of], this->skeleton.read()[f], end_values});
   }
@@ -153,20 +150,18 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
                                                          {},
                                                          0};
     for (Out const& field : out) {
-      launch("gridmorph::skeleton_nodes", exec, this->skeleton_nodes.n_items,
-             kernels::CopyNodes<MemorySpace, Shape::row, kernels::VectorArray, Move>{
-                 this->skeleton_nodes.entries, this->skeleton_nodes.first_item, this->rotations,
-                 this->skeleton.read()[first_field + volume.n_fields], field.array(), x});
+      kernels::launch("gridmorph::skeleton_nodes", exec, 0, this->skeleton_nodes.n_items,
+                      kernels::CopyNodes<MemorySpace, Shape::row, kernels::VectorArray, Move>{
+                          this->skeleton_nodes.entries, this->skeleton_nodes.first_item, this->rotations,
+                          this->skeleton.read()[first_field + volume.n_fields], field.array(), x});
       volume.out[volume.n_fields++] = field.array();
     }
-    launch("gridmorph::volume", exec, this->boxes.n_items, volume);
+    kernels::launch("gridmorph::volume", exec, 0, this->boxes.n_items, volume);
   }
 
   /// All that can be asked before anything is enqueued.
   void require(char const* who, std::span<In const> boundary, std::span<Out const> out, int n_fields) const {
-    if (boundary.size() != out.size())
-      throw ConfigError(std::string(who) + ": " + std::to_string(boundary.size()) + " boundary displacements and " +
-                        std::to_string(out.size()) + " fields to write; give as many");
+    require_as_many(who, boundary.size(), out.size());
     if (n_fields > this->fields)
       throw ConfigError(std::string(who) + " needs room for " + std::to_string(n_fields) + " fields and was made for " +
                         std::to_string(this->fields) + "; ask for it in MorpherOptions");

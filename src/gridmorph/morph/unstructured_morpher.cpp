@@ -45,9 +45,7 @@ struct UnstructuredMorpher<Exec>::State {
   }
 
   void require(char const* who, std::span<In const> boundary, std::span<Out const> out) const {
-    if (boundary.size() != out.size())
-      throw ConfigError(std::string(who) + ": " + std::to_string(boundary.size()) + " boundary displacements and " +
-                        std::to_string(out.size()) + " fields to write; give as many");
+    detail::require_as_many(who, boundary.size(), out.size());
     for (In const& given : boundary)
       require_boundary_size(who, std::size_t(given.size()), n_known, "UnstructuredPlan::known");
     for (Out const& to : out) detail::require_all_nodes(who, to.size(), n_nodes);

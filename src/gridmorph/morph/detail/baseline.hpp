@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -14,6 +15,12 @@ inline void require_all_nodes(char const* who, Index given, Index needed) {
   if (given != needed)
     throw ConfigError(std::string(who) + ": vectors for " + std::to_string(given) + " nodes, and the plan's mesh has " +
                       std::to_string(needed) + "; give one for each");
+}
+
+inline void require_as_many(char const* who, std::size_t boundary, std::size_t fields) {
+  if (boundary != fields)
+    throw ConfigError(std::string(who) + ": " + std::to_string(boundary) + " boundary displacements and " +
+                      std::to_string(fields) + " fields to write; give as many");
 }
 
 /// What is launched while this lives shows in profiles under a name of its own.
@@ -49,8 +56,7 @@ struct FlatBaseline {
     copy = Kokkos::View<double*, Memory>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::baseline"), 3 * n);
     kernels::Field<double> const to{copy.data(), copy.data() + n, copy.data() + 2 * n};
-    Kokkos::parallel_for("gridmorph::baseline", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n),
-                         CopyVectors{from, to});
+    kernels::launch("gridmorph::baseline", exec, 0, n, CopyVectors{from, to});
     field = {to.x, to.y, to.z, to.stride};
   }
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridmorph/core/csr_graph.hpp>
+#include <gridmorph/core/enqueue_copy.hpp>
 #include <gridmorph/kernels/inverse_distance.hpp>
 #include <gridmorph/plan/interpolation_operator.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
@@ -26,11 +27,7 @@ List<Exec, T> room_for(Exec const& exec, std::size_t n, std::string const& label
 
 template <class Exec, class T>
 List<Exec, T> upload(Exec const& exec, std::vector<T> const& host, std::string const& label) {
-  List<Exec, T> const device(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, label), host.size());
-  Kokkos::View<T const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const from(host.data(),
-                                                                                                host.size());
-  if (!host.empty()) Kokkos::deep_copy(exec, device, from);
-  return device;
+  return detail::enqueue_copy(exec, host, label);
 }
 
 template <class Exec>

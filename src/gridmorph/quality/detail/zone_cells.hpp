@@ -1,6 +1,7 @@
 // Tables that kernels over the cells of all zones need; internal to the quality part.
 #pragma once
 
+#include <gridmorph/core/enqueue_copy.hpp>
 #include <gridmorph/kernels/cell_row.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/quality/quality.hpp>
@@ -113,10 +114,7 @@ template <class Exec, class T>
 Kokkos::View<T*, typename Exec::memory_space> upload(Exec const& exec, std::string const& label,
                                                      std::vector<T> const& table) {
   static_assert(std::is_trivially_copyable_v<T>);
-  Kokkos::View<T*, typename Exec::memory_space> device(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, label),
-                                                       table.size());
-  Kokkos::View<T const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> const host(table.data(), table.size());
-  Kokkos::deep_copy(exec, device, host);
+  auto const device = enqueue_copy(exec, table, label);
   compat::fence(exec, "gridmorph::quality::upload (the host table may go away)");
   return device;
 }
