@@ -37,7 +37,7 @@ inline Vec3 place(double u, double v, double w) {
   return {u + 0.03 * std::sin(5 * v + w), v + 0.03 * std::sin(4 * u), grown + 0.03 * std::sin(3 * u + 2 * v)};
 }
 
-inline UnstructuredMesh make_lattice(Lattice const& lattice) {
+inline Mesh make_lattice(Lattice const& lattice) {
   std::int64_t const cells = lattice.tetrahedra ? lattice.elements / 6 : lattice.elements;
   int const m = std::max(2, int(std::cbrt(double(cells)) + 0.5));
   Mesh box;
@@ -48,12 +48,12 @@ inline UnstructuredMesh make_lattice(Lattice const& lattice) {
     for (int j = 0; j <= m; ++j)
       for (int i = 0; i <= m; ++i)
         box.coordinates.set(box.zones[0].node({i, j, k}), place(double(i) / m, double(j) / m, double(k) / m));
-  UnstructuredMesh hexahedra = as_hexahedra(box);
+  Mesh hexahedra = as_hexahedra(box);
   if (!lattice.tetrahedra) return hexahedra;
   // H. Kuhn's subdivision: paths from corner 0 to corner 6, in SIDS numbers, all positive.
   constexpr std::array<std::array<int, 4>, 6> tetrahedra{
       {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}}};
-  UnstructuredMesh out;
+  Mesh out;
   out.source = hexahedra.source;
   out.add_zone("lattice", hexahedra.n_nodes());
   out.coordinates = hexahedra.coordinates;
@@ -66,8 +66,8 @@ inline UnstructuredMesh make_lattice(Lattice const& lattice) {
   return out;
 }
 
-inline UnstructuredMesh const& lattice_of(Lattice const& lattice) {
-  static LastMade<Lattice, UnstructuredMesh> last;
+inline Mesh const& lattice_of(Lattice const& lattice) {
+  static LastMade<Lattice, Mesh> last;
   return last.get(lattice, [&] { return make_lattice(lattice); });
 }
 
@@ -107,7 +107,7 @@ struct BuildLocator {
 
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
-    UnstructuredMesh const& mesh = lattice_of({state.range(0), tetrahedra});
+    Mesh const& mesh = lattice_of({state.range(0), tetrahedra});
     iterate(state, exec, [&] {
       ElementLocator<ExecutionSpace> const locator(exec, mesh);
       benchmark::DoNotOptimize(locator.n_candidates());
@@ -124,7 +124,7 @@ struct Locate {
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
     using MemorySpace = typename ExecutionSpace::memory_space;
-    UnstructuredMesh const& mesh = lattice_of({state.range(0), tetrahedra});
+    Mesh const& mesh = lattice_of({state.range(0), tetrahedra});
     std::vector<Vec3> const points_h = make_points(mesh.n_elements(), outside);
     auto const points = Kokkos::create_mirror_view_and_copy(
         MemorySpace(), Kokkos::View<Vec3 const*, Kokkos::HostSpace>(points_h.data(), points_h.size()));
@@ -143,7 +143,7 @@ struct Rows {
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
     if constexpr (std::is_same_v<typename ExecutionSpace::memory_space, Kokkos::HostSpace>) {
-      UnstructuredMesh const& mesh = lattice_of({state.range(0), false});
+      Mesh const& mesh = lattice_of({state.range(0), false});
       std::vector<Vec3> const points = make_points(mesh.n_elements(), false);
       std::vector<Location> places(points.size());
       ElementLocator<ExecutionSpace> const locator(exec, mesh);

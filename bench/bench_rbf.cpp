@@ -24,7 +24,7 @@ constexpr int n_centres = 1000;
 constexpr double nodes_per_element = 0.24;
 
 struct BallCase {
-  UnstructuredMesh mesh;
+  Mesh mesh;
   std::vector<Vec3> centres, displacement;
   double error = 0;
 };

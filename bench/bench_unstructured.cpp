@@ -56,7 +56,7 @@ Motion swing(BallOptions const& options) {
 /// A ball mesh with what benchmarks need of it; planned when the first asks.
 struct BallCase {
   BallOptions options;
-  UnstructuredMesh mesh;
+  Mesh mesh;
   UnstructuredTopology topology;
   BoundaryFacePatches face_patches;
 
@@ -89,8 +89,7 @@ BallCase const& ball_case(Index nodes, bool in_order = false) {
 
 /// Rates per node and per element of the mesh; bytes of one iteration.
 template <class ExecutionSpace>
-void set_ball_rates(benchmark::State& state, ExecutionSpace const& exec, double mean, UnstructuredMesh const& mesh,
-                    double bytes) {
+void set_ball_rates(benchmark::State& state, ExecutionSpace const& exec, double mean, Mesh const& mesh, double bytes) {
   set_shares(state, exec, mean, mesh.n_nodes(), bytes / double(mesh.n_nodes()));
   state.counters["elements"] = double(mesh.n_elements());
   state.counters["elements/s"] = double(mesh.n_elements()) / mean;
@@ -102,7 +101,7 @@ double bytes_of(InterpolationOperator const& rows) {
 
 /// Work on the host, on the cores of the default host execution space whatever `exec` is.
 template <class Work>
-void time_host(benchmark::State& state, UnstructuredMesh const& mesh, Work const& work) {
+void time_host(benchmark::State& state, Mesh const& mesh, Work const& work) {
   Kokkos::DefaultHostExecutionSpace const exec;
   double const mean = time_iterations(state, exec, work);
   state.counters["nodes"] = double(mesh.n_nodes());
@@ -114,7 +113,7 @@ void time_host(benchmark::State& state, UnstructuredMesh const& mesh, Work const
 void order(benchmark::State& state) {
   BallCase const& ball = ball_case(state.range(0));
   time_host(state, ball.mesh, [&] {
-    UnstructuredMesh mesh = ball.mesh;
+    Mesh mesh = ball.mesh;
     reorder(mesh, order_by_position(mesh));
     benchmark::DoNotOptimize(mesh.elements.nodes.item.data());
   });

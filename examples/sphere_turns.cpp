@@ -20,7 +20,7 @@ namespace {
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
 struct SphereCase {
-  gridmorph::UnstructuredMesh mesh;
+  gridmorph::Mesh mesh;
   gridmorph::UnstructuredTopology topology;
   gridmorph::BoundaryFacePatches face_patches;
 

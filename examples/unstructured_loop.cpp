@@ -35,7 +35,7 @@ Cell cell(Index3 const& c) {
 }
 
 /// Hexahedra between the box and the body, with patches "body" and "box".
-gridmorph::UnstructuredMesh box_around_a_body() {
+gridmorph::Mesh box_around_a_body() {
   constexpr std::array<Index3, 8> corner{
       {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
   // What is behind the sides of a hexahedron, in the order of the CGNS standard.
@@ -43,7 +43,7 @@ gridmorph::UnstructuredMesh box_around_a_body() {
   std::vector<Index32> number(std::size_t((n + 1) * (n + 1) * (n + 1)), -1);
   std::vector<Vec3> points;
   std::vector<std::array<Index32, 8>> elements;
-  gridmorph::UnstructuredPatch body, box;
+  gridmorph::Patch body, box;
   body.name = "body";
   body.kind = gridmorph::PatchKind::wall;
   box.name = "box";
@@ -73,7 +73,7 @@ gridmorph::UnstructuredMesh box_around_a_body() {
           (there == Cell::body ? body : box).faces.add(face);
         }
       }
-  gridmorph::UnstructuredMesh mesh;
+  gridmorph::Mesh mesh;
   mesh.source = "box around a body";
   mesh.add_zone("fluid", Index(points.size()));
   mesh.coordinates = gridmorph::Coordinates(Index(points.size()));
@@ -91,14 +91,14 @@ int main(int argc, char** argv) {
   Exec const exec;  // the solver's own instance
 
   // Once: what follows from the lists, and the plan, from which patches move and how far they will.
-  gridmorph::UnstructuredMesh const mesh = box_around_a_body();
+  gridmorph::Mesh const mesh = box_around_a_body();
   gridmorph::check_mesh(mesh);
   gridmorph::UnstructuredTopology const topology = gridmorph::make_topology(mesh);
   gridmorph::BoundaryFacePatches const face_patches = gridmorph::find_face_patches(mesh, topology);
   gridmorph::Motion motion;
   motion.rules.push_back({{"body"}, gridmorph::RigidRule{{}, {0, 0, 1}}, 0, "unstructured_loop"});
-  gridmorph::UnstructuredOptions options;
-  options.motion = 2;  // the largest displacement there will be: the wrap leaves room for it
+  gridmorph::PlanOptions options;
+  options.elements.motion = 2;  // the largest displacement there will be: the wrap leaves room for it
   gridmorph::PreparedUnstructured const prepared = gridmorph::prepare(mesh, topology, face_patches, motion, options);
   gridmorph::UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, mesh.coordinates);
 

@@ -6,7 +6,7 @@ namespace gridmorph {
 
 double rope_end(BallOptions const& options) { return options.radius * (1 + options.rope_length); }
 
-UnstructuredMesh make_ball(BallOptions const& options) {
+Mesh make_ball(BallOptions const& options) {
   using namespace demo;
   BallCounts const counts = ball_counts(options);
   BallTube const tube(options, counts);

@@ -49,6 +49,6 @@ double rope_end(BallOptions const& options);
 
 /// The mesh: one zone, patches as above with families of the same names. Throws ConfigError when the options make no such
 /// mesh, naming every option that is wrong.
-UnstructuredMesh make_ball(BallOptions const& options);
+Mesh make_ball(BallOptions const& options);
 
 }  // namespace gridmorph

@@ -2,7 +2,7 @@
 #include <generators/ball_demo.hpp>
 #include <generators/text_file.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>
 
@@ -104,7 +104,7 @@ BallFiles ball_files(std::filesystem::path const& folder) {
 
 BallFiles write_ball_demo(std::filesystem::path const& folder, BallOptions const& options, BallSwing const& swing) {
   check_swing(options, swing);
-  UnstructuredMesh const mesh = make_ball(options);
+  Mesh const mesh = make_ball(options);
   make_folder(folder);
   BallFiles files = ball_files(folder);
   write_mesh(files.mesh.string(), mesh);

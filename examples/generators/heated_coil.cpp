@@ -113,7 +113,7 @@ class Fluid {
     }
   }
 
-  UnstructuredMesh mesh() const {
+  Mesh mesh() const {
     HybridMesh out = swept_.mesh();
     int const wall = out.add_patch("Default 1 Side FluidZone Part 1", PatchKind::other, "Null");
     int const casing = out.add_patch("FluidZone Default", PatchKind::wall, "BCWall");
@@ -191,7 +191,7 @@ class Fluid {
 };
 
 /// The section of the tube: a square core and rings around it, the last one the wall.
-UnstructuredMesh make_solid() {
+Mesh make_solid() {
   Swept swept;
   double const half = 0.5 * tube;
   std::vector<std::vector<int>> ring;
@@ -238,7 +238,7 @@ UnstructuredMesh make_solid() {
 }
 
 /// Appends the only zone of a mesh to another one.
-void append(UnstructuredMesh& mesh, UnstructuredMesh const& zone) {
+void append(Mesh& mesh, Mesh const& zone) {
   auto const shift = Index32(mesh.n_nodes());
   Coordinates x(mesh.n_nodes() + zone.n_nodes());
   for (Index n = 0; n < x.size(); ++n)
@@ -249,7 +249,7 @@ void append(UnstructuredMesh& mesh, UnstructuredMesh const& zone) {
     for (Index32& n : nodes) n += shift;
     mesh.add_element(zone.elements.type[std::size_t(e)], nodes);
   }
-  for (UnstructuredPatch patch : zone.patches) {
+  for (Patch patch : zone.patches) {
     patch.zone = z;
     for (Index32& n : patch.faces.item) n += shift;
     mesh.patches.push_back(std::move(patch));
@@ -261,8 +261,8 @@ void append(UnstructuredMesh& mesh, UnstructuredMesh const& zone) {
 
 }  // namespace
 
-UnstructuredMesh make_heated_coil() {
-  UnstructuredMesh mesh = heated_coil::Fluid().mesh();
+Mesh make_heated_coil() {
+  Mesh mesh = heated_coil::Fluid().mesh();
   heated_coil::append(mesh, heated_coil::make_solid());
   mesh.families.clear();
   for (auto& patch : mesh.patches) patch.families.clear();

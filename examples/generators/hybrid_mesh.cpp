@@ -89,7 +89,7 @@ void HybridMesh::add_pyramid(Hex const& h) {
 }
 
 int HybridMesh::add_patch(std::string const& name, PatchKind kind, std::string const& bc_type) {
-  UnstructuredPatch patch;
+  Patch patch;
   patch.name = name;
   patch.families = {name};
   patch.kind = kind;
@@ -171,8 +171,8 @@ void HybridMesh::shuffle() {
   for (auto& faces : faces_) reorder(faces, 6);
 }
 
-UnstructuredMesh HybridMesh::finish(std::string const& zone, std::string const& source) {
-  UnstructuredMesh mesh;
+Mesh HybridMesh::finish(std::string const& zone, std::string const& source) {
+  Mesh mesh;
   mesh.source = source;
   mesh.add_zone(zone, Index(nodes_.size()));
   mesh.coordinates = Coordinates(Index(nodes_.size()));

@@ -67,7 +67,7 @@ class HybridMesh {
   void shuffle();
 
   /// Tetrahedra first, then pyramids, prisms, hexahedra; one zone. Leaves this object empty.
-  UnstructuredMesh finish(std::string const& zone, std::string const& source);
+  Mesh finish(std::string const& zone, std::string const& source);
 
  private:
   [[nodiscard]] bool cut_02(Index32 a, Index32 b, Index32 c, Index32 d) const;
@@ -81,7 +81,7 @@ class HybridMesh {
   std::vector<std::array<Index32, 5>> pyramids_;
   std::vector<std::array<Index32, 6>> prisms_;
   std::vector<Hex> hexahedra_;
-  std::vector<UnstructuredPatch> patches_;
+  std::vector<Patch> patches_;
   std::vector<std::vector<Quad>> faces_;  ///< of each patch; the fourth node is -1 in triangles
 };
 

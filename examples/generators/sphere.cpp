@@ -141,7 +141,7 @@ class CubeSurface {
 
 }  // namespace
 
-UnstructuredMesh make_sphere(SphereOptions const& options) {
+Mesh make_sphere(SphereOptions const& options) {
   check(options);
   SphereCounts const counts = sphere_counts(options);
   CubeSurface const cube(counts.side);

@@ -23,6 +23,6 @@ struct SphereOptions {
 
 /// The mesh: one zone, patches "sphere" (BCWallViscous) and "outer" (BCFarfield). Sphere nodes lie on it to round-off. Throws
 /// ConfigError when the options make no such mesh, naming every option that is wrong. Linear in the elements.
-UnstructuredMesh make_sphere(SphereOptions const& options);
+Mesh make_sphere(SphereOptions const& options);
 
 }  // namespace gridmorph

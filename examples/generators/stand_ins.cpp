@@ -1,7 +1,7 @@
 #include <generators/stand_ins.hpp>
 #include <generators/text_file.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 
 #include <algorithm>
 

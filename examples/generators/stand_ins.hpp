@@ -23,7 +23,7 @@ Mesh make_slotted_airfoil();
 /// Tube bent around the body of an annular duct about z, from one side of the strut that holds the body to the other: prisms on the tube, which
 /// end before the strut in pyramids, tetrahedra beyond (FluidZone), tetrahedra in the tube (SolidZone). The zones share the nodes of the
 /// tube's wall without saying so.
-UnstructuredMesh make_heated_coil();
+Mesh make_heated_coil();
 
 /// Names of these meshes: "turbine", "slat", "coil".
 std::vector<std::string> const& stand_in_names();

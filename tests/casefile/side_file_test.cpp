@@ -77,14 +77,14 @@ TEST(SideFile, OpenFacesThatContinueOneAnotherHaveOneName) {
 
 /// SU2 files keep periodic pairs in the solver's configuration, and say nothing of kinds.
 TEST(SideFile, SaysKindsAndPeriodicPairsOfMarkers) {
-  UnstructuredMesh const mesh = test::flat_box(3, 2, 2);  // 3 wide, 2 high
+  Mesh const mesh = test::flat_box(3, 2, 2);  // 3 wide, 2 high
   auto const text = [](double pitch) {
     return "[[patch]]\nname = \"i_min\"\nkind = \"inflow\"\nfamily = \"ends\"\n[[periodic]]\nname = \"pitch\"\n" +
            fmt::format("translation = [0, {}, 0]\n", pitch) +
            "[[interface]]\npatch = \"j_min\"\ndonor_patch = \"j_max\"\nperiodic = \"pitch\"\n";
   };
   for (double const sense : {1.0, -1.0}) {  // either side may be named first
-    UnstructuredMesh read = mesh;
+    Mesh read = mesh;
     add_side_file(text(2 * sense), "mesh.toml", read);
     ASSERT_EQ(read.connections.size(), 1u);
     EXPECT_EQ(read.connections[0].nodes.size(), 4u);
@@ -96,7 +96,7 @@ TEST(SideFile, SaysKindsAndPeriodicPairsOfMarkers) {
       }
   }
   auto const message = test::message_of<ConfigError>([&] {
-    UnstructuredMesh read = mesh;
+    Mesh read = mesh;
     add_side_file(text(5) + "[[patch]]\nname = \"k_min\"\n", "mesh.toml", read);
   });
   for (auto const* part : {"mesh.toml:9", "4 of its 4 nodes", "mesh.toml:13", "'k_min'"})

@@ -5,7 +5,7 @@
 #include <generators/ball_demo.hpp>
 #include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ class BallSwings : public testing::TestWithParam<double> {
  protected:
   BallOptions options = small_ball();
   BallSwing swing{GetParam(), 1.5};
-  UnstructuredMesh mesh = make_ball(options);
+  Mesh mesh = make_ball(options);
 
   [[nodiscard]] std::vector<Vec3> points_of(std::string const& name) const {
     std::vector<Vec3> points;
@@ -109,7 +109,7 @@ TEST(BallDemo, WritesAMeshThatReadsBackBitForBit) {
   test::TemporaryFolder const folder;
   BallOptions const options = small_ball();
   BallFiles const files = write_ball_demo(folder / "new", options, {});
-  UnstructuredMesh const mesh = make_ball(options), back = read_unstructured_mesh(files.mesh.string());
+  Mesh const mesh = make_ball(options), back = read_mesh(files.mesh.string());
   EXPECT_TRUE(same_coordinates(mesh, back));
   EXPECT_EQ(count_types(mesh), count_types(back));
   EXPECT_TRUE(same_lists(mesh.elements.nodes, back.elements.nodes));

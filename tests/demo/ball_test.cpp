@@ -56,15 +56,15 @@ class Ball : public testing::TestWithParam<Variant> {
 
  protected:
   BallOptions const& options = GetParam().options;
-  UnstructuredMesh const& mesh = made(GetParam());
+  Mesh const& mesh = made(GetParam());
 
  private:
-  static UnstructuredMesh const& made(Variant const& variant) {
+  static Mesh const& made(Variant const& variant) {
     auto const [at, is_new] = made_.try_emplace(variant.name);
     if (is_new) at->second = make_ball(variant.options);
     return at->second;
   }
-  static inline std::map<std::string, UnstructuredMesh> made_;
+  static inline std::map<std::string, Mesh> made_;
 };
 
 TEST_P(Ball, FacesAreSharedByTwoElementsOrBelongToOnePatch) { expect_conforming_and_covered(mesh); }
@@ -146,7 +146,7 @@ TEST_P(Ball, FirstCellsAreAsHighAsAskedFor) {
 }
 
 TEST_P(Ball, IsTheSameEachTime) {
-  UnstructuredMesh const again = make_ball(options);
+  Mesh const again = make_ball(options);
   EXPECT_TRUE(same_coordinates(mesh, again));
   EXPECT_EQ(mesh.elements.type, again.elements.type);
   EXPECT_TRUE(same_lists(mesh.elements.nodes, again.elements.nodes));
@@ -164,7 +164,7 @@ TEST(BallMesh, AspectRatiosReachHundreds) {
 TEST(BallMesh, MeetsEverySizeAskedFor) {
   for (Index const wanted : {50'000, 100'000, 250'000, 600'000, 1'500'000}) {
     if (gridmorph::test::reduced() && wanted > 250'000) break;
-    UnstructuredMesh const mesh = make_ball(with(wanted, LayerElements::mixed));
+    Mesh const mesh = make_ball(with(wanted, LayerElements::mixed));
     EXPECT_NEAR(double(mesh.n_elements()), double(wanted), 0.1 * double(wanted));
     EXPECT_GT(soundness(mesh).smallest_volume, 0) << wanted;
   }
@@ -173,9 +173,9 @@ TEST(BallMesh, MeetsEverySizeAskedFor) {
 TEST(BallMesh, ShiftsNodesOfTetrahedraAlone) {
   BallOptions options = with(80'000, LayerElements::mixed);
   options.shuffle = false;
-  UnstructuredMesh const shifted = make_ball(options);
+  Mesh const shifted = make_ball(options);
   options.jitter = 0;
-  UnstructuredMesh const plain = make_ball(options);
+  Mesh const plain = make_ball(options);
   ASSERT_TRUE(same_lists(shifted.elements.nodes, plain.elements.nodes));
   std::vector<char> held(std::size_t(plain.n_nodes()), 0);
   for (Index e = 0; e < plain.n_elements(); ++e)
@@ -197,11 +197,11 @@ TEST(BallMesh, ShiftsNodesOfTetrahedraAlone) {
 
 TEST(BallMesh, ShuffledIsTheSameMeshInAnotherOrder) {
   BallOptions options = with(60'000, LayerElements::mixed);
-  UnstructuredMesh const shuffled = make_ball(options);
+  Mesh const shuffled = make_ball(options);
   options.shuffle = false;
-  UnstructuredMesh const ordered = make_ball(options);
+  Mesh const ordered = make_ball(options);
   EXPECT_EQ(count_types(shuffled), count_types(ordered));
-  auto const sorted = [](UnstructuredMesh const& mesh) {
+  auto const sorted = [](Mesh const& mesh) {
     std::vector<std::array<double, 3>> points;
     for (Index n = 0; n < mesh.n_nodes(); ++n)
       points.push_back({mesh.coordinates.x(n), mesh.coordinates.y(n), mesh.coordinates.z(n)});

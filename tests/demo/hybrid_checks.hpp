@@ -31,7 +31,7 @@ struct Side {
   int claims = 0;
 };
 
-inline std::map<Key, Side> sides_of(UnstructuredMesh const& mesh) {
+inline std::map<Key, Side> sides_of(Mesh const& mesh) {
   std::map<Key, Side> sides;
   std::array<Index32, max_face_corners> room{};
   for (Index e = 0; e < mesh.n_elements(); ++e)
@@ -41,7 +41,7 @@ inline std::map<Key, Side> sides_of(UnstructuredMesh const& mesh) {
   return sides;
 }
 
-inline void expect_conforming_and_covered(UnstructuredMesh const& mesh) {
+inline void expect_conforming_and_covered(Mesh const& mesh) {
   check_mesh(mesh);
   Index inside = 0, boundary = 0;
   for (auto const& [key, side] : sides_of(mesh)) {
@@ -53,7 +53,7 @@ inline void expect_conforming_and_covered(UnstructuredMesh const& mesh) {
   EXPECT_GT(inside, boundary);
 }
 
-inline ElementCorners corners(UnstructuredMesh const& mesh, Index e) {
+inline ElementCorners corners(Mesh const& mesh, Index e) {
   ElementCorners c;
   auto const list = mesh.elements.corners(e);
   for (std::size_t n = 0; n < list.size(); ++n) c.at[n] = mesh.coordinates[list[n]];
@@ -64,7 +64,7 @@ struct Soundness {
   double smallest_volume = unbounded, smallest_determinant = unbounded, largest_aspect_ratio = 0, volume = 0;
 };
 
-inline Soundness soundness(UnstructuredMesh const& mesh) {
+inline Soundness soundness(Mesh const& mesh) {
   Soundness x;
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const m = element_measures(mesh.elements.type[std::size_t(e)], corners(mesh, e), 1, {0, 0, 1});
@@ -76,15 +76,15 @@ inline Soundness soundness(UnstructuredMesh const& mesh) {
   return x;
 }
 
-inline UnstructuredPatch const& patch(UnstructuredMesh const& mesh, std::string const& name) {
-  auto const found = std::find_if(mesh.patches.begin(), mesh.patches.end(),
-                                  [&](UnstructuredPatch const& p) { return p.name == name; });
+inline Patch const& patch(Mesh const& mesh, std::string const& name) {
+  auto const found =
+      std::find_if(mesh.patches.begin(), mesh.patches.end(), [&](Patch const& p) { return p.name == name; });
   if (found == mesh.patches.end()) throw std::runtime_error("no patch " + name);
   return *found;
 }
 
 /// Volume that the faces of all patches enclose; exact where they are plane, and if they close.
-inline double enclosed_volume(UnstructuredMesh const& mesh) {
+inline double enclosed_volume(Mesh const& mesh) {
   double sum = 0;
   std::map<Key, std::vector<Index32>> outward;
   std::array<Index32, max_face_corners> room{};
@@ -109,7 +109,7 @@ inline double enclosed_volume(UnstructuredMesh const& mesh) {
 
 inline bool same_lists(CsrGraph const& a, CsrGraph const& b) { return a.first == b.first && a.item == b.item; }
 
-inline bool same_coordinates(UnstructuredMesh const& a, UnstructuredMesh const& b) {
+inline bool same_coordinates(Mesh const& a, Mesh const& b) {
   if (a.n_nodes() != b.n_nodes()) return false;
   for (Index n = 0; n < a.n_nodes(); ++n)
     if (!(a.coordinates[n] == b.coordinates[n])) return false;

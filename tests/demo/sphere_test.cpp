@@ -36,7 +36,7 @@ std::vector<Variant> variants() {
 class Sphere : public testing::TestWithParam<Variant> {
  protected:
   SphereOptions const& options = GetParam().options;
-  UnstructuredMesh mesh = make_sphere(options);
+  Mesh mesh = make_sphere(options);
 };
 
 TEST_P(Sphere, FacesAreSharedByTwoElementsOrBelongToOnePatch) { expect_conforming_and_covered(mesh); }
@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Options, Sphere, testing::ValuesIn(variants()),
 
 TEST(SphereMesh, HasItsDefaultSizeAndFillsTheShell) {
   SphereOptions const options;
-  UnstructuredMesh const mesh = make_sphere(options);
+  Mesh const mesh = make_sphere(options);
   EXPECT_NEAR(double(mesh.n_elements()), 170'000, 10'000);
   auto const counts = count_types(mesh);
   EXPECT_GT(counts[std::size_t(ElementType::prism)], 20'000);

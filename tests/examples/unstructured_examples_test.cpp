@@ -1,7 +1,8 @@
 // The examples with unstructured meshes: walls where the case file asks for them, neighbours of a wall as one, nothing inverted.
 #include "example_run.hpp"
 
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <map>
 #include <set>
@@ -16,8 +17,8 @@ class UnstructuredExample : public Example {
   /// Runs the example; nothing may be inverted.
   void run(std::string const& name, std::string const& mesh_file, std::string const& morphed_file) {
     ASSERT_NO_FATAL_FAILURE(Example::run(name));
-    mesh = read_unstructured_mesh(mesh_of(name, mesh_file));
-    moved = read_unstructured_mesh(path(name + "/" + morphed_file)).coordinates;
+    mesh = read_mesh(mesh_of(name, mesh_file));
+    moved = read_mesh(path(name + "/" + morphed_file)).coordinates;
     ASSERT_EQ(mesh.n_nodes(), moved.size());
   }
 
@@ -29,7 +30,7 @@ class UnstructuredExample : public Example {
   }
   [[nodiscard]] Vec3 displacement(Index32 n) const { return moved[n] - mesh.coordinates[n]; }
 
-  UnstructuredMesh mesh;
+  Mesh mesh;
   Coordinates moved;
 };
 

@@ -35,7 +35,7 @@ class LatticeBuilder {
 
   Mesh build() {
     mesh_.source = "lattice";
-    mesh_.two_dimensional = lattice_.two_dimensional;
+    mesh_.dimension = lattice_.two_dimensional ? 2 : 3;
     for_each_block([&](Index3 const& b) { add_block(b); });
     mesh_.coordinates = Coordinates(mesh_.n_nodes());
     for (std::size_t z = 0; z < blocks_.size(); ++z) place_nodes(int(z));

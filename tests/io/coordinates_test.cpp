@@ -136,7 +136,7 @@ TEST_F(CoordinatesInFiles, ZonesOneNodeThickAreTwoDimensional) {
     file.bc(a, "plate", CGNS_ENUMV(BCSymmetryPlane), CGNS_ENUMV(PointRange), {1, 1, 1, n[0], n[1], n[2]});
     file.close();
     Mesh const mesh = read_mesh(path_);
-    EXPECT_TRUE(mesh.two_dimensional);
+    EXPECT_EQ(mesh.dimension, 2);
     Index3 extent{n[0], n[1], n[2]};
     extent[flat] = 2;
     EXPECT_EQ(mesh.zones[0].extent, extent);

@@ -6,7 +6,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/morphed_file.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 
 #include <hdf5.h>
 

@@ -70,7 +70,7 @@ TEST_P(Plot3d, IsRecognisedAndReadToTheBit) {
   Mesh const mesh = read_mesh(in_);
   ASSERT_EQ(mesh.zones.size(), original_.zones.size());
   bool const flat = GetParam().dimensions == 2;
-  EXPECT_EQ(mesh.two_dimensional, flat);
+  EXPECT_EQ(mesh.dimension == 2, flat);
   EXPECT_TRUE(mesh.interfaces.empty());
   EXPECT_EQ(mesh.patches.size(), flat ? 2 * mesh.zones.size() : 0);
   for (std::size_t z = 0; z < mesh.zones.size(); ++z) {

@@ -39,7 +39,7 @@ void expect_same_mesh(Mesh const& a, Mesh const& b) {
         EXPECT_LT(distance(p.periodic->declared(x), q.periodic->declared(x)), 1e-7);
     }
   }
-  EXPECT_EQ(a.two_dimensional, b.two_dimensional);
+  EXPECT_EQ(a.dimension, b.dimension);
 }
 
 using PatchKey = std::tuple<int, std::string, std::string, PatchKind, std::vector<std::string>, Index3, Index3>;

@@ -49,7 +49,7 @@ TEST_P(SharedMesh, HasTheZonesAndInterfacesItIsKnownFor) {
   EXPECT_EQ(periodic, GetParam().periodic);
   EXPECT_EQ(int(mesh.interfaces.size()) - periodic, GetParam().interfaces);
   EXPECT_EQ(mesh.n_nodes(), GetParam().nodes);
-  EXPECT_FALSE(mesh.two_dimensional);
+  EXPECT_EQ(mesh.dimension, 3);
   EXPECT_TRUE(mesh.notes.empty()) << mesh.notes.front();
 }
 

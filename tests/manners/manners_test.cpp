@@ -232,10 +232,10 @@ TEST_F(Manners, PlanningLaunchesOnTheHostOnlyWhatReadsTheWholeMesh) {
 class UnstructuredManners : public ::testing::Test {
  protected:
   static bool in_body(Vec3 const& x) { return x.x > 4 && x.x < 8 && x.y > 4 && x.y < 8 && x.z > 4 && x.z < 8; }
-  UnstructuredMesh mesh = in_two_zones(box_around({12, 12, 12}, in_body), [](Vec3 const& x) { return x.x < 6; });
+  Mesh mesh = in_two_zones(box_around({12, 12, 12}, in_body), [](Vec3 const& x) { return x.x < 6; });
   PreparedUnstructured prepared = [this] {
     UnstructuredTopology const topology = make_topology(mesh);
-    UnstructuredOptions options;
+    PlanOptions options;
     options.boundary_layers.push_back({.walls = {"body"}, .extent = BoundaryLayer::Extent::layers, .layers = 1});
     return prepare(mesh, topology, find_face_patches(mesh, topology),
                    motion({rule({"body"}, RigidRule{{}, {1, 0.5, 0}}), rule({"k_min"}, SlipRule{})}), options);
@@ -328,7 +328,7 @@ TEST_F(UnstructuredManners, MeshesWithoutCoordinatesAreRefused) {
   mesh.coordinates = {};
   expect_all_in(message_of<MeshError>([&] {
                   (void)prepare(mesh, topology, face_patches, motion({rule({"body"}, RigidRule{{}, {1, 0.5, 0}})}),
-                                UnstructuredOptions{});
+                                PlanOptions{});
                 }),
                 {std::to_string(mesh.n_nodes()) + " nodes", "0 (x)"});
 }

@@ -6,8 +6,8 @@
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/elements/background.hpp>
 #include <gridmorph/plan/elements/wrap.hpp>
+#include <gridmorph/plan/options.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/plan/unstructured_options.hpp>
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ template <class Exec>
 struct Solver {
   PlanOptions member{};
   PlanOptions copied = PlanOptions{};
-  UnstructuredOptions unstructured{};
+  PlanOptions unstructured{};
 
   [[nodiscard]] std::size_t rules(PlanOptions const& options = {}) const {
     return options.volume.priority.size() + PlanOptions{}.volume.priority.size() + PlanOptions().volume.priority.size();
@@ -27,7 +27,7 @@ struct Solver {
     (void)Motion{};
     (void)MotionRule{};
     (void)Mesh{};
-    (void)UnstructuredMesh{};
+    (void)Mesh{};
     (void)Background{};
     (void)StepOptions{};
     return TopologyOptions{}.open_faces.empty() && BoundaryLayer{}.walls.empty() &&

@@ -94,7 +94,7 @@ TEST(Validity, ReadsCoordinatesInAnyLayout) {
 
 TEST(Validity, OfElementsIsThatOfTheSameCells) {
   Mesh const mesh = two_zones();
-  UnstructuredMesh const elements = as_hexahedra(mesh);
+  Mesh const elements = as_hexahedra(mesh);
   ValidityCheck<Exec> const validity(Exec(), elements, make_topology(elements));
   for (Coordinates const& x : {mesh.coordinates, crumpled(mesh)}) {
     Validity const found = check(validity, x), wanted = expected(mesh, x);

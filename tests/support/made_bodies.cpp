@@ -15,7 +15,7 @@
 namespace gridmorph::test {
 namespace {
 
-Vec3 centre_of(UnstructuredMesh const& mesh, Index e) {
+Vec3 centre_of(Mesh const& mesh, Index e) {
   Vec3 sum;
   auto const corners = mesh.elements.corners(e);
   for (Index32 const n : corners) sum += mesh.coordinates[n];
@@ -25,7 +25,7 @@ Vec3 centre_of(UnstructuredMesh const& mesh, Index e) {
 /// Elements of one zone after another with nodes of their own; `number` of a zone: old node -> new one, -1 where it has none.
 class Copier {
  public:
-  explicit Copier(UnstructuredMesh const& from) : from_(from) {
+  explicit Copier(Mesh const& from) : from_(from) {
     out.dimension = from.dimension;
     out.source = from.source;
     out.families = from.families;
@@ -49,7 +49,7 @@ class Copier {
       out.add_element(from_.elements.type[std::size_t(e)], nodes);
     }
     for (auto const& patch : from_.patches) {
-      UnstructuredPatch mine = patch;
+      Patch mine = patch;
       mine.zone = int(out.zones.size()) - 1;
       mine.faces = {};
       for (Index f = 0; f < patch.faces.size(); ++f) {
@@ -62,33 +62,32 @@ class Copier {
     }
   }
 
-  UnstructuredMesh finish() {
+  Mesh finish() {
     out.coordinates = Coordinates(Index(points_.size()));
     for (std::size_t n = 0; n < points_.size(); ++n) out.coordinates.set(Index(n), points_[n]);
     return std::move(out);
   }
 
-  UnstructuredMesh out;
+  Mesh out;
   std::vector<std::vector<Index32>> numbers;
 
  private:
-  UnstructuredMesh const& from_;
+  Mesh const& from_;
   std::vector<Vec3> points_;
 };
 
 }  // namespace
 
-UnstructuredMesh part_of(UnstructuredMesh const& mesh, std::function<bool(Vec3 const&)> const& keep,
-                         std::string const& cut, PatchKind kind) {
+Mesh part_of(Mesh const& mesh, std::function<bool(Vec3 const&)> const& keep, std::string const& cut, PatchKind kind) {
   std::vector<Index> elements;
   for (Index e = 0; e < mesh.n_elements(); ++e)
     if (keep(centre_of(mesh, e))) elements.push_back(e);
   Copier copier(mesh);
   copier.add_zone("zone", elements);
-  UnstructuredMesh out = copier.finish();
+  Mesh out = copier.finish();
   auto const topology = make_topology(out);
   auto const face_patches = find_face_patches(out, topology);
-  UnstructuredPatch patch;
+  Patch patch;
   patch.name = cut;
   patch.kind = kind;
   patch.bc_type = kind == PatchKind::wall ? "BCWall" : kind == PatchKind::symmetry ? "BCSymmetryPlane" : "BCFarfield";
@@ -99,15 +98,15 @@ UnstructuredMesh part_of(UnstructuredMesh const& mesh, std::function<bool(Vec3 c
   return out;
 }
 
-UnstructuredMesh in_two_zones(UnstructuredMesh const& mesh, std::function<bool(Vec3 const&)> const& first) {
+Mesh in_two_zones(Mesh const& mesh, std::function<bool(Vec3 const&)> const& first) {
   std::array<std::vector<Index>, 2> elements;
   for (Index e = 0; e < mesh.n_elements(); ++e) elements[first(centre_of(mesh, e)) ? 0 : 1].push_back(e);
   Copier copier(mesh);
   copier.add_zone("first", elements[0]);
   copier.add_zone("second", elements[1]);
-  UnstructuredMesh out = copier.finish();
+  Mesh out = copier.finish();
   for (int const zone : {0, 1}) {
-    UnstructuredConnection connection;
+    Connection connection;
     connection.name = zone == 0 ? "to second" : "to first";
     connection.zone = zone;
     connection.donor_zone = 1 - zone;
@@ -122,7 +121,7 @@ UnstructuredMesh in_two_zones(UnstructuredMesh const& mesh, std::function<bool(V
   return out;
 }
 
-UnstructuredMesh second_order(UnstructuredMesh const& tetrahedra) {
+Mesh second_order(Mesh const& tetrahedra) {
   constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   std::map<std::pair<Index32, Index32>, Index32> middle;
   std::vector<Vec3> points;
@@ -138,7 +137,7 @@ UnstructuredMesh second_order(UnstructuredMesh const& tetrahedra) {
       list.push_back(at->second);
     }
   }
-  UnstructuredMesh out;
+  Mesh out;
   out.source = tetrahedra.source;
   out.add_zone("zone", Index(points.size()));
   for (auto const& list : nodes) out.add_element(ElementType::tetrahedron, list);
@@ -148,8 +147,8 @@ UnstructuredMesh second_order(UnstructuredMesh const& tetrahedra) {
   return out;
 }
 
-UnstructuredMesh as_polyhedra(UnstructuredMesh const& mesh) {
-  UnstructuredMesh out;
+Mesh as_polyhedra(Mesh const& mesh) {
+  Mesh out;
   out.source = mesh.source;
   out.add_zone("zone", mesh.n_nodes());
   std::array<Index32, max_face_corners> room{};
@@ -165,14 +164,14 @@ UnstructuredMesh as_polyhedra(UnstructuredMesh const& mesh) {
   return out;
 }
 
-UnstructuredMesh box_around(Index3 n, std::function<bool(Vec3 const&)> const& body, bool tetrahedra) {
-  UnstructuredMesh full = tetrahedra ? to_prisms_and_tetrahedra(unit_box(n), 0) : to_hexahedra(unit_box(n));
+Mesh box_around(Index3 n, std::function<bool(Vec3 const&)> const& body, bool tetrahedra) {
+  Mesh full = tetrahedra ? to_prisms_and_tetrahedra(unit_box(n), 0) : to_hexahedra(unit_box(n));
   for (auto& patch : full.patches) patch.kind = PatchKind::farfield;
   return part_of(
       full, [&](Vec3 const& c) { return !body(c); }, "body", PatchKind::wall);
 }
 
-UnstructuredMesh airfoil(int around, int layers, double first, double growth, double far) {
+Mesh airfoil(int around, int layers, double first, double growth, double far) {
   std::vector<double> heights{0};
   double height = first;
   while (heights.back() + height < 0.8 * far) {
@@ -181,7 +180,7 @@ UnstructuredMesh airfoil(int around, int layers, double first, double growth, do
   }
   heights.push_back(far);
   int const rows = int(heights.size());
-  UnstructuredMesh mesh;
+  Mesh mesh;
   mesh.dimension = 2;
   mesh.source = "airfoil";
   mesh.add_zone("zone", Index(around) * rows);
@@ -208,7 +207,7 @@ UnstructuredMesh airfoil(int around, int layers, double first, double growth, do
       }
     }
   for (int const p : {0, 1}) {
-    UnstructuredPatch patch;
+    Patch patch;
     patch.name = p == 0 ? "airfoil" : "farfield";
     patch.kind = p == 0 ? PatchKind::wall : PatchKind::farfield;
     patch.bc_type = p == 0 ? "BCWall" : "BCFarfield";

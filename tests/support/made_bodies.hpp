@@ -10,25 +10,25 @@ namespace gridmorph::test {
 
 /// The elements whose centre (mean of the corners) is kept, with their nodes in the order they had; one zone. Boundary faces that no
 /// patch had become the patch `cut`; patches that lose all faces go.
-UnstructuredMesh part_of(UnstructuredMesh const& mesh, std::function<bool(Vec3 const& centre)> const& keep,
-                         std::string const& cut, PatchKind kind);
+Mesh part_of(Mesh const& mesh, std::function<bool(Vec3 const& centre)> const& keep, std::string const& cut,
+             PatchKind kind);
 
 /// The same mesh in two zones: elements whose centre is not `first` make up the second one. Both have their copies of the nodes between
 /// them, which a connection and its counterpart list.
-UnstructuredMesh in_two_zones(UnstructuredMesh const& mesh, std::function<bool(Vec3 const& centre)> const& first);
+Mesh in_two_zones(Mesh const& mesh, std::function<bool(Vec3 const& centre)> const& first);
 
 /// Tetrahedra of second order: with a node in the middle of each edge.
-UnstructuredMesh second_order(UnstructuredMesh const& tetrahedra);
+Mesh second_order(Mesh const& tetrahedra);
 
 /// The same elements as polyhedra, their faces listed one by one.
-UnstructuredMesh as_polyhedra(UnstructuredMesh const& mesh);
+Mesh as_polyhedra(Mesh const& mesh);
 
 /// A box of n cells of size 1 without those whose centre is in the body, of hexahedra, or of tetrahedra. Patch "body" (a wall), the
 /// six sides "i_min" ... "k_max" as farfield.
-UnstructuredMesh box_around(Index3 n, std::function<bool(Vec3 const& centre)> const& body, bool tetrahedra = false);
+Mesh box_around(Index3 n, std::function<bool(Vec3 const& centre)> const& body, bool tetrahedra = false);
 
 /// A symmetric wing section (NACA 0012, chord 1 from the origin along x) in a circle of radius `far`: `around` columns, of quadrilaterals
 /// for the first `layers` cells and of triangles beyond, the first one `first` high, each `growth` times the one below. Patches "airfoil", "farfield".
-UnstructuredMesh airfoil(int around, int layers, double first, double growth, double far);
+Mesh airfoil(int around, int layers, double first, double growth, double far);
 
 }  // namespace gridmorph::test

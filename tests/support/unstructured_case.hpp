@@ -22,14 +22,14 @@ struct UnstructuredMorphed {
 struct UnstructuredCase {
   using Host = Kokkos::DefaultHostExecutionSpace;
 
-  UnstructuredMesh mesh;
+  Mesh mesh;
   UnstructuredTopology topology;
   BoundaryFacePatches face_patches;
 
-  explicit UnstructuredCase(UnstructuredMesh m)
+  explicit UnstructuredCase(Mesh m)
       : mesh(std::move(m)), topology(make_topology(mesh)), face_patches(find_face_patches(mesh, topology)) {}
 
-  [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
+  [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, PlanOptions const& options = {}) const {
     UnstructuredMorphed out{prepare(mesh, topology, face_patches, motion, options), {}, Coordinates(mesh.n_nodes())};
     out.boundary = out.prepared.boundary_displacement(mesh);
     apply_on_host(UnstructuredMorpher<Host>(Host(), out.prepared.plan, mesh.coordinates), out.boundary, out.x);
@@ -37,7 +37,7 @@ struct UnstructuredCase {
   }
 
   /// The same with displacements smoothed around bad elements, as the command line does.
-  [[nodiscard]] UnstructuredMorphed guarded_morph(Motion const& motion, UnstructuredOptions const& options = {}) const {
+  [[nodiscard]] UnstructuredMorphed guarded_morph(Motion const& motion, PlanOptions const& options = {}) const {
     UnstructuredMorphed out = morph(motion, options);
     (void)relax_bad_elements(mesh, topology, out.prepared, out.x);
     return out;

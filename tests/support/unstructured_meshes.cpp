@@ -24,7 +24,7 @@ void each_cell_of(Zone const& zone, Function const& f) {
       for (int i = 0; i + 1 < zone.extent[0]; ++i) f(Index3{i, j, k});
 }
 
-void copy_common(Mesh const& mesh, UnstructuredMesh& out) {
+void copy_common(Mesh const& mesh, Mesh& out) {
   out.source = mesh.source + " converted";
   out.families = mesh.families;
   out.coordinates = Coordinates(mesh.n_nodes());
@@ -51,8 +51,8 @@ void each_quad(Zone const& zone, IndexRange const& range, Function const& f) {
     }
 }
 
-UnstructuredPatch start(Patch const& patch) {
-  UnstructuredPatch out;
+Patch start(Patch const& patch) {
+  Patch out;
   out.name = patch.name;
   out.bc_type = patch.bc_type;
   out.kind = patch.kind;
@@ -63,11 +63,11 @@ UnstructuredPatch start(Patch const& patch) {
 
 }  // namespace
 
-UnstructuredMesh to_prisms_and_tetrahedra(Mesh const& mesh, int prism_layers) {
+Mesh to_prisms_and_tetrahedra(Mesh const& mesh, int prism_layers) {
   // Paths from corner 0 to corner 7, one step along each axis, in all orders.
   constexpr std::array<std::array<int, 4>, 6> steps{
       {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 2, 3, 7}, {0, 4, 6, 7}, {0, 1, 5, 7}}};
-  UnstructuredMesh out;
+  Mesh out;
   copy_common(mesh, out);
   for (auto const& zone : mesh.zones) {
     out.add_zone(zone.name, zone.size());
@@ -124,8 +124,8 @@ Mesh unit_box(Index3 cells) {
   return mesh;
 }
 
-UnstructuredMesh flat_box(int ni, int nj, int layers) {
-  UnstructuredMesh mesh;
+Mesh flat_box(int ni, int nj, int layers) {
+  Mesh mesh;
   mesh.dimension = 2;
   mesh.source = "flat box";
   mesh.add_zone("plane", Index(ni + 1) * (nj + 1));
@@ -144,7 +144,7 @@ UnstructuredMesh flat_box(int ni, int nj, int layers) {
       }
     }
   for (int side = 0; side < 4; ++side) {
-    UnstructuredPatch patch;
+    Patch patch;
     patch.name = std::string(face_name(side / 2, side % 2));
     patch.kind = side == 2 ? PatchKind::wall : PatchKind::other;
     patch.zone = 0;
@@ -159,12 +159,12 @@ UnstructuredMesh flat_box(int ni, int nj, int layers) {
   return mesh;
 }
 
-void expect_same_mesh(UnstructuredMesh const& a, UnstructuredMesh const& b) {
+void expect_same_mesh(Mesh const& a, Mesh const& b) {
   ASSERT_EQ(a.zones.size(), b.zones.size());
   EXPECT_EQ(a.dimension, b.dimension);
   for (std::size_t z = 0; z < a.zones.size(); ++z) {
     EXPECT_EQ(a.zones[z].name, b.zones[z].name);
-    EXPECT_EQ(a.zones[z].n_nodes, b.zones[z].n_nodes);
+    EXPECT_EQ(a.zones[z].size(), b.zones[z].size());
     EXPECT_EQ(a.zones[z].n_elements, b.zones[z].n_elements);
   }
   EXPECT_EQ(a.elements.type, b.elements.type);

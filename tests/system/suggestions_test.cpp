@@ -5,7 +5,6 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -54,7 +53,7 @@ class Suggestions : public CommandTest {
     if constexpr (std::is_same_v<AnyMesh, Mesh>)
       expect_same(read_mesh(a).coordinates, read_mesh(b).coordinates);
     else
-      expect_same(read_unstructured_mesh(a).coordinates, read_unstructured_mesh(b).coordinates);
+      expect_same(read_mesh(a).coordinates, read_mesh(b).coordinates);
   }
 };
 

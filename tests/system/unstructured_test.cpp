@@ -1,7 +1,7 @@
 // Unstructured meshes on the command line: inspected, measured, morphed, and refused where something is missing.
 #include "run_command.hpp"
 
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -106,7 +106,7 @@ class UnstructuredSequence : public CommandTest {
                            fmt::format("{}", amplitude) + ", phase_deg = 60 } ]\n");
   }
   [[nodiscard]] Coordinates coordinates(std::string const& name) const {
-    return read_unstructured_mesh(path(name).string()).coordinates;
+    return read_mesh(path(name).string()).coordinates;
   }
 };
 
@@ -133,7 +133,7 @@ TEST_F(UnstructuredSequence, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
 }
 
 TEST_F(UnstructuredSequence, EveryStepHasTheFieldsThatAreAskedFor) {
-  write_mesh(path("ring.cgns").string(), read_unstructured_mesh(path("ring.su2").string()));
+  write_mesh(path("ring.cgns").string(), read_mesh(path("ring.su2").string()));
   write_case("out_{step}.cgns", 0.5);
   std::string text = contents(path("case.toml"));
   text.replace(text.find("ring.su2"), 8, "ring.cgns");
@@ -152,7 +152,7 @@ TEST_F(UnstructuredSequence, EveryStepHasTheFieldsThatAreAskedFor) {
 }
 
 TEST_F(UnstructuredSequence, ASeriesInOneFileKeepsTheBaselineAsItsFirstGrid) {
-  write_mesh(path("ring.cgns").string(), read_unstructured_mesh(path("ring.su2").string()));
+  write_mesh(path("ring.cgns").string(), read_mesh(path("ring.su2").string()));
   write_case("out.cgns", 0.5);
   std::string text = contents(path("case.toml"));
   text.replace(text.find("ring.su2"), 8, "ring.cgns");

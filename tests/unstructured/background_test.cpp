@@ -28,7 +28,7 @@ struct Planned {
 
 Planned planned(Bodies const& bodies, WrapOptions const& options, Vec3 const& low, Vec3 const& high, int dimension = 3,
                 Law law = Law::linear) {
-  UnstructuredMesh const mesh = bodies.in_domain(low, high, dimension);
+  Mesh const mesh = bodies.in_domain(low, high, dimension);
   gridmorph::Wrap wrap = make_wrap(mesh, bodies.walls, options);
   Background background = make_background(wrap);
   PreparedMorph prepared = prepare_background(background, law);

@@ -66,8 +66,8 @@ class Bodies {
     }
   }
   /// The mesh: all nodes of the bodies and two opposite corners of the domain.
-  UnstructuredMesh in_domain(Vec3 const& low, Vec3 const& high, int dimension = 3) const {
-    UnstructuredMesh mesh;
+  Mesh in_domain(Vec3 const& low, Vec3 const& high, int dimension = 3) const {
+    Mesh mesh;
     mesh.dimension = dimension;
     mesh.add_zone("bodies", Index(points_.size()) + 2);
     mesh.coordinates = Coordinates(mesh.n_nodes());

@@ -48,8 +48,9 @@ TEST_P(BothEngines, MoveTheBoundaryAlikeAndTurnNothingOver) {
   PreparedMorph const prepared = prepare(blocks, file.motion, file.plan);
   Coordinates const structured =
       run_plan(Kokkos::DefaultHostExecutionSpace(), blocks, prepared.plan(), prepared.boundary_displacement()).position;
-  UnstructuredOptions options = file.unstructured;
+  PlanOptions options;
   options.boundary_layers = file.plan.boundary_layers;
+  options.elements = file.plan.elements;
   UnstructuredMorphed const other = hexahedra.guarded_morph(file.motion, options);
   EXPECT_EQ(hexahedra.largest_miss(other), 0);
 

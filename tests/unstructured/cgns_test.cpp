@@ -6,7 +6,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_file.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
@@ -24,7 +24,7 @@ void check(int status) {
   if (status != CG_OK) throw std::runtime_error(cg_get_error());
 }
 
-UnstructuredMesh mixed_box() {
+Mesh mixed_box() {
   auto mesh = to_prisms_and_tetrahedra(unit_box({4, 3, 5}), 2);
   mesh.patches[4].families = {"bottom", "walls"};
   mesh.patches[5].nodes = patch_nodes(mesh.patches[5]);
@@ -47,13 +47,13 @@ TEST_P(UnstructuredCgns, WhatIsWrittenReadsBackTheSame) {
     mesh.zones[0].single_precision = false;
     write_mesh(file, mesh, {.format = GetParam()});
     EXPECT_EQ(mesh_kind(file), MeshKind::unstructured);
-    expect_same_mesh(read_unstructured_mesh(file), mesh);
+    expect_same_mesh(read_mesh(file), mesh);
   }
 }
 
 TEST_P(UnstructuredCgns, PeriodicConnectionsComeThrough) {
   auto mesh = to_hexahedra(unit_box({3, 2, 2}));
-  UnstructuredConnection c;
+  Connection c;
   c.name = "around";
   c.zone = c.donor_zone = 0;
   c.nodes = patch_nodes(mesh.patches[0]);
@@ -64,7 +64,7 @@ TEST_P(UnstructuredCgns, PeriodicConnectionsComeThrough) {
   mesh.connections = {c};
   mesh.patches.erase(mesh.patches.begin(), mesh.patches.begin() + 2);
   write_mesh(folder_.file("mesh.cgns"), mesh, {.format = GetParam()});
-  auto const read = read_unstructured_mesh(folder_.file("mesh.cgns"));
+  auto const read = read_mesh(folder_.file("mesh.cgns"));
   expect_same_mesh(read, mesh);
   EXPECT_LT(largest_mismatch(read, read.connections[0]), 1e-12);
   auto const topology = make_topology(read);
@@ -111,7 +111,7 @@ TEST_P(UnstructuredCgns, MorphedFilesDifferInTheirCoordinatesAlone) {
   Coordinates after(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) after.set(n, wavy(mesh.coordinates[n], 0.1));
   write_morphed(input, output, mesh, after);
-  expect_same_coordinates(read_unstructured_mesh(output).coordinates, after);
+  expect_same_coordinates(read_mesh(output).coordinates, after);
   auto const before = dump_tree(input), now = dump_tree(output);
   ASSERT_EQ(before.size(), now.size());
   for (auto const& [path, text] : before)
@@ -246,7 +246,7 @@ TEST(UnstructuredBoundary, PointListsRangesElementListsAndNodesAllNameTheSameFac
     file.bc("nodes", CGNS_ENUMV(PointList), {10, 1, 4, 7, 1});
     file.bc("node range", CGNS_ENUMV(PointRange), {1, 12});
   }
-  auto const mesh = read_unstructured_mesh(path);
+  auto const mesh = read_mesh(path);
   ASSERT_EQ(mesh.patches.size(), 5u);
   EXPECT_EQ(patch_nodes(mesh.patches[0]), x_min);
   EXPECT_EQ(patch_nodes(mesh.patches[1]), x_max);
@@ -263,7 +263,7 @@ TEST(UnstructuredBoundary, SectionsThatNoConditionNamesBecomePatchesOfTheirFamil
     HandMadeFile file(path);
     file.family("sides", CGNS_ENUMV(BCInflow));
   }
-  auto const mesh = read_unstructured_mesh(path);
+  auto const mesh = read_mesh(path);
   ASSERT_EQ(mesh.patches.size(), 1u);
   EXPECT_EQ(mesh.patches[0].name, "sides");
   EXPECT_EQ(mesh.patches[0].kind, PatchKind::inflow);
@@ -279,7 +279,7 @@ TEST(UnstructuredBoundary, ANodeListTakesTheFacesOfTheSectionOfItsName) {
     HandMadeFile file(path);
     file.bc("sides", CGNS_ENUMV(PointList), {1, 3, 4, 6, 7, 9, 10, 12});
   }
-  auto const mesh = read_unstructured_mesh(path);
+  auto const mesh = read_mesh(path);
   ASSERT_EQ(mesh.patches.size(), 1u);
   EXPECT_EQ(mesh.patches[0].faces.size(), 2);
   EXPECT_TRUE(mesh.patches[0].nodes.empty());
@@ -296,7 +296,7 @@ TEST(UnstructuredBoundary, AConditionOnNodesItsFamilyAndItsSectionOfOneNameAreOn
       file.family("sides", CGNS_ENUMV(BCInflow));
       file.bc("sides", CGNS_ENUMV(PointList), nodes);
     }
-    auto const mesh = read_unstructured_mesh(path);
+    auto const mesh = read_mesh(path);
     ASSERT_EQ(mesh.patches.size(), 1u);
     EXPECT_EQ(mesh.patches[0].families, (std::vector<std::string>{"sides"}));
     EXPECT_EQ(mesh.patches[0].faces.size(), 2);
@@ -344,7 +344,7 @@ TEST(UnstructuredFiles, ElementNumbersOfCgns30AreThoseOfThatVersion) {
     file.close();
   }
   ASSERT_GT(changed, 0) << "the mesh is meant to have prisms";
-  expect_same_mesh(read_unstructured_mesh(path), mesh);
+  expect_same_mesh(read_mesh(path), mesh);
 }
 
 TEST(UnstructuredFiles, ZonesThatAreLeftOutByNameAreNoPartOfTheMeshAndStayAsTheyAre) {
@@ -352,11 +352,11 @@ TEST(UnstructuredFiles, ZonesThatAreLeftOutByNameAreNoPartOfTheMeshAndStayAsThey
   auto const path = folder.file("two.cgns"), out = folder.file("out.cgns");
   auto const box = to_hexahedra(unit_box({2, 2, 2}));
   write_mesh(path, in_two_zones(box, [](Vec3 const& c) { return c.x < 1; }));
-  auto const whole = read_unstructured_mesh(path);
+  auto const whole = read_mesh(path);
   ASSERT_EQ(whole.zones.size(), 2u);
   ReadOptions options;
   options.leave_out = {whole.zones[0].name};
-  auto const mesh = read_unstructured_mesh(path, options);
+  auto const mesh = read_mesh(path, options);
   ASSERT_EQ(mesh.zones.size(), 1u);
   EXPECT_EQ(mesh.n_elements(), 4);
   EXPECT_TRUE(mesh.connections.empty());
@@ -364,14 +364,14 @@ TEST(UnstructuredFiles, ZonesThatAreLeftOutByNameAreNoPartOfTheMeshAndStayAsThey
   Coordinates moved(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.125, 0, 0});
   write_morphed(path, out, mesh, moved);
-  auto const after = read_unstructured_mesh(out);
+  auto const after = read_mesh(out);
   Index const first = whole.zones[1].first_node;
   for (Index n = 0; n < after.n_nodes(); ++n)
     EXPECT_EQ(after.coordinates[n], n < first ? whole.coordinates[n] : moved[n - first]);
   options.leave_out = {"nothing"};
-  EXPECT_NE(message_of<IoError>([&] { read_unstructured_mesh(path, options); }).find("'nothing'"), std::string::npos);
+  EXPECT_NE(message_of<IoError>([&] { read_mesh(path, options); }).find("'nothing'"), std::string::npos);
   options.leave_out = {"*"};
-  EXPECT_THROW(read_unstructured_mesh(path, options), IoError);
+  EXPECT_THROW(read_mesh(path, options), IoError);
 }
 
 TEST(UnstructuredBoundary, NumbersThatAreNotThereAreProblemsThatNameThem) {
@@ -383,7 +383,7 @@ TEST(UnstructuredBoundary, NumbersThatAreNotThereAreProblemsThatNameThem) {
     file.bc("none", CGNS_ENUMV(PointList), {17}, CGNS_ENUMV(FaceCenter));
     file.bc("volume", CGNS_ENUMV(PointList), {1}, CGNS_ENUMV(FaceCenter));
   }
-  auto const message = message_of<MeshError>([&] { read_unstructured_mesh(path); });
+  auto const message = message_of<MeshError>([&] { read_mesh(path); });
   for (auto const* part : {"BC 'high'", "node 13", "12 nodes", "BC 'none'", "element 17"})
     EXPECT_NE(message.find(part), std::string::npos) << message;
   EXPECT_EQ(message.find("volume"), std::string::npos) << message;
@@ -407,7 +407,7 @@ TEST(UnstructuredFiles, SecondOrderElementsKeepAllTheirNodes) {
   check(cg_section_write(file, base, zone, "T", CGNS_ENUMV(TETRA_10), 1, 1, 0, nodes, &number));
   check(cg_section_write(file, base, zone, "F", CGNS_ENUMV(TRI_6), 2, 2, 0, face, &number));
   cg_close(file);
-  auto const mesh = read_unstructured_mesh(path);
+  auto const mesh = read_mesh(path);
   EXPECT_EQ(mesh.elements.nodes[0].size(), 10u);
   EXPECT_EQ(mesh.elements.corners(0).size(), 4u);
   auto const topology = make_topology(mesh);
@@ -420,7 +420,7 @@ TEST(UnstructuredFiles, HybridFilesAreRefused) {
   auto const path = folder.file("hybrid.cgns");
   { HandMadeFile const file(path, true); }
   for (auto const& message :
-       {message_of<IoError>([&] { mesh_kind(path); }), message_of<IoError>([&] { read_unstructured_mesh(path); })})
+       {message_of<IoError>([&] { mesh_kind(path); }), message_of<IoError>([&] { read_mesh(path); })})
     EXPECT_NE(message.find("'Box'"), std::string::npos) << message;
 }
 
@@ -431,7 +431,7 @@ TEST(UnstructuredFiles, ElementsThatNameNodesOutsideTheZoneAreRefused) {
     HandMadeFile file(path);
     file.section("bad", CGNS_ENUMV(TRI_3), 5, 6, {1, 2, 3, 4, 5, 99});
   }
-  auto const message = message_of<IoError>([&] { read_unstructured_mesh(path); });
+  auto const message = message_of<IoError>([&] { read_mesh(path); });
   for (auto const* part : {"elements 'bad'", "element 6", "node 99", "12 nodes"})
     EXPECT_NE(message.find(part), std::string::npos) << message;
 }
@@ -442,7 +442,7 @@ TEST(UnstructuredFiles, ConnectionsAreFoundByPositionWhereTheirListsAreNotInOrde
   auto const good = mesh.connections[0];
   std::reverse(mesh.connections[0].donor_nodes.begin(), mesh.connections[0].donor_nodes.end());
   write_mesh(folder.file("mesh.cgns"), mesh);
-  auto const read = read_unstructured_mesh(folder.file("mesh.cgns"));
+  auto const read = read_mesh(folder.file("mesh.cgns"));
   ASSERT_EQ(read.connections.size(), 1u);
   EXPECT_EQ(read.connections[0].nodes, good.nodes);
   EXPECT_EQ(read.connections[0].donor_nodes, good.donor_nodes);

@@ -15,7 +15,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Columns from the line y = 0 of nodes up to y = height(x), and the sources beside and ahead.
 struct Channel {
-  UnstructuredMesh mesh = flat_box(8, 6, 6);
+  Mesh mesh = flat_box(8, 6, 6);
   NodeGraph graph = make_node_graph(mesh, elements_of_nodes(mesh));
   Columns columns;
 

@@ -19,7 +19,7 @@ using Extent = BoundaryLayer::Extent;
 
 /// A box of cells in the coordinates i, j, k of its nodes, and what make_columns() asks for.
 struct Standing {
-  UnstructuredMesh mesh;
+  Mesh mesh;
   std::vector<Vec3> ijk;  ///< of each node, before it is moved
   UnstructuredTopology topology = make_topology(mesh);
   NodeGraph graph = make_node_graph(mesh, topology.elements_of_nodes);
@@ -27,7 +27,7 @@ struct Standing {
   std::vector<ColumnExtent> extents;
   std::vector<std::uint8_t> known = std::vector<std::uint8_t>(std::size_t(mesh.n_nodes()), 0);
 
-  explicit Standing(UnstructuredMesh m) : mesh(std::move(m)) {
+  explicit Standing(Mesh m) : mesh(std::move(m)) {
     for (Index n = 0; n < mesh.n_nodes(); ++n) ijk.push_back(mesh.coordinates[n]);
   }
   void stand_on(std::string const& patch, ColumnExtent const& extent) {
@@ -120,7 +120,7 @@ TEST(Columns, EndBelowKnownNodes) {
 }
 
 TEST(Columns, InAPlaneGoThroughQuadrilaterals) {
-  UnstructuredMesh mesh = flat_box(6, 7, 4);
+  Mesh mesh = flat_box(6, 7, 4);
   Standing s(mesh);
   s.stand_on("j_min", {Extent::layers, 6, 0});
   Columns const c = s.columns();

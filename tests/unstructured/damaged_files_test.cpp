@@ -3,7 +3,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <random>
@@ -15,7 +15,7 @@ namespace {
 void try_mesh(std::string const& path) {
   try {
     if (mesh_kind(path) != MeshKind::unstructured) return;
-    auto const mesh = read_unstructured_mesh(path);
+    auto const mesh = read_mesh(path);
     find_face_patches(mesh, make_topology(mesh));
   } catch (Error const& e) {
     // IoError or MeshError, as the damage has it; anything else ends the test.
@@ -25,11 +25,11 @@ void try_mesh(std::string const& path) {
 
 /// Few patches: HDF5 1.10 frees memory that it never set when a damaged group of more than 8 members is listed
 /// (H5G__dense_iterate), before this library sees anything of it.
-UnstructuredMesh small_mesh() {
+Mesh small_mesh() {
   auto mesh = to_prisms_and_tetrahedra(unit_box({2, 2, 3}), 1);
   mesh.patches[5].nodes = patch_nodes(mesh.patches[5]);
   mesh.patches[5].faces = {};
-  UnstructuredConnection c;
+  Connection c;
   c.name = "around";
   c.zone = c.donor_zone = 0;
   c.nodes = patch_nodes(mesh.patches[0]);
@@ -62,7 +62,7 @@ TEST_P(DamagedUnstructured, CutAnywhereTheyAreRefused) {
     SCOPED_TRACE(length);
     write_bytes(bad_, bytes_.substr(0, length));
     try {
-      read_unstructured_mesh(bad_);
+      read_mesh(bad_);
       EXPECT_TRUE(GetParam() == FileFormat::cgns_adf && length + block > bytes_.size());
     } catch (IoError const& e) {
       EXPECT_NE(std::string(e.what()).find("bad.cgns"), std::string::npos);

@@ -24,11 +24,11 @@ std::vector<Index32> shuffled(Index first, Index n, Random& random) {
 }
 
 /// The mesh with the nodes and elements of each zone in random order; of its file's order, as if it had been read so.
-UnstructuredMesh shuffle(UnstructuredMesh mesh, unsigned seed) {
+Mesh shuffle(Mesh mesh, unsigned seed) {
   Random random(seed);
   FileOrder order;
   for (auto const& zone : mesh.zones) {
-    for (Index32 const n : shuffled(zone.first_node, zone.n_nodes, random)) order.node.push_back(n);
+    for (Index32 const n : shuffled(zone.first_node, zone.size(), random)) order.node.push_back(n);
     for (Index32 const e : shuffled(zone.first_element, zone.n_elements, random)) order.element.push_back(e);
   }
   reorder(mesh, order);
@@ -37,8 +37,8 @@ UnstructuredMesh shuffle(UnstructuredMesh mesh, unsigned seed) {
 }
 
 /// Two zones that share a face, with patches as faces and as nodes, a connection, and two prisms given by their faces.
-UnstructuredMesh two_boxes() {
-  UnstructuredMesh mesh = to_prisms_and_tetrahedra(unit_box({5, 4, 6}), 2);
+Mesh two_boxes() {
+  Mesh mesh = to_prisms_and_tetrahedra(unit_box({5, 4, 6}), 2);
   mesh.patches[5].nodes = patch_nodes(mesh.patches[5]);
   mesh.patches[5].faces = {};
   for (Index32 e = 0; e < mesh.n_elements(); ++e) mesh.elements.number.push_back(3 * e + 7);
@@ -51,7 +51,7 @@ UnstructuredMesh two_boxes() {
   }
   for (Index32 const e : {3, 8}) mesh.elements.type[std::size_t(e)] = ElementType::polyhedron;
   Index32 const first_node = Index32(mesh.n_nodes()), first_element = Index32(mesh.n_elements());
-  UnstructuredMesh const other = to_hexahedra(unit_box({3, 4, 6}));
+  Mesh const other = to_hexahedra(unit_box({3, 4, 6}));
   mesh.add_zone("second", other.n_nodes());
   for (Index e = 0; e < other.n_elements(); ++e) {
     std::vector<Index32> nodes;
@@ -63,7 +63,7 @@ UnstructuredMesh two_boxes() {
   for (Index n = 0; n < first_node; ++n) x.set(n, mesh.coordinates[n]);
   for (Index n = 0; n < other.n_nodes(); ++n) x.set(first_node + n, other.coordinates[n] + Vec3{5, 0, 0});
   mesh.coordinates = x;
-  UnstructuredConnection c;
+  Connection c;
   c.name = "between";
   c.zone = 0;
   c.donor_zone = 1;
@@ -127,7 +127,7 @@ TEST(FileOrder, DependsOnPositionsAlone) {
 }
 
 /// Mean distance in numbers between the ends of an edge of an element.
-double mean_edge(UnstructuredMesh const& mesh) {
+double mean_edge(Mesh const& mesh) {
   double sum = 0, count = 0;
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const corners = mesh.elements.corners(e);
@@ -172,10 +172,10 @@ TEST(FileOrder, OneSizeOrOrderTooManyIsRefused) {
   EXPECT_THROW(reorder(mesh, {order.node, {}}), MeshError);
   reorder(mesh, order);
   EXPECT_THROW(reorder(mesh, order), MeshError);
-  UnstructuredMesh empty;
+  Mesh empty;
   reorder(empty, order_by_position(empty));
   EXPECT_EQ(in_file_order(empty).n_nodes(), 0);
-  UnstructuredMesh without;
+  Mesh without;
   without.add_zone("zone", 4);
   EXPECT_THROW(order_by_position(without), MeshError);
 }

@@ -18,7 +18,7 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 
 /// A box of prisms and tetrahedra whose wall k_min is lifted a little, with the mesh moved by `displacement` on top.
 struct Box {
-  UnstructuredMesh mesh = to_prisms_and_tetrahedra(unit_box({8, 8, 8}), 2);
+  Mesh mesh = to_prisms_and_tetrahedra(unit_box({8, 8, 8}), 2);
   UnstructuredTopology topology = make_topology(mesh);
   BoundaryFacePatches face_patches = find_face_patches(mesh, topology);
   PreparedUnstructured prepared;

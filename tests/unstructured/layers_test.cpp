@@ -19,12 +19,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Nodes at a distance from the nearest of some of them.
 struct Around {
-  UnstructuredMesh mesh;
+  Mesh mesh;
   NodeGraph graph = make_node_graph(mesh, elements_of_nodes(mesh));
   Mask seeds, wanted;
   std::vector<double> distance;
 
-  Around(UnstructuredMesh m, std::vector<Index32> const& sources)
+  Around(Mesh m, std::vector<Index32> const& sources)
       : mesh(std::move(m)), seeds(std::size_t(mesh.n_nodes()), 0), wanted(seeds.size(), 1) {
     for (Index32 const n : sources) seeds[std::size_t(n)] = 1, wanted[std::size_t(n)] = 0;
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
@@ -44,7 +44,7 @@ std::vector<Around> cases() {
   std::vector<Around> out;
   Random random(1);
   for (auto const& [cells, layers] : {std::pair{Index3{3, 3, 3}, 0}, {Index3{6, 4, 5}, 2}, {Index3{2, 9, 3}, 3}}) {
-    UnstructuredMesh mesh = to_prisms_and_tetrahedra(unit_box(cells), layers);
+    Mesh mesh = to_prisms_and_tetrahedra(unit_box(cells), layers);
     RigidTransform const place = rotation_about({1, 2, 3}, random.vector(1), 1.0);
     std::vector<Index32> floor;
     for (Index32 n = 0; n < mesh.n_nodes(); ++n) {
@@ -55,7 +55,7 @@ std::vector<Around> cases() {
     out.emplace_back(mesh, floor);
     out.emplace_back(mesh, std::vector<Index32>{0, Index32(mesh.n_nodes() / 2)});
   }
-  UnstructuredMesh flat = flat_box(7, 9, 3);
+  Mesh flat = flat_box(7, 9, 3);
   for (Index32 n = 0; n < flat.n_nodes(); ++n)
     flat.coordinates.set(n, flat.coordinates[n] + Vec3{random.between(-0.2, 0.2), random.between(-0.2, 0.2), 0});
   out.emplace_back(flat, std::vector<Index32>{40, 41});

@@ -3,7 +3,6 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
 
 #include <gtest/gtest.h>
@@ -16,7 +15,7 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-std::vector<Location> locate(UnstructuredMesh const& mesh, std::vector<Vec3> const& points) {
+std::vector<Location> locate(Mesh const& mesh, std::vector<Vec3> const& points) {
   std::vector<Location> out(points.size());
   ElementLocator<Exec> const locator(Exec(), mesh);
   locator.locate(Exec(), Kokkos::View<Vec3 const*, Kokkos::HostSpace>(points.data(), points.size()),
@@ -41,8 +40,7 @@ TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
   auto const path = shared_mesh(GetParam());
   if (path.empty()) GTEST_SKIP() << GetParam() << " is not there; its stand-in is tested";
   std::string const name = GetParam();
-  auto const mesh =
-      mesh_kind(path) == MeshKind::unstructured ? read_unstructured_mesh(path) : as_hexahedra(read_mesh(path));
+  auto const mesh = mesh_kind(path) == MeshKind::unstructured ? read_mesh(path) : as_hexahedra(read_mesh(path));
   std::vector<Vec3> points;
   for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
   for (Index e = 0; e < mesh.n_elements(); ++e) {

@@ -22,7 +22,7 @@ namespace {
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
 template <class Space>
-std::vector<Location> locate_with(UnstructuredMesh const& mesh, std::vector<Vec3> const& points,
+std::vector<Location> locate_with(Mesh const& mesh, std::vector<Vec3> const& points,
                                   std::span<Index32 const> candidates) {
   ElementLocator<Space> const locator(Space(), mesh, candidates);
   std::vector<Location> out(points.size());
@@ -32,17 +32,17 @@ std::vector<Location> locate_with(UnstructuredMesh const& mesh, std::vector<Vec3
   return out;
 }
 
-std::vector<Index32> all_of(UnstructuredMesh const& mesh) {
+std::vector<Index32> all_of(Mesh const& mesh) {
   std::vector<Index32> all(std::size_t(mesh.n_elements()));
   std::iota(all.begin(), all.end(), 0);
   return all;
 }
 
-std::vector<Location> locate(UnstructuredMesh const& mesh, std::vector<Vec3> const& points) {
+std::vector<Location> locate(Mesh const& mesh, std::vector<Vec3> const& points) {
   return locate_with<Exec>(mesh, points, all_of(mesh));
 }
 
-UnstructuredMesh moved(UnstructuredMesh mesh, std::function<Vec3(Vec3)> const& f) {
+Mesh moved(Mesh mesh, std::function<Vec3(Vec3)> const& f) {
   Coordinates c(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) c.set(n, f(mesh.coordinates[n]));
   mesh.coordinates = c;
@@ -54,8 +54,8 @@ Vec3 wave(Vec3 p) {
 }
 
 /// Every cell a polyhedron that lists the faces of the hexahedron.
-UnstructuredMesh polyhedra_of(UnstructuredMesh const& mesh) {
-  UnstructuredMesh out = mesh;
+Mesh polyhedra_of(Mesh const& mesh) {
+  Mesh out = mesh;
   out.polyhedra.first_face.push_back(0);
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     ElementType const type = mesh.elements.type[std::size_t(e)];
@@ -73,9 +73,9 @@ UnstructuredMesh polyhedra_of(UnstructuredMesh const& mesh) {
 }
 
 /// Each cell of a box cut into six pyramids around a node at its centre.
-UnstructuredMesh pyramids(Index3 cells) {
-  UnstructuredMesh const boxes = as_hexahedra(unit_box(cells));
-  UnstructuredMesh out;
+Mesh pyramids(Index3 cells) {
+  Mesh const boxes = as_hexahedra(unit_box(cells));
+  Mesh out;
   out.source = "pyramids";
   out.add_zone("box", boxes.n_nodes() + boxes.n_elements());
   out.coordinates = Coordinates(out.n_nodes());
@@ -100,7 +100,7 @@ UnstructuredMesh pyramids(Index3 cells) {
 
 struct Case {
   std::string name;
-  UnstructuredMesh mesh;
+  Mesh mesh;
 };
 
 std::vector<Case> cases() {
@@ -125,14 +125,14 @@ std::vector<Case> cases() {
           {"tilted plane", moved(flat_box(6, 5, 2), tilted)}};
 }
 
-ElementCorners corners_of(UnstructuredMesh const& mesh, Index e) {
+ElementCorners corners_of(Mesh const& mesh, Index e) {
   ElementCorners c;
   auto const nodes = mesh.elements.corners(e);
   for (std::size_t k = 0; k < nodes.size(); ++k) c.at[k] = mesh.coordinates[nodes[k]];
   return c;
 }
 
-double size_of_element(UnstructuredMesh const& mesh, Index e) {
+double size_of_element(Mesh const& mesh, Index e) {
   double size = 0;
   for (Index32 const a : mesh.elements.corners(e))
     for (Index32 const b : mesh.elements.corners(e))
@@ -141,7 +141,7 @@ double size_of_element(UnstructuredMesh const& mesh, Index e) {
 }
 
 /// A place in an element as a random mean of its corners, which lies inside all convex ones.
-Vec3 random_mean(UnstructuredMesh const& mesh, Index e, Random& random) {
+Vec3 random_mean(Mesh const& mesh, Index e, Random& random) {
   double sum = 0;
   Vec3 p;
   for (Index32 const n : mesh.elements.corners(e)) {

@@ -21,7 +21,7 @@ using Case = test::UnstructuredCase;
 using Morphed = test::UnstructuredMorphed;
 
 /// n unit cells along each side of the domain, patches "i_min" ... "k_max"; the wall "body" takes the middle third.
-UnstructuredMesh box_with_body(int n) {
+Mesh box_with_body(int n) {
   double const low = n / 3, high = n - n / 3;
   return test::box_around({n, n, n}, [=](Vec3 const& p) {
     return p.x > low && p.x < high && p.y > low && p.y < high && p.z > low && p.z < high;
@@ -73,8 +73,7 @@ TEST(UnstructuredMorph, PrescribedDisplacementsHoldExactlyAndTheRestIsSound) {
 TEST(UnstructuredMorph, NodesWherePlanesMeetAtAnyAngleStayOnBoth) {
   for (double const lean : {0.0, 0.5, 2.0}) {
     // The body stands in the edge of two planes, on which the nodes before and behind it slip.
-    UnstructuredMesh mesh =
-        test::box_around({9, 9, 9}, [](Vec3 const& p) { return p.x < 3 && p.z < 3 && p.y > 3 && p.y < 6; });
+    Mesh mesh = test::box_around({9, 9, 9}, [](Vec3 const& p) { return p.x < 3 && p.z < 3 && p.y > 3 && p.y < 6; });
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
       Vec3 const q = mesh.coordinates[n];
       mesh.coordinates.set(n, {q.x + lean * q.z, q.y, q.z});
@@ -109,7 +108,7 @@ TEST(UnstructuredMorph, ProfilesThatDifferInTheMiddleOnlyAreTwoSurfaces) {
       points.emplace_back(k * std::numbers::pi / 32, radius(k * std::numbers::pi / 32, bulged));
     return points;
   };
-  UnstructuredMesh mesh = test::to_hexahedra(test::unit_box({16, 6, 12}));
+  Mesh mesh = test::to_hexahedra(test::unit_box({16, 6, 12}));
   auto const part_of_case = [](double k) { return k <= 4 ? 0 : k >= 8 ? 1 : 2; };
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
     Vec3 const q = mesh.coordinates[n];
@@ -118,7 +117,7 @@ TEST(UnstructuredMorph, ProfilesThatDifferInTheMiddleOnlyAreTwoSurfaces) {
     double const outer = (1 - share) * radius(x, false) + share * radius(x, true), r = 1 + (outer - 1) * q.y / 6;
     mesh.coordinates.set(n, {x, r * std::cos(angle), r * std::sin(angle)});
   }
-  UnstructuredPatch parts[3];
+  Patch parts[3];
   for (auto& patch : mesh.patches)
     if (patch.name == "j_max")
       for (Index f = 0; f < patch.faces.size(); ++f) {
@@ -157,8 +156,8 @@ TEST(UnstructuredMorph, ProfilesThatDifferInTheMiddleOnlyAreTwoSurfaces) {
 TEST(UnstructuredMorph, AroundARigidWallTheNearFieldIsTheSameRigidMotion) {
   Case const c(box_with_body(18));
   RigidTransform const r = rotation_about({9, 9, 9}, {0, 0, 1}, 0.3);
-  UnstructuredOptions options;
-  options.offset = 1.2;
+  PlanOptions options;
+  options.elements.offset = 1.2;
   Morphed const m = c.morph(body_moves(RigidRule{r.rotation, r.translation}), options);
   // One element off the body, where other boundaries are five times as far as the wall.
   Index seen = 0;
@@ -179,7 +178,7 @@ TEST(UnstructuredMorph, RulesThatNeedABladeAreRefused) {
 }
 
 TEST(UnstructuredMorph, RulesThatDisagreeOnCommonNodesAreNamed) {
-  UnstructuredMesh const mesh = test::to_prisms_and_tetrahedra(test::unit_box({6, 6, 6}), 2);
+  Mesh const mesh = test::to_prisms_and_tetrahedra(test::unit_box({6, 6, 6}), 2);
   Case const c(mesh);
   Motion motion;
   motion.rules.push_back({{"k_min"}, translation({0, 0, 0.5}), 0, "here.toml:4"});
@@ -194,7 +193,7 @@ TEST(UnstructuredMorph, RulesThatDisagreeOnCommonNodesAreNamed) {
 
 TEST(UnstructuredMorph, ColumnsOfPrismsKeepTheirHeight) {
   // The wall k_min bulges; its prisms go with it, the other sides slide.
-  UnstructuredMesh mesh = test::to_prisms_and_tetrahedra(test::unit_box({10, 10, 10}), 3);
+  Mesh mesh = test::to_prisms_and_tetrahedra(test::unit_box({10, 10, 10}), 3);
   for (Index n = 0; n < mesh.n_nodes(); ++n) mesh.coordinates.z(n) = std::pow(mesh.coordinates.z(n) / 10, 2) * 10;
   Case const c(mesh);
   Motion motion;
@@ -209,7 +208,7 @@ TEST(UnstructuredMorph, ColumnsOfPrismsKeepTheirHeight) {
                                        }},
                           0,
                           "bump"});
-  UnstructuredOptions options;
+  PlanOptions options;
   options.boundary_layers.push_back({.walls = {"k_min"}, .extent = BoundaryLayer::Extent::layers, .layers = 3});
   Morphed const m = c.morph(motion, options);
   EXPECT_EQ(c.inverted(m.x), 0);
@@ -244,7 +243,7 @@ TEST(UnstructuredMorph, StructuredMeshesMoveAlikeByBothWays) {
                           "bump"});
   auto const blocks = test::morph(test::unit_box({n, n, n}), motion);
   Case const c(test::to_hexahedra(test::unit_box({n, n, n})));
-  UnstructuredOptions options;
+  PlanOptions options;
   options.boundary_layers.push_back({.walls = {"k_min"}, .mode = BoundaryLayer::Mode::translate});
   Morphed const elements = c.morph(motion, options);
   double squares = 0, farthest = 0;

@@ -25,11 +25,11 @@ std::vector<Index32> shuffled_numbers(Index n, Random& random) {
 }
 
 /// Prisms and tetrahedra of a box, nodes and elements in random order.
-UnstructuredMesh shuffled_box(Index3 cells, int prism_layers) {
-  UnstructuredMesh const from = to_prisms_and_tetrahedra(unit_box(cells), prism_layers);
+Mesh shuffled_box(Index3 cells, int prism_layers) {
+  Mesh const from = to_prisms_and_tetrahedra(unit_box(cells), prism_layers);
   Random random(5);
   auto const node = shuffled_numbers(from.n_nodes(), random);
-  UnstructuredMesh out;
+  Mesh out;
   out.add_zone("zone", from.n_nodes());
   out.coordinates = Coordinates(from.n_nodes());
   for (Index n = 0; n < from.n_nodes(); ++n) out.coordinates.set(node[std::size_t(n)], from.coordinates[n]);

@@ -20,13 +20,14 @@ class OwnBackground : public testing::Test {
 
   /// The background mesh made for this case, as any other structured mesh, deformed by `to`.
   template <class Map>
-  UnstructuredOptions with_mesh(Map const& to) const {
+  PlanOptions with_mesh(Map const& to) const {
     Mesh mesh = automatic.prepared.plan.background->mesh;
     Coordinates moved(mesh.n_nodes());
     for (Index n = 0; n < moved.size(); ++n) moved.set(n, to(mesh.coordinates[n]));
     mesh.coordinates = moved;
-    UnstructuredOptions options;
-    options.background = std::make_shared<Background const>(make_background(std::move(mesh), {"wrap"}, {"outer"}));
+    PlanOptions options;
+    options.elements.background =
+        std::make_shared<Background const>(make_background(std::move(mesh), {"wrap"}, {"outer"}));
     return options;
   }
 };

@@ -12,11 +12,11 @@ namespace {
 
 /// A channel, periodic from i_min to i_max, whose lid j_max moves along.
 struct Channel {
-  UnstructuredMesh mesh = flat_box(6, 4, 2);
+  Mesh mesh = flat_box(6, 4, 2);
   Motion motion;
 
   Channel() {
-    UnstructuredConnection c;
+    Connection c;
     c.name = "pair";
     c.zone = c.donor_zone = 0;
     c.periodic.emplace();

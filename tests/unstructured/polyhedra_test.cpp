@@ -2,7 +2,7 @@
 #include "io/io_support.hpp"
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <cgnslib.h>
@@ -18,7 +18,7 @@ void check(int status) {
 }
 
 /// A mesh as polygons and polyhedra: faces numbered from 1, those of the boundary last; the elements behind them.
-void write_polyhedra(std::string const& path, UnstructuredMesh const& mesh, bool parents_only) {
+void write_polyhedra(std::string const& path, Mesh const& mesh, bool parents_only) {
   auto const topology = make_topology(mesh);
   std::vector<cgsize_t> nodes, node_start{0}, parents_left, parents_right;
   std::vector<std::vector<cgsize_t>> faces_of(std::size_t(mesh.n_elements()));
@@ -79,7 +79,7 @@ TEST(Polyhedra, UsualShapesAreRecognised) {
   for (bool const parents_only : {false, true})
     for (auto const& mesh : {to_hexahedra(unit_box({3, 2, 2})), to_prisms_and_tetrahedra(unit_box({3, 2, 4}), 2)}) {
       write_polyhedra(folder.file("poly.cgns"), mesh, parents_only);
-      auto const read = read_unstructured_mesh(folder.file("poly.cgns"));
+      auto const read = read_mesh(folder.file("poly.cgns"));
       ASSERT_EQ(read.elements.type, mesh.elements.type);
       for (Index e = 0; e < mesh.n_elements(); ++e)
         EXPECT_EQ(sorted(read.elements.corners(e)), sorted(mesh.elements.corners(e)));
@@ -117,7 +117,7 @@ TEST(Polyhedra, OtherShapesKeepTheirFaces) {
   check(cg_poly_section_write(file, base, zone, "Cells", CGNS_ENUMV(NFACE_n), 11, 11, 0, faces.data(),
                               face_start.data(), &number));
   check(cg_close(file));
-  auto const mesh = read_unstructured_mesh(path);
+  auto const mesh = read_mesh(path);
   ASSERT_EQ(mesh.n_elements(), 1);
   EXPECT_EQ(mesh.elements.type[0], ElementType::polyhedron);
   EXPECT_EQ(mesh.elements.corners(0).size(), 12u);

@@ -17,7 +17,7 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 using Input = UnstructuredQualityInput<Kokkos::HostSpace>;
 
 struct Prepared {
-  explicit Prepared(UnstructuredMesh m) : mesh(std::move(m)) {
+  explicit Prepared(Mesh m) : mesh(std::move(m)) {
     check_mesh(mesh);
     topology = make_topology(mesh);
     face_patches = find_face_patches(mesh, topology);
@@ -26,7 +26,7 @@ struct Prepared {
   [[nodiscard]] QualityReport measure(Input const& input) const {
     return measure_quality(E(), mesh, topology, face_patches, input);
   }
-  UnstructuredMesh mesh;
+  Mesh mesh;
   UnstructuredTopology topology;
   BoundaryFacePatches face_patches;
 };
@@ -207,7 +207,7 @@ TEST(UnstructuredQuality, ElementsNumberedInsideOutAreFoundAndNotRepaired) {
 }
 
 /// Numbers an element the other way round.
-void reverse(UnstructuredMesh& mesh, Index e) {
+void reverse(Mesh& mesh, Index e) {
   auto const first = mesh.elements.nodes.item.begin() + mesh.elements.nodes.first[std::size_t(e)];
   std::reverse(first, first + n_corners(mesh.elements.type[std::size_t(e)]));
 }
@@ -242,7 +242,7 @@ TEST(UnstructuredQuality, AFlippedElementIsInvertedAndAHealedOneIsSoundHoweverEl
       EXPECT_EQ(r.newly_inverted, r.inverted) << way;
     }
     // The other way round: what was torn is whole again. Signs come from the mesh, so it is the baseline.
-    UnstructuredMesh torn_mesh = p.mesh;
+    Mesh torn_mesh = p.mesh;
     torn_mesh.coordinates = torn;
     Prepared const q(torn_mesh);
     Input healed;

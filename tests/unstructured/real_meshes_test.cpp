@@ -2,7 +2,7 @@
 #include "io/io_support.hpp"
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
@@ -12,9 +12,7 @@
 namespace gridmorph::test {
 namespace {
 
-Index count(UnstructuredMesh const& mesh, ElementType type, int zone = -1) {
-  return count_types(mesh, zone)[std::size_t(type)];
-}
+Index count(Mesh const& mesh, ElementType type, int zone = -1) { return count_types(mesh, zone)[std::size_t(type)]; }
 
 /// The coil of others where it is there, and the stand-in for it.
 struct Coil {
@@ -36,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, RealCoil,
 
 TEST_P(RealCoil, IsReadWholeAndClosed) {
   EXPECT_EQ(mesh_kind(path), MeshKind::unstructured);
-  auto const mesh = read_unstructured_mesh(path);
+  auto const mesh = read_mesh(path);
   ASSERT_EQ(mesh.zones.size(), 2u);
   EXPECT_EQ(mesh.zones[0].name, "FluidZone");
   EXPECT_EQ(count(mesh, ElementType::prism), GetParam().prisms);
@@ -50,7 +48,7 @@ TEST_P(RealCoil, IsReadWholeAndClosed) {
   ASSERT_EQ(mesh.patches.size(), 6u);
   auto const is_list = [](std::string const& note) { return note.find("is a list of nodes") != std::string::npos; };
   EXPECT_EQ(std::count_if(mesh.notes.begin(), mesh.notes.end(), is_list), 6);
-  auto const is_null = [](UnstructuredPatch const& patch) { return patch.bc_type == "Null"; };
+  auto const is_null = [](Patch const& patch) { return patch.bc_type == "Null"; };
   EXPECT_EQ(std::count_if(mesh.patches.begin(), mesh.patches.end(), is_null), 3);
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     EXPECT_GT(face_patches.faces_of_patch[p], 0) << mesh.patches[p].name;
@@ -83,7 +81,7 @@ TEST_P(RealCoil, IsReadWholeAndClosed) {
 TEST_P(RealCoil, ComesThroughUnchangedButForItsCoordinates) {
   TemporaryFolder const folder;
   auto const out = folder.file("out.cgns");
-  auto const mesh = read_unstructured_mesh(path);
+  auto const mesh = read_mesh(path);
   write_morphed(path, out, mesh, mesh.coordinates);
   auto const before = dump_tree(path);
   EXPECT_EQ(dump_tree(out), before);
@@ -96,7 +94,7 @@ TEST_P(RealCoil, ComesThroughUnchangedButForItsCoordinates) {
 
 TEST(RealUnstructured, TurbineCascadeIsReadWholeWithItsPeriodicPoints) {
   auto const path = shared_mesh("mesh_vki_turbine.su2");
-  auto const mesh = read_unstructured_mesh(path);
+  auto const mesh = read_mesh(path);
   EXPECT_EQ(mesh.dimension, 2);
   EXPECT_EQ(mesh.n_nodes(), 16009);
   EXPECT_EQ(count(mesh, ElementType::quadrilateral), 15714);

@@ -1,6 +1,6 @@
 // Wraps and background meshes of walls that others have meshed.
 #include <gridmorph/boundary/coverage.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/plan/elements/background.hpp>
@@ -36,15 +36,14 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   Real const& real = GetParam();
   std::string const path = shared_mesh(real.file);
   if (path.empty()) GTEST_SKIP() << real.file << " is not there; its stand-in is tested";
-  UnstructuredMesh const mesh =
-      mesh_kind(path) == MeshKind::structured ? as_hexahedra(read_mesh(path)) : read_unstructured_mesh(path);
+  Mesh const mesh = mesh_kind(path) == MeshKind::structured ? as_hexahedra(read_mesh(path)) : read_mesh(path);
   UnstructuredTopology const topology = make_topology(mesh);
   BoundaryFacePatches const face_patches = find_face_patches(mesh, topology);
   std::vector<CsrGraph> walls(1);
   for (Index f = 0; f < topology.boundary.size(); ++f) {
     int const p = face_patches.patch[std::size_t(f)];
     if (p < 0) continue;
-    UnstructuredPatch const& patch = mesh.patches[std::size_t(p)];
+    Patch const& patch = mesh.patches[std::size_t(p)];
     if (patch.name == real.wall || to_string(patch.kind) == real.wall) walls[0].add(topology.boundary.nodes[f]);
   }
   ASSERT_GT(walls[0].size(), 0);
@@ -105,7 +104,7 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   Links const links = connect_and_check(again, {});
   EXPECT_GT(links.all.size(), 0u);
   write_mesh(folder.file("wrap.cgns"), wrap_mesh(wrap));
-  EXPECT_GT(read_unstructured_mesh(folder.file("wrap.cgns")).n_elements(), 0);
+  EXPECT_GT(read_mesh(folder.file("wrap.cgns")).n_elements(), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Walls, RealWrap,

@@ -20,13 +20,13 @@ using Case = test::UnstructuredCase;
 
 /// Pins of radius 0.25 side by side in a channel of height 1, from x = -0.5 on, each amid an O-mesh of quadrilaterals at the pin and
 /// triangles beyond. Patches "pin1", ..., "lower", "upper" (walls), "inlet", "outlet".
-UnstructuredMesh pins(int count) {
+Mesh pins(int count) {
   constexpr int side = 8, around = 4 * side, layers = 9;
   std::vector<double> height{0};
   for (double h = 0.003; height.back() < 1; h = std::min(1.3 * h, 0.06)) height.push_back(height.back() + h / 0.25);
   double const last = height.back();
   for (double& h : height) h /= last;
-  UnstructuredMesh mesh;
+  Mesh mesh;
   mesh.dimension = 2;
   mesh.source = "pins";
   std::map<std::pair<long, long>, Index32> number;
@@ -77,7 +77,7 @@ UnstructuredMesh pins(int count) {
     }
   }
   for (auto& [name, list] : faces) {
-    UnstructuredPatch patch;
+    Patch patch;
     patch.name = name;
     patch.kind = name == "inlet" ? PatchKind::inflow : name == "outlet" ? PatchKind::outflow : PatchKind::wall;
     patch.zone = 0;
@@ -105,10 +105,10 @@ Coordinates heaved(Case const& c, std::string const& moving, double by, std::vec
 }
 
 TEST(StandingWall, MovesTheMeshAlikeWhicheverRuleHoldsIt) {
-  UnstructuredMesh box = test::airfoil(60, 8, 2e-3, 1.3, 3);
+  Mesh box = test::airfoil(60, 8, 2e-3, 1.3, 3);
   for (auto& patch : box.patches) patch.kind = PatchKind::wall;
   struct {
-    UnstructuredMesh mesh;
+    Mesh mesh;
     std::string moving;
     double by;
     std::vector<std::string> others;
@@ -154,7 +154,7 @@ TEST(StandingWall, KeepsItsBoundaryLayerBesideAWallThatMoves) {
 TEST(StandingWall, HoldsNodesThatSlipBesideIt) {
   // A body near the corner between a wall that stands and a plane to slide on; thin cells on the wall, or tetrahedra.
   for (bool const thin : {true, false}) {
-    UnstructuredMesh mesh = test::box_around(
+    Mesh mesh = test::box_around(
         {12, 12, 12},
         [](Vec3 const& p) {
           return norm(p - Vec3{4, 3.5, 6}) < 1.8;
@@ -166,8 +166,8 @@ TEST(StandingWall, HoldsNodesThatSlipBesideIt) {
       if (thin && x < 2) mesh.coordinates.x(n) = 2 * std::pow(x / 2, 6);  // first cell 1/32
     }
     Case const c(mesh);
-    UnstructuredOptions options;
-    options.offset = 2.5;
+    PlanOptions options;
+    options.elements.offset = 2.5;
     auto const m =
         c.morph(motion_of({rule_for({"body"}, translation({0, 0, 0.6})), rule_for({"j_min"}, SlipRule{})}), options);
     double largest = 0, beside = 0;

@@ -166,10 +166,10 @@ TEST(SteppedMorph, ABackgroundMeshOfOnesOwnIsRefusedAndTheMeshIsAsItWas) {
   auto const prepared = prepare(c.mesh, c.topology, c.face_patches, turn(10), {});
   Coordinates const before = c.mesh.coordinates;
   StepOptions options;
-  options.plan.background = std::make_shared<Background const>();
+  options.plan.elements.background = std::make_shared<Background const>();
   auto const u = prepared.boundary_displacement(c.mesh);
   EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options), PlanError);
-  options.plan.background = {};
+  options.plan.elements.background = {};
   options.progress = [](int step) {
     if (step == 2) throw MotionError("stop");
   };

@@ -3,7 +3,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
@@ -36,9 +36,9 @@ std::string const square =
 
 class Su2 : public testing::Test {
  protected:
-  UnstructuredMesh read(std::string const& text) {
+  Mesh read(std::string const& text) {
     write_bytes(path_, text);
-    return read_unstructured_mesh(path_);
+    return read_mesh(path_);
   }
   std::string error(std::string const& text) {
     return message_of<Error>([&] { read(text); });
@@ -119,7 +119,7 @@ TEST_F(Su2, AWrittenFileDiffersInTheCoordinatesThatMoved) {
   after.set(4, {1.0 / 3, 1, 0});
   write_morphed(path_, out, mesh, after);
   EXPECT_EQ(bytes_of(out), replaced(square, "5e-1 1 4", "3.333333333333333e-01 1 4"));
-  expect_same_coordinates(read_unstructured_mesh(out).coordinates, after);
+  expect_same_coordinates(read_mesh(out).coordinates, after);
 }
 
 TEST_F(Su2, FieldsAndOtherMeshesAreRefused) {

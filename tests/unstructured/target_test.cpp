@@ -103,7 +103,7 @@ TEST(UnstructuredTarget, AWallTakesTheShapeBetweenItsEdges) {
 }
 
 TEST(UnstructuredTarget, LinesOfA2DMeshGoToAProfileByArcLength) {
-  UnstructuredMesh mesh = test::airfoil(80, 4, 2e-3, 1.3, 5);
+  Mesh mesh = test::airfoil(80, 4, 2e-3, 1.3, 5);
   reorder(mesh, order_by_position(mesh));
   Case const c(std::move(mesh));
   auto const nodes = c.nodes_of("airfoil");
@@ -134,13 +134,13 @@ TEST(UnstructuredTarget, LinesOfA2DMeshGoToAProfileByArcLength) {
 TEST(UnstructuredTarget, ARoundProfileThatTurnsTakesItsNodesAlong) {
   // An ellipse has no corner that could say where its nodes belong.
   constexpr int around = 48, layers = 6;
-  UnstructuredMesh mesh;
+  Mesh mesh;
   mesh.dimension = 2;
   mesh.source = "ellipse";
   mesh.add_zone("plane", around * (layers + 1));
   mesh.coordinates = Coordinates(mesh.n_nodes());
   auto const ellipse = [](double angle) { return Vec3{std::cos(angle), 0.3 * std::sin(angle), 0}; };
-  UnstructuredPatch body, outer;
+  Patch body, outer;
   for (int j = 0; j <= layers; ++j)
     for (int i = 0; i < around; ++i) {
       Vec3 const x = ellipse(2 * pi * i / around), far = 4 * Vec3{x.x, x.y / 0.3, 0};
@@ -183,9 +183,7 @@ TEST(UnstructuredTarget, AnOpenLineGoesFromEndToEnd) {
 }
 
 TEST(UnstructuredTarget, PointsForNodesAreInTheOrderOfTheFile) {
-  UnstructuredMesh mesh = test::box_around({7, 7, 7}, [](Vec3 const& p) {
-    return norm(p - Vec3{3.5, 3.5, 3.5}) < 1.5;
-  });
+  Mesh mesh = test::box_around({7, 7, 7}, [](Vec3 const& p) { return norm(p - Vec3{3.5, 3.5, 3.5}) < 1.5; });
   TargetGeometry target;
   Case const before(mesh);
   for (Index32 const n : before.nodes_of("body")) target.nodes.push_back(1.1 * mesh.coordinates[n]);

@@ -38,7 +38,7 @@ TEST(UnstructuredTopology, NeighboursOfHexahedraAreThoseOfTheCells) {
 }
 
 /// Every inner side is seen from both elements, and the area vectors of the boundary add up to zero and its flux to the volume.
-void expect_closed(UnstructuredMesh const& mesh, double volume) {
+void expect_closed(Mesh const& mesh, double volume) {
   auto const topology = make_topology(mesh);
   std::map<std::pair<Index32, Index32>, int> seen;
   for (Index e = 0; e < mesh.n_elements(); ++e)
@@ -70,7 +70,7 @@ TEST(UnstructuredTopology, BoundaryFacesCloseTheMeshAndPointOutwards) {
 
 TEST(UnstructuredTopology, PyramidsMeetTheirNeighbours) {
   // A unit cube of six pyramids around its centre.
-  UnstructuredMesh mesh;
+  Mesh mesh;
   mesh.add_zone("cube", 9);
   mesh.coordinates = Coordinates(9);
   for (int n = 0; n < 8; ++n) mesh.coordinates.set(n, {double(n & 1), double(n >> 1 & 1), double(n >> 2)});
@@ -149,7 +149,7 @@ TEST(UnstructuredTopology, ElementsThatOverlapAreSaid) {
 TEST(UnstructuredTopology, CollapsedElementsMeetTheirNeighboursWhereTheyHaveFaces) {
   // A prism over the triangle of nodes 1, 2, 4 of a unit square, written as a hexahedron that names two nodes twice, beside
   // the prism of the other half.
-  UnstructuredMesh mesh;
+  Mesh mesh;
   mesh.add_zone("halves", 8);
   mesh.coordinates = Coordinates(8);
   for (int n = 0; n < 8; ++n) mesh.coordinates.set(n, {double(n & 1), double(n >> 1 & 1), double(n >> 2)});
@@ -198,7 +198,7 @@ TEST(UnstructuredTopology, ConnectionsLeadToTheElementBehind) {
 TEST(UnstructuredTopology, PointsAreMatchedByPosition) {
   auto const mesh = to_hexahedra(two_zones({}, false));
   auto const& c = mesh.connections.front();
-  std::vector<Index32> all(std::size_t(mesh.zones[1].n_nodes));
+  std::vector<Index32> all(std::size_t(mesh.zones[1].size()));
   for (std::size_t n = 0; n < all.size(); ++n) all[n] = Index32(mesh.zones[1].first_node + Index(n));
   EXPECT_EQ(match_points(mesh.coordinates, c.nodes, all, 1e-9), c.donor_nodes);
   std::vector<Index32> const far{Index32(mesh.zones[0].first_node)};
@@ -208,7 +208,7 @@ TEST(UnstructuredTopology, PointsAreMatchedByPosition) {
 TEST(UnstructuredTopology, PatchesThatTouchWithoutAConnectionAreFound) {
   auto mesh = to_hexahedra(two_zones({}, false));
   for (int const side : {0, 1}) {
-    UnstructuredPatch patch;
+    Patch patch;
     patch.name = side == 0 ? "this side" : "that side";
     patch.zone = side;
     patch.nodes = side == 0 ? mesh.connections[0].nodes : mesh.connections[0].donor_nodes;
@@ -243,7 +243,7 @@ TEST(UnstructuredTopology, FlatMeshesHaveEdgesAsBoundary) {
   EXPECT_NEAR(area, 20, 1e-12);
 }
 
-TEST(UnstructuredMesh, WhatDoesNotFitTogetherIsRefused) {
+TEST(Mesh, WhatDoesNotFitTogetherIsRefused) {
   auto const good = to_hexahedra(unit_box({2, 2, 2}));
   auto bad = good;
   bad.elements.nodes.item[3] = 1000;

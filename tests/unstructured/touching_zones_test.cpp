@@ -18,7 +18,7 @@ using Case = UnstructuredCase;
 /// A box around a body in two zones that touch at x = 8; no connection, but a patch on either side: "left", "right". The right zone's
 /// nodes there are off by `gap`.
 struct TwoZones {
-  UnstructuredMesh mesh;
+  Mesh mesh;
   std::vector<std::pair<Index32, Index32>> pairs;
 };
 TwoZones two_zones(PatchKind kind, double gap) {
@@ -33,7 +33,7 @@ TwoZones two_zones(PatchKind kind, double gap) {
   auto const connection = out.mesh.connections.front();
   out.mesh.connections.clear();
   for (bool const right : {false, true}) {
-    UnstructuredPatch patch;
+    Patch patch;
     patch.name = right ? "right" : "left";
     patch.kind = kind;
     patch.zone = right ? connection.donor_zone : connection.zone;

@@ -97,7 +97,7 @@ TEST(Tube, EndsWhereItsMeshDoes) {
     SCOPED_TRACE(c.name);
     gridmorph::Wrap const wrap = tube_wrap(c);
     Tube const& tube = *wrap.tube;
-    UnstructuredMesh const mesh = wrap_mesh(wrap);
+    Mesh const mesh = wrap_mesh(wrap);
     check_mesh(mesh);
     EXPECT_EQ(mesh.n_elements(), Index(tube.sections() - 1) * tube.around);
     for (int j = 0; j + 1 < tube.sections(); ++j)
@@ -203,8 +203,8 @@ TEST(OTypeBackground, IsBoundedByTheTubeAndByTheBox) {
     Background const background = make_background(wrap);
     Mesh const& mesh = background.mesh;
     // Volume: that of the box less that of the tube, each by sums over the tetrahedra of its cells' faces.
-    UnstructuredMesh const tube = wrap_mesh(wrap), cells = as_hexahedra(mesh);
-    auto volume = [](UnstructuredMesh const& m) {
+    Mesh const tube = wrap_mesh(wrap), cells = as_hexahedra(mesh);
+    auto volume = [](Mesh const& m) {
       double sum = 0;
       std::array<Index32, max_face_corners> room{};
       for (Index e = 0; e < m.n_elements(); ++e)
@@ -258,10 +258,10 @@ TEST(OTypeBackground, RowsReproduceLinearFieldsAtPointsOfTheFarField) {
 }
 
 TEST(Classification, OfATubeNamesEveryElementThatHasAPointInIt) {
-  UnstructuredMesh const mesh = to_prisms_and_tetrahedra(unit_box({10, 10, 24}), 4);
+  Mesh const mesh = to_prisms_and_tetrahedra(unit_box({10, 10, 24}), 4);
   Bodies rod;
   rod.rod({4.3, 5.1, 3}, {5.4, 4.6, 21}, 0.6);
-  UnstructuredMesh with_rod = rod.in_domain({0, 0, 0}, {10, 10, 24});
+  Mesh with_rod = rod.in_domain({0, 0, 0}, {10, 10, 24});
   WrapOptions options;
   options.offset = 0.7;
   options.tube = true;

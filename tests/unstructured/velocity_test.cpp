@@ -27,7 +27,7 @@ struct Planned {
   PreparedUnstructured prepared;
   UnstructuredMorpher<Exec> morpher;
 
-  Planned(Case const& of, Motion const& motion, UnstructuredOptions const& options = {})
+  Planned(Case const& of, Motion const& motion, PlanOptions const& options = {})
       : c(of),
         prepared(prepare(c.mesh, c.topology, c.face_patches, motion, options)),
         morpher(Exec(), prepared.plan, c.mesh.coordinates, {1, true}) {}
@@ -64,9 +64,9 @@ struct Planned {
 };
 
 /// A box of 9^3 cells whose inner third is the wall "body", with one layer of columns on it.
-UnstructuredOptions one_layer(BoundaryLayer::Mode mode = BoundaryLayer::Mode::rotate) {
-  UnstructuredOptions options;
-  options.cells = 1;  // a coarse background: the stages are the same
+PlanOptions one_layer(BoundaryLayer::Mode mode = BoundaryLayer::Mode::rotate) {
+  PlanOptions options;
+  options.elements.cells = 1;  // a coarse background: the stages are the same
   options.boundary_layers.push_back(
       {.walls = {"body"}, .extent = BoundaryLayer::Extent::layers, .layers = 1, .mode = mode});
   return options;
@@ -105,7 +105,7 @@ TEST(UnstructuredVelocity, IsTheDerivativeOfTheDisplacementWhereWallsTurnAndBend
 
 TEST(UnstructuredVelocity, HoldsInThePlaneToo) {
   Case const c(airfoil(48, 3, 0.02, 1.3, 4));
-  UnstructuredOptions options;
+  PlanOptions options;
   options.boundary_layers.push_back({.walls = {"airfoil"}, .extent = BoundaryLayer::Extent::layers, .layers = 2});
   Planned const p(c, motion_of({rule_for({"airfoil"}, translation({0.1, 0, 0}))}), options);
   auto const& plan = p.prepared.plan;
@@ -122,7 +122,7 @@ TEST(UnstructuredVelocity, HoldsInThePlaneToo) {
 TEST(UnstructuredVelocity, OfNodesThatSlideOnASurfaceOfRevolutionIsAlongIt) {
   // Half an annulus along x, whose case bulges; the hub shifts and twists, all ends slip.
   auto const radius = [](double x) { return 2 + 0.3 * std::pow(std::sin(x), 2); };
-  UnstructuredMesh mesh = to_hexahedra(unit_box({10, 5, 8}));
+  Mesh mesh = to_hexahedra(unit_box({10, 5, 8}));
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
     Vec3 const q = mesh.coordinates[n];
     double const x = q.x * std::numbers::pi / 10, angle = q.z * std::numbers::pi / 8;
@@ -147,8 +147,8 @@ TEST(UnstructuredVelocity, OfNodesThatSlideOnASurfaceOfRevolutionIsAlongIt) {
 }
 
 TEST(UnstructuredVelocity, OfPeriodicNodesIsOne) {
-  UnstructuredMesh mesh = flat_box(8, 5, 2);
-  UnstructuredConnection pair;
+  Mesh mesh = flat_box(8, 5, 2);
+  Connection pair;
   pair.name = "pair";
   pair.zone = pair.donor_zone = 0;
   pair.periodic.emplace();

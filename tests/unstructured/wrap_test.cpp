@@ -14,13 +14,13 @@ namespace gridmorph::test {
 namespace {
 
 struct Wrapped {
-  UnstructuredMesh mesh;
+  Mesh mesh;
   Wrap wrap;
 };
 
 Wrapped wrapped(Bodies const& bodies, WrapOptions const& options, Vec3 const& low = {-4, -4, -4},
                 Vec3 const& high = {5, 5, 5}) {
-  UnstructuredMesh mesh = bodies.in_domain(low, high);
+  Mesh mesh = bodies.in_domain(low, high);
   Wrap wrap = make_wrap(mesh, bodies.walls, options);
   return {std::move(mesh), std::move(wrap)};
 }
@@ -161,7 +161,7 @@ TEST(Wrap, OfABodyOnTheLimitOfTheMeshGoesBeyondItAndIsFull) {
   bodies.sphere({0, 0, 0}, 1, 24);
   Bodies half;
   half.walls.front() = {};
-  UnstructuredMesh mesh = bodies.in_domain({-4, -4, 0}, {4, 4, 4});
+  Mesh mesh = bodies.in_domain({-4, -4, 0}, {4, 4, 4});
   for (Index f = 0; f < bodies.walls.front().size(); ++f) {
     auto const face = bodies.walls.front()[f];
     if (std::all_of(face.begin(), face.end(), [&](Index32 n) { return mesh.coordinates[n].z > -1e-9; }))
@@ -223,7 +223,7 @@ TEST(Wrap, AnswersForBoxesLikeALookAtEveryCell) {
 TEST(Wrap, RefusesWhatItCannotWrap) {
   Bodies bodies;
   bodies.box({0, 0, 0}, {1, 1, 1});
-  UnstructuredMesh const mesh = bodies.in_domain({-1, -1, -1}, {2, 2, 2});
+  Mesh const mesh = bodies.in_domain({-1, -1, -1}, {2, 2, 2});
   std::vector<CsrGraph> const none(1);
   expect_all_in(message_of<MeshError>([&] { make_wrap(mesh, none, {.offset = 0.1}); }), {"nothing to wrap"});
   expect_all_in(message_of<MotionError>([&] { make_wrap(mesh, bodies.walls, {}); }), {"offset", "positive"});
@@ -233,7 +233,7 @@ TEST(Wrap, IsShownAsAMeshOfItsCells) {
   Bodies bodies;
   bodies.sphere({0, 0, 0}, 1, 12);
   Wrap const wrap = wrapped(bodies, {.offset = 0.1, .resolution = 10}).wrap;
-  UnstructuredMesh const mesh = wrap_mesh(wrap);
+  Mesh const mesh = wrap_mesh(wrap);
   check_mesh(mesh);
   EXPECT_EQ(mesh.n_elements(), wrap.n_inside());
   // Closed: twice the faces of the cells are those between cells and those on the surface.
@@ -251,7 +251,7 @@ TEST(SuggestedOffset, KeepsLayersInsideAndLeavesRoomForOtherBoundaries) {
 
 TEST(Classification, AgreesWithTheWrapElementByElement) {
   // A block of unit cells from (0, 0, 0) to (12, 12, 12) with an imagined wall in the middle.
-  UnstructuredMesh const mesh = to_prisms_and_tetrahedra(unit_box({12, 12, 12}), 4);
+  Mesh const mesh = to_prisms_and_tetrahedra(unit_box({12, 12, 12}), 4);
   std::vector<CsrGraph> walls(1);
   auto node = [](int i, int j, int k) { return Index32(i + 13 * (j + 13 * k)); };
   for (int i = 4; i < 8; ++i)

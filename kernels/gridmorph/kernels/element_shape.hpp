@@ -23,7 +23,7 @@ enum class ElementType : std::uint8_t {
   pyramid,
   prism,
   hexahedron,
-  polyhedron  ///< any other volume element; its faces are in UnstructuredMesh::polyhedra
+  polyhedron  ///< any other volume element; its faces are in Mesh::polyhedra
 };
 
 inline constexpr int n_element_types = 7;

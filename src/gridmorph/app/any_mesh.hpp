@@ -8,7 +8,6 @@
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/surface/surface_io.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/report/step_times.hpp>

@@ -34,7 +34,7 @@ KindTraits const& ElementMesh::traits() {
 
 ElementMesh::ElementMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
                          std::vector<std::string> const& leave_out)
-    : mesh(load_unstructured_mesh(path, side_file, leave_out)) {
+    : mesh(load_mesh(path, side_file, leave_out)) {
   if (is_scattered(mesh)) reorder(mesh, order_by_position(mesh));
   topology = make_topology(mesh);
   face_patches = find_face_patches(mesh, topology);
@@ -79,10 +79,10 @@ Coordinates ElementMesh::coordinates_of(std::filesystem::path const& path,
                                 mesh.source, path.string()));
   ReadOptions options;
   options.leave_out = leave_out;
-  UnstructuredMesh other = read_unstructured_mesh(path.string(), options);
+  Mesh other = read_mesh(path.string(), options);
   bool same = mesh.zones.size() == other.zones.size();
   for (std::size_t z = 0; same && z < mesh.zones.size(); ++z)
-    same = mesh.zones[z].n_nodes == other.zones[z].n_nodes && mesh.zones[z].n_elements == other.zones[z].n_elements;
+    same = mesh.zones[z].size() == other.zones[z].size() && mesh.zones[z].n_elements == other.zones[z].n_elements;
   if (same) {
     if (!mesh.file_order.node.empty()) reorder(other, mesh.file_order);
     same = mesh.elements.type == other.elements.type && mesh.elements.nodes.item == other.elements.nodes.item;

@@ -11,11 +11,11 @@ namespace gridmorph::cli {
 /// A mesh, in order by position where its file scatters it, with what follows from it.
 class ElementMesh final : public AnyMesh {
  public:
-  /// As load_unstructured_mesh() of side_file.hpp.
+  /// As load_mesh() of side_file.hpp.
   ElementMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
               std::vector<std::string> const& leave_out);
 
-  UnstructuredMesh mesh;
+  Mesh mesh;
   UnstructuredTopology topology;
   BoundaryFacePatches face_patches;
   std::vector<signed char> signs;     ///< numbering_signs() of the mesh

@@ -33,17 +33,19 @@ class ElementPlan final : public AnyPlan {
     problems.throw_if_any<MeshError>();
     Stopwatch watch;
     NodeGraph graph = make_node_graph(mesh.mesh, mesh.topology.elements_of_nodes);
-    bool const any = case_file.sequence || options_.motion >= 0;
-    auto boundary = boundary_conditions(mesh.mesh, mesh.topology, mesh.face_patches, graph, case_file.motion,
-                                        options_.walls, any ? Displacements::any : Displacements::of_the_rules);
+    bool const any = case_file.sequence || options_.elements.motion >= 0;
+    auto boundary =
+        boundary_conditions(mesh.mesh, mesh.topology, mesh.face_patches, graph, case_file.motion,
+                            options_.elements.walls, any ? Displacements::any : Displacements::of_the_rules);
     if (auto const& sequence = case_file.sequence) {  // the offset of the wrap reckons with all steps
-      options_.motion = 0;
+      options_.elements.motion = 0;
       for (int step = 0; step < sequence->steps; ++step)
-        options_.motion = std::max(
-            options_.motion, largest_of(evaluate(mesh.mesh, boundary, motion_at(case_file, sequence->moment(step)))));
+        options_.elements.motion =
+            std::max(options_.elements.motion,
+                     largest_of(evaluate(mesh.mesh, boundary, motion_at(case_file, sequence->moment(step)))));
     } else {
       displacement_ = evaluate(mesh.mesh, boundary);
-      if (options_.motion < 0) options_.motion = largest_of(displacement_);
+      if (options_.elements.motion < 0) options_.elements.motion = largest_of(displacement_);
     }
     double const seconds = watch.lap();
     prepared_ = prepare(mesh.mesh, mesh.topology, mesh.face_patches, std::move(graph), std::move(boundary), options_);
@@ -71,7 +73,7 @@ class ElementPlan final : public AnyPlan {
 
   [[nodiscard]] std::optional<Coordinates> morph_in_steps(
       std::vector<Vec3> const& displacement, int steps, std::function<void(int step)> const& progress) const override {
-    if (options_.background) return {};
+    if (options_.elements.background) return {};
     StepOptions options;
     options.steps = steps;
     options.plan = options_;
@@ -175,11 +177,10 @@ class ElementPlan final : public AnyPlan {
   }
 
  private:
-  static UnstructuredOptions options_of(CaseFile const& case_file) {
-    UnstructuredOptions options = case_file.unstructured;
-    options.boundary_layers = case_file.plan.boundary_layers;
+  static PlanOptions options_of(CaseFile const& case_file) {
+    PlanOptions options = case_file.plan;
     if (auto const& own = case_file.background)
-      options.background =
+      options.elements.background =
           std::make_shared<Background const>(make_background(read_mesh(own->path.string()), own->wrap, own->outer));
     return options;
   }
@@ -199,7 +200,7 @@ class ElementPlan final : public AnyPlan {
 
   ElementMesh const& mesh_;
   CaseFile const& case_file_;
-  UnstructuredOptions options_;
+  PlanOptions options_;
   PreparedUnstructured prepared_;
   std::vector<Vec3> displacement_;  ///< by the rules as they stand; empty in a sequence
   std::optional<UnstructuredMorpher<Exec>> morpher_;

@@ -20,7 +20,7 @@ std::string range_text(double low, double high) {
   return fmt::format("{:.5g} .. {:.5g}", low == 0 ? 0.0 : low, high == 0 ? 0.0 : high);
 }
 
-std::string types_text(UnstructuredMesh const& mesh, int zone) {
+std::string types_text(Mesh const& mesh, int zone) {
   auto const count = count_types(mesh, zone);
   std::string out;
   for (int t = 0; t < n_element_types; ++t) {
@@ -35,15 +35,15 @@ std::string types_text(UnstructuredMesh const& mesh, int zone) {
   return out;
 }
 
-Box box_of(UnstructuredMesh const& mesh, std::vector<Index32> const& nodes) {
+Box box_of(Mesh const& mesh, std::vector<Index32> const& nodes) {
   Box box;
   for (Index32 const n : nodes) box.add(mesh.coordinates[n]);
   return box;
 }
 
-Box box_of(UnstructuredMesh const& mesh, UnstructuredZone const& zone) {
+Box box_of(Mesh const& mesh, Zone const& zone) {
   Box box;
-  for (Index n = zone.first_node; n < zone.first_node + zone.n_nodes; ++n) box.add(mesh.coordinates[n]);
+  for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) box.add(mesh.coordinates[n]);
   return box;
 }
 
@@ -56,7 +56,7 @@ std::string list_text(std::string const& title, std::vector<std::string> const& 
   return text;
 }
 
-PeriodicSummary describe_connection(UnstructuredMesh const& mesh, UnstructuredConnection const& c) {
+PeriodicSummary describe_connection(Mesh const& mesh, Connection const& c) {
   double const size = mesh.size();
   std::vector<Vec3> from, to;
   for (std::size_t n = 0; n < c.nodes.size(); ++n) {
@@ -88,7 +88,7 @@ std::string ElementMesh::text(MeshSummary const& summary, std::string const& qua
   for (std::size_t z = 0; z < std::min(mesh.zones.size(), most_rows); ++z) {
     auto const& zone = mesh.zones[z];
     Box const box = box_of(mesh, zone);
-    text += fmt::format("  {}: {} nodes, {}; x {}, y {}, z {}\n", zone.name, zone.n_nodes, types_text(mesh, int(z)),
+    text += fmt::format("  {}: {} nodes, {}; x {}, y {}, z {}\n", zone.name, zone.size(), types_text(mesh, int(z)),
                         range_text(box.low.x, box.high.x), range_text(box.low.y, box.high.y),
                         range_text(box.low.z, box.high.z));
   }
@@ -135,7 +135,7 @@ nlohmann::json ElementMesh::json(MeshSummary const& summary, SnippetOptions cons
   json["zones"] = nlohmann::json::array();
   for (std::size_t z = 0; z < mesh.zones.size(); ++z)
     json["zones"].push_back({{"name", mesh.zones[z].name},
-                             {"nodes", mesh.zones[z].n_nodes},
+                             {"nodes", mesh.zones[z].size()},
                              {"elements", mesh.zones[z].n_elements},
                              {"types", types_json(int(z))},
                              {"box", box_json(box_of(mesh, mesh.zones[z]))}});
@@ -214,7 +214,7 @@ void measure_heights(ElementMesh const& loaded, std::vector<int> const& boundary
 }
 
 /// The axis that all periodic rotations share, its largest component positive.
-std::optional<Axis> common_axis(UnstructuredMesh const& mesh) {
+std::optional<Axis> common_axis(Mesh const& mesh) {
   std::optional<Axis> axis;
   for (auto const& c : mesh.connections) {
     if (!c.periodic || !(norm(c.periodic->rotation_angle_rad) > 0)) continue;
@@ -228,7 +228,7 @@ std::optional<Axis> common_axis(UnstructuredMesh const& mesh) {
 }
 
 /// Sides of one wall in two zones may coincide without a connection that says so: their nodes get one number.
-void join_by_position(UnstructuredMesh const& mesh, std::vector<BoundarySummary> const& boundaries,
+void join_by_position(Mesh const& mesh, std::vector<BoundarySummary> const& boundaries,
                       std::vector<std::vector<Index>>& nodes) {
   double const tolerance = 1e-6 * mesh.size();  // as for connections of a file
   auto const apart = [&](Box const& a, Box const& b) {

@@ -6,7 +6,7 @@
 
 namespace gridmorph {
 
-std::vector<std::vector<Index32>> nodes_of_patches(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+std::vector<std::vector<Index32>> nodes_of_patches(Mesh const& mesh, UnstructuredTopology const& topology,
                                                    BoundaryFacePatches const& face_patches) {
   std::vector<std::vector<Index32>> nodes(mesh.patches.size());
   for (Index f = 0; f < topology.boundary.size(); ++f)
@@ -26,7 +26,7 @@ std::vector<std::vector<Index32>> nodes_of_patches(UnstructuredMesh const& mesh,
 namespace {
 
 /// The connection that is this one seen from its donor's side, or the connection itself.
-std::size_t partner_of(UnstructuredMesh const& mesh, std::size_t c) {
+std::size_t partner_of(Mesh const& mesh, std::size_t c) {
   auto const& own = mesh.connections[c];
   for (std::size_t d = 0; d < mesh.connections.size(); ++d) {
     auto const& other = mesh.connections[d];
@@ -42,7 +42,7 @@ std::size_t partner_of(UnstructuredMesh const& mesh, std::size_t c) {
 
 }  // namespace
 
-Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Index32>> const& nodes_of_patch) {
+Mesh boundary_outline(Mesh const& mesh, std::vector<std::vector<Index32>> const& nodes_of_patch) {
   Mesh outline;
   outline.source = mesh.source;
   outline.families = mesh.families;
@@ -55,7 +55,7 @@ Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Inde
   Vec3 const across = flat ? mesh.size() * plane_normal(mesh) : Vec3{};
   std::vector<std::vector<Index32> const*> lists;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    UnstructuredPatch const& from = mesh.patches[p];
+    Patch const& from = mesh.patches[p];
     auto const& nodes = nodes_of_patch[p];
     Patch patch{from.name, from.bc_type, from.kind, from.families, 0, {}};
     patch.zone = add_zone(mesh.zones[std::size_t(from.zone)].name, nodes.size());
@@ -66,7 +66,7 @@ Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Inde
   }
   int const first = int(outline.zones.size());
   for (std::size_t c = 0; c < mesh.connections.size(); ++c) {
-    UnstructuredConnection const& from = mesh.connections[c];
+    Connection const& from = mesh.connections[c];
     Interface1to1 interface;
     interface.name = from.name;
     interface.families = from.families;
@@ -90,8 +90,8 @@ Mesh boundary_outline(UnstructuredMesh const& mesh, std::vector<std::vector<Inde
   return outline;
 }
 
-PatchFaces patch_faces(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                       BoundaryFacePatches const& face_patches, std::vector<std::vector<Index32>> const& nodes_of_patch,
+PatchFaces patch_faces(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
+                       std::vector<std::vector<Index32>> const& nodes_of_patch,
                        std::vector<std::uint8_t> const& wanted) {
   PatchFaces out;
   out.lines = mesh.dimension == 2;

@@ -5,7 +5,7 @@
 
 namespace gridmorph {
 
-std::vector<Index> coincident_nodes(Mesh const& mesh) {
+std::vector<Index> coincident_block_nodes(Mesh const& mesh) {
   DisjointSets<Index> sets(std::size_t(mesh.n_nodes()));
   TopologyOptions any;
   any.matching_tolerance = mesh.size();

@@ -13,7 +13,7 @@ namespace {
 
 class Relaxation {
  public:
-  Relaxation(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, PreparedUnstructured const& prepared,
+  Relaxation(Mesh const& mesh, UnstructuredTopology const& topology, PreparedUnstructured const& prepared,
              Coordinates& morphed, RelaxOptions const& options)
       : mesh_(mesh),
         topology_(topology),
@@ -178,7 +178,7 @@ class Relaxation {
       x_.set(plan.copies[k], x[plan.copies[k]] + (x_[plan.copied[k]] - x[plan.copied[k]]));
   }
 
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   UnstructuredTopology const& topology_;
   PreparedUnstructured const& prepared_;
   Coordinates& x_;
@@ -189,7 +189,7 @@ class Relaxation {
 
 }  // namespace
 
-RelaxReport relax_bad_elements(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+RelaxReport relax_bad_elements(Mesh const& mesh, UnstructuredTopology const& topology,
                                PreparedUnstructured const& prepared, Coordinates& morphed,
                                RelaxOptions const& options) {
   return Relaxation(mesh, topology, prepared, morphed, options).run();

@@ -29,7 +29,7 @@ struct RelaxReport {
 /// boundaries that are held and in columns keep theirs. A round that leaves more bad elements than there were is taken back, and
 /// the next ones have half as many sweeps. Explicit, deterministic; cost: the determinants of all elements once,
 /// per round those around the nodes that move.
-RelaxReport relax_bad_elements(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+RelaxReport relax_bad_elements(Mesh const& mesh, UnstructuredTopology const& topology,
                                PreparedUnstructured const& prepared, Coordinates& morphed,
                                RelaxOptions const& options = {});
 

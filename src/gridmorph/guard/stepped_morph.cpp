@@ -14,25 +14,25 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 
 }  // namespace
 
-Coordinates morph_in_steps(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topology,
                            BoundaryFacePatches const& face_patches, PreparedUnstructured const& prepared,
                            std::vector<Vec3> const& displacement, StepOptions const& options) {
-  if (options.plan.background)
+  if (options.plan.elements.background)
     throw PlanError(
         "a background mesh of your own stands still while the walls move: it serves one step alone; leave it out to "
         "morph in "
         "steps");
   MotionPath const path(mesh.coordinates, prepared.graph, prepared.boundary, displacement);
   auto const& known = prepared.plan.known;
-  UnstructuredOptions plan = options.plan;
-  UnstructuredMesh now = mesh;
+  PlanOptions plan = options.plan;
+  Mesh now = mesh;
   for (int step = 1; step <= options.steps; ++step) {
     if (options.progress) options.progress(step);
     auto given = path.at(double(step) / options.steps);
-    plan.motion = 0;
+    plan.elements.motion = 0;
     for (std::size_t k = 0; k < given.size(); ++k) {
       given[k] = mesh.coordinates[known[k]] + given[k] - now.coordinates[known[k]];
-      plan.motion = std::max(plan.motion, norm(given[k]));
+      plan.elements.motion = std::max(plan.elements.motion, norm(given[k]));
     }
     auto const step_plan = prepare(now, topology, face_patches, prepared.graph, prepared.boundary, plan);
     Coordinates moved(mesh.n_nodes());

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/guard/guard.hpp>
-#include <gridmorph/plan/unstructured_options.hpp>
+#include <gridmorph/plan/options.hpp>
 
 #include <functional>
 #include <vector>
@@ -11,7 +11,7 @@ namespace gridmorph {
 
 struct StepOptions {
   int steps = 2;
-  UnstructuredOptions plan;  ///< of every step; `motion` is found per step
+  PlanOptions plan;  ///< of every step; `motion` is found per step
   RelaxOptions relax;
   std::function<void(int step)> progress;  ///< called before each step, from 1; may be empty
 };
@@ -23,7 +23,7 @@ struct StepOptions {
 ///
 /// Returns the new coordinates. Throws PlanError for a background mesh of the user's, which stands still while the walls move.
 /// Cost: a plan, an apply and a guard per step, and room for a second list of elements, whose coordinates move on the way.
-Coordinates morph_in_steps(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topology,
                            BoundaryFacePatches const& face_patches, PreparedUnstructured const& prepared,
                            std::vector<Vec3> const& displacement, StepOptions const& options);
 

@@ -1,4 +1,4 @@
-// Meshes in and out of files. One small interface; it speaks CGNS and PLOT3D.
+// Meshes in and out of files. One small interface; it speaks CGNS (HDF5 and ADF), PLOT3D and SU2.
 //
 // What is read, what is refused and what is kept: docs/formats.md. The functions throw IoError (the file cannot be
 // opened, is damaged, or holds something else), MeshError (ranges, donors or coordinates that cannot be used) or
@@ -6,6 +6,7 @@
 // the CGNS library is not.
 #pragma once
 
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <memory>
@@ -20,9 +21,26 @@ enum class FileFormat { cgns_hdf5, cgns_adf };
 
 std::string_view to_string(FileFormat format);
 
+enum class MeshKind { structured, unstructured };
+
+/// What is known of a mesh file before it is read.
+struct MeshFileFacts {
+  MeshFormat format = MeshFormat::cgns;
+  MeshKind kind = MeshKind::structured;
+  std::vector<std::string>
+      linked;  ///< other files that links of a CGNS file lead to, as far as they are there; ascending
+};
+
+/// Opens a CGNS file once and reads its tree. Throws IoError as read_mesh() does. `leave_out`: as in ReadOptions.
+MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out = {});
+
+/// What a file holds, from its first bytes and its zone types. Files that are neither CGNS nor SU2 count as structured, so
+/// that read_mesh() says what it makes of them. Throws IoError for a file that mixes structured and unstructured zones.
+MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leave_out = {});
+
 struct ReadOptions {
   /// false: topology only, Mesh::coordinates stays empty (2-D zones are still made two planes thick in their index
-  /// ranges). For listings of large files.
+  /// ranges). For listings of large files; of meshes of blocks only.
   bool coordinates = true;
   /// What a PLOT3D file is, for files that could be several things: "unformatted", "big-endian", "single", ... (docs/formats.md).
   std::string plot3d_format = {};
@@ -31,28 +49,31 @@ struct ReadOptions {
   std::vector<std::string> leave_out = {};
 };
 
-/// Reads a multi-block structured mesh. All problems of the mesh are reported in one error; what was skipped or assumed
-/// is in Mesh::notes. PLOT3D files have neither patches nor interfaces: read_side_file (casefile) or find_interfaces (topology)
-/// add them. Cost: one pass over the file's coordinates, read straight into the flat arrays where they are stored in double
-/// precision.
+/// Reads a mesh of blocks or of elements. All problems of the mesh are reported in one error; what was skipped or assumed
+/// is in Mesh::notes. PLOT3D files have neither patches nor interfaces: read_side_file (casefile) or find_interfaces (boundary)
+/// add them. Elements are taken as they are numbered, inside out or not. Cost: one pass over the file's coordinates, read straight into
+/// the flat arrays where they are stored in double precision, and one over its elements.
 Mesh read_mesh(std::string const& path, ReadOptions const& options = {});
 
 struct WriteOptions {
   FileFormat format = FileFormat::cgns_hdf5;
-  /// Mesh::two_dimensional is written as index dimension 2; 2 drops CoordinateZ, 3 keeps it.
+  /// Meshes of Mesh::dimension 2 are written as index dimension 2; 2 drops CoordinateZ, 3 keeps it.
   int physical_dimension = 3;
   /// Unstructured meshes: a boundary condition lists its nodes, as older programs write it; its faces are a section of elements of the same
   /// name, where a reader that wants them finds them.
   bool boundary_nodes = false;
 };
 
-/// Writes a mesh as a new file: zones, coordinates (single precision where the zone says so), families, boundary
-/// conditions, 1-to-1 interfaces with Transform and Periodic_t; no units. A family whose patches share one BC type gets
-/// that type, and its patches become FamilySpecified. Patches of kind `connection` have no donor in a Mesh and become
-/// UserDefined boundary conditions of the same name. The file appears whole or not at all.
+/// Writes a mesh as a new CGNS file: zones, coordinates (single precision where the zone says so), families, boundary
+/// conditions, connections with Periodic_t; no units. The file appears whole or not at all.
+///
+/// Blocks: 1-to-1 interfaces with Transform. A family whose patches share one BC type gets that type, and its patches become
+/// FamilySpecified. Patches of kind `connection` have no donor in a Mesh and become UserDefined boundary conditions of the same name.
+/// Elements: faces of boundary conditions as sections of their own, connections as Abutting1to1 point lists; in the order of the
+/// file that the mesh came from. Polyhedra are refused.
 void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options = {});
 
-/// Writes a mesh as write_mesh does, but zone by zone: for meshes that never are in memory as a whole. The file appears with
+/// Writes a mesh as write_mesh does, but zone by zone: for meshes of blocks that never are in memory as a whole. The file appears with
 /// commit(), or not at all. While a writer is alive, no other file may fail to be written (see MachineError above).
 class MeshFileWriter {
  public:
@@ -83,7 +104,7 @@ struct NodeField {
   FieldUnit unit = FieldUnit::number;
 };
 
-/// One value per cell: zones one after another, i fastest.
+/// One value per cell: blocks one after another, i fastest, or elements.
 struct CellField {
   std::string name;
   std::vector<double> values;  ///< (n_cells)
@@ -101,10 +122,14 @@ struct OutputFields {
   [[nodiscard]] bool empty() const { return !displacement && nodes.empty() && cells.empty(); }
 };
 
+/// A mesh of elements as write_mesh() writes it, with other coordinates than its own, and with fields.
+void write_mesh(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields,
+                WriteOptions const& options = {});
+
 /// Copies the file that `mesh` was read from and replaces its node coordinates, in the precision they are stored in;
-/// everything else comes through unchanged. Of a 2-D mesh plane 0 is written. output may be input. The copy is made
-/// beside the output and renamed when complete: on any failure the output is as it was before. PLOT3D files have no place for
-/// fields.
+/// everything else comes through unchanged. Of blocks of a 2-D mesh plane 0 is written. output may be input. The copy is made
+/// beside the output and renamed when complete: on any failure the output is as it was before. PLOT3D and SU2 files have no place for
+/// fields; an SU2 file stays text, byte for byte the same where a coordinate did not change.
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
                    OutputFields const& fields = {});
 

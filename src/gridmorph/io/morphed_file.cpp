@@ -17,20 +17,13 @@ void check_same_mesh(File const& file, Layout const& layout, Mesh const& mesh) {
   else
     for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
       auto const& found = layout.zones[z];
-      if (found.name != mesh.zones[z].name || found.mesh_extent() != mesh.zones[z].extent)
-        problems.add(file.path() + ": zone '" + found.name + "' is not zone '" + mesh.zones[z].name +
+      auto const& zone = mesh.zones[z];
+      bool const same_size =
+          mesh.is_structured() ? found.mesh_extent() == zone.extent : found.nodes_in_file() == zone.size();
+      if (found.name != zone.name || !same_size)
+        problems.add(file.path() + ": zone '" + found.name + "' is not zone '" + zone.name +
                      "' of the mesh, or has another size; give the file that the mesh was read from");
     }
-  check_own_coordinates(file, layout, problems);
-  problems.throw_if_any<IoError>();
-}
-
-void check_same_mesh(File const& file, Layout const& layout, UnstructuredMesh const& mesh) {
-  Problems problems;
-  bool same = layout.zones.size() == mesh.zones.size();
-  for (std::size_t z = 0; same && z < mesh.zones.size(); ++z)
-    same = layout.zones[z].name == mesh.zones[z].name && layout.zones[z].nodes_in_file() == mesh.zones[z].n_nodes;
-  if (!same) problems.add(file.path() + ": holds other zones than the mesh; give the file that the mesh was read from");
   check_own_coordinates(file, layout, problems);
   problems.throw_if_any<IoError>();
 }
@@ -79,7 +72,7 @@ void check_written(File const& file, ZoneLayout const& zone, int component, doub
 
 namespace {
 
-std::vector<std::string> names_of(auto const& zones) {
+std::vector<std::string> names_of(std::vector<Zone> const& zones) {
   std::vector<std::string> out;
   for (auto const& zone : zones) out.push_back(zone.name);
   return out;
@@ -89,14 +82,8 @@ std::vector<std::string> names_of(auto const& zones) {
 
 Layout zones_of(File const& file, Node const& tree, Mesh const& mesh) {
   Problems problems;
-  auto layout = find_zones(file, tree, problems, all_but(tree, names_of(mesh.zones)));
-  problems.throw_if_any<IoError>();
-  return layout;
-}
-
-Layout unstructured_zones_of(File const& file, Node const& tree, UnstructuredMesh const& mesh) {
-  Problems problems;
-  auto layout = find_unstructured_zones(file, tree, problems, all_but(tree, names_of(mesh.zones)));
+  auto const find = mesh.is_structured() ? find_zones : find_unstructured_zones;
+  auto layout = find(file, tree, problems, all_but(tree, names_of(mesh.zones)));
   problems.throw_if_any<IoError>();
   return layout;
 }

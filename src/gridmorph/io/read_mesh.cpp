@@ -1,12 +1,11 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns/cgns_boundary.hpp>
 #include <gridmorph/io/cgns/cgns_layout.hpp>
-#include <gridmorph/io/extrude.hpp>
 #include <gridmorph/io/file_check.hpp>
-#include <gridmorph/io/file_kind.hpp>
-#include <gridmorph/io/finite_check.hpp>
-#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/plot3d/plot3d.hpp>
+#include <gridmorph/io/su2/su2_file.hpp>
+
+#include <set>
 
 namespace gridmorph {
 
@@ -14,70 +13,65 @@ std::string_view to_string(FileFormat format) { return format == FileFormat::cgn
 
 namespace {
 
-std::array<double*, 3> components(Coordinates const& c) { return {c.x.data(), c.y.data(), c.z.data()}; }
-
-void read_coordinates(cgns::File const& file, cgns::Layout const& layout, Mesh& mesh) {
-  mesh.coordinates = Coordinates(mesh.n_nodes());
-  auto const flat_arrays = components(mesh.coordinates);
-  std::vector<double> plane;
-  for (std::size_t z = 0; z < layout.zones.size(); ++z) {
-    auto const& from = layout.zones[z];
-    auto const& zone = mesh.zones[z];
-    for (int c = 0; c < 3; ++c) {
-      double* const dest = flat_arrays[c] + zone.first_node;
-      if (from.flat_axis < 0) {
-        read_component(file, from, c, dest);
-        continue;
-      }
-      plane.resize(std::size_t(from.nodes_in_file()));
-      read_component(file, from, c, plane.data());
-      auto const p = cgns::plane_steps(zone, from.flat_axis);
-      auto value = plane.begin();
-      for (int b = 0; b < zone.extent[p.axis[1]]; ++b)
-        for (int a = 0; a < zone.extent[p.axis[0]]; ++a) {
-          Index const n = a * p.step[0] + b * p.step[1];
-          dest[n] = dest[n + p.across] = *value++;
-        }
+MeshKind kind_of(cgns::File const& file, cgns::Node const& tree, std::vector<std::string> const& leave_out) {
+  std::string structured, unstructured;
+  for (auto const* base : tree.all("CGNSBase_t"))
+    for (auto const* zone : base->all("Zone_t")) {
+      if (cgns::is_left_out(leave_out, base->name, zone->name)) continue;
+      (zone_type(file, *zone) == "Unstructured" ? unstructured : structured) += " '" + zone->name + "'";
     }
-  }
+  if (!structured.empty() && !unstructured.empty())
+    throw IoError(
+        file.path() + ": mixes structured zones (" + structured.substr(1, 200) + ") with unstructured ones (" +
+        unstructured.substr(1, 200) +
+        "); such hybrid files cannot be handled, write the two kinds into files of their own, or name the zones "
+        "or the base of one kind in leave_out");
+  return unstructured.empty() ? MeshKind::structured : MeshKind::unstructured;
+}
+
+void collect_linked(cgns::Node const& node, std::set<std::string>& files) {
+  if (!node.file.empty()) files.insert(node.file);
+  for (auto const& child : node.children) collect_linked(child, files);
+}
+
+/// Files of one mesh, without names for parts of it.
+Mesh read_without_names(std::string const& path, char const* format, ReadOptions const& options,
+                        Mesh (*read)(std::string const& path, ReadOptions const& options)) {
+  if (!options.leave_out.empty())
+    throw IoError(path + ": leave_out is for CGNS files, which name bases and zones; remove it for " + format);
+  return read(path, options);
 }
 
 }  // namespace
 
-Mesh read_mesh(std::string const& path, ReadOptions const& options) {
-  if (options.plot3d_format.empty()) refuse_other_format(path);
-  if (!cgns::is_cgns(path)) {
-    if (!options.leave_out.empty())
-      throw IoError(path + ": leave_out is for CGNS files, which name bases and zones; remove it for a PLOT3D mesh");
-    return plot3d::read(path, options);
-  }
+MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out) {
+  MeshFileFacts out;
+  out.format = mesh_format(path);
+  if (out.format == MeshFormat::su2) out.kind = MeshKind::unstructured;
+  if (out.format != MeshFormat::cgns) return out;
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
+  std::set<std::string> linked;
+  collect_linked(tree, linked);
+  out.linked.assign(linked.begin(), linked.end());
+  out.kind = kind_of(file, tree, leave_out);
+  return out;
+}
 
-  Problems unreadable;
-  auto layout = find_zones(file, tree, unreadable, options.leave_out);
-  unreadable.throw_if_any<IoError>();
+MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leave_out) {
+  return look_at_mesh(path, leave_out).kind;
+}
 
-  Mesh mesh;
-  mesh.source = path;
-  mesh.notes = std::move(layout.notes);
-  mesh.two_dimensional = layout.zones.front().flat_axis >= 0;
-  for (auto const& zone : layout.zones) {
-    int const z = mesh.add_zone(zone.name, zone.mesh_extent());
-    mesh.zones[z].single_precision = zone.single_precision[0] || zone.single_precision[1] || zone.single_precision[2];
-  }
-
-  Problems problems;
-  read_boundary(file, tree, layout, mesh, problems);
-  read_connections(file, layout, mesh, problems);
-  if (options.coordinates) {
-    read_coordinates(file, layout, mesh);
-    io::check_finite(mesh, mesh.coordinates, path, problems);
-  }
-  // Non-finite coordinates leave nothing to measure the second plane by.
-  if (mesh.two_dimensional && problems.empty()) add_second_planes(layout, mesh, problems);
-  problems.throw_if_any<MeshError>();
-  return mesh;
+Mesh read_mesh(std::string const& path, ReadOptions const& options) {
+  if (options.plot3d_format.empty()) refuse_other_format(path);
+  if (su2::is_su2(path))
+    return read_without_names(path, "an SU2 mesh", options,
+                              [](std::string const& p, ReadOptions const&) { return su2::read(p); });
+  if (!cgns::is_cgns(path)) return read_without_names(path, "a PLOT3D mesh", options, plot3d::read);
+  cgns::File const file(path, cgns::File::Mode::read);
+  auto const tree = file.tree();
+  return kind_of(file, tree, options.leave_out) == MeshKind::structured ? io::read_blocks(file, tree, options)
+                                                                        : io::read_elements(file, tree, options);
 }
 
 }  // namespace gridmorph

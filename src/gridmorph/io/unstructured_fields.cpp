@@ -13,7 +13,7 @@ namespace {
 class FieldsWriter {
  public:
   FieldsWriter(cgns::File& file, cgns::Layout const& layout, std::vector<io::ZoneSolutions> const& present,
-               UnstructuredMesh const& mesh)
+               Mesh const& mesh)
       : file_(file), layout_(layout), present_(present), mesh_(mesh) {}
 
   void write(Coordinates const& morphed, OutputFields const& fields) {
@@ -28,7 +28,7 @@ class FieldsWriter {
     Solutions solutions;
     for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
       solutions.emplace_back(
-          file_, layout_.zones[z], present_[z], "MorphNodes", "Vertex", std::vector<Index>{mesh_.zones[z].n_nodes},
+          file_, layout_.zones[z], present_[z], "MorphNodes", "Vertex", std::vector<Index>{mesh_.zones[z].size()},
           io::names_of_nodes(fields, {layout_.zones[z].array[0] != nullptr, layout_.zones[z].array[1] != nullptr,
                                       layout_.zones[z].array[2] != nullptr}));
     auto const before = io::components(mesh_.coordinates), after = io::components(morphed);
@@ -62,13 +62,13 @@ class FieldsWriter {
   cgns::File& file_;
   cgns::Layout const& layout_;
   std::vector<io::ZoneSolutions> const& present_;
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
 };
 
 }  // namespace
 
 void write_fields(cgns::File& file, cgns::Layout const& layout, std::vector<io::ZoneSolutions> const& present,
-                  UnstructuredMesh const& mesh, Coordinates const& morphed, OutputFields const& fields) {
+                  Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields) {
   if (!fields.empty()) FieldsWriter(file, layout, present, mesh).write(morphed, fields);
 }
 

@@ -13,6 +13,6 @@ namespace gridmorph {
 /// Adds the fields to the zones of a file that holds the mesh, in the order of the file (SolutionWriter says where). `present`: of
 /// every zone, or empty where there are no fields. Displacements are `morphed` minus the mesh's coordinates.
 void write_fields(cgns::File& file, cgns::Layout const& layout, std::vector<io::ZoneSolutions> const& present,
-                  UnstructuredMesh const& mesh, Coordinates const& morphed, OutputFields const& fields);
+                  Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields);
 
 }  // namespace gridmorph

@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_families.hpp>
 #include <gridmorph/io/cgns/cgns_file.hpp>
-#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/output_file.hpp>
 
 #include <algorithm>
@@ -44,8 +44,8 @@ std::string bc_type_of(Patch const& patch) {
 class MeshWriter {
  public:
   MeshWriter(cgns::File& file, Mesh const& mesh, WriteOptions const& options) : file_(file), mesh_(mesh) {
-    dimension_ = mesh.two_dimensional ? 2 : 3;
-    physical_dimension_ = mesh.two_dimensional ? options.physical_dimension : 3;
+    dimension_ = mesh.dimension == 2 ? 2 : 3;
+    physical_dimension_ = mesh.dimension == 2 ? options.physical_dimension : 3;
     for (auto const& patch : mesh.patches)
       if (!patch.families.empty()) family_types_[patch.families.front()].insert(bc_type_of(patch));
   }
@@ -58,7 +58,7 @@ class MeshWriter {
   /// values: of this zone's nodes.
   void zone(int z, std::array<double const*, 3> const& values) {
     auto const& zone = mesh_.zones[z];
-    if (mesh_.two_dimensional && zone.extent[2] != 2)
+    if (mesh_.dimension == 2 && zone.extent[2] != 2)
       throw IoError(mesh_.source + ": zone '" + zone.name + "' of a 2-D mesh has " + std::to_string(zone.extent[2]) +
                     " planes along k; 2-D meshes are written from two planes along k");
     auto const [base_name, zone_name] = split(zone.name);
@@ -255,7 +255,7 @@ void MeshFileWriter::commit() {
   state_->target.commit();
 }
 
-void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options) {
+void io::write_blocks(std::string const& path, Mesh const& mesh, WriteOptions const& options) {
   if (mesh.coordinates.size() != mesh.n_nodes())
     throw MeshError(path + ": the mesh has " + std::to_string(mesh.n_nodes()) + " nodes, but coordinates of " +
                     std::to_string(mesh.coordinates.size()));
@@ -266,6 +266,11 @@ void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& o
     writer.write_zone(int(z), x.x.data() + first, x.y.data() + first, x.z.data() + first);
   }
   writer.commit();
+}
+
+void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options) {
+  if (mesh.is_structured()) return io::write_blocks(path, mesh, options);
+  write_mesh(path, mesh, mesh.coordinates, {}, options);
 }
 
 }  // namespace gridmorph

@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/finite_check.hpp>
-#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
@@ -68,8 +68,8 @@ void check_coordinates(std::string const& path, cgns::Node const& original, Mesh
 
 }  // namespace
 
-void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
-                   OutputFields const& fields) {
+void io::write_morphed_blocks(std::string const& input, std::string const& output, Mesh const& mesh,
+                              Coordinates const& morphed, OutputFields const& fields) {
   io::check_fields(mesh.n_nodes(), mesh.n_cells(), mesh.coordinates, morphed, fields);
   Problems problems;
   io::check_finite(mesh, morphed, "morphed mesh", problems);
@@ -112,6 +112,11 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   }
   check_coordinates(target.path(), original, mesh, morphed);
   target.commit();
+}
+
+void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
+                   OutputFields const& fields) {
+  (mesh.is_structured() ? io::write_morphed_blocks : io::write_morphed_elements)(input, output, mesh, morphed, fields);
 }
 
 }  // namespace gridmorph

@@ -4,7 +4,6 @@
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
-#include <gridmorph/io/unstructured_check.hpp>
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
@@ -13,7 +12,6 @@
 #include <numeric>
 #include <optional>
 #include <set>
-#include <variant>
 
 namespace gridmorph {
 
@@ -48,18 +46,10 @@ void refuse_series(cgns::File const& file, cgns::Layout const& layout, std::size
   problems.throw_if_any<IoError>();
 }
 
-using MeshOfSeries = std::variant<Mesh const*, UnstructuredMesh const*>;
-
-cgns::Layout layout_of(cgns::File const& file, cgns::Node const& tree, MeshOfSeries mesh) {
-  if (auto const* blocks = std::get_if<Mesh const*>(&mesh)) return cgns::zones_of(file, tree, **blocks);
-  return cgns::unstructured_zones_of(file, tree, *std::get<UnstructuredMesh const*>(mesh));
-}
-
-template <class AnyMesh>
-void check_input(std::string const& input, AnyMesh const& mesh, std::size_t steps) {
+void check_input(std::string const& input, Mesh const& mesh, std::size_t steps) {
   cgns::File const file(input, cgns::File::Mode::read);
   auto const tree = file.tree();
-  auto const layout = layout_of(file, tree, &mesh);
+  auto const layout = cgns::zones_of(file, tree, mesh);
   cgns::check_same_mesh(file, layout, mesh);
   refuse_series(file, layout, steps);
 }
@@ -67,8 +57,7 @@ void check_input(std::string const& input, AnyMesh const& mesh, std::size_t step
 }  // namespace
 
 struct SeriesWriter::Impl {
-  MeshOfSeries mesh;
-  std::vector<Index> first_node;  ///< per zone, and of all at the end
+  Mesh const& mesh;
   std::size_t steps;
   std::size_t written = 0;
   io::OutputFile target;
@@ -78,27 +67,20 @@ struct SeriesWriter::Impl {
   std::vector<double> plane;
   std::vector<float> single;
 
-  Impl(std::string const& input, std::string const& output, MeshOfSeries m, std::vector<double> const& times)
+  Impl(std::string const& input, std::string const& output, Mesh const& m, std::vector<double> const& times)
       : mesh(m), steps(times.size()), target(output) {
-    std::visit(
-        [&](auto const* any) {
-          for (auto const& zone : any->zones) first_node.push_back(zone.first_node);
-          first_node.push_back(any->n_nodes());
-        },
-        mesh);
     if (times.empty()) throw MeshError(output + ": a series needs at least one step");
     target.copy_from(input);
     target.reserve(bytes_needed());
     file.emplace(target.path(), cgns::File::Mode::modify);
     tree = file->tree();
-    layout = layout_of(*file, tree, mesh);
+    layout = cgns::zones_of(*file, tree, mesh);
     add_iterative_data(times);
   }
 
   [[nodiscard]] std::uint64_t bytes_needed() const {
-    std::uint64_t const zones = first_node.size() - 1, nodes_per_step = 4 * zones, once = 4 * zones + 4;
-    return steps *
-               (cgns::File::bytes_per_node * nodes_per_step + 3 * sizeof(double) * std::uint64_t(first_node.back())) +
+    std::uint64_t const zones = mesh.zones.size(), nodes_per_step = 4 * zones, once = 4 * zones + 4;
+    return steps * (cgns::File::bytes_per_node * nodes_per_step + 3 * sizeof(double) * std::uint64_t(mesh.n_nodes())) +
            cgns::File::bytes_per_node * once + steps * name_length * zones;
   }
 
@@ -132,15 +114,15 @@ struct SeriesWriter::Impl {
   void add(Coordinates const& morphed) {
     if (written == steps)
       throw MeshError(target.path() + ": more steps than the " + std::to_string(steps) + " times of the series");
-    if (morphed.size() != first_node.back())
+    if (morphed.size() != mesh.n_nodes())
       throw MeshError("the array of morphed coordinates has " + std::to_string(morphed.size()) +
-                      " values, but the mesh asks for " + std::to_string(first_node.back()));
+                      " values, but the mesh asks for " + std::to_string(mesh.n_nodes()));
     Problems problems;
     std::string const where = "step " + std::to_string(written + 1) + " of the series";
-    std::visit([&](auto const* any) { io::check_finite(*any, morphed, where, problems); }, mesh);
+    io::check_finite(mesh, morphed, where, problems);
     problems.throw_if_any<MeshError>();
-    auto const* const* elements = std::get_if<UnstructuredMesh const*>(&mesh);
-    Coordinates const ordered = elements != nullptr ? in_file_order(**elements, morphed) : morphed;
+    bool const blocks = mesh.is_structured();
+    Coordinates const ordered = blocks ? morphed : in_file_order(mesh, morphed);
     auto const arrays = io::components(ordered);
     for (std::size_t z = 0; z < layout.zones.size(); ++z) {
       auto const& place = layout.zones[z];
@@ -148,12 +130,12 @@ struct SeriesWriter::Impl {
       std::vector<Index> sizes(place.extent.begin(), place.extent.begin() + place.index_dimension);
       for (int c = 0; c < 3; ++c) {
         if (place.array[c] == nullptr) continue;
-        auto const* source = arrays[std::size_t(c)] + first_node[z];
+        auto const* source = arrays[std::size_t(c)] + mesh.zones[z].first_node;
         auto const put = [&](double const* values) { write(grid, place, c, sizes, values); };
-        if (elements != nullptr)
-          put(source);
+        if (blocks)
+          cgns::with_file_nodes(place, mesh.zones[z], source, plane, put);
         else
-          cgns::with_file_nodes(place, std::get<Mesh const*>(mesh)->zones[z], source, plane, put);
+          put(source);
       }
     }
     ++written;
@@ -171,16 +153,10 @@ struct SeriesWriter::Impl {
 
 SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh,
                            std::vector<double> const& times) {
-  check_input(input, mesh, times.size());
-  impl_ = std::make_unique<Impl>(input, output, &mesh, times);
-}
-
-SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
-                           std::vector<double> const& times) {
-  if (!cgns::is_cgns(input))
+  if (!mesh.is_structured() && !cgns::is_cgns(input))
     throw IoError(output + ": SU2 files hold one mesh; write one file per step, or use a CGNS mesh");
   check_input(input, mesh, times.size());
-  impl_ = std::make_unique<Impl>(input, output, &mesh, times);
+  impl_ = std::make_unique<Impl>(input, output, mesh, times);
 }
 
 SeriesWriter::~SeriesWriter() = default;

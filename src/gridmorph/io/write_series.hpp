@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
-#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <memory>
 #include <string>
@@ -25,8 +24,6 @@ class SeriesWriter {
   /// `times`: of all steps, ascending. `output` may not be the input. Throws IoError when the input is not the file of the
   /// mesh, holds a series of several steps, or is no CGNS file; MachineError when there is no room for all steps.
   SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh, std::vector<double> const& times);
-  SeriesWriter(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
-               std::vector<double> const& times);
   ~SeriesWriter();
   SeriesWriter(SeriesWriter&&) noexcept;
   SeriesWriter& operator=(SeriesWriter&&) = delete;

@@ -1,10 +1,10 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_file.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/unstructured_fields.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ std::int32_t cgns_type(ElementType type, std::size_t nodes) {
 
 std::int32_t face_type(std::size_t corners) { return corners == 2 ? 3 : corners == 3 ? 5 : corners == 4 ? 7 : 0; }
 
-std::string bc_type_of(UnstructuredPatch const& patch) {
+std::string bc_type_of(Patch const& patch) {
   if (patch.kind == PatchKind::connection) return "UserDefined";
   if (!patch.bc_type.empty()) return patch.bc_type;
   switch (patch.kind) {
@@ -60,7 +60,7 @@ std::string bc_type_of(UnstructuredPatch const& patch) {
 
 class Writer {
  public:
-  Writer(cgns::File& file, UnstructuredMesh const& mesh, Coordinates const& x, WriteOptions const& options)
+  Writer(cgns::File& file, Mesh const& mesh, Coordinates const& x, WriteOptions const& options)
       : file_(file), mesh_(mesh), x_(x), options_(options) {}
 
   void run() {
@@ -90,7 +90,7 @@ class Writer {
   void zone(int z) {
     auto const& zone = mesh_.zones[std::size_t(z)];
     auto const [base_name, zone_name] = split(zone.name);
-    std::array<std::int32_t, 3> const sizes{std::int32_t(zone.n_nodes), std::int32_t(zone.n_elements), 0};
+    std::array<std::int32_t, 3> const sizes{std::int32_t(zone.size()), std::int32_t(zone.n_elements), 0};
     double const id = file_.create(base(base_name), zone_name, "Zone_t", "I4", {1, 3}, sizes.data());
     file_.create_text(id, "ZoneType", "ZoneType_t", "Unstructured");
     coordinates(zone, id);
@@ -100,17 +100,17 @@ class Writer {
     connections(z, id);
   }
 
-  void coordinates(UnstructuredZone const& zone, double zone_id) {
+  void coordinates(Zone const& zone, double zone_id) {
     double const grid = file_.create(zone_id, "GridCoordinates", "GridCoordinates_t");
     std::array<double const*, 3> const arrays{x_.x.data(), x_.y.data(), x_.z.data()};
     static constexpr std::array names{"CoordinateX", "CoordinateY", "CoordinateZ"};
     for (std::size_t c = 0; c < 3; ++c) {
       double const* source = arrays[c] + zone.first_node;
       if (zone.single_precision) {
-        std::vector<float> const rounded(source, source + zone.n_nodes);
-        file_.create(grid, names[c], "DataArray_t", "R4", {zone.n_nodes}, rounded.data());
+        std::vector<float> const rounded(source, source + zone.size());
+        file_.create(grid, names[c], "DataArray_t", "R4", {zone.size()}, rounded.data());
       } else {
-        file_.create(grid, names[c], "DataArray_t", "R8", {zone.n_nodes}, source);
+        file_.create(grid, names[c], "DataArray_t", "R8", {zone.size()}, source);
       }
     }
   }
@@ -138,7 +138,7 @@ class Writer {
   }
 
   /// Returns the next element number.
-  Index elements(UnstructuredZone const& zone, double zone_id, std::set<std::string>& taken) {
+  Index elements(Zone const& zone, double zone_id, std::set<std::string>& taken) {
     std::vector<std::int32_t> types, nodes;
     std::vector<Index> start{0};
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
@@ -195,7 +195,7 @@ class Writer {
     }
   }
 
-  void points(double parent, char const* name, std::vector<Index32> const& nodes, UnstructuredZone const& zone) {
+  void points(double parent, char const* name, std::vector<Index32> const& nodes, Zone const& zone) {
     std::vector<std::int32_t> list;
     for (Index32 const n : nodes) list.push_back(std::int32_t(n - zone.first_node + 1));
     file_.create(parent, name, "IndexArray_t", "I4", {1, Index(list.size())}, list.data());
@@ -233,13 +233,13 @@ class Writer {
   }
 
   cgns::File& file_;
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   Coordinates x_;
   WriteOptions options_;
   std::map<std::string, double> bases_;
 };
 
-std::uint64_t bytes_needed(UnstructuredMesh const& mesh) {
+std::uint64_t bytes_needed(Mesh const& mesh) {
   std::uint64_t nodes = 16 + 3 * mesh.families.size() + 12 * mesh.zones.size() + 12 * mesh.connections.size();
   std::uint64_t numbers = mesh.elements.nodes.item.size() + 2 * std::uint64_t(mesh.n_elements());
   for (auto const& patch : mesh.patches) {
@@ -254,12 +254,8 @@ std::uint64_t bytes_needed(UnstructuredMesh const& mesh) {
 
 }  // namespace
 
-void write_mesh(std::string const& path, UnstructuredMesh const& mesh, WriteOptions const& options) {
-  write_mesh(path, mesh, mesh.coordinates, {}, options);
-}
-
-void write_mesh(std::string const& path, UnstructuredMesh const& mesh, Coordinates const& morphed,
-                OutputFields const& fields, WriteOptions const& options) {
+void write_mesh(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields,
+                WriteOptions const& options) {
   check_mesh(mesh);
   if (morphed.size() != mesh.n_nodes())
     throw MeshError(path + ": the mesh has " + std::to_string(mesh.n_nodes()) + " nodes, but coordinates of " +
@@ -279,7 +275,7 @@ void write_mesh(std::string const& path, UnstructuredMesh const& mesh, Coordinat
   if (!fields.empty()) {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree();
-    auto const layout = cgns::unstructured_zones_of(file, tree, mesh);
+    auto const layout = cgns::zones_of(file, tree, mesh);
     write_fields(file, layout, io::zone_solutions(file, layout), mesh, morphed, fields);
     file.close();
   }

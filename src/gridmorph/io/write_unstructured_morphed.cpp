@@ -1,13 +1,13 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/finite_check.hpp>
+#include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
-#include <gridmorph/io/unstructured_check.hpp>
 #include <gridmorph/io/unstructured_fields.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
 #include <array>
@@ -16,13 +16,13 @@ namespace gridmorph {
 
 namespace {
 
-void write_cgns(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
-                Coordinates const& morphed, OutputFields const& fields) {
+void write_cgns(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
+                OutputFields const& fields) {
   cgns::Node original;
   {
     cgns::File const file(input, cgns::File::Mode::read);
     original = file.tree();
-    cgns::check_same_mesh(file, cgns::unstructured_zones_of(file, original, mesh), mesh);
+    cgns::check_same_mesh(file, cgns::zones_of(file, original, mesh), mesh);
   }
   io::OutputFile target(output);
   target.copy_from(input);
@@ -32,7 +32,7 @@ void write_cgns(std::string const& input, std::string const& output, Unstructure
   {
     cgns::File file(target.path(), cgns::File::Mode::modify);
     auto const tree = file.tree_of_copy(original);
-    auto const layout = cgns::unstructured_zones_of(file, tree, mesh);
+    auto const layout = cgns::zones_of(file, tree, mesh);
     auto const present = fields.empty() ? std::vector<io::ZoneSolutions>() : io::zone_solutions(file, layout);
     for (std::size_t z = 0; z < mesh.zones.size(); ++z)
       for (int c = 0; c < 3; ++c)
@@ -43,7 +43,7 @@ void write_cgns(std::string const& input, std::string const& output, Unstructure
   {
     cgns::File const file(target.path(), cgns::File::Mode::read);
     auto const tree = file.tree_of_copy(original);
-    auto const layout = cgns::unstructured_zones_of(file, tree, mesh);
+    auto const layout = cgns::zones_of(file, tree, mesh);
     for (std::size_t z = 0; z < mesh.zones.size(); ++z)
       for (int c = 0; c < 3; ++c)
         check_written(file, layout.zones[z], c, arrays[std::size_t(c)] + mesh.zones[z].first_node);
@@ -53,8 +53,8 @@ void write_cgns(std::string const& input, std::string const& output, Unstructure
 
 }  // namespace
 
-void write_morphed(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
-                   Coordinates const& morphed, OutputFields const& fields) {
+void io::write_morphed_elements(std::string const& input, std::string const& output, Mesh const& mesh,
+                                Coordinates const& morphed, OutputFields const& fields) {
   io::check_fields(mesh.n_nodes(), mesh.n_elements(), mesh.coordinates, morphed, fields);
   Problems problems;
   io::check_finite(mesh, morphed, "morphed mesh", problems);

@@ -55,8 +55,8 @@ void add_faces(Zone const& zone, IndexRange const& range, CsrGraph& faces) {
     }
 }
 
-UnstructuredConnection connection_of(Mesh const& mesh, Interface1to1 const& face) {
-  UnstructuredConnection c;
+Connection connection_of(Mesh const& mesh, Interface1to1 const& face) {
+  Connection c;
   c.name = face.name;
   c.families = face.families;
   c.zone = face.zone;
@@ -75,12 +75,12 @@ UnstructuredConnection connection_of(Mesh const& mesh, Interface1to1 const& face
 
 }  // namespace
 
-UnstructuredMesh as_hexahedra(Mesh const& mesh) {
+Mesh as_hexahedra(Mesh const& mesh) {
   if (mesh.n_nodes() > std::numeric_limits<Index32>::max())
     throw MeshError("'" + mesh.source + "' has " + std::to_string(mesh.n_nodes()) +
                     " nodes; as an unstructured mesh it may have at most " +
                     std::to_string(std::numeric_limits<Index32>::max()));
-  UnstructuredMesh out;
+  Mesh out;
   out.source = mesh.source;
   out.families = mesh.families;
   out.coordinates = Coordinates(mesh.n_nodes());
@@ -100,7 +100,7 @@ UnstructuredMesh as_hexahedra(Mesh const& mesh) {
     });
   }
   for (auto const& patch : mesh.patches) {
-    UnstructuredPatch faces;
+    Patch faces;
     faces.name = patch.name;
     faces.bc_type = patch.bc_type;
     faces.kind = patch.kind;

@@ -10,6 +10,6 @@ namespace gridmorph {
 /// stay inverted. Collapsed cells (poles, wedges) stay hexahedra with corners that coincide. 2-D meshes become one layer
 /// of hexahedra between their two node planes. Patches become faces, interfaces connections. The coordinates are copied.
 /// Throws MeshError for a mesh with more nodes than an Index32 can count. Linear cost.
-UnstructuredMesh as_hexahedra(Mesh const& mesh);
+Mesh as_hexahedra(Mesh const& mesh);
 
 }  // namespace gridmorph

@@ -9,10 +9,9 @@
 
 namespace gridmorph {
 
-/// Throws MeshError unless the mesh (Mesh or UnstructuredMesh) has zones and all three coordinates of each of their nodes, and
+/// Throws MeshError unless the mesh has zones and all three coordinates of each of their nodes, and
 /// ConfigError where Kokkos is not running. `who` is the function that asks, for the message. Cost: none.
-template <class AnyMesh>
-void check_coordinates(AnyMesh const& mesh, char const* who) {
+inline void check_coordinates(Mesh const& mesh, char const* who) {
   require_kokkos(who);
   auto const complain = [&](std::string const& what) {
     throw MeshError(std::string(who) + ": mesh '" + mesh.source + "' " + what);

@@ -10,7 +10,7 @@ namespace {
 
 class Claims {
  public:
-  Claims(UnstructuredMesh const& mesh, UnstructuredTopology const& topology) : mesh_(mesh), topology_(topology) {
+  Claims(Mesh const& mesh, UnstructuredTopology const& topology) : mesh_(mesh), topology_(topology) {
     out_.patch.assign(std::size_t(topology.boundary.size()), BoundaryFacePatches::open);
     out_.faces_of_patch.assign(mesh.patches.size(), 0);
   }
@@ -122,14 +122,14 @@ class Claims {
                               " sides of elements are shared by more than two elements; elements overlap");
   }
 
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   UnstructuredTopology const& topology_;
   BoundaryFacePatches out_;
 };
 
 }  // namespace
 
-BoundaryFacePatches find_face_patches(UnstructuredMesh const& mesh, UnstructuredTopology const& topology) {
+BoundaryFacePatches find_face_patches(Mesh const& mesh, UnstructuredTopology const& topology) {
   return Claims(mesh, topology).run();
 }
 

@@ -86,9 +86,9 @@ Polyhedra gather(Polyhedra const& polyhedra, std::vector<Index32> const& new_ele
 }
 
 /// What stands at place order.node[n] and order.element[e] comes to places n and e.
-UnstructuredMesh permuted(UnstructuredMesh const& mesh, FileOrder const& order) {
+Mesh permuted(Mesh const& mesh, FileOrder const& order) {
   auto const new_node = inverse_of(order.node);
-  UnstructuredMesh out;
+  Mesh out;
   out.dimension = mesh.dimension;
   out.zones = mesh.zones;
   out.elements.type = gather(mesh.elements.type, order.element);
@@ -114,7 +114,7 @@ UnstructuredMesh permuted(UnstructuredMesh const& mesh, FileOrder const& order) 
   return out;
 }
 
-std::vector<Index32> order_nodes(UnstructuredMesh const& mesh) {
+std::vector<Index32> order_nodes(Mesh const& mesh) {
   MeshExtent const box = extent_of(mesh.coordinates);
   Vec3 const size = box.high - box.low;
   double const longest = std::max({size.x, size.y, size.z});
@@ -122,20 +122,20 @@ std::vector<Index32> order_nodes(UnstructuredMesh const& mesh) {
   std::vector<Index32> order(std::size_t(mesh.n_nodes()));
   HostExec const exec;
   for (auto const& zone : mesh.zones) {
-    detail::KeyedIndices<Kokkos::HostSpace> const list(std::size_t(zone.n_nodes), "gridmorph::order_by_position");
-    for_all("gridmorph::order_by_position::codes", zone.n_nodes, [&](Index n) {
+    detail::KeyedIndices<Kokkos::HostSpace> const list(std::size_t(zone.size()), "gridmorph::order_by_position");
+    for_all("gridmorph::order_by_position::codes", zone.size(), [&](Index n) {
       list.key(n) = hilbert_code({mesh.coordinates[zone.first_node + n], box.low, {steps, steps, steps}});
       list.number(n) = Index32(zone.first_node + n);
     });
     auto const sorted = detail::sort_keys(exec, list);
     compat::fence(exec, "gridmorph::order_by_position (read by the host)");
-    std::copy_n(sorted.number.data(), zone.n_nodes, order.begin() + zone.first_node);
+    std::copy_n(sorted.number.data(), zone.size(), order.begin() + zone.first_node);
   }
   return order;
 }
 
 /// By the smallest new number among their nodes.
-std::vector<Index32> order_elements(UnstructuredMesh const& mesh, std::vector<Index32> const& new_node) {
+std::vector<Index32> order_elements(Mesh const& mesh, std::vector<Index32> const& new_node) {
   detail::IndexBuckets<Index32> const buckets("gridmorph::order_elements", mesh.n_elements(), mesh.n_nodes(),
                                               [&](Index e, auto const& put) {
                                                 Index32 first = new_node[std::size_t(mesh.elements.nodes[e].front())];
@@ -152,7 +152,7 @@ std::vector<Index32> order_elements(UnstructuredMesh const& mesh, std::vector<In
 
 }  // namespace
 
-bool is_scattered(UnstructuredMesh const& mesh) {
+bool is_scattered(Mesh const& mesh) {
   constexpr Index smallest = 4096, parts = 16;
   if (mesh.n_nodes() < smallest) return false;
   Index const near = mesh.n_nodes() / parts;
@@ -169,7 +169,7 @@ bool is_scattered(UnstructuredMesh const& mesh) {
   return 2 * wide > mesh.n_elements();
 }
 
-FileOrder order_by_position(UnstructuredMesh const& mesh) {
+FileOrder order_by_position(Mesh const& mesh) {
   if (mesh.coordinates.size() != mesh.n_nodes())
     throw MeshError("order by position: '" + mesh.source + "' has " + std::to_string(mesh.n_nodes()) +
                     " nodes, but coordinates of " + std::to_string(mesh.coordinates.size()));
@@ -186,7 +186,7 @@ FileOrder order_by_position(UnstructuredMesh const& mesh) {
   return order;
 }
 
-void reorder(UnstructuredMesh& mesh, FileOrder order) {
+void reorder(Mesh& mesh, FileOrder order) {
   if (!mesh.file_order.node.empty())
     throw MeshError("reorder: '" + mesh.source + "' is not in the order of its file; put it back with in_file_order()");
   if (Index(order.node.size()) != mesh.n_nodes() || Index(order.element.size()) != mesh.n_elements())
@@ -197,12 +197,12 @@ void reorder(UnstructuredMesh& mesh, FileOrder order) {
   mesh.file_order = std::move(order);
 }
 
-UnstructuredMesh in_file_order(UnstructuredMesh const& mesh) {
+Mesh in_file_order(Mesh const& mesh) {
   if (mesh.file_order.node.empty()) return mesh;
   return permuted(mesh, {inverse_of(mesh.file_order.node), inverse_of(mesh.file_order.element)});
 }
 
-Coordinates in_file_order(UnstructuredMesh const& mesh, Coordinates const& coordinates) {
+Coordinates in_file_order(Mesh const& mesh, Coordinates const& coordinates) {
   if (mesh.file_order.node.empty()) return coordinates;
   return gather(coordinates, inverse_of(mesh.file_order.node));
 }

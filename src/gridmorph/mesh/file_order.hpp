@@ -13,22 +13,22 @@ namespace gridmorph {
 
 /// Whether the numbers of most elements' corners are further apart than a sixteenth of all nodes: what order_by_position() is
 /// for. Never for less than 4,096 nodes, which fit in a cache in any order. Cost: one stream over the elements.
-bool is_scattered(UnstructuredMesh const& mesh);
+bool is_scattered(Mesh const& mesh);
 
 /// Nodes of each zone along a Hilbert curve through the bounding box, nodes at the same place in the order they have;
 /// elements of each zone by the first of their nodes along it. Linear cost: a sort by counting, a few streams over the
 /// elements; host, on all cores.
-FileOrder order_by_position(UnstructuredMesh const& mesh);
+FileOrder order_by_position(Mesh const& mesh);
 
 /// Renumbers the nodes and elements inside their zones: what stands at place order.node[n] comes to place n. Zones, patches
 /// and connections stay in order, and so do the faces of each patch. The mesh knows its way back (file_order). The mesh must
 /// be in the order of its file; throws MeshError for one that is not, and for an order of other sizes.
-void reorder(UnstructuredMesh& mesh, FileOrder order);
+void reorder(Mesh& mesh, FileOrder order);
 
 /// The mesh as its file numbers it.
-UnstructuredMesh in_file_order(UnstructuredMesh const& mesh);
+Mesh in_file_order(Mesh const& mesh);
 /// Coordinates as the file of the mesh numbers them.
-Coordinates in_file_order(UnstructuredMesh const& mesh, Coordinates const& coordinates);
+Coordinates in_file_order(Mesh const& mesh, Coordinates const& coordinates);
 /// A value for each node or each element of the mesh, as its file numbers them. `place` is file_order.node or .element.
 std::vector<double> in_file_order(std::span<Index32 const> place, std::span<double const> values);
 

@@ -1,5 +1,6 @@
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <gridmorph/core/index.hpp>
 #include <gridmorph/core/large_pages.hpp>
@@ -70,16 +71,47 @@ Coordinates::Coordinates(Index n_nodes) {
     prefer_large_pages(component->data(), std::size_t(n_nodes) * sizeof(double));
 }
 
+bool Mesh::is_structured() const {
+  return n_elements() == 0 && std::all_of(zones.begin(), zones.end(), [](Zone const& z) { return z.is_block(); });
+}
+
 Index Mesh::n_cells() const {
   Index n = 0;
-  for (auto const& z : zones) n += Index(z.extent[0] - 1) * (z.extent[1] - 1) * (z.extent[2] - 1);
+  for (auto const& z : zones)
+    if (z.is_block()) n += Index(z.extent[0] - 1) * (z.extent[1] - 1) * (z.extent[2] - 1);
   return n;
 }
 
 int Mesh::add_zone(std::string name, Index3 extent) {
-  Index const first = n_nodes();
-  zones.push_back({std::move(name), extent, first});
+  Zone zone;
+  zone.name = std::move(name);
+  zone.extent = extent;
+  zone.first_node = n_nodes();
+  zone.first_element = n_elements();
+  zones.push_back(std::move(zone));
   return int(zones.size()) - 1;
+}
+
+int Mesh::add_zone(std::string name, Index n_nodes) {
+  Zone zone;
+  zone.name = std::move(name);
+  zone.first_node = this->n_nodes();
+  zone.n_nodes = n_nodes;
+  zone.first_element = n_elements();
+  zones.push_back(std::move(zone));
+  return int(zones.size()) - 1;
+}
+
+void Mesh::add_element(ElementType type, std::span<Index32 const> nodes) {
+  elements.type.push_back(type);
+  elements.nodes.add(nodes);
+  zones.back().n_elements = n_elements() - zones.back().first_element;
+}
+
+int Mesh::zone_of_element(Index element) const {
+  auto const after =
+      std::upper_bound(zones.begin(), zones.end(), element, [](Index e, Zone const& z) { return e < z.first_element; });
+  return int(after - zones.begin()) - 1;
 }
 
 int Mesh::zone_of(Index node) const {
@@ -92,6 +124,8 @@ double Mesh::size() const { return extent_of(coordinates).size(); }
 
 std::string describe_node(Mesh const& mesh, Index node) {
   int const z = mesh.zone_of(node);
+  if (!mesh.zones[z].is_block())
+    return "zone '" + mesh.zones[z].name + "' node " + std::to_string(node_number_in_file(mesh, node));
   Index3 const p = mesh.zones[z].index(node);
   return "zone '" + mesh.zones[z].name + "' node (i " + std::to_string(p[0] + 1) + ", j " + std::to_string(p[1] + 1) +
          ", k " + std::to_string(p[2] + 1) + ")";

@@ -1,15 +1,18 @@
-// A multi-block structured mesh as it stands in a file: zones, boundary patches, 1-to-1 interfaces, coordinates.
+// A mesh as it stands in a file: zones of blocks or of elements, boundary patches, connections, coordinates.
 //
-// Nothing here is cut or interpreted; that is the topology's work. Readers fill a Mesh, writers take one, generators
-// make one, and solvers can build one from their own arrays without touching files.
+// Nothing here is cut, interpreted or repaired: what follows from it is found by `boundary` and `plan` (blocks) and by
+// unstructured_topology.hpp (elements). Readers fill a Mesh, writers take one, generators make one, and solvers can build one from their
+// own arrays without touching files. All numbers are 0-based; those of nodes and elements run through all zones.
 #pragma once
 
 #include <gridmorph/core/index.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
+#include <gridmorph/mesh/elements.hpp>
 
 #include <Kokkos_Core.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,14 +35,17 @@ enum class PatchKind {
 /// "wall", "inflow", ... as used by `type:` selectors and in messages. Periodic interfaces are "periodic".
 std::string_view to_string(PatchKind kind);
 
-/// One boundary range on one face of one zone.
+/// One boundary condition of one zone: a range on a face of a block, a list of faces of elements, or only a list of nodes where
+/// the file says no more.
 struct Patch {
-  std::string name;     ///< BC_t or GridConnectivity_t node name
+  std::string name;     ///< BC_t or GridConnectivity_t node name, SU2 marker
   std::string bc_type;  ///< CGNS BCType_t name as in the file, resolved through the family if FamilySpecified
   PatchKind kind = PatchKind::other;
   std::vector<std::string> families;  ///< FamilyName_t first, then AdditionalFamilyName_t; may be empty
   int zone = -1;                      ///< number in Mesh::zones
-  IndexRange range;                   ///< nodes; extent 1 along exactly one axis (the face normal)
+  IndexRange range{};                 ///< blocks: nodes; extent 1 along exactly one axis (the face normal)
+  CsrGraph faces{};              ///< elements: corner nodes of each face (each edge in 2-D), in any order around it
+  std::vector<Index32> nodes{};  ///< instead of faces, where the file lists nodes; ascending, each once
 };
 
 /// Periodicity as declared in the file (CGNS SIDS Periodic_t). `declared` maps this side's nodes onto the donor's nodes.
@@ -67,14 +73,31 @@ struct Interface1to1 {
   std::optional<Periodic> periodic;
 };
 
-/// A CGNS Zone_t.
-struct Zone {
-  std::string name;        ///< unique in the mesh; "Base/Zone" when the file has several bases
-  Index3 extent{0, 0, 0};  ///< nodes along i, j, k; each at least 2 (2-D zones are extruded to two planes by readers)
-  Index first_node = 0;    ///< number of node (0, 0, 0) in the flat coordinate arrays
-  bool single_precision = false;  ///< the file keeps this zone's coordinates in single precision
+/// Two lists of nodes that coincide one by one, the donor's after `periodic` where there is one: GridConnectivity_t of elements.
+struct Connection {
+  std::string name;
+  std::vector<std::string> families;
+  int zone = -1;
+  int donor_zone = -1;
+  std::vector<Index32> nodes;        ///< of zone
+  std::vector<Index32> donor_nodes;  ///< of donor_zone, as many
+  std::optional<Periodic> periodic;
+};
 
-  [[nodiscard]] Index size() const { return Index(extent[0]) * extent[1] * extent[2]; }
+/// A CGNS Zone_t: a block of nodes (i, j, k), or elements. An SU2 file is one zone of elements.
+struct Zone {
+  std::string name;  ///< unique in the mesh; "Base/Zone" when the file has several bases
+  /// Blocks: nodes along i, j, k, each at least 2 (2-D zones are extruded to two planes by readers). Elements: 0.
+  Index3 extent{0, 0, 0};
+  Index first_node = 0;           ///< number of the zone's first node, (0, 0, 0) of a block, in the coordinate arrays
+  bool single_precision = false;  ///< the file keeps this zone's coordinates in single precision
+  Index n_nodes = 0;              ///< of elements; size() is what both kinds have
+  Index first_element = 0, n_elements = 0;  ///< in Mesh::elements
+
+  [[nodiscard]] bool is_block() const { return extent[0] > 0; }
+  /// Number of nodes.
+  [[nodiscard]] Index size() const { return is_block() ? Index(extent[0]) * extent[1] * extent[2] : n_nodes; }
+  // Blocks:
   [[nodiscard]] Index node(Index3 const& p) const {
     return first_node + p[0] + Index(extent[0]) * (p[1] + Index(extent[1]) * p[2]);
   }
@@ -108,30 +131,45 @@ struct Coordinates {
 };
 
 struct Mesh {
+  /// Of the cells in the file, 3 or 2. Blocks of a 2-D mesh are extruded by one cell, and writers put back plane k = 0 only;
+  /// elements of a 2-D mesh are surfaces.
+  int dimension = 3;
   std::vector<Zone> zones;
+  Elements elements;                      ///< of all zones of elements
+  Polyhedra polyhedra;                    ///< among them
   std::vector<Patch> patches;             ///< of all zones, in file order
-  std::vector<Interface1to1> interfaces;  ///< of all zones, in file order
+  std::vector<Interface1to1> interfaces;  ///< of blocks, in file order
+  std::vector<Connection> connections;    ///< of elements, in file order
   std::vector<std::string> families;      ///< Family_t names
-  Coordinates coordinates;
-  std::string source;  ///< file name or what made it, for messages
+  Coordinates coordinates;                ///< all three components, z = 0 where a file of elements has two
+  std::string source;                     ///< file name or what made it, for messages
   /// How the file is stored where the file itself does not say so (PLOT3D: "unformatted, little-endian, ..."), for the writer;
   /// empty otherwise.
   std::string file_variant;
   std::vector<std::string> notes;  ///< what the reader skipped or assumed, for `inspect` and logs
-  /// A 2-D mesh that the reader extruded by one cell; writers put back plane k = 0 only.
-  bool two_dimensional = false;
+  int first_number = 1;            ///< of nodes of elements in messages: 1 in CGNS, 0 in SU2 files
+  FileOrder file_order;            ///< set by reorder(); readers leave it empty
 
+  /// Whether all cells are those of blocks. Blocks beside zones of elements have theirs among these.
+  [[nodiscard]] bool is_structured() const;
   [[nodiscard]] Index n_nodes() const { return zones.empty() ? 0 : zones.back().first_node + zones.back().size(); }
+  /// Of all blocks.
   [[nodiscard]] Index n_cells() const;
-  /// Appends a zone and sets its first_node. The coordinates are allocated by the caller afterwards.
+  [[nodiscard]] Index n_elements() const { return elements.size(); }
+  /// Appends a block and sets its first_node. The coordinates are allocated by the caller afterwards.
   int add_zone(std::string name, Index3 extent);
-  /// Zone that holds a flat node number.
+  /// Appends a zone of elements that begins after all nodes and elements so far.
+  int add_zone(std::string name, Index n_nodes);
+  /// Appends an element of the last zone.
+  void add_element(ElementType type, std::span<Index32 const> nodes);
+  /// Zone that holds a node, or an element.
   [[nodiscard]] int zone_of(Index node) const;
+  [[nodiscard]] int zone_of_element(Index element) const;
   /// Diagonal of the bounding box: the size that relative tolerances refer to.
   [[nodiscard]] double size() const;
 };
 
-/// "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count.
+/// "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count; of elements "zone 'Fluid' node 17", as the file counts.
 std::string describe_node(Mesh const& mesh, Index node);
 /// "zone 'Zone 1' i_min [1:1, 1:33, 1:9]".
 std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range);

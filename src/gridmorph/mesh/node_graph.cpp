@@ -13,7 +13,7 @@ namespace {
 
 class GraphMaker {
  public:
-  GraphMaker(UnstructuredMesh const& mesh, CsrGraph const& elements_of_nodes)
+  GraphMaker(Mesh const& mesh, CsrGraph const& elements_of_nodes)
       : mesh_(mesh), elements_of_nodes_(elements_of_nodes), owner_(nodes_at_one_place(mesh)) {
     for (Index32 n = 0; n < Index32(owner_.size()); ++n)
       if (owner_[std::size_t(n)] != n) others_.push_back({owner_[std::size_t(n)], n});
@@ -101,7 +101,7 @@ class GraphMaker {
     }
   }
 
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   CsrGraph const& elements_of_nodes_;
   std::vector<Index32> owner_;
   std::vector<Other> others_;  ///< nodes that are not their own owner
@@ -109,7 +109,7 @@ class GraphMaker {
 
 }  // namespace
 
-NodeGraph make_node_graph(UnstructuredMesh const& mesh, CsrGraph const& elements_of_nodes) {
+NodeGraph make_node_graph(Mesh const& mesh, CsrGraph const& elements_of_nodes) {
   return GraphMaker(mesh, elements_of_nodes).run();
 }
 

@@ -19,6 +19,6 @@ struct NodeGraph {
 
 /// Edges of polyhedra are those of their faces. The lists are those of UnstructuredTopology. Cost O(corners of all
 /// elements); host, on all cores.
-NodeGraph make_node_graph(UnstructuredMesh const& mesh, CsrGraph const& elements_of_nodes);
+NodeGraph make_node_graph(Mesh const& mesh, CsrGraph const& elements_of_nodes);
 
 }  // namespace gridmorph

@@ -18,7 +18,7 @@ bool are_one(std::vector<Index32> const& owner, TouchingPatches const& pair) {
 
 }  // namespace
 
-std::vector<TouchingPatches> undeclared_connections(UnstructuredMesh const& mesh, double tolerance) {
+std::vector<TouchingPatches> undeclared_connections(Mesh const& mesh, double tolerance) {
   std::vector<TouchingPatches> out;
   if (mesh.zones.size() < 2) return out;
   auto const owner = coincident_nodes(mesh), place = nodes_at_one_place(mesh);
@@ -43,7 +43,7 @@ std::vector<TouchingPatches> undeclared_connections(UnstructuredMesh const& mesh
 namespace {
 
 /// Nodes of patches, those of connections that do not match left out.
-std::vector<Index> open_nodes(UnstructuredMesh const& mesh) {
+std::vector<Index> open_nodes(Mesh const& mesh) {
   std::vector<std::uint8_t> open(std::size_t(mesh.n_nodes()), 0);
   for (bool const slides : {false, true})
     for (auto const& patch : mesh.patches)
@@ -58,19 +58,19 @@ std::vector<Index> open_nodes(UnstructuredMesh const& mesh) {
 
 }  // namespace
 
-std::vector<Index32> nodes_at_one_place(UnstructuredMesh const& mesh) {
+std::vector<Index32> nodes_at_one_place(Mesh const& mesh) {
   DisjointSets<Index32> sets(coincident_nodes(mesh));
   if (mesh.zones.size() < 2) return sets.roots();
   bool const single =
       std::any_of(mesh.zones.begin(), mesh.zones.end(), [](auto const& zone) { return zone.single_precision; });
   auto const pairs = coincident_pairs(
-      mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of_node(n); },
+      mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of(n); },
       coincidence_tolerance(mesh.size(), single));
   for (auto const& [a, b] : pairs) sets.join(Index32(a), Index32(b));
   return sets.roots();
 }
 
-std::string describe(UnstructuredMesh const& mesh, TouchingPatches const& pair) {
+std::string describe(Mesh const& mesh, TouchingPatches const& pair) {
   return "patches " + describe_patch(mesh, mesh.patches[std::size_t(pair.patch)]) + " and " +
          describe_patch(mesh, mesh.patches[std::size_t(pair.other)]) + " coincide in all of their " +
          std::to_string(pair.nodes.size()) + " nodes, but no connection joins them; " +

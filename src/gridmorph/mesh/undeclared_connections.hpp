@@ -10,21 +10,21 @@ namespace gridmorph {
 
 /// Two patches of different zones whose nodes coincide one by one, but are paired by no connection.
 struct TouchingPatches {
-  int patch = -1, other = -1;        ///< numbers in UnstructuredMesh::patches, patch < other
+  int patch = -1, other = -1;        ///< numbers in Mesh::patches, patch < other
   std::vector<Index32> nodes;        ///< of patch, ascending
   std::vector<Index32> other_nodes;  ///< of other, as many
   bool one = false;                  ///< all of them are near enough to be one (nodes_at_one_place())
 };
 
 /// All such pairs, by position within `tolerance`. Only patches with equally many nodes are looked at; n log n in their nodes.
-std::vector<TouchingPatches> undeclared_connections(UnstructuredMesh const& mesh, double tolerance);
+std::vector<TouchingPatches> undeclared_connections(Mesh const& mesh, double tolerance);
 
 /// For each node the smallest number among the nodes that are one with it: those that coincident_nodes() declares, and nodes of
 /// patches of different zones closer than 1e-8 of the mesh size (1e-6 where a zone is in single precision). Nodes of connections that do not
 /// match node to node (sliding planes, overset) are left as they are declared. n log n in the nodes of patches.
-std::vector<Index32> nodes_at_one_place(UnstructuredMesh const& mesh);
+std::vector<Index32> nodes_at_one_place(Mesh const& mesh);
 
 /// "patches 'a' (BC ...) and 'b' (BC ...) coincide in 2261 nodes, but no connection joins them: ..."
-std::string describe(UnstructuredMesh const& mesh, TouchingPatches const& pair);
+std::string describe(Mesh const& mesh, TouchingPatches const& pair);
 
 }  // namespace gridmorph

@@ -21,53 +21,23 @@ std::string_view to_string(ElementType type) {
   return "element";
 }
 
-int UnstructuredMesh::add_zone(std::string name, Index n_nodes) {
-  UnstructuredZone zone;
-  zone.name = std::move(name);
-  zone.first_node = this->n_nodes();
-  zone.n_nodes = n_nodes;
-  zone.first_element = n_elements();
-  zones.push_back(std::move(zone));
-  return int(zones.size()) - 1;
-}
-
-void UnstructuredMesh::add_element(ElementType type, std::span<Index32 const> nodes) {
-  elements.type.push_back(type);
-  elements.nodes.add(nodes);
-  zones.back().n_elements = n_elements() - zones.back().first_element;
-}
-
-int UnstructuredMesh::zone_of_node(Index node) const {
-  auto const after = std::upper_bound(zones.begin(), zones.end(), node,
-                                      [](Index n, UnstructuredZone const& z) { return n < z.first_node; });
-  return int(after - zones.begin()) - 1;
-}
-
-int UnstructuredMesh::zone_of_element(Index element) const {
-  auto const after = std::upper_bound(zones.begin(), zones.end(), element,
-                                      [](Index e, UnstructuredZone const& z) { return e < z.first_element; });
-  return int(after - zones.begin()) - 1;
-}
-
-double UnstructuredMesh::size() const { return extent_of(coordinates).size(); }
-
 namespace {
 
-std::size_t place_of_polyhedron(UnstructuredMesh const& mesh, Index element) {
+std::size_t place_of_polyhedron(Mesh const& mesh, Index element) {
   auto const& list = mesh.polyhedra.element;
   return std::size_t(std::lower_bound(list.begin(), list.end(), Index32(element)) - list.begin());
 }
 
 }  // namespace
 
-int n_sides(UnstructuredMesh const& mesh, Index element) {
+int n_sides(Mesh const& mesh, Index element) {
   ElementType const type = mesh.elements.type[std::size_t(element)];
   if (type != ElementType::polyhedron) return n_faces(type);
   std::size_t const p = place_of_polyhedron(mesh, element);
   return int(mesh.polyhedra.first_face[p + 1] - mesh.polyhedra.first_face[p]);
 }
 
-std::span<Index32 const> side_nodes(UnstructuredMesh const& mesh, Index element, int side,
+std::span<Index32 const> side_nodes(Mesh const& mesh, Index element, int side,
                                     std::array<Index32, max_face_corners>& room) {
   ElementType const type = mesh.elements.type[std::size_t(element)];
   if (type == ElementType::polyhedron)
@@ -82,14 +52,14 @@ std::span<Index32 const> side_nodes(UnstructuredMesh const& mesh, Index element,
   return {room.data(), kept};
 }
 
-std::vector<Index32> patch_nodes(UnstructuredPatch const& patch) {
+std::vector<Index32> patch_nodes(Patch const& patch) {
   std::vector<Index32> nodes = patch.faces.size() > 0 ? patch.faces.item : patch.nodes;
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
 }
 
-std::array<Index, n_element_types> count_types(UnstructuredMesh const& mesh, int zone) {
+std::array<Index, n_element_types> count_types(Mesh const& mesh, int zone) {
   std::array<Index, n_element_types> count{};
   Index const begin = zone < 0 ? 0 : mesh.zones[std::size_t(zone)].first_element;
   Index const end = zone < 0 ? mesh.n_elements() : begin + mesh.zones[std::size_t(zone)].n_elements;
@@ -97,40 +67,30 @@ std::array<Index, n_element_types> count_types(UnstructuredMesh const& mesh, int
   return count;
 }
 
-Index node_number_in_file(UnstructuredMesh const& mesh, Index node) {
+Index node_number_in_file(Mesh const& mesh, Index node) {
   auto const& order = mesh.file_order.node;
   Index const place = order.empty() ? node : order[std::size_t(node)];
-  return place - mesh.zones[std::size_t(mesh.zone_of_node(node))].first_node + mesh.first_number;
+  return place - mesh.zones[std::size_t(mesh.zone_of(node))].first_node + mesh.first_number;
 }
 
-std::string describe_node(UnstructuredMesh const& mesh, Index node) {
-  return "zone '" + mesh.zones[std::size_t(mesh.zone_of_node(node))].name + "' node " +
-         std::to_string(node_number_in_file(mesh, node));
-}
-
-Index number_in_file(UnstructuredMesh const& mesh, Index element) {
+Index number_in_file(Mesh const& mesh, Index element) {
   if (!mesh.elements.number.empty()) return mesh.elements.number[std::size_t(element)];
   auto const& order = mesh.file_order.element;
   Index const place = order.empty() ? element : order[std::size_t(element)];
   return place - mesh.zones[std::size_t(mesh.zone_of_element(element))].first_element + mesh.first_number;
 }
 
-std::string describe_element(UnstructuredMesh const& mesh, Index element) {
+std::string describe_element(Mesh const& mesh, Index element) {
   return "zone '" + mesh.zones[std::size_t(mesh.zone_of_element(element))].name + "' " +
          std::string(to_string(mesh.elements.type[std::size_t(element)])) + " " +
          std::to_string(number_in_file(mesh, element));
-}
-
-std::string describe_patch(UnstructuredMesh const& mesh, UnstructuredPatch const& patch) {
-  std::string text = "'" + (patch.families.empty() ? patch.name : patch.families.front()) + "'";
-  return text + " (BC '" + patch.name + "', zone '" + mesh.zones[std::size_t(patch.zone)].name + "')";
 }
 
 namespace {
 
 class MeshCheck {
  public:
-  explicit MeshCheck(UnstructuredMesh const& mesh) : mesh_(mesh) {}
+  explicit MeshCheck(Mesh const& mesh) : mesh_(mesh) {}
 
   void run() {
     sizes();
@@ -148,9 +108,9 @@ class MeshCheck {
     auto const& e = mesh_.elements;
     Index nodes = 0, elements = 0;
     for (auto const& zone : mesh_.zones) {
-      if (zone.n_nodes < 0 || zone.n_elements < 0 || zone.first_node != nodes || zone.first_element != elements)
+      if (zone.size() < 0 || zone.n_elements < 0 || zone.first_node != nodes || zone.first_element != elements)
         problems_.add("zone '" + zone.name + "': its nodes and elements do not follow those of the zone before it");
-      nodes = zone.first_node + zone.n_nodes;
+      nodes = zone.first_node + zone.size();
       elements = zone.first_element + zone.n_elements;
     }
     if (nodes > most || elements > most)
@@ -165,9 +125,9 @@ class MeshCheck {
                     " coordinates for " + std::to_string(nodes) + " nodes");
   }
 
-  [[nodiscard]] bool inside(UnstructuredZone const& zone, std::span<Index32 const> nodes) const {
+  [[nodiscard]] bool inside(Zone const& zone, std::span<Index32 const> nodes) const {
     return std::all_of(nodes.begin(), nodes.end(),
-                       [&](Index32 n) { return n >= zone.first_node && n < zone.first_node + zone.n_nodes; });
+                       [&](Index32 n) { return n >= zone.first_node && n < zone.first_node + zone.size(); });
   }
 
   void elements() {
@@ -183,8 +143,8 @@ class MeshCheck {
       if (bad > 0)
         problems_.add(mesh_.source + ": " + std::to_string(bad) +
                       " elements name nodes outside their zone or are of the wrong kind, the first is " +
-                      describe_element(mesh_, first) + "; zone '" + zone.name + "' has " +
-                      std::to_string(zone.n_nodes) + " nodes");
+                      describe_element(mesh_, first) + "; zone '" + zone.name + "' has " + std::to_string(zone.size()) +
+                      " nodes");
     }
   }
 
@@ -197,7 +157,7 @@ class MeshCheck {
       auto const& zone = mesh_.zones[std::size_t(patch.zone)];
       if (!inside(zone, patch.nodes) || !inside(zone, patch.faces.item))
         problems_.add(mesh_.source + ": patch " + describe_patch(mesh_, patch) +
-                      " names nodes outside its zone, which has " + std::to_string(zone.n_nodes) + " nodes");
+                      " names nodes outside its zone, which has " + std::to_string(zone.size()) + " nodes");
     }
   }
 
@@ -212,15 +172,15 @@ class MeshCheck {
     }
   }
 
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   Problems problems_;
 };
 
 }  // namespace
 
-void check_mesh(UnstructuredMesh const& mesh) { MeshCheck(mesh).run(); }
+void check_mesh(Mesh const& mesh) { MeshCheck(mesh).run(); }
 
-Vec3 plane_normal(UnstructuredMesh const& mesh) {
+Vec3 plane_normal(Mesh const& mesh) {
   Vec3 const up{0, 0, 1};
   if (mesh.dimension == 3 || mesh.coordinates.size() == 0) return up;
   MeshExtent const box = extent_of(mesh.coordinates);

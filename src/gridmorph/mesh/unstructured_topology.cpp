@@ -57,7 +57,7 @@ struct KeyedSide {
   }
 };
 
-bool same_side(UnstructuredMesh const& mesh, KeyedSide const& a, KeyedSide const& b) {
+bool same_side(Mesh const& mesh, KeyedSide const& a, KeyedSide const& b) {
   if (a.n_nodes <= max_face_corners) return true;
   std::array<Index32, max_face_corners> room_a{}, room_b{};
   return same_set(side_nodes(mesh, a.element, a.side, room_a), side_nodes(mesh, b.element, b.side, room_b));
@@ -79,7 +79,7 @@ inline int sort_side(ElementType type, Index32 const* node, int side, std::array
 }
 
 template <class Put>
-void put_polyhedron(UnstructuredMesh const& mesh, Index e, Put const& put) {
+void put_polyhedron(Mesh const& mesh, Index e, Put const& put) {
   std::array<Index32, max_face_corners> room, smallest;
   for (int s = 0; s < n_sides(mesh, e); ++s) {
     auto const nodes = side_nodes(mesh, e, s, room);
@@ -92,7 +92,7 @@ void put_polyhedron(UnstructuredMesh const& mesh, Index e, Put const& put) {
 }
 
 /// What is behind one of `alike`, sides that have the same smallest nodes and as many.
-Index32 behind(UnstructuredMesh const& mesh, KeyedSide const& own, std::span<KeyedSide const> alike) {
+Index32 behind(Mesh const& mesh, KeyedSide const& own, std::span<KeyedSide const> alike) {
   Index32 found = ElementSides::boundary;
   for (KeyedSide const& other : alike) {
     if (other.element == own.element || other.element == found || !same_side(mesh, own, other)) continue;
@@ -102,7 +102,7 @@ Index32 behind(UnstructuredMesh const& mesh, KeyedSide const& own, std::span<Key
   return found;
 }
 
-BoundaryFaces boundary_faces(UnstructuredMesh const& mesh, ElementSides const& sides) {
+BoundaryFaces boundary_faces(Mesh const& mesh, ElementSides const& sides) {
   BoundaryFaces out;
   std::array<Index32, max_face_corners> room{};
   for (Index e = 0; e < mesh.n_elements(); ++e) {
@@ -119,7 +119,7 @@ BoundaryFaces boundary_faces(UnstructuredMesh const& mesh, ElementSides const& s
 }
 
 /// Finds the elements behind connections: a face whose nodes are all paired, with a face of the donors there.
-void cross_connections(UnstructuredMesh const& mesh, UnstructuredTopology& topology) {
+void cross_connections(Mesh const& mesh, UnstructuredTopology& topology) {
   std::vector<Index32> donor(std::size_t(mesh.n_nodes()), -1);
   for (auto const& c : mesh.connections)
     for (int const way : {0, 1}) {
@@ -143,12 +143,12 @@ void cross_connections(UnstructuredMesh const& mesh, UnstructuredTopology& topol
 
 }  // namespace
 
-CsrGraph elements_of_nodes(UnstructuredMesh const& mesh) {
+CsrGraph elements_of_nodes(Mesh const& mesh) {
   return invert("gridmorph::elements_of_nodes", mesh.n_nodes(), mesh.n_elements(),
                 [&](Index e) { return mesh.elements.corners(e); });
 }
 
-ElementSides element_sides(UnstructuredMesh const& mesh) {
+ElementSides element_sides(Mesh const& mesh) {
   ElementSides out;
   Index const n = mesh.n_elements();
   out.first.resize(std::size_t(n) + 1, 0);
@@ -178,7 +178,7 @@ ElementSides element_sides(UnstructuredMesh const& mesh) {
   return out;
 }
 
-UnstructuredTopology make_topology(UnstructuredMesh const& mesh) {
+UnstructuredTopology make_topology(Mesh const& mesh) {
   UnstructuredTopology out;
   out.elements_of_nodes = elements_of_nodes(mesh);
   out.sides = element_sides(mesh);
@@ -200,7 +200,7 @@ Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index
   return -1;
 }
 
-std::vector<Index32> coincident_nodes(UnstructuredMesh const& mesh) {
+std::vector<Index32> coincident_nodes(Mesh const& mesh) {
   DisjointSets<Index32> sets(std::size_t(mesh.n_nodes()));
   for (auto const& c : mesh.connections) {
     if (c.periodic) continue;
@@ -209,7 +209,7 @@ std::vector<Index32> coincident_nodes(UnstructuredMesh const& mesh) {
   return sets.roots();
 }
 
-std::vector<std::uint8_t> periodic_nodes(UnstructuredMesh const& mesh) {
+std::vector<std::uint8_t> periodic_nodes(Mesh const& mesh) {
   std::vector<std::uint8_t> paired(std::size_t(mesh.n_nodes()), 0);
   for (auto const& c : mesh.connections)
     if (c.periodic)
@@ -253,7 +253,7 @@ std::vector<Index32> match_points(Coordinates const& coordinates, std::span<Inde
   return out;
 }
 
-double largest_mismatch(UnstructuredMesh const& mesh, UnstructuredConnection const& c) {
+double largest_mismatch(Mesh const& mesh, Connection const& c) {
   double worst = 0;
   for (std::size_t n = 0; n < c.nodes.size(); ++n) {
     Vec3 x = mesh.coordinates[c.nodes[n]];

@@ -11,7 +11,7 @@
 namespace gridmorph {
 
 /// Elements that have a node among their corners, ascending: list n belongs to node n.
-CsrGraph elements_of_nodes(UnstructuredMesh const& mesh);
+CsrGraph elements_of_nodes(Mesh const& mesh);
 
 /// The other side of every side of every element.
 struct ElementSides {
@@ -28,7 +28,7 @@ struct ElementSides {
 };
 
 /// Two elements are neighbours when a side of one has the corner nodes of a side of the other.
-ElementSides element_sides(UnstructuredMesh const& mesh);
+ElementSides element_sides(Mesh const& mesh);
 
 /// Sides with nothing behind them, in element order; normals point out of the mesh.
 struct BoundaryFaces {
@@ -48,7 +48,7 @@ struct UnstructuredTopology {
   Index crowded_sides = 0;
 };
 
-UnstructuredTopology make_topology(UnstructuredMesh const& mesh);
+UnstructuredTopology make_topology(Mesh const& mesh);
 
 /// The boundary face with exactly these corner nodes, in any order (a node may be named twice); -1 where there is none.
 Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index32 const> nodes);
@@ -58,7 +58,7 @@ struct BoundaryFacePatches {
   static constexpr int connection = -1;  ///< no patch, but all of its nodes are paired by one connection
   static constexpr int open = -2;        ///< neither
 
-  std::vector<int> patch;             ///< (boundary faces) number in UnstructuredMesh::patches, or one of the constants
+  std::vector<int> patch;             ///< (boundary faces) number in Mesh::patches, or one of the constants
   std::vector<Index> faces_of_patch;  ///< (patches) boundary faces each of them got
   std::vector<std::string> problems;  ///< what a morph would refuse: faces that no patch has, or two
   std::vector<std::string> notes;     ///< faces of patches inside the mesh, ...
@@ -66,14 +66,14 @@ struct BoundaryFacePatches {
 
 /// A face belongs to the patch that lists it. Patches given as nodes get the faces all of whose corners they list and that
 /// no patch of faces has; where several do, the one with fewest nodes, then the first in the file.
-BoundaryFacePatches find_face_patches(UnstructuredMesh const& mesh, UnstructuredTopology const& topology);
+BoundaryFacePatches find_face_patches(Mesh const& mesh, UnstructuredTopology const& topology);
 
 /// For each node the smallest number among the nodes that connections (periodic ones left out) declare to be the same point;
 /// its own number where there is none.
-std::vector<Index32> coincident_nodes(UnstructuredMesh const& mesh);
+std::vector<Index32> coincident_nodes(Mesh const& mesh);
 
 /// (n_nodes) 1 for nodes that a periodic connection pairs.
-std::vector<std::uint8_t> periodic_nodes(UnstructuredMesh const& mesh);
+std::vector<std::uint8_t> periodic_nodes(Mesh const& mesh);
 
 /// For each of `points` the nearest of `donors` within `tolerance` (the first of equals), or -1. Both are node numbers;
 /// `periodic`: moves the points onto the donors first. n log n.
@@ -82,6 +82,6 @@ std::vector<Index32> match_points(Coordinates const& coordinates, std::span<Inde
                                   std::optional<Periodic> const& periodic = {});
 
 /// Largest distance between nodes that a connection pairs.
-double largest_mismatch(UnstructuredMesh const& mesh, UnstructuredConnection const& connection);
+double largest_mismatch(Mesh const& mesh, Connection const& connection);
 
 }  // namespace gridmorph

@@ -1,4 +1,5 @@
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/unstructured_morpher.hpp>
@@ -19,17 +20,15 @@ struct MorphPlan::State {
 
 MorphPlan::MorphPlan(Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
   auto state = std::make_shared<State>();
-  state->blocks = prepare(mesh, motion, options);
-  state->displacement = state->blocks->boundary_displacement();
-  state_ = std::move(state);
-}
-
-MorphPlan::MorphPlan(UnstructuredMesh const& mesh, Motion const& motion, UnstructuredOptions const& options) {
-  check_mesh(mesh);
-  UnstructuredTopology const topology = make_topology(mesh);
-  auto state = std::make_shared<State>();
-  state->elements = prepare(mesh, topology, find_face_patches(mesh, topology), motion, options);
-  state->displacement = state->elements->boundary_displacement(mesh);
+  if (mesh.is_structured()) {
+    state->blocks = prepare(mesh, motion, options);
+    state->displacement = state->blocks->boundary_displacement();
+  } else {
+    check_mesh(mesh);
+    UnstructuredTopology const topology = make_topology(mesh);
+    state->elements = prepare(mesh, topology, find_face_patches(mesh, topology), motion, options);
+    state->displacement = state->elements->boundary_displacement(mesh);
+  }
   state_ = std::move(state);
 }
 
@@ -97,23 +96,15 @@ Coordinates morph(Exec const& exec, Mesh const& mesh, Motion const& motion, Plan
   MorphPlan const plan(mesh, motion, options);
   return moved_by(exec, plan, mesh.coordinates, [&](auto const& boundary, auto const& x, auto const& y, auto const& z) {
     VectorView<typename Exec::memory_space> const all(x, y, z);
-    Morpher<Exec>(exec, plan.blocks()->plan(), all).positions(exec, boundary, all);
+    if (plan.blocks())
+      Morpher<Exec>(exec, plan.blocks()->plan(), all).positions(exec, boundary, all);
+    else
+      UnstructuredMorpher<Exec>(exec, plan.elements()->plan, all).positions(exec, boundary, all);
   });
 }
 
-template <class Exec>
-Coordinates morph(Exec const& exec, UnstructuredMesh const& mesh, Motion const& motion,
-                  UnstructuredOptions const& options) {
-  MorphPlan const plan(mesh, motion, options);
-  return moved_by(exec, plan, mesh.coordinates, [&](auto const& boundary, auto const& x, auto const& y, auto const& z) {
-    VectorView<typename Exec::memory_space> const all(x, y, z);
-    UnstructuredMorpher<Exec>(exec, plan.elements()->plan, all).positions(exec, boundary, all);
-  });
-}
-
-#define GRIDMORPH_INSTANTIATE(Exec)                                                        \
-  template Coordinates morph(Exec const&, Mesh const&, Motion const&, PlanOptions const&); \
-  template Coordinates morph(Exec const&, UnstructuredMesh const&, Motion const&, UnstructuredOptions const&);
+#define GRIDMORPH_INSTANTIATE(Exec) \
+  template Coordinates morph(Exec const&, Mesh const&, Motion const&, PlanOptions const&);
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE
 

@@ -1,9 +1,9 @@
 // From a mesh and rules to a morphed mesh: in one call, or by a plan that serves many displacements.
 #pragma once
 
-#include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/motion.hpp>
-#include <gridmorph/plan/unstructured_options.hpp>
+#include <gridmorph/plan/options.hpp>
 
 #include <memory>
 #include <string>
@@ -18,10 +18,9 @@ struct PreparedUnstructured;
 /// Made once on the host, put on an execution space by Morpher. Copies share their insides.
 class MorphPlan {
  public:
-  /// Connects the zones, completes and checks the boundary, resolves the rules and plans. Throws MeshError, MotionError or
+  /// Connects the zones, completes and checks the boundary, resolves the rules and plans, for blocks or for elements. Throws MeshError, MotionError or
   /// PlanError. The mesh's coordinates are read here only.
   MorphPlan(Mesh const& mesh, Motion const& motion, PlanOptions const& options = {});
-  MorphPlan(UnstructuredMesh const& mesh, Motion const& motion, UnstructuredOptions const& options = {});
 
   [[nodiscard]] Index n_nodes() const;
   /// Nodes whose displacement a morph is given, in the order that it expects.
@@ -44,8 +43,5 @@ class MorphPlan {
 /// MorphPlan and a Morpher.
 template <class ExecutionSpace>
 Coordinates morph(ExecutionSpace const& exec, Mesh const& mesh, Motion const& motion, PlanOptions const& options = {});
-template <class ExecutionSpace>
-Coordinates morph(ExecutionSpace const& exec, UnstructuredMesh const& mesh, Motion const& motion,
-                  UnstructuredOptions const& options = {});
 
 }  // namespace gridmorph

@@ -33,7 +33,7 @@ ResolvedMotion by_position(ResolvedMotion motion) {
 
 class Finder {
  public:
-  Finder(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
+  Finder(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
          NodeGraph const& graph)
       : mesh_(mesh), topology_(topology), face_patches_(face_patches), graph_(graph) {}
 
@@ -353,7 +353,7 @@ class Finder {
               [](PeriodicImage const& a, PeriodicImage const& b) { return a.node < b.node; });
   }
 
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   UnstructuredTopology const& topology_;
   BoundaryFacePatches const& face_patches_;
   NodeGraph const& graph_;
@@ -362,28 +362,27 @@ class Finder {
   std::vector<std::uint8_t> is_known_;
 };
 
-std::string requester(UnstructuredMesh const& mesh, BoundaryConditions::Request const& r) {
+std::string requester(Mesh const& mesh, BoundaryConditions::Request const& r) {
   return r.patch >= 0 ? describe_patch(mesh, mesh.patches[std::size_t(r.patch)])
                       : "'" + mesh.connections[std::size_t(r.interface)].name + "' (periodic)";
 }
 
-std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions const& boundary,
-                            SurfaceMotion const& surface);
+std::vector<Vec3> values_of(Mesh const& mesh, BoundaryConditions const& boundary, SurfaceMotion const& surface);
 
 }  // namespace
 
-BoundaryConditions boundary_conditions(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                                        Motion const& motion, std::vector<std::string> const& walls,
                                        Displacements displacements) {
   return Finder(mesh, topology, face_patches, graph).run(motion, walls, displacements);
 }
 
-std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary) {
+std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary) {
   return values_of(mesh, boundary, *boundary.surface);
 }
 
-std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary, Motion const& motion) {
+std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary, Motion const& motion) {
   ResolvedMotion now = boundary.motion;
   for (std::size_t r = 0; r < motion.rules.size(); ++r) now.rules[r].rule = motion.rules[r].rule;
   return values_of(mesh, boundary, SurfaceMotion(boundary.outline, by_position(now), &boundary.target_faces));
@@ -391,8 +390,7 @@ std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions cons
 
 namespace {
 
-std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions const& boundary,
-                            SurfaceMotion const& surface) {
+std::vector<Vec3> values_of(Mesh const& mesh, BoundaryConditions const& boundary, SurfaceMotion const& surface) {
   auto const& requests = boundary.requests;
   std::vector<Vec3> values(boundary.known.size());
   std::vector<Index> given_by(boundary.known.size(), -1);
@@ -422,7 +420,7 @@ std::vector<Vec3> values_of(UnstructuredMesh const& mesh, BoundaryConditions con
       }
       auto const& first = requests[std::size_t(given_by[slot])];
       // Where zones touch without a connection, the side that a rule names has the say.
-      if (mesh.zone_of_node(first.node) != mesh.zone_of_node(r.node) && by_default(first) != by_default(r)) {
+      if (mesh.zone_of(first.node) != mesh.zone_of(r.node) && by_default(first) != by_default(r)) {
         if (by_default(first)) {
           given_by[slot] = Index(n);
           values[slot] = u[n - begin];

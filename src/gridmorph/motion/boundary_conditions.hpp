@@ -62,15 +62,15 @@ enum class Displacements {
 /// every patch that moves and is no inflow, outflow, farfield or symmetry. Where no rule displaces anything now, all that could do.
 /// Throws MotionError for rules that need a structured blade surface (sections, circumferential-slide, follow), when no
 /// wall moves, and the errors of resolve() and SurfaceMotion.
-BoundaryConditions boundary_conditions(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                                        Motion const& motion, std::vector<std::string> const& walls,
                                        Displacements displacements = Displacements::of_the_rules);
 
 /// Displacement of every known node. Throws MotionError that lists every pair of patches whose displacements disagree on
 /// common nodes by more than the conformity tolerance.
-std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary);
+std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary);
 /// The same by another motion: one with the same rules for the same patches, whose displacements alone differ.
-std::vector<Vec3> evaluate(UnstructuredMesh const& mesh, BoundaryConditions const& boundary, Motion const& motion);
+std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary, Motion const& motion);
 
 }  // namespace gridmorph

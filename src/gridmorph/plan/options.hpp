@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/boundary/topology_options.hpp>
+#include <gridmorph/plan/element_options.hpp>
 
 #include <string>
 #include <vector>
@@ -57,9 +58,10 @@ struct VolumeOptions {
 };
 
 struct PlanOptions {
-  TopologyOptions topology;
-  std::vector<BoundaryLayer> boundary_layers;
-  VolumeOptions volume;
+  TopologyOptions topology;                    ///< blocks
+  std::vector<BoundaryLayer> boundary_layers;  ///< how far the near field of which walls goes, and how it turns
+  VolumeOptions volume;                        ///< of elements: `law`, along the grid lines of the background mesh
+  ElementOptions elements;
 };
 
 }  // namespace gridmorph

@@ -1,3 +1,4 @@
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
 #include <gridmorph/plan/prepare.hpp>
@@ -8,6 +9,9 @@ namespace gridmorph {
 
 PreparedMorph prepare(Mesh const& given, Motion const& motion, PlanOptions const& options) {
   check_coordinates(given, "gridmorph::prepare");
+  if (!given.is_structured())
+    throw MeshError("gridmorph::prepare: mesh '" + given.source +
+                    "' has elements, which are planned with their topology (gridmorph::MorphPlan takes both kinds)");
   Stopwatch watch;
   Mesh mesh = given;
   PreparedMorph::Seconds seconds;

@@ -13,8 +13,8 @@
 #include <gridmorph/plan/elements/wrap.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
 #include <gridmorph/plan/layers.hpp>
+#include <gridmorph/plan/options.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/plan/unstructured_options.hpp>
 
 #include <memory>
 #include <optional>
@@ -107,20 +107,17 @@ struct PreparedUnstructured {
   std::vector<std::string> notes;
 
   /// Displacements of UnstructuredPlan::known by the rules; throws MotionError.
-  [[nodiscard]] std::vector<Vec3> boundary_displacement(UnstructuredMesh const& mesh) const {
-    return evaluate(mesh, boundary);
-  }
+  [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& mesh) const { return evaluate(mesh, boundary); }
 };
 
 /// Resolves the rules and plans every stage. Throws MeshError for open boundary faces, MotionError, PlanError. Cost: linear in
 /// nodes and elements (n log n in those of boundaries and partially wrapped ones); about 1 kB of working memory per node.
-PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                             BoundaryFacePatches const& face_patches, Motion const& motion,
-                             UnstructuredOptions const& options);
+PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
+                             BoundaryFacePatches const& face_patches, Motion const& motion, PlanOptions const& options);
 /// The same for rules that are resolved already, make_node_graph() and boundary_conditions() of the mesh: for several plans of
 /// one mesh.
-PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
-                             UnstructuredOptions const& options);
+                             PlanOptions const& options);
 
 }  // namespace gridmorph

@@ -1,11 +1,8 @@
-#include <gridmorph/core/error.hpp>
 #include <gridmorph/quality/element_tables.hpp>
-
-#include <algorithm>
 
 namespace gridmorph::detail {
 
-CsrGraph neighbour_lists(UnstructuredMesh const& mesh, UnstructuredTopology const& topology) {
+CsrGraph neighbour_lists(Mesh const& mesh, UnstructuredTopology const& topology) {
   CsrGraph out;
   Index const n = mesh.n_elements();
   auto const& across = topology.boundary.across;
@@ -22,14 +19,6 @@ CsrGraph neighbour_lists(UnstructuredMesh const& mesh, UnstructuredTopology cons
     out.first.push_back(Index(out.item.size()));
   }
   return out;
-}
-
-void check_size(UnstructuredMesh const& mesh, std::size_t nx, std::size_t ny, std::size_t nz, std::string const& what) {
-  auto const needed = std::size_t(mesh.n_nodes());
-  std::size_t const found = std::min({nx, ny, nz});
-  if (found < needed)
-    throw MeshError(what + ": the Views hold " + std::to_string(found) + " nodes, the mesh '" + mesh.source + "' has " +
-                    std::to_string(needed));
 }
 
 }  // namespace gridmorph::detail

@@ -63,12 +63,12 @@ struct ElementTables {
 };
 
 template <class Exec>
-ElementTables<typename Exec::memory_space> element_tables(Exec const& exec, UnstructuredMesh const& mesh) {
+ElementTables<typename Exec::memory_space> element_tables(Exec const& exec, Mesh const& mesh) {
   return {views(exec, mesh.elements), plane_normal(mesh)};
 }
 
 /// Elements zone after zone in chunks of cells_per_chunk; box_extent[0] counts those of the zone.
-inline std::vector<CellChunk> chunks_of(UnstructuredMesh const& mesh) {
+inline std::vector<CellChunk> element_chunks(Mesh const& mesh) {
   std::vector<CellChunk> chunks;
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
     Index const n = mesh.zones[std::size_t(z)].n_elements;
@@ -79,7 +79,7 @@ inline std::vector<CellChunk> chunks_of(UnstructuredMesh const& mesh) {
   return chunks;
 }
 
-inline std::vector<Index> first_elements(UnstructuredMesh const& mesh) {
+inline std::vector<Index> first_elements(Mesh const& mesh) {
   std::vector<Index> first;
   for (auto const& zone : mesh.zones) first.push_back(zone.first_element);
   return first;
@@ -102,13 +102,9 @@ KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, ElementView
 }
 
 /// Elements on the other side of each side of each element, through connections too, where there is one.
-CsrGraph neighbour_lists(UnstructuredMesh const& mesh, UnstructuredTopology const& topology);
+CsrGraph neighbour_lists(Mesh const& mesh, UnstructuredTopology const& topology);
 
 /// `known` where it has an entry per element, else numbering_signs().
-std::vector<signed char> signs_of(UnstructuredMesh const& mesh, ElementSides const& sides,
-                                  std::vector<signed char> const& known);
-
-/// Throws MeshError unless each of the Views holds every node of the mesh.
-void check_size(UnstructuredMesh const& mesh, std::size_t nx, std::size_t ny, std::size_t nz, std::string const& what);
+std::vector<signed char> signs_of(Mesh const& mesh, ElementSides const& sides, std::vector<signed char> const& known);
 
 }  // namespace gridmorph::detail

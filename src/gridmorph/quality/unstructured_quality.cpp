@@ -5,6 +5,7 @@
 #include <gridmorph/quality/detail/fast_quality.hpp>
 #include <gridmorph/quality/detail/judge_cells.hpp>
 #include <gridmorph/quality/detail/wall_columns.hpp>
+#include <gridmorph/quality/detail/zone_cells.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 
 namespace gridmorph {
 
-std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
+std::vector<signed char> volume_signs(Mesh const& mesh) {
   using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;
   detail::check_size(mesh, mesh.coordinates.x.extent(0), mesh.coordinates.y.extent(0), mesh.coordinates.z.extent(0),
@@ -29,11 +30,11 @@ std::vector<signed char> volume_signs(UnstructuredMesh const& mesh) {
   return sign;
 }
 
-std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh) {
+std::vector<NegativeElements> negative_elements(Mesh const& mesh) {
   return negative_elements(mesh, volume_signs(mesh));
 }
 
-std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh, std::vector<signed char> const& sign) {
+std::vector<NegativeElements> negative_elements(Mesh const& mesh, std::vector<signed char> const& sign) {
   std::vector<NegativeElements> out;
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
     auto const& zone = mesh.zones[std::size_t(z)];
@@ -53,7 +54,7 @@ std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh, st
   return out;
 }
 
-std::string describe(UnstructuredMesh const& mesh, NegativeElements const& n) {
+std::string describe(Mesh const& mesh, NegativeElements const& n) {
   auto const& zone = mesh.zones[std::size_t(n.zone)];
   std::string const type(to_string(n.type));
   return "zone '" + zone.name + "': " + std::to_string(n.count) + " of " + std::to_string(n.of) + " elements of type " +
@@ -64,7 +65,7 @@ std::string describe(UnstructuredMesh const& mesh, NegativeElements const& n) {
 namespace {
 
 template <class MemorySpace>
-void check_sizes(UnstructuredMesh const& mesh, UnstructuredQualityInput<MemorySpace> const& input) {
+void check_sizes(Mesh const& mesh, UnstructuredQualityInput<MemorySpace> const& input) {
   auto const& c = input.coordinates;
   auto const& b = input.baseline;
   detail::check_size(mesh, c.x.extent(0), c.y.extent(0), c.z.extent(0), "coordinates to measure");
@@ -79,15 +80,15 @@ void check_sizes(UnstructuredMesh const& mesh, UnstructuredQualityInput<MemorySp
     refuse_shorter(input.fields.of[m].extent(0), "field of " + std::string(to_string(Measure(m))));
 }
 
-/// Measures and sums of all elements, chunk after chunk of detail::chunks_of().
+/// Measures and sums of all elements, chunk after chunk of detail::element_chunks().
 template <class Exec>
-std::vector<detail::PartialSums> measure_elements(Exec const& exec, UnstructuredMesh const& mesh,
+std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& mesh,
                                                   UnstructuredTopology const& topology,
                                                   UnstructuredQualityInput<typename Exec::memory_space> const& input,
                                                   std::vector<signed char> const& sign_of) {
   using MemorySpace = typename Exec::memory_space;
   bool const against_baseline = input.baseline.x.extent(0) > 0;
-  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
+  std::vector<detail::CellChunk> const table = detail::element_chunks(mesh);
   auto const tables = detail::element_tables(exec, mesh);
   auto const first_element = detail::upload(exec, "gridmorph::quality::zones", detail::first_elements(mesh));
   auto const signs = detail::view_of(exec, sign_of, "gridmorph::quality::signs");
@@ -182,7 +183,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Unstructured
 }  // namespace
 
 template <class Exec>
-QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                               BoundaryFacePatches const& face_patches,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input) {
   check_sizes(mesh, input);
@@ -212,7 +213,7 @@ QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, Un
 
 template <class Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
-    Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+    Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
     UnstructuredQualityInput<typename Exec::memory_space> const& input, std::span<Measure const> measures) {
   auto with_fields = input;
   std::vector<Kokkos::View<double*, typename Exec::memory_space>> result;
@@ -229,13 +230,13 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
   return result;
 }
 
-#define GRIDMORPH_INSTANTIATE(Exec)                                                                         \
-  template QualityReport measure_quality(Exec const&, UnstructuredMesh const&, UnstructuredTopology const&, \
-                                         BoundaryFacePatches const&,                                        \
-                                         UnstructuredQualityInput<Exec::memory_space> const&);              \
-  template std::vector<Kokkos::View<double*, Exec::memory_space>> cell_fields(                              \
-      Exec const&, UnstructuredMesh const&, UnstructuredTopology const&,                                    \
-      UnstructuredQualityInput<Exec::memory_space> const&, std::span<Measure const>);
+#define GRIDMORPH_INSTANTIATE(Exec)                                                                               \
+  template QualityReport measure_quality(Exec const&, Mesh const&, UnstructuredTopology const&,                   \
+                                         BoundaryFacePatches const&,                                              \
+                                         UnstructuredQualityInput<Exec::memory_space> const&);                    \
+  template std::vector<Kokkos::View<double*, Exec::memory_space>> cell_fields(                                    \
+      Exec const&, Mesh const&, UnstructuredTopology const&, UnstructuredQualityInput<Exec::memory_space> const&, \
+      std::span<Measure const>);
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE
 

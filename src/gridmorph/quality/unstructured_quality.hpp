@@ -17,7 +17,7 @@ struct UnstructuredQualityInput {
   CoordinateViews<MemorySpace> baseline;
   /// (n_elements), nonzero: near field. Left empty, every element is in the far field.
   Kokkos::View<std::uint8_t const*, MemorySpace> near_field;
-  /// Numbers in UnstructuredMesh::patches. Heights are measured at their nodes that a column of prisms, hexahedra or (2-D)
+  /// Numbers in Mesh::patches. Heights are measured at their nodes that a column of prisms, hexahedra or (2-D)
   /// quadrilaterals leaves from.
   std::vector<int> walls;
   /// numbering_signs() of the baseline; left empty, they are found again, from the coordinates of the mesh.
@@ -28,16 +28,16 @@ struct UnstructuredQualityInput {
 };
 
 /// (n_elements) Signs of the elements' volumes in SIDS order, 0 for polyhedra: all that their numbering decides. Host, parallel.
-std::vector<signed char> volume_signs(UnstructuredMesh const& mesh);
+std::vector<signed char> volume_signs(Mesh const& mesh);
 
 /// (n_elements) +1, or -1 for elements that are numbered inside out; 0 for polyhedra. Whether two neighbours are numbered alike
 /// follows from the side that they share: seen from one and from the other it must be named in opposite ways. So the signs of
 /// elements that hang together are known but for one, which is that of most of their volumes. An element that is inverted
 /// among elements numbered like it is told from one that is numbered the other way and sound (hybrid meshes whose triangles run
 /// one way and quadrilaterals the other). Linear cost; where all volumes of a zone have one sign, nothing is looked at.
-std::vector<signed char> numbering_signs(UnstructuredMesh const& mesh, ElementSides const& sides,
+std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides,
                                          std::vector<signed char> const& volume_signs);
-std::vector<signed char> numbering_signs(UnstructuredMesh const& mesh, ElementSides const& sides);
+std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides);
 
 /// Elements of one type in one zone whose volume is negative as they are numbered.
 struct NegativeElements {
@@ -48,24 +48,23 @@ struct NegativeElements {
 };
 
 /// Only where there are any.
-std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh,
-                                                std::vector<signed char> const& volume_signs);
-std::vector<NegativeElements> negative_elements(UnstructuredMesh const& mesh);
+std::vector<NegativeElements> negative_elements(Mesh const& mesh, std::vector<signed char> const& volume_signs);
+std::vector<NegativeElements> negative_elements(Mesh const& mesh);
 
 /// "zone 'Fluid': 12 of 400 prisms are numbered inside out (negative volume), the first is prism 17".
-std::string describe(UnstructuredMesh const& mesh, NegativeElements const& negative);
+std::string describe(Mesh const& mesh, NegativeElements const& negative);
 
 /// Measures every element and the walls. Returns numbers, so it fences. Throws MeshError when Views are shorter than the mesh.
 /// Memory: 8 bytes per element for volumes and, on devices, the element lists and neighbours.
 template <class Exec>
-QualityReport measure_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                               BoundaryFacePatches const& face_patches,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input);
 
 /// Values of the given measures in every element, (n_elements) each, in the order asked for; zero for polyhedra.
 template <class Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
-    Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+    Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
     UnstructuredQualityInput<typename Exec::memory_space> const& input, std::span<Measure const> measures);
 
 }  // namespace gridmorph

@@ -120,9 +120,8 @@ ValidityCheck<Exec>::ValidityCheck(Exec const& exec, Mesh const& mesh) {
 }
 
 template <class Exec>
-ValidityCheck<Exec>::ValidityCheck(Exec const& exec, UnstructuredMesh const& mesh,
-                                   UnstructuredTopology const& topology) {
-  auto state = std::make_shared<State>(exec, mesh.n_nodes(), true, detail::chunks_of(mesh));
+ValidityCheck<Exec>::ValidityCheck(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology) {
+  auto state = std::make_shared<State>(exec, mesh.n_nodes(), true, detail::element_chunks(mesh));
   state->first_element = detail::upload(exec, "gridmorph::ValidityCheck::zones", detail::first_elements(mesh));
   state->signs = detail::upload(exec, "gridmorph::ValidityCheck::signs", detail::signs_of(mesh, topology.sides, {}));
   state->elements = detail::element_tables(exec, mesh);

@@ -43,7 +43,7 @@ class Builder {
   WheelMesh run() {
     Mesh& mesh = out_.mesh;
     mesh.source = sector_.source;
-    mesh.two_dimensional = sector_.two_dimensional;
+    mesh.dimension = sector_.dimension;
     int const most = *std::max_element(passages_.begin(), passages_.end());
     for (int p = 0; p < most; ++p)
       for (int z = 0; z < int(sector_.zones.size()); ++z)

@@ -8,7 +8,6 @@
 #include <gridmorph/mapping/point_field.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
-#include <gridmorph/plan/unstructured_options.hpp>
 #include <gridmorph/quality/quality.hpp>
 
 #include <compare>
@@ -92,8 +91,7 @@ struct CaseFile {
   std::optional<Axis> axis;                        ///< [mesh] axis as given; Motion::axis holds it too
   Motion motion;
   PlanOptions plan;
-  UnstructuredOptions unstructured;  ///< [near_field] and [background]; boundary layers and law are those of `plan`
-  std::optional<BackgroundFile> background;  ///< read and made part of `unstructured` by whoever morphs
+  std::optional<BackgroundFile> background;  ///< read and made part of `plan` by whoever morphs
   GuardOptions guard;
   OutputOptions output_options;
   std::vector<FieldUse> fields;

@@ -28,7 +28,7 @@ using Groups = DisjointSets<std::size_t>;
 class Namer {
  public:
   Namer(Mesh const& mesh, std::size_t first)
-      : mesh_(mesh), first_(first), n_(mesh.patches.size() - first), number_(coincident_nodes(mesh)) {
+      : mesh_(mesh), first_(first), n_(mesh.patches.size() - first), number_(coincident_block_nodes(mesh)) {
     for (Index n = 0; n < mesh.n_nodes(); ++n) whole_.include(mesh.coordinates[n]);
     size_ = distance(whole_.low, whole_.high);
   }
@@ -51,7 +51,7 @@ class Namer {
     for (std::size_t p = 0; p < n_; ++p) {
       std::size_t const g = smoothly.root(p);
       plane[p] = plane_at_limit(box[g]);
-      inside[p] = plane[p].empty() && directions_inside(box[g]) >= (mesh_.two_dimensional ? 1 : 2) ? 1 : 0;
+      inside[p] = plane[p].empty() && directions_inside(box[g]) >= (mesh_.dimension == 2 ? 1 : 2) ? 1 : 0;
     }
     Groups bodies(n_);
     for (std::size_t p = 0; p < n_; ++p) bodies.join(p, smoothly.root(p));
@@ -168,7 +168,7 @@ class Namer {
 
   Mesh const& mesh_;
   std::size_t first_, n_;
-  std::vector<Index> number_;  ///< coincident_nodes()
+  std::vector<Index> number_;  ///< coincident_block_nodes()
   Box whole_;
   double size_ = 0;
 };

@@ -4,7 +4,6 @@
 #include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/io/unstructured_io.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
@@ -86,7 +85,7 @@ class Reader {
       if (!n.is_integer() || n.as_integer() < 1 || n.as_integer() > 2'000'000'000) return std::nullopt;
       out.push_back(int(n.as_integer()));
     }
-    if (out.size() == 3 || (out.size() == 2 && mesh_.two_dimensional)) return out;
+    if (out.size() == 3 || (out.size() == 2 && mesh_.dimension == 2)) return out;
     return std::nullopt;
   }
 
@@ -194,7 +193,7 @@ class Reader {
     auto const own = zone(table, "zone"), donor = zone(table, "donor_zone");
     auto const own_range = own ? range(table, *own, "face", "range") : std::nullopt;
     auto const donor_range = donor ? range(table, *donor, "donor_face", "donor_range") : std::nullopt;
-    auto o = transform(table, mesh_.two_dimensional);
+    auto o = transform(table, mesh_.dimension == 2);
     out.periodic = periodic_.of(table);
     if (own && donor) table.finish();
     if (!own_range || !donor_range || !o) return;
@@ -239,7 +238,10 @@ std::optional<std::filesystem::path> find_side_file(std::filesystem::path const&
 void add_side_file(std::string const& text, std::filesystem::path const& path, Mesh& mesh) {
   Context context{path.string(), path.parent_path(), {}, nullptr};
   toml::value const document = casefile::parse_toml_text(text, context.file);
-  Reader(context, mesh).read(document);
+  if (mesh.is_structured())
+    Reader(context, mesh).read(document);
+  else
+    casefile::read_side_file_of_elements(context, document, mesh);
   context.problems.throw_if_any<ConfigError>();
 }
 
@@ -255,20 +257,9 @@ Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem:
     options.plot3d_format = document.at("format").as_string().str;
   Mesh out = read_mesh(mesh.string(), options);
   add_side_file(text, *side, out);
-  out.notes.push_back(fmt::format("patches and interfaces of '{}' added", side->string()));
-  return out;
-}
-
-UnstructuredMesh load_unstructured_mesh(std::filesystem::path const& mesh,
-                                        std::optional<std::filesystem::path> const& side_file,
-                                        std::vector<std::string> const& leave_out) {
-  ReadOptions options;
-  options.leave_out = leave_out;
-  auto const side = side_file ? side_file : find_side_file(mesh);
-  UnstructuredMesh out = read_unstructured_mesh(mesh.string(), options);
-  if (!side) return out;
-  add_side_file(read_text(*side), *side, out);
-  out.notes.push_back(fmt::format("what '{}' says is taken", side->string()));
+  out.notes.push_back(fmt::format(
+      fmt::runtime(out.is_structured() ? "patches and interfaces of '{}' added" : "what '{}' says is taken"),
+      side->string()));
   return out;
 }
 

@@ -5,7 +5,6 @@
 
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/mesh/mesh.hpp>
-#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -25,14 +24,9 @@ std::optional<std::filesystem::path> find_side_file(std::filesystem::path const&
 Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem::path> const& side_file = {},
                std::vector<std::string> const& leave_out = {});
 
-/// The same for an unstructured mesh, whose side file says what markers are and which of them are periodic.
-UnstructuredMesh load_unstructured_mesh(std::filesystem::path const& mesh,
-                                        std::optional<std::filesystem::path> const& side_file = {},
-                                        std::vector<std::string> const& leave_out = {});
-
-/// Adds patches and interfaces of a side file's text to a mesh. `path` names it in messages.
+/// Adds patches and interfaces of a side file's text to a mesh of blocks; to one of elements what its markers are and which of them
+/// are periodic. `path` names it in messages.
 void add_side_file(std::string const& text, std::filesystem::path const& path, Mesh& mesh);
-void add_side_file(std::string const& text, std::filesystem::path const& path, UnstructuredMesh& mesh);
 
 /// A side file for a mesh: the interfaces that were found, and a patch for every rectangle of a zone face that is left. Rectangles
 /// that continue one another have one name (open_patches.hpp), for the user to change. `existing`: text of the mesh's present side file, which comes first as it is.

@@ -19,9 +19,9 @@ using casefile::TableReader;
 /// Of the mesh size, as for connections of a file.
 constexpr double matching_tolerance = 1e-6;
 
-class Reader {
+class ElementsReader {
  public:
-  Reader(Context& context, UnstructuredMesh& mesh) : context_(context), mesh_(mesh) {}
+  ElementsReader(Context& context, Mesh& mesh) : context_(context), mesh_(mesh) {}
 
   void read(toml::value const& document) {
     TableReader root(context_, document, "");
@@ -98,7 +98,7 @@ class Reader {
   }
 
   void interface(TableReader& table) {
-    UnstructuredConnection out;
+    Connection out;
     out.name = table.string("name").value_or(fmt::format("interface {}", mesh_.connections.size() + 1));
     if (auto const family = table.strings("family")) out.families = *family;
     auto const own = patches(table, "patch", "patch = \"per1\", a patch or marker of the mesh");
@@ -133,17 +133,14 @@ class Reader {
   }
 
   Context& context_;
-  UnstructuredMesh& mesh_;
+  Mesh& mesh_;
   casefile::SidePeriodics periodic_;
 };
 
 }  // namespace
 
-void add_side_file(std::string const& text, std::filesystem::path const& path, UnstructuredMesh& mesh) {
-  Context context{path.string(), path.parent_path(), {}, nullptr};
-  toml::value const document = casefile::parse_toml_text(text, context.file);
-  Reader(context, mesh).read(document);
-  context.problems.throw_if_any<ConfigError>();
+void casefile::read_side_file_of_elements(Context& context, toml::value const& document, Mesh& mesh) {
+  ElementsReader(context, mesh).read(document);
 }
 
 }  // namespace gridmorph

@@ -28,8 +28,7 @@ std::vector<Vec3> cell_corners(void const* mesh, FallenCells const& cell, Coordi
 
 std::vector<Vec3> element_corners(void const* mesh, FallenCells const& cell, Coordinates const& at) {
   std::vector<Vec3> out;
-  for (Index32 const n : static_cast<UnstructuredMesh const*>(mesh)->elements.corners(cell.number))
-    out.push_back(at[n]);
+  for (Index32 const n : static_cast<Mesh const*>(mesh)->elements.corners(cell.number)) out.push_back(at[n]);
   return out;
 }
 
@@ -115,7 +114,7 @@ MeshForMessages for_messages(Mesh const& mesh) {
   return out;
 }
 
-MeshForMessages for_messages(UnstructuredMesh const& mesh, BoundaryConditions const& boundary) {
+MeshForMessages for_messages(Mesh const& mesh, BoundaryConditions const& boundary) {
   MeshForMessages out{boundary.outline, mesh.coordinates, mesh.size(), {}, {}, element_corners, &mesh};
   for (std::size_t p = 0; p < boundary.outline.patches.size(); ++p) {
     out.patch_names.push_back(name_of(boundary.outline.patches[p]));

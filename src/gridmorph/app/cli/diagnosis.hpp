@@ -25,7 +25,7 @@ struct MeshForMessages {
 
 MeshForMessages for_messages(Mesh const& mesh);
 /// `boundary`: of the plan of `mesh`.
-MeshForMessages for_messages(UnstructuredMesh const& mesh, BoundaryConditions const& boundary);
+MeshForMessages for_messages(Mesh const& mesh, BoundaryConditions const& boundary);
 
 /// The worst of the cells that a morph inverted: "the worst is zone 'A' cell (i 3, j 1, k 7) at (1, 2, 3), 0.002 from patch 'blade'
 /// in the baseline: its smallest corner Jacobian is -35.2 times the largest it had". Empty where none is. Cost: nodes of all

@@ -273,7 +273,7 @@ MeshSummary summarize(Mesh const& mesh) {
   out.families = mesh.families;
   out.nodes = mesh.n_nodes();
   out.cells = mesh.n_cells();
-  out.two_dimensional = mesh.two_dimensional;
+  out.two_dimensional = mesh.dimension == 2;
   out.notes = mesh.notes;
   for (auto const& zone : mesh.zones) {
     ZoneSummary z{zone.name, zone.extent, zone.size(), {}};
@@ -286,7 +286,7 @@ MeshSummary summarize(Mesh const& mesh) {
   out.boundaries = group_patches(mesh);
   for (auto& b : out.boundaries) measure(mesh, b);
   guess_roles(mesh.coordinates, shapes_of(mesh, out), out);
-  find_touching(out.boundaries, nodes_of(mesh, out.boundaries, coincident_nodes(mesh)), mesh.n_nodes());
+  find_touching(out.boundaries, nodes_of(mesh, out.boundaries, coincident_block_nodes(mesh)), mesh.n_nodes());
   for (auto const& family : mesh.families) {
     bool const used = std::any_of(mesh.patches.begin(), mesh.patches.end(),
                                   [&](Patch const& p) {

@@ -85,7 +85,7 @@ Shape recognise(Faces const& faces) {
 
 class PolyhedronReader {
  public:
-  PolyhedronReader(ListedFaces const& faces, UnstructuredMesh& mesh) : faces_(faces), mesh_(mesh) {}
+  PolyhedronReader(ListedFaces const& faces, Mesh& mesh) : faces_(faces), mesh_(mesh) {}
 
   /// A face of the element to come; false when there is no such face.
   bool add_face(std::int64_t file_number, bool outward) {
@@ -114,14 +114,14 @@ class PolyhedronReader {
 
  private:
   ListedFaces const& faces_;
-  UnstructuredMesh& mesh_;
+  Mesh& mesh_;
   Faces current_;
 };
 
 }  // namespace
 
-void add_polyhedra(std::vector<Section> const& sections, ListedFaces const& faces, std::string const& where,
-                   UnstructuredMesh& mesh, Problems& problems) {
+void add_polyhedra(std::vector<Section> const& sections, ListedFaces const& faces, std::string const& where, Mesh& mesh,
+                   Problems& problems) {
   PolyhedronReader reader(faces, mesh);
   bool any = false;
   for (auto const& s : sections) {

@@ -266,7 +266,7 @@ Index ListedFaces::find(std::int64_t file_number) const {
   return -1;
 }
 
-ListedFaces add_elements(std::vector<Section> const& sections, std::string const& where, UnstructuredMesh& mesh,
+ListedFaces add_elements(std::vector<Section> const& sections, std::string const& where, Mesh& mesh,
                          Problems& problems) {
   ListedFaces faces;
   Index const offset = mesh.zones.back().first_node - 1;

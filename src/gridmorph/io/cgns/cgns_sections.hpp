@@ -71,7 +71,7 @@ struct ListedFaces {
 };
 
 /// Appends the elements of a zone (of `dimension`) to its place in the mesh and collects its faces.
-ListedFaces add_elements(std::vector<Section> const& sections, std::string const& where, UnstructuredMesh& mesh,
+ListedFaces add_elements(std::vector<Section> const& sections, std::string const& where, Mesh& mesh,
                          Problems& problems);
 
 }  // namespace gridmorph::cgns

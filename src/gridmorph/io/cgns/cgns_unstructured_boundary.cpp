@@ -11,8 +11,8 @@ namespace {
 
 class BoundaryReader {
  public:
-  BoundaryReader(File const& file, Node const& tree, Layout const& layout, std::vector<ListedFaces>& faces,
-                 UnstructuredMesh& mesh, Problems& problems)
+  BoundaryReader(File const& file, Node const& tree, Layout const& layout, std::vector<ListedFaces>& faces, Mesh& mesh,
+                 Problems& problems)
       : file_(file), tree_(tree), layout_(layout), faces_(faces), mesh_(mesh), problems_(problems) {}
 
   void families() {
@@ -36,7 +36,7 @@ class BoundaryReader {
   void condition(int z, Node const& bc, std::int64_t largest) {
     auto const& zone = layout_.zones[std::size_t(z)];
     where_ = file_.path() + ": zone '" + zone.name + "', BC '" + bc.name + "'";
-    UnstructuredPatch patch;
+    Patch patch;
     patch.name = bc.name;
     patch.zone = z;
     patch.families = families_of(file_, bc);
@@ -74,12 +74,12 @@ class BoundaryReader {
 
   void note(std::string const& what) { mesh_.notes.push_back(where_ + ": " + what); }
 
-  bool add_nodes(int z, std::vector<std::int64_t> const& numbers, UnstructuredPatch& patch) {
+  bool add_nodes(int z, std::vector<std::int64_t> const& numbers, Patch& patch) {
     auto const& zone = mesh_.zones[std::size_t(z)];
     for (auto const n : numbers) {
-      if (n < 1 || n > zone.n_nodes) {
+      if (n < 1 || n > zone.size()) {
         problems_.add(where_ + ": names node " + std::to_string(n) + ", but the zone has " +
-                      std::to_string(zone.n_nodes) + " nodes");
+                      std::to_string(zone.size()) + " nodes");
         return false;
       }
       patch.nodes.push_back(Index32(n - 1 + zone.first_node));
@@ -89,7 +89,7 @@ class BoundaryReader {
     return true;
   }
 
-  bool add_faces(int z, std::vector<std::int64_t> const& numbers, UnstructuredPatch& patch) {
+  bool add_faces(int z, std::vector<std::int64_t> const& numbers, Patch& patch) {
     auto& faces = faces_[std::size_t(z)];
     Index missing = 0;
     std::int64_t first = 0;
@@ -118,7 +118,7 @@ class BoundaryReader {
 
   /// The faces of the section that has the name of the patch, or of its family. Where the patch lists nodes, they must be those of
   /// the section: all of the patch's, because each node may be listed by one condition only where several meet, or all of the section's.
-  bool take_section(int z, UnstructuredPatch& patch) {
+  bool take_section(int z, Patch& patch) {
     auto& faces = faces_[std::size_t(z)];
     for (auto const& group : faces.groups) {
       bool const own = group.name == patch.name;
@@ -152,7 +152,7 @@ class BoundaryReader {
                                           [](char c) { return c != 0; });
       if (group.polygons || group.begin == group.end || !unclaimed) continue;
       where_ = file_.path() + ": zone '" + zone.name + "', elements '" + group.name + "'";
-      UnstructuredPatch patch;
+      Patch patch;
       patch.name = group.name;
       patch.zone = z;
       if (std::find(mesh_.families.begin(), mesh_.families.end(), group.name) != mesh_.families.end()) {
@@ -170,7 +170,7 @@ class BoundaryReader {
   Node const& tree_;
   Layout const& layout_;
   std::vector<ListedFaces>& faces_;
-  UnstructuredMesh& mesh_;
+  Mesh& mesh_;
   Problems& problems_;
   std::string where_;  ///< the boundary condition being read
   std::string taken_;  ///< the section whose faces it got
@@ -179,7 +179,7 @@ class BoundaryReader {
 }  // namespace
 
 void read_boundary(File const& file, Node const& tree, Layout const& layout, std::vector<ListedFaces>& faces,
-                   UnstructuredMesh& mesh, Problems& problems) {
+                   Mesh& mesh, Problems& problems) {
   BoundaryReader reader(file, tree, layout, faces, mesh, problems);
   reader.families();
   for (std::size_t z = 0; z < layout.zones.size(); ++z) reader.zone(int(z));

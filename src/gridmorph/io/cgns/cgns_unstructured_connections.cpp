@@ -15,7 +15,7 @@ constexpr double matching_tolerance = 1e-6;
 
 class ConnectionReader {
  public:
-  ConnectionReader(File const& file, Layout const& layout, std::vector<ListedFaces>& faces, UnstructuredMesh& mesh,
+  ConnectionReader(File const& file, Layout const& layout, std::vector<ListedFaces>& faces, Mesh& mesh,
                    Problems& problems)
       : file_(file),
         layout_(layout),
@@ -32,7 +32,7 @@ class ConnectionReader {
     auto const own = nodes_of(z, node);
     if (!own) return;
     if (type == "Abutting1to1" && matched(z, node, own->all)) return;
-    UnstructuredPatch patch;
+    Patch patch;
     patch.name = node.name;
     patch.bc_type = type;
     patch.kind = PatchKind::connection;
@@ -74,7 +74,7 @@ class ConnectionReader {
     Set out;
     for (auto const n : set.numbers) {
       Index const face = set.nodes ? -1 : faces.find(n);
-      if (set.nodes ? n < 1 || n > zone.n_nodes : face < 0) {
+      if (set.nodes ? n < 1 || n > zone.size() : face < 0) {
         problems_.add(where_ + ": " + verb + (set.nodes ? " node " : " face ") + std::to_string(n) + ", which zone '" +
                       zone.name + "' does not have");
         return std::nullopt;
@@ -119,7 +119,7 @@ class ConnectionReader {
     }
     auto const* location = node.labelled("GridLocation_t");
     bool const by_nodes = !location || file_.text(*location) == "Vertex";
-    UnstructuredConnection c;
+    Connection c;
     c.name = node.name;
     c.families = families_of(file_, node);
     c.zone = z;
@@ -137,7 +137,7 @@ class ConnectionReader {
     return by_position(std::move(c), own, others);
   }
 
-  bool by_position(UnstructuredConnection c, std::vector<Index32> const& own, std::optional<Set> const& others) {
+  bool by_position(Connection c, std::vector<Index32> const& own, std::optional<Set> const& others) {
     c.nodes = sorted(own);
     std::vector<Index32> const candidates =
         others && !others->all.empty() ? others->all : sorted(faces_[std::size_t(c.donor_zone)].nodes.item);
@@ -158,7 +158,7 @@ class ConnectionReader {
   File const& file_;
   Layout const& layout_;
   std::vector<ListedFaces>& faces_;
-  UnstructuredMesh& mesh_;
+  Mesh& mesh_;
   Problems& problems_;
   double tolerance_;
   std::string where_;  ///< the connection being read
@@ -166,7 +166,7 @@ class ConnectionReader {
 
 }  // namespace
 
-void read_connections(File const& file, Layout const& layout, std::vector<ListedFaces>& faces, UnstructuredMesh& mesh,
+void read_connections(File const& file, Layout const& layout, std::vector<ListedFaces>& faces, Mesh& mesh,
                       Problems& problems) {
   ConnectionReader reader(file, layout, faces, mesh, problems);
   for (std::size_t z = 0; z < layout.zones.size(); ++z)

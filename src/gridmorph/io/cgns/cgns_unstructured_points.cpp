@@ -35,7 +35,7 @@ std::optional<NumberSet> read_number_set(File const& file, Node const& owner, st
   return std::nullopt;
 }
 
-std::int64_t largest_number(ZoneLayout const& zone, ListedFaces const& faces, UnstructuredMesh const& mesh, int z) {
+std::int64_t largest_number(ZoneLayout const& zone, ListedFaces const& faces, Mesh const& mesh, int z) {
   std::int64_t largest = zone.extent[0];
   for (auto const number : faces.number) largest = std::max(largest, number);
   auto const& own = mesh.zones[std::size_t(z)];

@@ -20,6 +20,6 @@ struct NumberSet {
 std::optional<NumberSet> read_number_set(File const& file, Node const& owner, std::int64_t largest, std::string& why);
 
 /// The largest number that a point set of a zone can hold.
-std::int64_t largest_number(ZoneLayout const& zone, ListedFaces const& faces, UnstructuredMesh const& mesh, int z);
+std::int64_t largest_number(ZoneLayout const& zone, ListedFaces const& faces, Mesh const& mesh, int z);
 
 }  // namespace gridmorph::cgns

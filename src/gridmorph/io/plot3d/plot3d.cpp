@@ -229,7 +229,7 @@ Mesh read(std::string const& path, ReadOptions const& options) {
   mesh.source = path;
   mesh.file_variant = to_string(file.layout.variant);
   mesh.notes.push_back(path + ": PLOT3D, " + mesh.file_variant);
-  mesh.two_dimensional = zones.zones.front().flat_axis >= 0;
+  mesh.dimension = zones.zones.front().flat_axis >= 0 ? 2 : 3;
   for (auto const& zone : zones.zones) {
     int const z = mesh.add_zone(zone.name, zone.mesh_extent());
     mesh.zones[z].single_precision = zone.single_precision[0];
@@ -239,7 +239,7 @@ Mesh read(std::string const& path, ReadOptions const& options) {
     read_coordinates(path, file, zones, mesh);
     io::check_finite(mesh, mesh.coordinates, path, problems);
   }
-  if (mesh.two_dimensional && problems.empty()) add_second_planes(zones, mesh, problems);
+  if (mesh.dimension == 2 && problems.empty()) add_second_planes(zones, mesh, problems);
   problems.throw_if_any<MeshError>();
   return mesh;
 }

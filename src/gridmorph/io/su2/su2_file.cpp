@@ -1,10 +1,10 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/periodic_transform.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/su2/su2_parser.hpp>
-#include <gridmorph/io/unstructured_check.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ class Builder {
     mesh_.dimension = zones_.front().dimension;
   }
 
-  UnstructuredMesh run() {
+  Mesh run() {
     Problems problems;
     Index nodes = 0;
     for (auto const& z : zones_) nodes += Index(z.coordinates.size()) / z.dimension;
@@ -137,9 +137,9 @@ class Builder {
   /// Node of a marker in the mesh; -1 and a problem where it is none.
   Index32 node_of(int z, Marker const& m, std::int64_t node, Problems& problems) {
     auto const& zone = mesh_.zones[std::size_t(z)];
-    if (node >= 0 && node < zone.n_nodes) return Index32(node + zone.first_node);
+    if (node >= 0 && node < zone.size()) return Index32(node + zone.first_node);
     problems.add(path_ + ":" + std::to_string(m.line) + ": marker '" + m.name + "' has node " + std::to_string(node) +
-                 ", but there are " + std::to_string(zone.n_nodes) + " points, numbered from 0");
+                 ", but there are " + std::to_string(zone.size()) + " points, numbered from 0");
     return -1;
   }
 
@@ -147,7 +147,7 @@ class Builder {
     bool by_name = false;
     for (auto const& m : zones_[std::size_t(z)].markers) {
       if (m.name == "SEND_RECEIVE") continue;
-      UnstructuredPatch patch;
+      Patch patch;
       patch.name = m.name;
       patch.zone = z;
       patch.kind = kind_by_name(m.name);
@@ -182,7 +182,7 @@ class Builder {
   /// it. Those of one PERIODIC_INDEX become a connection.
   void periodic(int z, Problems& problems) {
     auto const& text = zones_[std::size_t(z)];
-    std::map<int, UnstructuredConnection> by_transform;
+    std::map<int, Connection> by_transform;
     for (auto const& send : text.markers) {
       if (send.name != "SEND_RECEIVE" || send.send_to <= 0) continue;
       auto const receive = std::find_if(text.markers.begin(), text.markers.end(), [&](Marker const& m) {
@@ -232,7 +232,7 @@ class Builder {
 
   std::string const& path_;
   std::vector<ZoneText> zones_;
-  UnstructuredMesh mesh_;
+  Mesh mesh_;
 };
 
 }  // namespace
@@ -258,15 +258,14 @@ bool is_su2(std::string const& path) {
   return false;
 }
 
-UnstructuredMesh read(std::string const& path) {
+Mesh read(std::string const& path) {
   std::string const text = io::read_file(path);
   std::vector<std::string> notes;
   auto zones = parse(path, text, notes);
   return Builder(path, std::move(zones), std::move(notes)).run();
 }
 
-void write_morphed(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
-                   Coordinates const& morphed) {
+void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed) {
   std::string const text = io::read_file(input);
   std::string out;
   out.reserve(text.size() + text.size() / 8);
@@ -275,7 +274,7 @@ void write_morphed(std::string const& input, std::string const& output, Unstruct
   std::array<double const*, 3> const arrays{morphed.x.data(), morphed.y.data(), morphed.z.data()};
   bool same = true;
   auto const zones = parse(input, text, notes, [&](CoordinateText const& c) {
-    same = same && c.zone < mesh.zones.size() && c.point < mesh.zones[c.zone].n_nodes;
+    same = same && c.zone < mesh.zones.size() && c.point < mesh.zones[c.zone].size();
     if (!same) return;
     double const value = arrays[std::size_t(c.component)][mesh.zones[c.zone].first_node + c.point];
     if (std::memcmp(&value, &c.value, sizeof value) == 0) return;
@@ -288,7 +287,7 @@ void write_morphed(std::string const& input, std::string const& output, Unstruct
   });
   same = same && zones.size() == mesh.zones.size();
   for (std::size_t z = 0; same && z < zones.size(); ++z)
-    same = Index(zones[z].coordinates.size()) == zones[z].dimension * mesh.zones[z].n_nodes;
+    same = Index(zones[z].coordinates.size()) == zones[z].dimension * mesh.zones[z].size();
   if (!same)
     throw IoError(input + ": holds other zones or points than the mesh; give the file that the mesh was read from");
   out.append(text, copied);

@@ -11,10 +11,9 @@ namespace gridmorph::su2 {
 bool is_su2(std::string const& path);
 
 /// Reads a mesh. Throws IoError with the number of the line.
-UnstructuredMesh read(std::string const& path);
+Mesh read(std::string const& path);
 
 /// Copies the file and replaces the coordinates that changed, as text that reads back to the same bits.
-void write_morphed(std::string const& input, std::string const& output, UnstructuredMesh const& mesh,
-                   Coordinates const& morphed);
+void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed);
 
 }  // namespace gridmorph::su2

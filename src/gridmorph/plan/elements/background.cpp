@@ -207,7 +207,7 @@ Background make_background(Mesh mesh, std::vector<std::string> wrap, std::vector
     if (!selectors->empty()) (void)select_patches(mesh, *selectors);
   if (wrap.empty()) throw MotionError("no patch of the background mesh is named as its wrap");
   Background out;
-  out.dimension = mesh.two_dimensional ? 2 : 3;
+  out.dimension = mesh.dimension;
   out.mesh = std::move(mesh);
   out.wrap = std::move(wrap);
   out.outer = std::move(outer);

@@ -13,7 +13,7 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-std::vector<Location> places(UnstructuredMesh const& mesh, std::vector<Vec3> const& points) {
+std::vector<Location> places(Mesh const& mesh, std::vector<Vec3> const& points) {
   Exec const exec;
   Kokkos::View<Vec3*, Kokkos::HostSpace> at("gridmorph::points", points.size());
   std::copy(points.begin(), points.end(), at.data());
@@ -26,8 +26,7 @@ std::vector<Location> places(UnstructuredMesh const& mesh, std::vector<Vec3> con
 
 }  // namespace
 
-Classification classify_by_hole(UnstructuredMesh const& mesh, Background const& background,
-                                std::vector<Vec3> const& wrap_nodes) {
+Classification classify_by_hole(Mesh const& mesh, Background const& background, std::vector<Vec3> const& wrap_nodes) {
   Box box;
   for (Vec3 const& p : wrap_nodes) box.include(p);
   auto const& [low, high] = box;

@@ -9,7 +9,7 @@ FarRows background_rows(Background const& background, Coordinates const& coordin
   if (background.lattice) return lattice_rows(background, coordinates, nodes);
   using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;
-  UnstructuredMesh const cells = as_hexahedra(background.mesh);
+  Mesh const cells = as_hexahedra(background.mesh);
   ElementLocator<Exec> const locator(exec, cells);
   Kokkos::View<Vec3*, Kokkos::HostSpace> points("gridmorph::far_points", nodes.size());
   for (std::size_t n = 0; n < nodes.size(); ++n) points(n) = coordinates[nodes[n]];

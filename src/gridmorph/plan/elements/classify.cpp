@@ -14,7 +14,7 @@ void Classification::count() {
 }
 
 template <class AnyWrap>
-Classification classify(UnstructuredMesh const& mesh, AnyWrap const& wrap) {
+Classification classify(Mesh const& mesh, AnyWrap const& wrap) {
   using Host = Kokkos::DefaultHostExecutionSpace;
   using Range = Kokkos::RangePolicy<Host, Kokkos::IndexType<Index>>;
   Host const exec;
@@ -52,6 +52,6 @@ Classification classify(UnstructuredMesh const& mesh, AnyWrap const& wrap) {
   return out;
 }
 
-template Classification classify(UnstructuredMesh const&, Wrap const&);
+template Classification classify(Mesh const&, Wrap const&);
 
 }  // namespace gridmorph

@@ -25,6 +25,6 @@ struct Classification {
 
 /// Looks at the corners of each element; its further nodes go with it. In parallel on the host; linear cost.
 template <class AnyWrap>
-Classification classify(UnstructuredMesh const& mesh, AnyWrap const& wrap);
+Classification classify(Mesh const& mesh, AnyWrap const& wrap);
 
 }  // namespace gridmorph

@@ -16,7 +16,7 @@ struct Opposite {
 };
 
 /// side -1 where there is none: tetrahedra, pyramids, the quadrilateral sides of prisms, polyhedra.
-Opposite opposite_side(UnstructuredMesh const& mesh, Index e, int side) {
+Opposite opposite_side(Mesh const& mesh, Index e, int side) {
   Opposite out;
   ElementType const type = mesh.elements.type[std::size_t(e)];
   bool const prism = type == ElementType::prism, hexahedron = type == ElementType::hexahedron;
@@ -55,7 +55,7 @@ struct Front {
 
 }  // namespace
 
-Columns make_columns(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                      std::vector<Index32> const& faces, std::vector<ColumnExtent> const& extents,
                      std::vector<std::uint8_t> const& is_known) {
   Columns out;

@@ -4,7 +4,7 @@
 
 namespace gridmorph::detail {
 
-InterpolationOperator corner_means(UnstructuredMesh const& mesh, NodeGraph const& graph) {
+InterpolationOperator corner_means(Mesh const& mesh, NodeGraph const& graph) {
   InterpolationOperator rows;
   std::vector<std::uint8_t> done;
   for (Index e = 0; e < mesh.n_elements(); ++e) {

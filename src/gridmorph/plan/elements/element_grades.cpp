@@ -7,8 +7,7 @@
 
 namespace gridmorph::detail {
 
-std::vector<double> node_grades(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                                NodeGraph const& graph) {
+std::vector<double> node_grades(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph) {
   std::vector<double> grade_of_element(std::size_t(mesh.n_elements()), 1);
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     ElementType const type = mesh.elements.type[std::size_t(e)];
@@ -36,8 +35,8 @@ std::vector<double> node_grades(UnstructuredMesh const& mesh, UnstructuredTopolo
   return grade;
 }
 
-std::vector<double> wall_curvature(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                                   NodeGraph const& graph, std::vector<Index32> const& faces) {
+std::vector<double> wall_curvature(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+                                   std::vector<Index32> const& faces) {
   std::vector<Vec3> const normal = wall_normals(mesh, topology, graph, faces);
   std::vector<double> curvature(normal.size(), 0);
   for (Index32 const f : faces) {

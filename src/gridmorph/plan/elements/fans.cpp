@@ -32,7 +32,7 @@ std::vector<Index32> one_sided(UnstructuredTopology const& topology, NodeGraph c
 
 /// Calls visit(node, a, b) for every corner of every face.
 template <class Visit>
-void for_each_corner(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+void for_each_corner(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                      std::vector<Index32> const& faces, Visit&& visit) {
   auto const owner = [&](Index32 n) { return graph.representative[std::size_t(n)]; };
   for (Index32 const f : faces) {
@@ -48,7 +48,7 @@ void for_each_corner(UnstructuredMesh const& mesh, UnstructuredTopology const& t
 
 }  // namespace
 
-CsrGraph wall_fans(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+CsrGraph wall_fans(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                    std::vector<Index32> const& all_faces, std::vector<Index32> const& roots) {
   std::vector<Index32> const faces = one_sided(topology, graph, all_faces);
   std::vector<Index32> place(std::size_t(mesh.n_nodes()), -1);
@@ -70,8 +70,8 @@ CsrGraph wall_fans(UnstructuredMesh const& mesh, UnstructuredTopology const& top
   return fans;
 }
 
-std::vector<Vec3> wall_normals(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                               NodeGraph const& graph, std::vector<Index32> const& all_faces) {
+std::vector<Vec3> wall_normals(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+                               std::vector<Index32> const& all_faces) {
   std::vector<Index32> const faces = one_sided(topology, graph, all_faces);
   std::vector<Vec3> normal(std::size_t(mesh.n_nodes()));
   Vec3 const across = plane_normal(mesh);

@@ -11,7 +11,7 @@ namespace gridmorph {
 namespace {
 
 /// Adds the weights of a polyhedron's corner nodes.
-void polyhedron_weights(UnstructuredMesh const& mesh, Location const& where, std::span<Index32 const> corners,
+void polyhedron_weights(Mesh const& mesh, Location const& where, std::span<Index32 const> corners,
                         std::vector<double>& weight) {
   auto const& polyhedra = mesh.polyhedra;
   auto const here = std::lower_bound(polyhedra.element.begin(), polyhedra.element.end(), where.element);
@@ -38,7 +38,7 @@ void polyhedron_weights(UnstructuredMesh const& mesh, Location const& where, std
   }
 }
 
-void fill_weights(UnstructuredMesh const& mesh, Location const& where, std::vector<double>& weight) {
+void fill_weights(Mesh const& mesh, Location const& where, std::vector<double>& weight) {
   auto const corners = mesh.elements.corners(where.element);
   ElementType const type = mesh.elements.type[std::size_t(where.element)];
   weight.resize(corners.size());
@@ -50,7 +50,7 @@ void fill_weights(UnstructuredMesh const& mesh, Location const& where, std::vect
 /// Calls visit(node, weight) for the corner nodes of a place whose weights count, each node once (collapsed elements name
 /// some more than once); these weights sum to one.
 template <class Visit>
-void for_each_item(UnstructuredMesh const& mesh, Location const& where, Visit const& visit) {
+void for_each_item(Mesh const& mesh, Location const& where, Visit const& visit) {
   constexpr double negligible = 1e-9;
   auto const corners = mesh.elements.corners(where.element);
   ElementType const type = mesh.elements.type[std::size_t(where.element)];
@@ -77,7 +77,7 @@ void for_each_item(UnstructuredMesh const& mesh, Location const& where, Visit co
     if (weight[k] >= negligible) visit(corners[k], weight[k] / sum);
 }
 
-void check(UnstructuredMesh const& mesh, Location const& where) {
+void check(Mesh const& mesh, Location const& where) {
   if (where.element >= 0 && where.element < mesh.n_elements()) return;
   throw MeshError(
       "interpolation in '" + mesh.source +
@@ -86,14 +86,14 @@ void check(UnstructuredMesh const& mesh, Location const& where) {
 
 }  // namespace
 
-std::vector<double> corner_weights(UnstructuredMesh const& mesh, Location const& location) {
+std::vector<double> corner_weights(Mesh const& mesh, Location const& location) {
   check(mesh, location);
   std::vector<double> weight;
   fill_weights(mesh, location, weight);
   return weight;
 }
 
-Vec3 position(UnstructuredMesh const& mesh, Location const& location) {
+Vec3 position(Mesh const& mesh, Location const& location) {
   auto const weight = corner_weights(mesh, location);
   auto const corners = mesh.elements.corners(location.element);
   Vec3 const origin = mesh.coordinates[corners[0]];
@@ -102,7 +102,7 @@ Vec3 position(UnstructuredMesh const& mesh, Location const& location) {
   return origin + sum;
 }
 
-InterpolationOperator interpolation_rows(UnstructuredMesh const& mesh, std::span<Location const> locations,
+InterpolationOperator interpolation_rows(Mesh const& mesh, std::span<Location const> locations,
                                          std::span<Index32 const> targets) {
   if (targets.size() != locations.size())
     throw MeshError("interpolation in '" + mesh.source + "': " + std::to_string(locations.size()) + " locations for " +

@@ -156,7 +156,7 @@ Kokkos::View<double const*, typename Exec::memory_space> in_space(Exec const& ex
 }
 
 template <class Exec>
-LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, UnstructuredMesh const& mesh,
+LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, Mesh const& mesh,
                                                        std::span<Index32 const> elements) {
   using MemorySpace = typename Exec::memory_space;
   for (Index32 const e : elements)
@@ -202,7 +202,7 @@ LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, Unstruc
   return t;
 }
 
-std::vector<Index32> all_elements(UnstructuredMesh const& mesh) {
+std::vector<Index32> all_elements(Mesh const& mesh) {
   std::vector<Index32> all(std::size_t(mesh.n_elements()));
   std::iota(all.begin(), all.end(), 0);
   return all;
@@ -213,11 +213,11 @@ std::vector<Index32> all_elements(UnstructuredMesh const& mesh) {
 }  // namespace detail
 
 template <class Exec>
-ElementLocator<Exec>::ElementLocator(Exec const& exec, UnstructuredMesh const& mesh, std::span<Index32 const> elements)
+ElementLocator<Exec>::ElementLocator(Exec const& exec, Mesh const& mesh, std::span<Index32 const> elements)
     : tables_(detail::make_tables(exec, mesh, elements)) {}
 
 template <class Exec>
-ElementLocator<Exec>::ElementLocator(Exec const& exec, UnstructuredMesh const& mesh)
+ElementLocator<Exec>::ElementLocator(Exec const& exec, Mesh const& mesh)
     : tables_(detail::make_tables(exec, mesh, detail::all_elements(mesh))) {}
 
 template <class Exec>

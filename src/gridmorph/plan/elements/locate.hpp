@@ -70,9 +70,9 @@ class ElementLocator {
 
   /// `elements`: the candidates, each once, in any order. On the host the mesh must outlive the locator. Throws MeshError
   /// for numbers of elements that the mesh does not have. Fences.
-  ElementLocator(Exec const& exec, UnstructuredMesh const& mesh, std::span<Index32 const> elements);
+  ElementLocator(Exec const& exec, Mesh const& mesh, std::span<Index32 const> elements);
   /// All elements of the mesh.
-  ElementLocator(Exec const& exec, UnstructuredMesh const& mesh);
+  ElementLocator(Exec const& exec, Mesh const& mesh);
 
   /// out(n): where points(n) is. `out` is at least as long as `points`.
   void locate(Exec const& exec, Kokkos::View<Vec3 const*, MemorySpace> points,
@@ -88,15 +88,15 @@ class ElementLocator {
 
 /// Weights of an element's corner nodes at a place: as many as Elements::corners() has. Without gaps: also those that are
 /// zero.
-std::vector<double> corner_weights(UnstructuredMesh const& mesh, Location const& location);
+std::vector<double> corner_weights(Mesh const& mesh, Location const& location);
 
 /// Position of a place, from the mesh's coordinates.
-Vec3 position(UnstructuredMesh const& mesh, Location const& location);
+Vec3 position(Mesh const& mesh, Location const& location);
 
 /// One row for each location: target n is the weighted mean of the corner nodes of the element there. Points outside take
 /// the weights of the nearest place: nothing is extrapolated. Weights below 1e-9 are left out, so that a point on a node is a
 /// copy of that node. `targets`: as many as locations. Throws MeshError for a location without an element.
-InterpolationOperator interpolation_rows(UnstructuredMesh const& mesh, std::span<Location const> locations,
+InterpolationOperator interpolation_rows(Mesh const& mesh, std::span<Location const> locations,
                                          std::span<Index32 const> targets);
 
 /// Summary of many locations.

@@ -61,7 +61,7 @@ void UnstructuredPlanner::take_boundary() {
       plan.copied.push_back(o);
     }
   plan.middle = corner_means(mesh_, out_.graph);
-  reach_ = options_.motion >= 0 ? options_.motion : largest_displacement();
+  reach_ = options_.elements.motion >= 0 ? options_.elements.motion : largest_displacement();
 }
 
 void UnstructuredPlanner::measure_distances() {
@@ -99,25 +99,25 @@ double UnstructuredPlanner::largest_displacement() const {
 
 namespace gridmorph {
 
-PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, Motion const& motion,
-                             UnstructuredOptions const& options) {
+                             PlanOptions const& options) {
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
   Stopwatch watch;
   NodeGraph graph = make_node_graph(mesh, topology.elements_of_nodes);
   BoundaryConditions boundary =
-      boundary_conditions(mesh, topology, face_patches, graph, motion, options.walls,
-                          options.motion >= 0 ? Displacements::any : Displacements::of_the_rules);
+      boundary_conditions(mesh, topology, face_patches, graph, motion, options.elements.walls,
+                          options.elements.motion >= 0 ? Displacements::any : Displacements::of_the_rules);
   double const seconds = watch.lap();
   auto out = prepare(mesh, topology, face_patches, std::move(graph), std::move(boundary), options);
   out.report.seconds.boundary += seconds;
   return out;
 }
 
-PreparedUnstructured prepare(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
-                             UnstructuredOptions const& options) {
+                             PlanOptions const& options) {
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
   return detail::UnstructuredPlanner(mesh, topology, face_patches, std::move(graph), std::move(boundary), options)

@@ -20,7 +20,7 @@ void UnstructuredPlanner::plan_background() {
   UnstructuredPlan& plan = out_.plan;
   if (!plan.background) {
     if (out_.report.regions.n_far == 0) return;
-    take_background(make_background(*out_.report.wrap, options_.cells));
+    take_background(make_background(*out_.report.wrap, options_.elements.cells));
   }
   plan_outer_box();
 }

@@ -12,7 +12,7 @@ std::function<double(Index32, Index32)> UnstructuredPlanner::layer_weight() {
     double const d = distance(mesh_.coordinates[a], mesh_.coordinates[b]);
     return d > 0 ? d : std::numeric_limits<double>::min();
   };
-  switch (options_.weight) {
+  switch (options_.elements.weight) {
     case LayerWeight::uniform: return [](Index32, Index32) { return 1.0; };
     case LayerWeight::inverse_distance: return [=](Index32 a, Index32 b) { return 1 / length(a, b); };
     case LayerWeight::quality:

@@ -29,11 +29,11 @@ double UnstructuredPlanner::offset() {
   hints.body = distance(box.low, box.high);
   // No gap at all cannot limit the wrap.
   hints.gap = std::isfinite(gap_) && gap_ > hints.wall_edge ? gap_ : 0;
-  return options_.offset > 0 ? options_.offset : suggest_offset(hints);
+  return options_.elements.offset > 0 ? options_.elements.offset : suggest_offset(hints);
 }
 
 void UnstructuredPlanner::find_regions() {
-  if (options_.background)
+  if (options_.elements.background)
     classify_by_background();
   else
     classify_by_wrap();
@@ -50,8 +50,8 @@ void UnstructuredPlanner::classify_by_wrap() {
   for (Index32 const f : driving_faces_) faces.add(topology_.boundary.nodes[f]);
   WrapOptions wrap;
   wrap.offset = out_.report.offset;
-  wrap.resolution = options_.resolution;
-  wrap.tube = options_.tube;
+  wrap.resolution = options_.elements.resolution;
+  wrap.tube = options_.elements.tube;
   out_.report.wrap = make_wrap(mesh_, {&faces, 1}, wrap);
   if (std::string const& note = out_.report.wrap->note; !note.empty())
     out_.notes.push_back("the wrap is made of lattice cells: " + note);
@@ -59,7 +59,7 @@ void UnstructuredPlanner::classify_by_wrap() {
 }
 
 void UnstructuredPlanner::classify_by_background() {
-  take_background(*options_.background);
+  take_background(*options_.elements.background);
   Background const& background = *out_.plan.background;
   out_.report.regions =
       classify_by_hole(mesh_, background, wrap_nodes(background, *out_.plan.background_morph).position);
@@ -76,7 +76,7 @@ void UnstructuredPlanner::classify_by_background() {
 
 void UnstructuredPlanner::take_background(Background background) {
   out_.plan.background = std::move(background);
-  out_.plan.background_morph = prepare_background(*out_.plan.background, options_.law);
+  out_.plan.background_morph = prepare_background(*out_.plan.background, options_.volume.law);
 }
 
 }  // namespace gridmorph::detail

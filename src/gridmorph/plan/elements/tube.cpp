@@ -97,7 +97,7 @@ constexpr int directions = 128;  ///< of the support lines of a section's hull
 
 /// The wall faces, each as its corners, centroid and area (length in 2-D).
 struct Faces {
-  UnstructuredMesh const& mesh;
+  Mesh const& mesh;
   std::span<CsrGraph const> walls;
 
   template <class Function>
@@ -118,8 +118,7 @@ struct Faces {
 
 class Fitter {
  public:
-  Fitter(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, double offset)
-      : faces_{mesh, walls}, offset_(offset) {}
+  Fitter(Mesh const& mesh, std::span<CsrGraph const> walls, double offset) : faces_{mesh, walls}, offset_(offset) {}
 
   std::optional<Tube> run(std::string& note) {
     find_axes();
@@ -325,8 +324,7 @@ class Fitter {
 
 }  // namespace
 
-std::optional<Tube> fit_tube(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, double offset,
-                             std::string& note) {
+std::optional<Tube> fit_tube(Mesh const& mesh, std::span<CsrGraph const> walls, double offset, std::string& note) {
   if (mesh.dimension == 2) {
     note = "the mesh is plane";
     return std::nullopt;

@@ -45,7 +45,6 @@ struct Tube {
 /// the offset and smooth along the axis. Hollows and details of the sections go; all wall nodes are inside. Nothing, and the
 /// reason in `note`, where the walls are less than 1.25 times as long as wide or leave gaps along their axis.
 /// Linear cost.
-std::optional<Tube> fit_tube(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, double offset,
-                             std::string& note);
+std::optional<Tube> fit_tube(Mesh const& mesh, std::span<CsrGraph const> walls, double offset, std::string& note);
 
 }  // namespace gridmorph

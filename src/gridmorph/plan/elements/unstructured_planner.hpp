@@ -20,9 +20,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// What the steps share; run() calls them in their order.
 class UnstructuredPlanner {
  public:
-  UnstructuredPlanner(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                      BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
-                      UnstructuredOptions const& options)
+  UnstructuredPlanner(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
+                      NodeGraph graph, BoundaryConditions boundary, PlanOptions const& options)
       : mesh_(mesh), topology_(topology), face_patches_(face_patches), options_(options) {
     out_.graph = std::move(graph);
     out_.boundary = std::move(boundary);
@@ -94,10 +93,10 @@ class UnstructuredPlanner {
   /// What boundaries with a rule ask for, at nodes that slide or have images.
   void plan_start();
 
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   UnstructuredTopology const& topology_;
   BoundaryFacePatches const& face_patches_;
-  UnstructuredOptions const& options_;
+  PlanOptions const& options_;
   PreparedUnstructured out_;
   std::vector<int> layer_of_patch_;
   std::vector<Index32> driving_faces_;

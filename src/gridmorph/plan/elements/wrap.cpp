@@ -16,7 +16,7 @@ namespace {
 std::array<double, 3> array_of(Vec3 const& p) { return {p.x, p.y, p.z}; }
 
 /// Marks the cells that come closer to a wall face than the offset.
-void mark(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, Wrap& wrap) {
+void mark(Mesh const& mesh, std::span<CsrGraph const> walls, Wrap& wrap) {
   std::vector<std::array<double, 3>> p;
   for (CsrGraph const& faces : walls)
     for (Index f = 0; f < faces.size(); ++f) {
@@ -119,7 +119,7 @@ bool Wrap::meets(LatticeBox const& box) const {
   return below(last[2]) > below(first[2]);
 }
 
-Wrap make_wrap(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options) {
+Wrap make_wrap(Mesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options) {
   if (!(options.offset > 0) || !std::isfinite(options.offset))
     throw MotionError("the offset of the wrap is " + std::to_string(options.offset) +
                       "; give a positive length, such as twice the height of the boundary layer");

@@ -63,7 +63,7 @@ struct Wrap {
 /// are closed, enclosed hollows filled, and cells that touch only along an edge or at a corner joined by their neighbours.
 /// Lattice: even spacing where there are walls, offset included; single intervals between walls far apart and out to
 /// the outer box. Throws MeshError without walls, MotionError without a positive offset. Cost: linear in faces and cells.
-Wrap make_wrap(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options);
+Wrap make_wrap(Mesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options);
 
 /// What the offset of the wrap depends on; lengths, 0 where unknown.
 struct OffsetHints {
@@ -83,6 +83,6 @@ struct OffsetHints {
 double suggest_offset(OffsetHints const& hints);
 
 /// The cells of the wrap as hexahedra (quadrilaterals in 2-D) with its surface as patch "wrap", to look at.
-UnstructuredMesh wrap_mesh(Wrap const& wrap);
+Mesh wrap_mesh(Wrap const& wrap);
 
 }  // namespace gridmorph

@@ -7,7 +7,7 @@ namespace {
 
 class Filler {
  public:
-  Filler(UnstructuredMesh const& mesh, LatticeBox const& domain, Wrap& wrap) : mesh_(mesh), wrap_(wrap) {
+  Filler(Mesh const& mesh, LatticeBox const& domain, Wrap& wrap) : mesh_(mesh), wrap_(wrap) {
     for (int a = 0; a < 3; ++a) {
       auto const s = std::size_t(a);
       first_[s] = a < wrap.dimension ? wrap.interval(a, domain.low[s]) : 0;
@@ -177,13 +177,13 @@ class Filler {
     }
   }
 
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   Wrap& wrap_;
   Index3 first_{}, last_{};  ///< cells that the box of the mesh meets
 };
 
 }  // namespace
 
-void fill(UnstructuredMesh const& mesh, LatticeBox const& domain, Wrap& wrap) { Filler(mesh, domain, wrap).run(); }
+void fill(Mesh const& mesh, LatticeBox const& domain, Wrap& wrap) { Filler(mesh, domain, wrap).run(); }
 
 }  // namespace gridmorph::detail

@@ -13,8 +13,7 @@ struct Interval {
 
 /// Where along one axis there are walls, each interval wider by the offset than its walls. Gaps show where they leave a
 /// thousandth of the whole empty; linear cost.
-std::vector<Interval> covered(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, std::size_t axis,
-                              double offset) {
+std::vector<Interval> covered(Mesh const& mesh, std::span<CsrGraph const> walls, std::size_t axis, double offset) {
   auto const& x = axis == 0 ? mesh.coordinates.x : axis == 1 ? mesh.coordinates.y : mesh.coordinates.z;
   std::vector<Interval> faces;
   Interval all{1e300, -1e300};
@@ -87,7 +86,7 @@ std::vector<double> planes_of(std::vector<Interval> intervals, Interval const& d
 
 }  // namespace
 
-Wrap make_lattice(UnstructuredMesh const& mesh, std::span<CsrGraph const> walls, LatticeBox const& domain,
+Wrap make_lattice(Mesh const& mesh, std::span<CsrGraph const> walls, LatticeBox const& domain,
                   WrapOptions const& options) {
   Wrap wrap;
   wrap.dimension = mesh.dimension;

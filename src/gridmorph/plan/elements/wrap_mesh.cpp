@@ -5,8 +5,8 @@
 namespace gridmorph {
 namespace {
 
-UnstructuredPatch wrap_patch() {
-  UnstructuredPatch surface;
+Patch wrap_patch() {
+  Patch surface;
   surface.name = "wrap";
   surface.bc_type = "BCWall";
   surface.kind = PatchKind::wall;
@@ -15,13 +15,13 @@ UnstructuredPatch wrap_patch() {
 }
 
 /// Prisms between the centre line and the rings.
-UnstructuredMesh tube_mesh(Tube const& tube) {
-  UnstructuredMesh mesh;
+Mesh tube_mesh(Tube const& tube) {
+  Mesh mesh;
   mesh.source = "wrap";
   int const n = tube.sections(), around = tube.around, stride = around + 1;
   mesh.add_zone("wrap", Index(n) * stride);
   mesh.coordinates = Coordinates(mesh.n_nodes());
-  UnstructuredPatch surface = wrap_patch();
+  Patch surface = wrap_patch();
   auto centre = [&](int j) { return Index32(j * stride); };
   auto ring = [&](int j, int k) { return Index32(j * stride + 1 + k % around); };
   for (int j = 0; j < n; ++j) {
@@ -46,9 +46,9 @@ UnstructuredMesh tube_mesh(Tube const& tube) {
 
 }  // namespace
 
-UnstructuredMesh wrap_mesh(Wrap const& wrap) {
+Mesh wrap_mesh(Wrap const& wrap) {
   if (wrap.tube) return tube_mesh(*wrap.tube);
-  UnstructuredMesh mesh;
+  Mesh mesh;
   mesh.dimension = wrap.dimension;
   mesh.source = "wrap";
   bool const flat = wrap.dimension == 2;
@@ -64,7 +64,7 @@ UnstructuredMesh wrap_mesh(Wrap const& wrap) {
     }
     return n;
   };
-  UnstructuredPatch surface = wrap_patch();
+  Patch surface = wrap_patch();
   std::vector<std::array<Index32, 8>> hexahedra;
   for (Index c = 0; c < wrap.n_cells(); ++c) {
     if (wrap.inside[std::size_t(c)] == 0) continue;

@@ -21,7 +21,7 @@ int alike(std::span<Index32 const> own, std::span<Index32 const> other) {
 
 class Numbering {
  public:
-  Numbering(UnstructuredMesh const& mesh, ElementSides const& sides, std::vector<signed char> const& volume)
+  Numbering(Mesh const& mesh, ElementSides const& sides, std::vector<signed char> const& volume)
       : mesh_(mesh), sides_(sides), volume_(volume), sign_(volume.size(), 0) {}
 
   std::vector<signed char> run() {
@@ -43,7 +43,7 @@ class Numbering {
     return mesh_.elements.type[std::size_t(e)] == ElementType::polyhedron;
   }
 
-  void fill(UnstructuredZone const& zone, signed char sign) {
+  void fill(Zone const& zone, signed char sign) {
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e)
       if (!is_polyhedron(e)) sign_[std::size_t(e)] = sign;
   }
@@ -81,7 +81,7 @@ class Numbering {
       for (Index32 const e : members_) sign_[std::size_t(e)] = static_cast<signed char>(-sign_[std::size_t(e)]);
   }
 
-  UnstructuredMesh const& mesh_;
+  Mesh const& mesh_;
   ElementSides const& sides_;
   std::vector<signed char> const& volume_;
   std::vector<signed char> sign_;
@@ -90,16 +90,16 @@ class Numbering {
 
 }  // namespace
 
-std::vector<signed char> numbering_signs(UnstructuredMesh const& mesh, ElementSides const& sides,
+std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides,
                                          std::vector<signed char> const& volume_signs) {
   return Numbering(mesh, sides, volume_signs).run();
 }
 
-std::vector<signed char> numbering_signs(UnstructuredMesh const& mesh, ElementSides const& sides) {
+std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides) {
   return numbering_signs(mesh, sides, volume_signs(mesh));
 }
 
-std::vector<signed char> detail::signs_of(UnstructuredMesh const& mesh, ElementSides const& sides,
+std::vector<signed char> detail::signs_of(Mesh const& mesh, ElementSides const& sides,
                                           std::vector<signed char> const& known) {
   return Index(known.size()) == mesh.n_elements() ? known : numbering_signs(mesh, sides);
 }

@@ -19,7 +19,7 @@ struct WallTable {
 };
 
 /// The next node of a column over corner `node` of boundary face f, or -1.
-Index32 next_on_column(UnstructuredMesh const& mesh, UnstructuredTopology const& topology, Index32 f, Index32 node) {
+Index32 next_on_column(Mesh const& mesh, UnstructuredTopology const& topology, Index32 f, Index32 node) {
   Index32 const element = topology.boundary.element[std::size_t(f)];
   auto const type = mesh.elements.type[std::size_t(element)];
   if (type == ElementType::polyhedron) return -1;
@@ -32,8 +32,7 @@ Index32 next_on_column(UnstructuredMesh const& mesh, UnstructuredTopology const&
   return -1;
 }
 
-WallTable wall_table(UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
-                     std::vector<Index32> const& faces) {
+WallTable wall_table(Mesh const& mesh, UnstructuredTopology const& topology, std::vector<Index32> const& faces) {
   WallTable out;
   std::vector<std::pair<Index32, Index32>> pairs;  // node, face of the table
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -84,7 +83,7 @@ struct WallViews {
 }  // namespace
 
 template <class Exec>
-WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, UnstructuredTopology const& topology,
+WallQualities wall_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                            BoundaryFacePatches const& face_patches,
                            UnstructuredQualityInput<typename Exec::memory_space> const& input) {
   using MemorySpace = typename Exec::memory_space;
@@ -127,7 +126,7 @@ WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, Unstr
     WallSums sums;
     for (Index m = 0; m < n; ++m) {
       Index const node = table.node[std::size_t(m)];
-      NodeLocation const where{mesh.zone_of_node(node), {int(node_number_in_file(mesh, node)) - 1, 0, 0}};
+      NodeLocation const where{mesh.zone_of(node), {int(node_number_in_file(mesh, node)) - 1, 0, 0}};
       all.add(nodes_h(m), where, against_baseline);
       sums.add(nodes_h(m), where, against_baseline);
     }
@@ -137,9 +136,9 @@ WallQualities wall_quality(Exec const& exec, UnstructuredMesh const& mesh, Unstr
   return out;
 }
 
-#define GRIDMORPH_INSTANTIATE(Exec)                                                                      \
-  template WallQualities wall_quality(Exec const&, UnstructuredMesh const&, UnstructuredTopology const&, \
-                                      BoundaryFacePatches const&,                                        \
+#define GRIDMORPH_INSTANTIATE(Exec)                                                          \
+  template WallQualities wall_quality(Exec const&, Mesh const&, UnstructuredTopology const&, \
+                                      BoundaryFacePatches const&,                            \
                                       UnstructuredQualityInput<Exec::memory_space> const&);
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE

@@ -39,7 +39,7 @@ void read_background_file(TableReader& root, TableReader& background, CaseFile& 
 }  // namespace
 
 void read_near_field(TableReader& root, CaseFile& case_file) {
-  UnstructuredOptions& out = case_file.unstructured;
+  ElementOptions& out = case_file.plan.elements;
   if (auto near = root.table("near_field")) {
     out.walls = near->strings("walls").value_or(std::vector<std::string>{});
     if (auto const offset = near->number("offset")) {
@@ -56,7 +56,7 @@ void read_near_field(TableReader& root, CaseFile& case_file) {
   if (auto background = root.table("background")) {
     read_count(*background, "cells", 1, 32, out.cells);
     read_background_file(root, *background, case_file);
-    if (auto const law = background->choice("law", {"linear", "c1", "c2"})) out.law = Law(*law);
+    if (auto const law = background->choice("law", {"linear", "c1", "c2"})) case_file.plan.volume.law = Law(*law);
     background->finish();
   }
 }

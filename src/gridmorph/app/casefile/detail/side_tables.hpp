@@ -27,4 +27,7 @@ class SidePeriodics {
   std::map<std::string, Periodic> all_;
 };
 
+/// Adds to a mesh of elements what its side file says.
+void read_side_file_of_elements(Context& context, toml::value const& document, Mesh& mesh);
+
 }  // namespace gridmorph::casefile

@@ -1,7 +1,5 @@
-// What a user can choose about the morph of an unstructured mesh. Plain values with their defaults.
+// What a user can choose about the morph of a mesh of elements, beside the rest of PlanOptions. Plain values with their defaults.
 #pragma once
-
-#include <gridmorph/plan/options.hpp>
 
 #include <memory>
 #include <string>
@@ -19,11 +17,10 @@ enum class LayerWeight {
   curvature          ///< inverse distance / (1 + d k)^2: d distance from the wall, k curvature of the wall there
 };
 
-struct UnstructuredOptions {
+struct ElementOptions {
   /// Selectors of the walls that drive the near field; empty: every patch with an explicit rule other than `fixed` that is no
   /// inflow, outflow, farfield or symmetry.
   std::vector<std::string> walls;
-  std::vector<BoundaryLayer> boundary_layers;  ///< how far the columns of which walls go, and how they turn
   LayerWeight weight = LayerWeight::inverse_distance;
   double offset = 0;  ///< of the wrap from the moving walls [length]; 0: suggest_offset()
   double motion =
@@ -35,7 +32,6 @@ struct UnstructuredOptions {
   /// A background mesh of the user's instead of one around a wrap made here, which `offset`, `resolution`, `tube` and `cells` are
   /// for; its hole is the wrap.
   std::shared_ptr<Background const> background;
-  Law law = Law::linear;  ///< along the grid lines of the background mesh
 };
 
 }  // namespace gridmorph
