@@ -87,7 +87,7 @@ TEST_P(Ball, NodesLieOnSphereAndCylinder) {
     ASSERT_NEAR(norm(mesh.coordinates[n]), r, 1e-14 * r);
     ASSERT_LT(mesh.coordinates[n].z, neck * (1 + 1e-12));
   }
-  double lowest = unbounded, highest = -unbounded;
+  double lowest = kernels::unbounded, highest = -kernels::unbounded;
   for (Index32 const n : patch_nodes(patch(mesh, "rope"))) {
     Vec3 const p = mesh.coordinates[n];
     ASSERT_NEAR(std::hypot(p.x, p.y), rope, 1e-14 * r);
@@ -135,7 +135,7 @@ TEST_P(Ball, LayersAreMadeOfTheElementsAskedFor) {
 TEST_P(Ball, FirstCellsAreAsHighAsAskedFor) {
   // Along the upper part of the rope, where the columns stand upright.
   double const wall = options.rope_radius * options.radius;
-  double nearest = unbounded;
+  double nearest = kernels::unbounded;
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
     Vec3 const p = mesh.coordinates[n];
     double const height = std::hypot(p.x, p.y) - wall;

@@ -53,15 +53,16 @@ inline void expect_conforming_and_covered(Mesh const& mesh) {
   EXPECT_GT(inside, boundary);
 }
 
-inline ElementCorners corners(Mesh const& mesh, Index e) {
-  ElementCorners c;
+inline kernels::ElementCorners corners(Mesh const& mesh, Index e) {
+  kernels::ElementCorners c;
   auto const list = mesh.elements.corners(e);
   for (std::size_t n = 0; n < list.size(); ++n) c.at[n] = mesh.coordinates[list[n]];
   return c;
 }
 
 struct Soundness {
-  double smallest_volume = unbounded, smallest_determinant = unbounded, largest_aspect_ratio = 0, volume = 0;
+  double smallest_volume = kernels::unbounded, smallest_determinant = kernels::unbounded, largest_aspect_ratio = 0,
+         volume = 0;
 };
 
 inline Soundness soundness(Mesh const& mesh) {

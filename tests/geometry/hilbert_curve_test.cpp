@@ -13,6 +13,8 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::LatticePlace;
+
 /// A step of the lattice to a unit of length.
 LatticePlace place(double x, double y, double z) { return {{x, y, z}, {0, 0, 0}, {1, 1, 1}}; }
 

@@ -11,6 +11,8 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::UniformLattice;
+
 /// Lattices in space, in each plane and along each axis; odd sizes.
 std::vector<UniformLattice> lattices() {
   std::vector<UniformLattice> out;

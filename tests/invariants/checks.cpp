@@ -10,6 +10,8 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::FacetFoot;
+
 template <class Visit>
 void each_node(Zone const& zone, IndexRange const& r, Visit&& visit) {
   for (int k = r.begin[2]; k < r.end[2]; ++k)

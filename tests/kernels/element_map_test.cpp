@@ -14,6 +14,14 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::ElementCorners;
+using kernels::ElementInverse;
+using kernels::ElementJacobian;
+using kernels::ElementPlace;
+using kernels::ElementWeights;
+using kernels::is_finite;
+using kernels::unbounded;
+
 constexpr std::array all_types{ElementType::triangle, ElementType::quadrilateral, ElementType::tetrahedron,
                                ElementType::pyramid,  ElementType::prism,         ElementType::hexahedron};
 
@@ -27,7 +35,7 @@ ElementCorners element_of(ElementType type, std::function<Vec3(Vec3)> const& mov
 Vec3 random_inside(ElementType type, Random& random) {
   for (;;) {
     Vec3 const l{random.unit(), random.unit(), is_surface(type) ? 0 : random.unit()};
-    if (element::excess(type, l) == 0) return l;
+    if (kernels::element::excess(type, l) == 0) return l;
   }
 }
 
@@ -39,7 +47,7 @@ double smallest_determinant(ElementType type, ElementCorners const& c) {
     for (int j = 0; j <= 8; ++j)
       for (int i = 0; i <= 8; ++i) {
         Vec3 const l{i / 8.0, j / 8.0, is_surface(type) ? 0 : k / 8.0 * 0.98};
-        if (element::excess(type, l) > 0) continue;
+        if (kernels::element::excess(type, l) > 0) continue;
         auto const slope = [&](Vec3 const& e) {
           return (0.5 / h) * (element_position(type, c, l + h * e) - element_position(type, c, l - h * e));
         };
@@ -240,7 +248,7 @@ TEST(ElementPlace, NearestPlaceIsAsNearAsAnyOnTheFaces) {
         if (element_contains(type, c, p, 1e-12, local)) continue;
         ++outside;
         ElementPlace const place = nearest_in_element(type, c, p);
-        EXPECT_EQ(element::excess(type, place.local), 0);
+        EXPECT_EQ(kernels::element::excess(type, place.local), 0);
         EXPECT_NEAR(distance(element_position(type, c, place.local), p), place.distance, 1e-14);
         EXPECT_LT(place.distance, 1.01 * sampled_distance(type, c, p) + 1e-9) << int(type) << " warp " << warp;
       }
@@ -282,7 +290,7 @@ TEST(ElementPlace, PointsOnFacesAndCornersAreInside) {
 }
 
 bool sane(ElementType type, Vec3 const& l) {
-  return is_finite(l.x) && is_finite(l.y) && is_finite(l.z) && element::excess(type, l) <= 1e-12;
+  return is_finite(l.x) && is_finite(l.y) && is_finite(l.z) && kernels::element::excess(type, l) <= 1e-12;
 }
 
 TEST(ElementPlace, BrokenElementsGiveNumbersAndEnd) {

@@ -15,6 +15,8 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::UniformLattice;
+
 using Exec = Kokkos::DefaultHostExecutionSpace;
 using Vectors = std::vector<Vec3>;
 

@@ -15,6 +15,8 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::SlipSurfaceView;
+
 SlipSurface plane(Vec3 const& normal) {
   SlipSurface s;
   s.direction = (1 / norm(normal)) * normal;

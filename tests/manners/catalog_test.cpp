@@ -36,6 +36,20 @@ TEST(Catalog, ListsEveryHeaderOfTheKernelsOnce) {
   EXPECT_EQ(matches(text_of(sources / "kernels/CATALOG.md"), std::regex("\n\\| `([a-z0-9_]+\\.hpp)` \\|")), headers);
 }
 
+TEST(Kernels, AreInOneNamespace) {
+  for (auto const& entry : fs::directory_iterator(sources / "kernels/gridmorph/kernels")) {
+    std::string text = text_of(entry.path());
+    // A section of using-declarations at the end gives host code short names.
+    if (auto const host = text.find("\nnamespace gridmorph {\n"); host != std::string::npos) {
+      std::regex const names(
+          "\nnamespace gridmorph \\{\n((using|namespace compat =) [^;]*;\n)+\\}  // namespace gridmorph\n");
+      EXPECT_TRUE(std::regex_match(text.substr(host), names)) << entry.path();
+      text.resize(host);
+    }
+    EXPECT_NE(text.find("\nnamespace gridmorph::kernels"), std::string::npos) << entry.path();
+  }
+}
+
 TEST(Catalog, NamesHeadersAndBenchmarksThatExist) {
   std::string const catalog = text_of(sources / "kernels/CATALOG.md");
   for (auto const& header : matches(catalog, std::regex("`([a-z0-9_]+\\.hpp)`")))

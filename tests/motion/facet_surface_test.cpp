@@ -16,6 +16,8 @@
 namespace gridmorph {
 namespace {
 
+using kernels::FacetFoot;
+
 using test::expect_all_in;
 using test::message_of;
 using test::Random;

@@ -12,6 +12,9 @@
 namespace gridmorph {
 namespace {
 
+using kernels::MeridionalFrame;
+using kernels::SlipSurfaceView;
+
 using test::expect_all_in;
 using test::message_of;
 

@@ -14,6 +14,8 @@
 namespace gridmorph {
 namespace {
 
+using kernels::ProfileKnot;
+
 struct Row {
   char const* file;
   Axis axis;

@@ -14,6 +14,9 @@
 namespace gridmorph {
 namespace {
 
+using kernels::ProfileKnot;
+using kernels::ProfileView;
+
 using test::expect_all_in;
 using test::message_of;
 using Points = std::vector<std::pair<double, double>>;

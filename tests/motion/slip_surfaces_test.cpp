@@ -13,6 +13,8 @@
 namespace gridmorph {
 namespace {
 
+using kernels::SlipSurfaceView;
+
 using test::expect_all_in;
 using test::message_of;
 

@@ -12,6 +12,11 @@
 namespace gridmorph {
 namespace {
 
+using kernels::CellMeasures;
+using kernels::HexCell;
+using kernels::larger;
+using kernels::unbounded;
+
 using test::Corners;
 
 template <class Map>

@@ -18,6 +18,14 @@
 namespace gridmorph {
 namespace {
 
+using kernels::arc_cosine;
+using kernels::CellMeasures;
+using kernels::CellRow;
+using kernels::HexCell;
+using kernels::larger;
+using kernels::native_lanes;
+using kernels::RowMeasures;
+
 constexpr int longest_row = 35;
 constexpr int two_lanes = native_lanes < 2 ? native_lanes : 2;
 

@@ -11,6 +11,9 @@
 namespace gridmorph::detail {
 namespace {
 
+using kernels::native_lanes;
+using kernels::unbounded;
+
 /// Values with repetitions, so that equal extremes occur.
 std::vector<double> coarse_values(int count) {
   std::mt19937 random(5);

@@ -15,7 +15,7 @@ namespace gridmorph::test {
 
 using Corners = std::array<Vec3, 8>;  // numbered i + 2 j + 4 k
 
-inline Corners corners_of(HexCell const& cell) {
+inline Corners corners_of(kernels::HexCell const& cell) {
   Corners c;
   for (int n = 0; n < 8; ++n) c[n] = cell.corner[n];
   return c;

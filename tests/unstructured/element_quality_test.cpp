@@ -12,6 +12,10 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::CellMeasures;
+using kernels::ElementCorners;
+using kernels::HexCell;
+
 constexpr Vec3 up{0, 0, 1};
 
 ElementCorners corners(std::vector<Vec3> const& list) {

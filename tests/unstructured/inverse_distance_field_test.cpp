@@ -12,6 +12,8 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::UniformLattice;
+
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
 /// The lattice points on the surface of a cube of side n: full of equal distances.

@@ -19,6 +19,10 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::ElementCorners;
+using kernels::is_finite;
+using kernels::unbounded;
+
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
 template <class Space>

@@ -12,6 +12,8 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::FacetFoot;
+
 SlipRule on(SlipRule::Surface surface) { return {.surface = surface}; }
 
 /// What nodes on slip patches do in two runs of the same mesh: largest difference of their displacements, and largest

@@ -9,7 +9,7 @@
 
 #include <Kokkos_Core.hpp>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 /// Angle in [0, pi] whose cosine is x. Arguments beyond -1 and 1, as round-off makes them, count as -1 and 1.
 /// T: double or Lanes.
@@ -36,4 +36,4 @@ KOKKOS_FORCEINLINE_FUNCTION T arc_cosine(T const& x) {
   return x < 0 ? mirrored : angle;
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

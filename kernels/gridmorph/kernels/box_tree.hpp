@@ -17,7 +17,7 @@
 
 #include <cstdint>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 /// An axis-parallel box; empty as long as nothing is included.
 struct Box {
@@ -261,4 +261,9 @@ struct BoxTreeView {
   }
 };
 
+}  // namespace gridmorph::kernels
+
+// Boxes are a word of the library, like the vectors of vec3.hpp.
+namespace gridmorph {
+using kernels::Box;
 }  // namespace gridmorph

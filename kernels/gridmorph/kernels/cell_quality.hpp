@@ -32,7 +32,7 @@
 
 #include <cmath>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 /// Corners of a hexahedron: corner[i + 2 j + 4 k] for i, j, k in {0, 1}.
 struct HexCell {
@@ -311,4 +311,4 @@ KOKKOS_INLINE_FUNCTION Vec3 relative_displacement(HexCell const& baseline, HexCe
   return {value[0], value[1], value[2]};
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

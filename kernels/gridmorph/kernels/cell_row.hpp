@@ -16,7 +16,7 @@
 
 #include <cstdint>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 /// Cells that follow one another along i. x, y, z: coordinates of corner (0, 0, 0) of the first cell; the nodes are
 /// contiguous along i and have the given strides along j and k.
@@ -278,4 +278,4 @@ KOKKOS_INLINE_FUNCTION int row_orientation(CellRow const& row) {
   return positive;
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

@@ -28,7 +28,7 @@
 
 #include <gridmorph/kernels/element_quality.hpp>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 inline constexpr int max_newton_steps = 16;
 
@@ -452,4 +452,4 @@ KOKKOS_INLINE_FUNCTION ElementInverse invert_element(ElementType type, ElementCo
   return out;
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

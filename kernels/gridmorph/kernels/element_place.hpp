@@ -10,7 +10,7 @@
 #include <gridmorph/kernels/element_map.hpp>
 #include <gridmorph/kernels/facet_tree.hpp>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 /// A place in an element, and how far from a point it is.
 struct ElementPlace {
@@ -210,4 +210,4 @@ KOKKOS_INLINE_FUNCTION ElementPlace nearest_in_element(ElementType type, Element
   return best;
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

@@ -27,7 +27,7 @@
 #include <gridmorph/kernels/cell_quality.hpp>
 #include <gridmorph/kernels/element_shape.hpp>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 struct ElementCorners {
   Vec3 at[max_corners];
@@ -405,4 +405,4 @@ KOKKOS_INLINE_FUNCTION double element_relative_displacement(ElementType type, El
   return 0;
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

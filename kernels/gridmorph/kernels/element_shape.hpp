@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 enum class ElementType : std::uint8_t {
   triangle,
@@ -110,4 +110,12 @@ KOKKOS_INLINE_FUNCTION constexpr int layer_corner(ElementType type, int face, in
   return -1;
 }
 
+}  // namespace gridmorph::kernels
+
+// The types of elements are words of the library's interface, like the vectors of vec3.hpp.
+namespace gridmorph {
+using kernels::edge_corner, kernels::n_face_corners, kernels::face_corner;
+using kernels::ElementType, kernels::n_element_types;
+using kernels::max_corners, kernels::max_faces, kernels::max_face_corners;
+using kernels::n_corners, kernels::n_edges, kernels::n_faces, kernels::is_surface;
 }  // namespace gridmorph

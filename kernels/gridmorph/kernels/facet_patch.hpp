@@ -21,7 +21,7 @@
 
 #include <cstdint>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 /// Numbers into the tables of a FacetSurfaceView. Edge q runs from corner q to the next one.
 struct Facet {
@@ -160,4 +160,4 @@ struct FacetPatch {
   }
 };
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

@@ -20,7 +20,7 @@
 
 #include <cmath>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 struct FacetFoot {
   enum class Place { inside, crease, rim };
@@ -189,4 +189,4 @@ struct FacetSurfaceView {
   }
 };
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 /// A box around some facets, or around two boxes that follow one another.
 struct FacetBox {
@@ -127,4 +127,4 @@ struct FacetTreeView {
   }
 };
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

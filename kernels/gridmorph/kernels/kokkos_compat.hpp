@@ -14,7 +14,7 @@
 #include <Kokkos_MathematicalFunctions.hpp>
 #endif
 
-namespace gridmorph::compat {
+namespace gridmorph::kernels::compat {
 
 /// Mathematical functions for host and device.
 namespace math {
@@ -49,4 +49,9 @@ using HIP = Kokkos::HIP;
 using HIP = Kokkos::Experimental::HIP;
 #endif
 
-}  // namespace gridmorph::compat
+}  // namespace gridmorph::kernels::compat
+
+// Host code meets the same differences.
+namespace gridmorph {
+namespace compat = kernels::compat;
+}  // namespace gridmorph

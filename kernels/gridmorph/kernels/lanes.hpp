@@ -9,7 +9,7 @@
 
 #include <Kokkos_Core.hpp>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 #if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__HIPCC__)
 template <int W>
@@ -142,4 +142,4 @@ KOKKOS_FORCEINLINE_FUNCTION Extremes<T> operator*(double s, Extremes<T> const& e
   return {s * e.min, s * e.max};
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

@@ -21,7 +21,7 @@
 
 #include <Kokkos_Core.hpp>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 /// A vector at the corners 00, 10, 01, 11 of a quadrilateral.
 template <class T>
@@ -246,4 +246,4 @@ KOKKOS_FORCEINLINE_FUNCTION MarkedValue<T> relative_displacement(PairChange<T> c
   return {square_root(square), (shortest > limit ? broadcast<T>(0) : broadcast<T>(1)) + (finite - finite)};
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

@@ -14,7 +14,7 @@
 
 #include <cmath>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 enum class SlipKind {
   plane,       ///< nodes stay on a plane
@@ -323,4 +323,4 @@ struct SlipSurfaceView {
   }
 };
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 struct UniformLattice {
   Vec3 low;                           ///< node (0, 0, 0)
@@ -45,4 +45,4 @@ struct UniformLattice {
   }
 };
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

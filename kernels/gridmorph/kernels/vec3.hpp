@@ -14,7 +14,7 @@
 #define GRIDMORPH_ARITHMETIC arithmetic_of_the_user
 #endif
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 struct Vec3 {
   double x = 0, y = 0, z = 0;
@@ -72,4 +72,11 @@ KOKKOS_INLINE_FUNCTION Mat3 transpose(Mat3 const& a) {
 
 }  // namespace GRIDMORPH_ARITHMETIC
 
+}  // namespace gridmorph::kernels
+
+// Vectors are what the whole library speaks, so they have their short names in it. Everything else of the kernels is named
+// with its namespace: kernels::Facet.
+namespace gridmorph {
+using kernels::dot, kernels::cross, kernels::norm, kernels::distance, kernels::transpose;
+using kernels::Vec3, kernels::Mat3;
 }  // namespace gridmorph

@@ -11,7 +11,7 @@
 
 #include <Kokkos_Core.hpp>
 
-namespace gridmorph {
+namespace gridmorph::kernels {
 
 struct WallNode {
   double height = 0;
@@ -39,4 +39,4 @@ KOKKOS_INLINE_FUNCTION WallNode wall_node(Vec3 const& along1, Vec3 const& along2
   return wall_node(cross(along1, along2), line);
 }
 
-}  // namespace gridmorph
+}  // namespace gridmorph::kernels

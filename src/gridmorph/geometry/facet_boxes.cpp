@@ -38,7 +38,7 @@ FacetBoxes::FacetBoxes(std::vector<Vec3> const& points, std::vector<std::array<i
       for (int q = 0; q < n_corners(f); ++q) of_corners.include(points[f[q]]);
       of_centres.include(centre[order[n]]);
     }
-    FacetBox box{of_corners.low, of_corners.high, begin, end - begin};
+    kernels::FacetBox box{of_corners.low, of_corners.high, begin, end - begin};
     if (end - begin > per_leaf) {
       Vec3 const extent = of_centres.high - of_centres.low;
       int axis = extent.y > extent.x ? 1 : 0;

@@ -13,7 +13,7 @@ namespace gridmorph {
 /// along the longest side of the box of their centres, so that the depth is that of a balanced tree, whatever they are.
 /// Depends on positions alone, ties on facet numbers. Cost O(n log n).
 struct FacetBoxes {
-  std::vector<FacetBox> boxes;
+  std::vector<kernels::FacetBox> boxes;
   std::vector<int> order;
 
   FacetBoxes() = default;
@@ -24,14 +24,15 @@ struct FacetBoxes {
   /// limit(), the square of the best distance so far. Host.
   template <class Look, class Limit>
   void for_each_nearer(Vec3 const& p, Look const& look, Limit const& limit) const {
-    std::array<std::pair<double, int>, FacetTreeView::max_depth + 1> waiting;  // one per level that was passed, and two
+    // One per level that was passed, and two.
+    std::array<std::pair<double, int>, kernels::FacetTreeView::max_depth + 1> waiting;
     std::size_t n_waiting = 0;
     auto const wait = [&](int box) { waiting[n_waiting++] = {boxes[std::size_t(box)].distance2(p), box}; };
     if (!boxes.empty()) wait(0);
     while (n_waiting > 0) {
       auto const [away, b] = waiting[--n_waiting];
       if (away > limit()) continue;
-      FacetBox const& box = boxes[std::size_t(b)];
+      kernels::FacetBox const& box = boxes[std::size_t(b)];
       for (int n = box.first; n < box.first + box.count; ++n) look(order[std::size_t(n)]);
       if (box.count > 0) continue;
       wait(box.first);

@@ -22,7 +22,7 @@ FacetSurface FacetSurface::from_facets(FacetList const& list, FacetOptions const
   FacetTopology topology(list, options);
   FacetTangents tangents(topology);
 
-  std::vector<Facet> facets(topology.facets.size());
+  std::vector<kernels::Facet> facets(topology.facets.size());
   for (int f = 0; f < int(facets.size()); ++f)
     for (int q = 0; q < topology.n_corners(f); ++q) {
       int const e = topology.edges_of_facet[f][q];
@@ -41,7 +41,7 @@ FacetSurface FacetSurface::from_facets(FacetList const& list, FacetOptions const
   std::vector<std::int32_t> place(facets.size());
   for (std::size_t n = 0; n < facets.size(); ++n) place[tree.order[n]] = std::int32_t(n);
   for (int const f : tree.order) {
-    Facet facet = facets[f];
+    kernels::Facet facet = facets[f];
     for (std::int32_t& neighbour : facet.neighbour)
       if (neighbour >= 0) neighbour = 4 * place[neighbour / 4] + neighbour % 4;
     surface.facets.push_back(facet);

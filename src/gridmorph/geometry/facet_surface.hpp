@@ -40,8 +40,8 @@ struct FacetOptions {
 /// first, by position. Explicit: no system of equations beyond the nine unknowns of a fit.
 struct FacetSurface {
   std::vector<Vec3> points, normals, bends;
-  std::vector<Facet> facets;
-  std::vector<FacetBox> boxes;
+  std::vector<kernels::Facet> facets;
+  std::vector<kernels::FacetBox> boxes;
 
   /// Points that coincide become one; facets collapsed to a line or named twice go. Throws MotionError, naming the
   /// facet or point, when a number is out of range or a point not finite, and when no facet is left. Cost O(n log n).
@@ -52,11 +52,11 @@ struct FacetSurface {
   [[nodiscard]] double size() const;
 
   /// Borrows the tables: valid on the host while this surface lives unchanged.
-  [[nodiscard]] FacetSurfaceView view() const {
+  [[nodiscard]] kernels::FacetSurfaceView view() const {
     return {{points.data(), facets.data(), boxes.data()}, normals.data(), bends.data()};
   }
   /// On the host; O(log n) near the surface.
-  [[nodiscard]] FacetFoot closest_point(Vec3 const& p) const { return view().closest_point(p); }
+  [[nodiscard]] kernels::FacetFoot closest_point(Vec3 const& p) const { return view().closest_point(p); }
 };
 
 }  // namespace gridmorph

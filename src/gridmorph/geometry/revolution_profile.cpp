@@ -257,7 +257,7 @@ class Slopes {
 };
 
 /// As many buckets as pieces (see ProfileView::piece).
-std::vector<int> bucket_pieces(std::vector<ProfileKnot> const& knots) {
+std::vector<int> bucket_pieces(std::vector<kernels::ProfileKnot> const& knots) {
   int const pieces = int(knots.size()) - 1;
   double const first = knots.front().axial, last = knots.back().axial;
   std::vector<int> out;
@@ -313,7 +313,7 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
   Slopes const slopes(points, std::max(noise, 4e-16 * size));
   std::vector<double> const slope = slopes.all(), curvature = slopes.curvatures(slope);
   for (std::size_t n = 0; n < points.size(); ++n) {
-    ProfileKnot knot{points[n].first, points[n].second, slope[n], {0, 0}};
+    kernels::ProfileKnot knot{points[n].first, points[n].second, slope[n], {0, 0}};
     if (n + 1 < points.size()) std::copy_n(curvature.begin() + std::ptrdiff_t(2 * n), 2, knot.curvature);
     profile.knots.push_back(knot);
   }

@@ -15,12 +15,14 @@
 
 namespace gridmorph {
 
+using kernels::SlipKind;
+
 /// Radius of a surface of revolution as a function of axial position: a piecewise quintic through points of the
 /// profile (Hermite form, slopes and second derivatives from local polynomials: explicit, no system of equations).
 ///
 /// Built on the host from any set of (axial, radius) points; evaluated on host and device alike.
 struct RevolutionProfile {
-  std::vector<ProfileKnot> knots;
+  std::vector<kernels::ProfileKnot> knots;
   std::vector<int> bucket_piece;  ///< see ProfileView
   double deviation = 0;           ///< largest |radius - profile(axial)| over the points it was built from
 
@@ -41,7 +43,7 @@ struct RevolutionProfile {
   [[nodiscard]] double operator()(double axial_position) const { return view()(axial_position); }
 
   /// Borrows the tables: valid on the host while this profile lives unchanged.
-  [[nodiscard]] ProfileView view() const {
+  [[nodiscard]] kernels::ProfileView view() const {
     return {knots.data(), int(knots.size()), bucket_piece.data(), std::max(0, int(bucket_piece.size()) - 1)};
   }
 };
@@ -49,7 +51,7 @@ struct RevolutionProfile {
 /// A profile and the frame of the meridional plane in which it is a function.
 struct TurnedProfile {
   RevolutionProfile profile;
-  MeridionalFrame frame;
+  kernels::MeridionalFrame frame;
 
   /// Of points along one connected wall: radius over axial position where that is a function and not steep; otherwise
   /// axial position over radius (walls across the axis), or in the frame, turned in steps of 15 degrees, in which the slopes
@@ -68,11 +70,11 @@ struct SlipSurface {
   double baseline_deviation = 0;
   /// Largest distance of the baseline patch's nodes from `origin`: what round-off and relative tolerances refer to.
   double size = 0;
-  MeridionalFrame frame{};  ///< of the profile of a meridional surface
-  FacetSurface facets{};    ///< kind facets only
+  kernels::MeridionalFrame frame{};  ///< of the profile of a meridional surface
+  FacetSurface facets{};             ///< kind facets only
 
   /// For host code; borrows profile and facets: valid while this surface lives unchanged.
-  [[nodiscard]] SlipSurfaceView view() const {
+  [[nodiscard]] kernels::SlipSurfaceView view() const {
     return {kind, origin, direction, profile.view(), size, baseline_deviation, frame, facets.view()};
   }
 };
@@ -80,25 +82,25 @@ struct SlipSurface {
 /// Slip surfaces in one memory space, for kernels: `surfaces(s)` is a SlipSurfaceView usable where MemorySpace is.
 template <class MemorySpace>
 struct SlipSurfaceTable {
-  Kokkos::View<SlipSurfaceView*, MemorySpace> surfaces;
+  Kokkos::View<kernels::SlipSurfaceView*, MemorySpace> surfaces;
   // Tables of all surfaces, each one after another.
-  Kokkos::View<ProfileKnot*, MemorySpace> knots;
+  Kokkos::View<kernels::ProfileKnot*, MemorySpace> knots;
   Kokkos::View<int*, MemorySpace> buckets;  ///< bucket_piece of each profile
   Kokkos::View<Vec3*, MemorySpace> facet_points, facet_normals, facet_bends;
-  Kokkos::View<Facet*, MemorySpace> facets;
-  Kokkos::View<FacetBox*, MemorySpace> facet_boxes;
+  Kokkos::View<kernels::Facet*, MemorySpace> facets;
+  Kokkos::View<kernels::FacetBox*, MemorySpace> facet_boxes;
 
   SlipSurfaceTable() = default;
 
   /// Copies on `exec`; fences it, because the host buffers end with the call.
   template <class ExecutionSpace>
   SlipSurfaceTable(ExecutionSpace const& exec, std::vector<SlipSurface> const& host) {
-    std::vector<SlipSurfaceView> views;
-    std::vector<ProfileKnot> all_knots;
+    std::vector<kernels::SlipSurfaceView> views;
+    std::vector<kernels::ProfileKnot> all_knots;
     std::vector<int> all_buckets;
     std::vector<Vec3> all_points, all_normals, all_bends;
-    std::vector<Facet> all_facets;
-    std::vector<FacetBox> all_boxes;
+    std::vector<kernels::Facet> all_facets;
+    std::vector<kernels::FacetBox> all_boxes;
     auto const append = [](auto& to, auto const& from) { to.insert(to.end(), from.begin(), from.end()); };
     for (SlipSurface const& s : host) {
       append(all_knots, s.profile.knots);
@@ -123,7 +125,7 @@ struct SlipSurfaceTable {
       return at;
     };
     for (SlipSurface const& s : host) {
-      SlipSurfaceView view = s.view();
+      kernels::SlipSurfaceView view = s.view();
       view.profile.knots = next(knots, knot, s.profile.knots);
       view.profile.bucket_piece = next(buckets, bucket, s.profile.bucket_piece);
       view.facets.tree.points = next(facet_points, point, s.facets.points);

@@ -10,6 +10,8 @@
 
 namespace gridmorph {
 
+using kernels::MeridionalFrame;
+
 namespace {
 
 using Points = std::vector<std::pair<double, double>>;
@@ -31,7 +33,7 @@ Points in_frame(MeridionalFrame const& frame, Points const& points, std::size_t 
 }
 
 double slope_of_piece(RevolutionProfile const& profile, std::size_t n) {
-  ProfileKnot const &lo = profile.knots[n], &hi = profile.knots[n + 1];
+  kernels::ProfileKnot const &lo = profile.knots[n], &hi = profile.knots[n + 1];
   return std::abs((hi.radius - lo.radius) / (hi.axial - lo.axial));
 }
 

@@ -50,7 +50,7 @@ class Relaxation {
 
  private:
   [[nodiscard]] double determinant(Index32 e, double sign, Coordinates const& x) const {
-    ElementCorners c;
+    kernels::ElementCorners c;
     auto const nodes = mesh_.elements.corners(e);
     for (std::size_t k = 0; k < nodes.size(); ++k) c.at[k] = x[nodes[k]];
     return element_determinant(mesh_.elements.type[std::size_t(e)], c, sign, prepared_.plan.plane_normal);

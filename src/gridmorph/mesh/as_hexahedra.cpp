@@ -29,7 +29,7 @@ void for_each_cell(Zone const& zone, Function const& f) {
 bool is_left_handed(Mesh const& mesh, Zone const& zone) {
   Index balance = 0;
   for_each_cell(zone, [&](std::array<Index32, 8> const& nodes) {
-    ElementCorners c;
+    kernels::ElementCorners c;
     for (std::size_t k = 0; k < nodes.size(); ++k) c.at[k] = mesh.coordinates[nodes[k]];
     double const volume = element_volume(ElementType::hexahedron, c, 1, {0, 0, 1});
     balance += volume > 0 ? 1 : volume < 0 ? -1 : 0;

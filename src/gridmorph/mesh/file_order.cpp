@@ -118,13 +118,13 @@ std::vector<Index32> order_nodes(Mesh const& mesh) {
   MeshExtent const box = extent_of(mesh.coordinates);
   Vec3 const size = box.high - box.low;
   double const longest = std::max({size.x, size.y, size.z});
-  double const steps = longest > 0 ? double(1 << LatticePlace::bits) / longest : 0;
+  double const steps = longest > 0 ? double(1 << kernels::LatticePlace::bits) / longest : 0;
   std::vector<Index32> order(std::size_t(mesh.n_nodes()));
   HostExec const exec;
   for (auto const& zone : mesh.zones) {
     detail::KeyedIndices<Kokkos::HostSpace> const list(std::size_t(zone.size()), "gridmorph::order_by_position");
     for_all("gridmorph::order_by_position::codes", zone.size(), [&](Index n) {
-      list.key(n) = hilbert_code({mesh.coordinates[zone.first_node + n], box.low, {steps, steps, steps}});
+      list.key(n) = kernels::hilbert_code({mesh.coordinates[zone.first_node + n], box.low, {steps, steps, steps}});
       list.number(n) = Index32(zone.first_node + n);
     });
     auto const sorted = detail::sort_keys(exec, list);

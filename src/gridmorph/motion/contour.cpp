@@ -17,7 +17,7 @@ class Contour {
   Contour(std::vector<std::pair<double, double>> const& profile, Axis const& axis, std::string where)
       : frame_(axis), where_(std::move(where)) {
     TurnedProfile fit = TurnedProfile::from_points(profile);
-    surface_.kind = fit.frame == MeridionalFrame{} ? SlipKind::revolution : SlipKind::meridional;
+    surface_.kind = fit.frame == kernels::MeridionalFrame{} ? SlipKind::revolution : SlipKind::meridional;
     surface_.origin = frame_.origin();
     surface_.direction = frame_.direction();
     surface_.profile = std::move(fit.profile);
@@ -42,7 +42,7 @@ class Contour {
   [[nodiscard]] Vec3 along_axis(Vec3 const& p) const {
     double const axial = frame_.meridional(p).axial;
     if (surface_.kind == SlipKind::meridional && !surface_.frame.inclined()) {
-      MeridionalFoot const foot = surface_.view().foot(axial, 0);
+      kernels::MeridionalFoot const foot = surface_.view().foot(axial, 0);
       return (-foot.away * foot.axial) * frame_.direction();
     }
     double const off =

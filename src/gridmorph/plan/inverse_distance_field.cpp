@@ -86,8 +86,8 @@ class Tree {
   std::vector<Index32> order_, place_;  ///< by position, and where each is in that order
 };
 
-UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dimension, Index most_nodes) {
-  UniformLattice lattice;
+kernels::UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dimension, Index most_nodes) {
+  kernels::UniformLattice lattice;
   lattice.low = low;
   double const size[3] = {high.x - low.x, high.y - low.y, dimension == 2 ? 0 : high.z - low.z};
   double spacing = std::max({size[0], size[1], size[2]}) / 4;

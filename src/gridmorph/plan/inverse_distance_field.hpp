@@ -25,7 +25,7 @@ struct InverseDistanceField {
   InterpolationOperator lattice;  ///< groups -> lattice nodes
   Index32 n_groups = 0;
   std::vector<Vec3> centre;  ///< of each group
-  UniformLattice shape;
+  kernels::UniformLattice shape;
 
   [[nodiscard]] bool empty() const { return n_groups == 0; }
 };

@@ -37,24 +37,24 @@ struct ElementTables {
   Vec3 plane_normal;
 
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
-  KOKKOS_INLINE_FUNCTION ElementCorners corners(PackedPoints<MemorySpace> const& points, Index e) const {
+  KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners(PackedPoints<MemorySpace> const& points, Index e) const {
     return gather(e, [&](Index32 node) {
       PackedPoint const p = points(node);
       return Vec3{p.x, p.y, p.z};
     });
   }
   /// For few elements: x, y and z come from three places.
-  KOKKOS_INLINE_FUNCTION ElementCorners corners(CoordinateViews<MemorySpace> const& c, Index e) const {
+  KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners(CoordinateViews<MemorySpace> const& c, Index e) const {
     return gather(e, [&](Index32 node) { return Vec3{c.x(node), c.y(node), c.z(node)}; });
   }
-  KOKKOS_INLINE_FUNCTION ElementCorners corners(kernels::VectorArray const& x, Index e) const {
+  KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners(kernels::VectorArray const& x, Index e) const {
     return gather(e, [&](Index32 node) { return x[node]; });
   }
 
  private:
   template <class PointOf>
-  KOKKOS_INLINE_FUNCTION ElementCorners gather(Index e, PointOf const& point) const {
-    ElementCorners out;
+  KOKKOS_INLINE_FUNCTION kernels::ElementCorners gather(Index e, PointOf const& point) const {
+    kernels::ElementCorners out;
     Index const first = elements.first(e);
     int const n = n_corners(elements.type(e));
     for (int k = 0; k < n; ++k) out.at[k] = point(elements.node(first + k));
@@ -93,12 +93,12 @@ KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, ElementView
   for (Index n = neighbours.first(e); n < neighbours.first(e + 1); ++n) {
     Index32 const other = neighbours.item(n);
     if (elements.type(other) == ElementType::polyhedron) continue;
-    least = smaller(least, volumes(other));
-    largest = larger(largest, volumes(other));
+    least = kernels::smaller(least, volumes(other));
+    largest = kernels::larger(largest, volumes(other));
   }
   double const own = volumes(e);
-  if (!(least > 0)) return unbounded;
-  return larger(largest / own, own / least);
+  if (!(least > 0)) return kernels::unbounded;
+  return kernels::larger(largest / own, own / least);
 }
 
 /// Elements on the other side of each side of each element, through connections too, where there is one.

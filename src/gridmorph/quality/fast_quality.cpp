@@ -13,21 +13,21 @@ namespace {
 /// Cells begin <= n < end of a row that lie in one region: their smallest determinant and angle, and those that fell.
 template <int N>
 struct RunOfCells {
-  CellRow now, before;
-  RowVerdicts<N> const& verdict;
+  kernels::CellRow now, before;
+  kernels::RowVerdicts<N> const& verdict;
   int begin, end;
   Index first;  ///< number in the mesh of the row's cell 0
   bool against_baseline;
 
   KOKKOS_INLINE_FUNCTION void add_to(PartialRegion& region, CellLimits const& limits, CellScreen const& screen) const {
     constexpr double degrees = 57.295779513082320877;
-    double determinant = unbounded, angle = unbounded, cosine = -2;
+    double determinant = kernels::unbounded, angle = kernels::unbounded, cosine = -2;
     int determinant_at = begin, angle_at = begin, cosine_at = begin;
     for (int n = begin; n < end; ++n) {
       double value = verdict.determinant_3x3x3[n];
       bool may_fall = true;
       if (verdict.mark[n] != 0) {
-        CellMeasures const m = cell_measures(now.cell(n), now.handedness);
+        kernels::CellMeasures const m = cell_measures(now.cell(n), now.handedness);
         value = m.determinant_3x3x3;
         region.collapsed += m.collapsed ? 1 : 0;
         count_state(region, m.smallest_corner_jacobian);
@@ -52,7 +52,7 @@ struct RunOfCells {
               cell_measures(now.cell(n), now.handedness), first + n);
     }
     region.cells += end - begin;
-    double const sharpest = degrees * arc_cosine(cosine);
+    double const sharpest = degrees * kernels::arc_cosine(cosine);
     if (cosine > -2 && (sharpest < angle || (sharpest == angle && cosine_at < angle_at))) {
       angle = sharpest;
       angle_at = cosine_at;
@@ -91,8 +91,8 @@ QualityReport fast_quality(Exec const& exec, Mesh const& mesh, QualityInput<type
       exec, "gridmorph::measure_quality::verdict", chunks, sums, KOKKOS_LAMBDA(RowOfCells const& row, PartialSums& s) {
         ZoneCells const zone = zones(row.zone);
         Index const first = first_cell(zone, row);
-        CellRow const now = cell_row(coordinates, zone, row), before = cell_row(baseline, zone, row);
-        RowVerdicts<Policy::row_length> verdict;
+        kernels::CellRow const now = cell_row(coordinates, zone, row), before = cell_row(baseline, zone, row);
+        kernels::RowVerdicts<Policy::row_length> verdict;
         row_verdicts<Policy::lanes>(now, verdict);
         for_each_region_run(
             has_near_field ? near_field.data() + first : nullptr, row.count, [&](int r, int begin, int end) {

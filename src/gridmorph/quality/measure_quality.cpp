@@ -60,11 +60,11 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
         constexpr int lanes = Policy::lanes, length = Policy::row_length;
         detail::ZoneCells const zone = zones(row.zone);
         Index const cell = detail::first_cell(zone, row);
-        CellRow const now = detail::cell_row(coordinates, zone, row);
-        RowMeasures<length> m;
+        kernels::CellRow const now = detail::cell_row(coordinates, zone, row);
+        kernels::RowMeasures<length> m;
         row_measures<lanes>(now, m);
         for (int n = 0; n < row.count; ++n) volumes(cell + n) = m.volume[n];
-        CellRow before = now;
+        kernels::CellRow before = now;
         double relative[length];
         if (against_baseline) {
           before = detail::cell_row(baseline, zone, row);

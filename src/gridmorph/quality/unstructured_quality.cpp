@@ -123,8 +123,8 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
             continue;
           }
           double const sign = signs(e);
-          ElementCorners const now = tables.corners(coordinates, e);
-          CellMeasures const m = element_measures(type, now, sign, tables.plane_normal);
+          kernels::ElementCorners const now = tables.corners(coordinates, e);
+          kernels::CellMeasures const m = element_measures(type, now, sign, tables.plane_normal);
           auto& region = s.region[has_near_field && near_field(e) != 0 ? 0 : 1];
           auto const add = [&](Measure measure, double value) {
             region.template add<1>(measure, &value, 1, e);

@@ -41,7 +41,7 @@ struct RowNodes {
       });
     }
   }
-  KOKKOS_INLINE_FUNCTION CellRow cells(int count, double handedness) const {
+  KOKKOS_INLINE_FUNCTION kernels::CellRow cells(int count, double handedness) const {
     return {x[0], y[0], z[0], Length + 1, 2 * (Length + 1), count, handedness};
   }
 };

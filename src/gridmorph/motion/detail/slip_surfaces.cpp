@@ -205,11 +205,11 @@ class Finder {
           continue;
         }
         for (Vec3 const& p : points) {
-          FacetFoot const foot = surface.facets.closest_point(p);
+          kernels::FacetFoot const foot = surface.facets.closest_point(p);
           surface.baseline_deviation = std::max(surface.baseline_deviation, foot.distance);
         }
         std::size_t creases = 0;
-        for (Facet const& f : surface.facets.facets)
+        for (kernels::Facet const& f : surface.facets.facets)
           for (int q = 0; q < 4; ++q) creases += f.is_crease(q) ? 1 : 0;
         notes_.push_back("slip " + describe(mesh_, members) + ": its own surface, smooth through " +
                          std::to_string(surface.facets.facets.size()) + " facets (periodic copies included), " +
@@ -269,7 +269,8 @@ class Finder {
   }
 
   static void set_profile(SlipSurface& surface, TurnedProfile fit) {
-    surface.kind = fit.frame == MeridionalFrame{} ? SlipSurface::Kind::revolution : SlipSurface::Kind::meridional;
+    surface.kind =
+        fit.frame == kernels::MeridionalFrame{} ? SlipSurface::Kind::revolution : SlipSurface::Kind::meridional;
     surface.profile = std::move(fit.profile);
     surface.frame = fit.frame;
   }
@@ -342,7 +343,7 @@ class Finder {
     return std::max(radius, last - first);
   }
 
-  static std::string end(SlipSurface const& s, ProfileKnot const& k) {
+  static std::string end(SlipSurface const& s, kernels::ProfileKnot const& k) {
     if (s.kind == SlipSurface::Kind::revolution) return "axial " + to_text(k.axial, 3);
     return "(axial " + to_text(s.frame.axial(k.axial, k.radius), 3) + ", radius " +
            to_text(s.frame.radius(k.axial, k.radius), 3) + ")";

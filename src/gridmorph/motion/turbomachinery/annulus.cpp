@@ -96,7 +96,7 @@ bool Annulus::is_steep_along(std::vector<MeridionalPoint> const& blade) const {
     for (RevolutionProfile const* profile : *profiles) {
       double const begin = std::max(lo, profile->knots.front().axial), end = std::min(hi, profile->knots.back().axial);
       if (end > begin && std::abs((*profile)(end) - (*profile)(begin)) > steep * (end - begin)) return true;
-      for (ProfileKnot const& knot : profile->knots)
+      for (kernels::ProfileKnot const& knot : profile->knots)
         anywhere = anywhere || (knot.axial > lo && knot.axial < hi && std::abs(knot.slope) > steep);
     }
   return anywhere && !spans(blade);
@@ -177,7 +177,7 @@ std::vector<WallPiece> walls_of_row(Mesh const& mesh, SlipSurfaces const& surfac
     bool const across = surface.kind == SlipSurface::Kind::plane && patch.kind == PatchKind::wall &&
                         norm(cross(surface.direction, frame.direction())) < parallel;
     if (!is_revolution(surface) && !across) continue;
-    MeridionalFrame const own = across ? MeridionalFrame{0, 1} : surface.frame;
+    kernels::MeridionalFrame const own = across ? kernels::MeridionalFrame{0, 1} : surface.frame;
     Extent& e = extents[s];
     for (Vec3 const& point : patch_points(mesh, {int(p)})) {
       MeridionalPoint const q = frame.meridional(point);

@@ -17,7 +17,7 @@ namespace {
 /// Distance of a point from a slip surface, with its sign, the way that nodes are put back on it.
 double signed_distance(SlipSurface const& s, Vec3 const& p) {
   if (s.kind == SlipSurface::Kind::facets) {
-    FacetFoot const foot = s.facets.view().closest_point(p);
+    kernels::FacetFoot const foot = s.facets.view().closest_point(p);
     return dot(p - foot.point, foot.normal);
   }
   Vec3 const d = p - s.origin;

@@ -23,7 +23,7 @@ double distance(MeridionalPoint const& a, MeridionalPoint const& b) {
 double arc_length(RevolutionProfile const& profile, double a, double b) {
   constexpr std::array<double, 3> place{0, 0.5384693101056831, 0.9061798459386640};
   constexpr std::array<double, 3> weight{0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-  ProfileView const view = profile.view();
+  kernels::ProfileView const view = profile.view();
   double const middle = 0.5 * (a + b), half = 0.5 * (b - a);
   auto const stretch = [&](double x) { return std::hypot(1.0, view.derivative(x)); };
   double sum = weight[0] * stretch(middle);
@@ -37,7 +37,7 @@ RevolutionProfile abscissa_over_arc_length(WallPiece const& piece) {
   constexpr int least = 33;
   double const lo = std::min(piece.first, piece.last), hi = std::max(piece.first, piece.last);
   std::vector<double> x{lo};
-  for (ProfileKnot const& knot : piece.profile.knots)
+  for (kernels::ProfileKnot const& knot : piece.profile.knots)
     if (knot.axial > lo && knot.axial < hi) x.push_back(knot.axial);
   x.push_back(hi);
   int const parts = std::max(1, (least + int(x.size()) - 3) / (int(x.size()) - 1));

@@ -11,7 +11,7 @@ namespace gridmorph {
 /// A part of an end wall: a profile between two abscissae of its frame.
 struct WallPiece {
   RevolutionProfile profile;
-  MeridionalFrame frame{};
+  kernels::MeridionalFrame frame{};
   double first = 0, last = 0;  ///< in the direction of the curve: first > last runs against the abscissa
 
   [[nodiscard]] MeridionalPoint at(double abscissa) const {

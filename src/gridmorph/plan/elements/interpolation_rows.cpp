@@ -43,7 +43,7 @@ void fill_weights(Mesh const& mesh, Location const& where, std::vector<double>& 
   ElementType const type = mesh.elements.type[std::size_t(where.element)];
   weight.resize(corners.size());
   if (type == ElementType::polyhedron) return polyhedron_weights(mesh, where, corners, weight);
-  ElementWeights const w = element_weights(type, where.local);
+  kernels::ElementWeights const w = element_weights(type, where.local);
   std::copy_n(w.of, corners.size(), weight.begin());
 }
 
@@ -54,7 +54,7 @@ void for_each_item(Mesh const& mesh, Location const& where, Visit const& visit) 
   constexpr double negligible = 1e-9;
   auto const corners = mesh.elements.corners(where.element);
   ElementType const type = mesh.elements.type[std::size_t(where.element)];
-  ElementWeights some;
+  kernels::ElementWeights some;
   std::vector<double> many;
   double* weight = some.of;
   if (type == ElementType::polyhedron) {
@@ -138,7 +138,7 @@ LocateReport summarise(std::span<Location const> locations) {
   LocateReport report;
   for (std::size_t n = 0; n < locations.size(); ++n) {
     Location const& where = locations[n];
-    double const distance = where.element < 0 ? unbounded : where.distance;
+    double const distance = where.element < 0 ? kernels::unbounded : where.distance;
     if (distance == 0) {
       ++report.inside;
       continue;

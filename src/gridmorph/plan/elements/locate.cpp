@@ -16,6 +16,8 @@
 
 namespace gridmorph {
 
+using kernels::BoxGroup;
+
 namespace detail {
 
 namespace {
@@ -32,7 +34,7 @@ KOKKOS_INLINE_FUNCTION Box box_of(LocatorTables<MemorySpace> const& t, Index32 e
   Index const last = type == ElementType::polyhedron ? t.elements.first(element + 1) : first + n_corners(type);
   for (Index n = first; n < last; ++n) {
     Vec3 const x = node_at(t, t.elements.node(n));
-    if (!is_finite(x.x + x.y + x.z)) return {};
+    if (!kernels::is_finite(x.x + x.y + x.z)) return {};
     box.include(x);
   }
   if (first == last) return box;
@@ -51,7 +53,7 @@ Kokkos::View<Index32*, typename Exec::memory_space> order_candidates(
       KOKKOS_LAMBDA(Index const n) {
         Index32 const element = candidates(n);
         Box const box = box_of(tables, element);
-        list.key(n) = hilbert_code({0.5 * (box.low + box.high), tables.low, tables.steps});
+        list.key(n) = kernels::hilbert_code({0.5 * (box.low + box.high), tables.low, tables.steps});
         list.number(n) = element;
       });
   return sort_keys(exec, list).number;
@@ -115,7 +117,7 @@ Kokkos::View<Index32*, typename Exec::memory_space> order_points(
   Vec3 const low = tables.low, steps = tables.steps;
   Kokkos::parallel_for(
       "gridmorph::ElementLocator::codes", Range<Exec>(exec, 0, Index(points.extent(0))), KOKKOS_LAMBDA(Index const n) {
-        list.key(n) = z_code({points(n), low, steps});
+        list.key(n) = kernels::z_code({points(n), low, steps});
         list.number(n) = Index32(n);
       });
   return sort_keys(exec, list).number;

@@ -40,9 +40,9 @@ struct LocatorTables {
   Kokkos::View<Index32 const*, MemorySpace> polyhedron;     ///< elements that are polyhedra, ascending
   Kokkos::View<Index const*, MemorySpace> polyhedron_face;  ///< (polyhedra + 1) first face of each
   CsrViews<MemorySpace> polyhedron_faces;
-  Kokkos::View<Index32*, MemorySpace> element;  ///< (candidates) in tree order
-  Kokkos::View<BoxGroup*, MemorySpace> groups;  ///< of the tree
-  BoxTreeView tree;
+  Kokkos::View<Index32*, MemorySpace> element;           ///< (candidates) in tree order
+  Kokkos::View<kernels::BoxGroup*, MemorySpace> groups;  ///< of the tree
+  kernels::BoxTreeView tree;
   Vec3 low, steps;           ///< of the lattice, see LatticePlace
   Vec3 plane_point, normal;  ///< of a 2-D mesh
   bool two_dimensional = false;

@@ -12,8 +12,9 @@ KOKKOS_INLINE_FUNCTION Vec3 node_at(LocatorTables<MemorySpace> const& t, Index n
 }
 
 template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION ElementCorners corners_at(LocatorTables<MemorySpace> const& t, ElementType type, Index e) {
-  ElementCorners c;
+KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners_at(LocatorTables<MemorySpace> const& t, ElementType type,
+                                                          Index e) {
+  kernels::ElementCorners c;
   Index const first = t.elements.first(e);
   int const n = n_corners(type);
   for (int k = 0; k < n; ++k) c.at[k] = node_at(t, t.elements.node(first + k));
@@ -38,7 +39,7 @@ KOKKOS_INLINE_FUNCTION Index polyhedron_number(LocatorTables<MemorySpace> const&
 /// the two ends of an edge.
 template <class MemorySpace, class Visit>
 KOKKOS_INLINE_FUNCTION void for_each_part(LocatorTables<MemorySpace> const& t, Index32 element, Visit const& visit) {
-  ElementCorners c;
+  kernels::ElementCorners c;
   Index const begin = t.elements.first(element), end = t.elements.first(element + 1);
   for (Index n = begin; n < end; ++n) c.at[0] += node_at(t, t.elements.node(n));
   c.at[0] = (1.0 / double(end - begin)) * c.at[0];
@@ -72,7 +73,7 @@ KOKKOS_INLINE_FUNCTION bool contains(LocatorTables<MemorySpace> const& t, Index3
   ElementType const type = t.elements.type(element);
   bool found = false;
   if (type == ElementType::polyhedron) {
-    for_each_part(t, element, [&](Index32 part, ElementCorners const& c) {
+    for_each_part(t, element, [&](Index32 part, kernels::ElementCorners const& c) {
       found = element_contains(ElementType::tetrahedron, c, p, t.tolerance, place.local);
       if (found) place.part = part;
       return found;
@@ -93,10 +94,10 @@ template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION Location nearest(LocatorTables<MemorySpace> const& t, Index32 element, Vec3 const& p,
                                         Vec3 const& towards, double limit) {
   Location place;
-  place.distance = unbounded;
-  auto const look = [&](ElementType type, ElementCorners const& c, Index32 part) {
+  place.distance = kernels::unbounded;
+  auto const look = [&](ElementType type, kernels::ElementCorners const& c, Index32 part) {
     if (!may_be_nearer(type, c, p, towards, limit)) return;
-    ElementPlace const found = nearest_in_element(type, c, p);
+    kernels::ElementPlace const found = nearest_in_element(type, c, p);
     if (!(found.distance < place.distance)) return;
     place.element = element;
     place.part = part;
@@ -105,7 +106,7 @@ KOKKOS_INLINE_FUNCTION Location nearest(LocatorTables<MemorySpace> const& t, Ind
   };
   ElementType const type = t.elements.type(element);
   if (type == ElementType::polyhedron) {
-    for_each_part(t, element, [&](Index32 part, ElementCorners const& c) {
+    for_each_part(t, element, [&](Index32 part, kernels::ElementCorners const& c) {
       look(ElementType::tetrahedron, c, part);
       return false;
     });
@@ -125,8 +126,8 @@ KOKKOS_INLINE_FUNCTION bool is_nearer(Location const& a, Location const& b) {
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION Location locate_point(LocatorTables<MemorySpace> const& t, Vec3 p) {
   Location best;
-  best.distance = unbounded;
-  if (!is_finite(p.x) || !is_finite(p.y) || !is_finite(p.z)) return best;
+  best.distance = kernels::unbounded;
+  if (!kernels::is_finite(p.x) || !kernels::is_finite(p.y) || !kernels::is_finite(p.z)) return best;
   if (t.two_dimensional) p = p - dot(t.normal, p - t.plane_point) * t.normal;
   t.tree.for_each_holding(p, [&](Index thing) {
     Index32 const element = t.element(thing);
@@ -140,7 +141,7 @@ KOKKOS_INLINE_FUNCTION Location locate_point(LocatorTables<MemorySpace> const& t
       p,
       [&](Index thing) {
         Location const place = nearest(t, t.element(thing), p, towards, best.distance);
-        if (place.element < 0 || !is_finite(place.distance)) return;
+        if (place.element < 0 || !kernels::is_finite(place.distance)) return;
         if (best.element >= 0 && !is_nearer(place, best)) return;
         best = place;
         towards = position_at(t, place) - p;

@@ -27,13 +27,13 @@ struct CellScreen {
   /// The same from the largest and the smallest cosine of the face angles of a hexahedron.
   KOKKOS_INLINE_FUNCTION bool may_fall_by_cosines(double determinant_, double largest, double smallest) const {
     return !(determinant_ > 0 && determinant_ >= determinant && largest <= angle_cosine &&
-             larger(largest, -smallest) <= skewness_cosine);
+             kernels::larger(largest, -smallest) <= skewness_cosine);
   }
 };
 
 /// (before - now) / max(|before|, floor)
 KOKKOS_INLINE_FUNCTION double loss(double before, double now, double floor) {
-  return (before - now) / larger(before < 0 ? -before : before, floor);
+  return (before - now) / kernels::larger(before < 0 ? -before : before, floor);
 }
 
 /// Counts a cell as what its corners make it.
@@ -43,8 +43,8 @@ KOKKOS_INLINE_FUNCTION void count_state(PartialRegion& region, double smallest_c
 }
 
 /// Adds a cell to those that fell, in every way in which it did; what is inverted now has no loss.
-KOKKOS_INLINE_FUNCTION void judge(PartialRegion& region, CellLimits const& limits, CellMeasures const& before,
-                                  CellMeasures const& now, Index cell) {
+KOKKOS_INLINE_FUNCTION void judge(PartialRegion& region, CellLimits const& limits, kernels::CellMeasures const& before,
+                                  kernels::CellMeasures const& now, Index cell) {
   auto const fall = [&](Fall f, double value) {
     region.fallen[int(f)].take(larger_is_worse(f) ? -value : value, cell);
   };
@@ -59,8 +59,8 @@ KOKKOS_INLINE_FUNCTION void judge(PartialRegion& region, CellLimits const& limit
     fall(Fall::angle, now.minimum_angle_deg);
   if (now.equiangle_skewness > limits.max_skewness && before.equiangle_skewness <= limits.max_skewness)
     fall(Fall::skewness, now.equiangle_skewness);
-  double const lost = larger(loss(before.determinant_3x3x3, now.determinant_3x3x3, least_determinant),
-                             loss(before.minimum_angle_deg, now.minimum_angle_deg, least_angle_deg));
+  double const lost = kernels::larger(loss(before.determinant_3x3x3, now.determinant_3x3x3, least_determinant),
+                                      loss(before.minimum_angle_deg, now.minimum_angle_deg, least_angle_deg));
   if (is > 0 && lost > limits.max_loss) fall(Fall::loss, lost);
 }
 

@@ -49,8 +49,8 @@ void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_
     }
     for (std::size_t m = 0; m < n_measures; ++m) {
       MeasureStatistics s;
-      s.min = unbounded;
-      s.max = -unbounded;
+      s.min = kernels::unbounded;
+      s.max = -kernels::unbounded;
       Index worst = -1;
       for (std::size_t c = 0; c < n_chunks; ++c)
         add(s, sums[c].region[r].measure[m], larger_is_worse(Measure(m)), worst);

@@ -11,39 +11,39 @@ namespace gridmorph::detail {
 
 /// One measure over some cells.
 struct PartialMeasure {
-  double sum = 0, min = unbounded, max = -unbounded;
+  double sum = 0, min = kernels::unbounded, max = -kernels::unbounded;
   Index worst_cell = -1;  ///< number in the mesh, the first one of equals
 
   /// Adds values of consecutive cells, the first one of them `cell`. Sums are made in `partial_sums` parts, so that they
   /// do not depend on the number of lanes.
   template <int W>
   KOKKOS_INLINE_FUNCTION void add(double const* value, int count, Index cell, bool larger_is_worse) {
-    double total = 0, least = unbounded, largest = -unbounded;
+    double total = 0, least = kernels::unbounded, largest = -kernels::unbounded;
     int n = 0;
     if constexpr (W > 1) {
       constexpr int partial_sums = 8;
       static_assert(partial_sums % W == 0);
       if (count >= partial_sums) {
-        using T = Lanes<W>;
-        T sums[partial_sums / W] = {}, low = broadcast<T>(unbounded), high = -low;
+        using T = kernels::Lanes<W>;
+        T sums[partial_sums / W] = {}, low = kernels::broadcast<T>(kernels::unbounded), high = -low;
         for (; n + partial_sums <= count; n += partial_sums)
           for (int p = 0; p < partial_sums / W; ++p) {
-            T const v = load_lanes<T>(value + n + p * W);
+            T const v = kernels::load_lanes<T>(value + n + p * W);
             sums[p] += v;
-            low = smaller(low, v);
-            high = larger(high, v);
+            low = kernels::smaller(low, v);
+            high = kernels::larger(high, v);
           }
         for (int p = 0; p < partial_sums; ++p) total += sums[p / W][p % W];
         for (int p = 0; p < W; ++p) {
-          least = smaller(least, double(low[p]));
-          largest = larger(largest, double(high[p]));
+          least = kernels::smaller(least, double(low[p]));
+          largest = kernels::larger(largest, double(high[p]));
         }
       }
     }
     for (; n < count; ++n) {
       total += value[n];
-      least = smaller(least, value[n]);
-      largest = larger(largest, value[n]);
+      least = kernels::smaller(least, value[n]);
+      largest = kernels::larger(largest, value[n]);
     }
     bool const worse = larger_is_worse ? largest > max : least < min;
     if (worse || worst_cell < 0) {
@@ -53,8 +53,8 @@ struct PartialMeasure {
       worst_cell = cell + at;
     }
     sum += total;
-    min = smaller(min, least);
-    max = larger(max, largest);
+    min = kernels::smaller(min, least);
+    max = kernels::larger(max, largest);
   }
 
   /// Adds another part of the same cells' chunk.
@@ -64,14 +64,14 @@ struct PartialMeasure {
     if (worst_cell < 0 || others < own || (others == own && other.worst_cell < worst_cell))
       worst_cell = other.worst_cell;
     sum += other.sum;
-    min = smaller(min, other.min);
-    max = larger(max, other.max);
+    min = kernels::smaller(min, other.min);
+    max = kernels::larger(max, other.max);
   }
 };
 
 /// Cells that fell in one way; `worst` is the smallest value.
 struct PartialFall {
-  double worst = unbounded;
+  double worst = kernels::unbounded;
   Index worst_cell = -1;
   int cells = 0;
 

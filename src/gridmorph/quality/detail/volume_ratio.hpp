@@ -54,8 +54,8 @@ struct VolumeRange {
 
  private:
   KOKKOS_FORCEINLINE_FUNCTION void take(int n, double volume) {
-    least[n] = smaller(least[n], volume);
-    largest[n] = larger(largest[n], volume);
+    least[n] = kernels::smaller(least[n], volume);
+    largest[n] = kernels::larger(largest[n], volume);
   }
 };
 
@@ -100,8 +100,8 @@ KOKKOS_INLINE_FUNCTION void worst_volume_ratios(Kokkos::View<double const*, Memo
   }
   if (on_face) add_interface_neighbours(volumes, neighbours, row, range);
   for (int n = 0; n < row.count; ++n) {
-    double const worst = larger(own[n] / range.least[n], range.largest[n] / own[n]);
-    ratio[n] = range.least[n] > 0 ? worst : unbounded;
+    double const worst = kernels::larger(own[n] / range.least[n], range.largest[n] / own[n]);
+    ratio[n] = range.least[n] > 0 ? worst : kernels::unbounded;
   }
 }
 

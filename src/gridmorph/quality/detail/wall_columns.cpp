@@ -65,7 +65,7 @@ struct WallViews {
   CsrViews<MemorySpace> faces_of_node, face_nodes;
   Vec3 plane_normal;  ///< of a 2-D mesh, whose faces are edges
 
-  KOKKOS_INLINE_FUNCTION WallNode at(CoordinateViews<MemorySpace> const& c, Index m) const {
+  KOKKOS_INLINE_FUNCTION kernels::WallNode at(CoordinateViews<MemorySpace> const& c, Index m) const {
     auto const x = [&](Index32 n) { return Vec3{c.x(n), c.y(n), c.z(n)}; };
     Vec3 normal;
     for (Index k = faces_of_node.first(m); k < faces_of_node.first(m + 1); ++k) {

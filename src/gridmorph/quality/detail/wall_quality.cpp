@@ -61,8 +61,8 @@ WallGrid wall_grid(Mesh const& mesh, WallFace const& wall) {
 }
 
 template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION WallNode wall_node_at(CoordinateViews<MemorySpace> const& c, WallGrid const& wall, Index p,
-                                             Index q) {
+KOKKOS_INLINE_FUNCTION kernels::WallNode wall_node_at(CoordinateViews<MemorySpace> const& c, WallGrid const& wall,
+                                                      Index p, Index q) {
   auto const at = [&](Index node) { return Vec3{c.x(node), c.y(node), c.z(node)}; };
   Index const node = wall.first + p * wall.stride[0] + q * wall.stride[1];
   auto const difference = [&](Index number, Index extent, Index stride) {

@@ -11,7 +11,7 @@
 namespace gridmorph::detail {
 
 struct WallNodePair {
-  WallNode now, before;
+  kernels::WallNode now, before;
 };
 
 /// Running sums over nodes in order, so that they do not depend on threads.
@@ -34,7 +34,7 @@ struct WallSums {
     ++quality.nodes;
     if (!against_baseline || !w.before.defined) return;
     double const height_change = w.before.height > 0 ? std::abs(height / w.before.height - 1)
-                                 : height > 0        ? unbounded
+                                 : height > 0        ? kernels::unbounded
                                                      : 0;
     double const angle_change = std::abs(angle - w.before.orthogonality_deg);
     if (height_change > quality.height_change_max) {

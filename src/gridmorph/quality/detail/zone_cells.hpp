@@ -36,7 +36,7 @@ template <class Exec>
 struct CellPolicy {
   static constexpr bool on_host =
       Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename Exec::memory_space>::accessible;
-  static constexpr int lanes = on_host ? native_lanes : 1;
+  static constexpr int lanes = on_host ? kernels::native_lanes : 1;
   static constexpr int row_length = on_host ? 64 : 1;  ///< scratch arrays of rows stay in the first-level cache
   static constexpr int team_size = on_host ? 1 : 32;   ///< partial sums of a team fit into 48 KiB of scratch memory
 };
@@ -85,8 +85,8 @@ KOKKOS_INLINE_FUNCTION Index first_cell(ZoneCells const& zone, RowOfCells const&
 }
 
 template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION CellRow cell_row(CoordinateViews<MemorySpace> const& c, ZoneCells const& zone,
-                                        RowOfCells const& r) {
+KOKKOS_INLINE_FUNCTION kernels::CellRow cell_row(CoordinateViews<MemorySpace> const& c, ZoneCells const& zone,
+                                                 RowOfCells const& r) {
   Index const sj = zone.node_stride(1), sk = zone.node_stride(2);
   Index const first = zone.first_node + r.i + r.j * sj + r.k * sk;
   return {c.x.data() + first, c.y.data() + first, c.z.data() + first, sj, sk, r.count, zone.handedness};
