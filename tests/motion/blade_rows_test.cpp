@@ -4,7 +4,7 @@
 
 #include <gridmorph/core/error.hpp>
 
-#include <gridmorph/motion/surface_motion.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
 
 #include <random>
 
@@ -75,13 +75,13 @@ std::vector<Vec3> points_of(Mesh const& mesh, std::string const& name) {
   return points;
 }
 
-std::vector<Vec3> evaluate(SurfaceMotion const& motion, int rule, std::vector<Vec3> const& points) {
+std::vector<Vec3> evaluate(BoundaryMotion const& motion, int rule, std::vector<Vec3> const& points) {
   std::vector<Vec3> out(points.size(), {7, 7, 7});
   motion.displacement(rule, points, out);
   return out;
 }
 
-SurfaceMotion make(Mesh const& mesh, Motion const& motion) { return SurfaceMotion(mesh, resolve(mesh, motion)); }
+BoundaryMotion make(Mesh const& mesh, Motion const& motion) { return BoundaryMotion(mesh, resolve(mesh, motion)); }
 
 /// The motion of the redesigns in the tests: restagger with twist, chord change, sides that differ.
 BladeMotion redesign() {
@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, EveryBladeMesh,
 
 TEST_P(EveryBladeMesh, FollowReplicatesMidCamberMotionAndTapersToSlidingEnds) {
   Mesh const mesh = row_mesh(GetParam());
-  SurfaceMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   double worst = 0, largest = 0;
@@ -130,7 +130,7 @@ TEST_P(EveryBladeMesh, FollowReplicatesMidCamberMotionAndTapersToSlidingEnds) {
 
 TEST_P(EveryBladeMesh, FollowTapersToFixedEnds) {
   Mesh const mesh = row_mesh(GetParam());
-  SurfaceMotion const motion = make(mesh, row_rules(blade_rule(redesign()), false));
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign()), false));
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   double worst = 0;
@@ -143,7 +143,7 @@ TEST_P(EveryBladeMesh, FollowTapersToFixedEnds) {
 
 TEST_P(EveryBladeMesh, SlideTurnsByTheAngleOfTheNearerEdgeAndKeepsAxialPositionAndRadius) {
   Mesh const mesh = row_mesh(GetParam());
-  SurfaceMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
   for (char const* end : {"inlet", "outlet"}) {
     auto const points = points_of(mesh, end);
     auto const u = evaluate(motion, slide_number, points);
@@ -159,7 +159,7 @@ TEST_P(EveryBladeMesh, SlideTurnsByTheAngleOfTheNearerEdgeAndKeepsAxialPositionA
 
 TEST_P(EveryBladeMesh, FollowAgreesWithSlideOnInletAndExit) {
   Mesh const mesh = row_mesh(GetParam());
-  SurfaceMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
   for (char const* end : {"inlet", "outlet"}) {
     auto const points = points_of(mesh, end);
     EXPECT_LT(largest_difference(evaluate(motion, slide_number, points), evaluate(motion, follow_number, points)),
@@ -170,7 +170,7 @@ TEST_P(EveryBladeMesh, FollowAgreesWithSlideOnInletAndExit) {
 TEST_P(EveryBladeMesh, ARotationAboutTheAxisTurnsEverythingByTheSameAngle) {
   Mesh const mesh = row_mesh(GetParam());
   RigidRule const turn = make_rigid({.angle_rad = 0.2, .axis = {{0, 0, 0}, {1, 0, 0}}});
-  SurfaceMotion const motion = make(mesh, row_rules(turn));
+  BoundaryMotion const motion = make(mesh, row_rules(turn));
   for (auto const& [name, rule] :
        {std::pair{"inlet", slide_number}, {"outlet", slide_number}, {"periodic", follow_number}}) {
     auto const points = points_of(mesh, name);
@@ -182,7 +182,7 @@ TEST_P(EveryBladeMesh, ARotationAboutTheAxisTurnsEverythingByTheSameAngle) {
 TEST_P(EveryBladeMesh, ABladeThatDoesNotMoveMovesNothingBitForBit) {
   Mesh const mesh = row_mesh(GetParam());
   for (Rule const& rule : {Rule{FixedRule{}}, Rule{RigidRule{}}}) {
-    SurfaceMotion const motion = make(mesh, row_rules(rule));
+    BoundaryMotion const motion = make(mesh, row_rules(rule));
     for (auto const& [name, r] : {std::pair{"inlet", slide_number},
                                   {"outlet", slide_number},
                                   {"periodic", follow_number},
@@ -193,7 +193,7 @@ TEST_P(EveryBladeMesh, ABladeThatDoesNotMoveMovesNothingBitForBit) {
 
 TEST_P(EveryBladeMesh, FollowKeepsEndWallEdgesOnHubAndCase) {
   Mesh const mesh = row_mesh(GetParam());
-  SurfaceMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
   for (auto const& [name, profile] : {std::pair{"hub", &hub}, {"case", &shroud}}) {
     auto const points = points_of(mesh, name);
     auto const u = evaluate(motion, follow_number, points);
@@ -220,7 +220,7 @@ void expect_follow_agrees_with_the_blade(Blade blade, std::function<double(doubl
     }
   };
   Mesh const mesh = row_mesh(blade);
-  SurfaceMotion const motion = make(mesh, row_rules(rule));
+  BoundaryMotion const motion = make(mesh, row_rules(rule));
   auto const points = points_of(mesh, "blade");
   int checked = 0;
   double worst = 0;
@@ -247,7 +247,7 @@ TEST_P(HMesh, FollowAgreesWithABladeThatLeavesItsEndWalls) {
 
 TEST(BladeRow, DisplacementsTurnWithThePoint) {
   Mesh const mesh = row_mesh();
-  SurfaceMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
   auto const points = points_of(mesh, "periodic");
   for (double angle : {pitch, -2.0, 0.01}) {
     Mat3 const turn = rotation_matrix({1, 0, 0}, angle);
@@ -306,7 +306,7 @@ TEST(BladeRow, TheAxisMayBeAnywhere) {
                                 }};
   Motion motion_there = row_rules(rule_there);
   motion_there.axis = {placed({-3, 0, 0}), 5.0 * (placed.rotation * Vec3{1, 0, 0})};
-  SurfaceMotion const ma = make(a, row_rules(rule)), mb = make(b, motion_there);
+  BoundaryMotion const ma = make(a, row_rules(rule)), mb = make(b, motion_there);
   for (auto const& [name, r] : {std::pair{"inlet", slide_number}, {"periodic", follow_number}}) {
     auto const u = evaluate(ma, r, points_of(a, name)), v = evaluate(mb, r, points_of(b, name));
     for (std::size_t n = 0; n < u.size(); ++n) EXPECT_LT(distance(placed.rotation * u[n], v[n]), 1e-11);
@@ -341,7 +341,7 @@ TEST(BladeRow, WithoutSlippingEndWallsSpanIsTakenFromTheBladesOwnRadii) {
            [](double s, double t) { return cylindrical(2 * s - 1, 1 + t, 0); },
            {}});
   Mesh const mesh = row.finish();
-  SurfaceMotion const motion = make(mesh, row_rules(rule, true, false));
+  BoundaryMotion const motion = make(mesh, row_rules(rule, true, false));
   for (auto const& [name, r] :
        {std::pair{"inlet", slide_number}, {"outlet", slide_number}, {"periodic", follow_number}}) {
     auto const points = points_of(mesh, name);
@@ -372,7 +372,7 @@ TEST(BladeRow, ATipGapLeavesTheMotionOfTheTipBeyondIt) {
   row.add(outlet_plane(41, 5));
   row.add(periodic());
   Mesh const mesh = row.finish();
-  SurfaceMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
   for (auto const& [c, h] : {std::pair{0, 0.3}, {0, 0.94}, {0, 0.97}, {0, 1.0}}) {
     Vec3 const p = cylindrical(inlet(h), radius(inlet(h), h), 0.5);
     Vec3 const q = p + evaluate(motion, slide_number, {p}).front();
@@ -392,7 +392,7 @@ TEST(BladeRow, ASideOpenAtTheTrailingEdgeCountsAsTwoSides) {
   row.add(outlet_plane(41, 5));
   row.add(periodic());
   Mesh const mesh = row.finish();
-  SurfaceMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign())));
   auto const points = points_of(mesh, "inlet");
   auto const u = evaluate(motion, slide_number, points);
   for (std::size_t n = 0; n < points.size(); ++n)
@@ -420,7 +420,7 @@ TEST(BladeRow, AFlatInletWithoutPatchIsFoundAtTheMostUpstreamNodes) {
   motion.rules = {{{"blade"}, blade_rule(redesign()), 0, ""},
                   {{"periodic"}, FollowRule{{"blade"}}, 0, ""},
                   {{"hub", "case"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};
-  SurfaceMotion const surface = make(mesh, motion);
+  BoundaryMotion const surface = make(mesh, motion);
   for (double h : {0.0, 0.5, 1.0}) {
     Vec3 const end = cylindrical(-0.6, radius(-0.6, h), 0.1);
     EXPECT_LT(norm(evaluate(surface, 1, {end}).front()), 1e-12);
@@ -463,7 +463,7 @@ TEST(BladeRow, ABladeThatIsNoBladeIsRefusedWithAReason) {
   expect_all_in(message_of<MotionError>([&] { make(mesh, motion); }), {"case.toml:7", "axial chord"});
 }
 
-TEST(SurfaceMotion, DirectRulesAreEvaluatedExactly) {
+TEST(BoundaryMotion, DirectRulesAreEvaluatedExactly) {
   Mesh const mesh = row_mesh();
   Vec3 const t{1.0 / 3, -0.1, 1e-7};
   Motion motion;
@@ -477,7 +477,7 @@ TEST(SurfaceMotion, DirectRulesAreEvaluatedExactly) {
                                 }},
                    0,
                    ""}};
-  SurfaceMotion const surface = make(mesh, motion);
+  BoundaryMotion const surface = make(mesh, motion);
   auto const points = points_of(mesh, "inlet");
   for (Vec3 const& u : evaluate(surface, 0, points)) EXPECT_EQ(u, (Vec3{0, 0, 0}));
   for (Vec3 const& u : evaluate(surface, 1, points)) EXPECT_EQ(u, t);
@@ -485,9 +485,9 @@ TEST(SurfaceMotion, DirectRulesAreEvaluatedExactly) {
   for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(u[n], (Vec3{points[n].x + points[n].y, 0, points[n].z}));
 }
 
-TEST(SurfaceMotion, SaysWhichRulesAreExplicit) {
+TEST(BoundaryMotion, SaysWhichRulesAreExplicit) {
   Mesh const mesh = row_mesh();
-  SurfaceMotion const surface = make(mesh, row_rules(FixedRule{}));
+  BoundaryMotion const surface = make(mesh, row_rules(FixedRule{}));
   EXPECT_TRUE(surface.is_explicit(blade_rule_number));
   EXPECT_TRUE(surface.is_explicit(slide_number));
   EXPECT_TRUE(surface.is_explicit(follow_number));
@@ -497,7 +497,7 @@ TEST(SurfaceMotion, SaysWhichRulesAreExplicit) {
   EXPECT_THROW(surface.displacement(blade_rule_number, p, too_many), MotionError);
 }
 
-TEST(SurfaceMotion, DisplacementsThatAreNotFiniteNameRulePointAndValue) {
+TEST(BoundaryMotion, DisplacementsThatAreNotFiniteNameRulePointAndValue) {
   Mesh const mesh = row_mesh();
   Motion motion;
   motion.rules = {{{"inlet"},
@@ -508,7 +508,7 @@ TEST(SurfaceMotion, DisplacementsThatAreNotFiniteNameRulePointAndValue) {
                                 }},
                    0,
                    "case.toml:12"}};
-  SurfaceMotion const surface = make(mesh, motion);
+  BoundaryMotion const surface = make(mesh, motion);
   expect_all_in(message_of<MotionError>([&] {
                   evaluate(surface, 0, {{1, 0, 0}, {3, 4, 5}});
                 }),

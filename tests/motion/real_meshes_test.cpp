@@ -3,7 +3,7 @@
 
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/motion/surface_motion.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
 
 #include <gtest/gtest.h>
 
@@ -73,14 +73,14 @@ class RealRow : public ::testing::TestWithParam<Row> {
       if (motion.interface[i].rule == rule) append(points(mesh_.interfaces[i].zone, mesh_.interfaces[i].range));
     return out;
   }
-  static std::vector<Vec3> evaluate(SurfaceMotion const& motion, int rule, std::vector<Vec3> const& at) {
+  static std::vector<Vec3> evaluate(BoundaryMotion const& motion, int rule, std::vector<Vec3> const& at) {
     std::vector<Vec3> out(at.size());
     motion.displacement(rule, at, out);
     return out;
   }
 
   /// Largest disagreement of two rules at the points they share, and how many these are.
-  std::pair<double, int> disagreement(SurfaceMotion const& surface, ResolvedMotion const& motion, int a, int b) const {
+  std::pair<double, int> disagreement(BoundaryMotion const& surface, ResolvedMotion const& motion, int a, int b) const {
     auto pa = points_of_rule(motion, a), pb = points_of_rule(motion, b);
     auto const ua = evaluate(surface, a, pa), ub = evaluate(surface, b, pb);
     double const tolerance = 1e-9 * mesh_.size();
@@ -102,7 +102,7 @@ enum RuleNumber { blade, ends, periodics, walls };
 
 TEST_P(RealRow, RulesAgreeWhereTheirPatchesMeet) {
   ResolvedMotion const motion = rules(1);
-  SurfaceMotion const surface(mesh_, motion);
+  BoundaryMotion const surface(mesh_, motion);
   double largest = 0;
   for (Vec3 const& u : evaluate(surface, blade, points_of_rule(motion, blade))) largest = std::max(largest, norm(u));
   EXPECT_GT(largest, 0.005 * mesh_.size());
@@ -116,7 +116,7 @@ TEST_P(RealRow, RulesAgreeWhereTheirPatchesMeet) {
 
 TEST_P(RealRow, EndWallsAreSurfacesOfRevolutionAndOneProfileEach) {
   ResolvedMotion const motion = rules(1);
-  SurfaceMotion const surface(mesh_, motion);
+  BoundaryMotion const surface(mesh_, motion);
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (motion.patch[p].rule != walls) continue;
     auto const s = surface.slip_surface(int(p));
@@ -128,14 +128,14 @@ TEST_P(RealRow, EndWallsAreSurfacesOfRevolutionAndOneProfileEach) {
 
 TEST_P(RealRow, ABladeThatDoesNotMoveMovesNothing) {
   ResolvedMotion const motion = rules(0);
-  SurfaceMotion const surface(mesh_, motion);
+  BoundaryMotion const surface(mesh_, motion);
   for (int rule : {blade, ends, periodics})
     for (Vec3 const& u : evaluate(surface, rule, points_of_rule(motion, rule))) EXPECT_EQ(u, (Vec3{0, 0, 0}));
 }
 
 TEST_P(RealRow, PeriodicCopiesMoveAlike) {
   ResolvedMotion const motion = rules(1);
-  SurfaceMotion const surface(mesh_, motion);
+  BoundaryMotion const surface(mesh_, motion);
   Axis const axis = GetParam().axis;
   for (std::size_t i = 0; i < mesh_.interfaces.size(); ++i) {
     if (motion.interface[i].rule != periodics) continue;
@@ -212,7 +212,7 @@ TEST_P(RealRow, SectionsOfTheBladeAsATargetMoveBothSidesOfIt) {
   motion.axis = axis;
   motion.rules = {{{GetParam().blade}, rule, 0, "blade"}};
   ResolvedMotion const resolved = resolve(mesh_, motion);
-  SurfaceMotion const surface(mesh_, resolved);
+  BoundaryMotion const surface(mesh_, resolved);
   auto const at = points_of_rule(resolved, blade);
   auto const u = evaluate(surface, blade, at);
   for (std::size_t n = 0; n < at.size(); ++n) EXPECT_LT(distance(at[n] + u[n], moved(at[n])), 1e-8 * mesh_.size()) << n;
@@ -233,10 +233,10 @@ TEST(RealStage, RowsInOneFileFollowTheirOwnBlades) {
     motion.axis = axis;
     for (auto const& row : rows) motion.rules.insert(motion.rules.end(), row.begin(), row.end());
     motion.rules.push_back({{"HUB", "SHROUD"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""});
-    return SurfaceMotion(mesh, resolve(mesh, motion));
+    return BoundaryMotion(mesh, resolve(mesh, motion));
   };
-  SurfaceMotion const both = surface_motion({first, second}),
-                      alone[2] = {surface_motion({first}), surface_motion({second})};
+  BoundaryMotion const both = surface_motion({first, second}),
+                       alone[2] = {surface_motion({first}), surface_motion({second})};
   std::vector<Vec3> points;
   for (Index n = 0; n < mesh.n_nodes(); n += 97) points.push_back(mesh.coordinates[n]);
   std::vector<Vec3> u(points.size()), v(points.size());

@@ -5,8 +5,8 @@
 #include <gridmorph/core/error.hpp>
 
 #include <gridmorph/geometry/slip_surface.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/motion/contour.hpp>
-#include <gridmorph/motion/surface_motion.hpp>
 
 #include <random>
 
@@ -22,10 +22,10 @@ using namespace testing;  // the annulus and its formulas
 
 SlipRule revolution() { return {.surface = SlipRule::Surface::revolution}; }
 
-SurfaceMotion make(Mesh const& mesh, std::vector<MotionRule> rules) {
+BoundaryMotion make(Mesh const& mesh, std::vector<MotionRule> rules) {
   Motion motion;
   motion.rules = std::move(rules);
-  return SurfaceMotion(mesh, resolve(mesh, motion));
+  return BoundaryMotion(mesh, resolve(mesh, motion));
 }
 
 Surface flat(std::string name, PatchKind kind, Vec3 origin, Vec3 a, Vec3 b, std::vector<std::string> families = {}) {
@@ -36,7 +36,7 @@ TEST(SlipSurfaces, AHubSplitInPiecesIsOneProfile) {
   RowMesh row;
   row.add(end_wall("hub", 0, 201, 9), {{30, 100, 150}, {4}, 0, 1});
   Mesh const mesh = row.finish();
-  SurfaceMotion const motion = make(mesh, {{{"hub"}, revolution(), 0, ""}});
+  BoundaryMotion const motion = make(mesh, {{{"hub"}, revolution(), 0, ""}});
   auto const first = motion.slip_surface(0);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->kind, SlipSurface::Kind::revolution);
@@ -60,7 +60,7 @@ TEST_P(HubAndCase, UnderOneRuleHaveTheirOwnProfiles) {
   row.add(inner, {{77}, {}, 0, 1});
   row.add(outer, {{50}, {}, 3, 1});
   Mesh const mesh = row.finish();
-  SurfaceMotion const motion = make(mesh, {{{"type:wall"}, revolution(), 0, ""}});
+  BoundaryMotion const motion = make(mesh, {{{"type:wall"}, revolution(), 0, ""}});
   for (double x = -0.5; x < 1.1; x += 0.013) {
     for (int p : {0, 1}) EXPECT_NEAR(motion.slip_surface(p)->profile(x), hub(x), 1e-9);
     for (int p : {2, 3}) EXPECT_NEAR(motion.slip_surface(p)->profile(x), shroud(x), 1e-9);
@@ -73,7 +73,7 @@ TEST(SlipSurfaces, TwoSymmetryPlanesOfOneFamilyAreTwoPlanes) {
   row.add(flat("high", PatchKind::symmetry, {0, 0, 0.75}, {1, 0, 0}, {0, 2, 0}, {"sym"}));
   row.add(flat("beside", PatchKind::symmetry, {1, 0, 0.5}, {1, 0, 0}, {0, 2, 0}, {"sym"}));
   Mesh const mesh = row.finish();
-  SurfaceMotion const motion = make(mesh, {});
+  BoundaryMotion const motion = make(mesh, {});
   for (int p : {0, 1, 2}) {
     auto const s = motion.slip_surface(p);
     ASSERT_TRUE(s);
@@ -91,7 +91,8 @@ TEST(SlipSurfaces, ATiltedPlaneIsFoundAnywhere) {
   row.add(flat("sym", PatchKind::symmetry, {0, 0, 0.5}, {1, 0, 0}, {0, 2, 0}));
   RigidTransform const placed = rotation_about({1, 2, 3}, {1, -2, 0.5}, 0.8);
   Mesh const mesh = row.finish(placed);
-  auto const s = make(mesh, {}).slip_surface(0);
+  BoundaryMotion const motion = make(mesh, {});
+  auto const* const s = motion.slip_surface(0);
   ASSERT_TRUE(s);
   EXPECT_NEAR(std::abs(dot(s->direction, placed.rotation * Vec3{0, 0, 1})), 1, 1e-14);
   EXPECT_LT(s->baseline_deviation, 1e-14);
@@ -137,9 +138,9 @@ TEST(SlipSurfaces, FreeRulesHaveASurfaceOnlyWhenConstrained) {
   row.add(flat("c", PatchKind::other, {0, 0, 0.5}, {1, 0, 0}, {0, 2, 0}));
   row.add(flat("d", PatchKind::other, {0, 0, 0.5}, {1, 0, 0}, {0, 2, 0}));
   Mesh const mesh = row.finish();
-  SurfaceMotion const motion = make(mesh, {{{"a"}, FreeRule{}, 0, ""},
-                                           {{"b"}, FreeRule{FreeRule::Constraint::axial}, 0, ""},
-                                           {{"c"}, FreeRule{FreeRule::Constraint::plane}, 0, ""}});
+  BoundaryMotion const motion = make(mesh, {{{"a"}, FreeRule{}, 0, ""},
+                                            {{"b"}, FreeRule{FreeRule::Constraint::axial}, 0, ""},
+                                            {{"c"}, FreeRule{FreeRule::Constraint::plane}, 0, ""}});
   EXPECT_FALSE(motion.slip_surface(0));
   EXPECT_EQ(motion.slip_surface(1)->kind, SlipSurface::Kind::axial);
   EXPECT_EQ(motion.slip_surface(2)->kind, SlipSurface::Kind::plane);
@@ -162,7 +163,7 @@ TEST(SlipSurfaces, AGivenProfileIsUsedAndItsDistanceReported) {
   Mesh const mesh = row.finish();
   SlipRule rule = revolution();
   rule.profile = hub_moved_by(2e-4);
-  SurfaceMotion const motion = make(mesh, {{{"hub"}, rule, 0, ""}});
+  BoundaryMotion const motion = make(mesh, {{{"hub"}, rule, 0, ""}});
   EXPECT_NEAR(motion.slip_surface(0)->profile(0.3), hub(0.3) + 2e-4, 1e-6);
   EXPECT_NEAR(motion.slip_surface(0)->baseline_deviation, 2e-4, 1e-6);
 }
@@ -245,7 +246,7 @@ struct PlacedHub {
     Motion motion;
     motion.axis = {placed({5, 0, 0}), placed.rotation * Vec3{-2, 0, 0}};
     motion.rules = {{{"hub"}, revolution(), 0, ""}};
-    surface = *SurfaceMotion(mesh, resolve(mesh, motion)).slip_surface(0);
+    surface = *BoundaryMotion(mesh, resolve(mesh, motion)).slip_surface(0);
   }
   /// Distance from the analytic hub, radially.
   double off(Vec3 const& p) const {

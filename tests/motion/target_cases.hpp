@@ -1,7 +1,7 @@
 // Surfaces with known targets.
 #pragma once
 
-#include <gridmorph/motion/surface_motion.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
 
 #include "support/mesh_builders.hpp"
 
@@ -110,7 +110,7 @@ inline TargetGeometry grids_of(Mesh const& mesh, Map const& map) {
 struct TargetRun {
   Mesh mesh;
   ResolvedMotion motion;
-  SurfaceMotion surface;
+  BoundaryMotion surface;
 
   TargetRun(Mesh m, TargetRule rule)
       : mesh(std::move(m)), motion(resolve(mesh, motion_of(mesh, std::move(rule)))), surface(mesh, motion) {}
@@ -158,7 +158,7 @@ struct TargetRun {
             moved.set(n, mesh.coordinates[n] + u[at]);
           }
     }
-    return surface.target_reach(mesh, moved).at(0);
+    return surface.target_reach(moved).at(0);
   }
 };
 

@@ -112,7 +112,7 @@ TEST(TargetNodes, ReachIsTheDistanceFromTheOwnPoint) {
   Mesh const mesh = shell_mesh();
   TargetRun const run(mesh, rule_of(grids_of(mesh, bent)));
   EXPECT_LT(run.reach().max, 1e-15);
-  auto const unmoved = run.surface.target_reach(mesh, mesh.coordinates).at(0);
+  auto const unmoved = run.surface.target_reach(mesh.coordinates).at(0);
   double worst = 0;
   for (int p = 0; p < 2; ++p)
     for (Vec3 const& x : nodes_of(mesh, p)) worst = std::max(worst, distance(x, bent(x)));

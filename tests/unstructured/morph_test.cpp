@@ -83,7 +83,7 @@ TEST(UnstructuredMorph, NodesWherePlanesMeetAtAnyAngleStayOnBoth) {
     auto const& known = m.prepared.plan.known;
     auto const off = [&](std::string const& side, Vec3 const& normal) {
       double worst = 0, moved = 0;
-      for (Index32 const n : m.prepared.boundary.nodes_of_patch[std::size_t(c.patch(side))]) {
+      for (Index const n : m.prepared.boundary.nodes_of(c.patch(side))) {
         if (std::binary_search(known.begin(), known.end(), n)) continue;
         Vec3 const u = m.x[n] - c.mesh.coordinates[n];
         worst = std::max(worst, std::abs(dot(u, normal)) / norm(normal));

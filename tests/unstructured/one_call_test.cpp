@@ -3,6 +3,7 @@
 #include "support/unstructured_case.hpp"
 
 #include <gridmorph/morph/morph.hpp>
+#include <gridmorph/motion/rigid_motion.hpp>
 
 #include <gtest/gtest.h>
 
@@ -24,6 +25,33 @@ TEST(OneCall, MorphsAsStepByStep) {
   auto const& known = expected.prepared.plan.known;
   EXPECT_EQ(plan.boundary_nodes(), std::vector<Index>(known.begin(), known.end()));
   EXPECT_EQ(plan.n_nodes(), c.mesh.n_nodes());
+}
+
+TEST(OneCall, ACallerPrescribesTheDisplacementOfAWall) {
+  UnstructuredCase const c(box_around(
+      {12, 12, 12}, [](Vec3 const& x) { return x.x > 4 && x.x < 8 && x.y > 4 && x.y < 8 && x.z > 4 && x.z < 8; }));
+  MorphPlan const plan(c.mesh, motion_of({rule_for({"body"}, PrescribedRule{})}));
+  RigidTransform const about = rotation_about({6, 6, 6}, {0, 0, 1}, 0.1);
+  RigidRule const turn{about.rotation, about.translation};
+  std::vector<Vec3> given = plan.boundary_displacement();
+  auto const nodes = plan.boundary_nodes();
+  Index prescribed = 0;
+  for (BoundaryPlace const& place : plan.boundary_places()) {
+    auto const n = std::size_t(place.boundary_node);
+    EXPECT_EQ(c.mesh.zones[std::size_t(place.zone)].first_node + place.index[0], nodes[n]);
+    EXPECT_EQ(given[n], Vec3{});
+    if (c.mesh.patches[std::size_t(place.patch)].name != "body") continue;
+    ++prescribed;
+    given[n] = displacement(turn, c.mesh.coordinates[nodes[n]]);
+  }
+  EXPECT_GT(prescribed, 0);
+  Coordinates const expected = morph(Exec(), c.mesh, motion_of({rule_for({"body"}, turn)}));
+  Coordinates const moved(c.mesh.n_nodes());
+  Kokkos::View<Vec3*, Kokkos::HostSpace> const boundary(given.data(), given.size());
+  UnstructuredMorpher<Exec>(Exec(), plan.elements()->plan, c.mesh.coordinates).positions(Exec(), boundary, moved);
+  Exec().fence();
+  for (std::size_t n = 0; n < nodes.size(); ++n) EXPECT_EQ(moved[nodes[n]], expected[nodes[n]]);
+  EXPECT_EQ(c.inverted(moved), 0);
 }
 
 }  // namespace

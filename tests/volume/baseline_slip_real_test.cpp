@@ -79,7 +79,7 @@ class WingOnItsSymmetryPlane : public ::testing::TestWithParam<char const*> {};
 TEST_P(WingOnItsSymmetryPlane, FacetsAreThePlane) {
   std::string const file = shared_mesh(GetParam());
   Mesh const mesh = read_mesh(file);
-  SurfaceMotion const planes(mesh, resolve(mesh, motion({rule({"type:symmetry"}, SlipRule{})})));
+  BoundaryMotion const planes(mesh, resolve(mesh, motion({rule({"type:symmetry"}, SlipRule{})})));
   Vec3 normal;
   for (int p = 0; p < int(mesh.patches.size()); ++p)
     if (auto const s = planes.slip_surface(p)) normal = s->direction;

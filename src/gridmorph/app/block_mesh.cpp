@@ -104,7 +104,7 @@ PatchesAsSurface BlockMesh::surface(std::vector<std::string> const& selectors, b
   PatchesAsSurface out;
   out.patches = patches.size();
   if (!as_facets) {
-    out.nodes = PatchSurface(mesh_, patches).points;
+    out.nodes = PatchSurface(Boundary(mesh_), patches).points;
     return out;
   }
   Index facets = 0;

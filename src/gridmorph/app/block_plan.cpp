@@ -32,13 +32,8 @@ class BlockPlan final : public AnyPlan {
       trimmed_ = trim_note(prepared_.mesh, prepared_.plan(), out);
       return out;
     }
-    ResolvedMotion resolved = prepared_.motion;
-    Motion const motion = motion_at(case_file_, *when);
-    for (std::size_t r = 0; r < motion.rules.size(); ++r) resolved.rules[r].rule = motion.rules[r].rule;
-    // Slides and followers take their motion over from the blade's as it is now.
-    SurfaceMotion const surface(prepared_.mesh, resolved);
-    return evaluate_boundary(prepared_.mesh, prepared_.planned.boundary, prepared_.plan(), resolved, surface,
-                             prepared_.links.mesh_size);
+    return evaluate(prepared_.mesh, prepared_.planned.boundary, prepared_.surface.with(motion_at(case_file_, *when)),
+                    prepared_.plan().rotations);
   }
 
   void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) override {
@@ -59,7 +54,7 @@ class BlockPlan final : public AnyPlan {
 
   [[nodiscard]] PlanOutcome outcome(Coordinates const& morphed, bool verdict, bool at_once) const override {
     PlanOutcome out;
-    auto const targets = at_once ? prepared_.surface.target_reach(prepared_.mesh, morphed) : std::vector<TargetReach>();
+    auto const targets = at_once ? prepared_.surface.target_reach(morphed) : std::vector<TargetReach>();
     for (auto const& target : targets) out.notes.push_back(describe_reach(prepared_.mesh, target));
     out.json["targets"] = targets_json(prepared_.mesh, targets);
     out.json["stages"] = nlohmann::json::array();

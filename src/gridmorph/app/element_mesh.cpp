@@ -1,6 +1,6 @@
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/app/element_mesh.hpp>
-#include <gridmorph/boundary/boundary_outline.hpp>
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/file_order.hpp>
@@ -100,15 +100,15 @@ void ElementMesh::match(MatchOptions const& /*options*/) {
 }
 
 PatchesAsSurface ElementMesh::surface(std::vector<std::string> const& selectors, bool as_facets, int split) const {
-  auto const nodes_of_patch = nodes_of_patches(mesh, topology, face_patches);
-  auto const patches = select_patches(boundary_outline(mesh, nodes_of_patch), selectors);
+  auto const patches = select_patches(mesh, selectors);
   PatchesAsSurface out;
   out.patches = patches.size();
   if (!as_facets) {
     auto const representative = coincident_nodes(mesh);
+    Boundary const boundary(mesh, topology, face_patches);
     std::vector<Index32> nodes;
     for (int const p : patches)
-      for (Index32 const n : nodes_of_patch[std::size_t(p)]) nodes.push_back(representative[std::size_t(n)]);
+      for (Index const n : boundary.surface(p).nodes) nodes.push_back(representative[std::size_t(n)]);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     for (Index32 const n : nodes) out.nodes.push_back(mesh.coordinates[n]);

@@ -1,8 +1,6 @@
 #include <gridmorph/boundary/joined_sides.hpp>
 
-#include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
-#include <gridmorph/geometry/rotation.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -29,16 +27,14 @@ std::vector<int> pieces_of(PatchSurface const& surface) {
 
 class Joiner {
  public:
-  Joiner(Mesh const& mesh, PatchSurface const& surface)
+  Joiner(Boundary const& boundary, PatchSurface const& surface)
       : surface_(surface), piece_(pieces_of(surface)), members_(1 + *std::max_element(piece_.begin(), piece_.end())) {
     for (std::size_t g = 0; g < surface.grids.size(); ++g) {
       auto& members = members_[piece_[g]];
       members.insert(surface.grids[g].vertex.begin(), surface.grids[g].vertex.end());
     }
     if (members_.size() == 1) return;
-    for (Interface1to1 const& interface : mesh.interfaces) {
-      if (!interface.periodic) continue;
-      RigidTransform const transform = fitted_transform(mesh, interface);
+    for (RigidTransform const& transform : boundary.periodic_transforms()) {
       transforms_.push_back(transform);
       transforms_.push_back(transform.inverse());
     }
@@ -130,8 +126,8 @@ class Joiner {
 
 }  // namespace
 
-JoinedSides join_sides(Mesh const& mesh, PatchSurface const& surface, Vec3 const& near) {
-  Joiner const joiner(mesh, surface);
+JoinedSides join_sides(Boundary const& boundary, PatchSurface const& surface, Vec3 const& near) {
+  Joiner const joiner(boundary, surface);
   int home = 0;
   auto place = joiner.places(home);
   for (int p = 1; p < joiner.n_pieces(); ++p) {
@@ -143,15 +139,6 @@ JoinedSides join_sides(Mesh const& mesh, PatchSurface const& surface, Vec3 const
     }
   }
   return joiner.join(home, place);
-}
-
-RigidTransform fitted_transform(Mesh const& mesh, Interface1to1 const& interface) {
-  std::vector<Vec3> from, to;
-  for_each_pair(mesh, interface, [&](Index own, Index donor) {
-    from.push_back(mesh.coordinates[own]);
-    to.push_back(mesh.coordinates[donor]);
-  });
-  return fit_rigid_transform(from, to);
 }
 
 }  // namespace gridmorph

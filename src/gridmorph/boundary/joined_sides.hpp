@@ -21,9 +21,6 @@ struct JoinedSides {
 /// size) with another when turned by a periodic transform of the mesh or its inverse goes there; pieces that nothing brings
 /// together stay where they are. Of the places where the whole may then be, that nearest to `near` is taken.
 /// Cost O(vertices * transforms).
-JoinedSides join_sides(Mesh const& mesh, PatchSurface const& surface, Vec3 const& near);
-
-/// Nodes of a periodic interface onto the donor's, fitted to them: files declare angles in single precision.
-RigidTransform fitted_transform(Mesh const& mesh, Interface1to1 const& interface);
+JoinedSides join_sides(Boundary const& boundary, PatchSurface const& surface, Vec3 const& near);
 
 }  // namespace gridmorph

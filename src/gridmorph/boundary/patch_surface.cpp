@@ -1,6 +1,5 @@
 #include <gridmorph/boundary/patch_surface.hpp>
 
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>
@@ -39,44 +38,34 @@ double box_diagonal(std::vector<Vec3> const& points) {
   return points.empty() ? 0 : distance(box.low, box.high);
 }
 
-PatchSurface::PatchSurface(Mesh const& mesh, std::vector<int> const& patches, PatchFaces const* faces)
-    : gridded(faces == nullptr), lines(faces != nullptr && faces->lines) {
-  auto const range_of = [&](Patch const& patch) {
-    IndexRange range = patch.range;
-    if (!gridded) range.end[1] = range.begin[1] + 1;
-    return range;
-  };
-  if (gridded) {
-    size = box_diagonal(patch_points(mesh, patches));
-  } else {
-    std::vector<Vec3> all;
-    for (int const p : patches)
-      for_each_node(mesh.zones[mesh.patches[p].zone], range_of(mesh.patches[p]),
-                    [&](Index n) { all.push_back(mesh.coordinates[n]); });
-    size = box_diagonal(all);
-  }
+PatchSurface::PatchSurface(Boundary const& boundary, std::vector<int> const& patches) : lines(boundary.is_plane()) {
+  Mesh const& mesh = boundary.mesh();
+  std::vector<Vec3> all;
   bool single = false;
-  for (int const p : patches) single = single || mesh.zones[mesh.patches[p].zone].single_precision;
+  for (int const p : patches) {
+    for (Index const n : boundary.surface(p).nodes) all.push_back(mesh.coordinates[n]);
+    gridded = gridded && boundary.surface(p).grid.has_value();
+    single = single || mesh.zones[mesh.patches[p].zone].single_precision;
+  }
+  size = box_diagonal(all);
   tolerance = (single ? 1e-6 : 1e-9) * size;
   numbers = PointNumbers(tolerance);
   for (int const p : patches) {
-    Patch const& patch = mesh.patches[p];
+    BoundarySurface const& own = boundary.surface(p);
     PatchGrid grid;
     grid.patch = p;
-    grid.extent = {1, 1};
-    IndexRange const range = range_of(patch);
-    for (int axis = 0, d = 0; axis < 3 && d < 2; ++axis)
-      if (range.extent(axis) > 1) grid.extent[d++] = range.extent(axis);
-    for_each_node(mesh.zones[patch.zone], range, [&](Index n) {
+    grid.nodes = own.nodes;
+    grid.extent = own.grid.value_or(std::array<int, 2>{int(own.nodes.size()), 1});
+    for (Index const n : own.nodes) {
       Vec3 const x = mesh.coordinates[n];
       grid.vertex.push_back(numbers.find_or_add(x, int(points.size())));
       if (grid.vertex.back() == int(points.size())) points.push_back(x);
-    });
-    if (gridded) {
-      grid.inward = points_out_of_mesh(mesh, patch);
+    }
+    if (own.grid) {
+      grid.inward = points_out_of_mesh(mesh, mesh.patches[p]);
     } else {
-      grid.listed = faces->of_patch[std::size_t(p)].listed;
-      for (GridFacet facet : faces->of_patch[std::size_t(p)].corners) {
+      grid.listed = own.in_file_order;
+      for (GridFacet facet : own.faces) {
         for (int& corner : facet)
           if (corner >= 0) corner = grid.vertex[std::size_t(corner)];
         grid.faces.push_back(facet);

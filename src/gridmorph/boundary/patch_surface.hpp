@@ -1,17 +1,13 @@
 // The patches of a rule as one surface: nodes that coincide are one vertex, so that they move as one.
 #pragma once
 
-#include <gridmorph/boundary/patch_faces.hpp>
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/geometry/point_numbers.hpp>
-#include <gridmorph/mesh/mesh.hpp>
 
 #include <array>
 #include <vector>
 
 namespace gridmorph {
-
-/// Corners of a facet, four or (the last is -1) three, in order around it.
-using GridFacet = std::array<int, 4>;
 
 /// Nodes of one patch as vertices of the surface.
 struct PatchGrid {
@@ -19,9 +15,10 @@ struct PatchGrid {
   std::array<int, 2> extent{0, 0};  ///< along its two directions, the first one fastest
   std::vector<int> vertex;          ///< (extent[0] * extent[1])
   bool inward = false;              ///< direction 0 x direction 1 points out of the mesh, not into it
-  /// Of patches that are no grids (extent[1] is 1): their faces, and the places of `vertex` in the order of the file.
+  /// Of patches that are no grids (extent[1] is 1): BoundarySurface::faces, and the places of `vertex` in the order of the file.
   std::vector<GridFacet> faces;
   std::vector<int> listed;
+  std::vector<Index> nodes;  ///< of the mesh, as `vertex`
 
   [[nodiscard]] int at(int a, int b) const { return vertex[std::size_t(a) + std::size_t(extent[0]) * b]; }
 };
@@ -35,8 +32,8 @@ struct PatchSurface {
   bool lines = false;            ///< of two corners, in the plane of a 2-D mesh
   PointNumbers numbers{0};
 
-  /// Patches must be faces of their zones; with `faces`, their first rows of nodes along i. Cost O(nodes).
-  PatchSurface(Mesh const& mesh, std::vector<int> const& patches, PatchFaces const* faces = nullptr);
+  /// Cost O(nodes).
+  PatchSurface(Boundary const& boundary, std::vector<int> const& patches);
 
   /// The quadrilaterals; those with two corners in one vertex are triangles, those with fewer are left out. All are
   /// right-handed about normals that point into the mesh.

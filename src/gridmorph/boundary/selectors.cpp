@@ -28,8 +28,8 @@ Selection select_type(Mesh const& mesh, std::string const& selector) {
   std::string_view const type = std::string_view(selector).substr(type_prefix.size());
   if (type == periodic) {
     Selection s;
-    for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
-      if (mesh.interfaces[i].periodic) s.interfaces.push_back(int(i));
+    for (auto const& c : connections_of(mesh))
+      if (c.periodic) s.interfaces.push_back(c.number);
     return s;
   }
   for (PatchKind kind : kinds)
@@ -47,6 +47,16 @@ bool names_family(std::string const& pattern, std::vector<std::string> const& fa
 std::vector<std::string> sorted_names(std::set<std::string> const& names) { return {names.begin(), names.end()}; }
 
 }  // namespace
+
+std::vector<AnyConnection> connections_of(Mesh const& mesh) {
+  std::vector<AnyConnection> out;
+  auto const add = [&](auto const& c) {
+    out.push_back({int(out.size()), c.name, c.families, c.zone, c.donor_zone, c.periodic});
+  };
+  std::for_each(mesh.interfaces.begin(), mesh.interfaces.end(), add);
+  std::for_each(mesh.connections.begin(), mesh.connections.end(), add);
+  return out;
+}
 
 bool glob_match(std::string_view pattern, std::string_view text) {
   // Greedy with one point to fall back to: the last `*` may always swallow one more character.
@@ -74,9 +84,8 @@ Selection select(Mesh const& mesh, std::string const& selector) {
 
   Selection by_family = select_if(mesh, [&](Patch const& p) { return names_family(selector, p.families); });
   std::vector<int> plain;
-  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
-    if (names_family(selector, mesh.interfaces[i].families))
-      (mesh.interfaces[i].periodic ? by_family.interfaces : plain).push_back(int(i));
+  for (auto const& c : connections_of(mesh))
+    if (names_family(selector, c.families)) (c.periodic ? by_family.interfaces : plain).push_back(c.number);
   // Plain interfaces that carry the family of their blade row are not what the user means, unless there is nothing
   // else.
   if (by_family.empty()) by_family.interfaces = plain;
@@ -92,8 +101,8 @@ Selection select(Mesh const& mesh, std::string const& selector) {
 
   Selection by_connection =
       select_if(mesh, [&](Patch const& p) { return p.kind == PatchKind::connection && named(p.name, p.zone); });
-  for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
-    if (named(mesh.interfaces[i].name, mesh.interfaces[i].zone)) by_connection.interfaces.push_back(int(i));
+  for (auto const& c : connections_of(mesh))
+    if (named(c.name, c.zone)) by_connection.interfaces.push_back(c.number);
   return by_connection;
 }
 
@@ -111,7 +120,7 @@ std::string describe_selectable(Mesh const& mesh) {
     (p.kind == PatchKind::connection ? connections : bcs).insert(p.name);
     types.insert(std::string(type_prefix) + std::string(to_string(p.kind)));
   }
-  for (Interface1to1 const& i : mesh.interfaces) {
+  for (AnyConnection const& i : connections_of(mesh)) {
     if (!i.periodic) continue;
     families.insert(i.families.begin(), i.families.end());
     connections.insert(i.name);
@@ -128,8 +137,7 @@ std::string describe_selectable(Mesh const& mesh) {
   return text.empty() ? "the mesh has no patch and no periodic interface" : "there are " + text;
 }
 
-std::string describe_interface(Mesh const& mesh, int interface) {
-  Interface1to1 const& i = mesh.interfaces[interface];
+std::string describe_interface(Mesh const& mesh, AnyConnection const& i) {
   return "'" + i.name + "' (zone '" + mesh.zones[i.zone].name + "' to zone '" + mesh.zones[i.donor_zone].name + "')";
 }
 

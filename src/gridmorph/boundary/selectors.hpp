@@ -3,6 +3,7 @@
 
 #include <gridmorph/mesh/mesh.hpp>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +13,18 @@ namespace gridmorph {
 /// Whether text matches a pattern of literal characters, `*` (any run, also empty) and `?` (any one character).
 bool glob_match(std::string_view pattern, std::string_view text);
 
-/// Numbers in Mesh::patches and Mesh::interfaces, ascending.
+/// What interfaces of blocks and connections of elements have in common.
+struct AnyConnection {
+  int number = 0;  ///< Mesh::interfaces first, then Mesh::connections
+  std::string const& name;
+  std::vector<std::string> const& families;
+  int zone = -1, donor_zone = -1;
+  std::optional<Periodic> const& periodic;
+};
+/// All of a mesh, which must outlive them.
+std::vector<AnyConnection> connections_of(Mesh const& mesh);
+
+/// Numbers in Mesh::patches and connections_of(), ascending.
 struct Selection {
   std::vector<int> patches;
   std::vector<int> interfaces;  ///< by family or `type:periodic`: periodic ones; by their own name: plain ones too
@@ -35,7 +47,7 @@ std::string describe_selectable(Mesh const& mesh);
 /// "'a', 'b', 'c' and 4 more".
 std::string quote_list(std::vector<std::string> const& names, std::size_t at_most = 30);
 
-/// Family name if there is one, otherwise the interface's own name: how users know it.
-std::string describe_interface(Mesh const& mesh, int interface);
+/// Family name if there is one, otherwise the connection's own name: how users know it.
+std::string describe_interface(Mesh const& mesh, AnyConnection const& interface);
 
 }  // namespace gridmorph

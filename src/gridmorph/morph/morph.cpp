@@ -6,6 +6,7 @@
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
+#include <algorithm>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -38,6 +39,22 @@ std::vector<Index> MorphPlan::boundary_nodes() const {
   if (blocks()) return blocks()->plan().boundary_nodes;
   auto const& known = elements()->plan.known;
   return {known.begin(), known.end()};
+}
+
+std::vector<BoundaryPlace> MorphPlan::boundary_places() const {
+  Mesh const& mesh = blocks() ? blocks()->mesh : elements()->boundary.motion->boundary().mesh();
+  auto const& requests = blocks() ? blocks()->planned.boundary.requests : elements()->boundary.requests.requests;
+  std::vector<BoundaryPlace> out;
+  for (auto const& r : requests) {
+    int const z = mesh.zone_of(r.node);
+    Zone const& zone = mesh.zones[std::size_t(z)];
+    Index3 const index = zone.is_block() ? zone.index(r.node) : Index3{int(r.node - zone.first_node), 0, 0};
+    out.push_back({r.boundary_node, r.patch, z, index, {}});
+    if (r.rotation >= 0) out.back().rotation = blocks()->plan().rotations[std::size_t(r.rotation)];
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](auto const& a, auto const& b) { return a.boundary_node < b.boundary_node; });
+  return out;
 }
 
 std::vector<Vec3> const& MorphPlan::boundary_displacement() const { return state_->displacement; }

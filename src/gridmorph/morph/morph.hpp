@@ -14,6 +14,16 @@ namespace gridmorph {
 struct PreparedMorph;
 struct PreparedUnstructured;
 
+/// A patch that gives a boundary node of a plan its displacement, and where the node lies there.
+struct BoundaryPlace {
+  Index boundary_node = 0;  ///< place in MorphPlan::boundary_nodes()
+  int patch = -1;           ///< number in Mesh::patches (those that planning adds come last); -1: a periodic connection
+  int zone = -1;            ///< number in Mesh::zones
+  Index3 index{0, 0, 0};    ///< blocks: i, j, k, 0-based; elements: place among the nodes of the zone, 0, 0
+  /// Displacement of the boundary node -> that of this place, where it is a periodic copy of the node; otherwise the identity.
+  Mat3 rotation{};
+};
+
 /// How the nodes of a mesh follow its boundary: depends on the baseline and on which patches the rules move, never on how far.
 /// Made once on the host, put on an execution space by Morpher. Copies share their insides.
 class MorphPlan {
@@ -25,7 +35,10 @@ class MorphPlan {
   [[nodiscard]] Index n_nodes() const;
   /// Nodes whose displacement a morph is given, in the order that it expects.
   [[nodiscard]] std::vector<Index> boundary_nodes() const;
-  /// What the rules give them, each in the frame of its node.
+  /// Where they lie: one entry for each patch that has the node and an explicit rule, ascending by node. With PrescribedRule this says
+  /// which of a solver's surface values go where. Cost O(boundary nodes, log).
+  [[nodiscard]] std::vector<BoundaryPlace> boundary_places() const;
+  /// What the rules give them, each in the frame of its node; zero where a PrescribedRule leaves it to the caller.
   [[nodiscard]] std::vector<Vec3> const& boundary_displacement() const;
   /// Defaults taken and facts found on the way, for users.
   [[nodiscard]] std::vector<std::string> notes() const;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/mesh/node_graph.hpp>
-#include <gridmorph/motion/surface_motion.hpp>
+#include <gridmorph/motion/boundary_requests.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -20,29 +20,17 @@ struct PeriodicImage {
 
 /// All node numbers are those of representatives (NodeGraph).
 struct BoundaryConditions {
-  Mesh outline;  ///< see boundary_outline()
-  std::vector<std::vector<Index32>> nodes_of_patch;
-  ResolvedMotion motion;
-  PatchFaces target_faces;  ///< of patches that move onto a target
-  std::shared_ptr<SurfaceMotion const> surface;
+  std::shared_ptr<BoundaryMotion const> motion;  ///< the rules, on the boundary of the mesh
 
   /// Nodes whose displacement the rules give, ascending: the order in which a morph expects their values.
   std::vector<Index32> known;
   std::vector<std::uint8_t>
       drives;  ///< (known) whether the node belongs to a wall that moves: a source of the near field
-
-  /// One rule asking for one known node; the first request of a node gives its value, the others must agree.
-  struct Request {
-    Index slot = 0;    ///< in known
-    Index32 node = 0;  ///< the node of the patch: its position is what the rule sees
-    int rule = 0, patch = -1, interface = -1;
-  };
-  std::vector<Request> requests;  ///< by (rank, rule)
+  BoundaryRequests requests;
 
   /// Nodes that slide and are not known.
   std::vector<Index32> slip_nodes;
-  CsrGraph slip_surfaces;  ///< numbers in `surfaces`, per slip node
-  std::vector<SlipSurface> surfaces;
+  CsrGraph slip_surfaces;  ///< numbers in BoundaryMotion::slip_surfaces(), per slip node
 
   std::vector<PeriodicImage> images;  ///< by node
   std::vector<Mat3> rotations;
@@ -50,6 +38,8 @@ struct BoundaryConditions {
   std::vector<int> driving_patches;   ///< numbers of the patches that move walls, ascending
   std::vector<int> standing_patches;  ///< of walls, and patches of no kind, that their rule holds in place, ascending
   std::vector<std::string> notes;
+
+  [[nodiscard]] std::vector<Index> const& nodes_of(int patch) const { return motion->boundary().surface(patch).nodes; }
 };
 
 /// What a plan reckons with.
@@ -60,15 +50,13 @@ enum class Displacements {
 
 /// Resolves the rules and finds what each boundary node is. `walls`: selectors of the walls that drive the near field; empty:
 /// every patch that moves and is no inflow, outflow, farfield or symmetry. Where no rule displaces anything now, all that could do.
-/// Throws MotionError for rules that need a structured blade surface (sections, circumferential-slide, follow), when no
-/// wall moves, and the errors of resolve() and SurfaceMotion.
+/// Throws MotionError when no wall moves, and the errors of resolve() and BoundaryMotion.
 BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                                        Motion const& motion, std::vector<std::string> const& walls,
                                        Displacements displacements = Displacements::of_the_rules);
 
-/// Displacement of every known node. Throws MotionError that lists every pair of patches whose displacements disagree on
-/// common nodes by more than the conformity tolerance.
+/// Displacement of every known node. Throws MotionError as evaluate() of BoundaryRequests does.
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary);
 /// The same by another motion: one with the same rules for the same patches, whose displacements alone differ.
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary, Motion const& motion);

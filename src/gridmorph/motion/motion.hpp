@@ -2,7 +2,7 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// circumferential slide, follow: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// circumferential slide, follow, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface).
 #pragma once
 
@@ -107,8 +107,12 @@ struct FreeRule {
   Constraint constraint = Constraint::none;  ///< axial: axial position kept; plane: nodes stay on the patch's plane
 };
 
+/// Whatever displacement the caller of a morph gives these nodes: surfaces that a structural solver moves. What rules give them is
+/// zero, and no rule beside them disagrees with it.
+struct PrescribedRule {};
+
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
-                          SectionsRule, TargetRule>;
+                          SectionsRule, TargetRule, PrescribedRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").
@@ -144,9 +148,10 @@ struct ResolvedMotion {
   Axis axis;
   double conformity_tolerance = 1e-9;
   std::vector<MotionRule> rules;
-  std::vector<Resolution> patch;      ///< per Mesh::patches
-  std::vector<Resolution> interface;  ///< per Mesh::interfaces; rule -1 for plain interfaces and for free periodics
-  std::vector<std::string> notes;     ///< defaults taken, for the output
+  std::vector<Resolution> patch;  ///< per Mesh::patches
+  std::vector<Resolution>
+      interface;  ///< per connection (Mesh::interfaces, then Mesh::connections); rule -1 for plain ones and for free periodics
+  std::vector<std::string> notes;  ///< defaults taken, for the output
 
   [[nodiscard]] Rule const& patch_rule(int p) const { return rules[patch[p].rule].rule; }
 };

@@ -43,6 +43,22 @@ int find_partner(Mesh const& mesh, int interface) {
   return -1;
 }
 
+/// The same for connections of elements; sides may list their nodes in any order.
+int find_partner(std::vector<Connection> const& connections, int connection) {
+  Connection const& own = connections[std::size_t(connection)];
+  auto const sorted = [](std::vector<Index32> list) {
+    std::sort(list.begin(), list.end());
+    return list;
+  };
+  for (std::size_t j = 0; j < connections.size(); ++j) {
+    Connection const& other = connections[j];
+    if (int(j) != connection && other.zone == own.donor_zone && other.donor_zone == own.zone && other.periodic &&
+        other.nodes.size() == own.nodes.size() && sorted(own.donor_nodes) == sorted(other.nodes))
+      return int(j);
+  }
+  return -1;
+}
+
 std::vector<std::string> names_of(Mesh const& mesh, std::vector<int> const& patches) {
   std::set<std::string> names;
   for (int p : patches)
@@ -56,14 +72,15 @@ class Resolver {
       : mesh_(mesh),
         motion_(motion),
         patch_claim_(mesh.patches.size(), unclaimed),
-        interface_claim_(mesh.interfaces.size(), unclaimed) {}
+        connections_(connections_of(mesh)),
+        interface_claim_(connections_.size(), unclaimed) {}
 
   ResolvedMotion run() {
     result_.axis = motion_.axis;
     result_.conformity_tolerance = motion_.conformity_tolerance;
     result_.rules = motion_.rules;
     result_.patch.resize(mesh_.patches.size());
-    result_.interface.resize(mesh_.interfaces.size());
+    result_.interface.resize(connections_.size());
 
     check_motion();
     for (std::size_t r = 0; r < motion_.rules.size(); ++r) {
@@ -172,8 +189,8 @@ class Resolver {
   }
 
   void claim_interface(int i, int r) {
-    std::string const name = "interface " + describe_interface(mesh_, i);
-    if (!mesh_.interfaces[i].periodic) {
+    std::string const name = "interface " + describe_interface(mesh_, connections_[std::size_t(i)]);
+    if (!connections_[std::size_t(i)].periodic) {
       problems_.add(label(r) + " names the plain " + name +
                     ", which is inside the domain and moves with the volume; "
                     "name patches or periodic interfaces");
@@ -191,8 +208,16 @@ class Resolver {
     }
     claim_one(interface_claim_[i], r, "periodic " + name);
     // The file stores the connection once per side: both sides are one interface to the user.
-    if (int const partner = find_partner(mesh_, i); partner >= 0)
-      claim_one(interface_claim_[partner], r, "periodic interface " + describe_interface(mesh_, partner));
+    if (int const partner = partner_of(i); partner >= 0)
+      claim_one(interface_claim_[partner], r,
+                "periodic interface " + describe_interface(mesh_, connections_[std::size_t(partner)]));
+  }
+
+  [[nodiscard]] int partner_of(int i) const {
+    auto const blocks = int(mesh_.interfaces.size());
+    if (i < blocks) return find_partner(mesh_, i);
+    int const j = find_partner(mesh_.connections, i - blocks);
+    return j < 0 ? -1 : blocks + j;
   }
 
   void claim_one(int& claim, int r, std::string name) {
@@ -211,8 +236,8 @@ class Resolver {
 
   void settle_interfaces() {
     std::set<std::string> defaulted;
-    for (std::size_t i = 0; i < mesh_.interfaces.size(); ++i) {
-      Interface1to1 const& interface = mesh_.interfaces[i];
+    for (std::size_t i = 0; i < connections_.size(); ++i) {
+      AnyConnection const& interface = connections_[i];
       int const r = interface_claim_[i];
       if (r != unclaimed) {
         result_.interface[i].rule = is<FreeRule>(motion_.rules[r].rule) ? -1 : r;
@@ -285,7 +310,9 @@ class Resolver {
 
   Mesh const& mesh_;
   Motion const& motion_;
-  std::vector<int> patch_claim_, interface_claim_;
+  std::vector<int> patch_claim_;
+  std::vector<AnyConnection> connections_;
+  std::vector<int> interface_claim_;
   std::map<std::pair<int, int>, std::set<std::string>> conflicts_;
   Problems problems_;
   ResolvedMotion result_;
@@ -295,7 +322,8 @@ class Resolver {
 
 std::string_view rule_name(Rule const& rule) {
   static constexpr std::array<std::string_view, std::variant_size_v<Rule>> names{
-      "fixed", "rigid", "function", "circumferential-slide", "follow", "slip", "free", "sections", "target"};
+      "fixed",    "rigid",  "function",  "circumferential-slide", "follow", "slip", "free",
+      "sections", "target", "prescribed"};
   return names[rule.index()];
 }
 

@@ -243,8 +243,8 @@ Index LineTables::n_lines() const {
   return n;
 }
 
-PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion const& motion, SurfaceMotion const& surface,
-                       PlanOptions const& options) {
+PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
+                       BoundaryMotion const& surface, PlanOptions const& options) {
   PlannedMorph planned;
   Plan& plan = planned.plan;
   std::vector<PatchKind> const kinds = ranked_kinds(mesh, links, motion, surface, options.boundary_layers, plan.notes);
@@ -274,6 +274,7 @@ PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion cons
   scheduler.volume();
   plan_spreads(context, motion, surface, given, plan);
   plan.skeleton_nodes = skeleton.to_nodes(rotations);
+  planned.boundary.n_boundary_nodes = Index(plan.boundary_nodes.size());
   note_loose_nodes(mesh, planned.boundary, plan);
   return planned;
 }

@@ -7,7 +7,7 @@
 #include <gridmorph/kernels/skeleton_sweep.hpp>
 #include <gridmorph/kernels/slip_end.hpp>
 #include <gridmorph/kernels/volume_pass.hpp>
-#include <gridmorph/motion/surface_motion.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/plan/blocks/chain.hpp>
 #include <gridmorph/plan/options.hpp>
 

@@ -18,7 +18,7 @@ PreparedMorph prepare(Mesh const& given, Motion const& motion, PlanOptions const
   Links links = connect_and_check(mesh, options.topology);
   seconds.topology = watch.lap();
   ResolvedMotion resolved = resolve(mesh, motion);
-  SurfaceMotion surface(mesh, resolved);
+  BoundaryMotion surface(std::make_shared<Boundary const>(mesh, links.mesh_size), resolved);
   seconds.rules = watch.lap();
   PlannedMorph planned = make_plan(mesh, links, resolved, surface, options);
   seconds.plan = watch.lap();

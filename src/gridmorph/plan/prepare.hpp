@@ -12,7 +12,7 @@ struct PreparedMorph {
       mesh;  ///< with the patches that it lacked, for poles and open faces, and notes on them; its coordinates are shared
   Links links;
   ResolvedMotion motion;
-  SurfaceMotion surface;
+  BoundaryMotion surface;
   PlannedMorph planned;
 
   /// Wall-clock time of the three parts of prepare().
@@ -23,9 +23,9 @@ struct PreparedMorph {
   } seconds{};
 
   [[nodiscard]] Plan const& plan() const { return planned.plan; }
-  /// Displacements of Plan::boundary_nodes by the rules. Throws MotionError (see evaluate_boundary).
+  /// Displacements of Plan::boundary_nodes by the rules. Throws MotionError (see evaluate()).
   [[nodiscard]] std::vector<Vec3> boundary_displacement() const {
-    return evaluate_boundary(mesh, planned.boundary, planned.plan, motion, surface, links.mesh_size);
+    return evaluate(mesh, planned.boundary, surface, planned.plan.rotations);
   }
 };
 

@@ -1,7 +1,7 @@
 #include <gridmorph/wheel/blade_share.hpp>
 
 #include <gridmorph/boundary/link_nodes.hpp>
-#include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>

@@ -1,8 +1,8 @@
 // Whose motion a boundary node of a passage has when the blades differ: its own blade's, a neighbour's, or some of both.
 #pragma once
 
+#include <gridmorph/motion/boundary_requests.hpp>
 #include <gridmorph/motion/motion.hpp>
-#include <gridmorph/plan/boundary_requests.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <gridmorph/boundary/link_nodes.hpp>
-#include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/wheel/detail/pitch_fraction.hpp>
 
 #include <algorithm>

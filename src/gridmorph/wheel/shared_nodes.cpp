@@ -1,7 +1,7 @@
 #include <gridmorph/wheel/shared_nodes.hpp>
 
 #include <gridmorph/boundary/link_nodes.hpp>
-#include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 
 #include <algorithm>
 #include <numeric>

@@ -34,7 +34,7 @@ WheelMotion::WheelMotion(Mesh const& sector, Links const& links, WheelRows const
   OpenedPassage const opened = open_passage(sector, links, rows, resolved, open);
   Links const opened_links = connect(opened.mesh, options.topology);
   {
-    SurfaceMotion const surface(opened.mesh, opened.motion);
+    BoundaryMotion const surface(opened.mesh, opened.motion);
     planned_ = make_plan(opened.mesh, opened_links, opened.motion, surface, options);
   }
   append(notes_, planned_.plan.notes);
@@ -44,9 +44,9 @@ WheelMotion::WheelMotion(Mesh const& sector, Links const& links, WheelRows const
   values_.resize(motions.size());
   for (int const m : used) {
     ResolvedMotion const own = resolve(sector, motions[m]);
-    SurfaceMotion const surface(sector, own);
+    BoundaryMotion const surface(sector, own);
     append(notes_, surface.notes());
-    values_[m] = evaluate_boundary(opened.mesh, planned_.boundary, planned_.plan, own, surface, links.mesh_size);
+    values_[m] = evaluate(opened.mesh, planned_.boundary, surface, planned_.plan.rotations);
   }
 }
 

@@ -1,5 +1,5 @@
 #include <gridmorph/app/cli/boundary_guess.hpp>
-#include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>

@@ -1,7 +1,7 @@
 #include <gridmorph/app/cli/diagnosis.hpp>
 #include <gridmorph/app/cli/mesh_summary.hpp>
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/report/measure_text.hpp>
 
@@ -115,10 +115,10 @@ MeshForMessages for_messages(Mesh const& mesh) {
 }
 
 MeshForMessages for_messages(Mesh const& mesh, BoundaryConditions const& boundary) {
-  MeshForMessages out{boundary.outline, mesh.coordinates, mesh.size(), {}, {}, element_corners, &mesh};
-  for (std::size_t p = 0; p < boundary.outline.patches.size(); ++p) {
-    out.patch_names.push_back(name_of(boundary.outline.patches[p]));
-    auto const& nodes = boundary.nodes_of_patch.at(p);
+  MeshForMessages out{mesh, mesh.coordinates, mesh.size(), {}, {}, element_corners, &mesh};
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    out.patch_names.push_back(name_of(mesh.patches[p]));
+    auto const& nodes = boundary.nodes_of(int(p));
     out.patch_nodes.emplace_back(nodes.begin(), nodes.end());
   }
   return out;

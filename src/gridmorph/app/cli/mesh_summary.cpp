@@ -3,8 +3,8 @@
 #include <gridmorph/boundary/coincident_nodes.hpp>
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/boundary/links.hpp>
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/core/error.hpp>
 
 #include <algorithm>

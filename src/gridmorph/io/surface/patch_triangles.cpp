@@ -7,7 +7,7 @@ namespace gridmorph {
 
 TargetGeometry surface_of(Mesh const& mesh, std::vector<int> const& patches) {
   TargetGeometry out;
-  PatchSurface const surface(mesh, patches);
+  PatchSurface const surface(Boundary(mesh), patches);
   for (PatchGrid const& grid : surface.grids) {
     TargetGrid piece;
     piece.name = mesh.zones[mesh.patches[grid.patch].zone].name + "/" + mesh.patches[grid.patch].name;
@@ -20,7 +20,7 @@ TargetGeometry surface_of(Mesh const& mesh, std::vector<int> const& patches) {
 
 SurfaceTriangles triangulate(Mesh const& mesh, std::vector<int> const& patches, int split) {
   SurfaceTriangles out;
-  PatchSurface const surface(mesh, patches);
+  PatchSurface const surface(Boundary(mesh), patches);
   for (PatchGrid const& grid : surface.grids) {
     int const first = int(out.points.size());
     int const na = (grid.extent[0] - 1) * split + 1, nb = (grid.extent[1] - 1) * split + 1;

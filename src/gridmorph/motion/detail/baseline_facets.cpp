@@ -1,7 +1,5 @@
 #include <gridmorph/motion/detail/baseline_facets.hpp>
 
-#include <gridmorph/boundary/joined_sides.hpp>
-#include <gridmorph/boundary/patch_facets.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/geometry/facet_topology.hpp>
 
@@ -12,12 +10,6 @@
 namespace gridmorph {
 namespace {
 
-bool overlap(IndexRange const& a, IndexRange const& b) {
-  for (int d = 0; d < 3; ++d)
-    if (a.begin[d] >= b.end[d] || b.begin[d] >= a.end[d]) return false;
-  return true;
-}
-
 FacetList moved(FacetList list, RigidTransform const& transform) {
   for (Vec3& p : list.points) p = transform(p);
   return list;
@@ -25,12 +17,12 @@ FacetList moved(FacetList list, RigidTransform const& transform) {
 
 }  // namespace
 
-std::vector<std::vector<int>> smoothly_joined(Mesh const& mesh, std::vector<int> const& patches,
+std::vector<std::vector<int>> smoothly_joined(Boundary const& boundary, std::vector<int> const& patches,
                                               FacetOptions const& options) {
-  FacetList const list = facets_of_patches(mesh, patches);
+  FacetList const list = boundary.facets(patches);
   std::vector<int> patch_of;  // per facet of the list, as a place in `patches`
   for (std::size_t m = 0; m < patches.size(); ++m)
-    patch_of.resize(patch_of.size() + facets_of_patches(mesh, {&patches[m], 1}).facets.size(), int(m));
+    patch_of.resize(patch_of.size() + boundary.facets({&patches[m], 1}).facets.size(), int(m));
 
   std::map<std::pair<int, int>, int> balance;  // smooth edges less creases between two patches
   if (!list.facets.empty()) {
@@ -51,9 +43,9 @@ std::vector<std::vector<int>> smoothly_joined(Mesh const& mesh, std::vector<int>
   return out;
 }
 
-FacetList with_periodic_copies(Mesh const& mesh, std::vector<int> const& patches) {
-  FacetList const own = facets_of_patches(mesh, patches);
-  double const tolerance = 1e-6 * mesh.size();
+FacetList with_periodic_copies(Boundary const& boundary, std::vector<int> const& patches) {
+  FacetList const own = boundary.facets(patches);
+  double const tolerance = 1e-6 * boundary.size();
   std::vector<RigidTransform> copies;
   auto const add = [&](RigidTransform const& transform) {
     bool const known = std::any_of(copies.begin(), copies.end(), [&](RigidTransform const& other) {
@@ -62,16 +54,7 @@ FacetList with_periodic_copies(Mesh const& mesh, std::vector<int> const& patches
     });
     if (!known) copies.push_back(transform);
   };
-  for (Interface1to1 const& interface : mesh.interfaces) {
-    if (!interface.periodic) continue;
-    IndexRange const donor = interface.to_donor(interface.range);
-    bool const touched = std::any_of(patches.begin(), patches.end(), [&](int p) {
-      Patch const& patch = mesh.patches[p];
-      return (patch.zone == interface.zone && overlap(patch.range, interface.range)) ||
-             (patch.zone == interface.donor_zone && overlap(patch.range, donor));
-    });
-    if (!touched) continue;
-    RigidTransform const transform = fitted_transform(mesh, interface);
+  for (RigidTransform const& transform : boundary.periodic_transforms(patches)) {
     add(transform);
     add(transform.inverse());
   }

@@ -1,8 +1,7 @@
-// The baseline mesh's own surface as facets: which patches make up one surface, and what lies beyond periodic interfaces.
+// The baseline mesh's own surface as facets: which patches make up one surface, and what lies beyond periodic connections.
 #pragma once
 
-#include <gridmorph/geometry/facet_surface.hpp>
-#include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/boundary/boundary.hpp>
 
 #include <vector>
 
@@ -10,11 +9,11 @@ namespace gridmorph {
 
 /// Patches that go on into one another without a crease along most of the edges they share. Where two groups meet a node
 /// is on both surfaces, so it stays on their edge. Cost O(n log n) in the nodes.
-std::vector<std::vector<int>> smoothly_joined(Mesh const& mesh, std::vector<int> const& patches,
+std::vector<std::vector<int>> smoothly_joined(Boundary const& boundary, std::vector<int> const& patches,
                                               FacetOptions const& options);
 
-/// Facets of the patches and their copies across the periodic interfaces that they touch, so that nodes can slide out of
-/// the sector and normals are the same on both sides. Transforms are fitted to the interfaces' nodes.
-FacetList with_periodic_copies(Mesh const& mesh, std::vector<int> const& patches);
+/// Facets of the patches and their copies across the periodic connections that they touch, so that nodes can slide out of
+/// the sector and normals are the same on both sides. Transforms are fitted to the connections' nodes.
+FacetList with_periodic_copies(Boundary const& boundary, std::vector<int> const& patches);
 
 }  // namespace gridmorph

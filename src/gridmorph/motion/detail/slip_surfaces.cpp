@@ -1,7 +1,5 @@
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 
-#include <gridmorph/boundary/patch_facets.hpp>
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
@@ -37,28 +35,30 @@ double largest_component(std::vector<Vec3> const& points) {
   return most;
 }
 
+/// Nodes on the four edges of a grid; all of a surface that is none.
+std::vector<Index> outline_nodes(BoundarySurface const& surface) {
+  if (!surface.grid) return surface.nodes;
+  auto const [n_a, n_b] = *surface.grid;
+  std::vector<Index> out;
+  for (int b = 0; b < n_b; ++b)
+    for (int a = 0; a < n_a; a += b == 0 || b == n_b - 1 ? 1 : std::max(1, n_a - 1))
+      out.push_back(surface.nodes[std::size_t(a) + std::size_t(n_a) * std::size_t(b)]);
+  return out;
+}
+
 /// Patches that meet in the meridional plane, directly or through others: a hub split over several zones, also where
 /// only periodic copies meet. Compares the nodes on the outlines.
-std::vector<Patches> meridionally_connected(Mesh const& mesh, CylindricalFrame const& frame, Patches const& patches) {
-  double const tolerance = 1e-6 * mesh.size();
+std::vector<Patches> meridionally_connected(Boundary const& boundary, CylindricalFrame const& frame,
+                                            Patches const& patches) {
+  double const tolerance = 1e-6 * boundary.size();
   struct Mark {
     MeridionalPoint at;
     int member;
   };
   std::vector<Mark> marks;
-  for (std::size_t m = 0; m < patches.size(); ++m) {
-    Patch const& patch = mesh.patches[patches[m]];
-    for (int axis = 0; axis < 3; ++axis) {
-      if (patch.range.extent(axis) == 1) continue;
-      for (int side = 0; side < 2; ++side) {
-        IndexRange edge = patch.range;
-        (side == 0 ? edge.end[axis] : edge.begin[axis]) = side == 0 ? edge.begin[axis] + 1 : edge.end[axis] - 1;
-        for_each_node(mesh.zones[patch.zone], edge, [&](Index n) {
-          marks.push_back({frame.meridional(mesh.coordinates[n]), int(m)});
-        });
-      }
-    }
-  }
+  for (std::size_t m = 0; m < patches.size(); ++m)
+    for (Index const n : outline_nodes(boundary.surface(patches[m])))
+      marks.push_back({frame.meridional(boundary.mesh().coordinates[n]), int(m)});
   std::sort(marks.begin(), marks.end(), [](Mark const& a, Mark const& b) { return a.at.axial < b.at.axial; });
 
   DisjointSets<int> sets(patches.size());
@@ -93,10 +93,15 @@ std::vector<Patches> meridionally_connected(Mesh const& mesh, CylindricalFrame c
   return out;
 }
 
+bool same_surface(SlipSurface const& a, SlipSurface const& b) {
+  return a.kind == b.kind && a.origin == b.origin && a.direction == b.direction && a.profile.knots == b.profile.knots &&
+         a.frame == b.frame && a.facets.points == b.facets.points;
+}
+
 class Finder {
  public:
-  Finder(Mesh const& mesh, ResolvedMotion const& motion, SlipSurfaces& out, std::vector<std::string>& notes)
-      : mesh_(mesh), motion_(motion), frame_(motion.axis), out_(out), notes_(notes) {}
+  Finder(Boundary const& boundary, ResolvedMotion const& motion, SlipSurfaces& out, std::vector<std::string>& notes)
+      : boundary_(boundary), mesh_(boundary.mesh()), motion_(motion), frame_(motion.axis), out_(out), notes_(notes) {}
 
   void run() {
     std::map<int, Patches> by_rule;
@@ -122,8 +127,16 @@ class Finder {
  private:
   void store(SlipSurface surface, Patches const& patches, std::vector<Vec3> const& points) {
     for (Vec3 const& p : points) surface.size = std::max(surface.size, distance(p, surface.origin));
-    for (int p : patches) out_.of_patch[p] = int(out_.surfaces.size());
-    out_.surfaces.push_back(std::move(surface));
+    // Two rules may give one surface: a node on both slides on it, not along an edge.
+    auto const known = std::find_if(out_.surfaces.begin(), out_.surfaces.end(),
+                                    [&](SlipSurface const& other) { return same_surface(surface, other); });
+    for (int p : patches) out_.of_patch[p] = int(known - out_.surfaces.begin());
+    if (known == out_.surfaces.end()) {
+      out_.surfaces.push_back(std::move(surface));
+    } else {
+      known->size = std::max(known->size, surface.size);
+      known->baseline_deviation = std::max(known->baseline_deviation, surface.baseline_deviation);
+    }
   }
 
   void axial(Patches const& patches) {
@@ -131,19 +144,19 @@ class Finder {
     surface.kind = SlipSurface::Kind::axial;
     surface.origin = frame_.origin();
     surface.direction = frame_.direction();
-    store(std::move(surface), patches, patch_points(mesh_, patches));
+    store(std::move(surface), patches, boundary_.points(patches));
   }
 
   /// Patches on one plane share it: largest first, each takes those that lie on its plane.
   void planes(Patches patches, std::optional<std::pair<Vec3, Vec3>> const& given) {
     std::map<int, PlaneFit> fits;
-    for (int p : patches) fits[p] = fit_plane(patch_points(mesh_, {p}));
+    for (int p : patches) fits[p] = fit_plane(boundary_.points(p));
     std::stable_sort(patches.begin(), patches.end(), [&](int a, int b) { return fits[a].extent > fits[b].extent; });
     while (!patches.empty()) {
       PlaneFit const seed = fits[patches.front()];
       Patches members, rest;
       for (int p : patches) {
-        auto const points = patch_points(mesh_, {p});
+        auto const points = boundary_.points(p);
         bool const same =
             p == patches.front() || given ||
             (seed.determined && deviation_from_plane(points, seed.origin, seed.normal) <= flat(seed.extent, points));
@@ -161,7 +174,7 @@ class Finder {
 
   void plane(Patches members, std::optional<std::pair<Vec3, Vec3>> const& given) {
     std::sort(members.begin(), members.end());
-    auto const points = patch_points(mesh_, members);
+    auto const points = boundary_.points(members);
     PlaneFit const fit = fit_plane(points);
     SlipSurface surface;
     surface.kind = SlipSurface::Kind::plane;
@@ -188,15 +201,15 @@ class Finder {
     FacetOptions const options{.crease_angle_rad = slip.crease_angle_rad};
     // A rule whose patches are all collapsed has no facets to join.
     for (int const p : patches)
-      if (facets_of_patches(mesh_, {&p, 1}).facets.empty())
+      if (boundary_.facets({&p, 1}).facets.empty())
         problems_.add(where_ + ": patch " + describe(mesh_, {p}) + " has no facets; give it another rule");
     try {
-      for (Patches const& members : smoothly_joined(mesh_, patches, options)) {
+      for (Patches const& members : smoothly_joined(boundary_, patches, options)) {
         SlipSurface surface;
         surface.kind = SlipSurface::Kind::facets;
-        surface.facets = FacetSurface::from_facets(with_periodic_copies(mesh_, members), options);
+        surface.facets = FacetSurface::from_facets(with_periodic_copies(boundary_, members), options);
         surface.origin = surface.facets.boxes.front().low;
-        auto const points = patch_points(mesh_, members);
+        auto const points = boundary_.points(members);
         PlaneFit const fit = fit_plane(points);
         if (fit.determined &&
             deviation_from_plane(points, fit.origin, fit.normal) <= 1e-13 * largest_component(points)) {
@@ -243,7 +256,7 @@ class Finder {
   }
 
   void connected(Patches const& patches) {
-    for (Patches const& members : meridionally_connected(mesh_, frame_, patches)) {
+    for (Patches const& members : meridionally_connected(boundary_, frame_, patches)) {
       try {
         revolution(members, TurnedProfile::from_points);
       } catch (MotionError const& e) {
@@ -277,7 +290,7 @@ class Finder {
 
   template <class Fit>
   void revolution(Patches const& members, Fit const& fit) {
-    auto const points = patch_points(mesh_, members);
+    auto const points = boundary_.points(members);
     MeridionalPoints meridional;
     double size = 0;
     for (Vec3 const& p : points) {
@@ -305,11 +318,11 @@ class Finder {
       problems_.add(where_ + ": profile: " + e.what());
       return;
     }
-    auto const points = patch_points(mesh_, patches);
+    auto const points = boundary_.points(patches);
     double const size = wall_size(points);
     std::string far;
     for (int const patch : patches)
-      for (Vec3 const& p : patch_points(mesh_, {patch})) {
+      for (Vec3 const& p : boundary_.points(patch)) {
         double const off = distance(p, surface.view().project(p));
         if (off > profile_tolerance * size && off > surface.baseline_deviation)
           far =
@@ -355,6 +368,7 @@ class Finder {
                      "; nodes are within " + to_text(s.baseline_deviation, 3) + " of it");
   }
 
+  Boundary const& boundary_;
   Mesh const& mesh_;
   ResolvedMotion const& motion_;
   CylindricalFrame frame_;
@@ -366,9 +380,9 @@ class Finder {
 
 }  // namespace
 
-SlipSurfaces::SlipSurfaces(Mesh const& mesh, ResolvedMotion const& motion, std::vector<std::string>& notes)
-    : of_patch(mesh.patches.size(), -1) {
-  Finder(mesh, motion, *this, notes).run();
+SlipSurfaces::SlipSurfaces(Boundary const& boundary, ResolvedMotion const& motion, std::vector<std::string>& notes)
+    : of_patch(boundary.mesh().patches.size(), -1) {
+  Finder(boundary, motion, *this, notes).run();
 }
 
 }  // namespace gridmorph

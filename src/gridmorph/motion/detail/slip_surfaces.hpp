@@ -1,6 +1,7 @@
 // Finds the surface of every patch that slips.
 #pragma once
 
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/motion/motion.hpp>
 
@@ -16,7 +17,7 @@ struct SlipSurfaces {
   std::vector<int> of_patch;  ///< per Mesh::patches, -1 for patches that do not slip
 
   /// Throws one MotionError that names every patch without a usable surface. Cost O(n log n) in the patches' nodes.
-  SlipSurfaces(Mesh const& mesh, ResolvedMotion const& motion, std::vector<std::string>& notes);
+  SlipSurfaces(Boundary const& boundary, ResolvedMotion const& motion, std::vector<std::string>& notes);
 };
 
 }  // namespace gridmorph

@@ -1,6 +1,5 @@
 #include <gridmorph/motion/target/target_motion.hpp>
 
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/target/target_nodes.hpp>
@@ -90,9 +89,9 @@ TargetTree target_facets(TargetGeometry const& target, std::string const& name) 
   return {std::move(points), std::move(kept)};
 }
 
-TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
-                           std::string const& name, std::vector<std::string>& notes, PatchFaces const* faces)
-    : surface_(mesh, patches, faces), name_(name), share_(rule.share) {
+TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& patches, TargetRule const& rule,
+                           Axis const& axis, std::string const& name, std::vector<std::string>& notes)
+    : surface_(boundary, patches), name_(name), share_(rule.share) {
   if (!rule.target) throw MotionError(name + ": it has no target");
   TargetGeometry const& target = *rule.target;
   if (!(rule.crease_angle_deg > 0 && rule.crease_angle_deg < 180))
@@ -101,7 +100,7 @@ TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, Ta
   if (patches.empty()) throw MotionError(name + ": it moves patches only, and names none");
   if (!(surface_.size > 0)) throw MotionError(name + ": the nodes of its patches are one point");
   if (!surface_.gridded) {
-    map_faces(mesh, rule, notes);
+    map_faces(boundary, rule, notes);
     return;
   }
   bool const automatic = rule.mapping == Mapping::automatic;
@@ -109,13 +108,13 @@ TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, Ta
     mapping_ = Mapping::nodes;
     if (!finite(target.nodes)) throw MotionError(name + ": a point of the target is not finite");
     if (!target.nodes.empty()) {
-      displacement_ = match_nodes(surface_, target.nodes, mesh, name);
+      displacement_ = match_nodes(surface_, target.nodes, boundary.mesh(), name);
       notes.push_back(name + ": mapped node for node");
       return;
     }
     if (!target.grids.empty()) static_cast<void>(target_facets(target, name));  // its checks
     if (target.triangles.empty() || !automatic)
-      if (auto u = match_grids(surface_, target.grids, mesh, name, notes)) {
+      if (auto u = match_grids(surface_, target.grids, boundary.mesh(), name, notes)) {
         displacement_ = std::move(*u);
         return;
       }
@@ -125,7 +124,7 @@ TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, Ta
   }
   if (rule.mapping == Mapping::sections || (automatic && !target.sections.empty())) {
     mapping_ = Mapping::sections;
-    SectionMapping mapped = map_sections(mesh, surface_, rule, axis, name, notes);
+    SectionMapping mapped = map_sections(boundary, surface_, rule, axis, name, notes);
     displacement_ = std::move(mapped.displacement);
     reached_ = std::move(mapped.mapped);
     facets_ = std::move(mapped.facets);
@@ -137,11 +136,13 @@ TargetMotion::TargetMotion(Mesh const& mesh, std::vector<int> const& patches, Ta
   displacement_ = project_to_target(surface_, facets_, rule.crease_angle_deg, name, notes);
 }
 
-void TargetMotion::map_faces(Mesh const& mesh, TargetRule const& rule, std::vector<std::string>& notes) {
+TargetMotion::TargetMotion(TargetMotion const& other, double share) : TargetMotion(other) { share_ = share; }
+
+void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, std::vector<std::string>& notes) {
   TargetGeometry const& target = *rule.target;
   for (PatchGrid const& grid : surface_.grids)
     if (grid.faces.empty())
-      throw MotionError(name_ + ": patch " + describe_patch(mesh, mesh.patches[grid.patch]) +
+      throw MotionError(name_ + ": patch " + describe_patch(boundary.mesh(), boundary.mesh().patches[grid.patch]) +
                         " has no faces that could go to a target");
   if (rule.mapping == Mapping::nodes || (rule.mapping == Mapping::automatic && !target.nodes.empty())) {
     if (target.nodes.empty())
@@ -150,7 +151,7 @@ void TargetMotion::map_faces(Mesh const& mesh, TargetRule const& rule, std::vect
           ": the patches of an unstructured mesh are no grids; list one point per node in the order of their "
           "numbers, or give mapping = \"projection\"");
     if (!finite(target.nodes)) throw MotionError(name_ + ": a point of the target is not finite");
-    displacement_ = match_nodes(surface_, target.nodes, mesh, name_);
+    displacement_ = match_nodes(surface_, target.nodes, boundary.mesh(), name_);
     notes.push_back(name_ + ": mapped node for node");
     return;
   }
@@ -180,17 +181,17 @@ void TargetMotion::displacement(std::span<Vec3 const> points, std::span<Vec3> ou
   }
 }
 
-TargetReach TargetMotion::reach(Mesh const& mesh, Coordinates const& morphed) const {
+TargetReach TargetMotion::reach(Coordinates const& morphed) const {
   TargetReach out;
   out.description = name_;
   out.mapping = mapping_;
   double sum = 0;
   for (std::size_t g = 0; g < surface_.grids.size(); ++g) {
     PatchGrid const& grid = surface_.grids[g];
-    std::size_t at = 0;
-    for_each_node(mesh.zones[mesh.patches[grid.patch].zone], mesh.patches[grid.patch].range, [&](Index node) {
-      int const v = grid.vertex[at++];
-      if (!reached_.empty() && reached_[v] == 0) return;
+    for (std::size_t at = 0; at < grid.nodes.size(); ++at) {
+      Index const node = grid.nodes[at];
+      int const v = grid.vertex[at];
+      if (!reached_.empty() && reached_[v] == 0) continue;
       Vec3 const x = morphed[node];
       double const d = facets_.empty() ? distance(x, surface_.points[v] + displacement_[v])
                                        : facets_.closest(to_target_.empty() ? x : to_target_[g](x)).distance;
@@ -200,7 +201,7 @@ TargetReach TargetMotion::reach(Mesh const& mesh, Coordinates const& morphed) co
         out.max = d;
         out.worst_node = node;
       }
-    });
+    }
   }
   out.rms = out.nodes > 0 ? std::sqrt(sum / double(out.nodes)) : 0;
   return out;

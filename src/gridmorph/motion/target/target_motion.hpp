@@ -16,8 +16,11 @@ namespace gridmorph {
 class TargetMotion {
  public:
   /// Throws MotionError when the target is not usable for these patches. `name` begins its messages and notes.
-  TargetMotion(Mesh const& mesh, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
-               std::string const& name, std::vector<std::string>& notes, PatchFaces const* faces = nullptr);
+  TargetMotion(Boundary const& boundary, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
+               std::string const& name, std::vector<std::string>& notes);
+
+  /// The same with another share of the way.
+  TargetMotion(TargetMotion const& other, double share);
 
   /// Displacement of nodes of the patches, found by their baseline position. Throws MotionError for other points.
   void displacement(std::span<Vec3 const> points, std::span<Vec3> out) const;
@@ -26,13 +29,13 @@ class TargetMotion {
   [[nodiscard]] bool whole() const { return share_ == 1; }
 
   /// How far the nodes of the patches ended from the target.
-  [[nodiscard]] TargetReach reach(Mesh const& mesh, Coordinates const& morphed) const;
+  [[nodiscard]] TargetReach reach(Coordinates const& morphed) const;
 
  private:
   using Mapping = TargetRule::Mapping;
 
   /// Patches of an unstructured mesh: node for node as listed, or onto the surface or profile.
-  void map_faces(Mesh const& mesh, TargetRule const& rule, std::vector<std::string>& notes);
+  void map_faces(Boundary const& boundary, TargetRule const& rule, std::vector<std::string>& notes);
 
   PatchSurface surface_;
   std::string name_;

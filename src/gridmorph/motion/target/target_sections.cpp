@@ -132,15 +132,15 @@ std::vector<SectionProfile> target_profiles(TargetRule const& rule, SpanCoordina
 
 }  // namespace
 
-SectionMapping map_sections(Mesh const& mesh, PatchSurface const& given, TargetRule const& rule, Axis const& axis,
-                            std::string const& name, std::vector<std::string>& notes) {
+SectionMapping map_sections(Boundary const& boundary, PatchSurface const& given, TargetRule const& rule,
+                            Axis const& axis, std::string const& name, std::vector<std::string>& notes) {
   if (rule.span && !(norm(*rule.span) > 0)) throw MotionError(name + ": the span direction has no length");
   if (!(norm(rule.flow) > 0)) throw MotionError(name + ": the flow direction has no length");
   SpanCoordinate const span(rule, axis);
   std::vector<Vec3> middles;
   for (TargetSection const& s : rule.target->sections)
     if (!s.points.empty()) middles.push_back(middle(s.points));
-  JoinedSides const joined = join_sides(mesh, given, middles.empty() ? Vec3{} : middle(middles));
+  JoinedSides const joined = join_sides(boundary, given, middles.empty() ? Vec3{} : middle(middles));
   PatchSurface const& surface = joined.surface;
   SectionRows const found = find_section_rows(
       surface, [&span](Vec3 const& p) { return span(p); }, name);
@@ -197,7 +197,8 @@ SectionMapping map_sections(Mesh const& mesh, PatchSurface const& given, TargetR
                      std::to_string(rows.size()) + " rows of nodes";
   if (beyond > 1e-9) note += "; extended by " + std::to_string(100 * beyond) + " % of the span beyond them";
   for (int const p : found.left_out)
-    note += "; patch " + describe_patch(mesh, mesh.patches[p]) + " has no sections and goes along with its edges";
+    note += "; patch " + describe_patch(boundary.mesh(), boundary.mesh().patches[p]) +
+            " has no sections and goes along with its edges";
   if (n_turned > 0)
     note += "; " + std::to_string(n_turned) + " of " + std::to_string(joined.turned.size()) +
             " patches are a pitch away and go as their copies there";

@@ -26,7 +26,7 @@ struct SectionMapping {
 /// target section alone shapes all nodes of a mesh and leaves their w as it is.
 ///
 /// Throws MotionError when the patches are not one blade or wing, or sections are not usable. Cost O(nodes log points).
-SectionMapping map_sections(Mesh const& mesh, PatchSurface const& surface, TargetRule const& rule, Axis const& axis,
-                            std::string const& name, std::vector<std::string>& notes);
+SectionMapping map_sections(Boundary const& boundary, PatchSurface const& surface, TargetRule const& rule,
+                            Axis const& axis, std::string const& name, std::vector<std::string>& notes);
 
 }  // namespace gridmorph

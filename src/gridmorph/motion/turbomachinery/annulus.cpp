@@ -1,6 +1,5 @@
 #include <gridmorph/motion/turbomachinery/annulus.hpp>
 
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/core/error.hpp>
 
 #include <algorithm>
@@ -162,11 +161,12 @@ CylindricalMotion Annulus::motion(MeridionalPoint const& p, CylindricalMotion co
   return {there.axial - here.axial, there.radius - here.radius, c.angle_rad};
 }
 
-std::vector<WallPiece> walls_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, std::vector<bool> const& in_row,
-                                    CylindricalFrame const& frame) {
+std::vector<WallPiece> walls_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
+                                    std::vector<bool> const& in_row, CylindricalFrame const& frame) {
   struct Extent {
     double lo = inf, hi = -inf;
   };
+  Mesh const& mesh = boundary.mesh();
   constexpr double parallel = 1e-6;
   std::map<int, Extent> extents;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
@@ -179,7 +179,7 @@ std::vector<WallPiece> walls_of_row(Mesh const& mesh, SlipSurfaces const& surfac
     if (!is_revolution(surface) && !across) continue;
     kernels::MeridionalFrame const own = across ? kernels::MeridionalFrame{0, 1} : surface.frame;
     Extent& e = extents[s];
-    for (Vec3 const& point : patch_points(mesh, {int(p)})) {
+    for (Vec3 const& point : boundary.points(int(p))) {
       MeridionalPoint const q = frame.meridional(point);
       double const x = own.abscissa(q.axial, q.radius);
       e.lo = std::min(e.lo, x);

@@ -64,7 +64,7 @@ class Annulus {
 };
 
 /// Parts of the slip surfaces that the row's zones have: revolution, meridional, and walls on planes across the axis.
-std::vector<WallPiece> walls_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, std::vector<bool> const& in_row,
-                                    CylindricalFrame const& frame);
+std::vector<WallPiece> walls_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
+                                    std::vector<bool> const& in_row, CylindricalFrame const& frame);
 
 }  // namespace gridmorph

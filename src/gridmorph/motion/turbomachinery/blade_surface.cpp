@@ -1,6 +1,5 @@
 #include <gridmorph/motion/turbomachinery/blade_surface.hpp>
 
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/detail/spanwise_lines.hpp>
@@ -16,8 +15,9 @@ namespace {
 
 class Stitcher {
  public:
-  Stitcher(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input, std::vector<std::string>& notes)
-      : mesh_(mesh), input_(input), notes_(notes), numbers_(1e-7 * box_diagonal(patch_points(mesh, patches))) {
+  Stitcher(Boundary const& boundary, std::vector<int> const& patches, BladeInput const& input,
+           std::vector<std::string>& notes)
+      : boundary_(boundary), input_(input), notes_(notes), numbers_(1e-7 * box_diagonal(boundary.points(patches))) {
     for (int p : patches) add_patch(p);
   }
 
@@ -41,11 +41,9 @@ class Stitcher {
   };
 
   void add_patch(int p) {
-    Patch const& patch = mesh_.patches[p];
     Piece piece;
-    for (int axis = 0, d = 0; axis < 3 && d < 2; ++axis)
-      if (patch.range.extent(axis) > 1) piece.extent[d++] = patch.range.extent(axis);
-    piece.points = patch_points(mesh_, {p});
+    piece.extent = boundary_.surface(p).grid.value();
+    piece.points = boundary_.points(p);
     if (piece.extent[0] < 2 || piece.extent[1] < 2) return;
 
     std::vector<Vec3> displacement(piece.points.size());
@@ -63,7 +61,7 @@ class Stitcher {
         piece.extent, [&](int n) { return piece.points[n]; },
         [&](int a, int b) { return std::abs(piece.span[b] - piece.span[a]) * height; });
     if (direction < 0) {
-      notes_.push_back("patch " + describe_patch(mesh_, patch) +
+      notes_.push_back("patch " + describe_patch(boundary_.mesh(), boundary_.mesh().patches[p]) +
                        " has no spanwise grid lines (a tip face?) and is left "
                        "out of the blade's sections");
       return;
@@ -119,7 +117,7 @@ class Stitcher {
       if (!used[l]) walk(int(l), true);
   }
 
-  Mesh const& mesh_;
+  Boundary const& boundary_;
   BladeInput const& input_;
   std::vector<std::string>& notes_;
   PointNumbers numbers_;
@@ -129,11 +127,11 @@ class Stitcher {
 
 }  // namespace
 
-BladeSurface stitch_blade(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input,
+BladeSurface stitch_blade(Boundary const& boundary, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes) {
-  double const size = box_diagonal(patch_points(mesh, patches));
+  double const size = box_diagonal(boundary.points(patches));
   if (!(size > 0) || !std::isfinite(size)) throw MotionError("the blade's nodes are one point, or not finite");
-  return Stitcher(mesh, patches, input, notes).run();
+  return Stitcher(boundary, patches, input, notes).run();
 }
 
 int leave_out_splitters(BladeSurface& blade) {

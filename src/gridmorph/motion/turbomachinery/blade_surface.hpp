@@ -1,8 +1,8 @@
 // A blade put together from its patches: spanwise grid lines, stitched into contours around the sections.
 #pragma once
 
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
-#include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/turbomachinery/wall_curve.hpp>
 
 #include <functional>
@@ -47,7 +47,7 @@ struct BladeInput {
 /// were split in span or around the section by their coincident nodes (1e-7 of the blade's size). Pieces that run
 /// nowhere spanwise (tip faces) are left out with a note. Throws MotionError when nothing is left or more than two
 /// surfaces meet in one line. Cost O(nodes log nodes).
-BladeSurface stitch_blade(Mesh const& mesh, std::vector<int> const& patches, BladeInput const& input,
+BladeSurface stitch_blade(Boundary const& boundary, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes);
 
 /// Leaves out the contours of splitter blades: those that begin or end elsewhere along the flow than the longest one does,

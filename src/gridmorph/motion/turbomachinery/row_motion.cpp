@@ -1,6 +1,5 @@
 #include <gridmorph/motion/turbomachinery/row_motion.hpp>
 
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
@@ -16,17 +15,18 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-std::vector<MeridionalPoint> meridional_points(Mesh const& mesh, CylindricalFrame const& frame,
+std::vector<MeridionalPoint> meridional_points(Boundary const& boundary, CylindricalFrame const& frame,
                                                std::vector<int> const& patches) {
   std::vector<MeridionalPoint> out;
-  for (Vec3 const& p : patch_points(mesh, patches)) out.push_back(frame.meridional(p));
+  for (Vec3 const& p : boundary.points(patches)) out.push_back(frame.meridional(p));
   return out;
 }
 
 /// Zones that hold the blade or hang together with those by node-to-node interfaces.
-std::vector<bool> zones_of_row(Mesh const& mesh, std::vector<int> const& blades) {
+std::vector<bool> zones_of_row(Boundary const& boundary, std::vector<int> const& blades) {
+  Mesh const& mesh = boundary.mesh();
   DisjointSets<int> rows(mesh.zones.size());
-  for (Interface1to1 const& i : mesh.interfaces) rows.join(i.zone, i.donor_zone);
+  for (AnyConnection const& i : connections_of(mesh)) rows.join(i.zone, i.donor_zone);
   std::set<int> roots;
   for (int p : blades) roots.insert(rows.root(mesh.patches[p].zone));
   std::vector<bool> in_row(mesh.zones.size());
@@ -34,23 +34,26 @@ std::vector<bool> zones_of_row(Mesh const& mesh, std::vector<int> const& blades)
   return in_row;
 }
 
-std::vector<int> surfaces_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, std::vector<bool> const& in_row) {
+std::vector<int> surfaces_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
+                                 std::vector<bool> const& in_row) {
+  Mesh const& mesh = boundary.mesh();
   std::set<int> found;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p)
     if (int const s = surfaces.of_patch[p]; s >= 0 && in_row[mesh.patches[p].zone]) found.insert(s);
   return {found.begin(), found.end()};
 }
 
-BladeSections make_sections(Mesh const& mesh, std::vector<int> const& blades, CylindricalFrame const& frame,
+BladeSections make_sections(Boundary const& boundary, std::vector<int> const& blades, CylindricalFrame const& frame,
                             Annulus const& annulus, RowMotion::PatchDisplacement const& displacement,
                             std::vector<std::string>& notes) {
+  Mesh const& mesh = boundary.mesh();
   // Across the flow, what counts is how far the blade departs from keeping its span fraction.
   auto const motion = [&](Vec3 const& point, Vec3 const& u) {
     return annulus.components(frame.meridional(point), frame.motion(point, u));
   };
   BladeInput const input{frame, [&annulus](MeridionalPoint const& p) { return annulus.position(p); },
                          [&annulus](MeridionalPoint const& p) { return annulus.height(p); }, motion, displacement};
-  BladeSurface surface = stitch_blade(mesh, blades, input, notes);
+  BladeSurface surface = stitch_blade(boundary, blades, input, notes);
   if (int const left_out = leave_out_splitters(surface); left_out > 0)
     notes.push_back("blade " + describe_patch(mesh, mesh.patches[blades.front()]) + ": " + std::to_string(left_out) +
                     " contours of splitter blades are left out; inlet, exit and periodics follow the main blade");
@@ -70,32 +73,34 @@ BladeSections make_sections(Mesh const& mesh, std::vector<int> const& blades, Cy
 
 }  // namespace
 
-Annulus annulus_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
+Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
                        std::vector<int> const& blades) {
-  std::vector<bool> const in_row = zones_of_row(mesh, blades);
-  return {surfaces, surfaces_of_row(mesh, surfaces, in_row), meridional_points(mesh, frame, blades),
-          [&] { return walls_of_row(mesh, surfaces, in_row, frame); }};
+  std::vector<bool> const in_row = zones_of_row(boundary, blades);
+  return {surfaces, surfaces_of_row(boundary, surfaces, in_row), meridional_points(boundary, frame, blades),
+          [&] { return walls_of_row(boundary, surfaces, in_row, frame); }};
 }
 
-RowMotion::RowMotion(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,
+RowMotion::RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
                      SlipSurfaces const& surfaces, PatchDisplacement const& displacement,
                      std::vector<std::string>& notes)
     : frame_(motion.axis),
-      row_zones_(zones_of_row(mesh, blades)),
-      annulus_(surfaces, surfaces_of_row(mesh, surfaces, row_zones_), meridional_points(mesh, frame_, blades),
-               [&] { return walls_of_row(mesh, surfaces, row_zones_, frame_); }),
-      sections_(make_sections(mesh, blades, frame_, annulus_, displacement, notes)),
+      row_zones_(zones_of_row(boundary, blades)),
+      annulus_(surfaces, surfaces_of_row(boundary, surfaces, row_zones_), meridional_points(boundary, frame_, blades),
+               [&] { return walls_of_row(boundary, surfaces, row_zones_, frame_); }),
+      sections_(make_sections(boundary, blades, frame_, annulus_, displacement, notes)),
       middle_(0.5 * (sections_.most_upstream() + sections_.most_downstream())),
-      inlet_(find_end(mesh, motion, blades, -1, displacement)),
-      exit_(find_end(mesh, motion, blades, +1, displacement)) {}
+      inlet_(find_end(boundary, motion, blades, -1, displacement)),
+      exit_(find_end(boundary, motion, blades, +1, displacement)) {}
 
-bool RowMotion::is_same_row(Mesh const& mesh, std::vector<int> const& blades, std::vector<int> const& others) const {
+bool RowMotion::is_same_row(Boundary const& boundary, std::vector<int> const& blades,
+                            std::vector<int> const& others) const {
   if (std::any_of(blades.begin(), blades.end(),
                   [&](int p) { return std::binary_search(others.begin(), others.end(), p); }))
     return true;
-  if (!std::all_of(others.begin(), others.end(), [&](int p) { return row_zones_[mesh.patches[p].zone]; })) return false;
+  if (!std::all_of(others.begin(), others.end(), [&](int p) { return row_zones_[boundary.mesh().patches[p].zone]; }))
+    return false;
   double lo = inf, hi = -inf;
-  for (MeridionalPoint const& p : meridional_points(mesh, frame_, others)) {
+  for (MeridionalPoint const& p : meridional_points(boundary, frame_, others)) {
     double const m = annulus_.along(p);
     lo = std::min(lo, m);
     hi = std::max(hi, m);
@@ -103,8 +108,10 @@ bool RowMotion::is_same_row(Mesh const& mesh, std::vector<int> const& blades, st
   return lo < sections_.most_downstream() && hi > sections_.most_upstream();
 }
 
-RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,
-                                   int side, PatchDisplacement const& displacement) const {
+RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion const& motion,
+                                   std::vector<int> const& blades, int side,
+                                   PatchDisplacement const& displacement) const {
+  Mesh const& mesh = boundary.mesh();
   double const edge = side < 0 ? sections_.most_upstream() : sections_.most_downstream();
   auto const beyond = [&](std::vector<MeridionalPoint> const& points, double limit) {
     return std::all_of(points.begin(), points.end(),
@@ -116,8 +123,8 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     Patch const& patch = mesh.patches[p];
     auto const* slide = std::get_if<CircumferentialSlideRule>(&motion.patch_rule(int(p)));
-    if (slide != nullptr && is_same_row(mesh, blades, select_patches(mesh, slide->of))) {
-      auto const points = meridional_points(mesh, frame_, {int(p)});
+    if (slide != nullptr && is_same_row(boundary, blades, select_patches(mesh, slide->of))) {
+      auto const points = meridional_points(boundary, frame_, {int(p)});
       if (beyond(points, middle_)) {
         sliding.insert(sliding.end(), points.begin(), points.end());
         if (first_sliding < 0) first_sliding = int(p);
@@ -131,7 +138,7 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
       }
     } else if (row_zones_[patch.zone] && (patch.kind != PatchKind::wall && patch.kind != PatchKind::symmetry &&
                                           patch.kind != PatchKind::degenerate)) {
-      auto const points = meridional_points(mesh, frame_, {int(p)});
+      auto const points = meridional_points(boundary, frame_, {int(p)});
       if (beyond(points, edge)) others.insert(others.end(), points.begin(), points.end());
     }
   }
@@ -143,7 +150,7 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
     std::vector<std::string> known;  // the slide's own row says all this
     if (with != blades)
       end.slides_with =
-          std::make_shared<BladeSections const>(make_sections(mesh, with, frame_, annulus_, displacement, known));
+          std::make_shared<BladeSections const>(make_sections(boundary, with, frame_, annulus_, displacement, known));
   }
   std::vector<std::pair<double, double>> nodes;
   for (MeridionalPoint const& p : end.slides ? sliding : others) {
@@ -162,11 +169,12 @@ RowMotion::End RowMotion::find_end(Mesh const& mesh, ResolvedMotion const& motio
           "position along the flow radius): " +
           e.what());
   }
-  if (!end.m_of_span) end.m = outermost(mesh, side);
+  if (!end.m_of_span) end.m = outermost(boundary, side);
   return end;
 }
 
-double RowMotion::outermost(Mesh const& mesh, int side) const {
+double RowMotion::outermost(Boundary const& boundary, int side) const {
+  Mesh const& mesh = boundary.mesh();
   double m = -side * inf;
   for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
     if (!row_zones_[z]) continue;

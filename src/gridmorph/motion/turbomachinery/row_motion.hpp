@@ -16,7 +16,7 @@
 namespace gridmorph {
 
 /// Hub, case and the coordinates between them of the row that holds the blades. Keeps pointers to `surfaces`.
-Annulus annulus_of_row(Mesh const& mesh, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
+Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
                        std::vector<int> const& blades);
 
 /// Motion of the surfaces around one blade row. Only axial position and radius of a point enter, as position along the flow
@@ -28,7 +28,7 @@ class RowMotion {
   using PatchDisplacement = std::function<void(int patch, std::span<Vec3 const>, std::span<Vec3>)>;
 
   /// Throws MotionError when the blade's sections cannot be made or a slide patch lies beside the blade.
-  RowMotion(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades,
+  RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
             SlipSurfaces const& surfaces, PatchDisplacement const& displacement, std::vector<std::string>& notes);
 
   /// Inlet and exit: turned by the angle of the leading edge (upstream of mid-chord) or trailing edge at this span.
@@ -50,13 +50,13 @@ class RowMotion {
     [[nodiscard]] double at(double span) const { return m_of_span ? (*m_of_span)(span) : m; }
   };
 
-  [[nodiscard]] End find_end(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades, int side,
-                             PatchDisplacement const& displacement) const;
+  [[nodiscard]] End find_end(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
+                             int side, PatchDisplacement const& displacement) const;
   /// Whether blades belong to the row: the same patches or some of them, or others beside them (splitters).
-  [[nodiscard]] bool is_same_row(Mesh const& mesh, std::vector<int> const& blades,
+  [[nodiscard]] bool is_same_row(Boundary const& boundary, std::vector<int> const& blades,
                                  std::vector<int> const& others) const;
   /// The outermost position along the flow of any node of the row.
-  [[nodiscard]] double outermost(Mesh const& mesh, int side) const;
+  [[nodiscard]] double outermost(Boundary const& boundary, int side) const;
   [[nodiscard]] CylindricalMotion taper(End const& end, FlowPosition const& at, double edge_m,
                                         double chord_fraction) const;
   /// Components of the motion (see Annulus::components).

@@ -1,6 +1,5 @@
 #include <gridmorph/motion/turbomachinery/section_frame.hpp>
 
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
 
@@ -112,15 +111,12 @@ Vec3 longest_extent(std::vector<Vec3> const& points) {
   return largest < 0 ? -d : d;
 }
 
-Vec3 span_direction(Mesh const& mesh, std::vector<int> const& patches, std::vector<Vec3> const& points) {
-  for (Patch const& symmetry : mesh.patches) {
-    if (symmetry.kind != PatchKind::symmetry) continue;
-    bool const meets =
-        std::any_of(patches.begin(), patches.end(), [&](int p) { return share_nodes(mesh.patches[p], symmetry); });
-    if (!meets) continue;
-    std::vector<Vec3> plane;
-    for_each_node(mesh.zones[symmetry.zone], symmetry.range, [&](Index n) { plane.push_back(mesh.coordinates[n]); });
-    PlaneFit const fit = fit_plane(plane);
+Vec3 span_direction(Boundary const& boundary, std::vector<int> const& patches, std::vector<Vec3> const& points) {
+  auto const& all = boundary.mesh().patches;
+  for (int q = 0; q < int(all.size()); ++q) {
+    if (all[std::size_t(q)].kind != PatchKind::symmetry) continue;
+    if (std::none_of(patches.begin(), patches.end(), [&](int p) { return boundary.share_nodes(p, q); })) continue;
+    PlaneFit const fit = fit_plane(boundary.points(q));
     if (!fit.determined) continue;
     double middle = 0;
     for (Vec3 const& p : points) middle += dot(p - fit.origin, fit.normal);
@@ -131,15 +127,17 @@ Vec3 span_direction(Mesh const& mesh, std::vector<int> const& patches, std::vect
 
 }  // namespace
 
-std::unique_ptr<SectionFrame> blade_frame(Mesh const& mesh, Axis const& axis, SlipSurfaces const& surfaces,
+std::unique_ptr<SectionFrame> blade_frame(Boundary const& boundary, Axis const& axis, SlipSurfaces const& surfaces,
                                           std::vector<int> const& blades) {
   CylindricalFrame const frame(axis);
-  return std::make_unique<BladeFrame>(frame, annulus_of_row(mesh, surfaces, frame, blades), patch_points(mesh, blades));
+  return std::make_unique<BladeFrame>(frame, annulus_of_row(boundary, surfaces, frame, blades),
+                                      boundary.points(blades));
 }
 
-std::unique_ptr<SectionFrame> wing_frame(Mesh const& mesh, SectionsRule const& rule, std::vector<int> const& patches) {
-  std::vector<Vec3> const points = patch_points(mesh, patches);
-  Vec3 const span = rule.span ? *rule.span : span_direction(mesh, patches, points);
+std::unique_ptr<SectionFrame> wing_frame(Boundary const& boundary, SectionsRule const& rule,
+                                         std::vector<int> const& patches) {
+  std::vector<Vec3> const points = boundary.points(patches);
+  Vec3 const span = rule.span ? *rule.span : span_direction(boundary, patches, points);
   if (norm(cross(span, rule.flow)) < 1e-3 * norm(span) * norm(rule.flow))
     throw MotionError("the flow direction runs along the span direction (" + std::to_string(span.x) + ", " +
                       std::to_string(span.y) + ", " + std::to_string(span.z) + "); give flow and span");

@@ -35,12 +35,13 @@ class SectionFrame {
 };
 
 /// Sections at constant span fraction between hub and case: s is the axial position, t the angle about the axis.
-std::unique_ptr<SectionFrame> blade_frame(Mesh const& mesh, Axis const& axis, SlipSurfaces const& surfaces,
+std::unique_ptr<SectionFrame> blade_frame(Boundary const& boundary, Axis const& axis, SlipSurfaces const& surfaces,
                                           std::vector<int> const& blades);
 
 /// Plane sections across the span direction of a wing: s along the flow, t = span x s. The span direction is the rule's;
 /// without one the normal of the symmetry plane the wing stands on, without that its longest extent. Throws MotionError
 /// when the flow runs along the span.
-std::unique_ptr<SectionFrame> wing_frame(Mesh const& mesh, SectionsRule const& rule, std::vector<int> const& patches);
+std::unique_ptr<SectionFrame> wing_frame(Boundary const& boundary, SectionsRule const& rule,
+                                         std::vector<int> const& patches);
 
 }  // namespace gridmorph

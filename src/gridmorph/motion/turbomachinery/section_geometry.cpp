@@ -365,9 +365,9 @@ SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<Secti
 
 }  // namespace
 
-std::vector<SectionGeometry> find_sections(Mesh const& mesh, SectionFrame const& frame, std::vector<int> const& patches,
-                                           std::vector<std::string>& notes) {
-  BladeSurface const surface = stitch_blade(mesh, patches, frame.stitching(), notes);
+std::vector<SectionGeometry> find_sections(Boundary const& boundary, SectionFrame const& frame,
+                                           std::vector<int> const& patches, std::vector<std::string>& notes) {
+  BladeSurface const surface = stitch_blade(boundary, patches, frame.stitching(), notes);
   std::vector<SectionGeometry> found;
   std::vector<std::vector<SectionGeometry::Line>> open;
   for (BladeContour const& contour : surface.contours) {
@@ -395,7 +395,7 @@ std::vector<SectionGeometry> find_sections(Mesh const& mesh, SectionFrame const&
                       " open surfaces; give each blade, with its two sides, a rule of its own");
   if (found.empty()) throw MotionError("the patches make up no blade or wing; name its walls");
   for (std::size_t b = 0; b < found.size(); ++b)
-    notes.push_back("sections of " + describe_patch(mesh, mesh.patches[patches.front()]) +
+    notes.push_back("sections of " + describe_patch(boundary.mesh(), boundary.mesh().patches[patches.front()]) +
                     (found.size() > 1 ? ", number " + std::to_string(b + 1) : std::string()) + ": " +
                     found[b].description());
   return found;

@@ -73,7 +73,7 @@ class SectionGeometry {
 
 /// The blades or wings that the patches of one rule make up. Closed contours and those whose ends lie together are
 /// whole; two open ones are the sides of one blade in an H mesh, possibly a pitch apart. Throws MotionError otherwise.
-std::vector<SectionGeometry> find_sections(Mesh const& mesh, SectionFrame const& frame, std::vector<int> const& patches,
-                                           std::vector<std::string>& notes);
+std::vector<SectionGeometry> find_sections(Boundary const& boundary, SectionFrame const& frame,
+                                           std::vector<int> const& patches, std::vector<std::string>& notes);
 
 }  // namespace gridmorph

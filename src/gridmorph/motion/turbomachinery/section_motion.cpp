@@ -1,6 +1,5 @@
 #include <gridmorph/motion/turbomachinery/section_motion.hpp>
 
-#include <gridmorph/boundary/patch_points.hpp>
 #include <gridmorph/core/error.hpp>
 
 #include <algorithm>
@@ -48,18 +47,18 @@ double integral_of_tangent(SpanwiseTable const& angle, double from, double to) {
 
 }  // namespace
 
-EdgeTrim::EdgeTrim(Mesh const& mesh, SectionFrame const& frame, std::vector<int> const& patches,
+EdgeTrim::EdgeTrim(Boundary const& boundary, SectionFrame const& frame, std::vector<int> const& patches,
                    SlipSurfaces const& surfaces) {
   std::set<int> touched;
-  for (std::size_t q = 0; q < mesh.patches.size(); ++q) {
+  for (std::size_t q = 0; q < boundary.mesh().patches.size(); ++q) {
     int const s = surfaces.of_patch[q];
     if (s < 0 || surfaces.surfaces[std::size_t(s)].kind == SlipSurface::Kind::axial) continue;
     for (int p : patches)
-      if (share_nodes(mesh.patches[p], mesh.patches[q])) touched.insert(s);
+      if (boundary.share_nodes(p, int(q))) touched.insert(s);
   }
   if (touched.empty()) return;
 
-  std::vector<Vec3> const points = patch_points(mesh, patches);
+  std::vector<Vec3> const points = boundary.points(patches);
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (Vec3 const& p : points) {
     double const span = frame.at(p).span;
@@ -100,14 +99,14 @@ Vec3 EdgeTrim::operator()(Vec3 const& point, double span, Vec3 const& u) const {
   return u + (1 / sum) * weighted;
 }
 
-SectionMotion::SectionMotion(Mesh const& mesh, ResolvedMotion const& motion, SectionsRule const& rule,
+SectionMotion::SectionMotion(Boundary const& boundary, ResolvedMotion const& motion, SectionsRule const& rule,
                              std::vector<int> const& patches, SlipSurfaces const& surfaces,
                              std::vector<std::string>& notes)
     : rule_(rule),
-      frame_(rule.sections == SectionsRule::Sections::blade ? blade_frame(mesh, motion.axis, surfaces, patches)
-                                                            : wing_frame(mesh, rule, patches)),
-      blades_(find_sections(mesh, *frame_, patches, notes)),
-      trim_(mesh, *frame_, patches, surfaces),
+      frame_(rule.sections == SectionsRule::Sections::blade ? blade_frame(boundary, motion.axis, surfaces, patches)
+                                                            : wing_frame(boundary, rule, patches)),
+      blades_(find_sections(boundary, *frame_, patches, notes)),
+      trim_(boundary, *frame_, patches, surfaces),
       thickens_(!rule.thickness.is_zero()),
       bows_(!rule.bow_rad.is_zero()) {
   if (thickens_ && !std::all_of(blades_.begin(), blades_.end(), [](auto const& b) { return b.has_camber(); }))

@@ -19,7 +19,8 @@ namespace gridmorph {
 class EdgeTrim {
  public:
   /// The slip surfaces whose patches share nodes with the given ones. Keeps pointers to `surfaces`.
-  EdgeTrim(Mesh const& mesh, SectionFrame const& frame, std::vector<int> const& patches, SlipSurfaces const& surfaces);
+  EdgeTrim(Boundary const& boundary, SectionFrame const& frame, std::vector<int> const& patches,
+           SlipSurfaces const& surfaces);
 
   /// Corrected displacement of a point at a span fraction. Comes back bit for bit when nothing is touched.
   [[nodiscard]] Vec3 operator()(Vec3 const& point, double span, Vec3 const& u) const;
@@ -35,7 +36,7 @@ class EdgeTrim {
 class SectionMotion {
  public:
   /// Throws MotionError when the sections cannot be made. Keeps pointers to `surfaces`. Cost O(nodes log nodes).
-  SectionMotion(Mesh const& mesh, ResolvedMotion const& motion, SectionsRule const& rule,
+  SectionMotion(Boundary const& boundary, ResolvedMotion const& motion, SectionsRule const& rule,
                 std::vector<int> const& patches, SlipSurfaces const& surfaces, std::vector<std::string>& notes);
 
   /// Cost: O(log sections), times the blades of the rule.

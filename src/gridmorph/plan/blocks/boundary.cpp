@@ -1,5 +1,3 @@
-#include <gridmorph/core/error.hpp>
-#include <gridmorph/core/text.hpp>
 #include <gridmorph/plan/blocks/boundary.hpp>
 
 #include <algorithm>
@@ -17,7 +15,7 @@ struct ExplicitFace {
 };
 
 std::vector<ExplicitFace> explicit_faces(Topology const& topology, ResolvedMotion const& motion,
-                                         SurfaceMotion const& surface) {
+                                         BoundaryMotion const& surface) {
   std::vector<ExplicitFace> faces;
   Blocks const& blocks = topology.blocks;
   for (int c = 0; c < topology.lattice.n_classes(); ++c) {
@@ -38,11 +36,6 @@ void for_closure(Lattice const& lattice, int face_entity, Visit&& visit) {
     for (d[1] = -(p[1] % 2); d[1] <= p[1] % 2; ++d[1])
       for (d[0] = -(p[0] % 2); d[0] <= p[0] % 2; ++d[0])
         visit(lattice.entity(zone, {p[0] + d[0], p[1] + d[1], p[2] + d[2]}));
-}
-
-std::string requester(Mesh const& mesh, BoundaryRequests::Request const& r) {
-  return r.patch >= 0 ? describe_patch(mesh, mesh.patches[r.patch])
-                      : "'" + mesh.interfaces[r.interface].name + "' (periodic)";
 }
 
 }  // namespace
@@ -69,7 +62,7 @@ Index add_boundary_nodes(PlanContext const& context, int entity_class, Plan& pla
 }
 
 BoundaryRequests collect_boundary(PlanContext const& context, ResolvedMotion const& motion,
-                                  SurfaceMotion const& surface, std::vector<std::string> const& kind_order,
+                                  BoundaryMotion const& surface, std::vector<std::string> const& kind_order,
                                   Known& known, Plan& plan) {
   Mesh const& mesh = context.mesh;
   Topology const& topology = context.topology;
@@ -113,65 +106,6 @@ BoundaryRequests collect_boundary(PlanContext const& context, ResolvedMotion con
     });
   }
   return boundary;
-}
-
-std::vector<Vec3> evaluate_boundary(Mesh const& mesh, BoundaryRequests const& boundary, Plan const& plan,
-                                    ResolvedMotion const& motion, SurfaceMotion const& surface, double mesh_size) {
-  using Request = BoundaryRequests::Request;
-  auto const& requests = boundary.requests;
-  std::vector<Vec3> values(plan.boundary_nodes.size());
-  std::vector<int> given_by(plan.boundary_nodes.size(), -1);
-
-  struct Conflict {
-    double size = 0;
-    int first = 0, second = 0;
-    Index count = 0;
-    Vec3 a, b;
-  };
-  std::map<std::pair<std::string, std::string>, Conflict> conflicts;
-  double const tolerance = motion.conformity_tolerance * mesh_size;
-
-  for (std::size_t begin = 0; begin < requests.size();) {
-    std::size_t end = begin;
-    while (end < requests.size() && requests[end].rule == requests[begin].rule) ++end;
-    std::vector<Vec3> points(end - begin), u(end - begin);
-    for (std::size_t n = begin; n < end; ++n) points[n - begin] = mesh.coordinates[requests[n].node];
-    surface.displacement(requests[begin].rule, points, u);
-    for (std::size_t n = begin; n < end; ++n) {
-      Request const& r = requests[n];
-      Vec3 const v = r.rotation < 0 ? u[n - begin] : transpose(plan.rotations[r.rotation]) * u[n - begin];
-      if (given_by[r.boundary_node] < 0) {
-        given_by[r.boundary_node] = int(n);
-        values[r.boundary_node] = v;
-        continue;
-      }
-      Request const& first = requests[given_by[r.boundary_node]];
-      if (motion.rules[first.rule].rank < motion.rules[r.rule].rank) continue;
-      double const gap = distance(values[r.boundary_node], v);
-      if (gap <= tolerance) continue;
-      Conflict& c = conflicts[{requester(mesh, first), requester(mesh, r)}];
-      ++c.count;
-      if (gap > c.size) {
-        c.size = gap;
-        c.first = given_by[r.boundary_node];
-        c.second = int(n);
-        c.a = values[r.boundary_node];
-        c.b = v;
-      }
-    }
-    begin = end;
-  }
-
-  Problems problems;
-  for (auto const& [who, c] : conflicts) {
-    problems.add("patches " + who.first + " and " + who.second + " disagree on " + std::to_string(c.count) +
-                 " common nodes, most at " + describe_node(mesh, requests[c.first].node) + ": " + to_text(c.a, 6) +
-                 " from " + motion.rules[requests[c.first].rule].where + ", " + to_text(c.b, 6) + " from " +
-                 motion.rules[requests[c.second].rule].where + ", apart by " + to_text(c.size, 6) +
-                 "; make the two motions agree there, let one of them slip, or give the rules different ranks");
-  }
-  problems.throw_if_any<MotionError>();
-  return values;
 }
 
 }  // namespace gridmorph

@@ -1,8 +1,8 @@
 // Boundary nodes: whose displacement the motion rules give, and how the rules agree where patches meet.
 #pragma once
 
+#include <gridmorph/motion/boundary_requests.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
-#include <gridmorph/plan/boundary_requests.hpp>
 
 #include <vector>
 
@@ -14,7 +14,7 @@ Index add_boundary_nodes(PlanContext const& context, int entity_class, Plan& pla
 /// Marks every entity on the closure of explicitly moved faces known and lists its nodes. The order of slots and
 /// requests follows the lattice. Cost: O(boundary nodes).
 BoundaryRequests collect_boundary(PlanContext const& context, ResolvedMotion const& motion,
-                                  SurfaceMotion const& surface, std::vector<std::string> const& kind_order,
+                                  BoundaryMotion const& surface, std::vector<std::string> const& kind_order,
                                   Known& known, Plan& plan);
 
 }  // namespace gridmorph

@@ -1,4 +1,4 @@
-#include <gridmorph/boundary/patch_points.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/mesh/coincident_pairs.hpp>
 #include <gridmorph/plan/blocks/loose_nodes.hpp>
 

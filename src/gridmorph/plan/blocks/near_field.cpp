@@ -37,7 +37,7 @@ int median_layers(Mesh const& mesh, Links const& links, std::vector<int> const& 
 }  // namespace
 
 std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                   SurfaceMotion const& surface, std::vector<PatchKind> const& kinds,
+                                   BoundaryMotion const& surface, std::vector<PatchKind> const& kinds,
                                    std::vector<BoundaryLayer> const& options) {
   std::vector<NearField> fields;
   for (BoundaryLayer const& option : options) {

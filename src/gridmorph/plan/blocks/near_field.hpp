@@ -17,7 +17,7 @@ struct NearField {
 /// ranked_kinds()) and that an explicit rule other than `fixed` moves; a thickness becomes the median, over all wall nodes, of the layers that reach it.
 /// Throws PlanError for selectors that match no patch and near fields that reach another boundary.
 std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                   SurfaceMotion const& surface, std::vector<PatchKind> const& kinds,
+                                   BoundaryMotion const& surface, std::vector<PatchKind> const& kinds,
                                    std::vector<BoundaryLayer> const& options);
 
 /// Planes that bound the near fields: to be cut, and kept when blocks are merged.

@@ -82,7 +82,7 @@ std::set<int> viscous_patches(Mesh const& mesh, Links const& links, ResolvedMoti
 }  // namespace
 
 std::vector<PatchKind> ranked_kinds(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                    SurfaceMotion const& surface, std::vector<BoundaryLayer> const& layers,
+                                    BoundaryMotion const& surface, std::vector<BoundaryLayer> const& layers,
                                     std::vector<std::string>& notes) {
   std::set<int> named;
   for (BoundaryLayer const& layer : layers)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/boundary/links.hpp>
-#include <gridmorph/motion/surface_motion.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/plan/options.hpp>
 
 #include <string>
@@ -21,7 +21,7 @@ namespace gridmorph {
 /// What was taken for a wall by its cells is said in a note. Values of rules are not looked at: a plan serves any amplitude.
 /// Cost: eight cells from every node of patches of kind `other` that are fixed.
 std::vector<PatchKind> ranked_kinds(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                    SurfaceMotion const& surface, std::vector<BoundaryLayer> const& layers,
+                                    BoundaryMotion const& surface, std::vector<BoundaryLayer> const& layers,
                                     std::vector<std::string>& notes);
 
 }  // namespace gridmorph

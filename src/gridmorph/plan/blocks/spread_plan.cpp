@@ -10,20 +10,16 @@
 namespace gridmorph {
 namespace {
 
-bool same_surface(SlipSurface const& a, SlipSurface const& b) {
-  return a.kind == b.kind && a.origin == b.origin && a.direction == b.direction && a.profile.knots == b.profile.knots &&
-         a.frame == b.frame && a.facets.points == b.facets.points;
-}
-
 /// Number of each patch's slip surface in `surfaces`, -1 for patches that do not slip.
-std::vector<int> surface_numbers(Mesh const& mesh, SurfaceMotion const& surface, std::vector<SlipSurface>& surfaces) {
+std::vector<int> surface_numbers(Mesh const& mesh, BoundaryMotion const& motion, std::vector<SlipSurface>& surfaces) {
   std::vector<int> number(mesh.patches.size(), -1);
+  std::map<int, int> place;  // in the order of patches
   for (int p = 0; p < int(mesh.patches.size()); ++p) {
-    std::optional<SlipSurface> const s = surface.slip_surface(p);
-    if (!s) continue;
-    auto const it = std::find_if(surfaces.begin(), surfaces.end(), [&](auto const& o) { return same_surface(o, *s); });
-    number[p] = int(it - surfaces.begin());
-    if (it == surfaces.end()) surfaces.push_back(*s);
+    int const s = motion.slip_surface_of(p);
+    if (s < 0) continue;
+    auto const [at, fresh] = place.try_emplace(s, int(surfaces.size()));
+    if (fresh) surfaces.push_back(motion.slip_surfaces()[std::size_t(s)]);
+    number[p] = at->second;
   }
   return number;
 }
@@ -187,7 +183,7 @@ void sweep_again(std::vector<RuleChains>& lists) {
 
 }  // namespace
 
-void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, SurfaceMotion const& surface,
+void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, BoundaryMotion const& surface,
                   Known const& given, Plan& plan) {
   Mesh const& mesh = context.mesh;
   Topology const& topology = context.topology;

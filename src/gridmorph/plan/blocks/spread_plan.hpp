@@ -9,7 +9,7 @@ namespace gridmorph {
 /// the opposite boundary, or as far as the chains of its rule stay side by side: what leaves the chains sideways into
 /// other blocks must not move. Rules whose chains are the same from end to end (hub and case) share one pass; other rules
 /// have passes of their own, in their order. `given`: entities whose displacement the motion rules give.
-void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, SurfaceMotion const& surface,
+void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, BoundaryMotion const& surface,
                   Known const& given, Plan& plan);
 
 }  // namespace gridmorph

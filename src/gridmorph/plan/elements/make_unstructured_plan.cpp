@@ -43,7 +43,7 @@ void UnstructuredPlanner::take_boundary() {
   UnstructuredPlan& plan = out_.plan;
   out_.notes = b.notes;
   plan.known = b.known;
-  plan.surfaces = b.surfaces;
+  plan.surfaces = b.motion->slip_surfaces();
   plan.images = b.images;
   plan.rotations = b.rotations;
   is_known_ = drives_ = is_other_ = mask();

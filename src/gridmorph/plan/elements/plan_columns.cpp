@@ -15,7 +15,7 @@ void UnstructuredPlanner::find_driving_faces() {
   layer_of_patch_.assign(mesh_.patches.size(), -1);
   for (std::size_t l = 0; l < options_.boundary_layers.size(); ++l) {
     auto const& layer = options_.boundary_layers[l];
-    std::vector<int> const patches = layer.walls.empty() ? b.driving_patches : select_patches(b.outline, layer.walls);
+    std::vector<int> const patches = layer.walls.empty() ? b.driving_patches : select_patches(mesh_, layer.walls);
     for (int const p : patches) {
       int& own = layer_of_patch_[std::size_t(p)];
       if (own >= 0)

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/surface_motion.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
 
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
@@ -25,27 +25,48 @@ std::vector<std::string> const* blades_of(Rule const& rule) {
 
 }  // namespace
 
-struct SurfaceMotion::Impl {
-  std::vector<MotionRule> rules;
+struct BoundaryMotion::Impl {
+  std::shared_ptr<Boundary const> boundary;
+  ResolvedMotion motion;
+  std::vector<MotionRule> const& rules = motion.rules;
   std::vector<std::string> notes;
-  SlipSurfaces surfaces;
+  std::shared_ptr<SlipSurfaces const> slip;
   std::map<std::vector<int>, RowMotion> rows;  ///< by the patches of the blade; map, so that rows stay where they
                                                ///< are
   std::vector<RowMotion const*> row_of_rule;   ///< per rule, null for rules without a blade
   std::vector<std::unique_ptr<SectionMotion>> sections_of_rule;  ///< per rule, null for other rules
-  std::map<int, TargetMotion> targets;                           ///< by rule
+  std::map<int, std::shared_ptr<TargetMotion const>> targets;    ///< by rule
 
-  Impl(Mesh const& mesh, ResolvedMotion const& motion, PatchFaces const* faces)
-      : rules(motion.rules), surfaces(mesh, motion, notes), row_of_rule(rules.size(), nullptr) {
+  Impl(std::shared_ptr<Boundary const> of, ResolvedMotion resolved)
+      : boundary(std::move(of)),
+        motion(std::move(resolved)),
+        slip(std::make_shared<SlipSurfaces const>(*boundary, motion, notes)) {
+    make_targets();
+    make_blades();
+  }
+
+  Impl(Impl const& other, Motion const& now) : boundary(other.boundary), motion(other.motion), slip(other.slip) {
+    for (std::size_t r = 0; r < now.rules.size(); ++r) motion.rules[r].rule = now.rules[r].rule;
+    for (auto const& [r, target] : other.targets)
+      targets[r] =
+          std::make_shared<TargetMotion const>(*target, std::get<TargetRule>(rules[std::size_t(r)].rule).share);
+    make_blades();
+  }
+
+  Impl(Impl const&) = delete;
+  Impl& operator=(Impl const&) = delete;
+
+  void make_blades() {
     Problems problems;
-    make_targets(mesh, motion, faces, problems);
+    row_of_rule.assign(rules.size(), nullptr);
     sections_of_rule.resize(rules.size());
     for (std::size_t r = 0; r < rules.size(); ++r) {
       auto const* sections = std::get_if<SectionsRule>(&rules[r].rule);
       if (sections == nullptr) continue;
       try {
-        sections_of_rule[r] =
-            std::make_unique<SectionMotion>(mesh, motion, *sections, patches_of(motion, int(r)), surfaces, notes);
+        auto const patches = patches_of(int(r));
+        require_grids(patches);
+        sections_of_rule[r] = std::make_unique<SectionMotion>(*boundary, motion, *sections, patches, *slip, notes);
       } catch (MotionError const& e) {
         problems.add(label(int(r)) + ": " + e.what());
       }
@@ -54,7 +75,7 @@ struct SurfaceMotion::Impl {
     for (std::size_t r = 0; r < rules.size(); ++r) {
       if (blades_of(rules[r].rule) == nullptr) continue;
       try {
-        row_of_rule[r] = &row(mesh, motion, select_patches(mesh, *blades_of(rules[r].rule)));
+        row_of_rule[r] = &row(select_patches(boundary->mesh(), *blades_of(rules[r].rule)));
       } catch (MotionError const& e) {
         problems.add(label(int(r)) + ": " + e.what());
       }
@@ -63,13 +84,14 @@ struct SurfaceMotion::Impl {
   }
 
   /// Before the blade rows, which may follow a blade that has a target.
-  void make_targets(Mesh const& mesh, ResolvedMotion const& motion, PatchFaces const* faces, Problems& problems) {
+  void make_targets() {
+    Problems problems;
     for (std::size_t r = 0; r < rules.size(); ++r) {
       auto const* target = std::get_if<TargetRule>(&rules[r].rule);
       if (target == nullptr) continue;
       try {
-        targets.try_emplace(int(r), mesh, patches_of(motion, int(r)), *target, motion.axis, label(int(r)), notes,
-                            faces);
+        targets[int(r)] = std::make_shared<TargetMotion const>(*boundary, patches_of(int(r)), *target, motion.axis,
+                                                               label(int(r)), notes);
       } catch (MotionError const& e) {
         problems.add(e.what());
       }
@@ -77,8 +99,21 @@ struct SurfaceMotion::Impl {
     problems.throw_if_any<MotionError>();
   }
 
-  RowMotion const& row(Mesh const& mesh, ResolvedMotion const& motion, std::vector<int> const& blades) {
+  /// Sections are found along the grid lines of a blade's patches.
+  void require_grids(std::vector<int> const& patches) const {
+    Mesh const& mesh = boundary->mesh();
+    for (int const p : patches)
+      if (!boundary->surface(p).grid)
+        throw MotionError(
+            "patch " + describe_patch(mesh, mesh.patches[std::size_t(p)]) +
+            " is made of faces of elements; sections of a blade are found along the grid lines of blocks. "
+            "Give the displacement by rigid, formula, field or target");
+  }
+
+  RowMotion const& row(std::vector<int> const& blades) {
     if (auto const known = rows.find(blades); known != rows.end()) return known->second;
+    Mesh const& mesh = boundary->mesh();
+    require_grids(blades);
     for (int p : blades)
       if (Rule const& rule = motion.patch_rule(p); !is_direct(rule))
         throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
@@ -89,7 +124,7 @@ struct SurfaceMotion::Impl {
     auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[p].rule, points, out);
     };
-    return rows.try_emplace(blades, mesh, motion, blades, surfaces, displacement, notes).first->second;
+    return rows.try_emplace(blades, *boundary, motion, blades, *slip, displacement, notes).first->second;
   }
 
   static bool is_direct(Rule const& rule) {
@@ -98,7 +133,7 @@ struct SurfaceMotion::Impl {
            std::holds_alternative<TargetRule>(rule);
   }
 
-  static std::vector<int> patches_of(ResolvedMotion const& motion, int r) {
+  [[nodiscard]] std::vector<int> patches_of(int r) const {
     std::vector<int> patches;
     for (std::size_t p = 0; p < motion.patch.size(); ++p)
       if (motion.patch[p].rule == r) patches.push_back(int(p));
@@ -118,7 +153,7 @@ struct SurfaceMotion::Impl {
 
   void evaluate(int r, std::span<Vec3 const> points, std::span<Vec3> out) const {
     Rule const& rule = rules[r].rule;
-    if (std::holds_alternative<FixedRule>(rule)) {
+    if (std::holds_alternative<FixedRule>(rule) || std::holds_alternative<PrescribedRule>(rule)) {
       std::fill(out.begin(), out.end(), Vec3{});
     } else if (auto const* rigid = std::get_if<RigidRule>(&rule)) {
       std::transform(points.begin(), points.end(), out.begin(),
@@ -129,7 +164,7 @@ struct SurfaceMotion::Impl {
       std::transform(points.begin(), points.end(), out.begin(),
                      [sections](Vec3 const& p) { return sections->displacement(p); });
     } else if (std::holds_alternative<TargetRule>(rule)) {
-      targets.at(r).displacement(points, out);
+      targets.at(r)->displacement(points, out);
     } else {
       RowMotion const& row = *row_of_rule[r];
       bool const slides = std::holds_alternative<CircumferentialSlideRule>(rule);
@@ -145,17 +180,21 @@ struct SurfaceMotion::Impl {
   }
 };
 
-SurfaceMotion::SurfaceMotion(Mesh const& mesh, ResolvedMotion const& motion, PatchFaces const* faces)
-    : impl_(std::make_unique<Impl>(mesh, motion, faces)) {}
-SurfaceMotion::~SurfaceMotion() = default;
-SurfaceMotion::SurfaceMotion(SurfaceMotion&&) noexcept = default;
-SurfaceMotion& SurfaceMotion::operator=(SurfaceMotion&&) noexcept = default;
+BoundaryMotion::BoundaryMotion(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+BoundaryMotion::BoundaryMotion(std::shared_ptr<Boundary const> boundary, ResolvedMotion const& motion)
+    : impl_(std::make_unique<Impl>(std::move(boundary), motion)) {}
+BoundaryMotion::BoundaryMotion(Mesh const& mesh, ResolvedMotion const& motion)
+    : BoundaryMotion(std::make_shared<Boundary const>(mesh), motion) {}
+BoundaryMotion::~BoundaryMotion() = default;
+BoundaryMotion::BoundaryMotion(BoundaryMotion&&) noexcept = default;
+BoundaryMotion& BoundaryMotion::operator=(BoundaryMotion&&) noexcept = default;
 
-bool SurfaceMotion::is_explicit(int rule) const {
-  return Impl::is_direct(impl_->rules[rule].rule) || impl_->row_of_rule[rule] != nullptr;
+bool BoundaryMotion::is_explicit(int rule) const {
+  return Impl::is_direct(impl_->rules[rule].rule) || impl_->row_of_rule[rule] != nullptr ||
+         std::holds_alternative<PrescribedRule>(impl_->rules[rule].rule);
 }
 
-void SurfaceMotion::displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const {
+void BoundaryMotion::displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const {
   if (!is_explicit(rule))
     throw MotionError(impl_->label(rule) + " is left to the volume stage and has no displacement of its own");
   if (points.size() != out.size())
@@ -164,26 +203,33 @@ void SurfaceMotion::displacement(int rule, std::span<Vec3 const> points, std::sp
   impl_->evaluate(rule, points, out);
 }
 
-std::optional<SlipSurface> SurfaceMotion::slip_surface(int patch) const {
-  int const s = impl_->surfaces.of_patch[patch];
-  if (s < 0) return std::nullopt;
-  return impl_->surfaces.surfaces[s];
+BoundaryMotion BoundaryMotion::with(Motion const& motion) const {
+  return BoundaryMotion(std::make_unique<Impl>(*impl_, motion));
 }
 
-int SurfaceMotion::slip_surface_number(int patch) const { return impl_->surfaces.of_patch[patch]; }
+Boundary const& BoundaryMotion::boundary() const { return *impl_->boundary; }
+ResolvedMotion const& BoundaryMotion::motion() const { return impl_->motion; }
 
-bool SurfaceMotion::slides_upstream(int rule, Vec3 const& point) const {
+std::vector<SlipSurface> const& BoundaryMotion::slip_surfaces() const { return impl_->slip->surfaces; }
+int BoundaryMotion::slip_surface_of(int patch) const { return impl_->slip->of_patch[std::size_t(patch)]; }
+
+SlipSurface const* BoundaryMotion::slip_surface(int patch) const {
+  int const s = slip_surface_of(patch);
+  return s < 0 ? nullptr : &slip_surfaces()[std::size_t(s)];
+}
+
+bool BoundaryMotion::slides_upstream(int rule, Vec3 const& point) const {
   RowMotion const* row = impl_->row_of_rule[rule];
   return row != nullptr && row->is_upstream(point);
 }
 
-std::vector<TargetReach> SurfaceMotion::target_reach(Mesh const& mesh, Coordinates const& morphed) const {
+std::vector<TargetReach> BoundaryMotion::target_reach(Coordinates const& morphed) const {
   std::vector<TargetReach> out;
   for (auto const& [rule, target] : impl_->targets)
-    if (target.whole()) out.push_back(target.reach(mesh, morphed));
+    if (target->whole()) out.push_back(target->reach(morphed));
   return out;
 }
 
-std::vector<std::string> const& SurfaceMotion::notes() const { return impl_->notes; }
+std::vector<std::string> const& BoundaryMotion::notes() const { return impl_->notes; }
 
 }  // namespace gridmorph

@@ -1,0 +1,73 @@
+// What a mesh is bounded by, as motion rules see it: the same for blocks and for elements.
+#pragma once
+
+#include <gridmorph/geometry/facet_surface.hpp>
+#include <gridmorph/mesh/unstructured_topology.hpp>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace gridmorph {
+
+/// Corners of a facet, four or (the last is -1) three, in order around it; two in the boundary of a 2-D mesh of elements.
+using GridFacet = std::array<int, 4>;
+
+/// One patch.
+struct BoundarySurface {
+  std::vector<Index> nodes;  ///< of the mesh, each once: i fastest on a grid, otherwise ascending
+  std::optional<std::array<int, 2>>
+      grid;  ///< patches of blocks: nodes along their two directions, the first one fastest
+  /// Faces of elements on `nodes`, their normals pointing into the mesh; fans of triangles where they have more than four corners.
+  std::vector<GridFacet> faces;
+  std::vector<int> in_file_order;  ///< of elements: places in `nodes` as the file counts its nodes
+};
+
+/// The patches of a mesh with nodes and facets, and its periodic connections. A value of its own: it shares the coordinates of the
+/// mesh and has no use for its elements.
+class Boundary {
+ public:
+  /// Of a mesh of blocks; `size`: Mesh::size(), where it is known. Cost O(nodes of patches).
+  explicit Boundary(Mesh const& mesh, std::optional<double> size = {});
+  /// Of a mesh of elements. Nodes of a patch are those of the boundary faces it got, or all it lists where it got none.
+  /// Cost O(boundary faces, log).
+  Boundary(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches);
+
+  /// Names, kinds, zones and coordinates of the mesh, without its elements and their faces; numbers are those of the mesh.
+  [[nodiscard]] Mesh const& mesh() const { return mesh_; }
+  /// Of the mesh.
+  [[nodiscard]] double size() const { return size_; }
+  [[nodiscard]] BoundarySurface const& surface(int patch) const { return surfaces_[std::size_t(patch)]; }
+  /// Whether the patches are lines, the sides of a plane mesh.
+  [[nodiscard]] bool is_plane() const { return plane_; }
+
+  /// Positions of the nodes of patches, one after another. Lines come twice, the second time across the plane of the mesh: as
+  /// the edges of strips they have planes and profiles.
+  [[nodiscard]] std::vector<Vec3> points(std::span<int const> patches) const;
+  [[nodiscard]] std::vector<Vec3> points(int patch) const { return points({&patch, 1}); }
+  /// Their facets, in no particular orientation; none of lines.
+  [[nodiscard]] FacetList facets(std::span<int const> patches) const;
+  /// Whether two patches have nodes of one zone in common.
+  [[nodiscard]] bool share_nodes(int patch, int other) const;
+
+  /// Pairs of nodes (own, donor) of a connection, by its number in connections_of().
+  [[nodiscard]] std::vector<std::array<Index, 2>> pairs(int connection) const;
+  /// Whether a connection has nodes of a patch, on either side.
+  [[nodiscard]] bool touches(int connection, int patch) const;
+  /// Own nodes of a periodic connection onto the donor's, fitted to them: files declare angles in single precision.
+  [[nodiscard]] RigidTransform transform(int connection) const;
+  /// Of all periodic connections, or of those that touch one of the patches; in their order.
+  [[nodiscard]] std::vector<RigidTransform> periodic_transforms() const;
+  [[nodiscard]] std::vector<RigidTransform> periodic_transforms(std::span<int const> patches) const;
+
+ private:
+  Mesh mesh_;
+  double size_ = 0;
+  bool plane_ = false;
+  Vec3 across_;  ///< of a plane mesh
+  std::vector<BoundarySurface> surfaces_;
+};
+
+}  // namespace gridmorph

@@ -1,0 +1,38 @@
+// What motion rules ask of the boundary nodes of a plan, and what they give them.
+#pragma once
+
+#include <gridmorph/motion/boundary_motion.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace gridmorph {
+
+/// Which explicit rule asks for which boundary node, before any displacement is evaluated. Several requests may ask for
+/// the same boundary node where patches meet.
+struct BoundaryRequests {
+  struct Request {
+    Index boundary_node = 0;     ///< among the plan's
+    Index node = 0;              ///< of the requesting patch: its position is what the rule sees
+    std::int32_t rotation = -1;  ///< frame of the plan's node -> frame of that node
+    int rule = 0;
+    int patch = -1;  ///< or
+    int interface = -1;
+  };
+  std::vector<Request>
+      requests;  ///< by (rank, rule): the first request of a node gives its value, the others must agree
+  Index n_boundary_nodes = 0;
+  /// Nodes of several zones may be one without a connection: there a rule that the user gives goes before a default.
+  bool defaults_yield = false;
+
+  /// Puts them in order.
+  void sort(std::vector<MotionRule> const& rules);
+};
+
+/// Displacement of every boundary node of the plan, in its frame. Throws MotionError that lists every pair of patches
+/// whose displacements disagree on their common nodes by more than the conformity tolerance (place, size). `mesh`: that the
+/// numbers of nodes, patches and interfaces mean. Cost O(requests) evaluations.
+std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+                           std::vector<Mat3> const& rotations);
+
+}  // namespace gridmorph
