@@ -10,6 +10,7 @@
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/tile.hpp>
 
 namespace gridmorph::kernels {
@@ -229,5 +230,16 @@ struct LineParameters {
     }
   }
 };
+/// t of all lines of the tubes listed, to where `targets` says.
+template <class Exec>
+void line_parameters(Exec const& exec, Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
+                     TileList<Tube, typename Exec::memory_space> const& tubes,
+                     Kokkos::View<Segment const*, typename Exec::memory_space> const& segments,
+                     Kokkos::View<ParameterTarget const*, typename Exec::memory_space> const& targets,
+                     Field<double const> const& x, double* t) {
+  launch("gridmorph::line_parameters", exec, 0, tubes.n_items,
+         LineParameters<typename Exec::memory_space, TileShape<Exec>::lines>{
+             {chains, tubes.entries, segments}, targets, tubes.first_item, x, t});
+}
 
 }  // namespace gridmorph::kernels

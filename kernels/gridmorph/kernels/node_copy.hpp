@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/tile.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 
@@ -50,5 +51,43 @@ struct CopyNodes {
     }
   }
 };
+/// Given displacements, each to its slot: u(slots(n)) = given(n).
+template <class MemorySpace>
+struct ScatterBoundary {
+  Kokkos::View<Index const*, MemorySpace> slots;
+  VectorArray given;
+  Field<double> u;
+
+  [[nodiscard]] Index size() const { return Index(slots.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u.set(slots(n), given[n]); }
+};
+
+template <class Exec>
+void scatter_boundary(Exec const& exec, Kokkos::View<Index const*, typename Exec::memory_space> const& slots,
+                      VectorArray const& given, Field<double> const& u) {
+  launch("gridmorph::boundary", exec, ScatterBoundary<typename Exec::memory_space>{slots, given, u});
+}
+
+/// Between arrays of the skeleton and of chains; `source` and `destination` may be the same where no copy reads what another
+/// writes.
+template <class Exec>
+void copy_nodes(Exec const& exec, char const* label, TileList<NodeCopy, typename Exec::memory_space> const& copies,
+                Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,
+                Field<double const> const& source, Field<double> const& destination) {
+  launch(label, exec, 0, copies.n_items,
+         CopyNodes<typename Exec::memory_space, TileShape<Exec>::row>{copies.entries, copies.first_item, matrices,
+                                                                      source, destination});
+}
+
+/// To the nodes of a mesh. With `Move`, they get baseline + matrix * source.
+template <bool Move, class Exec>
+void write_skeleton_nodes(Exec const& exec, TileList<NodeCopy, typename Exec::memory_space> const& copies,
+                          Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,
+                          Field<double const> const& source, VectorArray const& destination,
+                          VectorArray const& baseline) {
+  launch("gridmorph::skeleton_nodes", exec, 0, copies.n_items,
+         CopyNodes<typename Exec::memory_space, TileShape<Exec>::row, VectorArray, Move>{
+             copies.entries, copies.first_item, matrices, source, destination, baseline});
+}
 
 }  // namespace gridmorph::kernels

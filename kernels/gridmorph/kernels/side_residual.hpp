@@ -2,6 +2,7 @@
 // Three launches, each over lines of surfaces only; formulas in side_correction.hpp.
 #pragma once
 
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/skeleton_sweep.hpp>
 
 namespace gridmorph::kernels {
@@ -34,6 +35,7 @@ struct SideResidual {
   Field<double const> ends;
   Field<double> c;
 
+  [[nodiscard]] Index size() const { return Index(side_lines.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     SideLine const& on = side_lines(item);
     Side const& side = sides.sides(on.side);
@@ -60,6 +62,7 @@ struct EdgeFill {
   Kokkos::View<std::int32_t const*, MemorySpace> corrected;
   Field<double> c;
 
+  [[nodiscard]] Index size() const { return 4 * Index(corrected.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     Chain const& chain = chains(corrected(item / 4));
     int const e = int(item % 4);
@@ -90,7 +93,7 @@ struct EdgeFill {
 
 /// Unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders. Then c' = c -
 /// edges where the correction asks for that.
-/// One item per side line that is not an edge.
+/// One item per side line; nothing is done on edges.
 template <class MemorySpace>
 struct SideFill {
   Kokkos::View<Chain const*, MemorySpace> chains;
@@ -98,6 +101,7 @@ struct SideFill {
   Kokkos::View<SideLine const*, MemorySpace> side_lines;
   Field<double> c;
 
+  [[nodiscard]] Index size() const { return Index(side_lines.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     SideLine const& on = side_lines(item);
     Side const& side = sides.sides(on.side);
@@ -135,5 +139,18 @@ struct SideFill {
     for (int p = 0; p < chain.n_s; ++p) c.set(line + p, c[line + p] - between_edges(p, fraction_across(p)));
   }
 };
+/// Sides of the chains in `corrected`. c comes in as the displacements of the known nodes, in the chain's frame; it is the array
+/// that `sides` reads.
+template <class Exec>
+void fill_sides(Exec const& exec, Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
+                SideTable<typename Exec::memory_space> const& sides,
+                Kokkos::View<SideLine const*, typename Exec::memory_space> const& side_lines,
+                Kokkos::View<std::int32_t const*, typename Exec::memory_space> const& corrected,
+                Field<double const> const& ends, Field<double> const& c) {
+  using MemorySpace = typename Exec::memory_space;
+  launch("gridmorph::side_residual", exec, SideResidual<MemorySpace>{chains, sides, side_lines, ends, c});
+  launch("gridmorph::side_residual::edges", exec, EdgeFill<MemorySpace>{chains, sides, corrected, c});
+  launch("gridmorph::side_residual::sides", exec, SideFill<MemorySpace>{chains, sides, side_lines, c});
+}
 
 }  // namespace gridmorph::kernels

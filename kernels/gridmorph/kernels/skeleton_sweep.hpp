@@ -10,6 +10,7 @@
 // The skeleton keeps one displacement per slot; nodes that coincide, also through a periodic interface, share a slot.
 #pragma once
 
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/side_correction.hpp>
 #include <gridmorph/kernels/tile.hpp>
 
@@ -67,5 +68,16 @@ struct SweepSkeleton {
     }
   }
 };
+/// u of the slots that the sweeps name, or with `Add` what is added to it. ends: of the chains' lines; t: line parameters.
+template <bool Add, class Exec>
+void sweep_skeleton(Exec const& exec, TileList<SkeletonSweep, typename Exec::memory_space> const& sweeps,
+                    Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
+                    Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,
+                    SideTable<typename Exec::memory_space> const& sides, double const* t,
+                    Field<double const> const& ends, Field<double> const& u) {
+  launch(Add ? "gridmorph::skeleton_spread" : "gridmorph::skeleton_sweep", exec, 0, sweeps.n_items,
+         SweepSkeleton<typename Exec::memory_space, TileShape<Exec>::row, Add>{sweeps.entries, sweeps.first_item,
+                                                                               chains, matrices, sides, t, ends, u});
+}
 
 }  // namespace gridmorph::kernels

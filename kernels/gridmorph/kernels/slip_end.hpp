@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/slip_edge.hpp>
 #include <gridmorph/kernels/slip_surface.hpp>
 
@@ -31,6 +32,7 @@ struct SlipEndBaselines {
   Field<double const> x;
   Kokkos::View<SlipEndBaseline*, MemorySpace> baselines;
 
+  [[nodiscard]] Index size() const { return Index(ends.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     SlipEnd const& end = ends(item);
     SlipEndBaseline b;
@@ -39,6 +41,12 @@ struct SlipEndBaselines {
       if (end.surface[m] >= 0) b.own_offset[m] = surfaces(end.surface[m]).own_offset(b.position);
     baselines(item) = b;
   }
+};
+
+/// Ends that slide on nothing: no correction.
+struct ClearEnds {
+  Field<double> values;
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { values.set(n, {}); }
 };
 
 /// d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative where u changes by `rate` per
@@ -52,6 +60,7 @@ struct SlipEndValues {
   Field<double const> u, rate;
   Field<double> values;
 
+  [[nodiscard]] Index size() const { return Index(ends.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     SlipEnd const& end = ends(item);
     SlipEndBaseline const& baseline = baselines(item);
@@ -81,5 +90,25 @@ struct SlipEndValues {
     return matrix < 0 ? v : matrices(matrix) * v;
   }
 };
+/// Once per plan and baseline mesh.
+template <class Exec>
+void slip_end_baselines(Exec const& exec, Kokkos::View<SlipEnd const*, typename Exec::memory_space> const& ends,
+                        Kokkos::View<SlipSurfaceView const*, typename Exec::memory_space> const& surfaces,
+                        Field<double const> const& x,
+                        Kokkos::View<SlipEndBaseline*, typename Exec::memory_space> const& baselines) {
+  launch("gridmorph::slip_ends::baselines", exec,
+         SlipEndBaselines<typename Exec::memory_space>{ends, surfaces, x, baselines});
+}
+
+/// End values first_value, ..., first_value + n_values - 1 of a pass: zero where its lines do not slide, `kernel` for the
+/// others.
+template <class Exec, bool Rate>
+void slip_ends(Exec const& exec, Index first_value, Index n_values,
+               SlipEndValues<typename Exec::memory_space, Rate> const& kernel) {
+  Field<double> const& values = kernel.values;
+  launch("gridmorph::slip_ends::clear", exec, 0, n_values,
+         ClearEnds{{values.x + first_value, values.y + first_value, values.z + first_value}});
+  launch("gridmorph::slip_ends", exec, kernel);
+}
 
 }  // namespace gridmorph::kernels

@@ -29,6 +29,14 @@ struct Constant {
   KOKKOS_INLINE_FUNCTION constexpr operator int() const { return N; }
 };
 
+/// A list of work: entry e is good for the items from first_item(e) to first_item(e + 1).
+template <class T, class MemorySpace>
+struct TileList {
+  Kokkos::View<T const*, MemorySpace> entries;
+  Kokkos::View<Index const*, MemorySpace> first_item;  ///< per entry, and one past the last
+  Index n_items = 0;
+};
+
 KOKKOS_INLINE_FUNCTION constexpr Index tiles(Index n, Index width) { return (n + width - 1) / width; }
 
 /// The entry that holds an item, by bisection in the running totals `first` (one past the last included).

@@ -8,10 +8,13 @@
 // per line parameter: 0 in a near field, 8 in the far field, 8 more under a slip surface.
 #pragma once
 
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/row_correction.hpp>
 #include <gridmorph/kernels/tile.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
+
+#include <type_traits>
 
 namespace gridmorph::kernels {
 
@@ -223,5 +226,11 @@ struct VolumePass {
     });
   }
 };
+/// All nodes inside the boxes that the pass was made for; n_items: of its list of boxes.
+template <class Exec, class Shape, bool Move>
+void pass_volume(Exec const& exec, Index n_items, VolumePass<typename Exec::memory_space, Shape, Move> const& pass) {
+  static_assert(std::is_same_v<Shape, TileShape<Exec>>, "the tiles of another execution space");
+  launch("gridmorph::volume", exec, 0, n_items, pass);
+}
 
 }  // namespace gridmorph::kernels

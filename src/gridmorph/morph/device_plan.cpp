@@ -97,7 +97,6 @@ void collect_parts(std::vector<VolumePart> const& parts, Shift const& shift,
 template <class Exec>
 DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<double const> x, int n_fields)
     : fields(n_fields) {
-  using Range = Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>;
   surfaces = SlipSurfaceTable<Memory>(exec, plan.surfaces);
   JoinedTables joined;
   std::vector<std::vector<kernels::VolumeTerm>> of_box(plan.boxes.size());
@@ -136,8 +135,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     device.baselines = Kokkos::View<kernels::SlipEndBaseline*, Memory>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::slip_ends::baselines"),
         slip_ends.size());
-    Kokkos::parallel_for("gridmorph::slip_ends::baselines", Range(exec, 0, Index(slip_ends.size())),
-                         kernels::SlipEndBaselines<Memory>{device.ends, surfaces.surfaces, x, device.baselines});
+    kernels::slip_end_baselines(exec, device.ends, surfaces.surfaces, x, device.baselines);
     device.sweeps = sweeps(shifted(pass.sweeps, shift));
     device.first_value = shift.end_value;
     device.n_values = pass.lines.n_end_values;
@@ -185,8 +183,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   WorkList<kernels::Tube, Memory> const tubes(exec, with_parameters, Parameters::items, "tubes");
   lines.tubes = tubes.entries;
   auto const targets = table(exec, joined.lines.targets, "targets");
-  Kokkos::parallel_for("gridmorph::line_parameters", Range(exec, 0, tubes.n_items),
-                       Parameters{lines, targets, tubes.first_item, x, t.data()});
+  kernels::line_parameters(exec, lines.chains, tubes, lines.segments, targets, x, t.data());
   compat::fence(exec, "gridmorph::Morpher (host tables of the plan may go)");
 }
 

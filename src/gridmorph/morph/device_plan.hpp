@@ -24,19 +24,15 @@ Kokkos::View<T*, typename Exec::memory_space> table(Exec const& exec, std::vecto
 
 /// A list of work, each entry good for `items(entry)` work items.
 template <class T, class Memory>
-struct WorkList {
-  Kokkos::View<T*, Memory> entries;
-  Kokkos::View<Index*, Memory> first_item;
-  Index n_items = 0;
-
+struct WorkList : kernels::TileList<T, Memory> {
   WorkList() = default;
   template <class Exec, class Items>
   WorkList(Exec const& exec, std::vector<T> const& list, Items const& items, char const* what) {
     std::vector<Index> first{0};
     for (T const& entry : list) first.push_back(first.back() + items(entry));
-    entries = table(exec, list, what);
-    first_item = table(exec, first, std::string(what) + "::first_item");
-    n_items = first.back();
+    this->entries = table(exec, list, what);
+    this->first_item = table(exec, first, std::string(what) + "::first_item");
+    this->n_items = first.back();
   }
 };
 

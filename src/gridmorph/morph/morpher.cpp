@@ -1,6 +1,5 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
-#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/morph/detail/baseline.hpp>
 #include <gridmorph/morph/device_plan.hpp>
 #include <gridmorph/morph/morph.hpp>
@@ -18,18 +17,6 @@ using detail::FlatBaseline;
 using detail::ProfilingRegion;
 using detail::require_all_nodes;
 using detail::require_as_many;
-
-struct ScatterBoundary {
-  Index const* slots;
-  kernels::VectorArray boundary;
-  kernels::Field<double> u;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u.set(slots[n], boundary[n]); }
-};
-
-struct ZeroField {
-  kernels::Field<double> u;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u.set(n, {}); }
-};
 
 kernels::Field<double const> read(kernels::Field<double> const& f) { return {f.x, f.y, f.z, f.stride}; }
 
@@ -60,8 +47,7 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
 
   void copy(char const* label, Exec const& exec, detail::WorkList<kernels::NodeCopy, MemorySpace> const& list,
             kernels::Field<double> const& from, kernels::Field<double> const& to) const {
-    kernels::launch(label, exec, 0, list.n_items,
-                    typename Base::Copy{list.entries, list.first_item, this->rotations, read(from), to});
+    kernels::copy_nodes(exec, label, list, this->rotations, read(from), to);
   }
   [[nodiscard]] kernels::SideTable<MemorySpace> side_table(int f) const {
     kernels::SideTable<MemorySpace> table = this->sides;
@@ -70,32 +56,23 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   }
   template <bool Add>
   void sweep(Exec const& exec, detail::WorkList<kernels::SkeletonSweep, MemorySpace> const& list, int f) const {
-    kernels::launch(Add ? "gridmorph::skeleton_spread" : "gridmorph::skeleton_sweep", exec, 0, list.n_items,
-                    kernels::SweepSkeleton<MemorySpace, Shape::row, Add>{
-                        list.entries, list.first_item, this->lines.chains, this->rotations, side_table(f),
-                        this->t.data(), this->ends.read()[f], this->skeleton.batch()[f]});
+    kernels::sweep_skeleton<Add>(exec, list, this->lines.chains, this->rotations, side_table(f), this->t.data(),
+                                 this->ends.read()[f], this->skeleton.batch()[f]);
   }
 
   /// Displacement of the skeleton before slip surfaces ask for theirs: linear in the boundary displacement.
   void skeleton_stages(Exec const& exec, int f, In const& boundary) const {
     kernels::Field<double> const u = this->skeleton.batch()[f], end_values = this->ends.batch()[f],
                                  c = this->residuals.batch()[f];
-    kernels::launch("gridmorph::boundary", exec, 0, Index(this->boundary_slots.extent(0)),
-                    ScatterBoundary{this->boundary_slots.data(), boundary.array(), u});
+    kernels::scatter_boundary(exec, this->boundary_slots, boundary.array(), u);
     copy("gridmorph::boundary::axis", exec, this->boundary_projections, u, u);
     for (auto const& stage : this->stages) {
       ProfilingRegion const region(stage.region);
       copy("gridmorph::chain_ends", exec, stage.ends, u, end_values);
-      if (Index const n_lines = Index(stage.side_lines.extent(0)); n_lines > 0) {
-        kernels::SideTable<MemorySpace> const table = side_table(f);
-        auto const& chains = this->lines.chains;
+      if (stage.side_lines.extent(0) > 0) {
         copy("gridmorph::side_residual::known", exec, stage.gathers, u, c);
-        kernels::launch("gridmorph::side_residual", exec, 0, n_lines,
-                        kernels::SideResidual<MemorySpace>{chains, table, stage.side_lines, read(end_values), c});
-        kernels::launch("gridmorph::side_residual::edges", exec, 0, 4 * Index(stage.corrected.extent(0)),
-                        kernels::EdgeFill<MemorySpace>{chains, table, stage.corrected, c});
-        kernels::launch("gridmorph::side_residual::sides", exec, 0, n_lines,
-                        kernels::SideFill<MemorySpace>{chains, table, stage.side_lines, c});
+        kernels::fill_sides(exec, this->lines.chains, side_table(f), stage.side_lines, stage.corrected,
+                            read(end_values), c);
       }
       sweep<false>(exec, stage.sweeps, f);
     }
@@ -104,14 +81,10 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   /// End values of a finalize pass; with `Rate`, their derivative at displacement field `of`.
   template <bool Rate>
   void slip_ends(Exec const& exec, detail::DeviceSpread<Exec> const& pass, int f, int of) const {
-    kernels::Field<double> const end_values = this->ends.batch()[f];
-    Index const first = pass.first_value;
-    kernels::launch("gridmorph::slip_ends::clear", exec, 0, pass.n_values,
-                    ZeroField{{end_values.x + first, end_values.y + first, end_values.z + first}});
-    kernels::launch(
-        "gridmorph::slip_ends", exec, 0, Index(pass.ends.extent(0)),
-        kernels::SlipEndValues<MemorySpace, Rate>{pass.ends, pass.baselines, this->surfaces.surfaces, this->rotations,
-                                                  this->skeleton.read()[of], this->skeleton.read()[f], end_values});
+    kernels::slip_ends(exec, pass.first_value, pass.n_values,
+                       kernels::SlipEndValues<MemorySpace, Rate>{pass.ends, pass.baselines, this->surfaces.surfaces,
+                                                                 this->rotations, this->skeleton.read()[of],
+                                                                 this->skeleton.read()[f], this->ends.batch()[f]});
   }
 
   void displacement_of_skeleton(Exec const& exec, int f, In const& boundary) const {
@@ -150,13 +123,11 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
                                                          {},
                                                          0};
     for (Out const& field : out) {
-      kernels::launch("gridmorph::skeleton_nodes", exec, 0, this->skeleton_nodes.n_items,
-                      kernels::CopyNodes<MemorySpace, Shape::row, kernels::VectorArray, Move>{
-                          this->skeleton_nodes.entries, this->skeleton_nodes.first_item, this->rotations,
-                          this->skeleton.read()[first_field + volume.n_fields], field.array(), x});
+      kernels::write_skeleton_nodes<Move>(exec, this->skeleton_nodes, this->rotations,
+                                          this->skeleton.read()[first_field + volume.n_fields], field.array(), x);
       volume.out[volume.n_fields++] = field.array();
     }
-    kernels::launch("gridmorph::volume", exec, 0, this->boxes.n_items, volume);
+    kernels::pass_volume(exec, this->boxes.n_items, volume);
   }
 
   /// All that can be asked before anything is enqueued.
