@@ -1,5 +1,6 @@
 // Both ways to share chunks of cells out, by work items and by teams of threads as on GPUs, against plain loops.
-#include <gridmorph/quality/detail/visit_chunks.hpp>
+#include <gridmorph/kernels/cell_chunks.hpp>
+#include <gridmorph/quality/detail/zone_cells.hpp>
 
 #include "quality/test_meshes.hpp"
 
@@ -32,10 +33,10 @@ struct Visited {
 };
 
 struct Visit {
-  Kokkos::View<ZoneCells const*, Kokkos::HostSpace> zones;
+  Kokkos::View<kernels::ZoneCells const*, Kokkos::HostSpace> zones;
 
-  KOKKOS_INLINE_FUNCTION void operator()(RowOfCells const& row, Visited& v) const {
-    for (int n = 0; n < row.count; ++n) v.take(first_cell(zones(row.zone), row) + n);
+  KOKKOS_INLINE_FUNCTION void operator()(kernels::RowOfCells const& row, Visited& v) const {
+    for (int n = 0; n < row.count; ++n) v.take(kernels::first_cell(zones(row.zone), row) + n);
   }
 };
 
@@ -56,7 +57,7 @@ class VisitChunks : public ::testing::Test {
       for (int k = b.cells.begin[2]; k < b.cells.end[2]; ++k)
         for (int j = b.cells.begin[1]; j < b.cells.end[1]; ++j)
           for (int i = b.cells.begin[0]; i < b.cells.end[0]; ++i, ++in_chunk) {
-            if (in_chunk % cells_per_chunk == 0) list.emplace_back();
+            if (in_chunk % kernels::cells_per_chunk == 0) list.emplace_back();
             list.back().take(first[b.zone] + i + ni * (j + nj * k));
           }
     }
@@ -78,12 +79,12 @@ TEST_F(VisitChunks, ItemsAndTeamsOfAnySizeSeeEveryCellOfTheBoxesOnce) {
     ASSERT_EQ(chunks.extent(0), expected.size());
     Visit const visit{upload(exec, "zones", zone_cells(*mesh, {}))};
     Kokkos::View<Visited*, Kokkos::HostSpace> const results("results", chunks.extent(0));
-    visit_chunks(exec, "items", chunks, results, visit);
+    kernels::visit_chunks(exec, "items", chunks, results, visit);
     exec.fence();
     EXPECT_EQ(host(results), expected);
     for (int team_size = 1; team_size <= std::min(3, exec.concurrency()); ++team_size) {
       Kokkos::deep_copy(results, Visited());
-      visit_chunks_by_teams<Exec, Visited, Visit>(exec, "teams", team_size, {chunks, results, visit});
+      kernels::visit_chunks_by_teams<Exec, Visited, Visit>(exec, "teams", team_size, {chunks, results, visit});
       exec.fence();
       EXPECT_EQ(host(results), expected) << "teams of " << team_size;
     }

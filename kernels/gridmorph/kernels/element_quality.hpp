@@ -26,12 +26,37 @@
 
 #include <gridmorph/kernels/cell_quality.hpp>
 #include <gridmorph/kernels/element_shape.hpp>
+#include <gridmorph/kernels/field.hpp>
+#include <gridmorph/kernels/launch.hpp>
 
 namespace gridmorph::kernels {
 
 struct ElementCorners {
   Vec3 at[max_corners];
 };
+
+/// A point in half a cache line: elements read their corners from all over the mesh, so x, y and z should come at once.
+struct alignas(32) PackedPoint {
+  double x, y, z;
+};
+
+template <class MemorySpace>
+struct PackPoints {
+  Field<double const> x;
+  Kokkos::View<PackedPoint*, MemorySpace> points;
+
+  [[nodiscard]] Index size() const { return Index(points.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
+    Vec3 const p = x[n];
+    points(n) = {p.x, p.y, p.z};
+  }
+};
+
+template <class Exec>
+void pack_points(Exec const& exec, Field<double const> const& x,
+                 Kokkos::View<PackedPoint*, typename Exec::memory_space> const& points) {
+  launch("gridmorph::quality::pack", exec, PackPoints<typename Exec::memory_space>{x, points});
+}
 
 /// Corners of a hexahedron in SIDS order as those of a cell.
 KOKKOS_INLINE_FUNCTION HexCell hex_cell(ElementCorners const& c) {

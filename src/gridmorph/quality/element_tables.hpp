@@ -1,33 +1,25 @@
 // Tables that kernels over unstructured elements need; internal to the quality part.
 #pragma once
 
+#include <gridmorph/kernels/cell_chunks.hpp>
 #include <gridmorph/kernels/element_quality.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
-#include <gridmorph/quality/detail/visit_chunks.hpp>
+#include <gridmorph/quality/detail/zone_cells.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <vector>
 
 namespace gridmorph::detail {
 
-/// A point in half a cache line: elements read their corners from all over the mesh, so x, y and z should come at once.
-struct alignas(32) PackedPoint {
-  double x, y, z;
-};
-
 template <class MemorySpace>
-using PackedPoints = Kokkos::View<PackedPoint const*, MemorySpace>;
+using PackedPoints = Kokkos::View<kernels::PackedPoint const*, MemorySpace>;
 
 template <class Exec>
 PackedPoints<typename Exec::memory_space> pack(Exec const& exec, CoordinateViews<typename Exec::memory_space> const& c,
                                                Index n_nodes) {
-  Kokkos::View<PackedPoint*, typename Exec::memory_space> const points(
+  Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> const points(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::points"), std::size_t(n_nodes));
-  Kokkos::parallel_for(
-      "gridmorph::quality::pack", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n_nodes),
-      KOKKOS_LAMBDA(Index n) {
-        points(n) = PackedPoint{c.x(n), c.y(n), c.z(n)};
-      });
+  kernels::pack_points(exec, field_of(c), points);
   return points;
 }
 
@@ -39,7 +31,7 @@ struct ElementTables {
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
   KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners(PackedPoints<MemorySpace> const& points, Index e) const {
     return gather(e, [&](Index32 node) {
-      PackedPoint const p = points(node);
+      kernels::PackedPoint const p = points(node);
       return Vec3{p.x, p.y, p.z};
     });
   }
@@ -68,13 +60,16 @@ ElementTables<typename Exec::memory_space> element_tables(Exec const& exec, Mesh
 }
 
 /// Elements zone after zone in chunks of cells_per_chunk; box_extent[0] counts those of the zone.
-inline std::vector<CellChunk> element_chunks(Mesh const& mesh) {
-  std::vector<CellChunk> chunks;
+inline std::vector<kernels::CellChunk> element_chunks(Mesh const& mesh) {
+  std::vector<kernels::CellChunk> chunks;
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
     Index const n = mesh.zones[std::size_t(z)].n_elements;
-    for (Index begin = 0; begin < n; begin += cells_per_chunk)
-      chunks.push_back(
-          {z, {0, 0, 0}, {int(n), 1, 1}, begin, begin + cells_per_chunk < n ? begin + cells_per_chunk : n});
+    for (Index begin = 0; begin < n; begin += kernels::cells_per_chunk)
+      chunks.push_back({z,
+                        {0, 0, 0},
+                        {int(n), 1, 1},
+                        begin,
+                        begin + kernels::cells_per_chunk < n ? begin + kernels::cells_per_chunk : n});
   }
   return chunks;
 }

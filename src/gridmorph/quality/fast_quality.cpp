@@ -1,7 +1,8 @@
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/kernels/cell_chunks.hpp>
 #include <gridmorph/quality/detail/fast_quality.hpp>
 #include <gridmorph/quality/detail/judge_cells.hpp>
-#include <gridmorph/quality/detail/visit_chunks.hpp>
+#include <gridmorph/quality/detail/zone_cells.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -74,9 +75,9 @@ void keep_verdict(QualityReport& report) {
 
 template <class Exec>
 QualityReport fast_quality(Exec const& exec, Mesh const& mesh, QualityInput<typename Exec::memory_space> const& input) {
-  using Policy = CellPolicy<Exec>;
+  using Policy = kernels::CellPolicy<Exec>;
   bool const against_baseline = input.baseline.x.extent(0) > 0;
-  std::vector<CellChunk> const table = chunks_of(mesh);
+  std::vector<kernels::CellChunk> const table = chunks_of(mesh);
   auto const zones = upload(exec, "gridmorph::quality::zones", zone_cells(mesh, input.handedness));
   auto const chunks = upload(exec, "gridmorph::quality::chunks", table);
   Kokkos::View<PartialSums*, typename Exec::memory_space> const sums(
@@ -87,10 +88,11 @@ QualityReport fast_quality(Exec const& exec, Mesh const& mesh, QualityInput<type
   bool const has_near_field = near_field.extent(0) > 0;
   CellLimits const limits = input.limits;
   CellScreen const screen(limits);
-  visit_chunks(
-      exec, "gridmorph::measure_quality::verdict", chunks, sums, KOKKOS_LAMBDA(RowOfCells const& row, PartialSums& s) {
-        ZoneCells const zone = zones(row.zone);
-        Index const first = first_cell(zone, row);
+  kernels::visit_chunks(
+      exec, "gridmorph::measure_quality::verdict", chunks, sums,
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, PartialSums& s) {
+        kernels::ZoneCells const zone = zones(row.zone);
+        Index const first = kernels::first_cell(zone, row);
         kernels::CellRow const now = cell_row(coordinates, zone, row), before = cell_row(baseline, zone, row);
         kernels::RowVerdicts<Policy::row_length> verdict;
         row_verdicts<Policy::lanes>(now, verdict);

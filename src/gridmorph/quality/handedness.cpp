@@ -1,5 +1,6 @@
 #include <gridmorph/core/instantiate.hpp>
-#include <gridmorph/quality/detail/visit_chunks.hpp>
+#include <gridmorph/kernels/cell_chunks.hpp>
+#include <gridmorph/quality/detail/zone_cells.hpp>
 
 namespace gridmorph {
 
@@ -19,12 +20,12 @@ std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
                                  CoordinateViews<typename Exec::memory_space> const& baseline) {
   detail::check_size(mesh, baseline, "coordinates for the handedness of zones");
   auto const zones = detail::upload(exec, "gridmorph::quality::zones", detail::zone_cells(mesh, {}));
-  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
+  std::vector<kernels::CellChunk> const table = detail::chunks_of(mesh);
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
   Kokkos::View<Balance*, typename Exec::memory_space> const balance(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::balance"), table.size());
-  detail::visit_chunks(
-      exec, "gridmorph::zone_handedness", chunks, balance, KOKKOS_LAMBDA(detail::RowOfCells const& row, Balance& b) {
+  kernels::visit_chunks(
+      exec, "gridmorph::zone_handedness", chunks, balance, KOKKOS_LAMBDA(kernels::RowOfCells const& row, Balance& b) {
         b.count += row_orientation(detail::cell_row(baseline, zones(row.zone), row));
       });
   auto const balance_h = detail::download(exec, balance);

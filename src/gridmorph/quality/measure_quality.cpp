@@ -1,10 +1,11 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/kernels/cell_chunks.hpp>
 #include <gridmorph/quality/detail/fast_quality.hpp>
 #include <gridmorph/quality/detail/judge_cells.hpp>
-#include <gridmorph/quality/detail/visit_chunks.hpp>
 #include <gridmorph/quality/detail/volume_ratio.hpp>
 #include <gridmorph/quality/detail/wall_quality.hpp>
+#include <gridmorph/quality/detail/zone_cells.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -15,7 +16,7 @@ template <class Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
                               QualityInput<typename Exec::memory_space> const& input) {
   using MemorySpace = typename Exec::memory_space;
-  using Policy = detail::CellPolicy<Exec>;
+  using Policy = kernels::CellPolicy<Exec>;
   bool const against_baseline = input.baseline.x.extent(0) > 0;
   detail::check_size(mesh, input.coordinates, "coordinates to measure");
   if (against_baseline) detail::check_size(mesh, input.baseline, "baseline coordinates");
@@ -36,7 +37,7 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
   }
   if (input.fast) return detail::fast_quality(exec, mesh, input);
   std::vector<int> const& handedness = input.handedness;
-  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh);
+  std::vector<kernels::CellChunk> const table = detail::chunks_of(mesh);
   auto const zones = detail::upload(exec, "gridmorph::quality::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
   auto const neighbours = detail::upload_neighbours(exec, mesh);
@@ -54,12 +55,12 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
   bool const has_near_field = near_field.extent(0) > 0;
   CellLimits const limits = input.limits;
   detail::CellScreen const screen(limits);
-  detail::visit_chunks(
+  kernels::visit_chunks(
       exec, "gridmorph::measure_quality::cells", chunks, sums,
-      KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::PartialSums& s) {
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::PartialSums& s) {
         constexpr int lanes = Policy::lanes, length = Policy::row_length;
-        detail::ZoneCells const zone = zones(row.zone);
-        Index const cell = detail::first_cell(zone, row);
+        kernels::ZoneCells const zone = zones(row.zone);
+        Index const cell = kernels::first_cell(zone, row);
         kernels::CellRow const now = detail::cell_row(coordinates, zone, row);
         kernels::RowMeasures<length> m;
         row_measures<lanes>(now, m);
@@ -110,12 +111,12 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
   auto const ratio_field = fields.of[int(Measure::volume_ratio)];
   Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());
-  detail::visit_chunks(
+  kernels::visit_chunks(
       exec, "gridmorph::measure_quality::volume_ratio", chunks, ratios,
-      KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::VolumeRatios& s) {
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::VolumeRatios& s) {
         constexpr int lanes = Policy::lanes, length = Policy::row_length;
-        detail::ZoneCells const zone = zones(row.zone);
-        Index const cell = detail::first_cell(zone, row);
+        kernels::ZoneCells const zone = zones(row.zone);
+        Index const cell = kernels::first_cell(zone, row);
         double ratio[length];
         detail::worst_volume_ratios<length>(all_volumes, zone, neighbours, row, ratio);
         if (ratio_field.extent(0) > 0)

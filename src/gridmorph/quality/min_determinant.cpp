@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
-#include <gridmorph/quality/detail/visit_chunks.hpp>
+#include <gridmorph/kernels/cell_chunks.hpp>
+#include <gridmorph/quality/detail/zone_cells.hpp>
 
 namespace gridmorph {
 
@@ -30,18 +31,18 @@ CellValue min_determinant(Exec const& exec, Mesh const& mesh,
     throw MeshError("smallest determinant: " + std::to_string(handedness.size()) +
                     " zones have a handedness, the mesh '" + mesh.source + "' has " +
                     std::to_string(mesh.zones.size()) + " zones; use zone_handedness()");
-  std::vector<detail::CellChunk> const table = detail::chunks_of(mesh, boxes);
+  std::vector<kernels::CellChunk> const table = detail::chunks_of(mesh, boxes);
   CellValue smallest;
   if (table.empty()) return smallest;
 
-  using Policy = detail::CellPolicy<Exec>;
+  using Policy = kernels::CellPolicy<Exec>;
   auto const zones = detail::upload(exec, "gridmorph::quality::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
   Kokkos::View<SmallestCell*, typename Exec::memory_space> const minima(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::minima"), table.size());
-  detail::visit_chunks(
+  kernels::visit_chunks(
       exec, "gridmorph::min_determinant", chunks, minima,
-      KOKKOS_LAMBDA(detail::RowOfCells const& row, SmallestCell& smallest_of_chunk) {
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, SmallestCell& smallest_of_chunk) {
         double determinant[Policy::row_length], mark[Policy::row_length];
         row_determinants<Policy::lanes>(detail::cell_row(coordinates, zones(row.zone), row), determinant, mark);
         for (int n = 0; n < row.count; ++n)

@@ -88,7 +88,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
                                                   std::vector<signed char> const& sign_of) {
   using MemorySpace = typename Exec::memory_space;
   bool const against_baseline = input.baseline.x.extent(0) > 0;
-  std::vector<detail::CellChunk> const table = detail::element_chunks(mesh);
+  std::vector<kernels::CellChunk> const table = detail::element_chunks(mesh);
   auto const tables = detail::element_tables(exec, mesh);
   auto const first_element = detail::upload(exec, "gridmorph::quality::zones", detail::first_elements(mesh));
   auto const signs = detail::view_of(exec, sign_of, "gridmorph::quality::signs");
@@ -108,9 +108,9 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
   auto const fields = input.fields;
   CellLimits const limits = input.limits;
   detail::CellScreen const screen(limits);
-  detail::visit_chunks(
+  kernels::visit_chunks(
       exec, "gridmorph::measure_quality::elements", chunks, sums,
-      KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::PartialSums& s) {
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::PartialSums& s) {
         for (int n = 0; n < row.count; ++n) {
           Index const e = first_element(row.zone) + row.i + n;
           auto const keep = [&](Measure measure, double value) {
@@ -161,9 +161,9 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
   Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());
   auto const ratio_field = fields.of[int(Measure::volume_ratio)];
-  detail::visit_chunks(
+  kernels::visit_chunks(
       exec, "gridmorph::measure_quality::volume_ratio", chunks, ratios,
-      KOKKOS_LAMBDA(detail::RowOfCells const& row, detail::VolumeRatios& s) {
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::VolumeRatios& s) {
         for (int n = 0; n < row.count; ++n) {
           Index const e = first_element(row.zone) + row.i + n;
           if (tables.type(e) == ElementType::polyhedron) continue;

@@ -27,8 +27,8 @@ template <int Length>
 struct RowNodes {
   double x[4][Length + 1], y[4][Length + 1], z[4][Length + 1];
 
-  KOKKOS_INLINE_FUNCTION RowNodes(kernels::VectorArray const& from, detail::ZoneCells const& zone,
-                                  detail::RowOfCells const& row) {
+  KOKKOS_INLINE_FUNCTION RowNodes(kernels::VectorArray const& from, kernels::ZoneCells const& zone,
+                                  kernels::RowOfCells const& row) {
     Index const sj = zone.node_stride(1), sk = zone.node_stride(2);
     for (int line = 0; line < 4; ++line) {
       Index const first = zone.first_node + row.i + (row.j + line % 2) * sj + (row.k + line / 2) * sk;
@@ -55,14 +55,14 @@ std::vector<int> handedness_of(Exec const& exec, Mesh const& mesh) {
 }
 
 template <class Exec>
-void check_blocks(Exec const& exec, Kokkos::View<detail::CellChunk*, typename Exec::memory_space> const& chunks,
-                  Kokkos::View<detail::ZoneCells*, typename Exec::memory_space> const& zones,
+void check_blocks(Exec const& exec, Kokkos::View<kernels::CellChunk*, typename Exec::memory_space> const& chunks,
+                  Kokkos::View<kernels::ZoneCells*, typename Exec::memory_space> const& zones,
                   kernels::VectorArray const& x,
                   Kokkos::View<ChunkValidity*, typename Exec::memory_space> const& of_chunk) {
-  using Policy = detail::CellPolicy<Exec>;
-  detail::visit_chunks(
+  using Policy = kernels::CellPolicy<Exec>;
+  kernels::visit_chunks(
       exec, "gridmorph::validity::blocks", chunks, of_chunk,
-      KOKKOS_LAMBDA(detail::RowOfCells const& row, ChunkValidity& validity) {
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, ChunkValidity& validity) {
         RowNodes<Policy::row_length> const nodes(x, zones(row.zone), row);
         double determinant[Policy::row_length], mark[Policy::row_length];
         row_determinants<Policy::lanes>(nodes.cells(row.count, zones(row.zone).handedness), determinant, mark);
@@ -71,14 +71,14 @@ void check_blocks(Exec const& exec, Kokkos::View<detail::CellChunk*, typename Ex
 }
 
 template <class Exec>
-void check_elements(Exec const& exec, Kokkos::View<detail::CellChunk*, typename Exec::memory_space> const& chunks,
+void check_elements(Exec const& exec, Kokkos::View<kernels::CellChunk*, typename Exec::memory_space> const& chunks,
                     detail::ElementTables<typename Exec::memory_space> const& elements,
                     Kokkos::View<Index*, typename Exec::memory_space> const& first_element,
                     Kokkos::View<signed char*, typename Exec::memory_space> const& signs, kernels::VectorArray const& x,
                     Kokkos::View<ChunkValidity*, typename Exec::memory_space> const& of_chunk) {
-  detail::visit_chunks(
+  kernels::visit_chunks(
       exec, "gridmorph::validity::elements", chunks, of_chunk,
-      KOKKOS_LAMBDA(detail::RowOfCells const& row, ChunkValidity& validity) {
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, ChunkValidity& validity) {
         for (int n = 0; n < row.count; ++n) {
           Index const e = first_element(row.zone) + row.i + n;
           ElementType const type = elements.type(e);
@@ -94,15 +94,15 @@ template <class Exec>
 struct ValidityCheck<Exec>::State {
   Index n_nodes;
   bool unstructured;
-  Kokkos::View<detail::CellChunk*, MemorySpace> chunks;
+  Kokkos::View<kernels::CellChunk*, MemorySpace> chunks;
   Kokkos::View<ChunkValidity*, MemorySpace> of_chunk;
   Kokkos::View<Validity, MemorySpace> of_mesh;
-  Kokkos::View<detail::ZoneCells*, MemorySpace> zones;  ///< of blocks
+  Kokkos::View<kernels::ZoneCells*, MemorySpace> zones;  ///< of blocks
   Kokkos::View<Index*, MemorySpace> first_element;
   Kokkos::View<signed char*, MemorySpace> signs;
   detail::ElementTables<MemorySpace> elements;
 
-  State(Exec const& exec, Index nodes, bool elements_of_all_types, std::vector<detail::CellChunk> const& table)
+  State(Exec const& exec, Index nodes, bool elements_of_all_types, std::vector<kernels::CellChunk> const& table)
       : n_nodes(nodes),
         unstructured(elements_of_all_types),
         chunks(detail::upload(exec, "gridmorph::ValidityCheck::chunks", table)),

@@ -25,8 +25,8 @@ void add(MeasureStatistics& total, PartialMeasure const& part, bool larger_is_wo
 
 }  // namespace
 
-void combine(Mesh const& mesh, std::vector<CellChunk> const& chunks, PartialSums const* sums, QualityRegion& near_field,
-             QualityRegion& far_field) {
+void combine(Mesh const& mesh, std::vector<kernels::CellChunk> const& chunks, PartialSums const* sums,
+             QualityRegion& near_field, QualityRegion& far_field) {
   std::vector<Index> const first = first_cells(mesh);
   combine(chunks.size(), sums, near_field, far_field, [&](Index cell) -> CellPlace {
     int const zone = int(std::upper_bound(first.begin(), first.end(), cell) - first.begin()) - 1;

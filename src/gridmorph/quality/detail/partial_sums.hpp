@@ -144,8 +144,8 @@ KOKKOS_INLINE_FUNCTION void for_each_region_run(std::uint8_t const* mask, int co
 }
 
 /// Adds the chunks in order and turns cell numbers into zones and indices. sums: as many as chunks.
-void combine(Mesh const& mesh, std::vector<CellChunk> const& chunks, PartialSums const* sums, QualityRegion& near_field,
-             QualityRegion& far_field);
+void combine(Mesh const& mesh, std::vector<kernels::CellChunk> const& chunks, PartialSums const* sums,
+             QualityRegion& near_field, QualityRegion& far_field);
 
 /// Zone and index of a cell for people.
 struct CellPlace {

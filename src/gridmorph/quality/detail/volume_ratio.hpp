@@ -62,8 +62,8 @@ struct VolumeRange {
 /// Neighbours behind the interfaces of the row's zone.
 template <int N, class MemorySpace>
 KOKKOS_INLINE_FUNCTION void add_interface_neighbours(Kokkos::View<double const*, MemorySpace> const& volumes,
-                                                     Neighbours<MemorySpace> const& neighbours, RowOfCells const& row,
-                                                     VolumeRange<N>& range) {
+                                                     Neighbours<MemorySpace> const& neighbours,
+                                                     kernels::RowOfCells const& row, VolumeRange<N>& range) {
   for (int f = neighbours.first(row.zone); f < neighbours.first(row.zone + 1); ++f) {
     InterfaceCells const& c = neighbours.cells(f);
     if (row.j < c.begin[1] || row.j >= c.end[1] || row.k < c.begin[2] || row.k >= c.end[2]) continue;
@@ -81,9 +81,10 @@ KOKKOS_INLINE_FUNCTION void add_interface_neighbours(Kokkos::View<double const*,
 /// volume, so only the smallest and the largest are divided. N: the greatest length of rows.
 template <int N, class MemorySpace>
 KOKKOS_INLINE_FUNCTION void worst_volume_ratios(Kokkos::View<double const*, MemorySpace> const& volumes,
-                                                ZoneCells const& zone, Neighbours<MemorySpace> const& neighbours,
-                                                RowOfCells const& row, double* ratio) {
-  double const* const own = volumes.data() + first_cell(zone, row);
+                                                kernels::ZoneCells const& zone,
+                                                Neighbours<MemorySpace> const& neighbours,
+                                                kernels::RowOfCells const& row, double* ratio) {
+  double const* const own = volumes.data() + kernels::first_cell(zone, row);
   VolumeRange<N> range;
   for (int n = 0; n < row.count; ++n) range.least[n] = range.largest[n] = own[n];
   bool const at_begin = row.i == 0, at_end = row.i + row.count == zone.extent[0];

@@ -58,28 +58,6 @@ WallTable wall_table(Mesh const& mesh, UnstructuredTopology const& topology, std
   return out;
 }
 
-/// The table in a memory space.
-template <class MemorySpace>
-struct WallViews {
-  Kokkos::View<Index32 const*, MemorySpace> node, next;
-  CsrViews<MemorySpace> faces_of_node, face_nodes;
-  Vec3 plane_normal;  ///< of a 2-D mesh, whose faces are edges
-
-  KOKKOS_INLINE_FUNCTION kernels::WallNode at(CoordinateViews<MemorySpace> const& c, Index m) const {
-    auto const x = [&](Index32 n) { return Vec3{c.x(n), c.y(n), c.z(n)}; };
-    Vec3 normal;
-    for (Index k = faces_of_node.first(m); k < faces_of_node.first(m + 1); ++k) {
-      Index32 const f = faces_of_node.item(k);
-      Index const begin = face_nodes.first(f), end = face_nodes.first(f + 1);
-      Vec3 const origin = x(face_nodes.item(begin));
-      if (end - begin == 2) normal += cross(x(face_nodes.item(begin + 1)) - origin, plane_normal);
-      for (Index n = begin + 2; n < end; ++n)
-        normal += 0.5 * cross(x(face_nodes.item(n - 1)) - origin, x(face_nodes.item(n)) - origin);
-    }
-    return wall_node(normal, x(next(m)) - x(node(m)));
-  }
-};
-
 }  // namespace
 
 template <class Exec>
@@ -108,20 +86,18 @@ WallQualities wall_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopol
   for (std::size_t g = 0; g < names.size(); ++g) {
     WallTable const table = wall_table(mesh, topology, faces[g]);
     Index const n = Index(table.node.size());
-    WallViews<MemorySpace> const wall{view_of(exec, table.node, "gridmorph::quality::wall_node"),
-                                      view_of(exec, table.next, "gridmorph::quality::wall_next"),
-                                      views(exec, table.faces_of_node), views(exec, table.face_nodes), normal};
-    Kokkos::View<WallNodePair*, MemorySpace> nodes(
+    CsrViews<MemorySpace> const faces_of_node = views(exec, table.faces_of_node),
+                                face_nodes = views(exec, table.face_nodes);
+    kernels::ColumnWall<MemorySpace> const wall{view_of(exec, table.node, "gridmorph::quality::wall_node"),
+                                                view_of(exec, table.next, "gridmorph::quality::wall_next"),
+                                                faces_of_node.first,
+                                                faces_of_node.item,
+                                                face_nodes.first,
+                                                face_nodes.item,
+                                                normal};
+    Kokkos::View<kernels::WallNodePair*, MemorySpace> const nodes(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::wall_nodes"), n);
-    auto const now = input.coordinates;
-    auto const before = input.baseline;
-    Kokkos::parallel_for(
-        "gridmorph::wall_quality", Kokkos::RangePolicy<Exec>(exec, 0, n), KOKKOS_LAMBDA(Index m) {
-          WallNodePair pair;
-          pair.now = wall.at(now, m);
-          if (against_baseline) pair.before = wall.at(before, m);
-          nodes(m) = pair;
-        });
+    kernels::measure_walls(exec, wall, field_of(input.coordinates), field_of(input.baseline), against_baseline, nodes);
     auto const nodes_h = download(exec, nodes);
     WallSums sums;
     for (Index m = 0; m < n; ++m) {

@@ -10,16 +10,12 @@
 
 namespace gridmorph::detail {
 
-struct WallNodePair {
-  kernels::WallNode now, before;
-};
-
 /// Running sums over nodes in order, so that they do not depend on threads.
 struct WallSums {
   WallQuality quality;
   double heights = 0, angles = 0;
 
-  void add(WallNodePair const& w, NodeLocation const& where, bool against_baseline) {
+  void add(kernels::WallNodePair const& w, NodeLocation const& where, bool against_baseline) {
     if (!w.now.defined) return;
     double const height = w.now.height, angle = w.now.orthogonality_deg;
     bool const first = quality.nodes == 0;

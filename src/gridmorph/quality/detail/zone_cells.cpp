@@ -5,9 +5,9 @@
 
 namespace gridmorph::detail {
 
-std::vector<ZoneCells> zone_cells(Mesh const& mesh, std::span<int const> handedness) {
+std::vector<kernels::ZoneCells> zone_cells(Mesh const& mesh, std::span<int const> handedness) {
   std::vector<Index> const first = first_cells(mesh);
-  std::vector<ZoneCells> zones(mesh.zones.size());
+  std::vector<kernels::ZoneCells> zones(mesh.zones.size());
   for (std::size_t z = 0; z < zones.size(); ++z) {
     zones[z].first_node = mesh.zones[z].first_node;
     zones[z].first_cell = first[z];
@@ -19,25 +19,25 @@ std::vector<ZoneCells> zone_cells(Mesh const& mesh, std::span<int const> handedn
 
 namespace {
 
-void append_chunks(std::vector<CellChunk>& chunks, CellBox const& box) {
-  CellChunk chunk;
+void append_chunks(std::vector<kernels::CellChunk>& chunks, CellBox const& box) {
+  kernels::CellChunk chunk;
   chunk.zone = box.zone;
   for (int a = 0; a < 3; ++a) {
     chunk.box_begin[a] = box.cells.begin[a];
     chunk.box_extent[a] = box.cells.extent(a);
   }
   Index const n = box.cells.size();
-  for (Index begin = 0; begin < n; begin += cells_per_chunk) {
+  for (Index begin = 0; begin < n; begin += kernels::cells_per_chunk) {
     chunk.begin = begin;
-    chunk.end = std::min(begin + cells_per_chunk, n);
+    chunk.end = std::min(begin + kernels::cells_per_chunk, n);
     chunks.push_back(chunk);
   }
 }
 
 }  // namespace
 
-std::vector<CellChunk> chunks_of(Mesh const& mesh) {
-  std::vector<CellChunk> chunks;
+std::vector<kernels::CellChunk> chunks_of(Mesh const& mesh) {
+  std::vector<kernels::CellChunk> chunks;
   for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
     auto const& n = mesh.zones[z].extent;
     append_chunks(chunks, {int(z), {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}});
@@ -45,8 +45,8 @@ std::vector<CellChunk> chunks_of(Mesh const& mesh) {
   return chunks;
 }
 
-std::vector<CellChunk> chunks_of(Mesh const& mesh, std::span<CellBox const> boxes) {
-  std::vector<CellChunk> chunks;
+std::vector<kernels::CellChunk> chunks_of(Mesh const& mesh, std::span<CellBox const> boxes) {
+  std::vector<kernels::CellChunk> chunks;
   for (CellBox const& box : boxes) {
     if (box.zone < 0 || box.zone >= int(mesh.zones.size()))
       throw MeshError("cell box " + to_string(box.cells) + ": there is no zone number " + std::to_string(box.zone) +
