@@ -2,7 +2,7 @@
 //
 // Elements, boundary faces and coordinates are handed over as lists, the plan is made once, and every step enqueues kernels on the
 // solver's own execution space: no allocation, no fence, no host decision. Needs the core library (and so Kokkos) alone.
-#include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/gridmorph.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -90,24 +90,21 @@ int main(int argc, char** argv) {
   using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;  // the solver's own instance
 
-  // Once: what follows from the lists, and the plan, from which patches move and how far they will.
+  // Once: the plan, from which patches move and how far they will.
   gridmorph::Mesh const mesh = box_around_a_body();
-  gridmorph::check_mesh(mesh);
-  gridmorph::UnstructuredTopology const topology = gridmorph::make_topology(mesh);
-  gridmorph::BoundaryFacePatches const face_patches = gridmorph::find_face_patches(mesh, topology);
   gridmorph::Motion motion;
   motion.rules.push_back({{"body"}, gridmorph::RigidRule{{}, {0, 0, 1}}, 0, "unstructured_loop"});
   gridmorph::PlanOptions options;
   options.elements.motion = 2;  // the largest displacement there will be: the wrap leaves room for it
-  gridmorph::PreparedUnstructured const prepared = gridmorph::prepare(mesh, topology, face_patches, motion, options);
-  gridmorph::UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, mesh.coordinates);
+  gridmorph::MorphPlan const plan(mesh, motion, options);
+  gridmorph::Morpher<Exec> const morpher(exec, plan, mesh.coordinates);
 
   // Every step: displacement of the boundary nodes in, positions of all nodes out, always from the reference mesh.
-  auto const& nodes = prepared.plan.known;
+  auto const nodes = plan.boundary_nodes();
   Kokkos::View<Vec3*, Exec::memory_space> const boundary("boundary displacement", nodes.size());
   gridmorph::Coordinates const& x = mesh.coordinates;
   gridmorph::Coordinates const now(mesh.n_nodes());
-  std::vector<Vec3> const heave = prepared.boundary_displacement(mesh);  // unit heave of the body, none of the box
+  std::vector<Vec3> const heave = plan.boundary_displacement();  // unit heave of the body, none of the box
   double worst = 0;
   for (int step = 0; step <= 8; ++step) {
     double const amplitude = 2 * std::sin(2 * std::numbers::pi * step / 8);

@@ -48,7 +48,7 @@ TEST(OneCall, ACallerPrescribesTheDisplacementOfAWall) {
   Coordinates const expected = morph(Exec(), c.mesh, motion_of({rule_for({"body"}, turn)}));
   Coordinates const moved(c.mesh.n_nodes());
   Kokkos::View<Vec3*, Kokkos::HostSpace> const boundary(given.data(), given.size());
-  UnstructuredMorpher<Exec>(Exec(), plan.elements()->plan, c.mesh.coordinates).positions(Exec(), boundary, moved);
+  Morpher<Exec>(Exec(), plan, c.mesh.coordinates).positions(Exec(), boundary, moved);
   Exec().fence();
   for (std::size_t n = 0; n < nodes.size(); ++n) EXPECT_EQ(moved[nodes[n]], expected[nodes[n]]);
   EXPECT_EQ(c.inverted(moved), 0);

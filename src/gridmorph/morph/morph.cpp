@@ -2,7 +2,6 @@
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
-#include <gridmorph/morph/unstructured_morpher.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
@@ -113,10 +112,7 @@ Coordinates morph(Exec const& exec, Mesh const& mesh, Motion const& motion, Plan
   MorphPlan const plan(mesh, motion, options);
   return moved_by(exec, plan, mesh.coordinates, [&](auto const& boundary, auto const& x, auto const& y, auto const& z) {
     VectorView<typename Exec::memory_space> const all(x, y, z);
-    if (plan.blocks())
-      Morpher<Exec>(exec, plan.blocks()->plan(), all).positions(exec, boundary, all);
-    else
-      UnstructuredMorpher<Exec>(exec, plan.elements()->plan, all).positions(exec, boundary, all);
+    Morpher<Exec>(exec, plan, all).positions(exec, boundary, all);
   });
 }
 

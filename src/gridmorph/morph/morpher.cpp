@@ -4,6 +4,7 @@
 #include <gridmorph/morph/device_plan.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/unstructured_morpher.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
@@ -24,13 +25,6 @@ kernels::Field<double const> read(kernels::Field<double> const& f) { return {f.x
 struct {
   std::string slip = "gridmorph::slip surfaces", volume = "gridmorph::all nodes";
 } const region_names;
-
-Plan const& blocks_of(MorphPlan const& plan) {
-  if (plan.blocks() == nullptr)
-    throw ConfigError(
-        "gridmorph::Morpher: the plan is that of an unstructured mesh; give it to an UnstructuredMorpher");
-  return plan.blocks()->plan();
-}
 
 }  // namespace
 
@@ -158,31 +152,40 @@ Morpher<Exec>::Morpher(Exec const& exec, Plan const& plan, In const& baseline, M
 }
 
 template <class Exec>
-Morpher<Exec>::Morpher(Exec const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options)
-    : Morpher(exec, blocks_of(plan), baseline, options) {}
+Morpher<Exec>::Morpher(Exec const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options) {
+  if (plan.blocks())
+    *this = Morpher(exec, plan.blocks()->plan(), baseline, options);
+  else
+    elements_ = std::make_shared<UnstructuredMorpher<Exec> const>(exec, plan.elements()->plan, baseline, options);
+}
 
 template <class Exec>
 void Morpher<Exec>::positions(Exec const& exec, In const& boundary, Out const& moved) const {
+  if (elements_) return elements_->positions(exec, boundary, moved);
   state_->template run<true>("gridmorph::Morpher::positions", exec, {&boundary, 1}, {&moved, 1});
 }
 
 template <class Exec>
 void Morpher<Exec>::positions(Exec const& exec, std::span<In const> boundary, std::span<Out const> moved) const {
+  if (elements_) return elements_->positions(exec, boundary, moved);
   state_->template run<true>("gridmorph::Morpher::positions", exec, boundary, moved);
 }
 
 template <class Exec>
 void Morpher<Exec>::displacements(Exec const& exec, In const& boundary, Out const& u) const {
+  if (elements_) return elements_->displacements(exec, boundary, u);
   state_->template run<false>("gridmorph::Morpher::displacements", exec, {&boundary, 1}, {&u, 1});
 }
 
 template <class Exec>
 void Morpher<Exec>::displacements(Exec const& exec, std::span<In const> boundary, std::span<Out const> u) const {
+  if (elements_) return elements_->displacements(exec, boundary, u);
   state_->template run<false>("gridmorph::Morpher::displacements", exec, boundary, u);
 }
 
 template <class Exec>
 void Morpher<Exec>::velocities(Exec const& exec, In const& boundary, In const& rate, Out const& v) const {
+  if (elements_) return elements_->velocities(exec, boundary, rate, v);
   State const& s = *state_;
   s.require("gridmorph::Morpher::velocities", {&boundary, 1}, {&v, 1}, 2);
   s.require_boundary("gridmorph::Morpher::velocities (rate)", rate);

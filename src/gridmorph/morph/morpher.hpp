@@ -12,13 +12,15 @@ namespace gridmorph {
 
 class MorphPlan;
 struct Plan;
+template <class ExecutionSpace>
+class UnstructuredMorpher;
 
 struct MorpherOptions {
   int fields = 1;         ///< displacement fields that one call may take
   bool velocity = false;  ///< room for velocities()
 };
 
-/// A plan on an execution space. Construction uploads the plan's tables, allocates the workspace and computes the line
+/// A plan on an execution space, of blocks or of elements: the same calls. Construction uploads the plan's tables, allocates the workspace and computes the line
 /// parameters from the baseline mesh (fences `exec`; 24 bytes read and 8 written per node and line parameter); everything
 /// else only enqueues kernels on the instance it is given: no allocation, no fence, no copy, no host decision.
 ///
@@ -26,9 +28,10 @@ struct MorpherOptions {
 /// vector for each of MorphPlan::boundary_nodes(), in that order, each in the frame of its node; all others have one for each node of the
 /// mesh. A View of another length is a ConfigError with both numbers, before anything is enqueued.
 ///
-/// Memory: 8 bytes per node of the far field and 8 per node and finalize pass, plus about 50 bytes per node on the faces of
+/// Memory, blocks: 8 bytes per node of the far field and 8 per node and finalize pass, plus about 50 bytes per node on the faces of
 /// pieces; while it is made, 24 bytes per node more where the baseline is in float or zone by zone. A Morpher's workspace serves
-/// one call at a time; copies of a Morpher share it.
+/// one call at a time; copies of a Morpher share it. Elements: 48 bytes per node (96 with MorpherOptions::velocity), about 60 per near
+/// node, 70 per far node, 50 for the residual, and the background mesh.
 template <class ExecutionSpace>
 class Morpher {
  public:
@@ -47,18 +50,20 @@ class Morpher {
   /// u(n) of every node. Cost per node: 24 bytes written, 8 read per line parameter.
   void displacements(ExecutionSpace const& exec, In const& boundary, Out const& u) const;
 
-  /// The same for several boundary displacements at once, at most MorpherOptions::fields: line parameters are read once for
-  /// every eight.
+  /// The same for several boundary displacements at once, at most MorpherOptions::fields: line parameters of blocks are read once for
+  /// every eight. Elements: any number, one after another.
   void positions(ExecutionSpace const& exec, std::span<In const> boundary, std::span<Out const> moved) const;
   void displacements(ExecutionSpace const& exec, std::span<In const> boundary, std::span<Out const> u) const;
 
   /// Grid velocity v(n) = du(n)/dt where the boundary displacement changes by `rate` per unit of time: the derivative of
-  /// displacements() at `boundary` in the direction `rate`, slip surfaces included. Needs MorpherOptions::velocity.
+  /// displacements() at `boundary` in the direction `rate`, slip surfaces included. Needs MorpherOptions::velocity. Elements: exact for walls that
+  /// turn; nodes that slip as kernels::constrain_to_all() says; costs two morphs.
   void velocities(ExecutionSpace const& exec, In const& boundary, In const& rate, Out const& v) const;
 
  private:
   struct State;
-  std::shared_ptr<State const> state_;
+  std::shared_ptr<State const> state_;                                   ///< blocks, or
+  std::shared_ptr<UnstructuredMorpher<ExecutionSpace> const> elements_;  ///< the other one is null
 };
 
 }  // namespace gridmorph
