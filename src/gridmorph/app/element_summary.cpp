@@ -35,6 +35,15 @@ std::string types_text(Mesh const& mesh, int zone) {
   return out;
 }
 
+Index n_blocks(Mesh const& mesh) {
+  return std::count_if(mesh.zones.begin(), mesh.zones.end(), [](Zone const& zone) { return zone.is_block(); });
+}
+
+std::string block_text(Zone const& zone) {
+  if (!zone.is_block()) return "";
+  return fmt::format("block {} x {} x {}, ", zone.extent[0], zone.extent[1], zone.extent[2]);
+}
+
 Box box_of(Mesh const& mesh, std::vector<Index32> const& nodes) {
   Box box;
   for (Index32 const n : nodes) box.add(mesh.coordinates[n]);
@@ -81,15 +90,17 @@ std::string periodic_text(PeriodicSummary const& p) {
 
 std::string ElementMesh::text(MeshSummary const& summary, std::string const& quality,
                               SnippetOptions const& options) const {
-  std::string text = fmt::format("{}: unstructured, {}-D, {} zone{}, {} nodes, {} elements ({})\n", mesh.source,
-                                 mesh.dimension, mesh.zones.size(), mesh.zones.size() == 1 ? "" : "s", mesh.n_nodes(),
-                                 mesh.n_elements(), types_text(mesh, -1));
+  bool const hybrid = n_blocks(mesh) > 0;
+  std::string text =
+      fmt::format("{}: {}, {}-D, {} zone{}, {} nodes, {} elements ({})\n", mesh.source,
+                  hybrid ? "hybrid (blocks and unstructured zones)" : "unstructured", mesh.dimension, mesh.zones.size(),
+                  mesh.zones.size() == 1 ? "" : "s", mesh.n_nodes(), mesh.n_elements(), types_text(mesh, -1));
   text += "\nZones\n";
   for (std::size_t z = 0; z < std::min(mesh.zones.size(), most_rows); ++z) {
     auto const& zone = mesh.zones[z];
     Box const box = box_of(mesh, zone);
-    text += fmt::format("  {}: {} nodes, {}; x {}, y {}, z {}\n", zone.name, zone.size(), types_text(mesh, int(z)),
-                        range_text(box.low.x, box.high.x), range_text(box.low.y, box.high.y),
+    text += fmt::format("  {}: {}{} nodes, {}; x {}, y {}, z {}\n", zone.name, block_text(zone), zone.size(),
+                        types_text(mesh, int(z)), range_text(box.low.x, box.high.x), range_text(box.low.y, box.high.y),
                         range_text(box.low.z, box.high.z));
   }
   if (mesh.zones.size() > most_rows)
@@ -121,24 +132,22 @@ nlohmann::json ElementMesh::json(MeshSummary const& summary, SnippetOptions cons
       if (count[std::size_t(t)] > 0) out[std::string(to_string(ElementType(t)))] = count[std::size_t(t)];
     return out;
   };
-  nlohmann::json json{{"source", mesh.source},
-                      {"unstructured", true},
-                      {"dimension", mesh.dimension},
-                      {"nodes", mesh.n_nodes()},
-                      {"elements", mesh.n_elements()},
-                      {"types", types_json(-1)},
-                      {"families", mesh.families},
-                      {"notes", notes()},
-                      {"problems", problems},
-                      {"remarks", remarks},
-                      {"case_file", case_snippet(summary, options)}};
+  nlohmann::json json{
+      {"source", mesh.source},       {"unstructured", true},      {"hybrid", n_blocks(mesh) > 0},
+      {"dimension", mesh.dimension}, {"nodes", mesh.n_nodes()},   {"elements", mesh.n_elements()},
+      {"types", types_json(-1)},     {"families", mesh.families}, {"notes", notes()},
+      {"problems", problems},        {"remarks", remarks},        {"case_file", case_snippet(summary, options)}};
   json["zones"] = nlohmann::json::array();
-  for (std::size_t z = 0; z < mesh.zones.size(); ++z)
-    json["zones"].push_back({{"name", mesh.zones[z].name},
-                             {"nodes", mesh.zones[z].size()},
-                             {"elements", mesh.zones[z].n_elements},
-                             {"types", types_json(int(z))},
-                             {"box", box_json(box_of(mesh, mesh.zones[z]))}});
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+    auto const& zone = mesh.zones[z];
+    nlohmann::json entry{{"name", zone.name},
+                         {"nodes", zone.size()},
+                         {"elements", zone.n_elements},
+                         {"types", types_json(int(z))},
+                         {"box", box_json(box_of(mesh, zone))}};
+    if (zone.is_block()) entry["extent"] = zone.extent;
+    json["zones"].push_back(std::move(entry));
+  }
   json["boundaries"] = nlohmann::json::array();
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     auto const& patch = mesh.patches[p];

@@ -35,7 +35,7 @@ struct MeshFileFacts {
 MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out = {});
 
 /// What a file holds, from its first bytes and its zone types. Files that are neither CGNS nor SU2 count as structured, so
-/// that read_mesh() says what it makes of them. Throws IoError for a file that mixes structured and unstructured zones.
+/// that read_mesh() says what it makes of them. Files of both kinds of zones (hybrid ones) count as unstructured.
 MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leave_out = {});
 
 struct ReadOptions {
@@ -51,7 +51,8 @@ struct ReadOptions {
 
 /// Reads a mesh of blocks or of elements. All problems of the mesh are reported in one error; what was skipped or assumed
 /// is in Mesh::notes. PLOT3D files have neither patches nor interfaces: read_side_file (casefile) or find_interfaces (boundary)
-/// add them. Elements are taken as they are numbered, inside out or not. Cost: one pass over the file's coordinates, read straight into
+/// add them. Elements are taken as they are numbered, inside out or not. Blocks beside zones of elements keep their extent; their
+/// cells are elements, their 1-to-1 interfaces connections. Cost: one pass over the file's coordinates, read straight into
 /// the flat arrays where they are stored in double precision, and one over its elements.
 Mesh read_mesh(std::string const& path, ReadOptions const& options = {});
 
@@ -70,7 +71,7 @@ struct WriteOptions {
 /// Blocks: 1-to-1 interfaces with Transform. A family whose patches share one BC type gets that type, and its patches become
 /// FamilySpecified. Patches of kind `connection` have no donor in a Mesh and become UserDefined boundary conditions of the same name.
 /// Elements: faces of boundary conditions as sections of their own, connections as Abutting1to1 point lists; in the order of the
-/// file that the mesh came from. Polyhedra are refused.
+/// file that the mesh came from. Polyhedra are refused. Blocks beside elements are written as elements too.
 void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options = {});
 
 /// Writes a mesh as write_mesh does, but zone by zone: for meshes of blocks that never are in memory as a whole. The file appears with

@@ -18,8 +18,9 @@ void check_same_mesh(File const& file, Layout const& layout, Mesh const& mesh) {
     for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
       auto const& found = layout.zones[z];
       auto const& zone = mesh.zones[z];
-      bool const same_size =
-          mesh.is_structured() ? found.mesh_extent() == zone.extent : found.nodes_in_file() == zone.size();
+      bool const same_size = mesh.is_structured() ? found.mesh_extent() == zone.extent
+                             : zone.is_block()    ? found.is_block() && found.extent == zone.extent
+                                                  : found.nodes_in_file() == zone.size();
       if (found.name != zone.name || !same_size)
         problems.add(file.path() + ": zone '" + found.name + "' is not zone '" + zone.name +
                      "' of the mesh, or has another size; give the file that the mesh was read from");

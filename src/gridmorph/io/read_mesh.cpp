@@ -13,20 +13,13 @@ std::string_view to_string(FileFormat format) { return format == FileFormat::cgn
 
 namespace {
 
+/// Unstructured where one zone is.
 MeshKind kind_of(cgns::File const& file, cgns::Node const& tree, std::vector<std::string> const& leave_out) {
-  std::string structured, unstructured;
   for (auto const* base : tree.all("CGNSBase_t"))
-    for (auto const* zone : base->all("Zone_t")) {
-      if (cgns::is_left_out(leave_out, base->name, zone->name)) continue;
-      (zone_type(file, *zone) == "Unstructured" ? unstructured : structured) += " '" + zone->name + "'";
-    }
-  if (!structured.empty() && !unstructured.empty())
-    throw IoError(
-        file.path() + ": mixes structured zones (" + structured.substr(1, 200) + ") with unstructured ones (" +
-        unstructured.substr(1, 200) +
-        "); such hybrid files cannot be handled, write the two kinds into files of their own, or name the zones "
-        "or the base of one kind in leave_out");
-  return unstructured.empty() ? MeshKind::structured : MeshKind::unstructured;
+    for (auto const* zone : base->all("Zone_t"))
+      if (!cgns::is_left_out(leave_out, base->name, zone->name) && zone_type(file, *zone) == "Unstructured")
+        return MeshKind::unstructured;
+  return MeshKind::structured;
 }
 
 void collect_linked(cgns::Node const& node, std::set<std::string>& files) {

@@ -2,6 +2,7 @@
 #include <gridmorph/io/unstructured_fields.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ class FieldsWriter {
     Solutions solutions;
     for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
       solutions.emplace_back(
-          file_, layout_.zones[z], present_[z], "MorphNodes", "Vertex", std::vector<Index>{mesh_.zones[z].size()},
+          file_, layout_.zones[z], present_[z], "MorphNodes", "Vertex", sizes(z, 0),
           io::names_of_nodes(fields, {layout_.zones[z].array[0] != nullptr, layout_.zones[z].array[1] != nullptr,
                                       layout_.zones[z].array[2] != nullptr}));
     auto const before = io::components(mesh_.coordinates), after = io::components(morphed);
@@ -48,15 +49,28 @@ class FieldsWriter {
   }
 
   void cells(OutputFields const& fields) {
-    Solutions solutions;
-    for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
-      solutions.emplace_back(file_, layout_.zones[z], present_[z], "MorphCells", "CellCenter",
-                             std::vector<Index>{mesh_.zones[z].n_elements}, io::names_of_cells(fields));
+    std::vector<std::optional<io::SolutionWriter>> solutions(mesh_.zones.size());
+    for (std::size_t z = 0; z < mesh_.zones.size(); ++z) {
+      auto const& zone = layout_.zones[z];
+      // A plane of nodes in three index directions has no cells in the file that values could belong to.
+      if (zone.index_dimension < 3 || zone.flat_axis < 0)
+        solutions[z].emplace(file_, zone, present_[z], "MorphCells", "CellCenter", sizes(z, 1),
+                             io::names_of_cells(fields));
+    }
     for (auto const& field : fields.cells) {
       auto const ordered = in_file_order(mesh_.file_order.element, field.values);
       for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
-        solutions[z].add(field.name, ordered.data() + mesh_.zones[z].first_element, field.unit);
+        if (solutions[z]) solutions[z]->add(field.name, ordered.data() + mesh_.zones[z].first_element, field.unit);
     }
+  }
+
+  /// Of an array with a value for each node (less: 0) or each cell (1) of a zone.
+  [[nodiscard]] std::vector<Index> sizes(std::size_t z, Index less) const {
+    auto const& zone = layout_.zones[z];
+    if (!zone.is_block()) return {less == 0 ? mesh_.zones[z].size() : mesh_.zones[z].n_elements};
+    std::vector<Index> out;
+    for (int a = 0; a < zone.index_dimension; ++a) out.push_back(zone.extent[a] - less);
+    return out;
   }
 
   cgns::File& file_;

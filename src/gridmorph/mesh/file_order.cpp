@@ -122,6 +122,11 @@ std::vector<Index32> order_nodes(Mesh const& mesh) {
   std::vector<Index32> order(std::size_t(mesh.n_nodes()));
   HostExec const exec;
   for (auto const& zone : mesh.zones) {
+    if (zone.is_block()) {
+      std::iota(order.begin() + zone.first_node, order.begin() + zone.first_node + zone.size(),
+                Index32(zone.first_node));
+      continue;
+    }
     detail::KeyedIndices<Kokkos::HostSpace> const list(std::size_t(zone.size()), "gridmorph::order_by_position");
     for_all("gridmorph::order_by_position::codes", zone.size(), [&](Index n) {
       list.key(n) = kernels::hilbert_code({mesh.coordinates[zone.first_node + n], box.low, {steps, steps, steps}});
@@ -150,23 +155,37 @@ std::vector<Index32> order_elements(Mesh const& mesh, std::vector<Index32> const
   return order;
 }
 
+bool stays(std::vector<Index32> const& order, Index first, Index n) {
+  for (Index m = first; m < first + n; ++m)
+    if (order[std::size_t(m)] != m) return false;
+  return true;
+}
+
 }  // namespace
 
 bool is_scattered(Mesh const& mesh) {
   constexpr Index smallest = 4096, parts = 16;
   if (mesh.n_nodes() < smallest) return false;
   Index const near = mesh.n_nodes() / parts;
-  Index wide = 0;
-  Kokkos::parallel_reduce(
-      "gridmorph::is_scattered", Kokkos::RangePolicy<HostExec, Kokkos::IndexType<Index>>(0, mesh.n_elements()),
-      [&](Index e, Index& sum) {
-        auto const corners = mesh.elements.corners(e);
-        if (corners.empty()) return;
-        auto const [first, last] = std::minmax_element(corners.begin(), corners.end());
-        sum += *last - *first > near ? 1 : 0;
-      },
-      wide);
-  return 2 * wide > mesh.n_elements();
+  Index wide = 0, looked_at = 0;
+  for (auto const& zone : mesh.zones) {
+    if (zone.is_block()) continue;
+    Index of_zone = 0;
+    Kokkos::parallel_reduce(
+        "gridmorph::is_scattered",
+        Kokkos::RangePolicy<HostExec, Kokkos::IndexType<Index>>(zone.first_element,
+                                                                zone.first_element + zone.n_elements),
+        [&](Index e, Index& sum) {
+          auto const corners = mesh.elements.corners(e);
+          if (corners.empty()) return;
+          auto const [first, last] = std::minmax_element(corners.begin(), corners.end());
+          sum += *last - *first > near ? 1 : 0;
+        },
+        of_zone);
+    wide += of_zone;
+    looked_at += zone.n_elements;
+  }
+  return 2 * wide > looked_at;
 }
 
 FileOrder order_by_position(Mesh const& mesh) {
@@ -193,6 +212,10 @@ void reorder(Mesh& mesh, FileOrder order) {
     throw MeshError("reorder: the order is one of " + std::to_string(order.node.size()) + " nodes and " +
                     std::to_string(order.element.size()) + " elements, but '" + mesh.source + "' has " +
                     std::to_string(mesh.n_nodes()) + " and " + std::to_string(mesh.n_elements()));
+  for (auto const& zone : mesh.zones)
+    if (zone.is_block() &&
+        !(stays(order.node, zone.first_node, zone.size()) && stays(order.element, zone.first_element, zone.n_elements)))
+      throw MeshError("reorder: the order moves nodes or cells of '" + zone.name + "', a block; leave them in place");
   mesh = permuted(mesh, order);
   mesh.file_order = std::move(order);
 }

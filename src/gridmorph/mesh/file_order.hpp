@@ -12,17 +12,18 @@
 namespace gridmorph {
 
 /// Whether the numbers of most elements' corners are further apart than a sixteenth of all nodes: what order_by_position() is
-/// for. Never for less than 4,096 nodes, which fit in a cache in any order. Cost: one stream over the elements.
+/// for; blocks are not looked at. Never for less than 4,096 nodes, which fit in a cache in any order. Cost: one stream over the elements.
 bool is_scattered(Mesh const& mesh);
 
 /// Nodes of each zone along a Hilbert curve through the bounding box, nodes at the same place in the order they have;
-/// elements of each zone by the first of their nodes along it. Linear cost: a sort by counting, a few streams over the
+/// elements of each zone by the first of their nodes along it. Blocks stay as they are. Linear cost: a sort by counting, a few streams over the
 /// elements; host, on all cores.
 FileOrder order_by_position(Mesh const& mesh);
 
 /// Renumbers the nodes and elements inside their zones: what stands at place order.node[n] comes to place n. Zones, patches
 /// and connections stay in order, and so do the faces of each patch. The mesh knows its way back (file_order). The mesh must
-/// be in the order of its file; throws MeshError for one that is not, and for an order of other sizes.
+/// be in the order of its file; throws MeshError for one that is not, for an order of other sizes, and for one that moves nodes
+/// or cells of a block, whose numbers follow from their indices.
 void reorder(Mesh& mesh, FileOrder order);
 
 /// The mesh as its file numbers it.

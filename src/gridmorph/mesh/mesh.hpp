@@ -87,12 +87,12 @@ struct Connection {
 /// A CGNS Zone_t: a block of nodes (i, j, k), or elements. An SU2 file is one zone of elements.
 struct Zone {
   std::string name;  ///< unique in the mesh; "Base/Zone" when the file has several bases
-  /// Blocks: nodes along i, j, k, each at least 2 (2-D zones are extruded to two planes by readers). Elements: 0.
+  /// Blocks: nodes along i, j, k, each at least 2 (readers extrude 2-D zones to two planes, but not beside elements). Elements: 0.
   Index3 extent{0, 0, 0};
   Index first_node = 0;           ///< number of the zone's first node, (0, 0, 0) of a block, in the coordinate arrays
   bool single_precision = false;  ///< the file keeps this zone's coordinates in single precision
   Index n_nodes = 0;              ///< of elements; size() is what both kinds have
-  Index first_element = 0, n_elements = 0;  ///< in Mesh::elements
+  Index first_element = 0, n_elements = 0;  ///< in Mesh::elements; of a block beside elements its cells, i fastest
 
   [[nodiscard]] bool is_block() const { return extent[0] > 0; }
   /// Number of nodes.
@@ -135,7 +135,7 @@ struct Mesh {
   /// elements of a 2-D mesh are surfaces.
   int dimension = 3;
   std::vector<Zone> zones;
-  Elements elements;                      ///< of all zones of elements
+  Elements elements;                      ///< of all zones; of a mesh of blocks alone none
   Polyhedra polyhedra;                    ///< among them
   std::vector<Patch> patches;             ///< of all zones, in file order
   std::vector<Interface1to1> interfaces;  ///< of blocks, in file order

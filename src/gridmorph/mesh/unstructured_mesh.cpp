@@ -81,8 +81,14 @@ Index number_in_file(Mesh const& mesh, Index element) {
 }
 
 std::string describe_element(Mesh const& mesh, Index element) {
-  return "zone '" + mesh.zones[std::size_t(mesh.zone_of_element(element))].name + "' " +
-         std::string(to_string(mesh.elements.type[std::size_t(element)])) + " " +
+  auto const& zone = mesh.zones[std::size_t(mesh.zone_of_element(element))];
+  if (zone.is_block()) {
+    Index const ni = std::max(zone.extent[0] - 1, 1), nj = std::max(zone.extent[1] - 1, 1);
+    Index const cell = element - zone.first_element;
+    return "zone '" + zone.name + "' cell (i " + std::to_string(cell % ni + 1) + ", j " +
+           std::to_string(cell / ni % nj + 1) + ", k " + std::to_string(cell / (ni * nj) + 1) + ")";
+  }
+  return "zone '" + zone.name + "' " + std::string(to_string(mesh.elements.type[std::size_t(element)])) + " " +
          std::to_string(number_in_file(mesh, element));
 }
 

@@ -89,18 +89,9 @@ class ConnectionReader {
     return std::nullopt;
   }
 
-  /// A zone of the same base, or "Base/Zone".
-  int find_donor(ZoneLayout const& zone, std::string const& name) const {
-    for (std::size_t d = 0; d < layout_.zones.size(); ++d)
-      if (layout_.zones[d].base == zone.base && layout_.zones[d].node->name == name) return int(d);
-    for (std::size_t d = 0; d < layout_.zones.size(); ++d)
-      if (layout_.zones[d].base->name + "/" + layout_.zones[d].node->name == name) return int(d);
-    return -1;
-  }
-
   /// Whether a donor is one of the zones that are left out.
   bool leads_out(ZoneLayout const& zone, std::string const& donor) const {
-    if (find_donor(zone, donor) >= 0) return false;
+    if (find_donor(layout_, zone, donor) >= 0) return false;
     auto const slash = donor.find('/');
     bool const whole = slash != std::string::npos;
     return is_left_out(layout_.leave_out, whole ? donor.substr(0, slash) : zone.base->name,
@@ -116,7 +107,7 @@ class ConnectionReader {
   }
 
   int donor_zone(ZoneLayout const& zone, std::string const& name, Corners const& range) {
-    int const donor = find_donor(zone, name);
+    int const donor = find_donor(layout_, zone, name);
     if (donor < 0) {
       std::string there;
       for (auto const& z : layout_.zones)
@@ -133,7 +124,7 @@ class ConnectionReader {
   /// stays a patch.
   bool matched(int z, Node const& node, PointSet const& own, FaceRange const& face_found) {
     auto const& zone = layout_.zones[z];
-    int const donor_number = find_donor(zone, file_.text(node));
+    int const donor_number = find_donor(layout_, zone, file_.text(node));
     if (donor_number < 0 || face_found.misfit != Misfit::none) {
       note("is Abutting1to1, but " +
            (donor_number < 0 ? "donor zone '" + file_.text(node) + "' is not in the file" : face_found.why) +
@@ -171,17 +162,28 @@ class ConnectionReader {
 
 }  // namespace
 
-void read_connections(File const& file, Layout const& layout, Mesh& mesh, Problems& problems) {
+int find_donor(Layout const& layout, ZoneLayout const& zone, std::string const& name) {
+  for (std::size_t d = 0; d < layout.zones.size(); ++d)
+    if (layout.zones[d].base == zone.base && layout.zones[d].node->name == name) return int(d);
+  for (std::size_t d = 0; d < layout.zones.size(); ++d)
+    if (layout.zones[d].base->name + "/" + layout.zones[d].node->name == name) return int(d);
+  return -1;
+}
+
+void read_block_connection(File const& file, Layout const& layout, int zone, Node const& node, Mesh& mesh,
+                           Problems& problems) {
   ConnectionReader reader(file, layout, mesh, problems);
+  if (node.label == "OversetHoles_t")
+    mesh.notes.push_back(file.path() + ": zone '" + layout.zones[std::size_t(zone)].name + "', overset holes '" +
+                         node.name + "': left alone, holes play no part in morphing");
+  if (node.label == "GridConnectivity1to1_t") reader.one_to_one(zone, node);
+  if (node.label == "GridConnectivity_t") reader.general(zone, node);
+}
+
+void read_connections(File const& file, Layout const& layout, Mesh& mesh, Problems& problems) {
   for (std::size_t z = 0; z < layout.zones.size(); ++z)
     for (auto const* connectivity : layout.zones[z].node->all("ZoneGridConnectivity_t"))
-      for (auto const& node : connectivity->children) {
-        if (node.label == "GridConnectivity1to1_t") reader.one_to_one(int(z), node);
-        if (node.label == "GridConnectivity_t") reader.general(int(z), node);
-        if (node.label == "OversetHoles_t")
-          mesh.notes.push_back(file.path() + ": zone '" + layout.zones[z].name + "', overset holes '" + node.name +
-                               "': left alone, holes play no part in morphing");
-      }
+      for (auto const& node : connectivity->children) read_block_connection(file, layout, int(z), node, mesh, problems);
 }
 
 }  // namespace gridmorph::cgns

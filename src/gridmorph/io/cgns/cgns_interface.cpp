@@ -22,8 +22,6 @@ std::string text(std::vector<std::int64_t> const& transform) {
   return out + "]";
 }
 
-int direction(int from, int to) { return to < from ? -1 : 1; }
-
 }  // namespace
 
 Joined join(ZoneLayout const& zone, Corners const& own, ZoneLayout const& donor, Corners const& other,
@@ -76,17 +74,6 @@ Joined join(ZoneLayout const& zone, Corners const& own, ZoneLayout const& donor,
 
 namespace {
 
-/// All index tuples of a range from begin to end, first index fastest.
-std::vector<Index3> expand(Corners const& c) {
-  std::vector<Index3> out;
-  int const si = direction(c.begin[0], c.end[0]), sj = direction(c.begin[1], c.end[1]),
-            sk = direction(c.begin[2], c.end[2]);
-  for (int k = c.begin[2]; k != c.end[2] + sk; k += sk)
-    for (int j = c.begin[1]; j != c.end[1] + sj; j += sj)
-      for (int i = c.begin[0]; i != c.end[0] + si; i += si) out.push_back({i, j, k});
-  return out;
-}
-
 Index3 minus(Index3 const& a, Index3 const& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 /// Axis and sign of a unit step; nothing for any other step.
@@ -116,8 +103,8 @@ Joined join_lists(ZoneLayout const& zone, PointSet const& own, IndexRange const&
   auto const donor_face = face_range(donor, other);
   if (donor_face.misfit != Misfit::none) return refuse(skipped, "on the donor side " + donor_face.why);
 
-  auto const own_points = own.points.empty() ? expand(own.corners) : own.points;
-  auto const images = donor_is_range ? expand(other.corners) : donor_points;
+  auto const own_points = own.points.empty() ? all_points(own.corners) : own.points;
+  auto const images = donor_is_range ? all_points(other.corners) : donor_points;
   if (own_points.size() != images.size())
     return refuse(skipped, "its lists have " + std::to_string(own_points.size()) + " and " +
                                std::to_string(images.size()) + " points");

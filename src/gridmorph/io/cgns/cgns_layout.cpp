@@ -246,8 +246,14 @@ Layout find_unstructured_zones(File const& file, Node const& tree, Problems& pro
   layout.leave_out = leave_out;
   for (auto& zone : wanted_zones(file, tree, problems, leave_out)) {
     auto const* node = zone.node;
-    zone.index_dimension = 1;
     std::string const where = file.path() + ": zone '" + zone.name + "'";
+    if (zone_type(file, *node) != "Unstructured") {
+      if (!read_extent(file, zone, where, problems)) continue;
+      find_coordinates(file, zone, where, problems, layout.notes);
+      layout.zones.push_back(std::move(zone));
+      continue;
+    }
+    zone.index_dimension = 1;
     auto const sizes = file.integers(*node);
     if (sizes.size() < 2 || sizes[0] < 1 || sizes[0] >= std::numeric_limits<int>::max()) {
       problems.add(where + ": its size is not that of an unstructured zone" +

@@ -17,7 +17,7 @@ struct ZoneLayout {
   Node const* base = nullptr;
   Node const* node = nullptr;
   std::string name;         ///< as in Mesh::zones: "Zone", or "Base/Zone" where several bases have zones
-  int index_dimension = 3;  ///< 2 or 3, the length of index tuples in the file
+  int index_dimension = 3;  ///< 2 or 3, the length of index tuples in the file; 1 of unstructured zones
   Index3 extent{1, 1, 1};   ///< nodes in the file
   int flat_axis = -1;       ///< 0..2, or -1 for a 3-D zone
 
@@ -26,6 +26,7 @@ struct ZoneLayout {
   std::array<bool, 3> single_precision{};
   Index3 rind_low{0, 0, 0}, rind_high{0, 0, 0};  ///< rind planes stored before and after the nodes
 
+  [[nodiscard]] bool is_block() const { return index_dimension > 1; }
   [[nodiscard]] Index3 mesh_extent() const {
     Index3 out = extent;
     if (flat_axis >= 0) out[flat_axis] = 2;
@@ -50,8 +51,8 @@ struct Layout {
 Layout find_zones(File const& file, Node const& tree, Problems& problems,
                   std::vector<std::string> const& leave_out = {});
 
-/// The same for unstructured meshes: every zone is a line of nodes, extent {nodes, 1, 1}; flat_axis is 2 where the file has no
-/// CoordinateZ.
+/// The same for meshes with unstructured zones: those are lines of nodes, extent {nodes, 1, 1}; flat_axis is 2 where the file has no
+/// CoordinateZ. Structured zones among them are as find_zones() has them, but stand in the mesh as in the file, planes too.
 Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems,
                                std::vector<std::string> const& leave_out = {});
 

@@ -138,6 +138,17 @@ bool inside(ZoneLayout const& zone, Corners const& corners) {
   return true;
 }
 
+std::vector<Index3> all_points(Corners const& c) {
+  std::vector<Index3> out;
+  auto const direction = [](int from, int to) { return to < from ? -1 : 1; };
+  int const si = direction(c.begin[0], c.end[0]), sj = direction(c.begin[1], c.end[1]),
+            sk = direction(c.begin[2], c.end[2]);
+  for (int k = c.begin[2]; k != c.end[2] + sk; k += sk)
+    for (int j = c.begin[1]; j != c.end[1] + sj; j += sj)
+      for (int i = c.begin[0]; i != c.end[0] + si; i += si) out.push_back({i, j, k});
+  return out;
+}
+
 IndexRange node_range(ZoneLayout const& zone, Corners const& corners) {
   IndexRange range;
   for (int a = 0; a < 3; ++a) {

@@ -52,6 +52,9 @@ IndexRange node_range(ZoneLayout const& zone, Corners const& corners);
 /// The axis a face range is normal to: extent 1 there, more elsewhere, and at the first or last node of the zone.
 std::optional<int> face_normal(ZoneLayout const& zone, IndexRange const& range);
 
+/// All index tuples of a range from begin to end, first index fastest.
+std::vector<Index3> all_points(Corners const& corners);
+
 /// Whether all corners are nodes of the zone as it is in the file.
 bool inside(ZoneLayout const& zone, Corners const& corners);
 

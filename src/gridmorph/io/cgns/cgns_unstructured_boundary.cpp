@@ -1,9 +1,11 @@
+#include <gridmorph/io/cgns/cgns_boundary.hpp>
 #include <gridmorph/io/cgns/cgns_families.hpp>
 #include <gridmorph/io/cgns/cgns_unstructured_boundary.hpp>
 #include <gridmorph/io/cgns/cgns_unstructured_points.hpp>
+#include <gridmorph/mesh/block_elements.hpp>
 
 #include <algorithm>
-#include <set>
+#include <utility>
 
 namespace gridmorph::cgns {
 
@@ -15,17 +17,9 @@ class BoundaryReader {
                  Problems& problems)
       : file_(file), tree_(tree), layout_(layout), faces_(faces), mesh_(mesh), problems_(problems) {}
 
-  void families() {
-    std::set<Node const*> bases;
-    for (auto const& zone : layout_.zones)
-      if (bases.insert(zone.base).second)
-        for (auto& name : family_names(*zone.base))
-          if (std::find(mesh_.families.begin(), mesh_.families.end(), name) == mesh_.families.end())
-            mesh_.families.push_back(std::move(name));
-  }
-
   void zone(int z) {
     auto const& zone = layout_.zones[std::size_t(z)];
+    if (zone.is_block()) return block(z);
     std::int64_t const largest = largest_number(zone, faces_[std::size_t(z)], mesh_, z);
     for (auto const* zone_bc : zone.node->all("ZoneBC_t"))
       for (auto const* bc : zone_bc->all("BC_t")) condition(z, *bc, largest);
@@ -33,6 +27,13 @@ class BoundaryReader {
   }
 
  private:
+  void block(int z) {
+    std::size_t const first = mesh_.patches.size();
+    read_block_boundary(file_, tree_, layout_, z, mesh_, problems_);
+    for (std::size_t p = first; p < mesh_.patches.size(); ++p)
+      mesh_.patches[p] = as_faces(mesh_, std::move(mesh_.patches[p]));
+  }
+
   void condition(int z, Node const& bc, std::int64_t largest) {
     auto const& zone = layout_.zones[std::size_t(z)];
     where_ = file_.path() + ": zone '" + zone.name + "', BC '" + bc.name + "'";
@@ -181,7 +182,7 @@ class BoundaryReader {
 void read_boundary(File const& file, Node const& tree, Layout const& layout, std::vector<ListedFaces>& faces,
                    Mesh& mesh, Problems& problems) {
   BoundaryReader reader(file, tree, layout, faces, mesh, problems);
-  reader.families();
+  add_families(layout, mesh);
   for (std::size_t z = 0; z < layout.zones.size(); ++z) reader.zone(int(z));
 }
 

@@ -1,10 +1,16 @@
+#include <gridmorph/core/text.hpp>
+#include <gridmorph/io/cgns/cgns_boundary.hpp>
 #include <gridmorph/io/cgns/cgns_families.hpp>
 #include <gridmorph/io/cgns/cgns_periodic.hpp>
+#include <gridmorph/io/cgns/cgns_ranges.hpp>
 #include <gridmorph/io/cgns/cgns_unstructured_boundary.hpp>
 #include <gridmorph/io/cgns/cgns_unstructured_points.hpp>
+#include <gridmorph/mesh/block_elements.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace gridmorph::cgns {
 
@@ -26,9 +32,22 @@ class ConnectionReader {
 
   void read(int z, Node const& node) {
     auto const& zone = layout_.zones[std::size_t(z)];
-    where_ = file_.path() + ": zone '" + zone.name + "', connection '" + node.name + "'";
+    bool const connects = node.label == "GridConnectivity_t" || node.label == "GridConnectivity1to1_t";
+    if (!connects) {
+      if (zone.is_block()) read_block_connection(file_, layout_, z, node, mesh_, problems_);
+      return;
+    }
+    bool const one_to_one = node.label == "GridConnectivity1to1_t";
+    where_ =
+        file_.path() + ": zone '" + zone.name + "', " + (one_to_one ? "interface '" : "connection '") + node.name + "'";
+    int const donor = find_donor(layout_, zone, file_.text(node));
+    bool const to_block = donor >= 0 && layout_.zones[std::size_t(donor)].is_block();
+    if (zone.is_block() && (to_block || donor < 0)) return between_blocks(z, node);
+    if (one_to_one && !zone.is_block() && !to_block) return;  // not for unstructured zones (SIDS)
     auto const* type_node = node.labelled("GridConnectivityType_t");
-    std::string const type = type_node ? file_.text(*type_node) : "Overset";  // the default of the SIDS
+    std::string const type = one_to_one  ? "Abutting1to1"
+                             : type_node ? file_.text(*type_node)
+                                         : "Overset";  // the default of the SIDS
     auto const own = nodes_of(z, node);
     if (!own) return;
     if (type == "Abutting1to1" && matched(z, node, own->all)) return;
@@ -57,7 +76,64 @@ class ConnectionReader {
     return list;
   }
 
+  /// A connection of blocks alone, as the reader of blocks has it.
+  void between_blocks(int z, Node const& node) {
+    std::size_t const first = mesh_.patches.size();
+    read_block_connection(file_, layout_, z, node, mesh_, problems_);
+    for (std::size_t p = first; p < mesh_.patches.size(); ++p)
+      mesh_.patches[p] = as_faces(mesh_, std::move(mesh_.patches[p]));
+    for (auto const& face : mesh_.interfaces) {
+      mesh_.connections.push_back(node_pairs(mesh_, face));
+      double const apart = largest_mismatch(mesh_, mesh_.connections.back());
+      if (!(apart <= tolerance_))
+        problems_.add(where_ + ": joins nodes that are " + to_text(apart, 3) + " apart (tolerance " +
+                      to_text(tolerance_, 3) + ")");
+    }
+    mesh_.interfaces.clear();
+  }
+
+  std::optional<Set> nodes_of_points(int z, std::vector<Index3> const& points, std::string const& verb) {
+    auto const& zone = layout_.zones[std::size_t(z)];
+    Set out;
+    for (auto const& p : points) {
+      if (!inside(zone, {p, p})) {
+        problems_.add(where_ + ": " + verb + " node " + to_string(Corners{p, p}, zone.index_dimension) +
+                      ", which zone '" + zone.name + "' does not have");
+        return std::nullopt;
+      }
+      out.all.push_back(Index32(mesh_.zones[std::size_t(z)].node({p[0] - 1, p[1] - 1, p[2] - 1})));
+    }
+    return out;
+  }
+
+  /// Of a block: nodes one by one, or a rectangle of faces.
+  std::optional<Set> nodes_of_block(int z, Node const& node) {
+    auto const& zone = layout_.zones[std::size_t(z)];
+    std::string why;
+    auto const set = read_point_set(file_, zone, node, why);
+    if (!set) {
+      note("skipped, " + why);
+      return std::nullopt;
+    }
+    auto const face = face_range(zone, *set);
+    if (face.misfit == Misfit::out_of_bounds) {
+      problems_.add(where_ + ": " + face.why);
+      return std::nullopt;
+    }
+    bool const nodes = set->location == Location::vertex && !set->elements;
+    if (face.misfit == Misfit::not_a_face && !nodes) {
+      note("skipped, " + face.why);
+      return std::nullopt;
+    }
+    Set out;
+    if (nodes) out = *nodes_of_points(z, set->points.empty() ? all_points(set->corners) : set->points, "names");
+    if (face.misfit == Misfit::none) add_faces(mesh_.zones[std::size_t(z)], face.range, out.faces);
+    if (!nodes) out.all = sorted(out.faces.item);
+    return out;
+  }
+
   std::optional<Set> nodes_of(int z, Node const& node) {
+    if (layout_.zones[std::size_t(z)].is_block()) return nodes_of_block(z, node);
     std::string why;
     std::int64_t const largest = largest_number(layout_.zones[std::size_t(z)], faces_[std::size_t(z)], mesh_, z);
     auto const set = read_number_set(file_, node, largest, why);
@@ -90,18 +166,14 @@ class ConnectionReader {
     return out;
   }
 
-  int find_zone(ZoneLayout const& own, std::string const& name) const {
-    for (std::size_t d = 0; d < layout_.zones.size(); ++d)
-      if (layout_.zones[d].base == own.base && layout_.zones[d].node->name == name) return int(d);
-    for (std::size_t d = 0; d < layout_.zones.size(); ++d)
-      if (layout_.zones[d].base->name + "/" + layout_.zones[d].node->name == name) return int(d);
-    return -1;
-  }
-
   /// What PointListDonor (or a donor range) names. Lists of cells are of no use here.
   std::optional<Set> donors(int donor_zone, Node const& node, bool own_are_nodes) {
     for (auto const* name : {"PointListDonor", "PointRangeDonor"})
       if (auto const* list = node.child(name)) {
+        if (layout_.zones[std::size_t(donor_zone)].is_block())
+          return own_are_nodes ? donors_in_block(donor_zone, *list) : std::nullopt;
+        // The range of a 1-to-1 interface is one of indices, which elements do not have.
+        if (node.label == "GridConnectivity1to1_t") return std::nullopt;
         NumberSet set;
         set.nodes = own_are_nodes;
         set.numbers = file_.integers(*list);
@@ -110,9 +182,45 @@ class ConnectionReader {
     return std::nullopt;
   }
 
+  std::optional<Set> donors_in_block(int donor_zone, Node const& list) {
+    auto const& zone = layout_.zones[std::size_t(donor_zone)];
+    auto const points = read_tuples(file_, list, zone.index_dimension);
+    bool const range = list.label == "IndexRange_t";
+    if (!points || (range && points->size() != 2)) {
+      note(list.name + " does not hold " + (range ? "two corners" : "whole index tuples") + " of zone '" + zone.name +
+           "'; its nodes are found by position");
+      return std::nullopt;
+    }
+    auto out = nodes_of_points(donor_zone, *points, "names donor");
+    return out && range ? nodes_of_points(donor_zone, all_points({(*points)[0], (*points)[1]}), "names donor") : out;
+  }
+
+  /// Where the donors of a zone's nodes are looked for that the file does not list: at the faces that it lists, or all round a block.
+  /// Elements may leave out the faces that a block lies behind.
+  std::vector<Index32> possible_donors(int zone, int donor) {
+    auto const& there = mesh_.zones[std::size_t(donor)];
+    if (there.is_block()) {
+      CsrGraph faces;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (there.extent[axis] < 2) continue;
+        for (int const at : {0, there.extent[axis] - 1}) {
+          IndexRange side{{0, 0, 0}, there.extent};
+          side.begin[axis] = at;
+          side.end[axis] = at + 1;
+          add_faces(there, side, faces);
+        }
+      }
+      return sorted(std::move(faces.item));
+    }
+    if (!mesh_.zones[std::size_t(zone)].is_block()) return sorted(faces_[std::size_t(donor)].nodes.item);
+    std::vector<Index32> all(std::size_t(there.size()));
+    std::iota(all.begin(), all.end(), Index32(there.first_node));
+    return all;
+  }
+
   bool matched(int z, Node const& node, std::vector<Index32> const& own) {
     auto const& zone = layout_.zones[std::size_t(z)];
-    int const donor = find_zone(zone, file_.text(node));
+    int const donor = find_donor(layout_, zone, file_.text(node));
     if (donor < 0) {
       note("is Abutting1to1, but donor zone '" + file_.text(node) + "' is not in the file; kept as a patch");
       return false;
@@ -140,7 +248,7 @@ class ConnectionReader {
   bool by_position(Connection c, std::vector<Index32> const& own, std::optional<Set> const& others) {
     c.nodes = sorted(own);
     std::vector<Index32> const candidates =
-        others && !others->all.empty() ? others->all : sorted(faces_[std::size_t(c.donor_zone)].nodes.item);
+        others && !others->all.empty() ? others->all : possible_donors(c.zone, c.donor_zone);
     c.donor_nodes = match_points(mesh_.coordinates, c.nodes, candidates, tolerance_, c.periodic);
     auto const missing = std::count(c.donor_nodes.begin(), c.donor_nodes.end(), -1);
     if (missing > 0) {
@@ -171,8 +279,7 @@ void read_connections(File const& file, Layout const& layout, std::vector<Listed
   ConnectionReader reader(file, layout, faces, mesh, problems);
   for (std::size_t z = 0; z < layout.zones.size(); ++z)
     for (auto const* connectivity : layout.zones[z].node->all("ZoneGridConnectivity_t"))
-      for (auto const& node : connectivity->children)
-        if (node.label == "GridConnectivity_t") reader.read(int(z), node);
+      for (auto const& node : connectivity->children) reader.read(int(z), node);
 }
 
 }  // namespace gridmorph::cgns
