@@ -8,7 +8,7 @@
 //   order         nodes and elements brought in order by position, as the command line does after reading
 //
 // Once per motion, all cores:
-//   layers        displacement from layer to layer of near field and fence
+//   layers        displacement from layer to layer of near and partially wrapped elements
 //   project       far nodes in cells of the background mesh
 //   scatter       moving walls to the lattice between them
 //   background    the background mesh itself: the structured engine on some ten thousand nodes

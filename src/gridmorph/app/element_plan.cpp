@@ -5,6 +5,7 @@
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/unstructured_morpher.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/report/target_text.hpp>
 
 #include <fmt/format.h>
 
@@ -91,8 +92,12 @@ class ElementPlan final : public AnyPlan {
     return mesh_.measure(wanted);
   }
 
-  [[nodiscard]] PlanOutcome outcome(Coordinates const& /*morphed*/, bool /*verdict*/, bool /*at_once*/) const override {
-    return {{}, {}, json()};
+  [[nodiscard]] PlanOutcome outcome(Coordinates const& morphed, bool /*verdict*/, bool at_once) const override {
+    PlanOutcome out{{}, {}, json()};
+    auto const targets = at_once ? prepared_.boundary.motion->target_reach(morphed) : std::vector<TargetReach>();
+    for (auto const& target : targets) out.notes.push_back(describe_reach(mesh_.mesh, target));
+    out.json["targets"] = targets_json(mesh_.mesh, targets);
+    return out;
   }
 
   void write_stages(std::filesystem::path const& folder, Coordinates const& morphed) const override {
@@ -135,7 +140,8 @@ class ElementPlan final : public AnyPlan {
         {"offset", r.offset},
         {"columns", r.n_columns},
         {"layer_height", r.layer_height},
-        {"elements", {{"near", r.regions.n_near}, {"fence", r.regions.n_partial}, {"far", r.regions.n_far}}},
+        {"elements",
+         {{"near", r.regions.n_near}, {"partially_wrapped", r.regions.n_partial}, {"far", r.regions.n_far}}},
         {"layers", p.near.n_layers()},
         {"background",
          {{"zones", p.background ? p.background->mesh.zones.size() : 0},
@@ -162,7 +168,7 @@ class ElementPlan final : public AnyPlan {
     auto const& r = prepared_.report;
     auto const& p = prepared_.plan;
     std::string text = fmt::format(
-        "near field: {}, {} columns up to {:.4g} high, {} near elements, {} on the fence, {} far; {} layers\n",
+        "near field: {}, {} columns up to {:.4g} high, {} near elements, {} partially wrapped, {} far; {} layers\n",
         r.wrap ? fmt::format("offset {:.4g}", r.offset) : std::string("the hole of the background mesh"), r.n_columns,
         r.layer_height, r.regions.n_near, r.regions.n_partial, r.regions.n_far, p.near.n_layers());
     if (p.background)

@@ -1,3 +1,4 @@
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/report/target_text.hpp>
 
 #include <fmt/format.h>
@@ -20,8 +21,13 @@ nlohmann::json targets_json(Mesh const& mesh, std::vector<TargetReach> const& ta
     nlohmann::json worst = nullptr;
     if (reach.worst_node >= 0) {
       Zone const& zone = mesh.zones[mesh.zone_of(reach.worst_node)];
-      Index3 const p = zone.index(reach.worst_node);
-      worst = {{"zone", zone.name}, {"node", {p[0] + 1, p[1] + 1, p[2] + 1}}};
+      worst = {{"zone", zone.name}};
+      if (zone.is_block()) {
+        Index3 const p = zone.index(reach.worst_node);
+        worst["node"] = {p[0] + 1, p[1] + 1, p[2] + 1};
+      } else {
+        worst["node"] = node_number_in_file(mesh, reach.worst_node);
+      }
     }
     list.push_back({{"rule", reach.description},
                     {"mapping", std::string(to_string(reach.mapping))},
