@@ -39,7 +39,7 @@ function(gridmorph_precompile_headers target)
                         <variant> <vector>)
   endif()
   # The first lets ccache see through it; scripts/lib/project.sh has the other half. With precompiled headers gcc 12 no longer knows
-  # which code is the system's, and warns of the impossible in "text" + std::string: so builds whose warnings are errors do without.
+  # which code is the system's, and warns of the impossible in "text" + std::string: these are off.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess -Wno-stringop-overflow -Wno-array-bounds>)
 endfunction()
 
