@@ -51,7 +51,7 @@ Mesh read_blocks(cgns::File const& file, cgns::Node const& tree, ReadOptions con
   mesh.dimension = layout.zones.front().flat_axis >= 0 ? 2 : 3;
   for (auto const& zone : layout.zones) {
     int const z = mesh.add_zone(zone.name, zone.mesh_extent());
-    mesh.zones[z].single_precision = zone.single_precision[0] || zone.single_precision[1] || zone.single_precision[2];
+    mesh.zones[z].single_precision = zone.is_single_precision();
   }
 
   Problems problems;

@@ -74,8 +74,7 @@ Mesh read_elements(cgns::File const& file, cgns::Node const& tree, ReadOptions c
       mesh.add_zone(zone.name, zone.nodes_in_file());
       faces.push_back(add_elements(sections[z], where, mesh, problems));
     }
-    mesh.zones.back().single_precision =
-        zone.single_precision[0] || zone.single_precision[1] || zone.single_precision[2];
+    mesh.zones.back().single_precision = zone.is_single_precision();
     sections[z] = {};
     if (mesh.zones.back().n_elements == 0)
       problems.add(where + ": has no elements of dimension " + std::to_string(dimension) +

@@ -27,6 +27,10 @@ struct ZoneLayout {
   Index3 rind_low{0, 0, 0}, rind_high{0, 0, 0};  ///< rind planes stored before and after the nodes
 
   [[nodiscard]] bool is_block() const { return index_dimension > 1; }
+  /// Whether any component is stored in it.
+  [[nodiscard]] bool is_single_precision() const {
+    return single_precision[0] || single_precision[1] || single_precision[2];
+  }
   [[nodiscard]] Index3 mesh_extent() const {
     Index3 out = extent;
     if (flat_axis >= 0) out[flat_axis] = 2;
