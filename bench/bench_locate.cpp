@@ -152,7 +152,7 @@ struct Rows {
       compat::fence(exec, "gridmorph::bench (located)");
       std::vector<Index32> targets(points.size());
       for (std::size_t n = 0; n < targets.size(); ++n) targets[n] = Index32(n);
-      iterate(state, exec, [&] { benchmark::DoNotOptimize(interpolation_rows(mesh, places, targets).size()); });
+      iterate(state, exec, [&] { benchmark::DoNotOptimize(interpolation_rows({}, mesh, places, targets).size()); });
       // A location, a type, corner nodes read; target, first, items and weights written.
       set_locate_rates(state, mesh.n_elements(), 44 + 9 + 32 + 12 + 64);
     } else {

@@ -4,6 +4,7 @@
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/point_ranges.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>

@@ -4,6 +4,8 @@
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
 
+#include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/unstructured_morpher.hpp>
 
 #include <gtest/gtest.h>
@@ -228,6 +230,34 @@ TEST_F(Manners, PlanningLaunchesOnTheHostOnlyWhatReadsTheWholeMesh) {
     EXPECT_TRUE(kernel == "gridmorph::extent_of" || kernel == "gridmorph::largest_cosines") << kernel;
 }
 
+#ifdef KOKKOS_ENABLE_SERIAL
+/// What Kokkos launches on its default space, whatever the instance: copies of long lists of the host, and the end of Views.
+bool is_of_kokkos(std::string const& kernel) {
+  return kernel.find("Kokkos::Impl::host_space_deepcopy") == 0 || kernel.find("Kokkos::View::destruction") == 0;
+}
+
+/// As below: Serial is not the default space where there is another.
+void expect_planned_on_serial(Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
+  Kokkos::Serial const other;
+  Listener const listener;
+  MorphPlan const plan(other, mesh, motion, options);
+  (void)morph(other, mesh, motion, options);
+  EXPECT_FALSE(record.devices.empty());
+  for (std::size_t n = 0; n < record.devices.size(); ++n)
+    if (!is_of_kokkos(record.kernels[n])) {
+      EXPECT_EQ(record.devices[n], hooks::device_id(other)) << record.kernels[n];
+    }
+}
+
+TEST_F(Manners, PlanningLaunchesOnTheInstanceThatIsHandedOver) {
+  PlanOptions options;
+  options.volume.priority.assign(1, PriorityRule{PriorityRule::Kind::quality, {}});  // looks at all cells
+  expect_planned_on_serial(
+      mesh, motion({rule({"hub"}, FixedRule{}), rule({"case"}, FixedRule{}), rule({"inlet", "outlet"}, FreeRule{})}),
+      options);
+}
+#endif
+
 /// An unstructured morph with every kind of kernel: columns, layers, background mesh, other boundaries, nodes of two zones.
 class UnstructuredManners : public ::testing::Test {
  protected:
@@ -290,6 +320,29 @@ TEST_F(UnstructuredManners, StagesAreRegionsOfProfiles) {
 }
 
 #ifdef KOKKOS_ENABLE_SERIAL
+TEST_F(UnstructuredManners, PlanningLaunchesOnTheInstanceThatIsHandedOver) {
+  Motion const m = motion({rule({"body"}, RigidRule{{}, {1, 0.5, 0}}), rule({"k_min"}, SlipRule{})});
+  PlanOptions options;
+  expect_planned_on_serial(mesh, m, options);
+  // A background mesh that is not made of lattice cells: its nodes are found by the element locator.
+  Background own = *prepared.plan.background;
+  own.lattice.reset();
+  options.elements.background = std::make_shared<Background const>(std::move(own));
+  expect_planned_on_serial(mesh, m, options);
+}
+
+TEST_F(UnstructuredManners, OrdersAreFoundOnTheInstanceThatIsHandedOver) {
+  Kokkos::Serial const other;
+  Mesh copy = mesh;
+  Listener const listener;
+  reorder(other, copy, order_by_position(other, mesh));
+  EXPECT_FALSE(is_scattered(other, copy));
+  (void)in_file_order(other, copy);
+  EXPECT_FALSE(record.devices.empty());
+  for (std::size_t n = 0; n < record.devices.size(); ++n)
+    EXPECT_EQ(record.devices[n], hooks::device_id(other)) << record.kernels[n];
+}
+
 TEST_F(UnstructuredManners, EverythingRunsOnTheInstanceThatIsHandedOver) {
   Kokkos::Serial const other;
   Coordinates const moved(mesh.n_nodes());
@@ -302,8 +355,7 @@ TEST_F(UnstructuredManners, EverythingRunsOnTheInstanceThatIsHandedOver) {
   morpher.velocities(other, host_boundary, host_boundary, moved);
   EXPECT_FALSE(record.devices.empty());
   for (std::size_t n = 0; n < record.devices.size(); ++n)
-    // Kokkos copies long lists of the host on its default space, whatever the instance.
-    if (record.kernels[n].find("Kokkos::Impl::host_space_deepcopy") != 0) {
+    if (!is_of_kokkos(record.kernels[n])) {
       EXPECT_EQ(record.devices[n], hooks::device_id(other)) << record.kernels[n];
     }
 }

@@ -44,7 +44,7 @@ std::vector<NodeBox> whole_zones(Mesh const& mesh) {
 }
 
 void expect_reference(Mesh const& mesh, std::vector<NodeBox> const& boxes) {
-  std::vector<double> const found = largest_cosines(mesh, boxes);
+  std::vector<double> const found = largest_cosines({}, mesh, boxes);
   ASSERT_EQ(found.size(), boxes.size());
   for (std::size_t b = 0; b < boxes.size(); ++b)
     EXPECT_NEAR(found[b], reference(mesh, boxes[b]), 4e-16) << mesh.source << ", box " << b;
@@ -65,22 +65,24 @@ TEST(SmallestAngle, NodesOutsideTheBoxDoNotCount) {
   double const expected = reference(mesh, inner);
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     if (!inner.nodes.contains(mesh.zones[0].index(n))) mesh.coordinates.set(n, {nan, nan, nan});
-  EXPECT_NEAR(largest_cosines(mesh, std::vector{inner}).front(), expected, 4e-16);
+  EXPECT_NEAR(largest_cosines({}, mesh, std::vector{inner}).front(), expected, 4e-16);
 }
 
 TEST(SmallestAngle, IsAChosenOneInAShearedBoxAndARightOneInAStraightBox) {
   Mesh const straight = box({4, 4, 4}, Shape::straight, 0);
-  EXPECT_NEAR(largest_cosines(straight, whole_zones(straight)).front(), 0, 1e-15);
+  EXPECT_NEAR(largest_cosines({}, straight, whole_zones(straight)).front(), 0, 1e-15);
   double const angle_rad = 0.3;
   Mesh sheared = box({4, 4, 4}, Shape::straight, 0);
   for (Index n = 0; n < sheared.n_nodes(); ++n) {
     Vec3 const p = sheared.coordinates[n];
     sheared.coordinates.set(n, {p.x + p.z / std::tan(angle_rad), p.y, p.z});
   }
-  EXPECT_NEAR(std::acos(largest_cosines(sheared, whole_zones(sheared)).front()), angle_rad, 1e-13);
+  EXPECT_NEAR(std::acos(largest_cosines({}, sheared, whole_zones(sheared)).front()), angle_rad, 1e-13);
 }
 
-TEST(SmallestAngle, NoBoxesAreNoWork) { EXPECT_TRUE(largest_cosines(box({3, 3, 3}, Shape::straight, 0), {}).empty()); }
+TEST(SmallestAngle, NoBoxesAreNoWork) {
+  EXPECT_TRUE(largest_cosines({}, box({3, 3, 3}, Shape::straight, 0), {}).empty());
+}
 
 }  // namespace
 }  // namespace gridmorph::test

@@ -29,9 +29,9 @@ struct Planned {
 Planned planned(Bodies const& bodies, WrapOptions const& options, Vec3 const& low, Vec3 const& high, int dimension = 3,
                 Law law = Law::linear) {
   Mesh const mesh = bodies.in_domain(low, high, dimension);
-  gridmorph::Wrap wrap = make_wrap(mesh, bodies.walls, options);
+  gridmorph::Wrap wrap = make_wrap({}, mesh, bodies.walls, options);
   Background background = make_background(wrap);
-  PreparedMorph prepared = prepare_background(background, law);
+  PreparedMorph prepared = prepare_background({}, background, law);
   WrapNodes nodes = wrap_nodes(background, prepared);
   return {std::move(wrap), std::move(background), std::move(prepared), std::move(nodes)};
 }
@@ -283,7 +283,7 @@ TEST(LatticeRows, ReproduceFieldsThatAreLinearInEveryDirection) {
     numbers.push_back(Index32(points.size()));
     points.push_back(x);
   }
-  FarRows const far = lattice_rows(p.background, points_of(points), numbers);
+  FarRows const far = lattice_rows({}, p.background, points_of(points), numbers);
   EXPECT_EQ(far.n_outside, 0);
   EXPECT_EQ(far.rows.target, numbers);
   std::vector<Vec3> const got = gathered(far.rows, u);
@@ -295,7 +295,7 @@ TEST(LatticeRows, NameOneNodeForAPointOnANode) {
   Mesh const& mesh = p.background.mesh;
   std::vector<Index32> nodes;
   for (Index32 n = 0; n < Index32(mesh.n_nodes()); n += 97) nodes.push_back(n);
-  FarRows const far = lattice_rows(p.background, mesh.coordinates, nodes);
+  FarRows const far = lattice_rows({}, p.background, mesh.coordinates, nodes);
   EXPECT_EQ(far.n_outside, 0) << "nodes of the wrap's surface are not inside it";
   for (Index r = 0; r < far.rows.size(); ++r) {
     ASSERT_EQ(far.rows.first[std::size_t(r) + 1] - far.rows.first[std::size_t(r)], 1);
@@ -308,7 +308,7 @@ TEST(LatticeRows, CountPointsInTheWrapAndBeyondTheBoxAndTakeTheNearestPlace) {
   Planned const p = planned(box_body(), {.offset = 0.1}, {-4, -4, -4}, {5, 5, 5});
   std::vector<Vec3> const points{{0.5, 0.4, 0.95}, {7, 0, 0}, {2, 2, 2}};
   std::vector<Index32> const nodes{0, 1, 2};
-  FarRows const far = lattice_rows(p.background, points_of(points), nodes);
+  FarRows const far = lattice_rows({}, p.background, points_of(points), nodes);
   EXPECT_EQ(far.n_outside, 2);
   EXPECT_NEAR(far.largest_distance, 2, 1e-6);
   std::vector<Vec3> const at = gathered(far.rows, p.background.mesh.coordinates);
@@ -323,7 +323,7 @@ TEST(LatticeRows, InAPlaneNeedNoThirdCoordinate) {
   Planned const p = planned(b, {.offset = 0.08}, {-4, -4, 0}, {5, 4, 0}, 2);
   std::vector<Vec3> const points{{3, 2, 0}, {-1, 0.3, 0}};
   std::vector<Index32> const nodes{0, 1};
-  FarRows const far = lattice_rows(p.background, points_of(points), nodes);
+  FarRows const far = lattice_rows({}, p.background, points_of(points), nodes);
   EXPECT_EQ(far.n_outside, 0);
   std::vector<Vec3> const at = gathered(far.rows, p.background.mesh.coordinates);
   for (std::size_t n = 0; n < 2; ++n) {
@@ -336,11 +336,11 @@ TEST(LatticeRows, InAPlaneNeedNoThirdCoordinate) {
 TEST(Background, OfTheUsersIsTakenWithTheSelectorsOfItsPatches) {
   Planned p = planned(box_body(), {.offset = 0.1}, {-4, -4, -4}, {5, 5, 5});
   Background mine = make_background(p.background.mesh, {"type:wall"}, {"outer"});
-  PreparedMorph const prepared = prepare_background(mine);
+  PreparedMorph const prepared = prepare_background({}, mine);
   EXPECT_EQ(wrap_nodes(mine, prepared).position.size(), p.nodes.position.size());
   EXPECT_THROW(make_background(p.background.mesh, {"hull"}, {}), MotionError);
   std::vector<Index32> const nodes{0};
-  expect_all_in(message_of<MeshError>([&] { lattice_rows(mine, mine.mesh.coordinates, nodes); }), {"lattice"});
+  expect_all_in(message_of<MeshError>([&] { lattice_rows({}, mine, mine.mesh.coordinates, nodes); }), {"lattice"});
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
   // Nodes take their own value, or that of one at the same place in another zone.
   std::vector<Index32> targets(std::size_t(mesh.n_nodes()));
   for (std::size_t n = 0; n < targets.size(); ++n) targets[n] = Index32(n);
-  auto const rows = interpolation_rows(mesh, std::span<Location const>(found).first(targets.size()), targets);
+  auto const rows = interpolation_rows({}, mesh, std::span<Location const>(found).first(targets.size()), targets);
   Index several = 0;
   for (Index n = 0; n < rows.size(); ++n) {
     if (rows.first[std::size_t(n) + 1] - rows.first[std::size_t(n)] != 1) {

@@ -374,7 +374,7 @@ TEST(InterpolationRows, LinearFieldsAndConstantsAreReproducedByAllElements) {
     for (Index e = 0; e < mesh.n_elements(); ++e) points.push_back(random_mean(mesh, e, random));
     for (std::size_t n = 0; n < points.size(); ++n) targets.push_back(Index32(points.size() - 1 - n));
     auto const where = locate(mesh, points);
-    InterpolationOperator const rows = interpolation_rows(mesh, where, targets);
+    InterpolationOperator const rows = interpolation_rows({}, mesh, where, targets);
     ASSERT_EQ(rows.size(), Index(points.size()));
     EXPECT_EQ(rows.target, targets);
     double const size = mesh.size();
@@ -424,7 +424,7 @@ TEST(InterpolationRows, NodesAreCopiesOfThemselvesAndOutsideNothingIsExtrapolate
       points.push_back(mesh.coordinates[n]);
       targets.push_back(Index32(n));
     }
-    InterpolationOperator const rows = interpolation_rows(mesh, locate(mesh, points), targets);
+    InterpolationOperator const rows = interpolation_rows({}, mesh, locate(mesh, points), targets);
     ASSERT_EQ(rows.item.size(), rows.target.size());
     EXPECT_EQ(rows.item, targets);
     for (float const w : rows.weight) EXPECT_EQ(w, 1);
@@ -434,7 +434,7 @@ TEST(InterpolationRows, NodesAreCopiesOfThemselvesAndOutsideNothingIsExtrapolate
     for (int n = 0; n < 300; ++n) away.push_back(mesh.coordinates[0] + random.vector(3 * size));
     targets.resize(away.size(), 0);
     InterpolationOperator const outside =
-        interpolation_rows(mesh, locate(mesh, away), std::span<Index32 const>(targets).first(away.size()));
+        interpolation_rows({}, mesh, locate(mesh, away), std::span<Index32 const>(targets).first(away.size()));
     for (float const w : outside.weight) EXPECT_TRUE(w > 0 && w <= 1);
   }
 }
@@ -443,8 +443,8 @@ TEST(InterpolationRows, WhatCannotBeInterpolatedIsRefused) {
   auto const mesh = as_hexahedra(unit_box({2, 1, 1}));
   std::vector<Location> const nowhere(1);
   std::vector<Index32> const one{0}, two{0, 1};
-  EXPECT_THROW(interpolation_rows(mesh, nowhere, one), MeshError);
-  EXPECT_THROW(interpolation_rows(mesh, locate(mesh, {{0.5, 0.5, 0.5}}), two), MeshError);
+  EXPECT_THROW(interpolation_rows({}, mesh, nowhere, one), MeshError);
+  EXPECT_THROW(interpolation_rows({}, mesh, locate(mesh, {{0.5, 0.5, 0.5}}), two), MeshError);
 }
 
 TEST(LocateReport, CountsWhatIsOutsideAndNamesTheWorst) {

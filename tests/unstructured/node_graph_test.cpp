@@ -52,7 +52,7 @@ TEST(IndexBuckets, KeepTheOrderOfTheItemsUnderEachKey) {
       for (int k = random.below(4); k > 0; --k) own.push_back(Index32(random.below(int(n_keys))));
       for (Index32 const key : own) expected[key].push_back(i);
     }
-    detail::IndexBuckets<Index32> const buckets("test", n_items, n_keys, [&](Index i, auto const& put) {
+    detail::IndexBuckets<Index32> const buckets({}, "test", n_items, n_keys, [&](Index i, auto const& put) {
       for (Index32 const key : keys[std::size_t(i)]) put(key, Index32(i));
     });
     std::vector<std::vector<Index32>> found(static_cast<std::size_t>(n_keys));
@@ -72,7 +72,7 @@ TEST(IndexBuckets, KeepTheOrderOfTheItemsUnderEachKey) {
 }
 
 TEST(IndexBuckets, NothingInNothingOut) {
-  detail::IndexBuckets<Index32> const none("test", 0, 0, [](Index, auto const&) {});
+  detail::IndexBuckets<Index32> const none({}, "test", 0, 0, [](Index, auto const&) {});
   none.for_each_key([](Index32, Index, std::span<Index32>) { FAIL(); });
   EXPECT_EQ(none.size(), 0);
 }

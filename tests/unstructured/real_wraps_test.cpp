@@ -50,7 +50,7 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   WrapOptions options;
   options.offset = real.offset;
   options.tube = real.tube;
-  gridmorph::Wrap const wrap = make_wrap(mesh, walls, options);
+  gridmorph::Wrap const wrap = make_wrap({}, mesh, walls, options);
   EXPECT_EQ(bool(wrap.tube), real.tube) << wrap.note;
   std::vector<char> is_wall(std::size_t(mesh.n_nodes()), 0);
   double lowest = 1e300;
@@ -59,7 +59,7 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
     is_wall[std::size_t(n)] = 1;
     lowest = std::min(lowest, mesh.coordinates[n].z);
   }
-  Classification const regions = classify(mesh, wrap);
+  Classification const regions = classify({}, mesh, wrap);
   EXPECT_EQ(regions.n_near + regions.n_partial + regions.n_far, mesh.n_elements());
   EXPECT_GT(regions.n_far, mesh.n_elements() / 10);
   std::vector<Index32> far;
@@ -71,9 +71,9 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   }
 
   Background background = make_background(wrap);
-  FarRows const rows = background_rows(background, mesh.coordinates, far);
+  FarRows const rows = background_rows({}, background, mesh.coordinates, far);
   EXPECT_EQ(rows.n_outside, 0) << rows.largest_distance;
-  PreparedMorph const prepared = prepare_background(background);
+  PreparedMorph const prepared = prepare_background({}, background);
   auto const& seconds = prepared.seconds;
   EXPECT_LT(seconds.topology + seconds.rules + seconds.plan, 10);
   WrapNodes const nodes = wrap_nodes(background, prepared);

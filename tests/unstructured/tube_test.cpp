@@ -63,7 +63,7 @@ gridmorph::Wrap tube_wrap(Case const& c) {
   WrapOptions options;
   options.offset = c.offset;
   options.tube = true;
-  return make_wrap(c.bodies.in_domain(c.low, c.high), c.bodies.walls, options);
+  return make_wrap({}, c.bodies.in_domain(c.low, c.high), c.bodies.walls, options);
 }
 
 TEST(Tube, HoldsItsWallsWithTheirOffset) {
@@ -165,7 +165,7 @@ TEST(OTypeBackground, CarriesTurnsOfLongBodiesWithoutTurningCellsOver) {
     SCOPED_TRACE(c.name);
     Background background = make_background(tube_wrap(c));
     EXPECT_EQ(background.mesh.zones.size(), 22u);
-    PreparedMorph const prepared = prepare_background(background);
+    PreparedMorph const prepared = prepare_background({}, background);
     WrapNodes const nodes = wrap_nodes(background, prepared);
     RigidTransform const turn = rotation_about(c.pivot, c.axis, std::numbers::pi / 6);
     std::vector<Vec3> boundary(prepared.plan().boundary_nodes.size());
@@ -246,7 +246,7 @@ TEST(OTypeBackground, RowsReproduceLinearFieldsAtPointsOfTheFarField) {
     at.set(Index(n), points[n]);
     nodes.push_back(Index32(n));
   }
-  FarRows const far = background_rows(background, at, nodes);
+  FarRows const far = background_rows({}, background, at, nodes);
   EXPECT_EQ(far.n_outside, 0);
   EXPECT_EQ(far.rows.target, nodes);
   for (Index r = 0; r < far.rows.size(); ++r) {
@@ -265,9 +265,9 @@ TEST(Classification, OfATubeNamesEveryElementThatHasAPointInIt) {
   WrapOptions options;
   options.offset = 0.7;
   options.tube = true;
-  gridmorph::Wrap const wrap = make_wrap(with_rod, rod.walls, options);
+  gridmorph::Wrap const wrap = make_wrap({}, with_rod, rod.walls, options);
   ASSERT_TRUE(wrap.tube) << wrap.note;
-  Classification const found = classify(mesh, wrap);
+  Classification const found = classify({}, mesh, wrap);
   EXPECT_GT(found.n_near, 50);
   EXPECT_GT(found.n_partial, 100);
   for (Index e = 0; e < mesh.n_elements(); ++e) {

@@ -21,7 +21,7 @@ struct Wrapped {
 Wrapped wrapped(Bodies const& bodies, WrapOptions const& options, Vec3 const& low = {-4, -4, -4},
                 Vec3 const& high = {5, 5, 5}) {
   Mesh mesh = bodies.in_domain(low, high);
-  Wrap wrap = make_wrap(mesh, bodies.walls, options);
+  Wrap wrap = make_wrap({}, mesh, bodies.walls, options);
   return {std::move(mesh), std::move(wrap)};
 }
 
@@ -171,7 +171,7 @@ TEST(Wrap, OfABodyOnTheLimitOfTheMeshGoesBeyondItAndIsFull) {
   // The lower half of the nodes would be inside the body.
   for (Index n = 0; n < Index(bodies.points().size()); ++n)
     if (bodies.points()[std::size_t(n)].z < -1e-9) mesh.coordinates.set(n, {4, 4, 0});
-  Wrap const wrap = make_wrap(mesh, half.walls, {.offset = 0.1, .resolution = 10});
+  Wrap const wrap = make_wrap({}, mesh, half.walls, {.offset = 0.1, .resolution = 10});
   EXPECT_TRUE(wrap.contains({0, 0, 0.05}));
   EXPECT_TRUE(wrap.contains({0.3, 0.2, 0.4}));
   EXPECT_TRUE(wrap.contains({0, 0, -0.01}));
@@ -225,8 +225,8 @@ TEST(Wrap, RefusesWhatItCannotWrap) {
   bodies.box({0, 0, 0}, {1, 1, 1});
   Mesh const mesh = bodies.in_domain({-1, -1, -1}, {2, 2, 2});
   std::vector<CsrGraph> const none(1);
-  expect_all_in(message_of<MeshError>([&] { make_wrap(mesh, none, {.offset = 0.1}); }), {"nothing to wrap"});
-  expect_all_in(message_of<MotionError>([&] { make_wrap(mesh, bodies.walls, {}); }), {"offset", "positive"});
+  expect_all_in(message_of<MeshError>([&] { make_wrap({}, mesh, none, {.offset = 0.1}); }), {"nothing to wrap"});
+  expect_all_in(message_of<MotionError>([&] { make_wrap({}, mesh, bodies.walls, {}); }), {"offset", "positive"});
 }
 
 TEST(Wrap, IsShownAsAMeshOfItsCells) {
@@ -259,8 +259,8 @@ TEST(Classification, AgreesWithTheWrapElementByElement) {
       std::array<Index32, 4> const face{node(i, j, 6), node(i + 1, j, 6), node(i + 1, j + 1, 6), node(i, j + 1, 6)};
       walls.front().add(face);
     }
-  Wrap const wrap = make_wrap(mesh, walls, {.offset = 1.25, .resolution = 6});
-  Classification const found = classify(mesh, wrap);
+  Wrap const wrap = make_wrap({}, mesh, walls, {.offset = 1.25, .resolution = 6});
+  Classification const found = classify({}, mesh, wrap);
   std::vector<char> near(std::size_t(mesh.n_nodes()), 0);
   std::array<Index, 3> count{};
   for (Index e = 0; e < mesh.n_elements(); ++e) {

@@ -49,7 +49,8 @@ class ElementPlan final : public AnyPlan {
       if (options_.elements.motion < 0) options_.elements.motion = largest_of(displacement_);
     }
     double const seconds = watch.lap();
-    prepared_ = prepare(mesh.mesh, mesh.topology, mesh.face_patches, std::move(graph), std::move(boundary), options_);
+    prepared_ =
+        prepare({}, mesh.mesh, mesh.topology, mesh.face_patches, std::move(graph), std::move(boundary), options_);
     prepared_.report.seconds.boundary += seconds;
     planning_ = seconds + watch.lap();
   }

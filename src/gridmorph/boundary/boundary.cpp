@@ -78,8 +78,12 @@ Boundary::Boundary(Mesh const& mesh, std::optional<double> size)
   for (Patch const& patch : mesh.patches) surfaces_.push_back(surface_of(mesh, patch));
 }
 
-Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches)
-    : mesh_(without_elements(mesh)), size_(mesh.size()), plane_(mesh.dimension == 2), surfaces_(mesh.patches.size()) {
+Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
+                   std::optional<double> size)
+    : mesh_(without_elements(mesh)),
+      size_(size ? *size : mesh.size()),
+      plane_(mesh.dimension == 2),
+      surfaces_(mesh.patches.size()) {
   if (plane_) across_ = size_ * plane_normal(mesh);
   auto const each_face = [&](auto&& visit) {
     for (Index f = 0; f < topology.boundary.size(); ++f)

@@ -229,10 +229,10 @@ void check_coverage(Mesh const& mesh, Links const& links) {
   problems.throw_if_any<MeshError>();
 }
 
-Links connect_and_check(Mesh& mesh, TopologyOptions const& options) {
+Links connect_and_check(HostInstance const& host, Mesh& mesh, TopologyOptions const& options) {
   check_coordinates(mesh, "gridmorph::connect_and_check");
   Problems problems;
-  Links links = connect(mesh, options, problems);
+  Links links = connect(host, mesh, options, problems);
   try {
     complete_patches(mesh, links, options);
     check_coverage(mesh, links);

@@ -4,6 +4,7 @@
 
 #include <gridmorph/boundary/links.hpp>
 #include <gridmorph/boundary/topology_options.hpp>
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 namespace gridmorph {
@@ -19,6 +20,9 @@ void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& opt
 void check_coverage(Mesh const& mesh, Links const& links);
 
 /// connect(), complete_patches() and check_coverage() in one: reports unmatched interfaces and uncovered faces together.
-Links connect_and_check(Mesh& mesh, TopologyOptions const& options);
+Links connect_and_check(HostInstance const& host, Mesh& mesh, TopologyOptions const& options);
+inline Links connect_and_check(Mesh& mesh, TopologyOptions const& options) {
+  return connect_and_check(HostInstance(), mesh, options);
+}
 
 }  // namespace gridmorph

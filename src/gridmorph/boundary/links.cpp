@@ -63,10 +63,10 @@ Links connect(Mesh const& mesh, TopologyOptions const& options) {
   return links;
 }
 
-Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& problems) {
+Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const& options, Problems& problems) {
   Links links;
   links.of_zone.resize(mesh.zones.size());
-  MeshExtent const extent = extent_of(mesh.coordinates);
+  MeshExtent const extent = extent_of(host, mesh.coordinates);
   links.mesh_size = extent.size();
   for (Index n = 0; !extent.finite && n < mesh.coordinates.size(); ++n)
     if (Vec3 const p = mesh.coordinates[n]; !std::isfinite(p.x + p.y + p.z))

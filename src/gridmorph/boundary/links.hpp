@@ -3,6 +3,7 @@
 
 #include <gridmorph/boundary/topology_options.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <vector>
@@ -36,6 +37,9 @@ Links connect(Mesh const& mesh, TopologyOptions const& options);
 
 /// The same, for callers that go on looking: adds to `problems` instead of throwing. Interfaces whose points do not
 /// coincide are in the result all the same (their faces are claimed), those with ranges that cannot be are not.
-Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& problems);
+Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const& options, Problems& problems);
+inline Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& problems) {
+  return connect(HostInstance(), mesh, options, problems);
+}
 
 }  // namespace gridmorph

@@ -25,17 +25,18 @@ class IndexBuckets {
  public:
   /// `emit(item, put)` calls put(key, record) any number of times, the same both times that it is called for an item.
   template <class Emit>
-  IndexBuckets(std::string const& label, Index n_items, Index n_keys, Emit const& emit)
-      : label_(label),
+  IndexBuckets(HostInstance const& host, std::string const& label, Index n_items, Index n_keys, Emit const& emit)
+      : host_(host),
+        label_(label),
         n_keys_(n_keys),
         keys_per_bucket_(std::max<Index>(smallest_bucket, (n_keys + most_buckets - 1) / most_buckets)),
         n_buckets_((n_keys + keys_per_bucket_ - 1) / keys_per_bucket_),
         begin_(std::size_t(n_buckets_) + 1, 0) {
-    Index const n_chunks = std::clamp<Index>(n_items / smallest_chunk, 1, Exec().concurrency());
+    Index const n_chunks = std::clamp<Index>(n_items / smallest_chunk, 1, host_.concurrency());
     auto const first_item = [&](Index chunk) { return chunk * n_items / n_chunks; };
     // Bucket after bucket, chunk after chunk in each: the running sum is where the records of a chunk go.
     std::vector<Index> place(std::size_t(n_buckets_ * n_chunks), 0);
-    for_all_parts(label_ + "::count", n_chunks, [&](Index c) {
+    for_all_parts(host_, label_ + "::count", n_chunks, [&](Index c) {
       std::vector<Index> count(std::size_t(n_buckets_), 0);
       for (Index i = first_item(c); i < first_item(c + 1); ++i)
         emit(i, [&](Index32 key, Record const&) { ++count[std::size_t(key / keys_per_bucket_)]; });
@@ -48,7 +49,7 @@ class IndexBuckets {
     }
     begin_[std::size_t(n_buckets_)] = sum;
     entry_ = std::make_unique_for_overwrite<Entry[]>(std::size_t(sum));
-    for_all_parts(label_ + "::place", n_chunks, [&](Index c) {
+    for_all_parts(host_, label_ + "::place", n_chunks, [&](Index c) {
       std::vector<Index> at(std::size_t(n_buckets_), 0);
       for (Index b = 0; b < n_buckets_; ++b) at[std::size_t(b)] = place[std::size_t(b * n_chunks + c)];
       for (Index i = first_item(c); i < first_item(c + 1); ++i)
@@ -61,11 +62,11 @@ class IndexBuckets {
   /// Number of records.
   [[nodiscard]] Index size() const { return begin_.back(); }
 
-  /// Calls visit(key, at, records) once for every key, on all cores: `at` counts the records of smaller keys; `records` may be
+  /// Calls visit(key, at, records) once for every key, on the instance: `at` counts the records of smaller keys; `records` may be
   /// changed and is gone after the call.
   template <class Visit>
   void for_each_key(Visit const& visit) const {
-    for_all_parts(label_ + "::group", n_buckets_, [&](Index b) {
+    for_all_parts(host_, label_ + "::group", n_buckets_, [&](Index b) {
       Index const first_key = b * keys_per_bucket_, end_key = std::min(first_key + keys_per_bucket_, n_keys_);
       Index const begin = begin_[std::size_t(b)], end = begin_[std::size_t(b) + 1];
       std::vector<Index> first(std::size_t(end_key - first_key) + 1, 0);
@@ -85,7 +86,6 @@ class IndexBuckets {
   }
 
  private:
-  using Exec = Kokkos::DefaultHostExecutionSpace;
   // A bucket's records stay in the second-level cache, and there are fewer buckets than entries in the second-level TLB.
   static constexpr Index smallest_bucket = 1024, most_buckets = 1024, smallest_chunk = 4096;
 
@@ -94,6 +94,7 @@ class IndexBuckets {
     Record record;
   };
 
+  HostInstance host_;
   std::string label_;
   Index n_keys_, keys_per_bucket_, n_buckets_;
   std::vector<Index> begin_;

@@ -20,7 +20,7 @@ class Relaxation {
         prepared_(prepared),
         x_(morphed),
         options_(options),
-        signs_(detail::signs_of(mesh, topology.sides, options.signs)) {}
+        signs_(detail::signs_of({}, mesh, topology.sides, options.signs)) {}
 
   RelaxReport run() {
     RelaxReport report;
@@ -66,7 +66,7 @@ class Relaxation {
 
   [[nodiscard]] std::vector<Index32> find_bad() const {
     std::vector<std::uint8_t> mark(std::size_t(mesh_.n_elements()), 0);
-    detail::for_all("gridmorph::find_bad_elements", mesh_.n_elements(),
+    detail::for_all({}, "gridmorph::find_bad_elements", mesh_.n_elements(),
                     [&](Index e) { mark[std::size_t(e)] = is_bad(Index32(e)) ? 1 : 0; });
     std::vector<Index32> bad;
     for (std::size_t e = 0; e < mark.size(); ++e)

@@ -34,7 +34,7 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
       given[k] = mesh.coordinates[known[k]] + given[k] - now.coordinates[known[k]];
       plan.elements.motion = std::max(plan.elements.motion, norm(given[k]));
     }
-    auto const step_plan = prepare(now, topology, face_patches, prepared.graph, prepared.boundary, plan);
+    auto const step_plan = prepare({}, now, topology, face_patches, prepared.graph, prepared.boundary, plan);
     Coordinates moved(mesh.n_nodes());
     apply_on_host(UnstructuredMorpher<Exec>(Exec(), step_plan.plan, now.coordinates), given, moved);
     // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more bad

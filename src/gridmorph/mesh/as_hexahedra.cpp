@@ -15,9 +15,7 @@ Mesh as_hexahedra(Mesh const& mesh) {
   out.source = mesh.source;
   out.families = mesh.families;
   out.coordinates = Coordinates(mesh.n_nodes());
-  Kokkos::deep_copy(out.coordinates.x, mesh.coordinates.x);
-  Kokkos::deep_copy(out.coordinates.y, mesh.coordinates.y);
-  Kokkos::deep_copy(out.coordinates.z, mesh.coordinates.z);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) out.coordinates.set(n, mesh.coordinates[n]);
   out.elements.type.reserve(std::size_t(mesh.n_cells()));
   out.elements.nodes.first.reserve(std::size_t(mesh.n_cells()) + 1);
   out.elements.nodes.item.reserve(8 * std::size_t(mesh.n_cells()));

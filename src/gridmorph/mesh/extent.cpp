@@ -1,4 +1,4 @@
-#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/mesh/extent.hpp>
 
 #include <algorithm>
@@ -64,16 +64,13 @@ bool MeshExtent::usable() const { return finite && (low.x > high.x || (is_usable
 
 double MeshExtent::size() const { return low.x <= high.x ? distance(low, high) : 0.0; }
 
-MeshExtent extent_of(Coordinates const& coordinates) {
+MeshExtent extent_of(HostInstance const& host, Coordinates const& coordinates) {
   constexpr Index chunk = 16384;  // 384 KiB: stays in a core's cache
   std::vector<MeshExtent> parts(std::size_t((coordinates.size() + chunk - 1) / chunk));
-  using Exec = Kokkos::DefaultHostExecutionSpace;
-  Exec const exec;
-  Kokkos::parallel_for("gridmorph::extent_of", Kokkos::RangePolicy<Exec>(exec, 0, parts.size()), [&](std::size_t p) {
-    Index const begin = Index(p) * chunk;
-    parts[p] = extent_of(coordinates, begin, std::min(coordinates.size(), begin + chunk));
+  detail::for_all(host, "gridmorph::extent_of", Index(parts.size()), [&](Index p) {
+    Index const begin = p * chunk;
+    parts[std::size_t(p)] = extent_of(coordinates, begin, std::min(coordinates.size(), begin + chunk));
   });
-  compat::fence(exec, "gridmorph::extent_of (read by the host)");
   MeshExtent all{{inf, inf, inf}, {-inf, -inf, -inf}, true};
   for (MeshExtent const& part : parts) {
     all.low = {std::min(all.low.x, part.low.x), std::min(all.low.y, part.low.y), std::min(all.low.z, part.low.z)};

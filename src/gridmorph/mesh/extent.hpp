@@ -1,6 +1,7 @@
 // One look at all coordinates of a mesh: the box they fill, and whether they are numbers.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 namespace gridmorph {
@@ -21,8 +22,8 @@ struct MeshExtent {
 /// Whether a point can be computed with, as MeshExtent::usable() says it.
 bool is_usable(Vec3 const& p);
 
-/// One pass at memory speed (24 bytes per node) on the default host space; the result does not depend on the number of
-/// threads.
-MeshExtent extent_of(Coordinates const& coordinates);
+/// One pass at memory speed (24 bytes per node); the result does not depend on the number of threads.
+MeshExtent extent_of(HostInstance const& host, Coordinates const& coordinates);
+inline MeshExtent extent_of(Coordinates const& coordinates) { return extent_of(HostInstance(), coordinates); }
 
 }  // namespace gridmorph

@@ -10,40 +10,41 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace gridmorph {
 
 namespace {
 
-using HostExec = Kokkos::DefaultHostExecutionSpace;
-
 using detail::for_all;
 
-std::vector<Index32> inverse_of(std::vector<Index32> const& order) {
+std::vector<Index32> inverse_of(HostInstance const& host, std::vector<Index32> const& order) {
   std::vector<Index32> inverse(order.size());
-  for_all("gridmorph::inverse_of", Index(order.size()),
+  for_all(host, "gridmorph::inverse_of", Index(order.size()),
           [&](Index n) { inverse[std::size_t(order[std::size_t(n)])] = Index32(n); });
   return inverse;
 }
 
 /// The values at the places that `order` names, one after another.
 template <class T>
-std::vector<T> gather(std::vector<T> const& values, std::vector<Index32> const& order) {
+std::vector<T> gather(HostInstance const& host, std::vector<T> const& values, std::vector<Index32> const& order) {
   std::vector<T> out(values.size());
-  for_all("gridmorph::gather", Index(values.size()),
+  for_all(host, "gridmorph::gather", Index(values.size()),
           [&](Index n) { out[std::size_t(n)] = values[std::size_t(order[std::size_t(n)])]; });
   return out;
 }
 
-Coordinates gather(Coordinates const& values, std::vector<Index32> const& order) {
+Coordinates gather(HostInstance const& host, Coordinates const& values, std::vector<Index32> const& order) {
   Coordinates out(values.size());
-  for_all("gridmorph::gather_coordinates", values.size(), [&](Index n) { out.set(n, values[order[std::size_t(n)]]); });
+  for_all(host, "gridmorph::gather_coordinates", values.size(),
+          [&](Index n) { out.set(n, values[order[std::size_t(n)]]); });
   return out;
 }
 
 /// The lists that `order` names, one after another, the numbers in them translated.
-CsrGraph gather(CsrGraph const& lists, std::vector<Index32> const& order, std::vector<Index32> const& translation) {
+CsrGraph gather(HostInstance const& host, CsrGraph const& lists, std::vector<Index32> const& order,
+                std::vector<Index32> const& translation) {
   CsrGraph out;
   out.first.resize(std::size_t(lists.size()) + 1);
   for (std::size_t n = 0; n < order.size(); ++n) {
@@ -51,7 +52,7 @@ CsrGraph gather(CsrGraph const& lists, std::vector<Index32> const& order, std::v
     out.first[n + 1] = out.first[n] + lists.first[from + 1] - lists.first[from];
   }
   out.item.resize(lists.item.size());
-  for_all("gridmorph::gather_lists", lists.size(), [&](Index n) {
+  for_all(host, "gridmorph::gather_lists", lists.size(), [&](Index n) {
     auto const list = lists[order[std::size_t(n)]];
     std::transform(list.begin(), list.end(), out.item.begin() + out.first[std::size_t(n)],
                    [&](Index32 item) { return translation[std::size_t(item)]; });
@@ -86,15 +87,16 @@ Polyhedra gather(Polyhedra const& polyhedra, std::vector<Index32> const& new_ele
 }
 
 /// What stands at place order.node[n] and order.element[e] comes to places n and e.
-Mesh permuted(Mesh const& mesh, FileOrder const& order) {
-  auto const new_node = inverse_of(order.node);
+Mesh permuted(HostInstance const& host, Mesh const& mesh, FileOrder const& order) {
+  auto const new_node = inverse_of(host, order.node);
   Mesh out;
   out.dimension = mesh.dimension;
   out.zones = mesh.zones;
-  out.elements.type = gather(mesh.elements.type, order.element);
-  out.elements.nodes = gather(mesh.elements.nodes, order.element, new_node);
-  if (!mesh.elements.number.empty()) out.elements.number = gather(mesh.elements.number, order.element);
-  if (!mesh.polyhedra.element.empty()) out.polyhedra = gather(mesh.polyhedra, inverse_of(order.element), new_node);
+  out.elements.type = gather(host, mesh.elements.type, order.element);
+  out.elements.nodes = gather(host, mesh.elements.nodes, order.element, new_node);
+  if (!mesh.elements.number.empty()) out.elements.number = gather(host, mesh.elements.number, order.element);
+  if (!mesh.polyhedra.element.empty())
+    out.polyhedra = gather(mesh.polyhedra, inverse_of(host, order.element), new_node);
   out.patches = mesh.patches;
   for (auto& patch : out.patches) {
     translate(patch.faces.item, new_node);
@@ -107,20 +109,19 @@ Mesh permuted(Mesh const& mesh, FileOrder const& order) {
     translate(connection.donor_nodes, new_node);
   }
   out.families = mesh.families;
-  if (mesh.coordinates.size() > 0) out.coordinates = gather(mesh.coordinates, order.node);
+  if (mesh.coordinates.size() > 0) out.coordinates = gather(host, mesh.coordinates, order.node);
   out.source = mesh.source;
   out.notes = mesh.notes;
   out.first_number = mesh.first_number;
   return out;
 }
 
-std::vector<Index32> order_nodes(Mesh const& mesh) {
-  MeshExtent const box = extent_of(mesh.coordinates);
+std::vector<Index32> order_nodes(HostInstance const& host, Mesh const& mesh) {
+  MeshExtent const box = extent_of(host, mesh.coordinates);
   Vec3 const size = box.high - box.low;
   double const longest = std::max({size.x, size.y, size.z});
   double const steps = longest > 0 ? double(1 << kernels::LatticePlace::bits) / longest : 0;
   std::vector<Index32> order(std::size_t(mesh.n_nodes()));
-  HostExec const exec;
   for (auto const& zone : mesh.zones) {
     if (zone.is_block()) {
       std::iota(order.begin() + zone.first_node, order.begin() + zone.first_node + zone.size(),
@@ -128,20 +129,22 @@ std::vector<Index32> order_nodes(Mesh const& mesh) {
       continue;
     }
     detail::KeyedIndices<Kokkos::HostSpace> const list(std::size_t(zone.size()), "gridmorph::order_by_position");
-    for_all("gridmorph::order_by_position::codes", zone.size(), [&](Index n) {
+    for_all(host, "gridmorph::order_by_position::codes", zone.size(), [&](Index n) {
       list.key(n) = kernels::hilbert_code({mesh.coordinates[zone.first_node + n], box.low, {steps, steps, steps}});
       list.number(n) = Index32(zone.first_node + n);
     });
-    auto const sorted = detail::sort_keys(exec, list);
-    compat::fence(exec, "gridmorph::order_by_position (read by the host)");
-    std::copy_n(sorted.number.data(), zone.size(), order.begin() + zone.first_node);
+    host.visit([&](auto const& exec) {
+      auto const sorted = detail::sort_keys(exec, list);
+      compat::fence(exec, "gridmorph::order_by_position (read by the host)");
+      std::copy_n(sorted.number.data(), zone.size(), order.begin() + zone.first_node);
+    });
   }
   return order;
 }
 
 /// By the smallest new number among their nodes.
-std::vector<Index32> order_elements(Mesh const& mesh, std::vector<Index32> const& new_node) {
-  detail::IndexBuckets<Index32> const buckets("gridmorph::order_elements", mesh.n_elements(), mesh.n_nodes(),
+std::vector<Index32> order_elements(HostInstance const& host, Mesh const& mesh, std::vector<Index32> const& new_node) {
+  detail::IndexBuckets<Index32> const buckets(host, "gridmorph::order_elements", mesh.n_elements(), mesh.n_nodes(),
                                               [&](Index e, auto const& put) {
                                                 Index32 first = new_node[std::size_t(mesh.elements.nodes[e].front())];
                                                 for (Index32 const n : mesh.elements.corners(e))
@@ -163,7 +166,7 @@ bool stays(std::vector<Index32> const& order, Index first, Index n) {
 
 }  // namespace
 
-bool is_scattered(Mesh const& mesh) {
+bool is_scattered(HostInstance const& host, Mesh const& mesh) {
   constexpr Index smallest = 4096, parts = 16;
   if (mesh.n_nodes() < smallest) return false;
   Index const near = mesh.n_nodes() / parts;
@@ -171,41 +174,42 @@ bool is_scattered(Mesh const& mesh) {
   for (auto const& zone : mesh.zones) {
     if (zone.is_block()) continue;
     Index of_zone = 0;
-    Kokkos::parallel_reduce(
-        "gridmorph::is_scattered",
-        Kokkos::RangePolicy<HostExec, Kokkos::IndexType<Index>>(zone.first_element,
-                                                                zone.first_element + zone.n_elements),
-        [&](Index e, Index& sum) {
-          auto const corners = mesh.elements.corners(e);
-          if (corners.empty()) return;
-          auto const [first, last] = std::minmax_element(corners.begin(), corners.end());
-          sum += *last - *first > near ? 1 : 0;
-        },
-        of_zone);
+    host.visit([&](auto const& exec) {
+      using Policy = Kokkos::RangePolicy<std::decay_t<decltype(exec)>, Kokkos::IndexType<Index>>;
+      Kokkos::parallel_reduce(
+          "gridmorph::is_scattered", Policy(exec, zone.first_element, zone.first_element + zone.n_elements),
+          [&](Index e, Index& sum) {
+            auto const corners = mesh.elements.corners(e);
+            if (corners.empty()) return;
+            auto const [first, last] = std::minmax_element(corners.begin(), corners.end());
+            sum += *last - *first > near ? 1 : 0;
+          },
+          of_zone);
+    });
     wide += of_zone;
     looked_at += zone.n_elements;
   }
   return 2 * wide > looked_at;
 }
 
-FileOrder order_by_position(Mesh const& mesh) {
+FileOrder order_by_position(HostInstance const& host, Mesh const& mesh) {
   if (mesh.coordinates.size() != mesh.n_nodes())
     throw MeshError("order by position: '" + mesh.source + "' has " + std::to_string(mesh.n_nodes()) +
                     " nodes, but coordinates of " + std::to_string(mesh.coordinates.size()));
   FileOrder order;
-  order.node = order_nodes(mesh);
+  order.node = order_nodes(host, mesh);
   bool const has_empty = std::adjacent_find(mesh.elements.nodes.first.begin(), mesh.elements.nodes.first.end()) !=
                          mesh.elements.nodes.first.end();
   if (has_empty) {
     order.element.resize(std::size_t(mesh.n_elements()));
     std::iota(order.element.begin(), order.element.end(), 0);
   } else {
-    order.element = order_elements(mesh, inverse_of(order.node));
+    order.element = order_elements(host, mesh, inverse_of(host, order.node));
   }
   return order;
 }
 
-void reorder(Mesh& mesh, FileOrder order) {
+void reorder(HostInstance const& host, Mesh& mesh, FileOrder order) {
   if (!mesh.file_order.node.empty())
     throw MeshError("reorder: '" + mesh.source + "' is not in the order of its file; put it back with in_file_order()");
   if (Index(order.node.size()) != mesh.n_nodes() || Index(order.element.size()) != mesh.n_elements())
@@ -216,23 +220,24 @@ void reorder(Mesh& mesh, FileOrder order) {
     if (zone.is_block() &&
         !(stays(order.node, zone.first_node, zone.size()) && stays(order.element, zone.first_element, zone.n_elements)))
       throw MeshError("reorder: the order moves nodes or cells of '" + zone.name + "', a block; leave them in place");
-  mesh = permuted(mesh, order);
+  mesh = permuted(host, mesh, order);
   mesh.file_order = std::move(order);
 }
 
-Mesh in_file_order(Mesh const& mesh) {
+Mesh in_file_order(HostInstance const& host, Mesh const& mesh) {
   if (mesh.file_order.node.empty()) return mesh;
-  return permuted(mesh, {inverse_of(mesh.file_order.node), inverse_of(mesh.file_order.element)});
+  return permuted(host, mesh, {inverse_of(host, mesh.file_order.node), inverse_of(host, mesh.file_order.element)});
 }
 
-Coordinates in_file_order(Mesh const& mesh, Coordinates const& coordinates) {
+Coordinates in_file_order(HostInstance const& host, Mesh const& mesh, Coordinates const& coordinates) {
   if (mesh.file_order.node.empty()) return coordinates;
-  return gather(coordinates, inverse_of(mesh.file_order.node));
+  return gather(host, coordinates, inverse_of(host, mesh.file_order.node));
 }
 
-std::vector<double> in_file_order(std::span<Index32 const> place, std::span<double const> values) {
+std::vector<double> in_file_order(HostInstance const& host, std::span<Index32 const> place,
+                                  std::span<double const> values) {
   std::vector<double> out(values.begin(), values.end());
-  for_all("gridmorph::in_file_order", Index(place.size()),
+  for_all(host, "gridmorph::in_file_order", Index(place.size()),
           [&](Index n) { out[std::size_t(place[std::size_t(n)])] = values[std::size_t(n)]; });
   return out;
 }

@@ -13,8 +13,8 @@ namespace {
 
 class GraphMaker {
  public:
-  GraphMaker(Mesh const& mesh, CsrGraph const& elements_of_nodes)
-      : mesh_(mesh), elements_of_nodes_(elements_of_nodes), owner_(nodes_at_one_place(mesh)) {
+  GraphMaker(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes)
+      : host_(host), mesh_(mesh), elements_of_nodes_(elements_of_nodes), owner_(nodes_at_one_place(host, mesh)) {
     for (Index32 n = 0; n < Index32(owner_.size()); ++n)
       if (owner_[std::size_t(n)] != n) others_.push_back({owner_[std::size_t(n)], n});
     std::sort(others_.begin(), others_.end());
@@ -27,7 +27,7 @@ class GraphMaker {
     // Every part keeps its lists to itself until it is known where they go.
     constexpr Index part = 4096;
     std::vector<std::vector<Index32>> found(std::size_t((n + part - 1) / part));
-    detail::for_all_parts("gridmorph::node_graph::find", Index(found.size()), [&](Index p) {
+    detail::for_all_parts(host_, "gridmorph::node_graph::find", Index(found.size()), [&](Index p) {
       std::vector<Index32> ends;
       for (Index node = p * part; node < std::min(n, (p + 1) * part); ++node) {
         neighbours(Index32(node), ends);
@@ -37,7 +37,7 @@ class GraphMaker {
     });
     std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
     lists.item.resize(std::size_t(lists.first.back()));
-    detail::for_all_parts("gridmorph::node_graph::join", Index(found.size()), [&](Index p) {
+    detail::for_all_parts(host_, "gridmorph::node_graph::join", Index(found.size()), [&](Index p) {
       auto const& own = found[std::size_t(p)];
       std::copy(own.begin(), own.end(), lists.item.begin() + lists.first[std::size_t(p * part)]);
     });
@@ -101,6 +101,7 @@ class GraphMaker {
     }
   }
 
+  HostInstance const& host_;
   Mesh const& mesh_;
   CsrGraph const& elements_of_nodes_;
   std::vector<Index32> owner_;
@@ -109,8 +110,8 @@ class GraphMaker {
 
 }  // namespace
 
-NodeGraph make_node_graph(Mesh const& mesh, CsrGraph const& elements_of_nodes) {
-  return GraphMaker(mesh, elements_of_nodes).run();
+NodeGraph make_node_graph(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes) {
+  return GraphMaker(host, mesh, elements_of_nodes).run();
 }
 
 }  // namespace gridmorph

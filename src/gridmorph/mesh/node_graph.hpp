@@ -1,6 +1,7 @@
 // Which nodes an edge of an element joins, with the nodes that coincide in several zones taken as one.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <vector>
@@ -18,7 +19,10 @@ struct NodeGraph {
 };
 
 /// Edges of polyhedra are those of their faces. The lists are those of UnstructuredTopology. Cost O(corners of all
-/// elements); host, on all cores.
-NodeGraph make_node_graph(Mesh const& mesh, CsrGraph const& elements_of_nodes);
+/// elements).
+NodeGraph make_node_graph(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes);
+inline NodeGraph make_node_graph(Mesh const& mesh, CsrGraph const& elements_of_nodes) {
+  return make_node_graph(HostInstance(), mesh, elements_of_nodes);
+}
 
 }  // namespace gridmorph

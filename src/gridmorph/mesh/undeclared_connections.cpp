@@ -1,5 +1,6 @@
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/mesh/coincident_pairs.hpp>
+#include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
@@ -58,14 +59,14 @@ std::vector<Index> open_nodes(Mesh const& mesh) {
 
 }  // namespace
 
-std::vector<Index32> nodes_at_one_place(Mesh const& mesh) {
+std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& mesh) {
   DisjointSets<Index32> sets(coincident_nodes(mesh));
   if (mesh.zones.size() < 2) return sets.roots();
   bool const single =
       std::any_of(mesh.zones.begin(), mesh.zones.end(), [](auto const& zone) { return zone.single_precision; });
   auto const pairs = coincident_pairs(
       mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of(n); },
-      coincidence_tolerance(mesh.size(), single));
+      coincidence_tolerance(extent_of(host, mesh.coordinates).size(), single));
   for (auto const& [a, b] : pairs) sets.join(Index32(a), Index32(b));
   return sets.roots();
 }

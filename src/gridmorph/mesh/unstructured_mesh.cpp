@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
@@ -189,8 +190,9 @@ void check_mesh(Mesh const& mesh) { MeshCheck(mesh).run(); }
 Vec3 plane_normal(Mesh const& mesh) {
   Vec3 const up{0, 0, 1};
   if (mesh.dimension == 3 || mesh.coordinates.size() == 0) return up;
-  MeshExtent const box = extent_of(mesh.coordinates);
-  double const flat = 1e-9 * box.size();
+  kernels::Box box;
+  for (Index n = 0; n < mesh.coordinates.size(); ++n) box.include(mesh.coordinates[n]);
+  double const flat = 1e-9 * distance(box.low, box.high);
   Vec3 const size = box.high - box.low;
   if (size.z <= flat) return up;
   if (size.y <= flat) return {0, 1, 0};

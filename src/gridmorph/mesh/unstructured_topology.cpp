@@ -12,8 +12,8 @@ namespace {
 
 /// Lists of the items that name a key, ascending, from the keys of each item; an item that names a key twice counts once.
 template <class KeysOf>
-CsrGraph invert(char const* label, Index n_keys, Index n_items, KeysOf const& keys_of) {
-  detail::IndexBuckets<Index32> const buckets(label, n_items, n_keys, [&](Index i, auto const& put) {
+CsrGraph invert(HostInstance const& host, char const* label, Index n_keys, Index n_items, KeysOf const& keys_of) {
+  detail::IndexBuckets<Index32> const buckets(host, label, n_items, n_keys, [&](Index i, auto const& put) {
     auto const keys = keys_of(i);
     for (auto key = keys.begin(); key != keys.end(); ++key)
       if (std::find(keys.begin(), key, *key) == key) put(*key, Index32(i));
@@ -143,19 +143,19 @@ void cross_connections(Mesh const& mesh, UnstructuredTopology& topology) {
 
 }  // namespace
 
-CsrGraph elements_of_nodes(Mesh const& mesh) {
-  return invert("gridmorph::elements_of_nodes", mesh.n_nodes(), mesh.n_elements(),
+CsrGraph elements_of_nodes(HostInstance const& host, Mesh const& mesh) {
+  return invert(host, "gridmorph::elements_of_nodes", mesh.n_nodes(), mesh.n_elements(),
                 [&](Index e) { return mesh.elements.corners(e); });
 }
 
-ElementSides element_sides(Mesh const& mesh) {
+ElementSides element_sides(HostInstance const& host, Mesh const& mesh) {
   ElementSides out;
   Index const n = mesh.n_elements();
   out.first.resize(std::size_t(n) + 1, 0);
   for (Index e = 0; e < n; ++e) out.first[std::size_t(e) + 1] = out.first[std::size_t(e)] + n_sides(mesh, e);
   out.neighbour.resize(std::size_t(out.first.back()), ElementSides::collapsed);
   detail::IndexBuckets<KeyedSide> const buckets(
-      "gridmorph::element_sides", n, mesh.n_nodes(), [&](Index e, auto const& put) {
+      host, "gridmorph::element_sides", n, mesh.n_nodes(), [&](Index e, auto const& put) {
         ElementType const type = mesh.elements.type[std::size_t(e)];
         if (type == ElementType::polyhedron) return put_polyhedron(mesh, e, put);
         Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(e)];
@@ -178,13 +178,13 @@ ElementSides element_sides(Mesh const& mesh) {
   return out;
 }
 
-UnstructuredTopology make_topology(Mesh const& mesh) {
+UnstructuredTopology make_topology(HostInstance const& host, Mesh const& mesh) {
   UnstructuredTopology out;
-  out.elements_of_nodes = elements_of_nodes(mesh);
-  out.sides = element_sides(mesh);
+  out.elements_of_nodes = elements_of_nodes(host, mesh);
+  out.sides = element_sides(host, mesh);
   out.crowded_sides = std::count(out.sides.neighbour.begin(), out.sides.neighbour.end(), ElementSides::crowded);
   out.boundary = boundary_faces(mesh, out.sides);
-  out.faces_of_nodes = invert("gridmorph::faces_of_nodes", mesh.n_nodes(), out.boundary.size(),
+  out.faces_of_nodes = invert(host, "gridmorph::faces_of_nodes", mesh.n_nodes(), out.boundary.size(),
                               [&](Index f) { return out.boundary.nodes[f]; });
   cross_connections(mesh, out);
   return out;
@@ -218,8 +218,8 @@ std::vector<std::uint8_t> periodic_nodes(Mesh const& mesh) {
   return paired;
 }
 
-std::vector<Index32> match_points(Coordinates const& coordinates, std::span<Index32 const> points,
-                                  std::span<Index32 const> donors, double tolerance,
+std::vector<Index32> match_points(HostInstance const& host, Coordinates const& coordinates,
+                                  std::span<Index32 const> points, std::span<Index32 const> donors, double tolerance,
                                   std::optional<Periodic> const& periodic) {
   // Along an oblique line few points of a mesh lie side by side, even where it is a lattice.
   constexpr Vec3 line{0.5318, 0.6173, 0.5797};
@@ -235,7 +235,7 @@ std::vector<Index32> match_points(Coordinates const& coordinates, std::span<Inde
   };
   std::sort(sorted.begin(), sorted.end(), before);
   std::vector<Index32> out(points.size(), -1);
-  detail::for_all("gridmorph::match_points", Index(points.size()), [&](Index p) {
+  detail::for_all(host, "gridmorph::match_points", Index(points.size()), [&](Index p) {
     Vec3 x = coordinates[points[std::size_t(p)]];
     if (periodic) x = periodic->declared(x);
     double const along = dot(line, x);

@@ -3,6 +3,7 @@
 // not depend on the number of threads. Host; linear cost.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <string>
@@ -11,7 +12,8 @@
 namespace gridmorph {
 
 /// Elements that have a node among their corners, ascending: list n belongs to node n.
-CsrGraph elements_of_nodes(Mesh const& mesh);
+CsrGraph elements_of_nodes(HostInstance const& host, Mesh const& mesh);
+inline CsrGraph elements_of_nodes(Mesh const& mesh) { return elements_of_nodes(HostInstance(), mesh); }
 
 /// The other side of every side of every element.
 struct ElementSides {
@@ -28,7 +30,8 @@ struct ElementSides {
 };
 
 /// Two elements are neighbours when a side of one has the corner nodes of a side of the other.
-ElementSides element_sides(Mesh const& mesh);
+ElementSides element_sides(HostInstance const& host, Mesh const& mesh);
+inline ElementSides element_sides(Mesh const& mesh) { return element_sides(HostInstance(), mesh); }
 
 /// Sides with nothing behind them, in element order; normals point out of the mesh.
 struct BoundaryFaces {
@@ -48,7 +51,8 @@ struct UnstructuredTopology {
   Index crowded_sides = 0;
 };
 
-UnstructuredTopology make_topology(Mesh const& mesh);
+UnstructuredTopology make_topology(HostInstance const& host, Mesh const& mesh);
+inline UnstructuredTopology make_topology(Mesh const& mesh) { return make_topology(HostInstance(), mesh); }
 
 /// The boundary face with exactly these corner nodes, in any order (a node may be named twice); -1 where there is none.
 Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index32 const> nodes);
@@ -77,9 +81,14 @@ std::vector<std::uint8_t> periodic_nodes(Mesh const& mesh);
 
 /// For each of `points` the nearest of `donors` within `tolerance` (the first of equals), or -1. Both are node numbers;
 /// `periodic`: moves the points onto the donors first. n log n.
-std::vector<Index32> match_points(Coordinates const& coordinates, std::span<Index32 const> points,
-                                  std::span<Index32 const> donors, double tolerance,
+std::vector<Index32> match_points(HostInstance const& host, Coordinates const& coordinates,
+                                  std::span<Index32 const> points, std::span<Index32 const> donors, double tolerance,
                                   std::optional<Periodic> const& periodic = {});
+inline std::vector<Index32> match_points(Coordinates const& coordinates, std::span<Index32 const> points,
+                                         std::span<Index32 const> donors, double tolerance,
+                                         std::optional<Periodic> const& periodic = {}) {
+  return match_points(HostInstance(), coordinates, points, donors, tolerance, periodic);
+}
 
 /// Largest distance between nodes that a connection pairs.
 double largest_mismatch(Mesh const& mesh, Connection const& connection);

@@ -18,15 +18,18 @@ struct MorphPlan::State {
   std::vector<Vec3> displacement;
 };
 
-MorphPlan::MorphPlan(Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
+MorphPlan::MorphPlan(Mesh const& mesh, Motion const& motion, PlanOptions const& options)
+    : MorphPlan(HostInstance(), mesh, motion, options) {}
+
+MorphPlan::MorphPlan(HostInstance const& host, Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
   auto state = std::make_shared<State>();
   if (mesh.is_structured()) {
-    state->blocks = prepare(mesh, motion, options);
+    state->blocks = prepare(host, mesh, motion, options);
     state->displacement = state->blocks->boundary_displacement();
   } else {
     check_mesh(mesh);
-    UnstructuredTopology const topology = make_topology(mesh);
-    state->elements = prepare(mesh, topology, find_face_patches(mesh, topology), motion, options);
+    UnstructuredTopology const topology = make_topology(host, mesh);
+    state->elements = prepare(host, mesh, topology, find_face_patches(mesh, topology), motion, options);
     state->displacement = state->elements->boundary_displacement(mesh);
   }
   state_ = std::move(state);
@@ -109,7 +112,7 @@ Coordinates moved_by(Exec const& exec, MorphPlan const& plan, Coordinates const&
 
 template <class Exec>
 Coordinates morph(Exec const& exec, Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
-  MorphPlan const plan(mesh, motion, options);
+  MorphPlan const plan(host_instance(exec), mesh, motion, options);
   return moved_by(exec, plan, mesh.coordinates, [&](auto const& boundary, auto const& x, auto const& y, auto const& z) {
     VectorView<typename Exec::memory_space> const all(x, y, z);
     Morpher<Exec>(exec, plan, all).positions(exec, boundary, all);

@@ -1,6 +1,7 @@
 // From a mesh and rules to a morphed mesh: in one call, or by a plan that serves many displacements.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
@@ -30,6 +31,8 @@ class MorphPlan {
  public:
   /// Connects the zones, completes and checks the boundary, resolves the rules and plans, for blocks or for elements. Throws MeshError, MotionError or
   /// PlanError. The mesh's coordinates are read here only.
+  MorphPlan(HostInstance const& host, Mesh const& mesh, Motion const& motion, PlanOptions const& options = {});
+  /// On the default instance of the default host space.
   MorphPlan(Mesh const& mesh, Motion const& motion, PlanOptions const& options = {});
 
   [[nodiscard]] Index n_nodes() const;
@@ -52,7 +55,8 @@ class MorphPlan {
   std::shared_ptr<State const> state_;
 };
 
-/// New coordinates of a mesh whose patches move as the rules say, on the host; fences `exec`. Programs that morph again keep a
+/// New coordinates of a mesh whose patches move as the rules say, on the host; fences `exec`, where it plans too if that is one of the
+/// host. Programs that morph again keep a
 /// MorphPlan and a Morpher.
 template <class ExecutionSpace>
 Coordinates morph(ExecutionSpace const& exec, Mesh const& mesh, Motion const& motion, PlanOptions const& options = {});

@@ -1,6 +1,7 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 
 #include <algorithm>
@@ -13,12 +14,16 @@ namespace {
 
 class Finder {
  public:
-  Finder(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
-         NodeGraph const& graph)
-      : mesh_(mesh), topology_(topology), face_patches_(face_patches), graph_(graph) {}
+  Finder(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
+         BoundaryFacePatches const& face_patches, NodeGraph const& graph)
+      : mesh_(mesh),
+        topology_(topology),
+        face_patches_(face_patches),
+        graph_(graph),
+        size_(extent_of(host, mesh.coordinates).size()) {}
 
   BoundaryConditions run(Motion const& motion, std::vector<std::string> const& walls, Displacements displacements) {
-    auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_);
+    auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
     ResolvedMotion const resolved = resolve(mesh_, with_periodic_patches(*boundary, motion));
     out_.notes.insert(out_.notes.end(), resolved.notes.begin(), resolved.notes.end());
     out_.motion = std::make_shared<BoundaryMotion const>(boundary, resolved);
@@ -201,7 +206,7 @@ class Finder {
       bool const turns = norm(connection.periodic->rotation_angle_rad) > 0;
       std::int32_t there = -1, back = -1;
       if (turns) {
-        Mat3 const rotation = fit_periodic(*connection.periodic, from, to, mesh_.size()).rotation;
+        Mat3 const rotation = fit_periodic(*connection.periodic, from, to, size_).rotation;
         there = std::int32_t(out_.rotations.size());
         out_.rotations.push_back(rotation);
         back = std::int32_t(out_.rotations.size());
@@ -251,17 +256,18 @@ class Finder {
   UnstructuredTopology const& topology_;
   BoundaryFacePatches const& face_patches_;
   NodeGraph const& graph_;
+  double size_;
   BoundaryConditions out_;
   std::vector<std::uint8_t> is_known_;
 };
 
 }  // namespace
 
-BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopology const& topology,
+BoundaryConditions boundary_conditions(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                                        Motion const& motion, std::vector<std::string> const& walls,
                                        Displacements displacements) {
-  return Finder(mesh, topology, face_patches, graph).run(motion, walls, displacements);
+  return Finder(host, mesh, topology, face_patches, graph).run(motion, walls, displacements);
 }
 
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary) {

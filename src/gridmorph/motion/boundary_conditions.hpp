@@ -1,6 +1,7 @@
 // What the motion rules ask of each boundary node of an unstructured mesh.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/node_graph.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
 
@@ -51,10 +52,16 @@ enum class Displacements {
 /// Resolves the rules and finds what each boundary node is. `walls`: selectors of the walls that drive the near field; empty:
 /// every patch that moves and is no inflow, outflow, farfield or symmetry. Where no rule displaces anything now, all that could do.
 /// Throws MotionError when no wall moves, and the errors of resolve() and BoundaryMotion.
-BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopology const& topology,
+BoundaryConditions boundary_conditions(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                                        Motion const& motion, std::vector<std::string> const& walls,
                                        Displacements displacements = Displacements::of_the_rules);
+inline BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopology const& topology,
+                                              BoundaryFacePatches const& face_patches, NodeGraph const& graph,
+                                              Motion const& motion, std::vector<std::string> const& walls,
+                                              Displacements displacements = Displacements::of_the_rules) {
+  return boundary_conditions(HostInstance(), mesh, topology, face_patches, graph, motion, walls, displacements);
+}
 
 /// Displacement of every known node. Throws MotionError as evaluate() of BoundaryRequests does.
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary);

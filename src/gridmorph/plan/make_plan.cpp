@@ -70,14 +70,14 @@ kernels::LineLaw line_law(Law law) {
 
 class Scheduler {
  public:
-  Scheduler(PlanContext const& context, PlanOptions const& options, Plan& plan, Known& known)
+  Scheduler(HostInstance const& host, PlanContext const& context, PlanOptions const& options, Plan& plan, Known& known)
       : context_(context),
         mesh_(context.mesh),
         topology_(context.topology),
         options_(options),
         plan_(plan),
         known_(known),
-        priority_(context.mesh, context.topology, options.volume, plan.mesh_size) {}
+        priority_(host, context.mesh, context.topology, options.volume, plan.mesh_size) {}
 
   /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of walls
   /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
@@ -243,7 +243,7 @@ Index LineTables::n_lines() const {
   return n;
 }
 
-PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
+PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
                        BoundaryMotion const& surface, PlanOptions const& options) {
   PlannedMorph planned;
   Plan& plan = planned.plan;
@@ -265,7 +265,7 @@ PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion cons
   PlanContext const context{mesh, topology, skeleton, rotations, box_of_piece, kinds};
 
   Known known(topology.lattice.n_classes());
-  Scheduler scheduler(context, options, plan, known);
+  Scheduler scheduler(host, context, options, plan, known);
   std::vector<std::string> const& kind_order = scheduler.kind_order();
   planned.boundary = collect_boundary(context, motion, surface, kind_order, known, plan);
   Known const given = known;

@@ -1,6 +1,7 @@
 // From topology and motion to a plan.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
 #include <gridmorph/plan/plan.hpp>
 
@@ -12,10 +13,10 @@ struct PlannedMorph {
   BoundaryRequests boundary;
 };
 
-/// Plans the morph of a mesh whose links are connected and whose coverage is checked. Host only; coordinates are read
+/// Plans the morph of a mesh whose links are connected and whose coverage is checked. Coordinates are read
 /// on surfaces, and in whole blocks only where the quality rule has to break a tie.
 /// Throws PlanError naming blocks that no chain reaches and near fields that cannot be.
-PlannedMorph make_plan(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
+PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
                        BoundaryMotion const& surface, PlanOptions const& options);
 
 }  // namespace gridmorph

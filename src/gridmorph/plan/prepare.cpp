@@ -7,7 +7,7 @@
 
 namespace gridmorph {
 
-PreparedMorph prepare(Mesh const& given, Motion const& motion, PlanOptions const& options) {
+PreparedMorph prepare(HostInstance const& host, Mesh const& given, Motion const& motion, PlanOptions const& options) {
   check_coordinates(given, "gridmorph::prepare");
   if (!given.is_structured())
     throw MeshError("gridmorph::prepare: mesh '" + given.source +
@@ -15,12 +15,12 @@ PreparedMorph prepare(Mesh const& given, Motion const& motion, PlanOptions const
   Stopwatch watch;
   Mesh mesh = given;
   PreparedMorph::Seconds seconds;
-  Links links = connect_and_check(mesh, options.topology);
+  Links links = connect_and_check(host, mesh, options.topology);
   seconds.topology = watch.lap();
   ResolvedMotion resolved = resolve(mesh, motion);
   BoundaryMotion surface(std::make_shared<Boundary const>(mesh, links.mesh_size), resolved);
   seconds.rules = watch.lap();
-  PlannedMorph planned = make_plan(mesh, links, resolved, surface, options);
+  PlannedMorph planned = make_plan(host, mesh, links, resolved, surface, options);
   seconds.plan = watch.lap();
   return {std::move(mesh), std::move(links), std::move(resolved), std::move(surface), std::move(planned), seconds};
 }

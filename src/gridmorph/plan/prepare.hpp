@@ -1,6 +1,7 @@
 // From a mesh and rules to a plan in one call: what the command line and most embedders use.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/plan/make_plan.hpp>
 #include <gridmorph/plan/topology.hpp>
 
@@ -31,6 +32,9 @@ struct PreparedMorph {
 
 /// Connects the zones, completes and checks the boundary (patches for poles and, where asked for, open faces), resolves the
 /// rules and plans. Throws MeshError, MotionError or PlanError.
-PreparedMorph prepare(Mesh const& mesh, Motion const& motion, PlanOptions const& options);
+PreparedMorph prepare(HostInstance const& host, Mesh const& mesh, Motion const& motion, PlanOptions const& options);
+inline PreparedMorph prepare(Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
+  return prepare(HostInstance(), mesh, motion, options);
+}
 
 }  // namespace gridmorph

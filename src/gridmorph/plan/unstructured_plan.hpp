@@ -6,6 +6,7 @@
 // execution space. Node numbers are those of representatives (NodeGraph) unless said otherwise.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/plan/elements/background.hpp>
 #include <gridmorph/plan/elements/classify.hpp>
@@ -112,11 +113,16 @@ struct PreparedUnstructured {
 
 /// Resolves the rules and plans every stage. Throws MeshError for open boundary faces, MotionError, PlanError. Cost: linear in
 /// nodes and elements (n log n in those of boundaries and partially wrapped ones); about 1 kB of working memory per node.
-PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
+PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, Motion const& motion, PlanOptions const& options);
+inline PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
+                                    BoundaryFacePatches const& face_patches, Motion const& motion,
+                                    PlanOptions const& options) {
+  return prepare(HostInstance(), mesh, topology, face_patches, motion, options);
+}
 /// The same for rules that are resolved already, make_node_graph() and boundary_conditions() of the mesh: for several plans of
 /// one mesh.
-PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
+PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
                              PlanOptions const& options);
 

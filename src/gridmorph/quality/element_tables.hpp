@@ -1,6 +1,7 @@
 // Tables that kernels over unstructured elements need; internal to the quality part.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/cell_chunks.hpp>
 #include <gridmorph/kernels/element_quality.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
@@ -100,6 +101,7 @@ KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, ElementView
 CsrGraph neighbour_lists(Mesh const& mesh, UnstructuredTopology const& topology);
 
 /// `known` where it has an entry per element, else numbering_signs().
-std::vector<signed char> signs_of(Mesh const& mesh, ElementSides const& sides, std::vector<signed char> const& known);
+std::vector<signed char> signs_of(HostInstance const& host, Mesh const& mesh, ElementSides const& sides,
+                                  std::vector<signed char> const& known);
 
 }  // namespace gridmorph::detail

@@ -13,19 +13,19 @@
 
 namespace gridmorph {
 
-std::vector<signed char> volume_signs(Mesh const& mesh) {
-  using Exec = Kokkos::DefaultHostExecutionSpace;
-  Exec const exec;
+std::vector<signed char> volume_signs(HostInstance const& host, Mesh const& mesh) {
   detail::check_size(mesh, mesh.coordinates.x.extent(0), mesh.coordinates.y.extent(0), mesh.coordinates.z.extent(0),
                      "coordinates of the mesh");
   std::vector<signed char> sign(std::size_t(mesh.n_elements()), 0);
-  auto const tables = detail::element_tables(exec, mesh);
-  auto const coordinates = detail::pack(exec, views(mesh.coordinates), mesh.n_nodes());
-  detail::for_all("gridmorph::volume_signs", mesh.n_elements(), [&](Index e) {
-    ElementType const type = tables.type(e);
-    if (type == ElementType::polyhedron) return;
-    double const v = element_volume(type, tables.corners(coordinates, e), 1, tables.plane_normal);
-    sign[std::size_t(e)] = v > 0 ? 1 : v < 0 ? -1 : 0;
+  host.visit([&](auto const& exec) {
+    auto const tables = detail::element_tables(exec, mesh);
+    auto const coordinates = detail::pack(exec, views(mesh.coordinates), mesh.n_nodes());
+    detail::for_all(exec, "gridmorph::volume_signs", mesh.n_elements(), [&](Index e) {
+      ElementType const type = tables.type(e);
+      if (type == ElementType::polyhedron) return;
+      double const v = element_volume(type, tables.corners(coordinates, e), 1, tables.plane_normal);
+      sign[std::size_t(e)] = v > 0 ? 1 : v < 0 ? -1 : 0;
+    });
   });
   return sign;
 }
@@ -187,7 +187,7 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTo
                               BoundaryFacePatches const& face_patches,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input) {
   check_sizes(mesh, input);
-  auto const signs = detail::signs_of(mesh, topology.sides, input.signs);
+  auto const signs = detail::signs_of(host_instance(exec), mesh, topology.sides, input.signs);
   auto const sums = measure_elements(exec, mesh, topology, input, signs);
   QualityReport report;
   detail::combine(sums.size(), sums.data(), report.near_field, report.far_field,
@@ -226,7 +226,8 @@ std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
   }
   check_sizes(mesh, with_fields);
   with_fields.fast = false;
-  measure_elements(exec, mesh, topology, with_fields, detail::signs_of(mesh, topology.sides, input.signs));
+  measure_elements(exec, mesh, topology, with_fields,
+                   detail::signs_of(host_instance(exec), mesh, topology.sides, input.signs));
   return result;
 }
 

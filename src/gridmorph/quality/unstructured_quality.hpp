@@ -4,6 +4,7 @@
 // as the cells of a structured mesh. Polyhedra are not measured.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/quality/quality.hpp>
 
@@ -28,7 +29,8 @@ struct UnstructuredQualityInput {
 };
 
 /// (n_elements) Signs of the elements' volumes in SIDS order, 0 for polyhedra: all that their numbering decides. Host, parallel.
-std::vector<signed char> volume_signs(Mesh const& mesh);
+std::vector<signed char> volume_signs(HostInstance const& host, Mesh const& mesh);
+inline std::vector<signed char> volume_signs(Mesh const& mesh) { return volume_signs(HostInstance(), mesh); }
 
 /// (n_elements) +1, or -1 for elements that are numbered inside out; 0 for polyhedra. Whether two neighbours are numbered alike
 /// follows from the side that they share: seen from one and from the other it must be named in opposite ways. So the signs of
@@ -37,7 +39,10 @@ std::vector<signed char> volume_signs(Mesh const& mesh);
 /// one way and quadrilaterals the other). Linear cost; where all volumes of a zone have one sign, nothing is looked at.
 std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides,
                                          std::vector<signed char> const& volume_signs);
-std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides);
+std::vector<signed char> numbering_signs(HostInstance const& host, Mesh const& mesh, ElementSides const& sides);
+inline std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides) {
+  return numbering_signs(HostInstance(), mesh, sides);
+}
 
 /// Elements of one type in one zone whose volume is negative as they are numbered.
 struct NegativeElements {

@@ -4,7 +4,6 @@
 #include <gridmorph/quality/validity.hpp>
 
 #include <string>
-#include <type_traits>
 
 namespace gridmorph {
 
@@ -46,12 +45,8 @@ struct RowNodes {
   }
 };
 
-template <class Exec>
-std::vector<int> handedness_of(Exec const& exec, Mesh const& mesh) {
-  if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>)
-    return zone_handedness(exec, mesh, views(mesh.coordinates));
-  else
-    return zone_handedness(Kokkos::DefaultHostExecutionSpace(), mesh, views(mesh.coordinates));
+std::vector<int> handedness_of(HostInstance const& host, Mesh const& mesh) {
+  return host.visit([&](auto const& exec) { return zone_handedness(exec, mesh, views(mesh.coordinates)); });
 }
 
 template <class Exec>
@@ -114,8 +109,8 @@ struct ValidityCheck<Exec>::State {
 template <class Exec>
 ValidityCheck<Exec>::ValidityCheck(Exec const& exec, Mesh const& mesh) {
   auto state = std::make_shared<State>(exec, mesh.n_nodes(), false, detail::chunks_of(mesh));
-  state->zones =
-      detail::upload(exec, "gridmorph::ValidityCheck::zones", detail::zone_cells(mesh, handedness_of(exec, mesh)));
+  state->zones = detail::upload(exec, "gridmorph::ValidityCheck::zones",
+                                detail::zone_cells(mesh, handedness_of(host_instance(exec), mesh)));
   state_ = std::move(state);
 }
 
@@ -123,7 +118,8 @@ template <class Exec>
 ValidityCheck<Exec>::ValidityCheck(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology) {
   auto state = std::make_shared<State>(exec, mesh.n_nodes(), true, detail::element_chunks(mesh));
   state->first_element = detail::upload(exec, "gridmorph::ValidityCheck::zones", detail::first_elements(mesh));
-  state->signs = detail::upload(exec, "gridmorph::ValidityCheck::signs", detail::signs_of(mesh, topology.sides, {}));
+  state->signs = detail::upload(exec, "gridmorph::ValidityCheck::signs",
+                                detail::signs_of(host_instance(exec), mesh, topology.sides, {}));
   state->elements = detail::element_tables(exec, mesh);
   state_ = std::move(state);
 }

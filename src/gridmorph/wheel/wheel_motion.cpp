@@ -35,7 +35,7 @@ WheelMotion::WheelMotion(Mesh const& sector, Links const& links, WheelRows const
   Links const opened_links = connect(opened.mesh, options.topology);
   {
     BoundaryMotion const surface(opened.mesh, opened.motion);
-    planned_ = make_plan(opened.mesh, opened_links, opened.motion, surface, options);
+    planned_ = make_plan({}, opened.mesh, opened_links, opened.motion, surface, options);
   }
   append(notes_, planned_.plan.notes);
   shares_ = blade_shares(sector, links, rows, resolved, open, planned_.boundary, planned_.plan.boundary_nodes);

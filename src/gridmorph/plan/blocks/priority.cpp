@@ -33,8 +33,10 @@ Corners corners_of(Mesh const& mesh, Topology const& topology, Chain const& chai
 
 }  // namespace
 
-Priority::Priority(Mesh const& mesh, Topology const& topology, VolumeOptions const& options, double mesh_size)
-    : mesh_(mesh),
+Priority::Priority(HostInstance const& host, Mesh const& mesh, Topology const& topology, VolumeOptions const& options,
+                   double mesh_size)
+    : host_(host),
+      mesh_(mesh),
       topology_(topology),
       options_(options),
       mesh_size_(mesh_size),
@@ -56,7 +58,7 @@ void Priority::measure_angles(std::set<int> const& blocks) {
     }
   }
   if (boxes.empty()) return;
-  std::vector<double> const cosine = largest_cosines(mesh_, boxes);
+  std::vector<double> const cosine = largest_cosines(host_, mesh_, boxes);
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     double const angle = std::acos(std::clamp(cosine[b], -1.0, 1.0)) * 180 / std::numbers::pi;
     double& smallest = angle_of_block_[block_of_box[b]];

@@ -1,6 +1,7 @@
 // Which chain comes first, and why.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/plan/blocks/chain.hpp>
 #include <gridmorph/plan/options.hpp>
 
@@ -26,7 +27,8 @@ struct RankedChain {
 /// needed and kept. Cost of a block's quality: one pass over its nodes, in parallel over all blocks asked for at once.
 class Priority {
  public:
-  Priority(Mesh const& mesh, Topology const& topology, VolumeOptions const& options, double mesh_size);
+  Priority(HostInstance const& host, Mesh const& mesh, Topology const& topology, VolumeOptions const& options,
+           double mesh_size);
 
   /// Boundary rank and geometry; the quality is added where it comes first or has to break a tie.
   [[nodiscard]] RankedChain rank(Chain chain) const;
@@ -44,6 +46,7 @@ class Priority {
  private:
   void measure_angles(std::set<int> const& blocks);
 
+  HostInstance host_;
   Mesh const& mesh_;
   Topology const& topology_;
   VolumeOptions const& options_;

@@ -1,3 +1,4 @@
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/plan/blocks/smallest_angle.hpp>
 
@@ -98,7 +99,7 @@ double largest_cosine(Mesh const& mesh, NodeBox const& box, int k) {
 
 }  // namespace
 
-std::vector<double> largest_cosines(Mesh const& mesh, std::span<NodeBox const> boxes) {
+std::vector<double> largest_cosines(HostInstance const& host, Mesh const& mesh, std::span<NodeBox const> boxes) {
   struct Plane {
     int box, k;
   };
@@ -106,11 +107,9 @@ std::vector<double> largest_cosines(Mesh const& mesh, std::span<NodeBox const> b
   for (int b = 0; b < int(boxes.size()); ++b)
     for (int k = boxes[b].nodes.begin[2]; k < boxes[b].nodes.end[2]; ++k) planes.push_back({b, k});
   std::vector<double> of_plane(planes.size());
-  using Exec = Kokkos::DefaultHostExecutionSpace;
-  Kokkos::parallel_for("gridmorph::largest_cosines",
-                       Kokkos::RangePolicy<Exec, Kokkos::Schedule<Kokkos::Dynamic>>(0, planes.size()),
-                       [&](std::size_t p) { of_plane[p] = largest_cosine(mesh, boxes[planes[p].box], planes[p].k); });
-  compat::fence(Exec(), "gridmorph::largest_cosines (read by the host)");
+  detail::for_all_parts(host, "gridmorph::largest_cosines", Index(planes.size()), [&](Index p) {
+    of_plane[std::size_t(p)] = largest_cosine(mesh, boxes[planes[p].box], planes[p].k);
+  });
   std::vector<double> largest(boxes.size(), 0.0);
   for (std::size_t p = 0; p < planes.size(); ++p)
     largest[planes[p].box] = std::max(largest[planes[p].box], of_plane[p]);

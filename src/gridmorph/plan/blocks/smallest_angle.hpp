@@ -1,6 +1,7 @@
 // The smallest angle between grid edges of a set of pieces: what ties between chains are broken by.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <span>
@@ -19,7 +20,7 @@ struct NodeBox {
 /// Edges of no length have no angle. The result does not depend on the number of threads, nor on how zones are numbered
 /// or turned.
 ///
-/// Cost: one pass over the nodes, on the default host space: 24 bytes, 4 square roots and about 110 flops per node.
-std::vector<double> largest_cosines(Mesh const& mesh, std::span<NodeBox const> boxes);
+/// Cost: one pass over the nodes: 24 bytes, 4 square roots and about 110 flops per node.
+std::vector<double> largest_cosines(HostInstance const& host, Mesh const& mesh, std::span<NodeBox const> boxes);
 
 }  // namespace gridmorph

@@ -214,7 +214,7 @@ Background make_background(Mesh mesh, std::vector<std::string> wrap, std::vector
   return out;
 }
 
-PreparedMorph prepare_background(Background const& background, Law law) {
+PreparedMorph prepare_background(HostInstance const& host, Background const& background, Law law) {
   Motion motion;
   // Values come from elsewhere: the rule says only that they are given.
   FunctionRule const given{"displacement of the wrap",
@@ -225,7 +225,7 @@ PreparedMorph prepare_background(Background const& background, Law law) {
     motion.rules.push_back({{"sides"}, FreeRule{}, 2, "background mesh"});
   PlanOptions options;
   options.volume.law = law;
-  return prepare(background.mesh, motion, options);
+  return prepare(host, background.mesh, motion, options);
 }
 
 WrapNodes wrap_nodes(Background const& background, PreparedMorph const& prepared) {

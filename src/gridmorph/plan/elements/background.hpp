@@ -13,6 +13,7 @@
 // and its displacements come to the nodes of the far field by the rows of lattice_rows().
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/plan/elements/wrap.hpp>
 #include <gridmorph/plan/interpolation_operator.hpp>
 #include <gridmorph/plan/prepare.hpp>
@@ -51,7 +52,7 @@ Background make_background(Wrap const& wrap, int cells = 4, double growth = 1.4)
 Background make_background(Mesh mesh, std::vector<std::string> wrap, std::vector<std::string> outer);
 
 /// The plan of a background: displacements given on the wrap, zero on the outer patches, 2-D sides free.
-PreparedMorph prepare_background(Background const& background, Law law = Law::linear);
+PreparedMorph prepare_background(HostInstance const& host, Background const& background, Law law = Law::linear);
 
 /// The nodes of the wrap, each point once.
 struct WrapNodes {
@@ -68,11 +69,13 @@ struct FarRows {
 };
 
 /// Trilinear weights in the lattice cell that holds each point (bilinear in 2-D, where z is not looked at); nodes of weight
-/// zero are left out. Row n is for nodes[n], which is its target. In parallel on the host; linear cost, but for points
+/// zero are left out. Row n is for nodes[n], which is its target. Linear cost, but for points
 /// in the wrap, each of which looks at all zones.
-FarRows lattice_rows(Background const& background, Coordinates const& coordinates, std::span<Index32 const> nodes);
+FarRows lattice_rows(HostInstance const& host, Background const& background, Coordinates const& coordinates,
+                     std::span<Index32 const> nodes);
 
 /// The same for any background: lattice_rows() where it can, else in the cell that ElementLocator finds.
-FarRows background_rows(Background const& background, Coordinates const& coordinates, std::span<Index32 const> nodes);
+FarRows background_rows(HostInstance const& host, Background const& background, Coordinates const& coordinates,
+                        std::span<Index32 const> nodes);
 
 }  // namespace gridmorph

@@ -1,5 +1,4 @@
 #include <gridmorph/kernels/box_tree.hpp>
-#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/plan/elements/background_hole.hpp>
@@ -9,24 +8,8 @@
 
 namespace gridmorph {
 
-namespace {
-
-using Exec = Kokkos::DefaultHostExecutionSpace;
-
-std::vector<Location> places(Mesh const& mesh, std::vector<Vec3> const& points) {
-  Exec const exec;
-  Kokkos::View<Vec3*, Kokkos::HostSpace> at("gridmorph::points", points.size());
-  std::copy(points.begin(), points.end(), at.data());
-  Kokkos::View<Location*, Kokkos::HostSpace> found("gridmorph::locations", points.size());
-  ElementLocator<Exec> const locator(exec, mesh);
-  locator.locate(exec, at, found);
-  compat::fence(exec, "gridmorph::classify_by_hole (read by the host)");
-  return {found.data(), found.data() + found.extent(0)};
-}
-
-}  // namespace
-
-Classification classify_by_hole(Mesh const& mesh, Background const& background, std::vector<Vec3> const& wrap_nodes) {
+Classification classify_by_hole(HostInstance const& host, Mesh const& mesh, Background const& background,
+                                std::vector<Vec3> const& wrap_nodes) {
   Box box;
   for (Vec3 const& p : wrap_nodes) box.include(p);
   auto const& [low, high] = box;
@@ -42,7 +25,7 @@ Classification classify_by_hole(Mesh const& mesh, Background const& background, 
   }
   Classification out;
   out.inside.assign(std::size_t(mesh.n_nodes()), 0);
-  auto const in_background = places(as_hexahedra(background.mesh), points);
+  auto const in_background = locate(host, as_hexahedra(background.mesh), points);
   for (std::size_t k = 0; k < candidates.size(); ++k)
     out.inside[std::size_t(candidates[k])] = in_background[k].distance > 0 ? 1 : 0;
   out.element.assign(std::size_t(mesh.n_elements()), Region::far);
@@ -51,7 +34,7 @@ Classification classify_by_hole(Mesh const& mesh, Background const& background, 
     auto const n = std::count_if(corners.begin(), corners.end(), [&](Index32 c) { return out.inside[std::size_t(c)]; });
     if (n > 0) out.element[std::size_t(e)] = std::size_t(n) == corners.size() ? Region::near : Region::partial;
   }
-  for (Location const& place : places(mesh, wrap_nodes))
+  for (Location const& place : locate(host, mesh, wrap_nodes))
     if (place.element >= 0 && out.element[std::size_t(place.element)] == Region::far)
       out.element[std::size_t(place.element)] = Region::partial;
   out.near.assign(std::size_t(mesh.n_nodes()), 0);

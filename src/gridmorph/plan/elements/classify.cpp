@@ -1,4 +1,4 @@
-#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/plan/elements/classify.hpp>
 
 #include <algorithm>
@@ -14,18 +14,15 @@ void Classification::count() {
 }
 
 template <class AnyWrap>
-Classification classify(Mesh const& mesh, AnyWrap const& wrap) {
-  using Host = Kokkos::DefaultHostExecutionSpace;
-  using Range = Kokkos::RangePolicy<Host, Kokkos::IndexType<Index>>;
-  Host const exec;
+Classification classify(HostInstance const& host, Mesh const& mesh, AnyWrap const& wrap) {
   Classification out;
   std::vector<std::uint8_t>& inside = out.inside;
   inside.resize(std::size_t(mesh.n_nodes()));
   out.near.assign(std::size_t(mesh.n_nodes()), 0);
   out.element.resize(std::size_t(mesh.n_elements()));
-  Kokkos::parallel_for("gridmorph::classify::nodes", Range(exec, 0, mesh.n_nodes()),
-                       [&](Index n) { inside[std::size_t(n)] = std::uint8_t(wrap.contains(mesh.coordinates[n])); });
-  Kokkos::parallel_for("gridmorph::classify::elements", Range(exec, 0, mesh.n_elements()), [&](Index e) {
+  detail::for_all(host, "gridmorph::classify::nodes", mesh.n_nodes(),
+                  [&](Index n) { inside[std::size_t(n)] = std::uint8_t(wrap.contains(mesh.coordinates[n])); });
+  detail::for_all(host, "gridmorph::classify::elements", mesh.n_elements(), [&](Index e) {
     auto const corners = mesh.elements.corners(e);
     Region& region = out.element[std::size_t(e)];
     if (std::all_of(corners.begin(), corners.end(), [&](Index32 n) { return inside[std::size_t(n)] != 0; })) {
@@ -47,11 +44,10 @@ Classification classify(Mesh const& mesh, AnyWrap const& wrap) {
     for (Index32 const n : mesh.elements.nodes[e])
       std::atomic_ref<std::uint8_t>(out.near[std::size_t(n)]).store(1, std::memory_order_relaxed);
   });
-  compat::fence(exec, "gridmorph::classify (read by the host)");
   out.count();
   return out;
 }
 
-template Classification classify(Mesh const&, Wrap const&);
+template Classification classify(HostInstance const&, Mesh const&, Wrap const&);
 
 }  // namespace gridmorph

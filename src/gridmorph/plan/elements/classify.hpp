@@ -1,6 +1,7 @@
 // Which elements and nodes move with the walls, and which take their displacement from the background mesh.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/plan/elements/wrap.hpp>
 
 namespace gridmorph {
@@ -23,8 +24,8 @@ struct Classification {
   void count();
 };
 
-/// Looks at the corners of each element; its further nodes go with it. In parallel on the host; linear cost.
+/// Looks at the corners of each element; its further nodes go with it. Linear cost.
 template <class AnyWrap>
-Classification classify(Mesh const& mesh, AnyWrap const& wrap);
+Classification classify(HostInstance const& host, Mesh const& mesh, AnyWrap const& wrap);
 
 }  // namespace gridmorph

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/kernels/element_place.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
@@ -102,8 +103,8 @@ Vec3 position(Mesh const& mesh, Location const& location) {
   return origin + sum;
 }
 
-InterpolationOperator interpolation_rows(Mesh const& mesh, std::span<Location const> locations,
-                                         std::span<Index32 const> targets) {
+InterpolationOperator interpolation_rows(HostInstance const& host, Mesh const& mesh,
+                                         std::span<Location const> locations, std::span<Index32 const> targets) {
   if (targets.size() != locations.size())
     throw MeshError("interpolation in '" + mesh.source + "': " + std::to_string(locations.size()) + " locations for " +
                     std::to_string(targets.size()) + " targets");
@@ -111,26 +112,22 @@ InterpolationOperator interpolation_rows(Mesh const& mesh, std::span<Location co
   InterpolationOperator rows;
   rows.target.assign(targets.begin(), targets.end());
   rows.first.resize(locations.size() + 1);
-  using Exec = Kokkos::DefaultHostExecutionSpace;
-  Exec const exec;
-  Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>> const all(exec, 0, Index(locations.size()));
-  Kokkos::parallel_for("gridmorph::interpolation_rows::count", all, [&](Index const n) {
+  Index const n_rows = Index(locations.size());
+  detail::for_all(host, "gridmorph::interpolation_rows::count", n_rows, [&](Index const n) {
     Index count = 0;
     for_each_item(mesh, locations[std::size_t(n)], [&](Index32, double) { ++count; });
     rows.first[std::size_t(n) + 1] = count;
   });
-  compat::fence(exec, "gridmorph::interpolation_rows (counted)");
   for (std::size_t n = 0; n < locations.size(); ++n) rows.first[n + 1] += rows.first[n];
   rows.item.resize(std::size_t(rows.first.back()));
   rows.weight.resize(std::size_t(rows.first.back()));
-  Kokkos::parallel_for("gridmorph::interpolation_rows::fill", all, [&](Index const n) {
+  detail::for_all(host, "gridmorph::interpolation_rows::fill", n_rows, [&](Index const n) {
     auto at = std::size_t(rows.first[std::size_t(n)]);
     for_each_item(mesh, locations[std::size_t(n)], [&](Index32 node, double w) {
       rows.item[at] = node;
       rows.weight[at++] = float(w);
     });
   });
-  compat::fence(exec, "gridmorph::interpolation_rows (read by the host)");
   return rows;
 }
 

@@ -1,5 +1,7 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/plan/elements/background.hpp>
 
 #include <algorithm>
@@ -112,13 +114,13 @@ Weights weights(Zone const& zone, Place const& place, int dimension) {
 
 }  // namespace
 
-FarRows lattice_rows(Background const& background, Coordinates const& coordinates, std::span<Index32 const> nodes) {
+FarRows lattice_rows(HostInstance const& host, Background const& background, Coordinates const& coordinates,
+                     std::span<Index32 const> nodes) {
   if (!background.lattice)
     throw MeshError("this background mesh is not made of lattice cells; its cells are found by the element locator");
   Locator const locate(background);
-  Host const exec;
   Index const n = Index(nodes.size());
-  double const round_off = 1e-12 * background.mesh.size();
+  double const round_off = 1e-12 * extent_of(host, background.mesh.coordinates).size();
   FarRows out;
   out.rows.target.assign(nodes.begin(), nodes.end());
   out.rows.first.assign(std::size_t(n) + 1, 0);
@@ -129,12 +131,11 @@ FarRows lattice_rows(Background const& background, Coordinates const& coordinate
   };
   // Twice the same search: cheaper than keeping what it found.
   std::vector<float> distance(std::size_t(n), 0);
-  Kokkos::parallel_for("gridmorph::lattice_rows::count", Range(exec, 0, n), [&](Index r) {
+  detail::for_all(host, "gridmorph::lattice_rows::count", n, [&](Index r) {
     auto const [w, d] = row(r);
     out.rows.first[std::size_t(r) + 1] = w.size;
     distance[std::size_t(r)] = float(d);
   });
-  compat::fence(exec, "gridmorph::lattice_rows (summed by the host)");
   for (Index r = 0; r < n; ++r) {
     out.rows.first[std::size_t(r) + 1] += out.rows.first[std::size_t(r)];
     if (distance[std::size_t(r)] > round_off) ++out.n_outside;
@@ -142,7 +143,7 @@ FarRows lattice_rows(Background const& background, Coordinates const& coordinate
   }
   out.rows.item.resize(std::size_t(out.rows.first.back()));
   out.rows.weight.resize(out.rows.item.size());
-  Kokkos::parallel_for("gridmorph::lattice_rows::fill", Range(exec, 0, n), [&](Index r) {
+  detail::for_all(host, "gridmorph::lattice_rows::fill", n, [&](Index r) {
     Weights const w = row(r).first;
     auto const first = std::size_t(out.rows.first[std::size_t(r)]);
     for (int k = 0; k < w.size; ++k) {
@@ -150,7 +151,6 @@ FarRows lattice_rows(Background const& background, Coordinates const& coordinate
       out.rows.weight[first + std::size_t(k)] = float(w.weight[std::size_t(k)]);
     }
   });
-  compat::fence(exec, "gridmorph::lattice_rows (read by the host)");
   return out;
 }
 

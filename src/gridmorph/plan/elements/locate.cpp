@@ -177,7 +177,7 @@ LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, Mesh co
   t.polyhedron_face = view_of(exec, mesh.polyhedra.first_face, "gridmorph::ElementLocator::polyhedron_face");
   t.polyhedron_faces = views(exec, mesh.polyhedra.faces);
 
-  MeshExtent const box = extent_of(mesh.coordinates);
+  MeshExtent const box = extent_of(host_instance(exec), mesh.coordinates);
   Vec3 const size = box.high - box.low;
   double largest = 0;
   for (double const a : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z})
@@ -229,6 +229,23 @@ void ElementLocator<Exec>::locate(Exec const& exec, Kokkos::View<Vec3 const*, Me
     throw MeshError("element locator: " + std::to_string(points.extent(0)) + " points, but room for only " +
                     std::to_string(out.extent(0)) + " locations");
   detail::locate_points(exec, tables_, points, out);
+}
+
+std::vector<Location> locate(HostInstance const& host, Mesh const& mesh, std::span<Index32 const> elements,
+                             std::span<Vec3 const> points) {
+  std::vector<Location> found(points.size());
+  host.visit([&](auto const& exec) {
+    Kokkos::View<Vec3 const*, Kokkos::HostSpace> const at(points.data(), points.size());
+    Kokkos::View<Location*, Kokkos::HostSpace> const to(found.data(), found.size());
+    ElementLocator<std::decay_t<decltype(exec)>> const locator(exec, mesh, elements);
+    locator.locate(exec, at, to);
+    compat::fence(exec, "gridmorph::locate (read by the host)");
+  });
+  return found;
+}
+
+std::vector<Location> locate(HostInstance const& host, Mesh const& mesh, std::span<Vec3 const> points) {
+  return locate(host, mesh, detail::all_elements(mesh), points);
 }
 
 #define GRIDMORPH_INSTANTIATE(Exec) template class ElementLocator<Exec>;

@@ -6,13 +6,14 @@
 // (kernels/element_place.hpp). Nothing depends on the number of threads, on how the tree came out, or on the other points.
 //
 //   Location where = ...;                                   // of a point, by ElementLocator
-//   InterpolationOperator rows = interpolation_rows(mesh, where, nodes);  // displacement of `nodes` from that of the mesh's nodes
+//   InterpolationOperator rows = interpolation_rows(exec, mesh, where, nodes);  // displacement of `nodes` from that of the mesh's nodes
 //
 // Polyhedra are cut into tetrahedra between the mean of their nodes, the mean of the nodes of a face, and an edge of that
 // face. The weights of both means are handed on to their nodes in equal parts: never negative, sum one, linear fields exact,
 // and continuous across faces.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/plan/interpolation_operator.hpp>
@@ -86,6 +87,11 @@ class ElementLocator {
   detail::LocatorTables<MemorySpace> tables_;
 };
 
+/// Where the points are among the elements, all of them or `elements`.
+std::vector<Location> locate(HostInstance const& host, Mesh const& mesh, std::span<Index32 const> elements,
+                             std::span<Vec3 const> points);
+std::vector<Location> locate(HostInstance const& host, Mesh const& mesh, std::span<Vec3 const> points);
+
 /// Weights of an element's corner nodes at a place: as many as Elements::corners() has. Without gaps: also those that are
 /// zero.
 std::vector<double> corner_weights(Mesh const& mesh, Location const& location);
@@ -96,8 +102,8 @@ Vec3 position(Mesh const& mesh, Location const& location);
 /// One row for each location: target n is the weighted mean of the corner nodes of the element there. Points outside take
 /// the weights of the nearest place: nothing is extrapolated. Weights below 1e-9 are left out, so that a point on a node is a
 /// copy of that node. `targets`: as many as locations. Throws MeshError for a location without an element.
-InterpolationOperator interpolation_rows(Mesh const& mesh, std::span<Location const> locations,
-                                         std::span<Index32 const> targets);
+InterpolationOperator interpolation_rows(HostInstance const& host, Mesh const& mesh,
+                                         std::span<Location const> locations, std::span<Index32 const> targets);
 
 /// Summary of many locations.
 struct LocateReport {

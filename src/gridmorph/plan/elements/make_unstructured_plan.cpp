@@ -81,7 +81,7 @@ void UnstructuredPlanner::measure_distances() {
     }
   }
   // Each is serial; side by side they take half the time.
-  for_all_parts("gridmorph::nearest_source", 2, [&](Index which) {
+  for_all_parts(host_, "gridmorph::nearest_source", 2, [&](Index which) {
     (which == 0 ? from_wall_ : from_other_) =
         nearest_source(mesh_.coordinates, out_.graph, which == 0 ? walls : others);
   });
@@ -99,28 +99,28 @@ double UnstructuredPlanner::largest_displacement() const {
 
 namespace gridmorph {
 
-PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
+PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, Motion const& motion,
                              PlanOptions const& options) {
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
   Stopwatch watch;
-  NodeGraph graph = make_node_graph(mesh, topology.elements_of_nodes);
+  NodeGraph graph = make_node_graph(host, mesh, topology.elements_of_nodes);
   BoundaryConditions boundary =
-      boundary_conditions(mesh, topology, face_patches, graph, motion, options.elements.walls,
+      boundary_conditions(host, mesh, topology, face_patches, graph, motion, options.elements.walls,
                           options.elements.motion >= 0 ? Displacements::any : Displacements::of_the_rules);
   double const seconds = watch.lap();
-  auto out = prepare(mesh, topology, face_patches, std::move(graph), std::move(boundary), options);
+  auto out = prepare(host, mesh, topology, face_patches, std::move(graph), std::move(boundary), options);
   out.report.seconds.boundary += seconds;
   return out;
 }
 
-PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
+PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
                              PlanOptions const& options) {
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
-  return detail::UnstructuredPlanner(mesh, topology, face_patches, std::move(graph), std::move(boundary), options)
+  return detail::UnstructuredPlanner(host, mesh, topology, face_patches, std::move(graph), std::move(boundary), options)
       .run();
 }
 

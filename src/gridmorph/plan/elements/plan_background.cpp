@@ -1,5 +1,4 @@
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
@@ -9,12 +8,6 @@
 #include <utility>
 
 namespace gridmorph::detail {
-
-namespace {
-
-using Exec = Kokkos::DefaultHostExecutionSpace;
-
-}  // namespace
 
 void UnstructuredPlanner::plan_background() {
   UnstructuredPlan& plan = out_.plan;
@@ -71,7 +64,7 @@ void UnstructuredPlanner::plan_projections() {
     if (out_.graph.carries(n) && !out_.graph.neighbours[n].empty() && !column[std::size_t(n)] &&
         !out_.report.regions.inside[std::size_t(n)])
       far.push_back(n);
-  FarRows rows = background_rows(*plan.background, mesh_.coordinates, far);
+  FarRows rows = background_rows(host_, *plan.background, mesh_.coordinates, far);
   out_.report.far_nodes = Index(far.size());
   out_.report.far_outside = rows.n_outside;
   plan.far = std::move(rows.rows);
@@ -83,20 +76,14 @@ void UnstructuredPlanner::project_wrap() {
   std::vector<Index32> candidates;
   for (Index e = 0; e < mesh_.n_elements(); ++e)
     if (out_.report.regions.element[std::size_t(e)] != Region::far) candidates.push_back(Index32(e));
-  Kokkos::View<Vec3*, Kokkos::HostSpace> points("gridmorph::wrap_nodes", wrap.position.size());
-  std::copy(wrap.position.begin(), wrap.position.end(), points.data());
-  Kokkos::View<Location*, Kokkos::HostSpace> found("gridmorph::wrap_locations", wrap.position.size());
-  Exec const exec;
-  ElementLocator<Exec> const locator(exec, mesh_, candidates);
-  locator.locate(exec, points, found);
-  compat::fence(exec, "gridmorph::locate wrap nodes");
-  plan.wrap = interpolation_rows(mesh_, {found.data(), found.extent(0)}, wrap.boundary_node);
+  std::vector<Location> const found = locate(host_, mesh_, candidates, wrap.position);
+  plan.wrap = interpolation_rows(host_, mesh_, found, wrap.boundary_node);
   for (Index32& n : plan.wrap.item) n = owner(n);
   out_.report.wrap_nodes = Index(wrap.position.size());
-  for (std::size_t n = 0; n < found.extent(0); ++n)
-    if (found(n).distance > 0) {
+  for (Location const& where : found)
+    if (where.distance > 0) {
       ++out_.report.wrap_outside;
-      out_.report.wrap_distance = std::max(out_.report.wrap_distance, found(n).distance);
+      out_.report.wrap_distance = std::max(out_.report.wrap_distance, where.distance);
     }
   if (out_.report.wrap_outside > 0)
     out_.notes.push_back(std::to_string(out_.report.wrap_outside) + " of " + std::to_string(out_.report.wrap_nodes) +

@@ -86,7 +86,7 @@ void UnstructuredPlanner::find_standing_columns() {
   }
   // What is free to slide begins where these end.
   bool const sliding = given.size() < others.size() && !given.empty();
-  for_all_parts("gridmorph::nearest_source", 2, [&](Index which) {
+  for_all_parts(host_, "gridmorph::nearest_source", 2, [&](Index which) {
     if (which == 0 && standing_.size() > 0) from_other_ = nearest_source(mesh_.coordinates, out_.graph, others);
     if (which == 1 && sliding) from_given_ = nearest_source(mesh_.coordinates, out_.graph, given);
   });

@@ -52,17 +52,17 @@ void UnstructuredPlanner::classify_by_wrap() {
   wrap.offset = out_.report.offset;
   wrap.resolution = options_.elements.resolution;
   wrap.tube = options_.elements.tube;
-  out_.report.wrap = make_wrap(mesh_, {&faces, 1}, wrap);
+  out_.report.wrap = make_wrap(host_, mesh_, {&faces, 1}, wrap);
   if (std::string const& note = out_.report.wrap->note; !note.empty())
     out_.notes.push_back("the wrap is made of lattice cells: " + note);
-  out_.report.regions = classify(mesh_, *out_.report.wrap);
+  out_.report.regions = classify(host_, mesh_, *out_.report.wrap);
 }
 
 void UnstructuredPlanner::classify_by_background() {
   take_background(*options_.elements.background);
   Background const& background = *out_.plan.background;
   out_.report.regions =
-      classify_by_hole(mesh_, background, wrap_nodes(background, *out_.plan.background_morph).position);
+      classify_by_hole(host_, mesh_, background, wrap_nodes(background, *out_.plan.background_morph).position);
   Index astray = 0;
   Index32 first = -1;
   for (Index32 const n : out_.plan.driving)
@@ -76,7 +76,7 @@ void UnstructuredPlanner::classify_by_background() {
 
 void UnstructuredPlanner::take_background(Background background) {
   out_.plan.background = std::move(background);
-  out_.plan.background_morph = prepare_background(*out_.plan.background, options_.volume.law);
+  out_.plan.background_morph = prepare_background(host_, *out_.plan.background, options_.volume.law);
 }
 
 }  // namespace gridmorph::detail

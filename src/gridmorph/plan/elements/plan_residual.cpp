@@ -16,7 +16,7 @@ void UnstructuredPlanner::plan_residual() {
   // Columns are as rigid as their walls ask for.
   for (Index32 const n : columns_.node) plan.fade[std::size_t(n)] = 0;
   plan_start();
-  MeshExtent const box = extent_of(mesh_.coordinates);
+  MeshExtent const box = extent_of(host_, mesh_.coordinates);
   std::vector<Index32> const boundary(plan.other.begin(), plan.other.end() - std::ptrdiff_t(standing_.node.size()));
   plan.residual =
       make_scatter_lattice(mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low, box.high);
@@ -50,7 +50,7 @@ void UnstructuredPlanner::plan_start() {
   start.fade.assign(start.node.size(), 0);
   start.detail_fade.assign(start.node.size(), 0);
   if (start.node.empty() || n_boundary == 0) return;
-  MeshExtent const box = extent_of(mesh_.coordinates);
+  MeshExtent const box = extent_of(host_, mesh_.coordinates);
   std::vector<Index32> const boundary(start.given.begin(), start.given.begin() + n_boundary);
   // It is needed on surfaces alone, and what it misses passes along them.
   constexpr Index most_nodes = 20'000;

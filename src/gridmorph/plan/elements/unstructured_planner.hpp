@@ -2,6 +2,7 @@
 // plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
 #include <gridmorph/plan/elements/wall_distance.hpp>
@@ -20,9 +21,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// What the steps share; run() calls them in their order.
 class UnstructuredPlanner {
  public:
-  UnstructuredPlanner(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
-                      NodeGraph graph, BoundaryConditions boundary, PlanOptions const& options)
-      : mesh_(mesh), topology_(topology), face_patches_(face_patches), options_(options) {
+  UnstructuredPlanner(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
+                      BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
+                      PlanOptions const& options)
+      : host_(host), mesh_(mesh), topology_(topology), face_patches_(face_patches), options_(options) {
     out_.graph = std::move(graph);
     out_.boundary = std::move(boundary);
   }
@@ -93,6 +95,7 @@ class UnstructuredPlanner {
   /// What boundaries with a rule ask for, at nodes that slide or have images.
   void plan_start();
 
+  HostInstance host_;
   Mesh const& mesh_;
   UnstructuredTopology const& topology_;
   BoundaryFacePatches const& face_patches_;

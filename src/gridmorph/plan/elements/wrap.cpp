@@ -119,7 +119,8 @@ bool Wrap::meets(LatticeBox const& box) const {
   return below(last[2]) > below(first[2]);
 }
 
-Wrap make_wrap(Mesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options) {
+Wrap make_wrap(HostInstance const& host, Mesh const& mesh, std::span<CsrGraph const> walls,
+               WrapOptions const& options) {
   if (!(options.offset > 0) || !std::isfinite(options.offset))
     throw MotionError("the offset of the wrap is " + std::to_string(options.offset) +
                       "; give a positive length, such as twice the height of the boundary layer");
@@ -130,7 +131,7 @@ Wrap make_wrap(Mesh const& mesh, std::span<CsrGraph const> walls, WrapOptions co
   for (CsrGraph const& list : walls) faces += list.size();
   if (faces == 0) throw MeshError("there is nothing to wrap: the moving walls have no faces");
 
-  MeshExtent const domain = extent_of(mesh.coordinates);
+  MeshExtent const domain = extent_of(host, mesh.coordinates);
   std::string note;
   if (options.tube)
     if (auto tube = fit_tube(mesh, walls, options.offset, note)) {

@@ -5,6 +5,7 @@
 // of the walls that are smaller than its cells.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/plan/elements/tube.hpp>
 
@@ -63,7 +64,7 @@ struct Wrap {
 /// are closed, enclosed hollows filled, and cells that touch only along an edge or at a corner joined by their neighbours.
 /// Lattice: even spacing where there are walls, offset included; single intervals between walls far apart and out to
 /// the outer box. Throws MeshError without walls, MotionError without a positive offset. Cost: linear in faces and cells.
-Wrap make_wrap(Mesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options);
+Wrap make_wrap(HostInstance const& host, Mesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options);
 
 /// What the offset of the wrap depends on; lengths, 0 where unknown.
 struct OffsetHints {

@@ -95,13 +95,13 @@ std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& s
   return Numbering(mesh, sides, volume_signs).run();
 }
 
-std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides) {
-  return numbering_signs(mesh, sides, volume_signs(mesh));
+std::vector<signed char> numbering_signs(HostInstance const& host, Mesh const& mesh, ElementSides const& sides) {
+  return numbering_signs(mesh, sides, volume_signs(host, mesh));
 }
 
-std::vector<signed char> detail::signs_of(Mesh const& mesh, ElementSides const& sides,
+std::vector<signed char> detail::signs_of(HostInstance const& host, Mesh const& mesh, ElementSides const& sides,
                                           std::vector<signed char> const& known) {
-  return Index(known.size()) == mesh.n_elements() ? known : numbering_signs(mesh, sides);
+  return Index(known.size()) == mesh.n_elements() ? known : numbering_signs(host, mesh, sides);
 }
 
 }  // namespace gridmorph
