@@ -2,6 +2,7 @@
 // kept".
 #pragma once
 
+#include <gridmorph/core/enqueue_copy.hpp>
 #include <gridmorph/geometry/facet_surface.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/kernels/slip_surface.hpp>
@@ -143,12 +144,7 @@ struct SlipSurfaceTable {
   template <class ExecutionSpace, class T>
   static void fill(ExecutionSpace const& exec, Kokkos::View<T*, MemorySpace>& to, std::vector<T> const& from,
                    char const* what) {
-    to = Kokkos::View<T*, MemorySpace>(
-        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, std::string("gridmorph::SlipSurfaceTable::") + what),
-        from.size());
-    Kokkos::View<T const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const source(from.data(),
-                                                                                                    from.size());
-    if (!from.empty()) Kokkos::deep_copy(exec, to, source);
+    to = detail::enqueue_copy(exec, from, std::string("gridmorph::SlipSurfaceTable::") + what);
   }
 };
 
