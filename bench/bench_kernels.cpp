@@ -84,7 +84,8 @@ struct LineParameters {
                         t.data()};
     compat::fence(exec, "gridmorph::bench (host tables may go)");
     run(exec, state,
-        {[&] { launch("gridmorph::bench::line_parameters", exec, tubes.n_items, kernel); }, mesh.n_nodes(), 32});
+        {[&] { kernels::launch("gridmorph::bench::line_parameters", exec, 0, tubes.n_items, kernel); }, mesh.n_nodes(),
+         32});
   }
 };
 
@@ -141,7 +142,7 @@ struct SlipEnds {
                                                        values.batch().first};
     compat::fence(exec, "gridmorph::bench (host tables may go)");
     run(exec, state,
-        {[&] { launch("gridmorph::bench::slip_ends", exec, n, kernel); }, n,
+        {[&] { kernels::launch("gridmorph::bench::slip_ends", exec, 0, n, kernel); }, n,
          48 + double(sizeof(kernels::SlipEnd) + sizeof(kernels::SlipEndBaseline))});
   }
 };

@@ -3,6 +3,7 @@
 
 #include "node_arrays.hpp"
 
+#include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/morph/device_plan.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/prepare.hpp>
@@ -19,11 +20,6 @@ struct Timed {
   std::int64_t nodes = 0;
   double bytes_per_node = 0;
 };
-
-template <class Exec, class Kernel>
-void launch(char const* label, Exec const& exec, Index items, Kernel const& kernel) {
-  Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, items), kernel);
-}
 
 /// The tables of a plan in an execution space, all displacements of its workspace small and alike.
 template <class Exec>
@@ -67,7 +63,7 @@ struct Volume {
         d->boxes.entries, d->terms,       d->boxes.first_item, d->lines.chains, d->rotations,   d->sides,
         d->t.data(),      d->ends.read(), d->residuals.read(), field.array(),   {field.array()}};
     Touched const touched = touched_by_volume(prepared.plan());
-    return {[=] { launch("gridmorph::bench::volume", exec, d->boxes.n_items, kernel); }, touched.nodes,
+    return {[=] { kernels::launch("gridmorph::bench::volume", exec, 0, d->boxes.n_items, kernel); }, touched.nodes,
             48 + 8 * double(touched.parameters) / double(touched.nodes)};
   }
 };
@@ -97,8 +93,9 @@ struct SkeletonSweep {
         d->sides,     d->t.data(),     d->ends.read().first, d->skeleton.batch().first};
     std::int64_t nodes = 0;
     for (auto const& sweep : prepared.plan().stages.front().sweeps) nodes += std::int64_t(sweep.n_p) * sweep.n_q;
-    return {[=] { launch("gridmorph::bench::skeleton_sweep", exec, d->stages.front().sweeps.n_items, kernel); }, nodes,
-            32};
+    return {
+        [=] { kernels::launch("gridmorph::bench::skeleton_sweep", exec, 0, d->stages.front().sweeps.n_items, kernel); },
+        nodes, 32};
   }
 };
 
@@ -118,7 +115,8 @@ struct NodeCopies {
         field.array()};
     std::int64_t nodes = 0;
     for (auto const& copy : prepared.plan().skeleton_nodes) nodes += std::int64_t(copy.n_p) * copy.n_q;
-    return {[=] { launch("gridmorph::bench::node_copy", exec, d->skeleton_nodes.n_items, kernel); }, nodes, 72};
+    return {[=] { kernels::launch("gridmorph::bench::node_copy", exec, 0, d->skeleton_nodes.n_items, kernel); }, nodes,
+            72};
   }
 };
 
@@ -138,10 +136,11 @@ struct SideResiduals {
     return {[=] {
               auto const& s = d->stages.front();
               auto const lines = Index(s.side_lines.extent(0));
-              launch("gridmorph::bench::side_residual::known", exec, s.gathers.n_items, gather);
-              launch("gridmorph::bench::side_residual", exec, lines, residual);
-              launch("gridmorph::bench::side_residual::edges", exec, 4 * Index(s.corrected.extent(0)), edges);
-              launch("gridmorph::bench::side_residual::sides", exec, lines, sides);
+              kernels::launch("gridmorph::bench::side_residual::known", exec, 0, s.gathers.n_items, gather);
+              kernels::launch("gridmorph::bench::side_residual", exec, 0, lines, residual);
+              kernels::launch("gridmorph::bench::side_residual::edges", exec, 0, 4 * Index(s.corrected.extent(0)),
+                              edges);
+              kernels::launch("gridmorph::bench::side_residual::sides", exec, 0, lines, sides);
             },
             std::int64_t(d->residuals.n), 104};
   }
