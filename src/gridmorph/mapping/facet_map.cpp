@@ -18,8 +18,8 @@ namespace gridmorph {
 
 namespace {
 
-using casefile::FacetPoint;
-using casefile::FacetShape;
+using mapping::FacetPoint;
+using mapping::FacetShape;
 
 constexpr std::size_t most_problems = 10;
 /// An element whose area is below this share of its longest side squared is a line.

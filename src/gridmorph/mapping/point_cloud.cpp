@@ -15,9 +15,9 @@ namespace gridmorph {
 
 namespace {
 
-using casefile::Lines;
-using casefile::most_problems_per_file;
-using casefile::split;
+using mapping::Lines;
+using mapping::most_problems_per_file;
+using mapping::split;
 
 constexpr std::size_t n_required = 6, n_known = 10;
 constexpr std::array<std::string_view, n_known> column_names{"x",  "y",     "z",     "dx",    "dy",
@@ -29,7 +29,7 @@ constexpr std::size_t absent = std::size_t(-1);
 
 /// A header's name for one of the columns, or nothing.
 std::optional<std::size_t> column_of(std::string_view field) {
-  std::string const name = casefile::plain_name(field);
+  std::string const name = mapping::plain_name(field);
   if (name == "id" || name == "node") return id_column;
   for (std::size_t c = 0; c < id_column; ++c) {
     char const axis = "xyz"[c % 3];
@@ -57,12 +57,12 @@ struct Layout {
 /// Decides from the first line with content; true when it is a header, not data.
 bool read_layout(std::vector<std::string_view>& fields, std::string_view line, std::string const& where,
                  Layout& layout) {
-  layout.separator = casefile::separator_of(line);
+  layout.separator = mapping::separator_of(line);
   split(line, layout.separator, fields);
   layout.n_columns = fields.size();
-  if (fields.size() > casefile::most_columns)
+  if (fields.size() > mapping::most_columns)
     throw ConfigError(
-        fmt::format("{}: more than {} columns; expected x, y, z, dx, dy, dz", where, casefile::most_columns));
+        fmt::format("{}: more than {} columns; expected x, y, z, dx, dy, dz", where, mapping::most_columns));
   bool const any_number = std::any_of(fields.begin(), fields.end(), [](auto f) { return to_number(f).has_value(); });
   if (any_number) {
     if (fields.size() != n_required)
@@ -144,7 +144,7 @@ PointCloud parse_point_cloud(std::string_view text, std::string const& source) {
 }
 
 PointCloud read_point_cloud(std::filesystem::path const& path) {
-  return parse_point_cloud(casefile::read_text_file(path, "displacement file"), path.string());
+  return parse_point_cloud(mapping::read_text_file(path, "displacement file"), path.string());
 }
 
 }  // namespace gridmorph

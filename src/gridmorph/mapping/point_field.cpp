@@ -166,7 +166,7 @@ PointField::PointField(StructuralModel model, FieldOptions const& options, std::
   model.nodes.imaginary.clear();
   impl_->model = std::move(model);
   impl_->scale();
-  casefile::merge_nodes(impl_->model, impl_->fields);
+  mapping::merge_nodes(impl_->model, impl_->fields);
   impl_->points.emplace(impl_->model.nodes.position, options.extrapolation);
   if (!impl_->model.facets.empty())
     impl_->facets.emplace(impl_->model, options.extrapolation, impl_->points->coincidence());

@@ -12,7 +12,7 @@ namespace gridmorph {
 
 namespace {
 
-using casefile::Level;
+using mapping::Level;
 
 constexpr std::size_t n_neighbours = 13;  // per level
 /// A neighbourhood whose second principal variance is below this share of the first counts as a line.
@@ -101,7 +101,7 @@ Vec3 to_the_edge(Neighbours const& near) {
       spanned_part[i] += dot(near.offset[i], e) * e;
     }
   }
-  return casefile::closest_in_hull(spanned_part, at_the_edge * farthest);
+  return mapping::closest_in_hull(spanned_part, at_the_edge * farthest);
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ PointMap::PointMap(std::vector<Vec3> const& position, Extrapolation extrapolatio
     magnitude = std::max({magnitude, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
   }
   impl_->coincidence = 1e-7 * std::max(distance(box.low, box.high), magnitude);
-  impl_->levels = casefile::make_levels(position, 2 * n_neighbours);
+  impl_->levels = mapping::make_levels(position, 2 * n_neighbours);
 }
 
 PointMap::~PointMap() = default;

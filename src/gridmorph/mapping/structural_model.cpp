@@ -17,8 +17,8 @@ namespace gridmorph {
 
 namespace {
 
-using casefile::Lines;
-using casefile::most_problems_per_file;
+using mapping::Lines;
+using mapping::most_problems_per_file;
 
 bool is_cgns(std::filesystem::path const& path) {
   std::error_code error;
@@ -103,14 +103,14 @@ std::vector<StructuralFacet> parse_elements(std::string_view text, std::string c
   Lines lines(text);
   while (problems.messages().size() < most_problems_per_file && lines.next()) {
     bool const first = separator == 0;
-    if (first) separator = casefile::separator_of(lines.line());
-    casefile::split(lines.line(), separator, fields);
+    if (first) separator = mapping::separator_of(lines.line());
+    mapping::split(lines.line(), separator, fields);
     std::string const where = fmt::format("{}:{}", source, lines.number());
     if (first && std::none_of(fields.begin(), fields.end(), [](auto f) { return to_number(f).has_value(); })) {
       static constexpr std::array<std::string_view, 4> nodes_of_header{"n1", "n2", "n3", "n4"};
       bool good = fields.size() == 4 || fields.size() == 5;
       for (std::size_t f = 1; f < fields.size() && good; ++f)
-        good = casefile::plain_name(fields[f]) == nodes_of_header[f - 1];
+        good = mapping::plain_name(fields[f]) == nodes_of_header[f - 1];
       if (!good)
         throw ConfigError(fmt::format("{}: the header reads \"{}\"; write id,n1,n2,n3,n4 or leave it out", where,
                                       lines.line().substr(0, 80)));
@@ -158,7 +158,7 @@ StructuralModel read_structural_model(ModelFiles const& files) {
   if (files.elements) {
     model.elements = files.elements->string();
     model.facets =
-        parse_elements(casefile::read_text_file(*files.elements, "element file"), model.elements, model.nodes);
+        parse_elements(mapping::read_text_file(*files.elements, "element file"), model.elements, model.nodes);
   }
   return model;
 }

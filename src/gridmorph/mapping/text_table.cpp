@@ -8,7 +8,7 @@
 #include <cctype>
 #include <system_error>
 
-namespace gridmorph::casefile {
+namespace gridmorph::mapping {
 
 std::string_view trimmed(std::string_view text) {
   auto const blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -78,4 +78,4 @@ std::string read_text_file(std::filesystem::path const& path, std::string_view w
   return io::read_file(path.string());
 }
 
-}  // namespace gridmorph::casefile
+}  // namespace gridmorph::mapping

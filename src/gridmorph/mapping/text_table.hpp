@@ -1,4 +1,4 @@
-// Tables in text files: lines of numbers under an optional header. Internal to casefile.
+// Tables in text files: lines of numbers under an optional header. Internal.
 #pragma once
 
 #include <gridmorph/core/text.hpp>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gridmorph::casefile {
+namespace gridmorph::mapping {
 
 /// Problems of one file that are listed before the rest is left out.
 inline constexpr std::size_t most_problems_per_file = 10;
@@ -48,4 +48,4 @@ class Lines {
 /// block for ever) and for more than `most` bytes.
 std::string read_text_file(std::filesystem::path const& path, std::string_view what, std::uintmax_t most = UINTMAX_MAX);
 
-}  // namespace gridmorph::casefile
+}  // namespace gridmorph::mapping

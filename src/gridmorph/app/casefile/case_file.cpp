@@ -350,13 +350,13 @@ Motion motion_at(CaseFile const& case_file, Moment const& when) {
 }
 
 CaseFile read_case_file(std::filesystem::path const& path) {
-  return parse_case_file(casefile::read_text_file(path, "case file", largest_case_file), path);
+  return parse_case_file(mapping::read_text_file(path, "case file", largest_case_file), path);
 }
 
 std::optional<std::filesystem::path> mesh_of_case_file(std::filesystem::path const& path) {
   try {
     toml::value const document =
-        parse_toml(casefile::read_text_file(path, "case file", largest_case_file), path.string());
+        parse_toml(mapping::read_text_file(path, "case file", largest_case_file), path.string());
     return (path.parent_path() / toml::find<std::string>(document, "mesh", "input")).lexically_normal();
   } catch (std::exception const&) {  // read_case_file says what is wrong
     return std::nullopt;

@@ -24,7 +24,7 @@ using casefile::TableReader;
 constexpr std::uintmax_t largest_side_file = 256u << 20;
 
 std::string read_text(std::filesystem::path const& path) {
-  return casefile::read_text_file(path, "side file", largest_side_file);
+  return mapping::read_text_file(path, "side file", largest_side_file);
 }
 
 class Reader {

@@ -108,7 +108,7 @@ class PointLines {
 };
 
 std::string text_of(std::filesystem::path const& path) {
-  std::string text = casefile::read_text_file(path, "target file");
+  std::string text = mapping::read_text_file(path, "target file");
   if (text.find('\0') != std::string::npos)
     throw ConfigError(fmt::format(
         "target file '{}' is no text file; surfaces must have names that end in .stl or .cgns", path.string()));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gridmorph::casefile {
+namespace gridmorph::mapping {
 
 namespace {
 
@@ -124,4 +124,4 @@ FacetPoint FacetShape::closest(Vec3 const& q) const {
   return best;
 }
 
-}  // namespace gridmorph::casefile
+}  // namespace gridmorph::mapping

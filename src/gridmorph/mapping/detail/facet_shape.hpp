@@ -1,11 +1,11 @@
-// One element: where it is closest to a position, and its shape functions there. Internal to casefile.
+// One element: where it is closest to a position, and its shape functions there. Internal.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <array>
 
-namespace gridmorph::casefile {
+namespace gridmorph::mapping {
 
 /// A point of an element. Triangles: x = x0 + a (x1 - x0) + b (x2 - x0), a, b >= 0, a + b <= 1. Quadrilaterals: bilinear in
 /// 0 <= a, b <= 1 from corner 0 along the side to corner 1 (a) and to corner 3 (b).
@@ -39,4 +39,4 @@ class FacetShape {
   int corners_;
 };
 
-}  // namespace gridmorph::casefile
+}  // namespace gridmorph::mapping

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace gridmorph::casefile {
+namespace gridmorph::mapping {
 
 namespace {
 
@@ -48,4 +48,4 @@ Vec3 closest_in_hull(std::vector<Vec3> const& points, double tolerance) {
   return best;
 }
 
-}  // namespace gridmorph::casefile
+}  // namespace gridmorph::mapping

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace gridmorph::casefile {
+namespace gridmorph::mapping {
 
 namespace {
 
@@ -78,4 +78,4 @@ void merge_nodes(StructuralModel& model, std::vector<std::vector<Vec3>>& fields)
   for (StructuralFacet& facet : model.facets) renumber(facet, number);
 }
 
-}  // namespace gridmorph::casefile
+}  // namespace gridmorph::mapping

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <unordered_set>
 
-namespace gridmorph::casefile {
+namespace gridmorph::mapping {
 
 namespace {
 
@@ -67,4 +67,4 @@ std::vector<std::unique_ptr<Level>> make_levels(std::vector<Vec3> const& positio
   return levels;
 }
 
-}  // namespace gridmorph::casefile
+}  // namespace gridmorph::mapping

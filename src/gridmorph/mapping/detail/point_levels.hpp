@@ -1,4 +1,4 @@
-// A cloud of points and ever more thinned-out copies of it, each with a k-d tree. Internal to casefile.
+// A cloud of points and ever more thinned-out copies of it, each with a k-d tree. Internal.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace gridmorph::casefile {
+namespace gridmorph::mapping {
 
 struct Points {
   std::vector<Vec3> const* position;
@@ -48,4 +48,4 @@ struct Level {
 /// All points first; each further level is thinned to a quarter of the density along a line, down to `fewest` points.
 std::vector<std::unique_ptr<Level>> make_levels(std::vector<Vec3> const& position, std::size_t fewest);
 
-}  // namespace gridmorph::casefile
+}  // namespace gridmorph::mapping

@@ -14,6 +14,12 @@ namespace gridmorph::casefile {
 
 namespace {
 
+using mapping::Lines;
+using mapping::most_columns;
+using mapping::most_problems_per_file;
+using mapping::separator_of;
+using mapping::split;
+
 constexpr double degree = std::numbers::pi / 180;
 
 /// A key, where its table goes, and the open interval its values lie in.
@@ -99,7 +105,7 @@ void check(TableReader& table, std::string const& where, Parameter const& p,
 }
 
 std::vector<SpanwiseColumn> read_columns(std::filesystem::path const& path) {
-  return parse_spanwise_columns(read_text_file(path, "table"), path.string(), parameter_keys());
+  return parse_spanwise_columns(mapping::read_text_file(path, "table"), path.string(), parameter_keys());
 }
 
 }  // namespace
