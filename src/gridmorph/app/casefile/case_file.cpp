@@ -316,12 +316,31 @@ void read_results(TableReader& root, CaseFile& out) {
 
 }  // namespace
 
-CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked) {
-  Context context{path.string(), path.parent_path(), {}, asked};
-  toml::value const document = parse_toml(text, context.file);
+struct CaseDocument::Root {
+  toml::value value;
+};
+
+CaseDocument::CaseDocument(std::filesystem::path const& path)
+    : CaseDocument(mapping::read_text_file(path, "case file", largest_case_file), path) {}
+
+CaseDocument::CaseDocument(std::string const& text, std::filesystem::path path)
+    : path_(std::move(path)), root_(std::make_shared<Root const>(Root{parse_toml(text, path_.string())})) {}
+
+std::optional<std::filesystem::path> CaseDocument::mesh() const {
+  try {
+    return (path_.parent_path() / toml::find<std::string>(root_->value, "mesh", "input")).lexically_normal();
+  } catch (std::exception const&) {  // read_case_file() says what is wrong
+    return std::nullopt;
+  }
+}
+
+namespace {
+
+CaseFile read(CaseDocument const& document, CaseKeyUse* asked) {
+  Context context{document.path().string(), document.path().parent_path(), {}, asked};
   CaseFile out;
-  out.source = path;
-  TableReader root(context, document, "");
+  out.source = document.path();
+  TableReader root(context, document.root().value, "");
   read_mesh(root, out);
   read_sequence(root, out);
   read_motion(root, out);
@@ -333,6 +352,14 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   out.files = std::move(context.files);
   out.given.assign(context.given.begin(), context.given.end());
   return out;
+}
+
+}  // namespace
+
+CaseFile read_case_file(CaseDocument const& document) { return read(document, nullptr); }
+
+CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked) {
+  return read(CaseDocument(text, path), asked);
 }
 
 Motion motion_at(CaseFile const& case_file, Moment const& when) {
@@ -347,20 +374,6 @@ Motion motion_at(CaseFile const& case_file, Moment const& when) {
     motion.rules[r].rule = timed.at(share, when);
   }
   return motion;
-}
-
-CaseFile read_case_file(std::filesystem::path const& path) {
-  return parse_case_file(mapping::read_text_file(path, "case file", largest_case_file), path);
-}
-
-std::optional<std::filesystem::path> mesh_of_case_file(std::filesystem::path const& path) {
-  try {
-    toml::value const document =
-        parse_toml(mapping::read_text_file(path, "case file", largest_case_file), path.string());
-    return (path.parent_path() / toml::find<std::string>(document, "mesh", "input")).lexically_normal();
-  } catch (std::exception const&) {  // read_case_file says what is wrong
-    return std::nullopt;
-  }
 }
 
 }  // namespace gridmorph

@@ -107,18 +107,34 @@ struct CaseFile {
 /// MotionError where an amplitude is not finite.
 Motion motion_at(CaseFile const& case_file, Moment const& when);
 
-/// Reads a case file and the displacement files that it names. Throws one ConfigError that lists every problem, each as
-/// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
-CaseFile read_case_file(std::filesystem::path const& path);
+/// A case file as it stands, parsed once: which mesh it names is asked before Kokkos runs, the rest after. Copies share it.
+class CaseDocument {
+ public:
+  /// Throws ConfigError for a file that cannot be read, and for one that is not TOML.
+  explicit CaseDocument(std::filesystem::path const& path);
+  /// From text; `path` names it in messages and anchors relative paths.
+  CaseDocument(std::string const& text, std::filesystem::path path);
 
-/// The mesh that a case file names, and nothing more; nothing where the file is not usable.
-std::optional<std::filesystem::path> mesh_of_case_file(std::filesystem::path const& path);
+  [[nodiscard]] std::filesystem::path const& path() const { return path_; }
+  /// The mesh that it names; nothing where it names none.
+  [[nodiscard]] std::optional<std::filesystem::path> mesh() const;
+  struct Root;
+  [[nodiscard]] Root const& root() const { return *root_; }
+
+ private:
+  std::filesystem::path path_;
+  std::shared_ptr<Root const> root_;
+};
+
+/// What a case file says, with the displacement files that it names. Throws one ConfigError that lists every problem, each as
+/// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
+CaseFile read_case_file(CaseDocument const& document);
+inline CaseFile read_case_file(std::filesystem::path const& path) { return read_case_file(CaseDocument(path)); }
 
 /// (table, key) pairs that the reader asked for, tables as "mesh", "mesh axis", "motion": what it knows, for checks of the docs.
 using CaseKeyUse = std::set<std::pair<std::string, std::string>>;
 
-/// The same from text; `path` names it in messages and anchors relative paths.
-/// `asked`, when given, is filled also when there are problems.
+/// The same from text (see CaseDocument). `asked`, when given, is filled also when there are problems.
 CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked = nullptr);
 
 }  // namespace gridmorph

@@ -1,6 +1,7 @@
 // The command line as a value.
 #pragma once
 
+#include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/core/index.hpp>
 
 #include <filesystem>
@@ -18,6 +19,7 @@ struct CommandLine {
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
 
   std::filesystem::path input;                  ///< case file or mesh
+  std::optional<CaseDocument> case_document;    ///< morph, plan, wheel: `input`, once it is read
   std::optional<std::filesystem::path> second;  ///< quality: morphed mesh
   std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's; surface
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's

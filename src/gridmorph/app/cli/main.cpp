@@ -46,6 +46,11 @@ int run(CommandLine const& options, Terminal& terminal) {
   return bad_input;
 }
 
+bool names_case_file(CommandLine const& options) {
+  using Command = CommandLine::Command;
+  return options.command == Command::morph || options.command == Command::plan || options.command == Command::wheel;
+}
+
 /// The exit status of work that prints through the terminal; errors become messages.
 template <class Work>
 int report_errors(Terminal& terminal, Work const& work) {
@@ -92,7 +97,7 @@ int main(int argc, char** argv) try {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   gridmorph::io::remove_pending_on_signals();
-  auto const parsed = parse_command_line(argc, argv);
+  auto parsed = parse_command_line(argc, argv);
   if (auto const* stop = std::get_if<Stop>(&parsed)) {
     Terminal terminal(false);
     if (stop->status != 0) {
@@ -105,9 +110,10 @@ int main(int argc, char** argv) try {
     });
   }
   wait_passively(argv);
-  auto const& options = std::get<CommandLine>(parsed);
+  auto& options = std::get<CommandLine>(parsed);
   Terminal terminal(options.quiet, options.json);
   return report_errors(terminal, [&] {
+    if (names_case_file(options)) options.case_document.emplace(options.input);
     KokkosSession const session(choose_threads(options));
     return run(options, terminal);
   });

@@ -14,7 +14,7 @@ void set_quality(CaseFile& case_file, std::optional<std::string> const& mode) {
 }
 
 int run_morph_command(CommandLine const& options, Terminal& terminal) {
-  CaseFile case_file = read_case_file(options.input);
+  CaseFile case_file = read_case_file(*options.case_document);
   if (options.output) (case_file.sequence ? case_file.sequence->output : case_file.output) = *options.output;
   if (options.report) case_file.output_options.report = *options.report;
   set_quality(case_file, options.quality);

@@ -4,7 +4,7 @@
 namespace gridmorph::cli {
 
 int run_plan_command(CommandLine const& options, Terminal& terminal) {
-  print_plan(read_case_file(options.input), terminal);
+  print_plan(read_case_file(*options.case_document), terminal);
   return done;
 }
 

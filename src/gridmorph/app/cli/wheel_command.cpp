@@ -199,7 +199,7 @@ std::string text_of(WheelRun const& run, WheelResult const& result) {
 }  // namespace
 
 int run_wheel_command(CommandLine const& options, Terminal& terminal) {
-  CaseFile case_file = read_case_file(options.input);
+  CaseFile case_file = read_case_file(*options.case_document);
   set_quality(case_file, options.quality);
   if (!case_file.wheel)
     throw ConfigError(options.input.string() + ": no [wheel]; add [wheel] with output = \"wheel.cgns\"");
