@@ -2,7 +2,8 @@
 # process per test takes longer than most tests; where split is on, one per test, or per value of a suite's parameter. Asking when ctest runs, not
 # when the program is built, lets machines build what they cannot run.
 #
-# Given are name, program, split and threads, a list.
+# Given are name, program, split, shared_setup and threads, a list. With shared_setup, sanitizers run a suite in one process: what it sets up is made
+# once.
 cmake_policy(VERSION 3.25)
 if(NOT EXISTS "${program}")
   add_test("${name}.is_not_built" "${program}")
@@ -22,6 +23,9 @@ set(filters "")
 set(counts "${threads}")
 if(DEFINED ENV{GRIDMORPH_TEST_REDUCED})
   list(GET threads -1 counts)
+  if(shared_setup)
+    set(split FALSE)
+  endif()
 endif()
 foreach(line IN LISTS lines)
   if(line MATCHES "^([A-Za-z0-9_/]+)[.]$")

@@ -1,5 +1,6 @@
 // What other programs meet: JSON on standard output, quiet runs, versions, help, completion, the manual page, threads.
 #include "run_command.hpp"
+#include "support/reduced.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -79,6 +80,7 @@ TEST_F(CommandInterface, TheJsonOfAMorphIsItsReport) {
 }
 
 TEST_F(CommandInterface, QuietRunsPrintOnlyWhatWasAskedFor) {
+  if (test::reduced()) GTEST_SKIP() << "the same runs as with --json";
   for (auto const& [arguments, key] : runs()) {
     Outcome const run = gridmorph("-q " + arguments);
     EXPECT_EQ(run.status, 0) << arguments << "\n" << run.err;

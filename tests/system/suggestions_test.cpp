@@ -2,6 +2,7 @@
 #include "run_command.hpp"
 #include "support/made_bodies.hpp"
 #include "support/mesh_builders.hpp"
+#include "support/reduced.hpp"
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
@@ -67,6 +68,7 @@ TEST_F(Suggestions, RunOnBlocksOfEveryShape) {
   expect_runs("around_a_box", test::around_a_box(1), small);
   expect_runs("o_grid", test::o_grid(0.4, 1), small);
   expect_runs("c_grid", test::c_grid(1), small);
+  if (test::reduced()) return;
   expect_runs("star", test::star(5, 1), small);
   expect_runs("translational", test::translational(1, 1), small);
 }
@@ -90,6 +92,7 @@ TEST_F(Suggestions, RunOnElementsOfEveryKind) {
   expect_runs("prisms", test::to_prisms_and_tetrahedra(test::unit_box({4, 3, 5}), 2), small);
   expect_runs("two_zones", test::in_two_zones(test::box_around({6, 6, 6}, ball), [](Vec3 const& c) { return c.x < 3; }),
               small);
+  if (test::reduced()) return;
   // Types that say nothing, and a family of several planes.
   auto bare = test::box_around({6, 6, 6}, ball);
   for (auto& patch : bare.patches) {
