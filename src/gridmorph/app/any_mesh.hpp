@@ -24,12 +24,17 @@
 
 namespace gridmorph::cli {
 
+/// What lies near moving walls.
+struct NearCells {
+  Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> cells =
+      {};                       ///< (n_cells), nonzero near them; empty: all are far
+  std::vector<int> walls = {};  ///< patches whose first cells are measured, beside those of walls
+};
+
 /// What of a mesh is measured, and against what.
 struct QualityWanted {
   Coordinates const* morphed = nullptr;  ///< measured against the mesh, or the mesh itself where there is none
-  /// (n_cells), nonzero near moving walls; empty: all cells are far.
-  Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> near_field = {};
-  std::vector<int> walls = {};  ///< patches whose first cells are measured, beside those of walls
+  NearCells near = {};
   CellLimits limits = {};
   bool fast = false;                         ///< a verdict is enough
   std::vector<CellField>* fields = nullptr;  ///< those that go into output meshes, filled on the way

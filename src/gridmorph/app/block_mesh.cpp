@@ -65,9 +65,9 @@ QualityReport BlockMesh::measure(QualityWanted const& wanted) const {
   QualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(wanted.morphed != nullptr ? *wanted.morphed : mesh_.coordinates);
   if (wanted.morphed != nullptr) input.baseline = views(mesh_.coordinates);
-  input.near_field = wanted.near_field;
+  input.near_field = wanted.near.cells;
   // All walls: one that stays while its neighbours move can lose its first cells too.
-  std::set<int> walls(wanted.walls.begin(), wanted.walls.end());
+  std::set<int> walls(wanted.near.walls.begin(), wanted.near.walls.end());
   for (int p = 0; p < int(mesh_.patches.size()); ++p)
     if (mesh_.patches[std::size_t(p)].kind == PatchKind::wall) walls.insert(p);
   input.walls = wall_faces(mesh_, std::vector<int>(walls.begin(), walls.end()));

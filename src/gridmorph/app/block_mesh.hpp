@@ -51,6 +51,6 @@ class BlockMesh final : public AnyMesh {
 };
 
 /// Near field of the plan and walls of the case file's boundary layers. `mesh`: with the patches of the plan.
-void add_near_field(QualityWanted& wanted, Mesh const& mesh, Plan const& plan, CaseFile const& case_file);
+NearCells near_cells_of(Mesh const& mesh, Plan const& plan, CaseFile const& case_file);
 
 }  // namespace gridmorph::cli

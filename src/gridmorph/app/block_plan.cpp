@@ -23,7 +23,8 @@ class BlockPlan final : public AnyPlan {
   BlockPlan(BlockMesh const& mesh, CaseFile const& case_file)
       : case_file_(case_file),
         prepared_(prepare(mesh.mesh(), case_file.motion, case_file.plan)),
-        mesh_(prepared_.mesh) {}
+        mesh_(prepared_.mesh),
+        near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)) {}
 
   std::vector<Vec3> displacement(Moment const* when) override {
     evaluated_ = true;
@@ -48,7 +49,7 @@ class BlockPlan final : public AnyPlan {
   }
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
-    add_near_field(wanted, prepared_.mesh, prepared_.plan(), case_file_);
+    wanted.near = near_;
     return mesh_.measure(wanted);
   }
 
@@ -120,6 +121,7 @@ class BlockPlan final : public AnyPlan {
   Exec exec_;
   PreparedMorph prepared_;
   BlockMesh mesh_;  ///< with the patches that planning added
+  NearCells near_;
   std::optional<Morpher<Exec>> morpher_;
   bool evaluated_ = false;
   std::optional<std::string> trimmed_;  ///< of the rules as they stand
@@ -127,7 +129,7 @@ class BlockPlan final : public AnyPlan {
 
 }  // namespace
 
-void add_near_field(QualityWanted& wanted, Mesh const& mesh, Plan const& plan, CaseFile const& case_file) {
+NearCells near_cells_of(Mesh const& mesh, Plan const& plan, CaseFile const& case_file) {
   Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const mask("gridmorph::cli::near_field", std::size_t(mesh.n_cells()));
   std::vector<Index> const first = first_cells(mesh);
   for (auto const& box : plan.near_field) {
@@ -138,10 +140,11 @@ void add_near_field(QualityWanted& wanted, Mesh const& mesh, Plan const& plan, C
         for (int i = box.cells.begin[0]; i < box.cells.end[0]; ++i)
           mask(first[std::size_t(box.zone)] + i + ni * (j + nj * k)) = 1;
   }
-  wanted.near_field = mask;
+  NearCells out{mask, {}};
   for (auto const& layer : case_file.plan.boundary_layers)
     if (!layer.walls.empty())
-      for (int const p : select_patches(mesh, layer.walls)) wanted.walls.push_back(p);
+      for (int const p : select_patches(mesh, layer.walls)) out.walls.push_back(p);
+  return out;
 }
 
 std::unique_ptr<AnyPlan> BlockMesh::plan(CaseFile const& case_file) const {

@@ -60,8 +60,8 @@ QualityReport ElementMesh::measure(QualityWanted const& wanted) const {
   UnstructuredQualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(wanted.morphed != nullptr ? *wanted.morphed : mesh.coordinates);
   if (wanted.morphed != nullptr) input.baseline = views(mesh.coordinates);
-  input.near_field = wanted.near_field;
-  std::set<int> walls(wanted.walls.begin(), wanted.walls.end());
+  input.near_field = wanted.near.cells;
+  std::set<int> walls(wanted.near.walls.begin(), wanted.near.walls.end());
   for (int p = 0; p < int(mesh.patches.size()); ++p)
     if (mesh.patches[std::size_t(p)].kind == PatchKind::wall) walls.insert(p);
   input.walls.assign(walls.begin(), walls.end());

@@ -25,6 +25,14 @@ double largest_of(std::vector<Vec3> const& displacement) {
   return largest;
 }
 
+/// Near and partially wrapped elements.
+NearCells near_elements_of(PreparedUnstructured const& prepared) {
+  auto const& regions = prepared.report.regions.element;
+  Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const near("gridmorph::cli::near_field", regions.size());
+  for (std::size_t e = 0; e < regions.size(); ++e) near(e) = regions[e] == Region::far ? 0 : 1;
+  return {near, prepared.boundary.driving_patches};
+}
+
 class ElementPlan final : public AnyPlan {
  public:
   ElementPlan(ElementMesh const& mesh, CaseFile const& case_file)
@@ -52,6 +60,7 @@ class ElementPlan final : public AnyPlan {
     prepared_ =
         prepare({}, mesh.mesh, mesh.topology, mesh.face_patches, std::move(graph), std::move(boundary), options_);
     prepared_.report.seconds.boundary += seconds;
+    near_ = near_elements_of(prepared_);
     planning_ = seconds + watch.lap();
   }
 
@@ -85,11 +94,7 @@ class ElementPlan final : public AnyPlan {
   }
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
-    auto const& regions = prepared_.report.regions.element;
-    Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const near("gridmorph::cli::near_field", regions.size());
-    for (std::size_t e = 0; e < regions.size(); ++e) near(e) = regions[e] == Region::far ? 0 : 1;
-    wanted.near_field = near;
-    wanted.walls = prepared_.boundary.driving_patches;
+    wanted.near = near_;
     return mesh_.measure(wanted);
   }
 
@@ -209,6 +214,7 @@ class ElementPlan final : public AnyPlan {
   CaseFile const& case_file_;
   PlanOptions options_;
   PreparedUnstructured prepared_;
+  NearCells near_;
   std::vector<Vec3> displacement_;  ///< by the rules as they stand; empty in a sequence
   std::optional<UnstructuredMorpher<Exec>> morpher_;
   double planning_ = 0;

@@ -117,7 +117,7 @@ class WheelRun {
   void time(std::string const& step) { add_time(result_.times, step, watch_.lap(), step != "plan" && step != "read"); }
 
   void prepare_quality(Plan const& plan) {
-    add_near_field(quality_, mesh_, plan, case_);
+    quality_.near = near_cells_of(mesh_, plan, case_);
     quality_.limits = case_.guard;
     quality_.fast = wants_verdict(case_, mesh_.n_cells());
     result_.baseline = sector_.measure(quality_);
