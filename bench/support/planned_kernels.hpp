@@ -60,8 +60,9 @@ struct Volume {
     auto const d = device_plan(exec, prepared.plan(), x.read());
     VectorView<Memory> const field(x);
     kernels::VolumePass<Memory, kernels::TileShape<Exec>, true> const kernel{
-        d->boxes.entries, d->terms,       d->boxes.first_item, d->lines.chains, d->rotations,   d->sides,
-        d->t.data(),      d->ends.read(), d->residuals.read(), field.array(),   {field.array()}};
+        d->boxes.entries,    d->terms, d->boxes.first_item, d->lines.chains,
+        d->rotations,        d->sides, d->t.data(),         d->ends.read(),
+        d->residuals.read(), {},       field.array(),       {field.array()}};
     Touched const touched = touched_by_volume(prepared.plan());
     return {[=] { kernels::launch("gridmorph::bench::volume", exec, 0, d->boxes.n_items, kernel); }, touched.nodes,
             48 + 8 * double(touched.parameters) / double(touched.nodes)};

@@ -20,8 +20,7 @@ std::vector<Example> const of_structured{
     {"[near_field]\noffset = 0.1\n", {"[near_field]", "'m' is structured", "[boundary_layer]"}},
     {"[background]\ncells = 4\n", {"[background]", "[volume]"}},
     {"[guard]\nsteps = 4\n", {"[guard] steps"}},
-    {"[output]\nstages = \"s\"\n", {"[output] stages", "gridmorph plan"}},
-    {"[boundary_layer]\nmode = \"blend\"\n", {"[boundary_layer] mode", "\"translate\""}}};
+    {"[output]\nstages = \"s\"\n", {"[output] stages", "gridmorph plan"}}};
 
 /// The example begins on line 7 where `mesh`, more keys of [mesh], is empty.
 std::vector<std::string> check(Example const& example, CaseUse const& use, std::string const& mesh = "") {

@@ -147,6 +147,15 @@ std::vector<Case> make_cases() {
        {0.3, -0.7, 0.2},
        {"bottom", "top"}},
   };
+  // The same with near fields that turn, and hand on some of their turn.
+  for (std::size_t n = 0, count = list.size(); n < count; ++n) {
+    if (list[n].options.boundary_layers.empty()) continue;
+    Case turned = list[n];
+    turned.name += "_turned";
+    for (BoundaryLayer& layer : turned.options.boundary_layers) layer.mode = BoundaryLayer::Mode::rotate;
+    turned.options.volume.turn = 0.4;
+    list.push_back(std::move(turned));
+  }
   return list;
 }
 

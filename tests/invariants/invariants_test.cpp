@@ -127,6 +127,7 @@ TEST_P(Invariants, ThePlanBeforeItsProjectionIsLinear) {
   Mesh const& mesh = plain().mesh;
   Plan plan = plain().plan();
   plan.spreads.clear();
+  if (!plan.turns.roots.empty()) GTEST_SKIP() << "rotations are not linear in the displacement";
   Random random(8);
   std::vector<Vec3> v(plan.boundary_nodes.size()), w(v.size()), sum(v.size());
   double const a = 1.7, b = -0.6;

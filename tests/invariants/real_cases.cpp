@@ -5,6 +5,8 @@
 #include <generators/passage_motion.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
+#include <algorithm>
+
 namespace gridmorph::test {
 namespace {
 
@@ -135,6 +137,13 @@ std::vector<Case> make_cases() {
   list.push_back(from_file("wing", "mdo_tutorial_000_vol.cgns", {"*"}, bent("wall")));
   list.push_back(from_file("winglet", "717_wl_L2.cgns", {"*"}, bent("wall")));
   list.back().options.boundary_layers = {layers({"wall"}, 4)};
+  for (std::string const name : {"passage", "passage_left_handed", "turbine_stage", "wing", "winglet"}) {
+    Case turned = *std::find_if(list.begin(), list.end(), [&](Case const& c) { return c.name == name; });
+    turned.name += "_turned";
+    if (turned.options.boundary_layers.empty()) turned.options.boundary_layers = {layers({}, 4)};
+    for (BoundaryLayer& layer : turned.options.boundary_layers) layer.mode = BoundaryLayer::Mode::rotate;
+    list.push_back(std::move(turned));
+  }
   return list;
 }
 

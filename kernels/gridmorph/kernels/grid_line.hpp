@@ -41,6 +41,9 @@ struct Tube {
 /// How displacement varies along a line, as a function of the fraction of its baseline arc length.
 enum class LineLaw : std::int32_t { linear, c1, c2, constant };
 
+/// How rotations of the ends of a line fade along it: see turned_line.hpp.
+enum class TurnLaw : std::int32_t { none, near_field, square, c1 };
+
 struct Chain {
   std::int32_t n_s, n_a, n_b;  ///< nodes
   LineLaw law;
@@ -48,13 +51,15 @@ struct Chain {
   std::int32_t first_side;      ///< in the side tables, -1: no side is known, plain sweep
   std::int32_t first_junction;  ///< of the correction's block limits
   std::int32_t n_blocks;
-  std::uint32_t known_sides;  ///< bit q: side q is known somewhere beyond its edges; bit 4 + e: edge e along s is
-  Index first_end_value;      ///< where the displacements of the chain's two ends start: (2, n_b, n_a), chain frame
-  Index first_section;        ///< correction: where the chain's cross-section parameters start
+  std::uint32_t known_sides;      ///< bit q: side q is known somewhere beyond its edges; bit 4 + e: edge e along s is
+  Index first_end_value;          ///< where the displacements of the chain's two ends start: (2, n_b, n_a), chain frame
+  Index first_section;            ///< correction: where the chain's cross-section parameters start
+  TurnLaw turn = TurnLaw::none;   ///< none: its ends carry no rotation
+  std::uint32_t turned_ends = 0;  ///< bit 0: the first end carries one; bit 1: the last
 
   /// Whether anything asks for the arc lengths of its lines.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_parameters() const {
-    return law != LineLaw::constant || first_side >= 0;
+    return law != LineLaw::constant || first_side >= 0 || turn != TurnLaw::none;
   }
   /// Whether of the sides only the two across a (direction 0) or across b (1) are known beyond their edges.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool blends_along(int direction) const {

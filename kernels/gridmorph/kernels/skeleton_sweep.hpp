@@ -7,12 +7,15 @@
 // side_correction.hpp; it is absent where no side of the chain is known. Stages depend on one another through the skeleton
 // alone, so it goes through the stages first and the volume follows in one pass (volume_pass.hpp).
 //
+// Where the ends of a chain turn, what turned_line.hpp says is added.
+//
 // The skeleton keeps one displacement per slot; nodes that coincide, also through a periodic interface, share a slot.
 #pragma once
 
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/side_correction.hpp>
 #include <gridmorph/kernels/tile.hpp>
+#include <gridmorph/kernels/turned_line.hpp>
 
 namespace gridmorph::kernels {
 
@@ -24,6 +27,7 @@ struct SkeletonSweep {
   Index slot, slot_q;             ///< slots of a row follow one another
   Index t, t_p, t_q;              ///< line parameters; t < 0: none needed
   std::int32_t s[3], a[3], b[3];  ///< position on the chain of node (0, 0), and what a step along p and q adds
+  Index x = -1;                   ///< where its baseline positions start, row by row; needed where the chain turns
 };
 
 /// u0 + w (u1 - u0): exactly u0 where both ends move alike.
@@ -34,6 +38,15 @@ KOKKOS_INLINE_FUNCTION Vec3 between_ends(Field<double const> const& ends, Chain 
   if (chain.law == LineLaw::constant) return u0;
   return u0 + law_weight(chain.law, t) * (ends[at + chain.section_size()] - u0);
 }
+
+/// What rotations at the ends of chains need on the skeleton; nothing where none turn.
+struct SkeletonTurns {
+  TurnedEnds<double const> ends;
+  Field<double const> end_turns;  ///< rotation vectors of line ends
+  Field<double> slot_turns;       ///< of slots, written by sweeps
+  Field<double const> position;   ///< of what SkeletonSweep::x counts, chain frames
+  Field<double const> side_position;
+};
 
 /// One item per row of at most `Width` nodes. With `Add` the value is added to what is there.
 template <class MemorySpace, int Width, bool Add>
@@ -46,6 +59,7 @@ struct SweepSkeleton {
   double const* t;
   Field<double const> ends;
   Field<double> u;
+  SkeletonTurns turns = {};
 
   static Index items(SkeletonSweep const& s) { return tiles(s.n_p, Width) * s.n_q; }
 
@@ -60,9 +74,14 @@ struct SweepSkeleton {
       int const a = sweep.a[0] + p * sweep.a[1] + q * sweep.a[2], b = sweep.b[0] + p * sweep.b[1] + q * sweep.b[2];
       double const f = sweep.t < 0 ? 0 : t[sweep.t + p * sweep.t_p + q * sweep.t_q];
       Vec3 v = between_ends(ends, chain, a, b, f);
+      Index const slot = sweep.slot + p + q * sweep.slot_q;
+      if (chain.turn != TurnLaw::none) {
+        v += turned_between(turns.ends, chain, a, b, f, turns.position[sweep.x + p + q * sweep.n_p]);
+        Vec3 const turn = turn_between_ends(turns.end_turns, chain, a, b, f);
+        turns.slot_turns.set(slot, sweep.matrix >= 0 ? matrices(sweep.matrix) * turn : turn);
+      }
       if (chain.first_side >= 0) v += sides.correction(chain, sweep.s[0] + p * sweep.s[1] + q * sweep.s[2], a, b, f);
       if (sweep.matrix >= 0) v = matrices(sweep.matrix) * v;
-      Index const slot = sweep.slot + p + q * sweep.slot_q;
       if constexpr (Add) v = u[slot] + v;
       u.set(slot, v);
     }
@@ -74,10 +93,10 @@ void sweep_skeleton(Exec const& exec, TileList<SkeletonSweep, typename Exec::mem
                     Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
                     Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,
                     SideTable<typename Exec::memory_space> const& sides, double const* t,
-                    Field<double const> const& ends, Field<double> const& u) {
+                    Field<double const> const& ends, Field<double> const& u, SkeletonTurns const& turns = {}) {
   launch(Add ? "gridmorph::skeleton_spread" : "gridmorph::skeleton_sweep", exec, 0, sweeps.n_items,
-         SweepSkeleton<typename Exec::memory_space, TileShape<Exec>::row, Add>{sweeps.entries, sweeps.first_item,
-                                                                               chains, matrices, sides, t, ends, u});
+         SweepSkeleton<typename Exec::memory_space, TileShape<Exec>::row, Add>{
+             sweeps.entries, sweeps.first_item, chains, matrices, sides, t, ends, u, turns});
 }
 
 }  // namespace gridmorph::kernels

@@ -1,17 +1,19 @@
 // The one pass over the volume: every node inside a piece gets its displacement from the ends of the lines through it.
 //
 //   u = (sweep along its chain) + (spread of the slip correction along the chains of every finalize pass)
-//   each of the form  u0 + w(t) (u1 - u0) [+ c],   out = x + u, or u itself
+//   each of the form  u0 + w(t) (u1 - u0) [+ turned ends] [+ c],   out = x + u, or u itself
 //
 // End values are two-dimensional tables that stay in cache; no neighbour of a node is read.
 // Cost per node: 24 bytes of coordinates read and 24 written (none read where the displacement itself is asked for), 8 read
-// per line parameter: 0 in a near field, 8 in the far field, 8 more under a slip surface.
+// per line parameter: 0 in a near field (8 where it turns), 8 in the far field, 8 more under a slip surface. Where line ends turn
+// (turned_line.hpp), the coordinates are read for displacements too.
 #pragma once
 
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/row_correction.hpp>
 #include <gridmorph/kernels/tile.hpp>
+#include <gridmorph/kernels/turned_row.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 
 #include <type_traits>
@@ -34,6 +36,7 @@ struct VolumeTerm {
   Index end_value;                ///< of node (0, 0, 0) at the lower end of the chain
   Index end_stride[3];            ///< along i, j, k
   std::int32_t s[4], a[4], b[4];  ///< position of node (0, 0, 0) on the chain, and what a step along i, j, k adds
+  Vec3 offset;                    ///< position in the chain's frame: matrix^T x + offset
 };
 
 /// Several displacement fields of the workspace, one behind the other.
@@ -49,6 +52,15 @@ struct FieldBatch {
 /// Fields that one pass writes; they share what it reads.
 inline constexpr int most_fields_at_once = 8;
 
+/// Ends of lines that turn, of several fields.
+struct TurnedEndsBatch {
+  TurnedEnds<double const> first;
+  Index stride = 0;
+  KOKKOS_INLINE_FUNCTION TurnedEnds<double const> operator[](int f) const {
+    return {first.first + f * stride, first.n};
+  }
+};
+
 /// One item per tile of a box. With `Move`, out = baseline + u; `baseline` and `out` may be the same arrays.
 template <class MemorySpace, class Shape, bool Move>
 struct VolumePass {
@@ -60,6 +72,7 @@ struct VolumePass {
   SideTable<MemorySpace> sides;
   double const* t;
   FieldBatch<double const> ends, residuals;
+  TurnedEndsBatch turned;
   VectorArray baseline;
   VectorArray out[most_fields_at_once];
   int n_fields = 1;
@@ -103,12 +116,14 @@ struct VolumePass {
                       term.end_stride[0],
                       term.t < 0 ? nullptr : t + term.t + i + box.n[0] * (j + Index(box.n[1]) * k),
                       n};
-    if (chain.first_side < 0 && term.matrix < 0) {
+    if (chain.first_side < 0 && term.matrix < 0 && chain.turn == TurnLaw::none) {
       first ? interpolate<false>(chain.law, row, u) : interpolate<true>(chain.law, row, u);
       return;
     }
     Row v;
     interpolate<false>(chain.law, row, v);
+    if (chain.turn != TurnLaw::none)
+      add_turned(chain, term, f, row, box.first + i + j * box.stride_j + k * box.stride_k, v);
     if (chain.first_side >= 0) add_correction(chain, term, f, i, j, k, n, row.t, v);
     if (term.matrix >= 0) turn(matrices(term.matrix), n, v);
     for (int w = 0; w < n; ++w) {
@@ -125,6 +140,30 @@ struct VolumePass {
     double const* t;
     int n;
   };
+
+  /// What the ends of its lines turn a row of nodes by, the first of which is `node`.
+  KOKKOS_INLINE_FUNCTION void add_turned(Chain const& chain, VolumeTerm const& term, int f, RowEnds const& row,
+                                         Index node, Row& v) const {
+    Row x;
+    baseline.with_row(node, [&](auto const& at) {
+      for (int w = 0; w < row.n; ++w) {
+        x.x[w] = double(at.x[w * at.stride]);
+        x.y[w] = double(at.y[w * at.stride]);
+        x.z[w] = double(at.z[w * at.stride]);
+      }
+    });
+    if (term.matrix >= 0) turn(transpose(matrices(term.matrix)), row.n, x);
+    add_vector(term.offset, row.n, x);
+    TurnedRow<width> const turned_row{turned[f], chain, row.lower, row.t, row.n};
+    with_step(row.step, [&](auto step) { turned_row.add_to(step, x, v); });
+  }
+  KOKKOS_INLINE_FUNCTION static void add_vector(Vec3 const& a, int n, Row& x) {
+    for (int w = 0; w < n; ++w) {
+      x.x[w] += a.x;
+      x.y[w] += a.y;
+      x.z[w] += a.z;
+    }
+  }
 
   /// One loop per law, and per step between the lines of neighbouring nodes: the steps that occur most are constants, so
   /// that the compiler sees one line for the whole row, or unit stride.

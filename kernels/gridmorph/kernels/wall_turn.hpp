@@ -5,7 +5,12 @@
 //
 //   n = sum over faces of (a - x) x (b - x)      (2-D: over edges of (b - a) x plane normal)
 //
-// then about the normal the mean turn of the nodes around. All formulas are written for V = Vec3, or V = DualVec3 for their
+// then about the normal the polar rotation of the gradient F in the wall, least squares over the nodes around,
+//
+//   atan2(F21 - F12, F11 + F22),   F = (sum of q p^T) (sum of p p^T)^-1
+//
+// with p their places from x before, turned by the first rotation, and q those after. On structured walls n is what centred
+// differences give. All formulas are written for V = Vec3, or V = DualVec3 for their
 // exact rates (dual.hpp), also where nothing turns yet.
 //
 // Cost per wall node: its faces' nodes read twice (48 bytes each, from cache), about 150 flops per face, 24 bytes written; the
@@ -82,6 +87,43 @@ KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
   return {};
 }
 
+/// The angle about the unit vector `axis` by which n arms turn that a rotation `swing` has taken to it: before(k) and after(k),
+/// V each. Where they lie on one line, their mean angle.
+template <class V, class Before, class After>
+KOKKOS_INLINE_FUNCTION auto twist_about(V const& axis, V const& swing, Index n, Before const& before,
+                                        After const& after) {
+  using std::atan2;
+  using Scalar = std::decay_t<decltype(dot(axis, axis))>;
+  V t1{}, t2{};
+  Scalar c11{}, c12{}, c22{}, b11{}, b12{}, b21{}, b22{};
+  bool has_frame = false;
+  for (Index k = 0; k < n; ++k) {
+    V const arm = before(k), p = arm + turned_by(swing, 1, arm), q = after(k);
+    if (!has_frame) {
+      V const across = p - dot(p, axis) * axis;
+      auto const size = norm(across);
+      if (!(size > 0)) continue;
+      t1 = (1 / size) * across;
+      t2 = cross(axis, t1);
+      has_frame = true;
+    }
+    auto const p1 = dot(p, t1), p2 = dot(p, t2), q1 = dot(q, t1), q2 = dot(q, t2);
+    c11 = c11 + p1 * p1;
+    c12 = c12 + p1 * p2;
+    c22 = c22 + p2 * p2;
+    b11 = b11 + q1 * p1;
+    b12 = b12 + q1 * p2;
+    b21 = b21 + q2 * p1;
+    b22 = b22 + q2 * p2;
+  }
+  auto const size = c11 + c22, determinant = c11 * c22 - c12 * c12;
+  bool const on_a_line = !((determinant - 1e-12 * (size * size)) > 0);
+  if (on_a_line) return atan2(b21 - b12, b11 + b22);
+  auto const f11 = b11 * c22 - b12 * c12, f12 = b12 * c11 - b11 * c12;
+  auto const f21 = b21 * c22 - b22 * c12, f22 = b22 * c11 - b21 * c12;
+  return atan2(f21 - f12, f11 + f22);
+}
+
 /// Position of a node: of the baseline, or moved by what it is displaced by so far.
 template <class V>
 struct Positions {
@@ -135,21 +177,17 @@ struct WallTurn {
 
  private:
   KOKKOS_INLINE_FUNCTION V turn_at(Index r) const {
-    using std::atan2;
     V const after = wall.normal(r, moved);
     V const swing = turn_between(wall.normal(r, baseline), after);
     auto const size = norm(after);
     if (wall.flat || !(size > 0)) return swing;
     V const axis = (1 / size) * after;
     V const x = baseline[wall.node(r)], y = moved[wall.node(r)];
-    auto sine = 0 * size, cosine = 0 * size;
-    for (Index k = wall.first(r); k < wall.first(r + 1); ++k) {
-      V const before = baseline[wall.around(k)] - x;
-      V const p = before + turned_by(swing, 1, before), q = moved[wall.around(k)] - y;
-      sine = sine + dot(axis, cross(p, q));
-      cosine = cosine + (dot(p, q) - dot(p, axis) * dot(q, axis));
-    }
-    return turn_then(swing, atan2(sine, cosine) * axis);
+    Index const first = wall.first(r);
+    auto const angle = twist_about(
+        axis, swing, wall.first(r + 1) - first, [&](Index k) { return baseline[wall.around(first + k)] - x; },
+        [&](Index k) { return moved[wall.around(first + k)] - y; });
+    return turn_then(swing, angle * axis);
   }
 };
 

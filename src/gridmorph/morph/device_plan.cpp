@@ -15,7 +15,7 @@ void append(std::vector<T>& to, std::vector<T> const& from) {
 /// What to add to the numbers of a stage's tables so that they count in the joined ones.
 struct Shift {
   std::int32_t chain, segment, target, side, junction;
-  Index parameter, end_value, side_node, section;
+  Index parameter, end_value, side_node, section, swept;
 
   explicit Shift(JoinedTables const& to)
       : chain(std::int32_t(to.lines.chains.size())),
@@ -26,7 +26,8 @@ struct Shift {
         parameter(to.lines.n_parameters),
         end_value(to.lines.n_end_values),
         side_node(Index(to.sides.t.size())),
-        section(Index(to.sides.section.size())) {}
+        section(Index(to.sides.section.size())),
+        swept(Index(to.lines.swept_positions.size())) {}
 };
 
 void join_lines(LineTables const& from, Shift const& shift, LineTables& to) {
@@ -53,6 +54,11 @@ void join_lines(LineTables const& from, Shift const& shift, LineTables& to) {
     target.first += shift.parameter;
     to.targets.push_back(target);
   }
+  if (!from.end_positions.empty()) {
+    to.end_positions.resize(std::size_t(to.n_end_values));
+    append(to.end_positions, from.end_positions);
+  }
+  append(to.swept_positions, from.swept_positions);
   to.n_parameters += from.n_parameters;
   to.n_end_values += from.n_end_values;
 }
@@ -63,6 +69,10 @@ void join_sides(SideTables const& from, Shift const& shift, SideTables& to) {
     side.first += shift.side_node;
     to.sides.push_back(side);
   }
+  if (!from.positions.empty()) {
+    to.positions.resize(to.t.size());
+    append(to.positions, from.positions);
+  }
   append(to.junctions, from.junctions);
   append(to.t, from.t);
   append(to.section, from.section);
@@ -72,6 +82,7 @@ std::vector<kernels::SkeletonSweep> shifted(std::vector<kernels::SkeletonSweep> 
   for (kernels::SkeletonSweep& sweep : sweeps) {
     sweep.chain += shift.chain;
     if (sweep.t >= 0) sweep.t += shift.parameter;
+    if (sweep.x >= 0) sweep.x += shift.swept;
   }
   return sweeps;
 }
@@ -79,6 +90,14 @@ std::vector<kernels::SkeletonSweep> shifted(std::vector<kernels::SkeletonSweep> 
 std::vector<kernels::NodeCopy> shifted(std::vector<kernels::NodeCopy> copies, Index destination) {
   for (kernels::NodeCopy& copy : copies) copy.destination += destination;
   return copies;
+}
+
+std::vector<kernels::NearFieldLine> shifted(std::vector<kernels::NearFieldLine> lines, Shift const& shift) {
+  for (kernels::NearFieldLine& line : lines) {
+    line.lower += shift.end_value;
+    line.upper += shift.end_value;
+  }
+  return lines;
 }
 
 void collect_parts(std::vector<VolumePart> const& parts, Shift const& shift,
@@ -90,6 +109,47 @@ void collect_parts(std::vector<VolumePart> const& parts, Shift const& shift,
     if (term.t >= 0) term.t += shift.parameter;
     of_box[part.box].push_back(term);
   }
+}
+
+/// Vectors of the host, component by component.
+template <class Exec>
+Workspace<typename Exec::memory_space> positions(Exec const& exec, std::vector<Vec3> const& host, char const* what) {
+  std::vector<double> values;
+  for (double Vec3::*const component : {&Vec3::x, &Vec3::y, &Vec3::z})
+    for (Vec3 const& v : host) values.push_back(v.*component);
+  Workspace<typename Exec::memory_space> out;
+  out.values = table(exec, values, what);
+  out.n = Index(host.size());
+  compat::fence(exec, "gridmorph::Morpher (host positions may go)");
+  return out;
+}
+
+template <class Exec>
+DeviceTurns<Exec> device_turns(Exec const& exec, Plan const& plan, JoinedTables& joined,
+                               SlipSurfaceTable<typename Exec::memory_space> const& surfaces,
+                               Kokkos::View<Mat3*, typename Exec::memory_space> const& rotations, int fields) {
+  using Work = Workspace<typename Exec::memory_space>;
+  DeviceTurns<Exec> out;
+  out.table.roots = table(exec, plan.turns.roots, "roots");
+  out.table.neighbours = table(exec, plan.turns.neighbours, "root_neighbours");
+  out.table.ends = table(exec, plan.turns.ends, "root_ends");
+  out.table.surfaces = surfaces.surfaces;
+  out.table.matrices = rotations;
+  out.n_ends = joined.lines.n_end_values;
+  Index const n_roots = Index(plan.turns.roots.size());
+  out.slots = Work(exec, plan.n_slots, fields, "turns");
+  out.raw = Work(exec, n_roots, fields, "root_turns");
+  out.outer = Work(exec, n_roots, fields, "outer_turns");
+  out.end_turns = Work(exec, out.n_ends, fields, "end_turns");
+  out.ends = Kokkos::View<double*, typename Exec::memory_space>(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::turned_ends"),
+      out.ends_stride() * fields);
+  joined.lines.end_positions.resize(std::size_t(out.n_ends));
+  joined.sides.positions.resize(joined.sides.t.size());
+  out.end_position = positions(exec, joined.lines.end_positions, "end_positions");
+  out.swept_position = positions(exec, joined.lines.swept_positions, "swept_positions");
+  out.side_position = positions(exec, joined.sides.positions, "side_positions");
+  return out;
 }
 
 }  // namespace
@@ -119,6 +179,10 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     std::vector<std::int32_t> corrected = stage.sides.corrected;
     for (std::int32_t& chain : corrected) chain += shift.chain;
     device.corrected = table(exec, corrected, "corrected");
+    device.turns = stage.turns;
+    device.near_field = table(exec, shifted(stage.near_field, shift), "near_field_lines");
+    device.first_end_value = shift.end_value;
+    device.n_end_values = stage.lines.n_end_values;
     collect_parts(stage.volume, shift, of_box);
     join_lines(stage.lines, shift, joined.lines);
     join_sides(stage.sides, shift, joined.sides);
@@ -172,6 +236,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   ends = Workspace<Memory>(exec, joined.lines.n_end_values, fields, "end_values");
   residuals = Workspace<Memory>(exec, Index(joined.sides.t.size()), fields, "side_residuals");
   sides.c = residuals.read()[0];
+  if (!plan.turns.roots.empty()) turns = device_turns(exec, plan, joined, surfaces, rotations, fields);
 
   t = Kokkos::View<double*, Memory>(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::line_parameters"),

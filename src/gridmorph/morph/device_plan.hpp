@@ -64,6 +64,9 @@ struct DeviceStage {
   WorkList<kernels::SkeletonSweep, Memory> sweeps;
   Kokkos::View<kernels::SideLine*, Memory> side_lines;
   Kokkos::View<std::int32_t*, Memory> corrected;
+  bool turns = false;                                        ///< whether rotations come to its ends
+  Kokkos::View<kernels::NearFieldLine*, Memory> near_field;  ///< lines that turn with their wall
+  Index first_end_value = 0, n_end_values = 0;
 };
 
 template <class Exec>
@@ -81,6 +84,29 @@ struct JoinedTables {
   SideTables sides;
   std::vector<kernels::VolumeBox> boxes;
   std::vector<kernels::VolumeTerm> terms;
+};
+
+/// How near fields turn, and what their turn needs for work (kernels/root_turn.hpp, turned_ends.hpp). Empty where none does.
+template <class Exec>
+struct DeviceTurns {
+  using Memory = typename Exec::memory_space;
+  kernels::RootTable<Memory> table;
+  Workspace<Memory> slots, raw, outer, end_turns;  ///< per slot, root, root, line end
+  Kokkos::View<double*, Memory> ends;              ///< of fields, each as kernels::TurnedEnds has them
+  Workspace<Memory> end_position, swept_position, side_position;
+  Index n_ends = 0;
+
+  [[nodiscard]] bool any() const { return table.roots.extent(0) > 0; }
+  [[nodiscard]] Index ends_stride() const { return kernels::TurnedEnds<double>::components * n_ends; }
+  [[nodiscard]] kernels::TurnedEnds<double> ends_of(int f) const { return {ends.data() + f * ends_stride(), n_ends}; }
+  [[nodiscard]] kernels::TurnedEnds<double const> read_ends(int f) const {
+    return {ends.data() + f * ends_stride(), n_ends};
+  }
+  /// What sweeps and residuals of field f ask for.
+  [[nodiscard]] kernels::SkeletonTurns of_skeleton(int f) const {
+    if (!any()) return {};
+    return {read_ends(f), end_turns.read()[f], slots.batch()[f], swept_position.read()[0], side_position.read()[0]};
+  }
 };
 
 template <class Exec>
@@ -104,6 +130,7 @@ struct DevicePlan {
   Kokkos::View<kernels::VolumeTerm*, Memory> terms;
   Kokkos::View<double*, Memory> t;  ///< line parameters
   Workspace<Memory> skeleton, ends, residuals;
+  DeviceTurns<Exec> turns;
   int fields = 1;
 
   DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<double const> x, int n_fields);

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/morph/detail/baseline.hpp>
+#include <gridmorph/morph/detail/block_turns.hpp>
 #include <gridmorph/morph/device_plan.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
@@ -51,22 +52,27 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   template <bool Add>
   void sweep(Exec const& exec, detail::WorkList<kernels::SkeletonSweep, MemorySpace> const& list, int f) const {
     kernels::sweep_skeleton<Add>(exec, list, this->lines.chains, this->rotations, side_table(f), this->t.data(),
-                                 this->ends.read()[f], this->skeleton.batch()[f]);
+                                 this->ends.read()[f], this->skeleton.batch()[f], this->turns.of_skeleton(f));
   }
 
-  /// Displacement of the skeleton before slip surfaces ask for theirs: linear in the boundary displacement.
-  void skeleton_stages(Exec const& exec, int f, In const& boundary) const {
+  /// Displacement of the skeleton before slip surfaces ask for theirs: where nothing turns, linear in the boundary displacement.
+  /// With `Rate`, its derivative at field `of` where the boundary's is given.
+  template <bool Rate>
+  void skeleton_stages(Exec const& exec, int f, int of, In const& boundary) const {
+    detail::BlockTurns<Exec, Rate> const turning(*this, f, of);
     kernels::Field<double> const u = this->skeleton.batch()[f], end_values = this->ends.batch()[f],
                                  c = this->residuals.batch()[f];
     kernels::scatter_boundary(exec, this->boundary_slots, boundary.array(), u);
     copy("gridmorph::boundary::axis", exec, this->boundary_projections, u, u);
+    turning.of_walls(exec);
     for (auto const& stage : this->stages) {
       ProfilingRegion const region(stage.region);
       copy("gridmorph::chain_ends", exec, stage.ends, u, end_values);
+      turning.of_ends(exec, stage);
       if (stage.side_lines.extent(0) > 0) {
         copy("gridmorph::side_residual::known", exec, stage.gathers, u, c);
         kernels::fill_sides(exec, this->lines.chains, side_table(f), stage.side_lines, stage.corrected,
-                            read(end_values), c);
+                            read(end_values), c, this->turns.of_skeleton(f));
       }
       sweep<false>(exec, stage.sweeps, f);
     }
@@ -82,7 +88,7 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   }
 
   void displacement_of_skeleton(Exec const& exec, int f, In const& boundary) const {
-    skeleton_stages(exec, f, boundary);
+    skeleton_stages<false>(exec, f, f, boundary);
     for (auto const& pass : this->spreads) {
       ProfilingRegion const region(region_names.slip);
       slip_ends<false>(exec, pass, f, f);
@@ -100,22 +106,24 @@ struct Morpher<Exec>::State : detail::DevicePlan<Exec> {
   template <bool Move>
   void write_at_once(Exec const& exec, int first_field, std::span<Out const> out) const {
     ProfilingRegion const region(region_names.volume);
-    kernels::VectorArray const x = Move ? baseline.array() : kernels::VectorArray{};
+    kernels::VectorArray const x = baseline.array();
     auto from = [&](auto const& work) {
       return kernels::FieldBatch<double const>{work.read()[first_field], work.read().stride};
     };
-    kernels::VolumePass<MemorySpace, Shape, Move> volume{this->boxes.entries,
-                                                         this->terms,
-                                                         this->boxes.first_item,
-                                                         this->lines.chains,
-                                                         this->rotations,
-                                                         this->sides,
-                                                         this->t.data(),
-                                                         from(this->ends),
-                                                         from(this->residuals),
-                                                         x,
-                                                         {},
-                                                         0};
+    kernels::VolumePass<MemorySpace, Shape, Move> volume{
+        this->boxes.entries,
+        this->terms,
+        this->boxes.first_item,
+        this->lines.chains,
+        this->rotations,
+        this->sides,
+        this->t.data(),
+        from(this->ends),
+        from(this->residuals),
+        {this->turns.read_ends(first_field), this->turns.ends_stride()},
+        x,
+        {},
+        0};
     for (Out const& field : out) {
       kernels::write_skeleton_nodes<Move>(exec, this->skeleton_nodes, this->rotations,
                                           this->skeleton.read()[first_field + volume.n_fields], field.array(), x);
@@ -189,8 +197,8 @@ void Morpher<Exec>::velocities(Exec const& exec, In const& boundary, In const& r
   State const& s = *state_;
   s.require("gridmorph::Morpher::velocities", {&boundary, 1}, {&v, 1}, 2);
   s.require_boundary("gridmorph::Morpher::velocities (rate)", rate);
-  s.skeleton_stages(exec, 0, boundary);
-  s.skeleton_stages(exec, 1, rate);
+  s.template skeleton_stages<false>(exec, 0, 0, boundary);
+  s.template skeleton_stages<true>(exec, 1, 0, rate);
   for (auto const& pass : s.spreads) {
     ProfilingRegion const region(region_names.slip);
     s.template slip_ends<true>(exec, pass, 1, 0);

@@ -7,6 +7,7 @@
 #include <gridmorph/plan/blocks/ranked_kinds.hpp>
 #include <gridmorph/plan/blocks/spread_plan.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
+#include <gridmorph/plan/blocks/wall_roots.hpp>
 #include <gridmorph/plan/make_plan.hpp>
 
 #include <algorithm>
@@ -68,12 +69,17 @@ kernels::LineLaw line_law(Law law) {
   return kernels::LineLaw::linear;
 }
 
+/// Of chains between moving ends (measured: a plateau from 0.15 to 0.35).
+constexpr double passage_turn = 0.25;
+
 class Scheduler {
  public:
-  Scheduler(HostInstance const& host, PlanContext const& context, PlanOptions const& options, Plan& plan, Known& known)
+  Scheduler(HostInstance const& host, PlanContext const& context, ResolvedMotion const& motion,
+            PlanOptions const& options, Plan& plan, Known& known)
       : context_(context),
         mesh_(context.mesh),
         topology_(context.topology),
+        motion_(motion),
         options_(options),
         plan_(plan),
         known_(known),
@@ -88,6 +94,7 @@ class Scheduler {
         if (outer_face_is_known(chain.chain)) {
           chain.law = line_law(options_.volume.law);
           chain.open_end = false;
+          if (chain.turn != kernels::TurnLaw::none) chain.turn = kernels::TurnLaw::square;
           chain.chain.last = {true, chain.chain.first.kind, -1};
           if (is_active(chain.chain.steps.back().block))
             plan_.notes.push_back(
@@ -116,7 +123,27 @@ class Scheduler {
     }
   }
 
-  void volume() {
+  /// How much of their turn near fields hand on, unless the options say. Where their lines end at rest: all of it if they move as
+  /// rigid bodies; none otherwise, as what turns differently from line to line tears far from the wall.
+  double turn(std::vector<NearField> const& fields) {
+    if (options_.volume.turn) return *options_.volume.turn;
+    bool open = false, any = false;
+    for (RankedChain const& ranked : collect(open)) {
+      auto const begins = [&](Chain const& chain) {
+        auto const faces = topology_.blocks.face_entities(topology_.lattice, end_face(chain.steps.front(), 0));
+        return std::any_of(faces.begin(), faces.end(),
+                           [&](int e) { return known_.turns[topology_.lattice.class_of(e)] != 0; });
+      };
+      bool const first = begins(ranked.chain), last = begins(reversed(ranked.chain));
+      if (!first && !last) continue;
+      if ((first && last) || !ends_at_rest(first ? ranked.chain.last : ranked.chain.first)) return passage_turn;
+      any = true;
+    }
+    return !any ? passage_turn : is_rigid(fields) ? 1 : 0;
+  }
+
+  void volume(double turn) {
+    kernels::TurnLaw const turn_law = turn > 0.5 ? kernels::TurnLaw::c1 : kernels::TurnLaw::square;
     for (int number = 1; has_active_blocks(); ++number) {
       bool open = false;
       std::vector<RankedChain> chains = collect(open);
@@ -144,7 +171,7 @@ class Scheduler {
         if (!claims.add(ranked.chain)) continue;
         description.push_back(chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked));
         now.push_back({open ? known_end_first(ranked.chain) : ranked.chain,
-                       open ? kernels::LineLaw::constant : line_law(options_.volume.law), open});
+                       open ? kernels::LineLaw::constant : line_law(options_.volume.law), open, turn_law});
       }
       Stage stage = build_stage(context_, now, known_, priority_.kind_order());
       stage.name = std::to_string(number);
@@ -159,6 +186,17 @@ class Scheduler {
   [[nodiscard]] bool is_active(int block) const {
     int const piece = topology_.blocks[block].pieces.front().piece;
     return !known_(topology_.lattice.class_of(topology_.lattice.entity_of_piece(piece, {1, 1, 1})));
+  }
+  [[nodiscard]] bool is_rigid(std::vector<NearField> const& fields) const {
+    return std::all_of(fields.begin(), fields.end(), [&](NearField const& field) {
+      return !turns(field) || std::all_of(field.walls.begin(), field.walls.end(), [&](int wall) {
+        return std::holds_alternative<RigidRule>(motion_.patch_rule(wall));
+      });
+    });
+  }
+  [[nodiscard]] bool ends_at_rest(ChainEnd const& end) const {
+    return end.patch >= 0 && context_.kinds[end.patch] != PatchKind::wall &&
+           std::holds_alternative<FixedRule>(motion_.patch_rule(end.patch));
   }
   [[nodiscard]] bool outer_face_is_known(Chain const& chain) const {
     auto const faces = topology_.blocks.face_entities(topology_.lattice, end_face(chain.steps.back(), 1));
@@ -207,11 +245,23 @@ class Scheduler {
   PlanContext const& context_;
   Mesh const& mesh_;
   Topology const& topology_;
+  ResolvedMotion const& motion_;
   PlanOptions const& options_;
   Plan& plan_;
   Known& known_;
   Priority priority_;
 };
+
+std::string turn_note(double turn, bool given) {
+  std::string number = std::to_string(turn);
+  number.erase(number.find_last_not_of('0') + 1);
+  if (number.back() == '.') number.pop_back();
+  return "near fields turn with their walls and hand on " + number + " of their turn" +
+         (given       ? ""
+          : turn == 1 ? ", as they are rigid and chains from them end at rest"
+          : turn == 0 ? ", as they are not rigid and chains from them end at rest"
+                      : ", as chains from them end on what moves or on walls");
+}
 
 /// The nodes inside every piece that has any. Returns the box of each piece, -1 for the others.
 std::vector<int> inner_boxes(Mesh const& mesh, Lattice const& lattice, std::vector<kernels::VolumeBox>& boxes) {
@@ -262,17 +312,32 @@ PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& 
   plan.n_slots = skeleton.size();
   RotationTable rotations(plan.rotations);
   std::vector<int> const box_of_piece = inner_boxes(mesh, topology.lattice, plan.boxes);
-  PlanContext const context{mesh, topology, skeleton, rotations, box_of_piece, kinds};
-
+  PlanContext context{mesh, topology, skeleton, rotations, box_of_piece, kinds};
+  WallRoots roots(context);
+  context.roots = &roots;
   Known known(topology.lattice.n_classes());
-  Scheduler scheduler(host, context, options, plan, known);
+  Scheduler scheduler(host, context, motion, options, plan, known);
   std::vector<std::string> const& kind_order = scheduler.kind_order();
   planned.boundary = collect_boundary(context, motion, surface, kind_order, known, plan);
   Known const given = known;
   if (auto poles = pole_stage(context, motion, kind_order, known, plan)) plan.stages.push_back(std::move(*poles));
+  for (NearField const& field : fields)
+    if (turns(field)) roots.add_walls(field.walls, field.mode == BoundaryLayer::Mode::blend ? 0 : 1);
+  roots.join_coincident();
+  roots.mark(known);
   scheduler.near_field(near_field_chains(mesh, topology, known, fields));
-  scheduler.volume();
-  plan_spreads(context, motion, surface, given, plan);
+  double const turn = roots.nodes().empty() ? 0 : scheduler.turn(fields);
+  scheduler.volume(turn);
+  std::vector<int> const surface_of_patch = slip_surface_numbers(mesh, surface, plan.surfaces);
+  if (!roots.nodes().empty()) {
+    roots.scale_turn(turn);
+    EndWalls end_walls{surface_of_patch, {}};
+    for (int p = 0; p < int(mesh.patches.size()); ++p)
+      end_walls.is_given.push_back(motion.patch[p].rule >= 0 && surface.is_explicit(motion.patch[p].rule) ? 1 : 0);
+    plan.turns = turn_tables(context, links, roots, end_walls);
+    plan.notes.push_back(turn_note(turn, options.volume.turn.has_value()));
+  }
+  plan_spreads(context, motion, surface_of_patch, given, plan);
   plan.skeleton_nodes = skeleton.to_nodes(rotations);
   planned.boundary.n_boundary_nodes = Index(plan.boundary_nodes.size());
   note_loose_nodes(mesh, planned.boundary, plan);

@@ -4,6 +4,7 @@
 #include <gridmorph/boundary/topology_options.hpp>
 #include <gridmorph/plan/element_options.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,9 @@ inline std::vector<PriorityRule> standard_priority() {
 
 struct VolumeOptions {
   Law law = Law::linear;
+  /// Blocks: how much of the turn of their walls near fields that rotate hand on at their outer edge, 0 to 1. Nothing: where all
+  /// lines from there end on boundaries at rest that are no walls, 1 if the walls have rule `rigid` and 0 if not; elsewhere 0.25.
+  std::optional<double> turn;
   std::vector<PriorityRule> priority = standard_priority();
 };
 

@@ -6,6 +6,7 @@
 #include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/skeleton_sweep.hpp>
 #include <gridmorph/kernels/slip_end.hpp>
+#include <gridmorph/kernels/turned_ends.hpp>
 #include <gridmorph/kernels/volume_pass.hpp>
 #include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/plan/blocks/chain.hpp>
@@ -22,8 +23,10 @@ struct LineTables {
   std::vector<kernels::Tube> tubes;
   std::vector<kernels::Segment> segments;
   std::vector<kernels::ParameterTarget> targets;
-  Index n_parameters = 0;  ///< line parameters that are kept
-  Index n_end_values = 0;  ///< displacements at the ends of all chains
+  Index n_parameters = 0;             ///< line parameters that are kept
+  Index n_end_values = 0;             ///< displacements at the ends of all chains
+  std::vector<Vec3> end_positions;    ///< of chains that turn: per end value, chain frame
+  std::vector<Vec3> swept_positions;  ///< SkeletonSweep::x, chain frame
 
   [[nodiscard]] Index n_lines() const;
 };
@@ -42,6 +45,7 @@ struct SideTables {
   std::vector<std::int32_t> corrected;     ///< chain numbers
   std::vector<kernels::NodeCopy> gathers;  ///< slots of known side nodes -> side arrays, chain frame
   std::vector<double> t, section;
+  std::vector<Vec3> positions;  ///< of chains that turn: as t, chain frame
 };
 
 /// Chains that do not depend on one another, morphed together.
@@ -51,9 +55,11 @@ struct Stage {
   std::vector<kernels::NodeCopy> ends;         ///< slots -> displacements at the ends of the chains
   std::vector<kernels::SkeletonSweep> sweeps;  ///< faces, edges and corners that this stage makes known
   std::vector<VolumePart> volume;
-  std::vector<CellBox> cells;            ///< of the blocks this stage morphs
-  std::string name;                      ///< "near field", "1", "2", ...
-  std::vector<std::string> description;  ///< one line per chain: blocks, ends, reasons of its rank
+  std::vector<kernels::NearFieldLine> near_field;  ///< lines that turn with the wall that they stand on
+  bool turns = false;                              ///< whether any of its chains carries rotations
+  std::vector<CellBox> cells;                      ///< of the blocks this stage morphs
+  std::string name;                                ///< "near field", "1", "2", ...
+  std::vector<std::string> description;            ///< one line per chain: blocks, ends, reasons of its rank
 };
 
 /// Projection of slip surfaces and the spread of the correction along the lines between them.
@@ -65,6 +71,13 @@ struct SpreadPass {
   std::vector<std::string> description;
 };
 
+/// How near fields turn (kernels/root_turn.hpp); empty where none does.
+struct TurnTables {
+  std::vector<kernels::Root> roots;
+  std::vector<kernels::RootNeighbour> neighbours;
+  std::vector<kernels::RootEnds> ends;
+};
+
 struct Plan {
   /// Owner nodes whose displacement the motion gives, in the order that morph() expects their values.
   std::vector<Index> boundary_nodes;
@@ -74,6 +87,7 @@ struct Plan {
   std::vector<SpreadPass> spreads;
   std::vector<kernels::NodeCopy> skeleton_nodes;  ///< from slots to all nodes of the skeleton
   std::vector<kernels::VolumeBox> boxes;          ///< the nodes inside pieces; terms come from stages and spreads
+  TurnTables turns;
   std::vector<SlipSurface> surfaces;
   std::vector<Mat3> rotations;
   std::vector<CellBox> near_field;  ///< cells of the near field of moving walls

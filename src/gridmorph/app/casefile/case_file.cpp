@@ -269,6 +269,11 @@ void read_plan(TableReader& root, CaseFile& out) {
   auto volume = root.table("volume");
   if (!volume) return;
   if (auto const law = volume->choice("law", {"linear", "c1", "c2"})) out.plan.volume.law = Law(*law);
+  if (auto const turn = volume->number("turn")) {
+    out.plan.volume.turn = *turn;
+    if (*turn < 0 || *turn > 1)
+      volume->problem("turn", fmt::format("is a share of the walls' turn, 0 to 1, found {}", *turn));
+  }
   if (auto priority = read_priority(*volume); !priority.empty()) out.plan.volume.priority = std::move(priority);
   volume->finish();
 }

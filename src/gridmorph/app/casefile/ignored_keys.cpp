@@ -55,10 +55,6 @@ class Ignored {
     refuse("", "background", why + ": law in [volume] says there how displacements fall off");
     refuse("guard", "steps", why + ": displacements follow grid lines there, and steps add up to what one gives");
     refuse("output", "stages", why + ": `gridmorph plan` prints the stages");
-    bool const turns = std::any_of(
-        case_.plan.boundary_layers.begin(), case_.plan.boundary_layers.end(),
-        [](auto const& l) { return l.mode == BoundaryLayer::Mode::rotate || l.mode == BoundaryLayer::Mode::blend; });
-    if (turns) refuse("boundary_layer", "mode", "\"rotate\" and \"blend\": " + why + "; use \"translate\"");
   }
 
   void of_wheel() {

@@ -53,11 +53,14 @@ Crossing cross(Mesh const& mesh, Topology const& topology, Known const& known, C
                       .then(blocks.to_block(ours.piece))
                       .then(step.to_chain);
   next.rotation = step.rotation;
+  next.translation = step.translation;
   next.rotated = step.rotated;
   int const interface = blocks.interface_of_face()[face];
   if (interface >= 0 && mesh.interfaces[interface].periodic) {
-    Mat3 const to_owner = transpose(lattice.copy_of(ours.entity).transform.rotation);
-    next.rotation = lattice.copy_of(theirs.entity).transform.rotation * (to_owner * step.rotation);
+    RigidTransform const &from = lattice.copy_of(ours.entity).transform, &to = lattice.copy_of(theirs.entity).transform;
+    Mat3 const to_owner = transpose(from.rotation);
+    next.rotation = to.rotation * (to_owner * step.rotation);
+    next.translation = to.rotation * (to_owner * (step.translation - from.translation)) + to.translation;
     next.rotated = true;
   }
   return crossing;
@@ -71,7 +74,7 @@ BlockFace end_face(ChainStep const& step, int side) {
 }
 
 std::optional<Chain> find_chain(Mesh const& mesh, Topology const& topology, Known const& known, int block, int axis) {
-  ChainStep step{block, along(axis), {}, false};
+  ChainStep step{block, along(axis), {}, {}, false};
   std::set<int> seen{block};
   while (true) {  // back to where the chain starts
     Crossing const c = cross(mesh, topology, known, step, 0);
@@ -80,6 +83,7 @@ std::optional<Chain> find_chain(Mesh const& mesh, Topology const& topology, Know
     step = c.next;
   }
   step.rotation = {};
+  step.translation = {};
   step.rotated = false;
   Chain chain;
   chain.first = cross(mesh, topology, known, step, 0).end;
@@ -98,7 +102,7 @@ std::optional<Chain> find_chain(Mesh const& mesh, Topology const& topology, Know
 
 std::optional<Chain> walk_from(Mesh const& mesh, Topology const& topology, Known const& known, BlockFace const& start,
                                std::function<bool(Chain const&)> const& enough) {
-  ChainStep step{start.block, along(start.axis), {}, false};
+  ChainStep step{start.block, along(start.axis), {}, {}, false};
   if (start.side == 1) step.to_chain = step.to_chain.then({{0, 1, 2}, {-1, -1, 1}});
   Chain chain;
   chain.first = cross(mesh, topology, known, step, 0).end;
@@ -118,14 +122,19 @@ Chain reversed(Chain chain) {
   std::swap(chain.first, chain.last);
   Orientation const flip{{0, 1, 2}, {-1, -1, 1}};
   Mat3 const from_new_frame = chain.steps.front().rotated ? chain.steps.front().rotation : Mat3{};
+  Vec3 const new_origin = chain.steps.front().translation;
   bool const rotated = chain.steps.front().rotated;
   for (ChainStep& step : chain.steps) {
     step.to_chain = step.to_chain.then(flip);
     // The frame of the first block becomes the chain's frame.
-    if (rotated || step.rotated) step.rotation = step.rotation * transpose(from_new_frame);
+    if (rotated || step.rotated) {
+      step.rotation = step.rotation * transpose(from_new_frame);
+      step.translation = step.translation - step.rotation * new_origin;
+    }
     step.rotated = rotated || step.rotated;
   }
   chain.steps.front().rotation = {};
+  chain.steps.front().translation = {};
   chain.steps.front().rotated = false;
   return chain;
 }

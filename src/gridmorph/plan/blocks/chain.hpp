@@ -13,7 +13,8 @@ struct ChainStep {
   int block = -1;
   Orientation to_chain;  ///< block axes -> chain axes (0: s, 1: a, 2: b)
   Mat3 rotation;         ///< chain frame -> frame of this block (not the identity behind a periodic interface)
-  bool rotated = false;
+  Vec3 translation;      ///< and positions: x = rotation * (position in the chain's frame) + translation
+  bool rotated = false;  ///< neither is the identity
 };
 
 /// The block face at the lower (side 0) or upper (side 1) s end of a step.

@@ -63,8 +63,8 @@ PlacedBox placed_box(PlanContext const& context, Chain const& chain, ChainLayout
   ChainPiece const& piece = layout.at(ps, pa, pb);
   Piece const& p = context.topology.lattice.pieces()[piece.piece];
   ChainStep const& step = chain.steps[piece.step];
-  return {p.zone,        p.nodes,     piece.to_chain, {layout.s_begin[ps], layout.a_begin[pa], layout.b_begin[pb]},
-          step.rotation, step.rotated};
+  return {p.zone,        p.nodes,          piece.to_chain, {layout.s_begin[ps], layout.a_begin[pa], layout.b_begin[pb]},
+          step.rotation, step.translation, step.rotated};
 }
 
 kernels::Segment make_segment(Mesh const& mesh, PlacedBox const& box) {
@@ -120,6 +120,7 @@ void add_writer(PlanContext const& context, LineTables& lines, std::vector<kerne
       term.a[d] = d == 0 ? at[1] : at[1] - origin[1];
       term.b[d] = d == 0 ? at[2] : at[2] - origin[2];
     }
+    if (box.rotated) term.offset = -(transpose(box.rotation) * box.translation);
     volume.push_back(part);
     return;
   }
@@ -142,6 +143,12 @@ void add_writer(PlanContext const& context, LineTables& lines, std::vector<kerne
     sweep.s[d] = d == 0 ? at[0] : at[0] - origin[0];
     sweep.a[d] = d == 0 ? at[1] : at[1] - origin[1];
     sweep.b[d] = d == 0 ? at[2] : at[2] - origin[2];
+  }
+  if (chain.turn != kernels::TurnLaw::none) {
+    sweep.x = Index(lines.swept_positions.size());
+    for (int q = 0; q < sweep.n_q; ++q)
+      for (int p = 0; p < sweep.n_p; ++p)
+        lines.swept_positions.push_back(box.in_chain_frame(node_position(context.mesh, box.zone, *rows, p, q)));
   }
   sweeps.push_back(sweep);
 }

@@ -7,6 +7,8 @@
 
 namespace gridmorph {
 
+class WallRoots;
+
 /// What every part of a plan refers to.
 struct PlanContext {
   Mesh const& mesh;
@@ -15,6 +17,7 @@ struct PlanContext {
   RotationTable& rotations;
   std::vector<int> const& box_of_piece;  ///< in Plan::boxes, -1 for pieces without inner nodes
   std::vector<PatchKind> const& kinds;   ///< what patches rank as, see ranked_kinds()
+  WallRoots* roots = nullptr;            ///< of near fields that turn
 };
 
 /// A box of zone nodes and where it lies on a chain.
@@ -24,7 +27,13 @@ struct PlacedBox {
   Orientation to_chain;   ///< zone axes -> chain axes
   Index3 begin{0, 0, 0};  ///< position (s, a, b) on the chain of its lower corner
   Mat3 rotation;          ///< chain frame -> frame of the zone
+  Vec3 translation;       ///< and positions, see ChainStep
   bool rotated = false;
+
+  /// A place of the zone in the chain's frame.
+  [[nodiscard]] Vec3 in_chain_frame(Vec3 const& x) const {
+    return rotated ? transpose(rotation) * (x - translation) : x;
+  }
 
   [[nodiscard]] Index3 position(Index3 const& node) const {
     Index3 at{};

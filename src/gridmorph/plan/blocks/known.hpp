@@ -22,8 +22,9 @@ inline std::string_view end_kind_name(EndKind kind) {
 struct Known {
   std::vector<char> known;
   std::vector<EndKind> kind;
+  std::vector<char> turns;  ///< whether its displacement comes with a rotation
 
-  explicit Known(int n_classes) : known(n_classes, 0), kind(n_classes, unknown_end) {}
+  explicit Known(int n_classes) : known(n_classes, 0), kind(n_classes, unknown_end), turns(n_classes, 0) {}
   [[nodiscard]] bool operator()(int entity_class) const { return known[entity_class] != 0; }
 };
 

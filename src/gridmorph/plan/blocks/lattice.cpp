@@ -216,4 +216,15 @@ std::vector<FaceSide> Lattice::face_sides(int entity_class) const {
   return sides;
 }
 
+IndexRange closed_nodes(Lattice const& lattice, int face_entity) {
+  Index3 const p = lattice.position(face_entity);
+  ZoneCuts const& cuts = lattice.cuts()[lattice.zone_of(face_entity)];
+  IndexRange r;
+  for (int a = 0; a < 3; ++a) {
+    r.begin[a] = cuts[a][p[a] / 2];
+    r.end[a] = cuts[a][(p[a] + 1) / 2] + 1;
+  }
+  return r;
+}
+
 }  // namespace gridmorph

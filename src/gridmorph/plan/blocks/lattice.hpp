@@ -79,4 +79,7 @@ class Lattice {
   std::vector<std::optional<Vec3>> axis_;
 };
 
+/// The nodes of a face with its border.
+IndexRange closed_nodes(Lattice const& lattice, int face_entity);
+
 }  // namespace gridmorph

@@ -41,11 +41,8 @@ std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, Resolve
                                    std::vector<BoundaryLayer> const& options) {
   std::vector<NearField> fields;
   for (BoundaryLayer const& option : options) {
-    if (option.mode != BoundaryLayer::Mode::translate && option.mode != BoundaryLayer::Mode::standard)
-      throw PlanError(
-          "boundary layer: the modes \"rotate\" and \"blend\" are for unstructured meshes; use \"translate\", or "
-          "remove mode");
     NearField field;
+    field.mode = option.mode;
     if (option.walls.empty()) {
       for (int p = 0; p < int(mesh.patches.size()); ++p) {
         int const rule = motion.patch[p].rule;
@@ -128,7 +125,8 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
                         "; give its boundary layer fewer layers or a smaller thickness");
       chain->first = {true, known.kind[c], patch};
       chain->last = {};
-      chains.push_back({std::move(*chain), kernels::LineLaw::constant, true});
+      chains.push_back({std::move(*chain), kernels::LineLaw::constant, true,
+                        turns(field) ? kernels::TurnLaw::near_field : kernels::TurnLaw::none});
     }
   }
   return chains;

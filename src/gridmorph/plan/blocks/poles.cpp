@@ -15,18 +15,6 @@ struct PoleFace {
   int end_edge[2] = {-1, -1};  ///< edge classes at the lower and upper end of the pole line
 };
 
-/// The face with its border nodes.
-IndexRange closed_nodes(Lattice const& lattice, int face_entity) {
-  Index3 const p = lattice.position(face_entity);
-  ZoneCuts const& cuts = lattice.cuts()[lattice.zone_of(face_entity)];
-  IndexRange r;
-  for (int a = 0; a < 3; ++a) {
-    r.begin[a] = cuts[a][p[a] / 2];
-    r.end[a] = cuts[a][(p[a] + 1) / 2] + 1;
-  }
-  return r;
-}
-
 double longest_edge(Mesh const& mesh, Zone const& zone, IndexRange const& r, int axis) {
   Index const stride = zone.strides()[axis];
   double longest = 0;

@@ -18,6 +18,7 @@ class RotationTable {
  public:
   explicit RotationTable(std::vector<Mat3>& table) : table_(table) {}
   std::int32_t number(Mat3 const& m);
+  [[nodiscard]] Mat3 const& operator[](std::int32_t number) const { return table_[std::size_t(number)]; }
 
  private:
   std::vector<Mat3>& table_;
@@ -31,6 +32,16 @@ struct SkeletonRows {
   Index slot = 0, slot_q = 0;
   Index3 at{0, 0, 0}, step_p{0, 0, 0}, step_q{0, 0, 0};
 };
+
+/// Of the zone that the rows lie in.
+inline Index3 node_at(SkeletonRows const& rows, int p, int q) {
+  Index3 at{};
+  for (int d = 0; d < 3; ++d) at[d] = rows.at[d] + p * rows.step_p[d] + q * rows.step_q[d];
+  return at;
+}
+inline Vec3 node_position(Mesh const& mesh, int zone, SkeletonRows const& rows, int p, int q) {
+  return mesh.coordinates[mesh.zones[zone].node(node_at(rows, p, q))];
+}
 
 class Skeleton {
  public:

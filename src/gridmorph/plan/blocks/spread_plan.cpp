@@ -10,20 +10,6 @@
 namespace gridmorph {
 namespace {
 
-/// Number of each patch's slip surface in `surfaces`, -1 for patches that do not slip.
-std::vector<int> surface_numbers(Mesh const& mesh, BoundaryMotion const& motion, std::vector<SlipSurface>& surfaces) {
-  std::vector<int> number(mesh.patches.size(), -1);
-  std::map<int, int> place;  // in the order of patches
-  for (int p = 0; p < int(mesh.patches.size()); ++p) {
-    int const s = motion.slip_surface_of(p);
-    if (s < 0) continue;
-    auto const [at, fresh] = place.try_emplace(s, int(surfaces.size()));
-    if (fresh) surfaces.push_back(motion.slip_surfaces()[std::size_t(s)]);
-    number[p] = at->second;
-  }
-  return number;
-}
-
 /// A chain off a slip block face, slip end first, and how many of its steps are used.
 struct Candidate {
   int rule = -1;
@@ -183,11 +169,24 @@ void sweep_again(std::vector<RuleChains>& lists) {
 
 }  // namespace
 
-void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, BoundaryMotion const& surface,
+std::vector<int> slip_surface_numbers(Mesh const& mesh, BoundaryMotion const& motion,
+                                      std::vector<SlipSurface>& surfaces) {
+  std::vector<int> number(mesh.patches.size(), -1);
+  std::map<int, int> place;  // in the order of patches
+  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+    int const s = motion.slip_surface_of(p);
+    if (s < 0) continue;
+    auto const [at, fresh] = place.try_emplace(s, int(surfaces.size()));
+    if (fresh) surfaces.push_back(motion.slip_surfaces()[std::size_t(s)]);
+    number[p] = at->second;
+  }
+  return number;
+}
+
+void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, std::vector<int> const& surface_of_patch,
                   Known const& given, Plan& plan) {
   Mesh const& mesh = context.mesh;
   Topology const& topology = context.topology;
-  std::vector<int> const surface_of_patch = surface_numbers(mesh, surface, plan.surfaces);
   if (plan.surfaces.empty()) return;
   Known const nothing(topology.lattice.n_classes());
   std::vector<Candidate> candidates = find_candidates(mesh, topology, motion, surface_of_patch, plan.surfaces);

@@ -5,11 +5,15 @@
 
 namespace gridmorph {
 
-/// Fills plan.surfaces and plan.spreads. Every block face on a slip patch starts a chain that runs through all blocks to
+/// Number of each patch's slip surface in `surfaces`, which it fills; -1 for patches that do not slip.
+std::vector<int> slip_surface_numbers(Mesh const& mesh, BoundaryMotion const& motion,
+                                      std::vector<SlipSurface>& surfaces);
+
+/// Fills plan.spreads. Every block face on a slip patch starts a chain that runs through all blocks to
 /// the opposite boundary, or as far as the chains of its rule stay side by side: what leaves the chains sideways into
 /// other blocks must not move. Rules whose chains are the same from end to end (hub and case) share one pass; other rules
 /// have passes of their own, in their order. `given`: entities whose displacement the motion rules give.
-void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, BoundaryMotion const& surface,
+void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, std::vector<int> const& surface_of_patch,
                   Known const& given, Plan& plan);
 
 }  // namespace gridmorph

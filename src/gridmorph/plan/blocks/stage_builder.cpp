@@ -1,8 +1,10 @@
 #include <gridmorph/plan/blocks/side_tables.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
+#include <gridmorph/plan/blocks/turned_lines.hpp>
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace gridmorph {
 
@@ -79,6 +81,18 @@ kernels::Chain device_chain(ChainLayout const& layout, kernels::LineLaw law, boo
   return c;
 }
 
+/// Which ends carry a rotation, and how it fades: a near field turns with its wall, other chains where an end of theirs does.
+void set_turn(PlanContext const& context, Chain const& chain, ChainLayout const& layout, StageChain const& entry,
+              Known const& known, kernels::Chain& device) {
+  if (entry.turn == kernels::TurnLaw::near_field) device.turned_ends = 3;
+  if (entry.turn != kernels::TurnLaw::near_field && entry.turn != kernels::TurnLaw::none)
+    for (int end = 0; end < (entry.open_end ? 1 : 2); ++end)
+      for_end_entities(context, chain, layout, end, [&](PlacedBox const&, int entity) {
+        if (known.turns[context.topology.lattice.class_of(entity)] != 0) device.turned_ends |= 1u << end;
+      });
+  device.turn = device.turned_ends != 0 ? entry.turn : kernels::TurnLaw::none;
+}
+
 /// Turns the cross-section of a chain so that a and b run forward in memory, a through nearer nodes than b.
 Chain with_contiguous_a(PlanContext const& context, Chain chain) {
   auto turn = [&](Orientation const& o) {
@@ -101,6 +115,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
   Lattice const& lattice = context.topology.lattice;
   std::map<int, int> writer;       // entity class -> entity that is written
   std::map<int, EndKind> becomes;  // entity class -> kind
+  std::set<int> turning;           // entity classes that get a rotation
   for (StageChain const& entry : chains) {
     Chain const chain = with_contiguous_a(context, entry.chain);
     ChainLayout const layout = lay_out(context.topology, chain);
@@ -112,6 +127,8 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
     std::size_t const first_segment = stage.lines.segments.size();
     kernels::Chain device = device_chain(layout, entry.law, entry.open_end);
     device.first_end_value = stage.lines.n_end_values;
+    set_turn(context, chain, layout, entry, known, device);
+    stage.turns = stage.turns || device.turn != kernels::TurnLaw::none;
     stage.lines.n_end_values += 2 * device.section_size();
     stage.lines.chains.push_back(device);
     for (int end = 0; end < (entry.open_end ? 1 : 2); ++end)
@@ -122,10 +139,13 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
       });
     append_lines(context, chain, layout, number, stage.lines);
     add_side_tables(context, chain, layout, known, number, stage);
+    if (device.turn != kernels::TurnLaw::none) add_turn_positions(context, chain, layout, number, stage);
+    if (device.turn == kernels::TurnLaw::near_field) add_near_field_lines(context, chain, layout, number, stage);
     append_writers(context, chain, layout, number, first_segment, stage.lines, stage.sweeps, stage.volume,
                    [&](int entity) {
                      int const c = lattice.class_of(entity);
                      if (known(c)) return false;
+                     if (device.turn != kernels::TurnLaw::none) turning.insert(c);
                      auto const [it, fresh] = becomes.try_emplace(c, kind);
                      if (!fresh && kind_rank(kind, kind_order) < kind_rank(it->second, kind_order)) it->second = kind;
                      return writer.try_emplace(c, entity).first->second == entity && fresh;
@@ -141,6 +161,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
     known.known[c] = 1;
     known.kind[c] = becomes.at(c);
   }
+  for (int const c : turning) known.turns[c] = 1;
   return stage;
 }
 
@@ -185,8 +206,7 @@ void add_slip_ends(PlanContext const& context, PlacedBox const& box, int entity,
   Zone const& zone = context.mesh.zones[box.zone];
   for (int q = 0; q < rows->n_q; ++q)
     for (int p = 0; p < rows->n_p; ++p) {
-      Index3 node{};
-      for (int d = 0; d < 3; ++d) node[d] = rows->at[d] + p * rows->step_p[d] + q * rows->step_q[d];
+      Index3 const node = node_at(*rows, p, q);
       Index3 const at = box.position(node);
       slip.node = zone.node(node);
       slip.slot = rows->slot + p + q * rows->slot_q;

@@ -10,7 +10,8 @@ namespace gridmorph {
 struct StageChain {
   Chain chain;
   kernels::LineLaw law = kernels::LineLaw::linear;
-  bool open_end = false;  ///< carry the first end's displacement to the last end
+  bool open_end = false;                           ///< carry the first end's displacement to the last end
+  kernels::TurnLaw turn = kernels::TurnLaw::none;  ///< how rotations of its ends fade, where they carry any
 };
 
 /// Tables of all chains; entities not known yet are written by the first chain that holds them. Marks them known with

@@ -1,0 +1,196 @@
+// How the near field of a wall of blocks turns, line by line. A root is the slot that a line of the near field stands on.
+//
+//   raw     the wall's rotation there (wall_turn.hpp), over all near-field walls that touch, across the edges of blocks
+//   inner   raw, corrected towards end walls so that lines that stand beside one stay on it:
+//             exp(sum over its ends of (1 - c1(h / H)) log(alpha)) raw
+//           alpha at the end: onto a slip surface the smallest rotation that takes raw N to N', N its normal there before
+//           and after; onto a wall that a rule moves its own rotation after raw's inverse
+//   outer   turn * raw, where lines along the wall run between two slip surfaces turn * log(Align(raw N -> N') raw), N mixed by span
+//           fraction: the outer edge turns about the spanwise direction alone
+//
+// written for V = Vec3, or V = DualVec3 for exact rates of all but the curvature of slip surfaces, which is a difference.
+// Cost: surfaces; per root about 300 flops and its neighbours read from cache.
+#pragma once
+
+#include <gridmorph/kernels/slip_surface.hpp>
+#include <gridmorph/kernels/wall_turn.hpp>
+
+namespace gridmorph::kernels {
+
+struct RootNeighbour {
+  Index slot;
+  std::int32_t matrix;  ///< frame of its slot -> frame of the root's, -1: the same
+  Vec3 arm;             ///< from the root to it, frame of the root's slot
+};
+
+/// Neighbours are pairs as in wall_turn.hpp.
+struct Root {
+  Index slot;
+  Index first_neighbour;
+  std::int32_t n_neighbours;
+  std::int32_t stands;  ///< a line of the near field stands on it; otherwise it is there for RootEnd::wall alone
+  double turn;          ///< share of its turn that the outer edge of the near field makes
+};
+
+/// An end wall beside a root, at the end of the wall's grid line through it. All rotations in frames of slots.
+struct RootEnd {
+  std::int32_t root = -1;     ///< on the end wall and the wall; -1: no end
+  std::int32_t wall = -1;     ///< root whose neighbours are the end wall's own, -1: a slip surface
+  std::int32_t surface = -1;  ///< slip surface
+  std::int32_t to_zone = -1;  ///< frame of the end's slot -> frame of the surface
+  std::int32_t to_root = -1;  ///< frame of the end's slot -> frame of this root's slot
+  double share = 0;           ///< 1 - c1(h / H)
+  Vec3 position;              ///< of the end, frame of the surface
+};
+struct RootEnds {
+  RootEnd end[2];
+  double fraction = -1;  ///< of the way from end 0 to end 1 where one line runs between them, otherwise negative
+};
+
+template <class MemorySpace>
+struct RootTable {
+  Kokkos::View<Root const*, MemorySpace> roots;
+  Kokkos::View<RootNeighbour const*, MemorySpace> neighbours;
+  Kokkos::View<RootEnds const*, MemorySpace> ends;  ///< per root
+  Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
+  Kokkos::View<Mat3 const*, MemorySpace> matrices;
+
+  KOKKOS_INLINE_FUNCTION Vec3 in_frame(std::int32_t matrix, Vec3 const& v) const {
+    return matrix < 0 ? v : matrices(matrix) * v;
+  }
+  KOKKOS_INLINE_FUNCTION DualVec3 in_frame(std::int32_t matrix, DualVec3 const& v) const {
+    return {in_frame(matrix, v.value), in_frame(matrix, v.rate)};
+  }
+  KOKKOS_INLINE_FUNCTION Vec3 back(std::int32_t matrix, Vec3 const& v) const {
+    return matrix < 0 ? v : transpose(matrices(matrix)) * v;
+  }
+  KOKKOS_INLINE_FUNCTION DualVec3 back(std::int32_t matrix, DualVec3 const& v) const {
+    return {back(matrix, v.value), back(matrix, v.rate)};
+  }
+};
+
+/// A vector per slot or root, with its rate where V has one.
+template <class V>
+struct VectorsWithRates {
+  Field<double const> values, rates;
+  KOKKOS_INLINE_FUNCTION V operator[](Index n) const {
+    if constexpr (has_rate<V>)
+      return {values[n], rates[n]};
+    else
+      return values[n];
+  }
+};
+struct ClearVectors {
+  Field<double> v;
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { v.set(n, {}); }
+};
+
+/// What is written of a V: its rate, where it has one.
+KOKKOS_INLINE_FUNCTION Vec3 written(Vec3 const& v) { return v; }
+KOKKOS_INLINE_FUNCTION Vec3 written(DualVec3 const& v) { return v.rate; }
+
+/// raw of every root.
+template <class MemorySpace, class V>
+struct RawRootTurn {
+  RootTable<MemorySpace> table;
+  VectorsWithRates<V> u;  ///< per slot
+  Field<double> raw;      ///< per root
+
+  [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { raw.set(r, written(turn_at(table.roots(r)))); }
+
+ private:
+  /// By differences of displacements: nothing turns where all are the same.
+  KOKKOS_INLINE_FUNCTION V turn_at(Root const& root) const {
+    V const here = u[root.slot];
+    auto const before = [&](Index k) { return V{table.neighbours(root.first_neighbour + k).arm}; };
+    auto const after = [&](Index k) {
+      RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
+      return V{other.arm} + (table.in_frame(other.matrix, u[other.slot]) - here);
+    };
+    V normal{}, moved{};
+    for (Index k = 0; k < root.n_neighbours; k += 2) {
+      normal = normal + cross(before(k), before(k + 1));
+      moved = moved + cross(after(k), after(k + 1));
+    }
+    V const swing = turn_between(normal, moved);
+    auto const size = norm(moved);
+    if (!(size > 0)) return swing;
+    V const axis = (1 / size) * moved;
+    return turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after) * axis);
+  }
+};
+
+/// inner of every root, to its slot, and outer.
+template <class MemorySpace, class V>
+struct NearFieldTurn {
+  RootTable<MemorySpace> table;
+  VectorsWithRates<V> u;    ///< per slot
+  VectorsWithRates<V> raw;  ///< per root
+  Field<double> inner;      ///< per slot
+  Field<double> outer;      ///< per root
+
+  [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    Root const& root = table.roots(r);
+    if (root.stands == 0) return;
+    RootEnds const& ends = table.ends(r);
+    V const own = raw[r];
+    V correction{}, before{}, after{};
+    int n_slip = 0;
+    for (int m = 0; m < 2; ++m) {
+      RootEnd const& end = ends.end[m];
+      if (end.root < 0) continue;
+      V alpha{};
+      if (end.wall >= 0) {
+        alpha = turn_then(-raw[end.root], raw[end.wall]);
+      } else {
+        V const n = normal(end, V{}), moved = normal(end, u[table.roots(end.root).slot]);
+        V const at = raw[end.root];
+        alpha = turn_between(n + turned_by(at, 1, n), moved);
+        V const n_here = table.in_frame(end.to_root, n), moved_here = table.in_frame(end.to_root, moved);
+        double const share = (m == 0 ? 1 - ends.fraction : ends.fraction);
+        double const sign = n_slip > 0 && opposite(n_here, before) ? -share : share;
+        before = before + sign * n_here;
+        after = after + sign * moved_here;
+        ++n_slip;
+      }
+      correction = correction + end.share * table.in_frame(end.to_root, alpha);
+    }
+    V const turned = turn_then(own, correction);
+    inner.set(root.slot, written(turned));
+    V const section = n_slip == 2 && ends.fraction >= 0
+                          ? turn_then(own, turn_between(before + turned_by(own, 1, before), after))
+                          : turned;
+    outer.set(r, written(root.turn * section));
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION static bool opposite(Vec3 const& a, Vec3 const& b) { return dot(a, b) < 0; }
+  KOKKOS_INLINE_FUNCTION static bool opposite(DualVec3 const& a, DualVec3 const& b) {
+    return dot(a.value, b.value) < 0;
+  }
+  /// Of the surface where the displacement takes the end; frame of the end's slot.
+  KOKKOS_INLINE_FUNCTION V normal(RootEnd const& end, V const& displacement) const {
+    V const there = table.in_frame(end.to_zone, displacement);
+    if constexpr (has_rate<V>) {
+      double const size = norm(there.rate);
+      Vec3 const value = normal_at(end, there.value);
+      if (!(size > 0)) return table.back(end.to_zone, V{value});
+      double const step = 1e-5 * table.surfaces(end.surface).size / size;
+      Vec3 const change =
+          normal_at(end, there.value + step * there.rate) - normal_at(end, there.value - step * there.rate);
+      return table.back(end.to_zone, V{value, (1 / (2 * step)) * change});
+    } else {
+      return table.back(end.to_zone, normal_at(end, there));
+    }
+  }
+  KOKKOS_INLINE_FUNCTION Vec3 normal_at(RootEnd const& end, Vec3 const& u) const {
+    Vec3 n;
+    table.surfaces(end.surface).excess(end.position, 0, u, n);
+    double const size = norm(n);
+    return size > 0 ? (1 / size) * n : n;
+  }
+};
+
+}  // namespace gridmorph::kernels

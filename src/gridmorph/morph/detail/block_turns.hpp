@@ -1,0 +1,56 @@
+// The rotations of a plan of blocks through one morph: of the walls' nodes first, then stage by stage of the ends of chains.
+#pragma once
+
+#include <gridmorph/morph/device_plan.hpp>
+
+#include <type_traits>
+
+namespace gridmorph::detail {
+
+/// Of displacement field `f`; with `Rate` f holds the rates of field `of`, of which everything has been done before.
+template <class Exec, bool Rate>
+class BlockTurns {
+ public:
+  using Memory = typename Exec::memory_space;
+  using V = std::conditional_t<Rate, kernels::DualVec3, Vec3>;
+
+  BlockTurns(DevicePlan<Exec> const& plan, int f, int of) : plan_(plan), turns_(plan.turns), f_(f), of_(of) {}
+
+  /// From the displacement of the walls, which is on the skeleton.
+  void of_walls(Exec const& exec) const {
+    if (!turns_.any()) return;
+    kernels::launch("gridmorph::turns::clear", exec, 0, turns_.slots.n,
+                    kernels::ClearVectors{turns_.slots.batch()[f_]});
+    kernels::launch("gridmorph::turns::walls", exec,
+                    kernels::RawRootTurn<Memory, V>{turns_.table, both(plan_.skeleton), turns_.raw.batch()[f_]});
+    kernels::launch("gridmorph::turns::near_field", exec,
+                    kernels::NearFieldTurn<Memory, V>{turns_.table, both(plan_.skeleton), both(turns_.raw),
+                                                      turns_.slots.batch()[f_], turns_.outer.batch()[f_]});
+  }
+
+  /// From the slots to the ends of a stage's chains.
+  void of_ends(Exec const& exec, DeviceStage<Exec> const& stage) const {
+    if (!stage.turns) return;
+    kernels::Field<double const> const position = turns_.end_position.read()[0];
+    kernels::copy_nodes(exec, "gridmorph::turns::ends", stage.ends, plan_.rotations, turns_.slots.read()[f_],
+                        turns_.end_turns.batch()[f_]);
+    kernels::launch("gridmorph::turns::matrices", exec, stage.first_end_value,
+                    stage.first_end_value + stage.n_end_values,
+                    kernels::TurnEnds<V>{both(turns_.end_turns), position, turns_.ends_of(f_)});
+    kernels::launch("gridmorph::turns::near_field_lines", exec,
+                    kernels::TurnNearField<Memory, V>{stage.near_field, turns_.table, both(turns_.slots),
+                                                      both(turns_.raw), both(turns_.outer), position,
+                                                      turns_.end_turns.batch()[f_], turns_.ends_of(f_)});
+  }
+
+ private:
+  [[nodiscard]] kernels::VectorsWithRates<V> both(Workspace<Memory> const& work) const {
+    return {work.read()[of_], work.read()[f_]};
+  }
+
+  DevicePlan<Exec> const& plan_;
+  DeviceTurns<Exec> const& turns_;
+  int f_, of_;
+};
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,124 @@
+#include <gridmorph/plan/blocks/turned_lines.hpp>
+#include <gridmorph/plan/blocks/wall_roots.hpp>
+
+namespace gridmorph {
+namespace {
+
+/// Calls visit(position (s, a, b) on the chain, its place in the chain's frame) for the nodes of a piece from `first` to `last`
+/// along each axis of the chain.
+template <class Visit>
+void for_nodes(PlanContext const& context, PlacedBox const& box, PieceNodes const& piece, Index3 const& first,
+               Index3 const& last, Visit const& visit) {
+  Index3 at{};
+  for (at[2] = first[2]; at[2] <= last[2]; ++at[2])
+    for (at[1] = first[1]; at[1] <= last[1]; ++at[1])
+      for (at[0] = first[0]; at[0] <= last[0]; ++at[0]) {
+        Index node = piece.first;
+        for (int d = 0; d < 3; ++d) node += at[d] * piece.stride[d];
+        visit(Index3{box.begin[0] + at[0], box.begin[1] + at[1], box.begin[2] + at[2]},
+              box.in_chain_frame(context.mesh.coordinates[node]));
+      }
+}
+
+/// Calls visit(ps, pa, pb) for the pieces at the lower (end 0) or upper end of a chain along an axis.
+template <class Visit>
+void for_end_pieces(ChainLayout const& layout, int axis, int end, Visit const& visit) {
+  Index3 first{0, 0, 0}, last{layout.n[0] - 1, layout.n[1] - 1, layout.n[2] - 1};
+  (end == 0 ? last : first)[axis] = end == 0 ? 0 : layout.n[axis] - 1;
+  for (int pb = first[2]; pb <= last[2]; ++pb)
+    for (int pa = first[1]; pa <= last[1]; ++pa)
+      for (int ps = first[0]; ps <= last[0]; ++ps) visit(ps, pa, pb);
+}
+
+/// All nodes of the chain at one of its ends along an axis.
+template <class Visit>
+void for_end_nodes(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int axis, int end,
+                   Visit const& visit) {
+  for_end_pieces(layout, axis, end, [&](int ps, int pa, int pb) {
+    PieceNodes const piece = piece_nodes(context.mesh, context.topology.lattice, layout.at(ps, pa, pb));
+    Index3 first{0, 0, 0}, last{piece.count[0] - 1, piece.count[1] - 1, piece.count[2] - 1};
+    (end == 0 ? last : first)[axis] = end == 0 ? 0 : piece.count[axis] - 1;
+    for_nodes(context, placed_box(context, chain, layout, ps, pa, pb), piece, first, last, visit);
+  });
+}
+
+struct FirstStep {
+  double* t;
+  KOKKOS_INLINE_FUNCTION void operator()(int position, double fraction) const {
+    if (position == 1) *t = fraction;
+  }
+};
+
+}  // namespace
+
+void add_turn_positions(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int number,
+                        Stage& stage) {
+  kernels::Chain const& device = stage.lines.chains[number];
+  auto& ends = stage.lines.end_positions;
+  ends.resize(std::size_t(stage.lines.n_end_values));
+  for (int end = 0; end < 2; ++end)
+    for_end_nodes(context, chain, layout, 0, end, [&](Index3 const& at, Vec3 const& x) {
+      ends[std::size_t(device.first_end_value + end * device.section_size() + at[1] + Index(device.n_a) * at[2])] = x;
+    });
+  if (device.first_side < 0) return;
+  auto& sides = stage.sides.positions;
+  sides.resize(stage.sides.t.size());
+  for (int q = 0; q < 4; ++q) {
+    Index const first = stage.sides.sides[device.first_side + q].first;
+    for_end_nodes(context, chain, layout, 1 + q / 2, q % 2, [&](Index3 const& at, Vec3 const& x) {
+      sides[std::size_t(first + at[0] + Index(device.n_s) * at[q < 2 ? 2 : 1])] = x;
+    });
+  }
+}
+
+void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int number,
+                          Stage& stage) {
+  kernels::Chain const& device = stage.lines.chains[number];
+  Lattice const& lattice = context.topology.lattice;
+  std::vector<std::pair<std::int32_t, std::int32_t>> roots(std::size_t(device.section_size()), {-1, -1});
+  for_end_pieces(layout, 0, 0, [&](int ps, int pa, int pb) {
+    PlacedBox const box = placed_box(context, chain, layout, ps, pa, pb);
+    for (int category = 0; category < 9; ++category) {
+      int const entity = chain_entity(lattice, layout.at(ps, pa, pb), {0, category % 3, category / 3});
+      auto const rows = context.skeleton.rows(entity);
+      if (!rows) continue;
+      std::int32_t const matrix = to_chain_frame(context, box, entity);
+      for (int q = 0; q < rows->n_q; ++q)
+        for (int p = 0; p < rows->n_p; ++p) {
+          Index3 const at = box.position(node_at(*rows, p, q));
+          roots[std::size_t(at[1] + Index(device.n_a) * at[2])] = {
+              context.roots->of_slot(rows->slot + p + rows->slot_q * q), matrix};
+        }
+    }
+  });
+
+  kernels::Field<double const> const x{context.mesh.coordinates.x.data(), context.mesh.coordinates.y.data(),
+                                       context.mesh.coordinates.z.data()};
+  using Host = Kokkos::HostSpace;
+  kernels::LineTable<Host> table;
+  table.chains = Kokkos::View<kernels::Chain const*, Host>(stage.lines.chains.data(), stage.lines.chains.size());
+  table.segments =
+      Kokkos::View<kernels::Segment const*, Host>(stage.lines.segments.data(), stage.lines.segments.size());
+  for (kernels::Tube const& tube : stage.lines.tubes) {
+    if (tube.chain != number) continue;
+    kernels::Segment const& segment = stage.lines.segments[tube.first_segment];
+    for (int b = 0; b < tube.n_b; ++b)
+      for (int a = 0; a < tube.n_a; ++a) {
+        Index const at = tube.a_begin + a + Index(device.n_a) * (tube.b_begin + b);
+        auto const [root, matrix] = roots[std::size_t(at)];
+        Index const node = segment.first + a * segment.stride_a + b * segment.stride_b;
+        Vec3 const edge = x[node + segment.stride_s] - x[node];
+        double t = 0;
+        kernels::walk_line(table, tube, a, b, x, FirstStep{&t});
+        Vec3 normal = fan_normal(context.roots->nodes()[root].around);
+        if (matrix >= 0) normal = context.rotations[matrix] * normal;
+        double const size = norm(normal);
+        stage.near_field.push_back({device.first_end_value + at, device.first_end_value + device.section_size() + at,
+                                    root, matrix, size > 0 ? (1 / size) * normal : Vec3{}, edge,
+                                    (1 - t) * (1 - t) * (1 - t)});
+        if (t > 0) context.roots->set_thickness(root, norm(edge) / t);
+      }
+  }
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,133 @@
+#include <gridmorph/plan/blocks/wall_roots.hpp>
+
+#include <numeric>
+
+namespace gridmorph {
+
+RootFace::RootFace(PlanContext const& context, FaceSide const& face)
+    : piece(face.piece), axis(face.axis), side(face.side) {
+  Lattice const& lattice = context.topology.lattice;
+  zone = lattice.zone_of(face.entity);
+  int n = 0;
+  for (int d = 0; d < 3; ++d)
+    if (d != axis) along[n++] = d;
+  nodes = closed_nodes(lattice, face.entity);
+  of_node.resize(std::size_t(nodes.size()));
+  Index3 const place = lattice.position(face.entity);
+  for (int dq = -1; dq <= 1; ++dq)
+    for (int dp = -1; dp <= 1; ++dp) {
+      Index3 part = place;
+      part[along[0]] += dp;
+      part[along[1]] += dq;
+      int const entity = lattice.entity(zone, part);
+      auto const rows = context.skeleton.rows(entity);
+      if (!rows) continue;
+      for (int q = 0; q < rows->n_q; ++q)
+        for (int p = 0; p < rows->n_p; ++p) {
+          Index3 const node = node_at(*rows, p, q);
+          of_node[std::size_t(node[along[0]] - nodes.begin[along[0]]) +
+                  std::size_t(nodes.extent(along[0])) * (node[along[1]] - nodes.begin[along[1]])] = {
+              rows->slot + p + rows->slot_q * q, &lattice.copy_of(entity)};
+        }
+    }
+}
+
+bool points_out(Mesh const& mesh, RootFace const& face, int p, int q) {
+  Zone const& zone = mesh.zones[face.zone];
+  Index const inwards = face.side == 0 ? zone.strides()[face.axis] : -zone.strides()[face.axis];
+  auto const x = [&](int dp, int dq) { return mesh.coordinates[zone.node(face.at(p + dp, q + dq))]; };
+  Vec3 const normal = cross(x(1, 1) - x(0, 0), x(0, 1) - x(1, 0));
+  double in = 0;
+  for (int dq = 0; dq < 2; ++dq)
+    for (int dp = 0; dp < 2; ++dp)
+      in += dot(normal, mesh.coordinates[zone.node(face.at(p + dp, q + dq)) + inwards] - x(dp, dq));
+  return in < 0;
+}
+
+kernels::RootNeighbour neighbour(PlanContext const& context, RootFace const& face, Index3 const& corner,
+                                 RootFace::Node const& root, Index3 const& other_corner, RootFace::Node const& other) {
+  Zone const& zone = context.mesh.zones[face.zone];
+  Vec3 const arm = context.mesh.coordinates[zone.node(other_corner)] - context.mesh.coordinates[zone.node(corner)];
+  Mat3 const to_root = transpose(root.copy->transform.rotation);
+  bool const same = (!root.copy->moved && !other.copy->moved) ||
+                    same_rotation(root.copy->transform.rotation, other.copy->transform.rotation);
+  return {other.slot, same ? -1 : context.rotations.number(to_root * other.copy->transform.rotation),
+          root.copy->moved ? to_root * arm : arm};
+}
+
+Vec3 fan_normal(std::vector<kernels::RootNeighbour> const& around) {
+  Vec3 sum;
+  for (std::size_t k = 0; k + 1 < around.size(); k += 2) sum += cross(around[k].arm, around[k + 1].arm);
+  return sum;
+}
+
+std::int32_t WallRoots::of_slot(Index slot) const {
+  auto const found = of_slot_.find(slot);
+  return found == of_slot_.end() ? -1 : found->second;
+}
+
+WallRoots::Place WallRoots::at(Index node) const {
+  auto const found = place_.find(node);
+  return found == place_.end() ? Place{} : found->second;
+}
+
+void WallRoots::add_walls(std::vector<int> const& patches, double turn) {
+  Lattice const& lattice = context_.topology.lattice;
+  std::vector<char> wanted(is_wall_.size(), 0);
+  for (int const p : patches) is_wall_[p] = wanted[p] = 1;
+  for (int c = 0; c < lattice.n_classes(); ++c) {
+    int const patch = context_.topology.blocks.patch_of_face()[c];
+    if (patch < 0 || wanted[patch] == 0) continue;
+    RootFace face(context_, lattice.face_sides(c).front());
+    Zone const& zone = context_.mesh.zones[face.zone];
+    for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
+      for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
+        RootFace::Node const& node = face(p, q);
+        auto const [found, fresh] = of_slot_.try_emplace(node.slot, std::int32_t(nodes_.size()));
+        if (fresh) nodes_.push_back({node.slot, {}, 0, turn});
+        place_[zone.node(face.at(p, q))] = {found->second, node.copy};
+      }
+    add_neighbours(
+        context_, face, [&](Index slot) { return of_slot(slot); }, nodes_);
+    faces_.push_back(std::move(face));
+  }
+}
+
+void WallRoots::mark(Known& known) const {
+  Lattice const& lattice = context_.topology.lattice;
+  for (RootFace const& face : faces_)
+    for (int dq = -1; dq <= 1; ++dq)
+      for (int dp = -1; dp <= 1; ++dp) {
+        Index3 which{1, 1, 1};
+        which[face.axis] = 2 * face.side;
+        which[face.along[0]] += dp;
+        which[face.along[1]] += dq;
+        known.turns[lattice.class_of(lattice.entity_of_piece(face.piece, which))] = 1;
+      }
+}
+
+void WallRoots::join_coincident() {
+  std::vector<std::int32_t> first(nodes_.size());
+  std::iota(first.begin(), first.end(), 0);
+  auto const find = [&](std::int32_t n) {
+    while (first[n] != n) n = first[n] = first[first[n]];
+    return n;
+  };
+  bool any = false;
+  for (std::size_t r = 0; r < nodes_.size(); ++r)
+    for (kernels::RootNeighbour const& k : nodes_[r].around) {
+      if (norm(k.arm) > 0 || k.matrix >= 0) continue;
+      std::int32_t const a = find(std::int32_t(r)), b = find(of_slot_.at(k.slot));
+      first[std::max(a, b)] = std::min(a, b);
+      any = true;
+    }
+  if (!any) return;
+  std::vector<std::vector<kernels::RootNeighbour>> together(nodes_.size());
+  for (std::size_t r = 0; r < nodes_.size(); ++r) {
+    auto& list = together[find(std::int32_t(r))];
+    list.insert(list.end(), nodes_[r].around.begin(), nodes_[r].around.end());
+  }
+  for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].around = together[find(std::int32_t(r))];
+}
+
+}  // namespace gridmorph
