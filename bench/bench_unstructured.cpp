@@ -27,9 +27,10 @@
 
 #include <generators/ball_demo.hpp>
 #include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/stages/smooth_field.hpp>
-#include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -209,7 +210,7 @@ struct Apply {
     BallCase const& ball = ball_case(state.range(0), in_order);
     UnstructuredPlan const& plan = ball.plan();
     NodeArrays<Memory> const baseline(ball.mesh.coordinates), morphed(ball.mesh.coordinates);
-    UnstructuredMorpher<ExecutionSpace> const morpher(exec, plan, baseline);
+    Morpher<ExecutionSpace> const morpher(exec, plan, baseline);
     auto const given = ball.prepared().boundary_displacement(ball.mesh);
     auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
     double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, boundary, morphed); });

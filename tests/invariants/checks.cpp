@@ -91,7 +91,7 @@ double off_slip_surface(Outcome const& run) {
 double known_displacement_error(Outcome const& run) {
   double worst = 0;
   for (int p = 0; p < int(run.mesh.patches.size()); ++p) {
-    int const rule = run.prepared.motion.patch[p].rule;
+    int const rule = run.prepared.surface.motion().patch[p].rule;
     if (!run.prepared.surface.is_explicit(rule)) continue;
     Patch const& patch = run.mesh.patches[p];
     each_node(run.mesh.zones[patch.zone], patch.range, [&](Index3 const&, Index n) {

@@ -5,8 +5,9 @@
 #include "support/motions.hpp"
 
 #include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morph.hpp>
-#include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <gtest/gtest.h>
 
@@ -151,7 +152,7 @@ TEST_F(Manners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
   for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
     Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
     std::vector<Morpher<Exec>::In> const lists{boundary, list};
-    auto const refused = [&](auto const& call) { expect_refused(other, n, "Plan::boundary_nodes", call); };
+    auto const refused = [&](auto const& call) { expect_refused(other, n, "MorphPlan::boundary_nodes()", call); };
     refused([&] { morpher.positions(exec, list, u); });
     refused([&] { morpher.displacements(exec, list, u); });
     refused([&] { morpher.displacements(exec, lists, two_out); });
@@ -273,13 +274,13 @@ class UnstructuredManners : public ::testing::Test {
   Exec exec;
   Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
-  std::vector<UnstructuredMorpher<Exec>::In> two_in{boundary, boundary};
-  std::vector<UnstructuredMorpher<Exec>::Out> two_out{u, u};
+  std::vector<Morpher<Exec>::In> two_in{boundary, boundary};
+  std::vector<Morpher<Exec>::Out> two_out{u, u};
 };
 
 TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
   Listener const listener;
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x);
+  Morpher<Exec> const morpher(exec, prepared.plan, x);
   morpher.positions(exec, boundary, u);
   exec.fence();
   EXPECT_GE(record.allocations.size(), 20u);
@@ -292,7 +293,7 @@ TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
 }
 
 TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x, {1, true});
+  Morpher<Exec> const morpher(exec, prepared.plan, x, {1, true});
   exec.fence();
   {
     Listener const listener;
@@ -308,7 +309,7 @@ TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence
 }
 
 TEST_F(UnstructuredManners, StagesAreRegionsOfProfiles) {
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x);
+  Morpher<Exec> const morpher(exec, prepared.plan, x);
   Listener const listener;
   morpher.positions(exec, boundary, u);
   std::vector<std::string> own;
@@ -349,7 +350,7 @@ TEST_F(UnstructuredManners, EverythingRunsOnTheInstanceThatIsHandedOver) {
   std::vector<Vec3> const given = prepared.boundary_displacement(mesh);
   Kokkos::View<Vec3 const*, Kokkos::HostSpace> const host_boundary(given.data(), given.size());
   Listener const listener;
-  UnstructuredMorpher<Kokkos::Serial> const morpher(other, prepared.plan, mesh.coordinates, {1, true});
+  Morpher<Kokkos::Serial> const morpher(other, prepared.plan, mesh.coordinates, {1, true});
   morpher.positions(other, host_boundary, moved);
   morpher.displacements(other, host_boundary, moved);
   morpher.velocities(other, host_boundary, host_boundary, moved);
@@ -362,11 +363,11 @@ TEST_F(UnstructuredManners, EverythingRunsOnTheInstanceThatIsHandedOver) {
 #endif
 
 TEST_F(UnstructuredManners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x, {1, true});
+  Morpher<Exec> const morpher(exec, prepared.plan, x, {1, true});
   std::size_t const n = boundary.extent(0);
   for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
     Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
-    auto const refused = [&](auto const& call) { expect_refused(other, n, "UnstructuredPlan::known", call); };
+    auto const refused = [&](auto const& call) { expect_refused(other, n, "MorphPlan::boundary_nodes()", call); };
     refused([&] { morpher.positions(exec, list, u); });
     refused([&] { morpher.displacements(exec, list, u); });
     refused([&] { morpher.velocities(exec, list, boundary, u); });
@@ -386,7 +387,7 @@ TEST_F(UnstructuredManners, MeshesWithoutCoordinatesAreRefused) {
 }
 
 TEST_F(UnstructuredManners, EveryMorphRunsTheSameKernels) {
-  UnstructuredMorpher<Exec> const morpher(exec, prepared.plan, x);
+  Morpher<Exec> const morpher(exec, prepared.plan, x);
   std::vector<std::string> first;
   for (int n = 0; n < 3; ++n) {
     Listener const listener;

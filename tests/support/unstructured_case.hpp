@@ -3,7 +3,8 @@
 
 #include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/guard/guard.hpp>
-#include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ struct UnstructuredCase {
   [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, PlanOptions const& options = {}) const {
     UnstructuredMorphed out{prepare(mesh, topology, face_patches, motion, options), {}, Coordinates(mesh.n_nodes())};
     out.boundary = out.prepared.boundary_displacement(mesh);
-    apply_on_host(UnstructuredMorpher<Host>(Host(), out.prepared.plan, mesh.coordinates), out.boundary, out.x);
+    apply_on_host(Morpher<Host>(Host(), out.prepared.plan, mesh.coordinates), out.boundary, out.x);
     return out;
   }
 

@@ -25,7 +25,7 @@ Kokkos::View<Vec3 const*, Kokkos::HostSpace> view(Vectors const& v) {
 struct Planned {
   Case const& c;
   PreparedUnstructured prepared;
-  UnstructuredMorpher<Exec> morpher;
+  Morpher<Exec> morpher;
 
   Planned(Case const& of, Motion const& motion, PlanOptions const& options = {})
       : c(of),
@@ -176,7 +176,7 @@ TEST(UnstructuredVelocity, OfPeriodicNodesIsOne) {
 TEST(UnstructuredVelocity, NeedsItsRoom) {
   Case const c = box();
   Planned const p(c, motion_of({rule_for({"body"}, translation({0.5, 0, 0}))}));
-  UnstructuredMorpher<Exec> const without(Exec(), p.prepared.plan, c.mesh.coordinates);
+  Morpher<Exec> const without(Exec(), p.prepared.plan, c.mesh.coordinates);
   Vectors const rest(p.prepared.plan.known.size());
   Coordinates const v(c.mesh.n_nodes());
   EXPECT_THROW(without.velocities(Exec(), view(rest), view(rest), v), ConfigError);
@@ -188,8 +188,8 @@ TEST(UnstructuredBatches, AreTheFieldsOneByOneBitForBit) {
   Vectors const unit = bending(p, {0.5, 0.2, -0.4});
   std::vector<Vectors> given(3, unit);
   std::vector<Coordinates> u;
-  std::vector<UnstructuredMorpher<Exec>::In> in;
-  std::vector<UnstructuredMorpher<Exec>::Out> out;
+  std::vector<Morpher<Exec>::In> in;
+  std::vector<Morpher<Exec>::Out> out;
   for (std::size_t f = 0; f < given.size(); ++f) {
     for (Vec3& v : given[f]) v = (0.2 * double(f)) * v;
     u.emplace_back(c.mesh.n_nodes());
@@ -216,7 +216,7 @@ TEST(UnstructuredBatches, OtherLayoutsGiveTheSameField) {
     Vec3 const at = c.mesh.coordinates[n];
     x(n, 0) = float(at.x), x(n, 1) = float(at.y), x(n, 2) = float(at.z);
   }
-  UnstructuredMorpher<Exec> const single(Exec(), p.prepared.plan, x);
+  Morpher<Exec> const single(Exec(), p.prepared.plan, x);
   single.displacements(Exec(), view(given), u);
   Exec().fence();
   Coordinates const expected = p.displacement(given);

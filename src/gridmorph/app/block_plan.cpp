@@ -3,7 +3,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/report/target_text.hpp>
@@ -41,10 +41,7 @@ class BlockPlan final : public AnyPlan {
     Stopwatch watch;
     // Made once: tables, workspace and line parameters serve every displacement.
     if (!morpher_) morpher_.emplace(exec_, prepared_.plan(), mesh_.coordinates());
-    Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(
-        displacement.data(), displacement.size());
-    morpher_->positions(exec_, given, morphed);
-    exec_.fence();
+    apply_on_host(*morpher_, displacement, morphed);
     if (times != nullptr) times->push_back({"morph", watch.lap(), true});
   }
 
@@ -79,7 +76,7 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] std::vector<std::string> notes() const override {
     std::vector<std::string> out = prepared_.mesh.notes;
     auto const append = [&](auto const& more) { out.insert(out.end(), more.begin(), more.end()); };
-    append(prepared_.motion.notes);
+    append(prepared_.surface.motion().notes);
     append(prepared_.surface.notes());
     append(prepared_.plan().notes);
     if (trimmed_) out.push_back(*trimmed_);

@@ -3,7 +3,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
-#include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/report/target_text.hpp>
 
@@ -18,12 +18,6 @@ namespace gridmorph::cli {
 namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
-
-double largest_of(std::vector<Vec3> const& displacement) {
-  double largest = 0;
-  for (Vec3 const& u : displacement) largest = std::max(largest, norm(u));
-  return largest;
-}
 
 /// Near and partially wrapped elements.
 NearCells near_elements_of(PreparedUnstructured const& prepared) {
@@ -51,10 +45,7 @@ class ElementPlan final : public AnyPlan {
       for (int step = 0; step < sequence->steps; ++step)
         options_.elements.motion =
             std::max(options_.elements.motion,
-                     largest_of(evaluate(mesh.mesh, boundary, motion_at(case_file, sequence->moment(step)))));
-    } else {
-      displacement_ = evaluate(mesh.mesh, boundary);
-      if (options_.elements.motion < 0) options_.elements.motion = largest_of(displacement_);
+                     largest_norm(evaluate(mesh.mesh, boundary, motion_at(case_file, sequence->moment(step)))));
     }
     double const seconds = watch.lap();
     prepared_ =
@@ -65,7 +56,8 @@ class ElementPlan final : public AnyPlan {
   }
 
   std::vector<Vec3> displacement(Moment const* when) override {
-    return when == nullptr ? displacement_ : evaluate(mesh_.mesh, prepared_.boundary, motion_at(case_file_, *when));
+    return when == nullptr ? prepared_.boundary_displacement(mesh_.mesh)
+                           : evaluate(mesh_.mesh, prepared_.boundary, motion_at(case_file_, *when));
   }
 
   void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) override {
@@ -119,8 +111,8 @@ class ElementPlan final : public AnyPlan {
     Mesh background = prepared_.plan.background->mesh;
     write_mesh(path(2), background);
     Coordinates moved(background.n_nodes());
-    auto const u = morpher_->background_displacement();
-    for (Index n = 0; n < moved.size(); ++n) moved.set(n, background.coordinates[n] + u[n]);
+    auto const u = morpher_->background_displacements();
+    for (Index n = 0; n < moved.size(); ++n) moved.set(n, background.coordinates[n] + u.array()[n]);
     background.coordinates = moved;
     write_mesh(path(3), background);
   }
@@ -215,8 +207,7 @@ class ElementPlan final : public AnyPlan {
   PlanOptions options_;
   PreparedUnstructured prepared_;
   NearCells near_;
-  std::vector<Vec3> displacement_;  ///< by the rules as they stand; empty in a sequence
-  std::optional<UnstructuredMorpher<Exec>> morpher_;
+  std::optional<Morpher<Exec>> morpher_;
   double planning_ = 0;
 };
 

@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/guard/motion_path.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
-#include <gridmorph/morph/unstructured_morpher.hpp>
+#include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <algorithm>
@@ -29,14 +29,12 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
   for (int step = 1; step <= options.steps; ++step) {
     if (options.progress) options.progress(step);
     auto given = path.at(double(step) / options.steps);
-    plan.elements.motion = 0;
-    for (std::size_t k = 0; k < given.size(); ++k) {
+    for (std::size_t k = 0; k < given.size(); ++k)
       given[k] = mesh.coordinates[known[k]] + given[k] - now.coordinates[known[k]];
-      plan.elements.motion = std::max(plan.elements.motion, norm(given[k]));
-    }
+    plan.elements.motion = largest_norm(given);
     auto const step_plan = prepare({}, now, topology, face_patches, prepared.graph, prepared.boundary, plan);
     Coordinates moved(mesh.n_nodes());
-    apply_on_host(UnstructuredMorpher<Exec>(Exec(), step_plan.plan, now.coordinates), given, moved);
+    apply_on_host(Morpher<Exec>(Exec(), step_plan.plan, now.coordinates), given, moved);
     // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more bad
     // elements.
     (void)relax_bad_elements(now, topology, step_plan, moved, options.relax);

@@ -64,7 +64,7 @@ std::vector<Vec3> const& MorphPlan::boundary_displacement() const { return state
 std::vector<std::string> MorphPlan::notes() const {
   if (elements()) return elements()->notes;
   std::vector<std::string> out = blocks()->mesh.notes;
-  for (auto const* list : {&blocks()->motion.notes, &blocks()->surface.notes(), &blocks()->plan().notes})
+  for (auto const* list : {&blocks()->surface.motion().notes, &blocks()->surface.notes(), &blocks()->plan().notes})
     out.insert(out.end(), list->begin(), list->end());
   return out;
 }

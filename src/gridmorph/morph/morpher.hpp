@@ -12,17 +12,16 @@ namespace gridmorph {
 
 class MorphPlan;
 struct Plan;
-template <class ExecutionSpace>
-class UnstructuredMorpher;
+struct UnstructuredPlan;
 
 struct MorpherOptions {
-  int fields = 1;         ///< displacement fields that one call may take
+  int fields = 1;  ///< displacement fields of blocks that go through the volume together; elements: one after another
   bool velocity = false;  ///< room for velocities()
 };
 
-/// A plan on an execution space, of blocks or of elements: the same calls. Construction uploads the plan's tables, allocates the workspace and computes the line
-/// parameters from the baseline mesh (fences `exec`; 24 bytes read and 8 written per node and line parameter); everything
-/// else only enqueues kernels on the instance it is given: no allocation, no fence, no copy, no host decision.
+/// A plan on an execution space, of blocks or of elements, as a list of stages. Construction uploads their tables, allocates the workspace and, for blocks,
+/// computes the line parameters from the baseline mesh (fences `exec`; 24 bytes read and 8 written per node and line parameter); everything
+/// else only enqueues kernels on the instance it is given, each stage in a profiling region of its own: no allocation, no fence, no copy, no host decision.
 ///
 /// Vectors are Views of any layout, double or float (mesh/vector_view.hpp), computed with in double. `boundary` has one
 /// vector for each of MorphPlan::boundary_nodes(), in that order, each in the frame of its node; all others have one for each node of the
@@ -41,7 +40,10 @@ class Morpher {
 
   /// The arrays of the baseline are not copied: positions() reads them again.
   Morpher(ExecutionSpace const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options = {});
+  /// For the library: the plan of one kind.
   Morpher(ExecutionSpace const& exec, Plan const& plan, In const& baseline, MorpherOptions const& options = {});
+  Morpher(ExecutionSpace const& exec, UnstructuredPlan const& plan, In const& baseline,
+          MorpherOptions const& options = {});
 
   /// moved(n) = x(n) + u(n) for every node, bit for bit x(n) where it does not move. `moved` may be the baseline itself, which
   /// is gone then. Cost per node: 24 bytes read, 24 written, 8 read per line parameter.
@@ -50,8 +52,8 @@ class Morpher {
   /// u(n) of every node. Cost per node: 24 bytes written, 8 read per line parameter.
   void displacements(ExecutionSpace const& exec, In const& boundary, Out const& u) const;
 
-  /// The same for several boundary displacements at once, at most MorpherOptions::fields: line parameters of blocks are read once for
-  /// every eight. Elements: any number, one after another.
+  /// The same for several boundary displacements, any number of them, MorpherOptions::fields at a time: of those, line parameters of blocks
+  /// are read once for every eight.
   void positions(ExecutionSpace const& exec, std::span<In const> boundary, std::span<Out const> moved) const;
   void displacements(ExecutionSpace const& exec, std::span<In const> boundary, std::span<Out const> u) const;
 
@@ -60,10 +62,12 @@ class Morpher {
   /// turn; nodes that slip as kernels::constrain_to_all() says; costs two morphs.
   void velocities(ExecutionSpace const& exec, In const& boundary, In const& rate, Out const& v) const;
 
+  /// For pictures: of the nodes of the background mesh between wrap and outer box, by the last call. Empty where the plan has none.
+  [[nodiscard]] In background_displacements() const;
+
  private:
   struct State;
-  std::shared_ptr<State const> state_;                                   ///< blocks, or
-  std::shared_ptr<UnstructuredMorpher<ExecutionSpace> const> elements_;  ///< the other one is null
+  std::shared_ptr<State const> state_;
 };
 
 }  // namespace gridmorph

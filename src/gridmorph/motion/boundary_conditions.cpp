@@ -278,4 +278,10 @@ std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary,
   return evaluate(mesh, boundary.requests, boundary.motion->with(motion), {});
 }
 
+double largest_norm(std::vector<Vec3> const& displacement) {
+  double largest = 0;
+  for (Vec3 const& u : displacement) largest = std::max(largest, norm(u));
+  return largest;
+}
+
 }  // namespace gridmorph

@@ -67,5 +67,7 @@ inline BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopo
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary);
 /// The same by another motion: one with the same rules for the same patches, whose displacements alone differ.
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary, Motion const& motion);
+/// The length of the longest; 0 of none.
+double largest_norm(std::vector<Vec3> const& displacement);
 
 }  // namespace gridmorph

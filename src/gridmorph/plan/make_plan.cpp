@@ -293,12 +293,13 @@ Index LineTables::n_lines() const {
   return n;
 }
 
-PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                       BoundaryMotion const& surface, PlanOptions const& options) {
+PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
+                       PlanOptions const& options) {
+  ResolvedMotion const& motion = surface.motion();
   PlannedMorph planned;
   Plan& plan = planned.plan;
-  std::vector<PatchKind> const kinds = ranked_kinds(mesh, links, motion, surface, options.boundary_layers, plan.notes);
-  std::vector<NearField> const fields = near_fields(mesh, links, motion, surface, kinds, options.boundary_layers);
+  std::vector<PatchKind> const kinds = ranked_kinds(mesh, links, surface, options.boundary_layers, plan.notes);
+  std::vector<NearField> const fields = near_fields(mesh, links, surface, kinds, options.boundary_layers);
   MergeLimits const limits = merge_limits(mesh, motion, kinds, fields, near_field_limits(mesh, links, fields));
   Topology const topology = build_topology(mesh, links, limits);
 
@@ -318,7 +319,7 @@ PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& 
   Known known(topology.lattice.n_classes());
   Scheduler scheduler(host, context, motion, options, plan, known);
   std::vector<std::string> const& kind_order = scheduler.kind_order();
-  planned.boundary = collect_boundary(context, motion, surface, kind_order, known, plan);
+  planned.boundary = collect_boundary(context, surface, kind_order, known, plan);
   Known const given = known;
   if (auto poles = pole_stage(context, motion, kind_order, known, plan)) plan.stages.push_back(std::move(*poles));
   for (NearField const& field : fields)

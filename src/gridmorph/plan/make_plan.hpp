@@ -16,7 +16,7 @@ struct PlannedMorph {
 /// Plans the morph of a mesh whose links are connected and whose coverage is checked. Coordinates are read
 /// on surfaces, and in whole blocks only where the quality rule has to break a tie.
 /// Throws PlanError naming blocks that no chain reaches and near fields that cannot be.
-PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                       BoundaryMotion const& surface, PlanOptions const& options);
+PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
+                       PlanOptions const& options);
 
 }  // namespace gridmorph

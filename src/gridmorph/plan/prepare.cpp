@@ -17,12 +17,11 @@ PreparedMorph prepare(HostInstance const& host, Mesh const& given, Motion const&
   PreparedMorph::Seconds seconds;
   Links links = connect_and_check(host, mesh, options.topology);
   seconds.topology = watch.lap();
-  ResolvedMotion resolved = resolve(mesh, motion);
-  BoundaryMotion surface(std::make_shared<Boundary const>(mesh, links.mesh_size), resolved);
+  BoundaryMotion surface(std::make_shared<Boundary const>(mesh, links.mesh_size), resolve(mesh, motion));
   seconds.rules = watch.lap();
-  PlannedMorph planned = make_plan(host, mesh, links, resolved, surface, options);
+  PlannedMorph planned = make_plan(host, mesh, links, surface, options);
   seconds.plan = watch.lap();
-  return {std::move(mesh), std::move(links), std::move(resolved), std::move(surface), std::move(planned), seconds};
+  return {std::move(mesh), std::move(links), std::move(surface), std::move(planned), seconds};
 }
 
 }  // namespace gridmorph

@@ -12,7 +12,6 @@ struct PreparedMorph {
   Mesh
       mesh;  ///< with the patches that it lacked, for poles and open faces, and notes on them; its coordinates are shared
   Links links;
-  ResolvedMotion motion;
   BoundaryMotion surface;
   PlannedMorph planned;
 

@@ -2,7 +2,7 @@
 //
 //   boundary -> columns -> layers -> wrap -> background mesh -> far field -> what other boundaries ask for
 //
-// docs/unstructured.md has the method with its formulas. Everything here is plain host data; UnstructuredMorpher puts it on an
+// docs/unstructured.md has the method with its formulas. Everything here is plain host data; Morpher puts it on an
 // execution space. Node numbers are those of representatives (NodeGraph) unless said otherwise.
 #pragma once
 
@@ -106,9 +106,13 @@ struct PreparedUnstructured {
   UnstructuredPlan plan;
   UnstructuredReport report;
   std::vector<std::string> notes;
+  /// Of UnstructuredPlan::known, by the rules as they stand, where planning asked for it: ElementOptions::motion was not given.
+  std::optional<std::vector<Vec3>> displacement;
 
-  /// Displacements of UnstructuredPlan::known by the rules; throws MotionError.
-  [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& mesh) const { return evaluate(mesh, boundary); }
+  /// The same, evaluated where planning did not; throws MotionError.
+  [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& mesh) const {
+    return displacement ? *displacement : evaluate(mesh, boundary);
+  }
 };
 
 /// Resolves the rules and plans every stage. Throws MeshError for open boundary faces, MotionError, PlanError. Cost: linear in

@@ -33,10 +33,7 @@ WheelMotion::WheelMotion(Mesh const& sector, Links const& links, WheelRows const
   append(notes_, resolved.notes);
   OpenedPassage const opened = open_passage(sector, links, rows, resolved, open);
   Links const opened_links = connect(opened.mesh, options.topology);
-  {
-    BoundaryMotion const surface(opened.mesh, opened.motion);
-    planned_ = make_plan({}, opened.mesh, opened_links, opened.motion, surface, options);
-  }
+  planned_ = make_plan({}, opened.mesh, opened_links, BoundaryMotion(opened.mesh, opened.motion), options);
   append(notes_, planned_.plan.notes);
   shares_ = blade_shares(sector, links, rows, resolved, open, planned_.boundary, planned_.plan.boundary_nodes);
   for (Index const n : planned_.plan.boundary_nodes) row_of_node_.push_back(rows.row_of_zone[sector.zone_of(n)]);

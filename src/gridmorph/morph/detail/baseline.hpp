@@ -43,8 +43,9 @@ template <class Exec>
 struct FlatBaseline {
   using Memory = typename Exec::memory_space;
   Kokkos::View<double*, Memory> copy;
-  kernels::Field<double const> field;
+  kernels::Field<double const> field{nullptr, nullptr, nullptr};
 
+  FlatBaseline() = default;
   FlatBaseline(Exec const& exec, ConstVectorView<Memory> const& x) {
     kernels::VectorArray const& from = x.array();
     if (from.zones == nullptr && !from.single) {

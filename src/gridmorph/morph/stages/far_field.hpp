@@ -40,7 +40,7 @@ class FarField {
   }
 
   /// Of the background's nodes, by the last call.
-  [[nodiscard]] kernels::Field<double const> displacement() const { return u_.read(); }
+  [[nodiscard]] ConstVectorView<typename Exec::memory_space> displacements() const { return u_.vectors(); }
 
  private:
   using Memory = typename Exec::memory_space;

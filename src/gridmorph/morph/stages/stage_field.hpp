@@ -4,6 +4,9 @@
 //
 //   enqueue(exec, x, field)       enqueues its kernels on a field: no allocation, no fence, no copy, no host decision
 //   rate(exec, x, field, rate)    the same for a field and for its rate of change; a stage without it is linear
+//   region                        its name in profiles
+//
+// What comes last writes the nodes: write<Move>(exec, x, baseline, fields, out), with Move baseline + u, otherwise u.
 #pragma once
 
 #include <gridmorph/kernels/inverse_distance.hpp>
@@ -14,17 +17,21 @@ namespace gridmorph::stages {
 
 template <class Exec>
 struct StageField {
-  kernels::VectorArray boundary;             ///< displacements of UnstructuredPlan::known
+  kernels::VectorArray boundary;  ///< displacements of MorphPlan::boundary_nodes()
+
+  // Blocks: parts of the workspaces of DevicePlan.
+  int number = 0;                                               ///< which field of theirs
+  kernels::Field<double> skeleton{nullptr, nullptr, nullptr};   ///< per slot
+  kernels::Field<double> ends{nullptr, nullptr, nullptr};       ///< at the ends of lines
+  kernels::Field<double> residuals{nullptr, nullptr, nullptr};  ///< on known sides of chains
+
+  // Elements.
   List<Exec, Vec3> u;                        ///< (n_nodes)
   List<Exec, Vec3> work;                     ///< (n_nodes)
   List<Exec, kernels::AffineMotion> frames;  ///< motions of the moving walls around their nodes
-
-  StageField(Exec const& exec, Index n_nodes, std::size_t n_walls, std::string const& label)
-      : u(room_for<Vec3>(exec, std::size_t(n_nodes), label + "::u")),
-        work(room_for<Vec3>(exec, std::size_t(n_nodes), label + "::work")),
-        frames(room_for<kernels::AffineMotion>(exec, n_walls, label + "::frames")) {}
 };
 
+/// Coordinates of the baseline as arrays of double.
 using Baseline = kernels::Field<double const>;
 
 }  // namespace gridmorph::stages

@@ -14,8 +14,8 @@ struct ExplicitFace {
   int patch = -1, interface = -1;
 };
 
-std::vector<ExplicitFace> explicit_faces(Topology const& topology, ResolvedMotion const& motion,
-                                         BoundaryMotion const& surface) {
+std::vector<ExplicitFace> explicit_faces(Topology const& topology, BoundaryMotion const& surface) {
+  ResolvedMotion const& motion = surface.motion();
   std::vector<ExplicitFace> faces;
   Blocks const& blocks = topology.blocks;
   for (int c = 0; c < topology.lattice.n_classes(); ++c) {
@@ -61,13 +61,13 @@ Index add_boundary_nodes(PlanContext const& context, int entity_class, Plan& pla
   return first;
 }
 
-BoundaryRequests collect_boundary(PlanContext const& context, ResolvedMotion const& motion,
-                                  BoundaryMotion const& surface, std::vector<std::string> const& kind_order,
-                                  Known& known, Plan& plan) {
+BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion const& surface,
+                                  std::vector<std::string> const& kind_order, Known& known, Plan& plan) {
+  ResolvedMotion const& motion = surface.motion();
   Mesh const& mesh = context.mesh;
   Topology const& topology = context.topology;
   Lattice const& lattice = topology.lattice;
-  std::vector<ExplicitFace> faces = explicit_faces(topology, motion, surface);
+  std::vector<ExplicitFace> faces = explicit_faces(topology, surface);
   for (ExplicitFace const& face : faces) {
     EndKind const kind = face.patch >= 0 ? end_kind(context.kinds[face.patch]) : periodic_end;
     for_closure(lattice, lattice.copies(face.face_class).front().entity, [&](int entity) {

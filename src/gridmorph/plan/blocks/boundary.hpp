@@ -13,8 +13,7 @@ Index add_boundary_nodes(PlanContext const& context, int entity_class, Plan& pla
 
 /// Marks every entity on the closure of explicitly moved faces known and lists its nodes. The order of slots and
 /// requests follows the lattice. Cost: O(boundary nodes).
-BoundaryRequests collect_boundary(PlanContext const& context, ResolvedMotion const& motion,
-                                  BoundaryMotion const& surface, std::vector<std::string> const& kind_order,
-                                  Known& known, Plan& plan);
+BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion const& surface,
+                                  std::vector<std::string> const& kind_order, Known& known, Plan& plan);
 
 }  // namespace gridmorph

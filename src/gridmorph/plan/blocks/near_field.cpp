@@ -36,9 +36,9 @@ int median_layers(Mesh const& mesh, Links const& links, std::vector<int> const& 
 
 }  // namespace
 
-std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                   BoundaryMotion const& surface, std::vector<PatchKind> const& kinds,
-                                   std::vector<BoundaryLayer> const& options) {
+std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
+                                   std::vector<PatchKind> const& kinds, std::vector<BoundaryLayer> const& options) {
+  ResolvedMotion const& motion = surface.motion();
   std::vector<NearField> fields;
   for (BoundaryLayer const& option : options) {
     NearField field;

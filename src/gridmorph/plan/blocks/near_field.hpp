@@ -22,9 +22,8 @@ inline bool turns(NearField const& field) {
 /// Walls and layer counts from the options: an empty wall list takes every patch that ranks as a wall (`kinds`, see
 /// ranked_kinds()) and that an explicit rule other than `fixed` moves; a thickness becomes the median, over all wall nodes, of the layers that reach it.
 /// Throws PlanError for selectors that match no patch and near fields that reach another boundary.
-std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                   BoundaryMotion const& surface, std::vector<PatchKind> const& kinds,
-                                   std::vector<BoundaryLayer> const& options);
+std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
+                                   std::vector<PatchKind> const& kinds, std::vector<BoundaryLayer> const& options);
 
 /// Planes that bound the near fields: to be cut, and kept when blocks are merged.
 std::vector<CutPlane> near_field_limits(Mesh const& mesh, Links const& links, std::vector<NearField> const& fields);

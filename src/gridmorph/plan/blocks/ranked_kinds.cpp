@@ -81,9 +81,9 @@ std::set<int> viscous_patches(Mesh const& mesh, Links const& links, ResolvedMoti
 
 }  // namespace
 
-std::vector<PatchKind> ranked_kinds(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                    BoundaryMotion const& surface, std::vector<BoundaryLayer> const& layers,
-                                    std::vector<std::string>& notes) {
+std::vector<PatchKind> ranked_kinds(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
+                                    std::vector<BoundaryLayer> const& layers, std::vector<std::string>& notes) {
+  ResolvedMotion const& motion = surface.motion();
   std::set<int> named;
   for (BoundaryLayer const& layer : layers)
     if (!layer.walls.empty())

@@ -20,8 +20,7 @@ namespace gridmorph {
 /// one of the seven beyond is half as long again: patches of one name and rule are judged together, so cuts of zones do not matter.
 /// What was taken for a wall by its cells is said in a note. Values of rules are not looked at: a plan serves any amplitude.
 /// Cost: eight cells from every node of patches of kind `other` that are fixed.
-std::vector<PatchKind> ranked_kinds(Mesh const& mesh, Links const& links, ResolvedMotion const& motion,
-                                    BoundaryMotion const& surface, std::vector<BoundaryLayer> const& layers,
-                                    std::vector<std::string>& notes);
+std::vector<PatchKind> ranked_kinds(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
+                                    std::vector<BoundaryLayer> const& layers, std::vector<std::string>& notes);
 
 }  // namespace gridmorph

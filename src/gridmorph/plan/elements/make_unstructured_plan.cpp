@@ -61,7 +61,8 @@ void UnstructuredPlanner::take_boundary() {
       plan.copied.push_back(o);
     }
   plan.middle = corner_means(mesh_, out_.graph);
-  reach_ = options_.elements.motion >= 0 ? options_.elements.motion : largest_displacement();
+  if (options_.elements.motion < 0) out_.displacement = evaluate(mesh_, b);
+  reach_ = out_.displacement ? largest_norm(*out_.displacement) : options_.elements.motion;
 }
 
 void UnstructuredPlanner::measure_distances() {
@@ -87,12 +88,6 @@ void UnstructuredPlanner::measure_distances() {
   });
   // A wall that ends on another boundary has no gap to it.
   for (Index32 const n : walls) gap_ = std::min(gap_, from_other_.distance[std::size_t(n)]);
-}
-
-double UnstructuredPlanner::largest_displacement() const {
-  double largest = 0;
-  for (Vec3 const& u : out_.boundary_displacement(mesh_)) largest = std::max(largest, norm(u));
-  return largest;
 }
 
 }  // namespace gridmorph::detail

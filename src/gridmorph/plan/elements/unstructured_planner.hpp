@@ -46,7 +46,6 @@ class UnstructuredPlanner {
   // make_unstructured_plan.cpp
   void take_boundary();
   void measure_distances();
-  [[nodiscard]] double largest_displacement() const;
 
   // plan_columns.cpp
   /// Faces of moving walls with the boundary layer that a user gave their patch.

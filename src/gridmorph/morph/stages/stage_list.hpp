@@ -1,0 +1,68 @@
+// A plan of either kind as what a Morpher runs: a list of stages, the fields they work on, and who writes the nodes.
+#pragma once
+
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/morph/stages/far_field.hpp>
+#include <gridmorph/morph/stages/joined_nodes.hpp>
+#include <gridmorph/morph/stages/near_field.hpp>
+#include <gridmorph/morph/stages/other_boundaries.hpp>
+#include <gridmorph/morph/stages/skeleton.hpp>
+#include <gridmorph/morph/stages/wall_motion.hpp>
+#include <gridmorph/morph/stages/write_nodes.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace gridmorph::stages {
+
+/// Visited by the host, once per stage and call.
+template <class Exec>
+using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, SlipSpread<Exec>, WallMotion<Exec>, NearField<Exec>,
+                           FarField<Exec>, OtherBoundaries<Exec>, JoinedNodes<Exec>>;
+
+template <class Exec>
+struct StageList {
+  std::vector<Stage<Exec>> stages;
+  std::vector<StageField<Exec>> fields;  ///< that one pass through the stages may have
+  std::variant<WriteBlocks<Exec>, WriteElements<Exec>> writer;
+};
+
+/// x: only while the list is made.
+template <class Exec>
+StageList<Exec> stage_list(Exec const& exec, Plan const& plan, Baseline const& x, MorpherOptions const& options) {
+  int const n_fields = std::max(options.fields, options.velocity ? 2 : 1);
+  auto const tables = std::make_shared<detail::DevicePlan<Exec> const>(exec, plan, x, n_fields);
+  StageList<Exec> out{{}, {}, WriteBlocks<Exec>(tables)};
+  out.stages.emplace_back(BoundaryValues<Exec>(tables));
+  for (std::size_t n = 0; n < tables->stages.size(); ++n) out.stages.emplace_back(LineSweep<Exec>(tables, n));
+  for (std::size_t n = 0; n < tables->spreads.size(); ++n) out.stages.emplace_back(SlipSpread<Exec>(tables, n));
+  for (int f = 0; f < n_fields; ++f)
+    out.fields.push_back(
+        {{}, f, tables->skeleton.batch()[f], tables->ends.batch()[f], tables->residuals.batch()[f], {}, {}, {}});
+  return out;
+}
+
+template <class Exec>
+StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, MorpherOptions const& options) {
+  StageList<Exec> out{{}, {}, WriteElements<Exec>()};
+  out.stages.emplace_back(WallMotion<Exec>(exec, plan, options.velocity));
+  out.stages.emplace_back(NearField<Exec>(exec, plan));
+  if (plan.background) out.stages.emplace_back(FarField<Exec>(exec, plan, options.velocity));
+  out.stages.emplace_back(OtherBoundaries<Exec>(exec, plan));
+  out.stages.emplace_back(JoinedNodes<Exec>(exec, plan));
+  auto const n = std::size_t(plan.n_nodes);
+  for (int f = 0; f < (options.velocity ? 2 : 1); ++f) {
+    StageField<Exec> field;
+    field.u = room_for<Vec3>(exec, n, "gridmorph::Morpher::u");
+    field.work = room_for<Vec3>(exec, n, "gridmorph::Morpher::work");
+    field.frames = room_for<kernels::AffineMotion>(exec, plan.driving.size(), "gridmorph::Morpher::frames");
+    out.fields.push_back(field);
+  }
+  compat::fence(exec, "gridmorph::Morpher (host tables of the plan may go)");
+  return out;
+}
+
+}  // namespace gridmorph::stages

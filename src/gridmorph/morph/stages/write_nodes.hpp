@@ -1,0 +1,78 @@
+// The end of a morph: displacements or positions of all nodes.
+#pragma once
+
+#include <gridmorph/kernels/listed_nodes.hpp>
+#include <gridmorph/mesh/vector_view.hpp>
+#include <gridmorph/morph/stages/skeleton.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace gridmorph::stages {
+
+/// Nodes of blocks: those of the skeleton from their slots, those inside pieces by the one pass through the volume.
+template <class Exec>
+class WriteBlocks {
+ public:
+  using Out = VectorView<typename Exec::memory_space>;
+
+  explicit WriteBlocks(BlockTables<Exec> tables) : tables_(std::move(tables)) {}
+
+  /// The fields are neighbours in the workspace.
+  template <bool Move>
+  void write(Exec const& exec, Baseline const&, kernels::VectorArray const& x, std::span<StageField<Exec> const> fields,
+             std::span<Out const> out) const {
+    for (std::size_t done = 0; done < out.size(); done += kernels::most_fields_at_once) {
+      std::size_t const n = std::min<std::size_t>(out.size() - done, kernels::most_fields_at_once);
+      write_at_once<Move>(exec, x, fields.subspan(done, n), out.subspan(done, n));
+    }
+  }
+
+ private:
+  using Shape = kernels::TileShape<Exec>;
+
+  template <bool Move>
+  void write_at_once(Exec const& exec, kernels::VectorArray const& x, std::span<StageField<Exec> const> fields,
+                     std::span<Out const> out) const {
+    auto const& plan = *tables_;
+    kernels::VolumePass<typename Exec::memory_space, Shape, Move> volume{
+        plan.boxes.entries,
+        plan.terms,
+        plan.boxes.first_item,
+        plan.lines.chains,
+        plan.rotations,
+        plan.sides,
+        plan.t.data(),
+        {read(fields.front().ends), plan.ends.read().stride},
+        {read(fields.front().residuals), plan.residuals.read().stride},
+        {plan.turns.read_ends(fields.front().number), plan.turns.ends_stride()},
+        x,
+        {},
+        0};
+    for (Out const& field : out) {
+      kernels::write_skeleton_nodes<Move>(exec, plan.skeleton_nodes, plan.rotations,
+                                          read(fields[std::size_t(volume.n_fields)].skeleton), field.array(), x);
+      volume.out[volume.n_fields++] = field.array();
+    }
+    kernels::pass_volume(exec, plan.boxes.n_items, volume);
+  }
+
+  BlockTables<Exec> tables_;
+};
+
+/// Nodes of elements, each with its displacement in StageField::u.
+template <class Exec>
+struct WriteElements {
+  using Out = VectorView<typename Exec::memory_space>;
+
+  template <bool Move>
+  void write(Exec const& exec, Baseline const& x, kernels::VectorArray const&, std::span<StageField<Exec> const> fields,
+             std::span<Out const> out) const {
+    for (std::size_t f = 0; f < out.size(); ++f)
+      kernels::launch(Move ? "gridmorph::move" : "gridmorph::write", exec, 0, out[f].size(),
+                      kernels::WriteNodes<Move>{fields[f].u.data(), x, out[f].array()});
+  }
+};
+
+}  // namespace gridmorph::stages
