@@ -181,7 +181,7 @@ TEST_F(Manners, StagesAreRegionsOfProfiles) {
   Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
   Listener const listener;
   morpher.positions(exec, boundary, u);
-  std::vector<std::string> expected;
+  std::vector<std::string> expected{"gridmorph::stage boundary"};
   for (Stage const& stage : prepared.plan().stages) expected.push_back("gridmorph::stage " + stage.name);
   for (std::size_t n = 0; n < prepared.plan().spreads.size(); ++n) expected.emplace_back("gridmorph::slip surfaces");
   expected.emplace_back("gridmorph::all nodes");
