@@ -288,7 +288,7 @@ TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
   expect_labels(record.allocations);
   for (char const* kernel :
        {"gridmorph::moving_walls", "gridmorph::wall_turn", "gridmorph::columns", "gridmorph::near", "gridmorph::volume",
-        "gridmorph::others", "gridmorph::residual", "gridmorph::copies", "gridmorph::move"})
+        "gridmorph::residual_nodes", "gridmorph::residual", "gridmorph::copies", "gridmorph::move"})
     EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
 }
 

@@ -93,7 +93,7 @@ class Relaxation {
   void find_held() {
     UnstructuredPlan const& plan = prepared_.plan;
     held_.assign(std::size_t(mesh_.n_nodes()), 0);
-    for (auto const* list : {&plan.known, &plan.other, &plan.columns.node})
+    for (auto const* list : {&plan.known, &plan.residual_nodes, &plan.columns.node})
       for (Index32 const n : *list) held_[std::size_t(n)] = 1;
     for (Index32 const n : plan.middle.target) held_[std::size_t(n)] = 1;
   }

@@ -8,9 +8,9 @@ namespace gridmorph {
 
 namespace {
 
-class Claims {
+class FacePatchFinder {
  public:
-  Claims(Mesh const& mesh, UnstructuredTopology const& topology) : mesh_(mesh), topology_(topology) {
+  FacePatchFinder(Mesh const& mesh, UnstructuredTopology const& topology) : mesh_(mesh), topology_(topology) {
     out_.patch.assign(std::size_t(topology.boundary.size()), BoundaryFacePatches::open);
     out_.faces_of_patch.assign(mesh.patches.size(), 0);
   }
@@ -35,9 +35,9 @@ class Claims {
         ++inside;
         continue;
       }
-      int& claim = out_.patch[std::size_t(face)];
-      if (claim >= 0 && claim != p && twice++ == 0) other = claim;
-      if (claim < 0) claim = p;
+      int& patch_of_face = out_.patch[std::size_t(face)];
+      if (patch_of_face >= 0 && patch_of_face != p && twice++ == 0) other = patch_of_face;
+      if (patch_of_face < 0) patch_of_face = p;
     }
     if (inside > 0)
       out_.notes.push_back("patch " + describe_patch(mesh_, patch) + ": " + std::to_string(inside) + " of its " +
@@ -59,8 +59,8 @@ class Claims {
     for (int const p : order) {
       auto const& nodes = mesh_.patches[std::size_t(p)].nodes;
       for (Index32 const n : nodes) listed[std::size_t(n)] = 1;
-      each_face_of(nodes, listed, [&](int& claim) {
-        if (claim == BoundaryFacePatches::open) claim = p;
+      each_face_of(nodes, listed, [&](int& patch_of_face) {
+        if (patch_of_face == BoundaryFacePatches::open) patch_of_face = p;
       });
       for (Index32 const n : nodes) listed[std::size_t(n)] = 0;
     }
@@ -71,8 +71,8 @@ class Claims {
     for (auto const& c : mesh_.connections)
       for (auto const* nodes : {&c.nodes, &c.donor_nodes}) {
         for (Index32 const n : *nodes) listed[std::size_t(n)] = 1;
-        each_face_of(*nodes, listed, [&](int& claim) {
-          if (claim == BoundaryFacePatches::open) claim = BoundaryFacePatches::connection;
+        each_face_of(*nodes, listed, [&](int& patch_of_face) {
+          if (patch_of_face == BoundaryFacePatches::open) patch_of_face = BoundaryFacePatches::connection;
         });
         for (Index32 const n : *nodes) listed[std::size_t(n)] = 0;
       }
@@ -130,7 +130,7 @@ class Claims {
 }  // namespace
 
 BoundaryFacePatches find_face_patches(Mesh const& mesh, UnstructuredTopology const& topology) {
-  return Claims(mesh, topology).run();
+  return FacePatchFinder(mesh, topology).run();
 }
 
 }  // namespace gridmorph

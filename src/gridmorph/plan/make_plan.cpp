@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/plan/blocks/conflict.hpp>
+#include <gridmorph/plan/blocks/independent_chains.hpp>
 #include <gridmorph/plan/blocks/loose_nodes.hpp>
 #include <gridmorph/plan/blocks/near_field.hpp>
 #include <gridmorph/plan/blocks/poles.hpp>
@@ -102,11 +102,11 @@ class Scheduler {
                 " touches that of another wall and is interpolated between the two; fewer layers keep "
                 "both rigid");
         }
-      Claims claims(topology_, known_);
+      IndependentChains independent(topology_, known_);
       std::vector<StageChain> now, later;
       std::vector<std::string> description;
       for (StageChain& chain : chains) {
-        if (claims.add(chain.chain)) {
+        if (independent.add(chain.chain)) {
           description.push_back(chain_name(mesh_, topology_, chain.chain) +
                                 (chain.open_end ? ": constant off the wall" : ": between touching near fields"));
           now.push_back(std::move(chain));
@@ -164,11 +164,11 @@ class Scheduler {
         priority_.add_quality(chains);
         priority_.sort(chains);
       }
-      Claims claims(topology_, known_);
+      IndependentChains independent(topology_, known_);
       std::vector<StageChain> now;
       std::vector<std::string> description;
       for (RankedChain& ranked : chains) {
-        if (!claims.add(ranked.chain)) continue;
+        if (!independent.add(ranked.chain)) continue;
         description.push_back(chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked));
         now.push_back({open ? known_end_first(ranked.chain) : ranked.chain,
                        open ? kernels::LineLaw::constant : line_law(options_.volume.law), open, turn_law});
@@ -208,8 +208,8 @@ class Scheduler {
     return false;
   }
   [[nodiscard]] bool independent(std::vector<RankedChain> const& chains) const {
-    Claims claims(topology_, known_);
-    return std::all_of(chains.begin(), chains.end(), [&](RankedChain const& c) { return claims.add(c.chain); });
+    IndependentChains independent(topology_, known_);
+    return std::all_of(chains.begin(), chains.end(), [&](RankedChain const& c) { return independent.add(c.chain); });
   }
   static Chain known_end_first(Chain const& chain) { return chain.first.known ? chain : reversed(chain); }
 

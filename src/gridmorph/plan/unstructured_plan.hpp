@@ -40,7 +40,7 @@ struct UnstructuredPlan {
   std::vector<Index32> driving;        ///< nodes of moving walls, ascending
   std::vector<Index32> driving_slots;  ///< where they are in `known`
   std::vector<std::uint8_t> turns;     ///< (driving) whether the rotation of the wall there is followed
-  CsrGraph fans;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see detail/fans.hpp
+  CsrGraph one_rings;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see one_rings.hpp
   ColumnPlan columns;
   /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements what it misses.
   InverseDistanceField walls;
@@ -55,10 +55,10 @@ struct UnstructuredPlan {
 
   /// Boundary nodes beyond the moving walls: their residual (what is asked for minus the field so far) spreads over all nodes. After
   /// them the nodes of columns on walls that stand, which ask for what their wall does.
-  std::vector<Index32> other;
-  std::vector<Index32> other_slot;  ///< in `known`, or -1
-  CsrGraph other_surfaces;          ///< slip surfaces, where not known
-  /// Nodes of `other` that slide or have images begin with the field so far and what the residual of those with a slot adds there:
+  std::vector<Index32> residual_nodes;
+  std::vector<Index32> residual_slot;  ///< in `known`, or -1
+  CsrGraph residual_surfaces;          ///< slip surfaces, where not known
+  /// Nodes of `residual_nodes` that slide or have images begin with the field so far and what the residual of those with a slot adds there:
   /// beside a wall that stands they stand.
   struct Start {
     std::vector<Index32> given;       ///< nodes with a slot, boundary nodes first
@@ -69,7 +69,7 @@ struct UnstructuredPlan {
     std::vector<float> fade, detail_fade;
   } start;
   std::vector<SlipSurface> surfaces;
-  std::vector<PeriodicImage> images;  ///< their owners and they are in `other`
+  std::vector<PeriodicImage> images;  ///< their owners and they are in `residual_nodes`
   std::vector<Index32> image_owners;  ///< ascending; known ones have no mean
   CsrGraph images_of_owner;           ///< entries of `images`
   std::vector<Mat3> rotations;

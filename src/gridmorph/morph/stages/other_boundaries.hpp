@@ -19,19 +19,19 @@ class OtherBoundaries {
   OtherBoundaries(Exec const& exec, UnstructuredPlan const& plan)
       : start_(exec, plan.start),
         surfaces_(exec, plan.surfaces),
-        nodes_{upload(exec, plan.other, name("node")), upload(exec, plan.other_slot, name("slot")),
-               upload(exec, plan.other_surfaces.first, name("surfaces::first")),
-               upload(exec, plan.other_surfaces.item, name("surfaces::item")), surfaces_.surfaces},
+        nodes_{upload(exec, plan.residual_nodes, name("node")), upload(exec, plan.residual_slot, name("slot")),
+               upload(exec, plan.residual_surfaces.first, name("surfaces::first")),
+               upload(exec, plan.residual_surfaces.item, name("surfaces::item")), surfaces_.surfaces},
         periodic_(periodic_table(exec, plan)),
         residual_(exec, plan.residual, name("residual")),
-        lacked_(room_for<Vec3>(exec, plan.other.size(), name("lacked"))),
+        lacked_(room_for<Vec3>(exec, plan.residual_nodes.size(), name("lacked"))),
         fade_(upload(exec, plan.fade, name("fade"))),
         detail_(upload(exec, plan.residual_detail, name("detail"))),
         detail_fade_(upload(exec, plan.detail_fade, name("detail_fade"))) {}
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     start_.enqueue(exec, x, f);
-    kernels::launch("gridmorph::others", exec,
+    kernels::launch("gridmorph::residual_nodes", exec,
                     kernels::AskNodes<Memory, false>{nodes_, f.boundary, {}, x, f.work.data(), nullptr});
     take(exec, x, f);
   }
@@ -40,7 +40,7 @@ class OtherBoundaries {
   void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
     start_.enqueue(exec, x, f);
     start_.enqueue(exec, x, r);
-    kernels::launch("gridmorph::others", exec,
+    kernels::launch("gridmorph::residual_nodes", exec,
                     kernels::AskNodes<Memory, true>{nodes_, f.boundary, r.boundary, x, f.work.data(), r.work.data()});
     take(exec, x, f);
     take(exec, x, r);
@@ -114,7 +114,7 @@ class OtherBoundaries {
   void take(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
     launch("gridmorph::periodic", exec, kernels::PeriodicMean<Memory>{periodic_, f.work.data()});
-    launch("gridmorph::others::take", exec,
+    launch("gridmorph::residual_nodes::take", exec,
            kernels::TakeAsked<Memory>{nodes_.node, f.u.data(), f.work.data(), lacked_.data()});
     if (residual_.empty()) return;
     residual_.enqueue(exec, lacked_.data());

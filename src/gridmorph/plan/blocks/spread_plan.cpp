@@ -1,4 +1,4 @@
-#include <gridmorph/plan/blocks/conflict.hpp>
+#include <gridmorph/plan/blocks/independent_chains.hpp>
 #include <gridmorph/plan/blocks/spread_plan.hpp>
 
 #include <algorithm>
@@ -199,9 +199,9 @@ void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, std:
     for (std::size_t p = 0; p < mesh.patches.size(); ++p)
       if (list.rules.contains(motion.patch[p].rule)) surface_so_far[p] = surface_of_patch[p];
     while (!list.chains.empty()) {
-      Claims claims(topology, nothing);
+      IndependentChains independent(topology, nothing);
       std::vector<Chain> now, later;
-      for (Chain& chain : list.chains) (claims.add(chain) ? now : later).push_back(std::move(chain));
+      for (Chain& chain : list.chains) (independent.add(chain) ? now : later).push_back(std::move(chain));
       SpreadPass pass = build_spread(context, now, surface_so_far, given, plan);
       std::map<std::pair<std::string, std::string>, int> ends;
       for (Chain const& chain : now) {

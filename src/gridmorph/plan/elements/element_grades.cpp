@@ -1,5 +1,5 @@
 #include <gridmorph/plan/elements/element_grades.hpp>
-#include <gridmorph/plan/elements/fans.hpp>
+#include <gridmorph/plan/elements/one_rings.hpp>
 
 #include <algorithm>
 #include <cmath>

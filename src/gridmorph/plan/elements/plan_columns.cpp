@@ -2,7 +2,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/plan/elements/column_heights.hpp>
-#include <gridmorph/plan/elements/fans.hpp>
+#include <gridmorph/plan/elements/one_rings.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>
@@ -116,7 +116,7 @@ void UnstructuredPlanner::plan_columns() {
     place[std::size_t(plan.driving[k])] = Index32(k);
     plan.turns.push_back(mode[std::size_t(plan.driving[k])] == Mode::translate ? 0 : 1);
   }
-  plan.fans = wall_fans(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
+  plan.one_rings = wall_one_rings(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
   for (std::size_t k = 0; k < columns_.node.size(); ++k) {
     Index32 const root = columns_.root[k];
     double const s = std::min(1.0, columns_.above_wall[k] / columns_.height[std::size_t(root)]);

@@ -17,7 +17,8 @@ void UnstructuredPlanner::plan_residual() {
   for (Index32 const n : columns_.node) plan.fade[std::size_t(n)] = 0;
   plan_start();
   MeshExtent const box = extent_of(host_, mesh_.coordinates);
-  std::vector<Index32> const boundary(plan.other.begin(), plan.other.end() - std::ptrdiff_t(standing_.node.size()));
+  std::vector<Index32> const boundary(plan.residual_nodes.begin(),
+                                      plan.residual_nodes.end() - std::ptrdiff_t(standing_.node.size()));
   plan.residual =
       make_scatter_lattice(mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low, box.high);
   if (plan.residual.empty()) return;
@@ -38,14 +39,14 @@ void UnstructuredPlanner::plan_start() {
   auto& start = plan.start;
   Mask seeds = mask(), wanted = mask();
   Index n_boundary = 0;
-  for (std::size_t k = 0; k < plan.other.size(); ++k) {
-    Index32 const n = plan.other[k];
-    bool const given = plan.other_slot[k] >= 0;
+  for (std::size_t k = 0; k < plan.residual_nodes.size(); ++k) {
+    Index32 const n = plan.residual_nodes[k];
+    bool const given = plan.residual_slot[k] >= 0;
     (given ? start.given : start.node).push_back(n);
     (given ? seeds : wanted)[std::size_t(n)] = 1;
     if (!given) continue;
-    start.given_slot.push_back(plan.other_slot[k]);
-    n_boundary += k + standing_.node.size() < plan.other.size() ? 1 : 0;
+    start.given_slot.push_back(plan.residual_slot[k]);
+    n_boundary += k + standing_.node.size() < plan.residual_nodes.size() ? 1 : 0;
   }
   start.fade.assign(start.node.size(), 0);
   start.detail_fade.assign(start.node.size(), 0);
@@ -114,20 +115,20 @@ void UnstructuredPlanner::plan_other_nodes() {
   for (Index32 const n : standing_.node) stands[std::size_t(n)] = 1;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
     if (!is_other_[std::size_t(n)] || stands[std::size_t(n)]) continue;
-    plan.other.push_back(n);
-    plan.other_slot.push_back(slot[std::size_t(n)]);
+    plan.residual_nodes.push_back(n);
+    plan.residual_slot.push_back(slot[std::size_t(n)]);
     if (slip[std::size_t(n)] >= 0) {
-      plan.other_surfaces.add(b.slip_surfaces[slip[std::size_t(n)]]);
+      plan.residual_surfaces.add(b.slip_surfaces[slip[std::size_t(n)]]);
     } else {
-      plan.other_surfaces.add({});
+      plan.residual_surfaces.add({});
     }
   }
   for (std::size_t k = 0; k < standing_.node.size(); ++k) {
-    plan.other.push_back(standing_.node[k]);
-    plan.other_slot.push_back(slot[std::size_t(standing_.root[k])]);
-    plan.other_surfaces.add(slip[std::size_t(standing_.node[k])] >= 0
-                                ? b.slip_surfaces[slip[std::size_t(standing_.node[k])]]
-                                : std::span<Index32 const>{});
+    plan.residual_nodes.push_back(standing_.node[k]);
+    plan.residual_slot.push_back(slot[std::size_t(standing_.root[k])]);
+    plan.residual_surfaces.add(slip[std::size_t(standing_.node[k])] >= 0
+                                   ? b.slip_surfaces[slip[std::size_t(standing_.node[k])]]
+                                   : std::span<Index32 const>{});
   }
   std::vector<std::pair<Index32, Index32>> by_owner;
   for (std::size_t k = 0; k < b.images.size(); ++k) by_owner.emplace_back(b.images[k].owner, Index32(k));

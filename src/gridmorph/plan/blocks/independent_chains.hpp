@@ -12,10 +12,10 @@ namespace gridmorph {
 /// The entities that chains of one stage will write, each with the line of entities it lies on. Chains may share an
 /// entity only when they run the same way along it from the same end to the same end (chains side by side): then both
 /// give it the same displacement, whichever writes it.
-class Claims {
+class IndependentChains {
  public:
-  Claims(Topology const& topology, Known const& known) : topology_(topology), known_(known) {}
-  /// Claims everything the chain would write; false, and nothing claimed, when that conflicts with earlier claims.
+  IndependentChains(Topology const& topology, Known const& known) : topology_(topology), known_(known) {}
+  /// Takes the chain in; false, and nothing is taken, where what it would write depends on a chain before it.
   bool add(Chain const& chain);
 
  private:

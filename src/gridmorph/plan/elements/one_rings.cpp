@@ -1,4 +1,4 @@
-#include <gridmorph/plan/elements/fans.hpp>
+#include <gridmorph/plan/elements/one_rings.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <algorithm>
@@ -48,26 +48,26 @@ void for_each_corner(Mesh const& mesh, UnstructuredTopology const& topology, Nod
 
 }  // namespace
 
-CsrGraph wall_fans(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
-                   std::vector<Index32> const& all_faces, std::vector<Index32> const& roots) {
+CsrGraph wall_one_rings(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+                        std::vector<Index32> const& all_faces, std::vector<Index32> const& roots) {
   std::vector<Index32> const faces = one_sided(topology, graph, all_faces);
   std::vector<Index32> place(std::size_t(mesh.n_nodes()), -1);
   for (std::size_t r = 0; r < roots.size(); ++r) place[std::size_t(roots[r])] = Index32(r);
-  CsrGraph fans;
-  fans.first.assign(roots.size() + 1, 0);
+  CsrGraph one_rings;
+  one_rings.first.assign(roots.size() + 1, 0);
   for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32, Index32) {
-    if (Index32 const r = place[std::size_t(n)]; r >= 0) fans.first[std::size_t(r) + 1] += 2;
+    if (Index32 const r = place[std::size_t(n)]; r >= 0) one_rings.first[std::size_t(r) + 1] += 2;
   });
-  for (std::size_t r = 0; r < roots.size(); ++r) fans.first[r + 1] += fans.first[r];
-  fans.item.resize(std::size_t(fans.first.back()));
-  std::vector<Index> next(fans.first.begin(), fans.first.end() - 1);
+  for (std::size_t r = 0; r < roots.size(); ++r) one_rings.first[r + 1] += one_rings.first[r];
+  one_rings.item.resize(std::size_t(one_rings.first.back()));
+  std::vector<Index> next(one_rings.first.begin(), one_rings.first.end() - 1);
   for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32 a, Index32 b) {
     if (Index32 const r = place[std::size_t(n)]; r >= 0) {
-      fans.item[std::size_t(next[std::size_t(r)]++)] = a;
-      fans.item[std::size_t(next[std::size_t(r)]++)] = b;
+      one_rings.item[std::size_t(next[std::size_t(r)]++)] = a;
+      one_rings.item[std::size_t(next[std::size_t(r)]++)] = b;
     }
   });
-  return fans;
+  return one_rings;
 }
 
 std::vector<Vec3> wall_normals(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,

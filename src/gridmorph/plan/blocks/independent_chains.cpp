@@ -1,4 +1,4 @@
-#include <gridmorph/plan/blocks/conflict.hpp>
+#include <gridmorph/plan/blocks/independent_chains.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -17,7 +17,7 @@ std::uint64_t hash(std::vector<int> const& numbers) {
 
 }  // namespace
 
-bool Claims::add(Chain const& chain) {
+bool IndependentChains::add(Chain const& chain) {
   Lattice const& lattice = topology_.lattice;
   ChainLayout const layout = lay_out(topology_, chain);
   std::unordered_map<int, std::uint64_t> fresh;

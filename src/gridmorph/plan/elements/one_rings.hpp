@@ -9,8 +9,8 @@ namespace gridmorph::detail {
 
 /// For each of `roots`, pairs (a, b) of nodes: in 3-D its neighbours behind and ahead in each wall face around it, so that the sum
 /// of (a - root) x (b - root) is normal to the wall; in 2-D the ends of each wall edge at it. Cost O(faces around).
-CsrGraph wall_fans(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
-                   std::vector<Index32> const& faces, std::vector<Index32> const& roots);
+CsrGraph wall_one_rings(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+                        std::vector<Index32> const& faces, std::vector<Index32> const& roots);
 
 /// Normal of the wall at each node of `faces`, zero elsewhere; not of unit length.
 std::vector<Vec3> wall_normals(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
