@@ -56,8 +56,8 @@ TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
   }
   auto const found = locate(mesh, points);
   auto const report = summarise(found);
-  EXPECT_EQ(report.outside, 0) << describe(report, "points", name) << ", the worst is number " << report.worst << " of "
-                               << mesh.n_nodes() << " nodes and then elements";
+  EXPECT_EQ(report.outside, 0) << name << ": up to " << report.largest_distance << " outside, the worst is number "
+                               << report.worst << " of " << mesh.n_nodes() << " nodes and then elements";
   double const tolerance = 1e-12 * mesh.size();
   Index elsewhere = 0;
   for (std::size_t n = 0; n < points.size(); ++n) {

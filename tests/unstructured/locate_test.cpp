@@ -454,9 +454,7 @@ TEST(LocateReport, CountsWhatIsOutsideAndNamesTheWorst) {
   EXPECT_EQ(report.outside, 3);
   EXPECT_EQ(report.largest_distance, 2);
   EXPECT_EQ(report.worst, 2);
-  EXPECT_EQ(describe(report, "far nodes", "the background mesh"),
-            "3 of 5 far nodes lie outside the background mesh, up to 2 from it, and take the nearest place there");
-  EXPECT_EQ(describe(summarise(locate(mesh, {{1, 1, 1}})), "far nodes", "the background mesh"), "");
+  EXPECT_EQ(summarise(locate(mesh, {{1, 1, 1}})).outside, 0);
   std::vector<Location> const nowhere(1);
   EXPECT_EQ(summarise(nowhere).largest_distance, unbounded);
 }

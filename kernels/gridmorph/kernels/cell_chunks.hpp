@@ -11,7 +11,6 @@
 #include <Kokkos_Core.hpp>
 
 #include <string>
-#include <type_traits>
 
 namespace gridmorph::kernels {
 
@@ -84,9 +83,6 @@ KOKKOS_INLINE_FUNCTION Index first_cell(ZoneCells const& zone, RowOfCells const&
   return zone.first_cell + r.i + r.j * zone.cell_stride(1) + r.k * zone.cell_stride(2);
 }
 
-/// For visits that leave their results elsewhere: nothing is gathered, and the View of results may be empty.
-struct NoResult {};
-
 /// CPUs: one work item per chunk.
 template <class Exec, class Result, class Visit>
 struct ChunkPerItem {
@@ -97,7 +93,7 @@ struct ChunkPerItem {
   KOKKOS_INLINE_FUNCTION void operator()(int c) const {
     Result result;
     for_each_row(chunks(c), CellPolicy<Exec>::row_length, [&](RowOfCells const& row) { visit(row, result); });
-    if constexpr (!std::is_empty_v<Result>) results(c) = result;
+    results(c) = result;
   }
 };
 
@@ -117,15 +113,13 @@ struct ChunkPerTeam {
     int const rank = team.team_rank(), threads = team.team_size();
     Result result;
     for (Index n = chunk.begin + rank; n < chunk.end; n += threads) visit(cell_of_chunk(chunk, n), result);
-    if constexpr (!std::is_empty_v<Result>) {
-      Scratch const partial(team.team_scratch(0), threads);
-      partial(rank) = result;
-      for (int reach = 1; reach < threads; reach *= 2) {
-        team.team_barrier();
-        if (rank % (2 * reach) == 0 && rank + reach < threads) partial(rank).join(partial(rank + reach));
-      }
-      if (rank == 0) results(team.league_rank()) = partial(0);
+    Scratch const partial(team.team_scratch(0), threads);
+    partial(rank) = result;
+    for (int reach = 1; reach < threads; reach *= 2) {
+      team.team_barrier();
+      if (rank % (2 * reach) == 0 && rank + reach < threads) partial(rank).join(partial(rank + reach));
     }
+    if (rank == 0) results(team.league_rank()) = partial(0);
   }
 };
 

@@ -24,7 +24,6 @@ class EdgeTrim {
 
   /// Corrected displacement of a point at a span fraction. Comes back bit for bit when nothing is touched.
   [[nodiscard]] Vec3 operator()(Vec3 const& point, double span, Vec3 const& u) const;
-  [[nodiscard]] std::size_t n_surfaces() const { return surfaces_.size(); }
 
  private:
   std::vector<SlipSurface const*> surfaces_;

@@ -48,8 +48,6 @@ class Skeleton {
   Skeleton(Mesh const& mesh, Lattice const& lattice);
 
   [[nodiscard]] Index size() const { return n_slots_; }
-  /// First slot of a class of faces, edges or corners.
-  [[nodiscard]] Index first_slot(int entity_class) const { return first_slot_[entity_class]; }
   /// Rows of one occurrence of an entity; nothing when it has no nodes.
   [[nodiscard]] std::optional<SkeletonRows> rows(int entity) const;
   /// From slots to all nodes of the mesh that belong to the skeleton, each in its zone's frame.

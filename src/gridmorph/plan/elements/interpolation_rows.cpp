@@ -1,6 +1,5 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/for_all.hpp>
-#include <gridmorph/core/text.hpp>
 #include <gridmorph/kernels/element_place.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
@@ -146,14 +145,6 @@ LocateReport summarise(std::span<Location const> locations) {
     report.worst = Index(n);
   }
   return report;
-}
-
-std::string describe(LocateReport const& report, std::string const& points, std::string const& mesh) {
-  if (report.outside == 0) return {};
-  return std::to_string(report.outside) + " of " + std::to_string(report.inside + report.outside) + " " + points +
-         (report.outside == 1 ? " lies" : " lie") + " outside " + mesh + ", up to " +
-         to_text(report.largest_distance, 3) + " from it, and " + (report.outside == 1 ? "takes" : "take") +
-         " the nearest place there";
 }
 
 }  // namespace gridmorph

@@ -115,8 +115,4 @@ struct LocateReport {
 /// Locations without an element count as outside, at an infinite distance.
 LocateReport summarise(std::span<Location const> locations);
 
-/// "12 of 1000 far nodes lie outside the background mesh, up to 0.01 from it; they take the nearest element"; empty when
-/// none is outside. `points` and `mesh`: names for the text.
-std::string describe(LocateReport const& report, std::string const& points, std::string const& mesh);
-
 }  // namespace gridmorph
