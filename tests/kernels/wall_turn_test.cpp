@@ -16,6 +16,7 @@ namespace {
 
 using kernels::Dual;
 using kernels::DualVec3;
+using kernels::Index;
 
 /// exp([turn]x) by its series: knows no sines.
 Mat3 matrix_of(Vec3 const& turn) {
@@ -180,6 +181,24 @@ TEST(WallTurn, HasTheRateThatDifferencesHave) {
       }
       EXPECT_LT(distance(rate, (0.5 / h) * (sides[1] - sides[0])), 1e-8) << flat << " " << size;
     }
+}
+
+// In the plane z = 0, cells of any aspect ratio: the polar rotation of F by its singular values' closed form in two dimensions.
+TEST(WallTurn, OfAWallThatStretchesAndShearsIsThePolarRotation) {
+  Random random(7);
+  for (int n = 0; n < 50; ++n) {
+    double const a = random.between(0.5, 2), b = random.between(-0.8, 0.8), c = random.between(-0.8, 0.8),
+                 d = random.between(0.5, 2);
+    if (a * d - b * c < 0.1) continue;
+    double const aspect = std::pow(10, random.between(-3, 3)), skew = random.between(-0.5, 0.5);
+    std::vector<Vec3> const arms{{1, 0, 0}, {skew, aspect, 0}, {-1.3, 0, 0}, {-skew, -0.7 * aspect, 0}};
+    auto const before = [&](Index k) { return arms[std::size_t(k)]; };
+    auto const after = [&](Index k) {
+      Vec3 const p = before(k);
+      return Vec3{a * p.x + b * p.y, c * p.x + d * p.y, 0};
+    };
+    EXPECT_NEAR(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after), std::atan2(c - b, a + d), 1e-9);
+  }
 }
 
 TEST(WallFrames, AreTheMotionAroundTheWall) {

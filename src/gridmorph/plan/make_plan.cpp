@@ -72,6 +72,11 @@ kernels::LineLaw line_law(Law law) {
 /// Of chains between moving ends (measured: a plateau from 0.15 to 0.35).
 constexpr double passage_turn = 0.25;
 
+struct HandedOn {
+  double turn = 0;
+  kernels::TurnLaw law = kernels::TurnLaw::none;
+};
+
 class Scheduler {
  public:
   Scheduler(HostInstance const& host, PlanContext const& context, ResolvedMotion const& motion,
@@ -123,11 +128,12 @@ class Scheduler {
     }
   }
 
-  /// How much of their turn near fields hand on, unless the options say. Where their lines end at rest: all of it if they move as
-  /// rigid bodies; none otherwise, as what turns differently from line to line tears far from the wall.
-  double turn(std::vector<NearField> const& fields) {
-    if (options_.volume.turn) return *options_.volume.turn;
+  /// What near fields hand on of their turn, and how it fades. Where their lines end at rest: all of it if they move as rigid
+  /// bodies, as far as the bodies' own motion does; none otherwise, as what turns differently from line to line tears far from the
+  /// wall.
+  HandedOn hand_on(std::vector<NearField> const& fields) {
     bool open = false, any = false;
+    HandedOn const between_moving{options_.volume.turn.value_or(passage_turn), kernels::TurnLaw::square};
     for (RankedChain const& ranked : collect(open)) {
       auto const begins = [&](Chain const& chain) {
         auto const faces = topology_.blocks.face_entities(topology_.lattice, end_face(chain.steps.front(), 0));
@@ -136,14 +142,14 @@ class Scheduler {
       };
       bool const first = begins(ranked.chain), last = begins(reversed(ranked.chain));
       if (!first && !last) continue;
-      if ((first && last) || !ends_at_rest(first ? ranked.chain.last : ranked.chain.first)) return passage_turn;
+      if ((first && last) || !ends_at_rest(first ? ranked.chain.last : ranked.chain.first)) return between_moving;
       any = true;
     }
-    return !any ? passage_turn : is_rigid(fields) ? 1 : 0;
+    if (!any) return between_moving;
+    return {options_.volume.turn.value_or(is_rigid(fields) ? 1 : 0), kernels::TurnLaw::c1};
   }
 
-  void volume(double turn) {
-    kernels::TurnLaw const turn_law = turn > 0.5 ? kernels::TurnLaw::c1 : kernels::TurnLaw::square;
+  void volume(kernels::TurnLaw turn_law) {
     for (int number = 1; has_active_blocks(); ++number) {
       bool open = false;
       std::vector<RankedChain> chains = collect(open);
@@ -327,16 +333,19 @@ PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& 
   roots.join_coincident();
   roots.mark(known);
   scheduler.near_field(near_field_chains(mesh, topology, known, fields));
-  double const turn = roots.nodes().empty() ? 0 : scheduler.turn(fields);
-  scheduler.volume(turn);
+  HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(fields);
+  scheduler.volume(handed_on.law);
   std::vector<int> const surface_of_patch = slip_surface_numbers(mesh, surface, plan.surfaces);
   if (!roots.nodes().empty()) {
-    roots.scale_turn(turn);
+    roots.scale_turn(handed_on.turn);
     EndWalls end_walls{surface_of_patch, {}};
     for (int p = 0; p < int(mesh.patches.size()); ++p)
       end_walls.is_given.push_back(motion.patch[p].rule >= 0 && surface.is_explicit(motion.patch[p].rule) ? 1 : 0);
     plan.turns = turn_tables(context, links, roots, end_walls);
-    plan.notes.push_back(turn_note(turn, options.volume.turn.has_value()));
+    bool const blends =
+        std::none_of(roots.nodes().begin(), roots.nodes().end(), [](RootNode const& n) { return n.turn > 0; });
+    if (!blends || handed_on.turn == 0)
+      plan.notes.push_back(turn_note(handed_on.turn, options.volume.turn.has_value()));
   }
   plan_spreads(context, motion, surface_of_patch, given, plan);
   plan.skeleton_nodes = skeleton.to_nodes(rotations);
