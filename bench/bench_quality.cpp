@@ -3,12 +3,14 @@
 //   measure_quality   all measures of a morphed mesh against its baseline    56 bytes per node: both meshes read,
 //                                                                            volumes written
 //   min_determinant   the smallest 3x3x3 determinant alone                   24 bytes per node
+//   certify           the sign of the Jacobian everywhere in each cell         24 bytes per node
 //
-// About 960 and 530 flops per cell (kernels/gridmorph/kernels/regular_cell.hpp), 20 per byte: arithmetic sets the time, not
+// About 960, 530 and 430 flops per cell (kernels/gridmorph/kernels/regular_cell.hpp, jacobian_bounds.hpp), 20 per byte: arithmetic sets the time, not
 // memory. "read share": bytes per second over those of reading three arrays of this size, measured in the same run.
 #include "bench.hpp"
 #include "roof.hpp"
 
+#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/quality.hpp>
 
 #include <algorithm>
@@ -127,11 +129,29 @@ struct MinDeterminant {
   }
 };
 
+struct Certify {
+  int block = 0;
+
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    Mesh mesh = boxes(state.range(0), block);
+    mesh.coordinates = wavy(mesh, 0.05);
+    CertificateInput<typename ExecutionSpace::memory_space> input;
+    input.coordinates = on_device<ExecutionSpace>(wavy(mesh, 0.06));
+    input.baseline = on_device<ExecutionSpace>(mesh.coordinates);
+    input.handedness = zone_handedness(exec, mesh, input.baseline);
+    double const mean = time_iterations(state, exec, [&] { benchmark::DoNotOptimize(certify(exec, mesh, input)); });
+    set_cell_rates(state, exec, mean, mesh, 24);
+  }
+};
+
 void register_all() {
   register_benchmark("measure_quality", MeasureQuality());
   register_benchmark("measure_quality_small_blocks", MeasureQuality{9});
   register_benchmark("min_determinant", MinDeterminant());
   register_benchmark("min_determinant_small_blocks", MinDeterminant{9});
+  register_benchmark("certify", Certify());
+  register_benchmark("certify_small_blocks", Certify{9});
 }
 
 }  // namespace gridmorph::bench

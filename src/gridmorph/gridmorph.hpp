@@ -9,6 +9,7 @@
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
+#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/quality/validity.hpp>
 #include <gridmorph/version.hpp>

@@ -69,6 +69,8 @@ class AnyPlan {
 
   /// Displacement of the boundary by the rules as they are at a moment; null: as they stand. Throws MotionError.
   [[nodiscard]] virtual std::vector<Vec3> displacement(Moment const* when) = 0;
+  /// The same for rules at a share of their amplitude (fraction_of()).
+  [[nodiscard]] virtual std::vector<Vec3> displacement(double share) const = 0;
   /// Moves the mesh from its baseline. `times`: gets what this took, where it is wanted.
   virtual void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) = 0;
   /// Smooths around cells that came out bad.

@@ -5,6 +5,7 @@
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/quality/certificate.hpp>
 
 #include <fmt/format.h>
 
@@ -75,7 +76,10 @@ QualityReport BlockMesh::measure(QualityWanted const& wanted) const {
   input.fast = wanted.fast;
   input.handedness = handedness();
   if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, block_fields, n_cells());
-  return measure_quality(Exec(), mesh_, input);
+  QualityReport report = measure_quality(Exec(), mesh_, input);
+  if (wanted.morphed != nullptr)
+    report.certificate = certify(Exec(), mesh_, {input.coordinates, input.baseline, input.handedness});
+  return report;
 }
 
 Coordinates BlockMesh::coordinates_of(std::filesystem::path const& path,

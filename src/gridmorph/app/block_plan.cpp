@@ -37,6 +37,11 @@ class BlockPlan final : public AnyPlan {
                     prepared_.plan().rotations);
   }
 
+  std::vector<Vec3> displacement(double share) const override {
+    return evaluate(prepared_.mesh, prepared_.planned.boundary, prepared_.surface.with(fraction_of(case_file_, share)),
+                    prepared_.plan().rotations);
+  }
+
   void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) override {
     Stopwatch watch;
     // Made once: tables, workspace and line parameters serve every displacement.

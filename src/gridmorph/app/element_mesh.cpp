@@ -5,6 +5,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
+#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <fmt/format.h>
@@ -69,7 +70,11 @@ QualityReport ElementMesh::measure(QualityWanted const& wanted) const {
   input.limits = wanted.limits;
   input.fast = wanted.fast;
   if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, element_fields, mesh.n_elements());
-  return measure_quality(Kokkos::DefaultHostExecutionSpace(), mesh, topology, face_patches, input);
+  Kokkos::DefaultHostExecutionSpace const exec;
+  QualityReport report = measure_quality(exec, mesh, topology, face_patches, input);
+  if (wanted.morphed != nullptr)
+    report.certificate = certify(exec, mesh, topology, {input.coordinates, input.baseline, {}, signs});
+  return report;
 }
 
 Coordinates ElementMesh::coordinates_of(std::filesystem::path const& path,

@@ -60,6 +60,10 @@ class ElementPlan final : public AnyPlan {
                            : evaluate(mesh_.mesh, prepared_.boundary, motion_at(case_file_, *when));
   }
 
+  std::vector<Vec3> displacement(double share) const override {
+    return evaluate(mesh_.mesh, prepared_.boundary, fraction_of(case_file_, share));
+  }
+
   void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) override {
     Stopwatch watch;
     if (!morpher_) {

@@ -36,7 +36,8 @@ bool wants_verdict(CaseFile const& case_file, Index cells) {
 }
 
 Index newly_inverted(QualityReport const& quality) {
-  return quality.near_field.newly_inverted + quality.far_field.newly_inverted;
+  Index const at_corners = quality.near_field.newly_inverted + quality.far_field.newly_inverted;
+  return quality.certificate ? std::max(at_corners, quality.certificate->broken.cells) : at_corners;
 }
 
 void add_time(StepTimes& times, std::string const& step, double seconds, bool every_node) {
@@ -125,6 +126,28 @@ TriedSteps Run::try_steps() {
           : fmt::format("{} {} were inverted in one step; in {} steps, each planned on the mesh before it, {} {}",
                         in_one, cells, best_steps, left == 0 ? "none" : std::to_string(left), left <= 1 ? "is" : "are");
   return tried;
+}
+
+ValidShare Run::largest_valid_share() {
+  QualityWanted wanted = wanted_;
+  wanted.fast = true;
+  Coordinates moved(mesh_->n_nodes());
+  wanted.morphed = &moved;
+  ValidShare out;
+  for (int low = 0, high = 100; high - low > 1;) {
+    int const percent = (low + high) / 2;
+    terminal_.progress(fmt::format("looking for how much of the motion is valid: {} %", percent));
+    plan_->morph(plan_->displacement(percent / 100.0), moved, nullptr);
+    if (mesh_->kind().guards) (void)plan_->relax(moved);
+    QualityReport const quality = plan_->measure(wanted);
+    if (newly_inverted(quality) == 0) {
+      low = out.percent = percent;
+    } else {
+      high = percent;
+      out.broken = describe_first_broken(plan_->for_messages(), quality, moved);
+    }
+  }
+  return out;
 }
 
 std::vector<Shortfall> Run::shortfalls_of(QualityReport const& quality) const {
@@ -236,6 +259,15 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   add_time(run.times, "quality", watch.lap());
 
   bool const written = newly_inverted(run.quality()) == 0 || case_file.guard.write_inverted;
+  std::string advice = "move the boundary less, " + file.traits().change;
+  if (newly_inverted(run.quality()) > 0) {
+    ValidShare const share = run.largest_valid_share();
+    std::string const valid =
+        fmt::format("valid up to {} % of the motion, every cell of that certified", share.percent) +
+        (share.broken.empty() ? "" : fmt::format("; at {} % {}", share.percent + 1, share.broken));
+    run.notes.push_back(valid);
+    advice = fmt::format("{}: morph that with --fraction {:.2f}, ", valid, share.percent / 100.0) + advice;
+  }
   auto const shortfalls = run.shortfalls_of(run.quality());
   if (written) run.times.push_back({"write", 0, true});
   std::string stages;
@@ -263,11 +295,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                    .wrote = fmt::format("\nwrote {}\n", case_file.output.string()),
                    .also_wrote = wrote_report(options.report) + stages,
                    .warnings = terminal.quiet() ? messages_of(shortfalls) : std::vector<std::string>(),
-                   .refusal =
-                       [&] {
-                         return run.refusal_of(case_file.output, file.traits().cells + " are",
-                                               "move the boundary less, " + file.traits().change);
-                       }},
+                   .refusal = [&] { return run.refusal_of(case_file.output, file.traits().cells + " are", advice); }},
                   terminal);
 }
 

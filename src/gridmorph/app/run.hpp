@@ -17,7 +17,7 @@ MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run);
 QualityThresholds thresholds_of(CaseFile const& case_file);
 /// Whether a verdict is all that is wanted of the quality of so many cells.
 bool wants_verdict(CaseFile const& case_file, Index cells);
-/// Cells turned inside out that were sound in the baseline.
+/// Cells turned inside out that were sound in the baseline: at their corners or, where there is a certificate, anywhere in them.
 Index newly_inverted(QualityReport const& quality);
 /// Adds to a step of that name, the last one where there is none.
 void add_time(StepTimes& times, std::string const& step, double seconds, bool every_node = true);
@@ -26,6 +26,12 @@ void add_time(StepTimes& times, std::string const& step, double seconds, bool ev
 struct TriedSteps {
   std::string text;  ///< how many cells were inverted in one step, and in how many are left; empty: not tried
   std::vector<std::string> notes;  ///< numbers of steps that could not be planned
+};
+
+/// How much of a motion leaves every cell valid.
+struct ValidShare {
+  int percent = 0;     ///< certified
+  std::string broken;  ///< the first cell that is not at one per cent more, and where it is
 };
 
 /// A mesh with its plan, and what was made of it last.
@@ -44,6 +50,9 @@ class Run {
   /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the best stays
   /// the result.
   TriedSteps try_steps();
+  /// The largest whole percentage of the motion, every rule at that share of its amplitude, at which the certificate holds, found by halving: at most
+  /// seven morphs. The result stays as it is.
+  ValidShare largest_valid_share();
 
   [[nodiscard]] AnyMesh const& mesh() const { return *mesh_; }
   [[nodiscard]] AnyPlan const& plan() const { return *plan_; }

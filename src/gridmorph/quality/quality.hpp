@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -125,6 +126,19 @@ struct WallGroup {
   WallQuality quality;
 };
 
+/// Cells by the sign of their Jacobian, taken everywhere in them (kernels/jacobian_bounds.hpp).
+struct Certificate {
+  Index cells = 0;      ///< that were looked at: all but polyhedra
+  Index zero = 0;       ///< negative nowhere, but somewhere zero, as far as coordinates can tell: collapsed, flat
+  Index negative = 0;   ///< somewhere inside out, or with a corner that is no number
+  Index undecided = 0;  ///< too close to zero to tell; none in any mesh so far
+  /// Of those that are negative or undecided: those that were neither in the baseline (all without one), and the first of them in
+  /// mesh order; FallenCells::worst has no value.
+  FallenCells broken;
+
+  [[nodiscard]] bool holds() const { return broken.cells == 0; }
+};
+
 struct QualityReport {
   QualityRegion near_field, far_field;
   WallQuality wall;                     ///< all walls together
@@ -136,6 +150,7 @@ struct QualityReport {
   bool fast = false;
   /// Cells are elements: worst_cell[0] and NodeLocation::node[0] are one less than the number in the file, the rest is 0.
   bool unstructured = false;
+  std::optional<Certificate> certificate;  ///< where somebody asked for one
 
   [[nodiscard]] Index cells() const { return near_field.cells + far_field.cells; }
 };

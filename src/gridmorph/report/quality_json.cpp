@@ -101,6 +101,10 @@ json definitions(bool unstructured) {
        "cells beyond a threshold that were not so in the baseline; inverted: the value is the smallest corner "
        "Jacobian / the cell's largest in the baseline; loss: (before - after) / max(|before|, floor) of "
        "determinant 3x3x3 (floor 0.05) or smallest angle (floor 1 degree), whichever is larger"}};
+  list["certificate"] = {
+      {"formula",
+       "cells by the sign of their Jacobian everywhere in them, from its Bezier coefficients; zero: negative nowhere, "
+       "as far as coordinates can tell; broken: negative somewhere, and not in the baseline"}};
   list["collapsed"] = {{"formula",
                         "number of cells with an edge shorter than 1e-12 of the longest edge of the cell; "
                         "points where a collapsed edge makes the Jacobian vanish do not count"}};
@@ -116,6 +120,19 @@ json definitions(bool unstructured) {
   return list;
 }
 
+json certificate_json(QualityReport const& report) {
+  Certificate const& c = *report.certificate;
+  json out{{"cells", c.cells},         {"zero", c.zero},     {"negative", c.negative},
+           {"undecided", c.undecided}, {"holds", c.holds()}, {"broken", {{"cells", c.broken.cells}}}};
+  if (c.holds()) return out;
+  MeasureStatistics first;
+  first.worst_zone = c.broken.worst_zone;
+  first.worst_cell = c.broken.worst_cell;
+  out["broken"]["first"] = worst_json(report, first);
+  out["broken"]["first"].erase("value");
+  return out;
+}
+
 }  // namespace
 
 void to_json(nlohmann::json& json, QualityReport const& report) {
@@ -123,6 +140,7 @@ void to_json(nlohmann::json& json, QualityReport const& report) {
           {"far_field", region_json(report, report.far_field)},
           {"left_handed_zones", report.left_handed_zones},
           {"verdict_only", report.fast}};
+  if (report.certificate) json["certificate"] = certificate_json(report);
   if (report.fast) return;
   json["walls"] = wall_json(report, report.wall);
   nlohmann::json& groups = json["walls"]["groups"] = nlohmann::json::object();

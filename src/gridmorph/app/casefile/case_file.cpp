@@ -381,4 +381,18 @@ Motion motion_at(CaseFile const& case_file, Moment const& when) {
   return motion;
 }
 
+Motion fraction_of(CaseFile const& case_file, double share) {
+  Motion motion = case_file.motion;
+  for (std::size_t r = 0; r < case_file.timed.size(); ++r)
+    if (case_file.timed[r].at) motion.rules[r].rule = case_file.timed[r].at(share, {});
+  return motion;
+}
+
+void take_fraction(CaseFile& case_file, double share) {
+  case_file.motion = fraction_of(case_file, share);
+  for (TimedRule& rule : case_file.timed)
+    if (rule.at)
+      rule.at = [at = std::move(rule.at), share](double part, Moment const& when) { return at(part * share, when); };
+}
+
 }  // namespace gridmorph

@@ -107,6 +107,11 @@ struct CaseFile {
 /// MotionError where an amplitude is not finite.
 Motion motion_at(CaseFile const& case_file, Moment const& when);
 
+/// The rules with every amplitude times `share`: rigid motions turn by that share of their angle, targets are approached by that share of the way.
+Motion fraction_of(CaseFile const& case_file, double share);
+/// Makes that the motion of the case file.
+void take_fraction(CaseFile& case_file, double share);
+
 /// A case file as it stands, parsed once: which mesh it names is asked before Kokkos runs, the rest after. Copies share it.
 class CaseDocument {
  public:

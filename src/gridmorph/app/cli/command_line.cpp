@@ -43,6 +43,8 @@ CLI::App* add_morph(CLI::App& app, CommandLine& out) {
   morph->add_option("-o,--output", out.output, "Morphed mesh, instead of the case file's output");
   morph->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
   add_quality(*morph, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
+  morph->add_option("--fraction", out.fraction, "Share of the motion: every rule at that share of its amplitude")
+      ->check(CLI::Range(0.0, 1.0));
   morph->add_flag("--dry-run", out.dry_run, "Check everything and print the plan; write nothing");
   return morph;
 }

@@ -23,6 +23,7 @@ struct CommandLine {
   std::optional<std::filesystem::path> second;  ///< quality: morphed mesh
   std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's; surface
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
+  std::optional<double> fraction;               ///< morph: of the motion
   bool dry_run = false;
   std::optional<std::string> quality;  ///< morph, wheel: instead of the case file's; quality: "fast" or "full"
   bool json = false;

@@ -124,16 +124,27 @@ MeshForMessages for_messages(Mesh const& mesh, BoundaryConditions const& boundar
   return out;
 }
 
-std::string describe_worst_inverted(MeshForMessages const& mesh, QualityReport const& quality,
-                                    Coordinates const& morphed) {
+namespace {
+
+FallenCells const* worst_inverted(QualityReport const& quality) {
   FallenCells const* worst = nullptr;
   for (auto const* region : {&quality.near_field, &quality.far_field}) {
     FallenCells const& fallen = (*region)[Fall::inverted];
     if (fallen.cells > 0 && (worst == nullptr || fallen.worst < worst->worst)) worst = &fallen;
   }
-  if (worst == nullptr) return "";
-  Vec3 const now = mean(mesh.corners(mesh.mesh, *worst, morphed));
-  Vec3 const before = mean(mesh.corners(mesh.mesh, *worst, mesh.baseline));
+  return worst;
+}
+
+/// The broken cells of the certificate, or null.
+FallenCells const* broken_cells(QualityReport const& quality) {
+  return quality.certificate && !quality.certificate->holds() ? &quality.certificate->broken : nullptr;
+}
+
+/// "zone 'A' cell (i 3, j 1, k 7)", a verb, where it is now and was, and near what.
+std::string place_of(MeshForMessages const& mesh, QualityReport const& quality, FallenCells const& cell,
+                     std::string const& verb, Coordinates const& morphed) {
+  Vec3 const now = mean(mesh.corners(mesh.mesh, cell, morphed));
+  Vec3 const before = mean(mesh.corners(mesh.mesh, cell, mesh.baseline));
   double nearest = std::numeric_limits<double>::infinity();
   std::size_t patch = 0;
   for (std::size_t p = 0; p < mesh.patch_nodes.size(); ++p)
@@ -143,14 +154,32 @@ std::string describe_worst_inverted(MeshForMessages const& mesh, QualityReport c
         patch = p;
       }
   MeasureStatistics at;
-  at.worst_zone = worst->worst_zone;
-  at.worst_cell = worst->worst_cell;
-  std::string text = fmt::format("the worst is {}, now at {}", worst_place(quality, at), point_text(now));
-  if (std::isfinite(nearest))
-    text += fmt::format(", in the baseline at {}, {:.3g} from patch '{}'", point_text(before), nearest,
-                        mesh.patch_names[patch]);
-  return text +
-         fmt::format("; its smallest corner Jacobian is {} times the largest it had", format_value(worst->worst));
+  at.worst_zone = cell.worst_zone;
+  at.worst_cell = cell.worst_cell;
+  std::string const text = worst_place(quality, at) + verb + ", now at " + point_text(now);
+  if (!std::isfinite(nearest)) return text;
+  return text + fmt::format(", in the baseline at {}, {:.3g} from patch '{}'", point_text(before), nearest,
+                            mesh.patch_names[patch]);
+}
+
+}  // namespace
+
+std::string describe_worst_inverted(MeshForMessages const& mesh, QualityReport const& quality,
+                                    Coordinates const& morphed) {
+  if (auto const* worst = worst_inverted(quality))
+    return "the worst is " + place_of(mesh, quality, *worst, "", morphed) +
+           fmt::format("; its smallest corner Jacobian is {} times the largest it had", format_value(worst->worst));
+  if (auto const* broken = broken_cells(quality))
+    return "the first is " + place_of(mesh, quality, *broken, "", morphed) +
+           "; its Jacobian is positive at the corners and negative between them";
+  return "";
+}
+
+std::string describe_first_broken(MeshForMessages const& mesh, QualityReport const& quality,
+                                  Coordinates const& morphed) {
+  auto const* cell = broken_cells(quality);
+  if (cell == nullptr) cell = worst_inverted(quality);
+  return cell == nullptr ? "" : place_of(mesh, quality, *cell, " is inside out", morphed);
 }
 
 std::vector<std::string> likely_causes(CaseFile const& case_file, MeshForMessages const& mesh,

@@ -33,6 +33,11 @@ MeshForMessages for_messages(Mesh const& mesh, BoundaryConditions const& boundar
 std::string describe_worst_inverted(MeshForMessages const& mesh, QualityReport const& quality,
                                     Coordinates const& morphed);
 
+/// The first cell that a certificate says is broken, or the worst inverted one where there is none: "zone 'A' cell (i 3, j 1, k 7) is inside out, at (1, 2, 3), ...
+/// from patch 'blade'". Empty where all are sound.
+std::string describe_first_broken(MeshForMessages const& mesh, QualityReport const& quality,
+                                  Coordinates const& morphed);
+
 /// What may be wrong with the rules of a case file whose mesh came out bad: displacements larger than what they move and points
 /// far from their patches (another unit), axes of rotation that are far away. One sentence each. Cost: nodes of the patches that
 /// the rules name.

@@ -18,6 +18,13 @@ int run_morph_command(CommandLine const& options, Terminal& terminal) {
   if (options.output) (case_file.sequence ? case_file.sequence->output : case_file.output) = *options.output;
   if (options.report) case_file.output_options.report = *options.report;
   set_quality(case_file, options.quality);
+  if (options.fraction) {
+    if (case_file.sequence)
+      throw ConfigError(
+          fmt::format("{}: --fraction is for one mesh, and this has [sequence]; change the amplitudes of its rules",
+                      case_file.source.string()));
+    take_fraction(case_file, *options.fraction);
+  }
   if (options.dry_run) {
     print_plan(case_file, terminal);
     return done;
