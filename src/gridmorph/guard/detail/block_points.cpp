@@ -1,0 +1,109 @@
+#include <gridmorph/boundary/link_nodes.hpp>
+#include <gridmorph/guard/detail/block_points.hpp>
+
+namespace gridmorph::detail {
+
+namespace {
+
+template <class Visit>
+void for_each_node(Zone const& zone, IndexRange const& range, Visit&& visit) {
+  for (int k = range.begin[2]; k < range.end[2]; ++k)
+    for (int j = range.begin[1]; j < range.end[1]; ++j)
+      for (int i = range.begin[0]; i < range.end[0]; ++i) visit(zone.node({i, j, k}));
+}
+
+/// visit(slot, node, matrix) for all nodes of the skeleton.
+template <class Visit>
+void for_each_skeleton_node(Plan const& plan, Visit&& visit) {
+  for (kernels::NodeCopy const& copy : plan.skeleton_nodes)
+    for (Index q = 0; q < copy.n_q; ++q)
+      for (Index p = 0; p < copy.n_p; ++p)
+        visit(copy.source + p * copy.source_stride_p + q * copy.source_stride_q,
+              copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q, copy.matrix);
+}
+
+}  // namespace
+
+BlockPoints::BlockPoints(PreparedMorph const& prepared)
+    : slot_(std::size_t(prepared.plan().n_nodes), -1), stays_(std::size_t(prepared.plan().n_nodes), 0) {
+  gather(prepared.plan());
+  find_slip(prepared);
+  keep_given(prepared);
+  keep_near_field(prepared);
+  keep_axes(prepared);
+}
+
+void BlockPoints::gather(Plan const& plan) {
+  first_.assign(std::size_t(plan.n_slots) + 1, 0);
+  for_each_skeleton_node(plan, [&](Index slot, Index node, std::int32_t) {
+    ++first_[std::size_t(slot) + 1];
+    slot_[std::size_t(node)] = Index32(slot);
+  });
+  for (std::size_t s = 1; s < first_.size(); ++s) first_[s] += first_[s - 1];
+  nodes_.resize(std::size_t(first_.back()));
+  std::vector<Index> next(first_.begin(), first_.end() - 1);
+  for_each_skeleton_node(plan, [&](Index slot, Index node, std::int32_t matrix) {
+    nodes_[std::size_t(next[std::size_t(slot)]++)] = {node, matrix};
+  });
+}
+
+/// Nodes with a given displacement, but for periodic interfaces inside the flow that follow a blade: these may be anywhere, as long
+/// as copies match. Patches that no surface holds stay as the morph left them, whether a rule moved them or not.
+void BlockPoints::keep_given(PreparedMorph const& prepared) {
+  Plan const& plan = prepared.plan();
+  std::vector<std::uint8_t> asked(plan.boundary_nodes.size(), 0), given(plan.boundary_nodes.size(), 0);
+  for (BoundaryRequests::Request const& request : prepared.planned.boundary.requests) {
+    Rule const& rule = prepared.surface.motion().rules[std::size_t(request.rule)].rule;
+    bool const follows = request.interface >= 0 && std::holds_alternative<FollowRule>(rule);
+    (follows ? asked : given)[std::size_t(request.boundary_node)] = 1;
+  }
+  for (std::size_t n = 0; n < plan.boundary_nodes.size(); ++n)
+    if (asked[n] == 0 || given[n] != 0) keep(plan.boundary_nodes[n]);
+  Mesh const& mesh = prepared.mesh;
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    Patch const& patch = mesh.patches[p];
+    if (prepared.surface.slip_surface_of(int(p)) < 0)
+      detail::for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range, [&](Index node) { keep(node); });
+  }
+}
+
+void BlockPoints::keep_near_field(PreparedMorph const& prepared) {
+  for (CellBox const& box : prepared.plan().near_field) {
+    IndexRange nodes = box.cells;
+    for (int& end : nodes.end) ++end;
+    detail::for_each_node(prepared.mesh.zones[std::size_t(box.zone)], nodes, [&](Index node) { keep(node); });
+  }
+}
+
+/// Nodes that a rotation between periodic copies leaves in place can only move along the axis.
+void BlockPoints::keep_axes(PreparedMorph const& prepared) {
+  Coordinates const& x = prepared.mesh.coordinates;
+  for (Link const& link : prepared.links.all)
+    if (link.periodic)
+      for_each_pair(prepared.mesh, link, [&](Index own, Index donor) {
+        if (own == donor || distance(x[own], x[donor]) <= 1e-9 * prepared.links.mesh_size) keep(own);
+      });
+}
+
+void BlockPoints::find_slip(PreparedMorph const& prepared) {
+  Mesh const& mesh = prepared.mesh;
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    int const surface = prepared.surface.slip_surface_of(int(p));
+    Patch const& patch = mesh.patches[p];
+    if (surface >= 0)
+      detail::for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range,
+                            [&](Index node) { slips_.emplace_back(node, surface); });
+  }
+  std::sort(slips_.begin(), slips_.end());
+  slips_.erase(std::unique(slips_.begin(), slips_.end()), slips_.end());
+}
+
+std::vector<int> BlockPoints::surfaces(Index node) const {
+  std::vector<int> out;
+  for (auto at = std::lower_bound(slips_.begin(), slips_.end(), std::pair(node, 0));
+       at != slips_.end() && at->first == node; ++at)
+    out.push_back(at->second);
+  return out;
+}
+
+}  // namespace gridmorph::detail

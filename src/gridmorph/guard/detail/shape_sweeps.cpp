@@ -1,0 +1,167 @@
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/guard/detail/shape_sweeps.hpp>
+#include <gridmorph/kernels/slip_edge.hpp>
+
+namespace gridmorph::detail {
+
+namespace {
+
+using kernels::CornerChange;
+
+class Sweeps {
+ public:
+  Sweeps(PreparedMorph const& prepared, ShapeRegion const& region, Coordinates const& x)
+      : prepared_(prepared), baseline_(prepared.mesh.coordinates), region_(region), x_(x) {
+    for (SlipSurface const& surface : prepared.surface.slip_surfaces()) surfaces_.push_back(surface.view());
+  }
+
+  /// How the corners of a point change with its displacement.
+  void changes(Index point, std::vector<CornerChange>& out) const {
+    out.clear();
+    for (PointCorner const& at : region_.corners_of(point)) {
+      kernels::BaselineCorner const& corner = region_.corners[std::size_t(at.cell)][at.corner];
+      if (corner.inverse_det == 0) continue;
+      Vec3 edge[3];
+      corner_edges(x_, region_.cells[std::size_t(at.cell)], at.corner, edge);
+      double share[3];
+      for (int d = 0; d < 3; ++d) share[d] = double(at.roles >> (1 + d) & 1) - double(at.roles & 1);
+      CornerChange change = corner_change(corner, edge, share);
+      if (at.matrix >= 0) {
+        Mat3 const back = transpose(rotation(at.matrix));
+        change.half_slope = back * change.half_slope;
+        change.volume_slope = back * change.volume_slope;
+      }
+      out.push_back(change);
+    }
+  }
+
+  void move(Index point, double delta, double relaxation, std::vector<CornerChange>& corners) {
+    changes(point, corners);
+    kernels::ShapeSum sum;
+    for (CornerChange const& c : corners) sum.add(c, delta);
+    Vec3 const u = displacement(point);
+    SlidingPoint const* const slide = slide_of(point);
+    if (slide != nullptr) restrict(*slide, u, sum);
+    Vec3 step = relaxation * descent_step(sum);
+    constexpr int most_halvings = 6;
+    for (int n = 0; n <= most_halvings; ++n, step = 0.5 * step) {
+      Vec3 const there = slide != nullptr ? slid(*slide, u + step) : u + step;
+      double value = 0;
+      for (CornerChange const& c : corners)
+        value += kernels::relative_shape(c.n_after(there - u), c.d_after(there - u), delta);
+      if (!(value < sum.value)) continue;
+      place(point, there);
+      return;
+    }
+  }
+
+  [[nodiscard]] double smallest_volume(Index cell) const {
+    double smallest = HUGE_VAL;
+    for (int c = 0; c < 8; ++c) {
+      double const inverse = region_.corners[std::size_t(cell)][std::size_t(c)].inverse_det;
+      if (inverse == 0) continue;
+      Vec3 edge[3];
+      corner_edges(x_, region_.cells[std::size_t(cell)], c, edge);
+      smallest = std::min(smallest, inverse * dot(cross(edge[0], edge[1]), edge[2]));
+    }
+    return smallest;
+  }
+
+ private:
+  [[nodiscard]] Mat3 const& rotation(std::int32_t matrix) const {
+    return prepared_.plan().rotations[std::size_t(matrix)];
+  }
+  [[nodiscard]] Vec3 to_node(std::int32_t matrix, Vec3 const& v) const { return matrix < 0 ? v : rotation(matrix) * v; }
+  [[nodiscard]] Vec3 to_point(std::int32_t matrix, Vec3 const& v) const {
+    return matrix < 0 ? v : transpose(rotation(matrix)) * v;
+  }
+  [[nodiscard]] Vec3 displacement(Index point) const {
+    PointNode const& n = region_.nodes_of(point).front();
+    return to_point(n.matrix, x_[n.node] - baseline_[n.node]);
+  }
+  [[nodiscard]] SlidingPoint const* slide_of(Index point) const {
+    Index32 const number = region_.sliding[std::size_t(point)];
+    return number < 0 ? nullptr : &region_.slides[std::size_t(number)];
+  }
+  void place(Index point, Vec3 const& u) {
+    for (PointNode const& n : region_.nodes_of(point))
+      x_.set(n.node, kernels::moved(baseline_[n.node], to_node(n.matrix, u)));
+  }
+
+  /// Leaves the directions that all surfaces of the point allow.
+  void restrict(SlidingPoint const& slide, Vec3 const& u, kernels::ShapeSum& sum) const {
+    Vec3 across[3];
+    int count = 0;
+    for (int m = 0; m < slide.count; ++m) {
+      Vec3 normal;
+      surface(slide, m).excess(baseline_[slide.node.node], slide.own_offset[std::size_t(m)],
+                               to_node(slide.node.matrix, u), normal);
+      normal = to_point(slide.node.matrix, normal);
+      double const size = norm(normal);
+      for (int k = 0; k < count; ++k) normal = normal - dot(normal, across[k]) * across[k];
+      // Surfaces that meet at less than 0.01 rad are one, as in slip_edge.hpp.
+      if (norm(normal) > 0.01 * size) across[count++] = (1 / norm(normal)) * normal;
+    }
+    restrict_to_tangents(sum, across, count);
+  }
+  [[nodiscard]] Vec3 slid(SlidingPoint const& slide, Vec3 const& u) const {
+    Vec3 out = to_node(slide.node.matrix, u), unused;
+    kernels::constrain_to_all<false>(
+        slide.count, [&](int m) -> kernels::SlipSurfaceView const& { return surface(slide, m); },
+        [&](int m) { return slide.own_offset[std::size_t(m)]; }, baseline_[slide.node.node], out, unused);
+    return to_point(slide.node.matrix, out);
+  }
+  [[nodiscard]] kernels::SlipSurfaceView const& surface(SlidingPoint const& slide, int m) const {
+    return surfaces_[std::size_t(slide.surface[std::size_t(m)])];
+  }
+
+  PreparedMorph const& prepared_;
+  Coordinates const& baseline_;
+  ShapeRegion const& region_;
+  Coordinates x_;  ///< the same memory as the caller's
+  std::vector<kernels::SlipSurfaceView> surfaces_;
+};
+
+double smallest_volume(HostInstance const& host, ShapeRegion const& region, Sweeps const& sweeps) {
+  std::vector<double> of_cell(region.cells.size());
+  for_all(host, "gridmorph::shape_smoothing::smallest_volume", Index(of_cell.size()),
+          [&](Index n) { of_cell[std::size_t(n)] = sweeps.smallest_volume(n); });
+  return of_cell.empty() ? HUGE_VAL : *std::min_element(of_cell.begin(), of_cell.end());
+}
+
+}  // namespace
+
+void smooth_region(HostInstance const& host, PreparedMorph const& prepared, ShapeRegion const& region, int sweeps,
+                   double relaxation, Coordinates& x) {
+  constexpr int eighths = 8;
+  constexpr double first_delta = 0.1, shrink = 0.6, enough_volume = 0.02;
+  constexpr Index part = 64;  // points that one core takes at a time
+  Sweeps points(prepared, region, x);
+  double smoothing = first_delta, delta = 0;
+  for (int sweep = 0, eighth = -1; sweep < sweeps; ++sweep) {
+    if (int const now = sweep * eighths / sweeps; now != eighth) {
+      if (eighth >= 0) smoothing *= shrink;
+      eighth = now;
+      delta = smallest_volume(host, region, points) < enough_volume ? smoothing : 0;
+    }
+    for (std::vector<Index32> const& colour : region.colours) {
+      Index const count = Index(colour.size());
+      for_all_parts(host, "gridmorph::shape_smoothing::sweep", (count + part - 1) / part, [&](Index n) {
+        std::vector<CornerChange> corners;
+        for (Index at = n * part; at < std::min(count, (n + 1) * part); ++at)
+          points.move(colour[std::size_t(at)], delta, relaxation, corners);
+      });
+    }
+  }
+}
+
+kernels::ShapeSum shape_sum(PreparedMorph const& prepared, ShapeRegion const& region, Index point, double delta,
+                            Coordinates const& x) {
+  std::vector<CornerChange> corners;
+  Sweeps(prepared, region, x).changes(point, corners);
+  kernels::ShapeSum sum;
+  for (CornerChange const& c : corners) sum.add(c, delta);
+  return sum;
+}
+
+}  // namespace gridmorph::detail

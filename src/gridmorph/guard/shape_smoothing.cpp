@@ -1,0 +1,181 @@
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/guard/detail/shape_sweeps.hpp>
+#include <gridmorph/guard/shape_smoothing.hpp>
+#include <gridmorph/kernels/cell_quality.hpp>
+
+#include <cmath>
+
+namespace gridmorph {
+
+namespace {
+
+using detail::BlockCells;
+using detail::BlockPoints;
+using detail::CellNodes;
+using detail::ShapeRegion;
+
+/// What became of a cell's corners, against the baseline.
+struct CellShape {
+  double smallest =
+      1;  ///< scaled Jacobian of corners that can change, positive where they are turned as in the baseline
+  bool lost = false, inverted = false;
+};
+
+/// What became of some cells.
+struct ShapeCount {
+  Index lost = 0, inverted = 0;
+  double smallest = 1;  ///< over the corners that can change
+
+  [[nodiscard]] bool better_than(ShapeCount const& other) const {
+    if (inverted != other.inverted) return inverted < other.inverted;
+    return smallest > other.smallest || (smallest == other.smallest && lost < other.lost);
+  }
+};
+
+class ShapeSmoothing {
+ public:
+  ShapeSmoothing(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,
+                 Coordinates& x, ShapeSmoothingOptions const& options)
+      : host_(host), prepared_(prepared), handedness_(handedness), x_(x), options_(options), cells_(prepared.mesh) {}
+
+  ShapeSmoothingReport run() {
+    ShapeSmoothingReport report;
+    std::vector<Index> lost = find_lost();
+    report.triggered_before = report.triggered_after = Index(lost.size());
+    if (lost.empty()) return report;
+    BlockPoints points(prepared_);
+    for (ShapeSmoothingOptions::Round const& round : options_.rounds) {
+      ShapeRegion const region = detail::shape_region(host_, prepared_, cells_, points, lost, round.rings);
+      ShapeCount const before = count(region);
+      bool const first = &round == &options_.rounds.front();
+      if (first) {
+        report.inverted_before = report.inverted_after = before.inverted;
+        report.smallest_before = report.smallest_after = before.smallest;
+      } else if (before.inverted == 0) {
+        break;
+      }
+      std::vector<Vec3> const places = places_of(region);
+      detail::smooth_region(host_, prepared_, region, round.sweeps, round.relaxation, x_);
+      ShapeCount const after = count(region);
+      if (!after.better_than(before)) {
+        put_back(region, places);
+        continue;
+      }
+      ++report.rounds;
+      report.triggered_after = after.lost;
+      report.inverted_after = after.inverted;
+      report.smallest_after = after.smallest;
+      lost = still_lost(region);
+      if (after.inverted == 0) break;
+    }
+    return report;
+  }
+
+ private:
+  [[nodiscard]] CellShape shape(CellNodes const& nodes, unsigned changing = 0) const {
+    CellShape out;
+    for (int c = 0; c < 8; ++c) {
+      Vec3 now[3], before[3];
+      detail::corner_edges(prepared_.mesh.coordinates, nodes, c, before);
+      double const was = scaled_jacobian(before);
+      if (!(std::abs(was) > 1e-12)) continue;  // collapsed
+      detail::corner_edges(x_, nodes, c, now);
+      double const is = std::copysign(1.0, was) * scaled_jacobian(now);
+      if ((changing >> c & 1u) != 0) out.smallest = std::min(out.smallest, is);
+      if (!(is > kernels::flat_fraction)) out.inverted = true;
+      if (!(is >= options_.least_sine) && !(is >= options_.share * std::abs(was))) out.lost = true;
+    }
+    return out;
+  }
+  static double scaled_jacobian(Vec3 const (&edge)[3]) {
+    double const lengths = std::sqrt(dot(edge[0], edge[0]) * dot(edge[1], edge[1]) * dot(edge[2], edge[2]));
+    return lengths > 0 ? dot(cross(edge[0], edge[1]), edge[2]) / lengths : 0;
+  }
+
+  /// Without a look at the baseline: most cells are far from the limit.
+  [[nodiscard]] bool suspicious(CellNodes const& nodes, double handedness) const {
+    double const least = options_.least_sine * options_.least_sine;
+    for (int c = 0; c < 8; ++c) {
+      Vec3 edge[3];
+      detail::corner_edges(x_, nodes, c, edge);
+      // Edges at a corner with an odd number of far sides are mirrored.
+      double const sign = ((c ^ (c >> 1) ^ (c >> 2)) & 1) == 0 ? handedness : -handedness;
+      double const volume = sign * dot(cross(edge[0], edge[1]), edge[2]);
+      double const lengths = dot(edge[0], edge[0]) * dot(edge[1], edge[1]) * dot(edge[2], edge[2]);
+      if (!(volume > 0 && volume * volume >= least * lengths)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::vector<Index> find_lost() const {
+    constexpr Index part = 4096;
+    Index const n_parts = (cells_.size() + part - 1) / part;
+    std::vector<std::vector<Index>> found(std::size_t(std::max<Index>(n_parts, 0)));
+    detail::for_all_parts(host_, "gridmorph::shape_smoothing::trigger", n_parts, [&](Index n) {
+      for (Index cell = n * part; cell < std::min(cells_.size(), (n + 1) * part); ++cell) {
+        CellNodes const nodes = cells_.nodes(cell);
+        if (suspicious(nodes, handedness_[std::size_t(cells_.zone(cell))]) && shape(nodes).lost)
+          found[std::size_t(n)].push_back(cell);
+      }
+    });
+    std::vector<Index> lost;
+    for (auto const& list : found) lost.insert(lost.end(), list.begin(), list.end());
+    return lost;
+  }
+
+  [[nodiscard]] std::vector<CellShape> shapes(ShapeRegion const& region) const {
+    std::vector<CellShape> out(region.cells.size());
+    detail::for_all(host_, "gridmorph::shape_smoothing::shapes", Index(out.size()), [&](Index n) {
+      out[std::size_t(n)] = shape(region.cells[std::size_t(n)], region.changing[std::size_t(n)]);
+    });
+    return out;
+  }
+  [[nodiscard]] ShapeCount count(ShapeRegion const& region) const {
+    ShapeCount out;
+    auto const add = [&](CellShape const& s) {
+      out.lost += s.lost ? 1 : 0;
+      out.inverted += s.inverted ? 1 : 0;
+    };
+    for (CellShape const& s : shapes(region)) {
+      add(s);
+      out.smallest = std::min(out.smallest, s.smallest);
+    }
+    for (Index const cell : region.others) add(shape(cells_.nodes(cell)));
+    return out;
+  }
+  [[nodiscard]] std::vector<Index> still_lost(ShapeRegion const& region) const {
+    std::vector<Index> out = region.others;
+    std::vector<CellShape> const all = shapes(region);
+    for (std::size_t n = 0; n < all.size(); ++n)
+      if (all[n].lost) out.push_back(region.numbers[n]);
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  [[nodiscard]] std::vector<Vec3> places_of(ShapeRegion const& region) const {
+    std::vector<Vec3> places;
+    places.reserve(region.nodes.size());
+    for (detail::PointNode const& n : region.nodes) places.push_back(x_[n.node]);
+    return places;
+  }
+  void put_back(ShapeRegion const& region, std::vector<Vec3> const& places) {
+    for (std::size_t n = 0; n < places.size(); ++n) x_.set(region.nodes[n].node, places[n]);
+  }
+
+  HostInstance const& host_;
+  PreparedMorph const& prepared_;
+  std::span<int const> handedness_;
+  Coordinates& x_;
+  ShapeSmoothingOptions const& options_;
+  BlockCells cells_;
+};
+
+}  // namespace
+
+ShapeSmoothingReport smooth_shapes(HostInstance const& host, PreparedMorph const& prepared,
+                                   std::span<int const> handedness, Coordinates& morphed,
+                                   ShapeSmoothingOptions const& options) {
+  return ShapeSmoothing(host, prepared, handedness, morphed, options).run();
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,49 @@
+// After a morph of blocks: nodes moved where corners of cells lost their shape.
+#pragma once
+
+#include <gridmorph/core/host_instance.hpp>
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <span>
+#include <vector>
+
+namespace gridmorph {
+
+struct PreparedMorph;  ///< plan/prepare.hpp
+
+struct ShapeSmoothingOptions {
+  /// A corner has lost its shape when its scaled Jacobian (volume of its edges' box / product of their lengths) is below
+  /// `least_sine` and below `share` of what it was.
+  double least_sine = 0.2, share = 0.5;
+  /// One pass over the points of a region per sweep. Where cells are inverted after one round, the next follows.
+  struct Round {
+    int rings;          ///< of cells around those that lost their shape
+    int sweeps;         ///< Gauss-Seidel, coloured
+    double relaxation;  ///< first length tried of each step, in Newton steps
+  };
+  std::vector<Round> rounds{{8, 32, 1}, {24, 100, 1.7}};
+};
+
+struct ShapeSmoothingReport {
+  Index triggered_before = 0, triggered_after = 0;  ///< cells with a corner that lost its shape
+  Index inverted_before = 0, inverted_after = 0;    ///< cells with a corner inverted that was not in the baseline
+  double smallest_before = 1, smallest_after = 1;   ///< scaled Jacobian, over the corners that could change
+  int rounds = 0;                                   ///< that were kept
+};
+
+/// Moves nodes so that the sum of the relative shapes f (kernels/relative_shape.hpp) of all corners around becomes smaller: each
+/// point in turn by a step that does not let the sum over its corners grow, with delta > 0 as long as a corner of the region has
+/// lost 98 % of its volume. Nodes that coincide, and periodic copies of them, are one point. Points of the near field, with
+/// a given displacement (but for periodic interfaces that follow a blade), on axes, poles and boundaries without a slip surface stay; points on slip surfaces slide on them.
+///
+/// A round is kept if fewer cells are inverted after it, or as many and the smallest scaled Jacobian is larger, or the same and fewer
+/// cells have lost their shape; otherwise all nodes are put back bit for bit. Nothing happens where no cell lost
+/// its shape. Explicit, the same bits for any number of threads. `handedness`: zone_handedness() of the baseline.
+///
+/// Cost: one look at all cells; where some lost their shape, two bytes and two numbers per node of the mesh, and in the region
+/// about 1 kB per node and a few microseconds per node and sweep.
+ShapeSmoothingReport smooth_shapes(HostInstance const& host, PreparedMorph const& prepared,
+                                   std::span<int const> handedness, Coordinates& morphed,
+                                   ShapeSmoothingOptions const& options = {});
+
+}  // namespace gridmorph

@@ -1,0 +1,190 @@
+// Smoothing of blocks: what it may not touch, on one mesh of each kind of topology, and where it has to end up.
+#include "invariants/cases.hpp"
+#include "support/mesh_builders.hpp"
+#include "support/morph_run.hpp"
+#include "support/random.hpp"
+
+#include <gridmorph/boundary/link_nodes.hpp>
+#include <gridmorph/guard/shape_smoothing.hpp>
+#include <gridmorph/quality/quality.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+namespace gridmorph::test {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+Coordinates copy_of(Coordinates const& x) {
+  Coordinates out(x.size());
+  for (Index n = 0; n < x.size(); ++n) out.set(n, x[n]);
+  return out;
+}
+
+std::vector<int> handedness(Mesh const& mesh) { return zone_handedness(Exec(), mesh, views(mesh.coordinates)); }
+
+struct Smoothed {
+  Coordinates x;
+  ShapeSmoothingReport report;
+};
+
+Smoothed smooth(Outcome const& run, Coordinates const& morphed, HostInstance const& host = {}) {
+  Smoothed out{copy_of(morphed), {}};
+  out.report = smooth_shapes(host, run.prepared, handedness(run.mesh), out.x);
+  return out;
+}
+
+Index newly_inverted(Mesh const& mesh, Coordinates const& x) {
+  QualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(x);
+  input.baseline = views(mesh.coordinates);
+  QualityReport const quality = measure_quality(Exec(), mesh, input);
+  return quality.far_field.newly_inverted + quality.near_field.newly_inverted;
+}
+
+/// The case's motion, enlarged until corners lose their shape.
+struct Overdone {
+  Outcome run;
+  Smoothed smoothed;
+};
+
+/// Emptied after the suite: arrays may not outlive Kokkos.
+std::map<std::string, Overdone> known;
+
+Overdone const& overdone(Case const& c) {
+  if (auto const found = known.find(c.name); found != known.end()) return found->second;
+  double factor = 1;
+  for (int n = 0; n < 10; ++n, factor *= 1.5) {
+    Outcome run = morph(c.mesh(), c.motion(factor), c.options);
+    Smoothed smoothed = smooth(run, run.morphed.position);
+    if (smoothed.report.triggered_before > 0)
+      return known.try_emplace(c.name, Overdone{std::move(run), std::move(smoothed)}).first->second;
+  }
+  throw std::runtime_error(c.name + " keeps its shape, however far it is moved");
+}
+
+class ShapeSmoothing : public testing::TestWithParam<Case> {
+ protected:
+  static void TearDownTestSuite() {
+    known.clear();
+    if (tried > 10) {
+      EXPECT_GE(3 * helped, 2 * tried);
+    }
+  }
+  static inline int tried = 0, helped = 0;
+};
+
+TEST_P(ShapeSmoothing, KeepsWhatItMust) {
+  auto const& [run, smoothed] = overdone(GetParam());
+  auto const& [x, report] = smoothed;
+  Coordinates const& plain = run.morphed.position;
+  Mesh const& mesh = run.mesh;
+  double const size = run.plan().mesh_size;
+  ++tried;
+  helped += report.inverted_after < report.inverted_before || report.smallest_after > report.smallest_before ? 1 : 0;
+
+  EXPECT_LE(report.inverted_after, report.inverted_before);
+  if (report.inverted_after == report.inverted_before) {
+    EXPECT_GE(report.smallest_after, report.smallest_before);
+  }
+  if (report.rounds == 0) {
+    EXPECT_EQ(different_bits(x, plain), 0);
+  }
+  EXPECT_EQ(newly_inverted(mesh, plain), report.inverted_before);
+  EXPECT_EQ(newly_inverted(mesh, x), report.inverted_after);
+
+  for (Index const n : run.plan().boundary_nodes) EXPECT_TRUE(same_bits(x[n], plain[n])) << n;
+  for (CellBox const& box : run.plan().near_field)
+    for (int k = box.cells.begin[2]; k <= box.cells.end[2]; ++k)
+      for (int j = box.cells.begin[1]; j <= box.cells.end[1]; ++j)
+        for (int i = box.cells.begin[0]; i <= box.cells.end[0]; ++i) {
+          Index const n = mesh.zones[std::size_t(box.zone)].node({i, j, k});
+          ASSERT_TRUE(same_bits(x[n], plain[n])) << n;
+        }
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    Patch const& patch = mesh.patches[p];
+    SlipSurface const* const surface = run.prepared.surface.slip_surface(int(p));
+    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+    for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
+      for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
+        for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
+          Index const n = zone.node({i, j, k});
+          if (surface == nullptr) {
+            ASSERT_TRUE(same_bits(x[n], plain[n])) << n;
+          } else if (!same_bits(x[n], plain[n])) {
+            // Already where the surface wants it.
+            Vec3 const u = x[n] - mesh.coordinates[n];
+            ASSERT_LE(distance(surface->view().constrain(mesh.coordinates[n], u), u), 1e-11 * size) << n;
+          }
+        }
+  }
+  for (Link const& link : run.prepared.links.all)
+    for_each_pair(mesh, link, [&](Index own, Index donor) {
+      double const gap = distance(link.transform(x[own]), x[donor]);
+      double const before = distance(link.transform(mesh.coordinates[own]), mesh.coordinates[donor]);
+      ASSERT_LE(gap, before + 1e-13 * size);
+      if (!link.periodic && same_bits(mesh.coordinates[own], mesh.coordinates[donor])) {
+        ASSERT_TRUE(same_bits(x[own], x[donor]));
+      }
+    });
+}
+
+TEST_P(ShapeSmoothing, GivesTheSameBitsForAnyNumberOfThreads) {
+  auto const& [run, smoothed] = overdone(GetParam());
+  EXPECT_EQ(different_bits(smooth(run, run.morphed.position, Kokkos::Serial()).x, smoothed.x), 0);
+}
+
+TEST_P(ShapeSmoothing, LeavesSoundMeshesAlone) {
+  Case const& c = GetParam();
+  Outcome const run = morph(c.mesh(), c.motion(0.01), c.options);
+  auto const [x, report] = smooth(run, run.morphed.position);
+  EXPECT_EQ(report.triggered_before, 0);
+  EXPECT_EQ(report.rounds, 0);
+  EXPECT_EQ(different_bits(x, run.morphed.position), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, ShapeSmoothing, testing::ValuesIn(make_cases()),
+                         [](auto const& info) { return info.param.name; });
+
+/// A box whose faces stay: each corner keeps its baseline shape where all nodes are back in place, and nowhere else.
+class TangledBox : public testing::TestWithParam<std::tuple<Shape, double>> {};
+
+TEST_P(TangledBox, GoesBackToTheBaseline) {
+  auto const [shape, amplitude] = GetParam();
+  Index3 const n{9, 8, 7};
+  Outcome const run = morph(box(n, shape, 5), motion({rule({"*"}, FixedRule{})}));
+  Coordinates const& home = run.mesh.coordinates;
+  Coordinates tangled = copy_of(home);
+  Random random(11);
+  Zone const& zone = run.mesh.zones[0];
+  auto const largest = [&](Coordinates const& x) {
+    double d = 0;
+    for (Index m = 0; m < x.size(); ++m) d = std::max(d, distance(x[m], home[m]));
+    return d;
+  };
+  for (int k = 1; k < n[2] - 1; ++k)
+    for (int j = 1; j < n[1] - 1; ++j)
+      for (int i = 1; i < n[0] - 1; ++i) {
+        double const spacing = distance(home[zone.node({i + 1, j, k})], home[zone.node({i, j, k})]);
+        tangled.set(zone.node({i, j, k}), home[zone.node({i, j, k})] + random.vector(amplitude * spacing));
+      }
+  ASSERT_GT(newly_inverted(run.mesh, tangled), 0);
+  auto const [x, report] = smooth(run, tangled);
+  EXPECT_EQ(report.inverted_after, 0);
+  EXPECT_EQ(newly_inverted(run.mesh, x), 0);
+  EXPECT_LT(largest(x), 0.05 * largest(tangled));
+}
+
+INSTANTIATE_TEST_SUITE_P(Boxes, TangledBox,
+                         testing::Combine(testing::Values(Shape::straight, Shape::curved), testing::Values(0.7, 1.0)));
+
+}  // namespace
+}  // namespace gridmorph::test
