@@ -151,6 +151,45 @@ TEST_F(MorphRun, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
   EXPECT_TRUE(std::filesystem::exists(path("out.cgns")));
 }
 
+TEST_F(MorphRun, WhereAMotionIsTooLargeItSaysHowMuchOfItIsValid) {
+  write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndtheta = \"0.2*sin(200*axial)\"\n");
+  Outcome const refused = gridmorph("morph case.toml");
+  ASSERT_EQ(refused.status, 4) << refused.err;
+  std::string const said = "valid up to ";
+  std::size_t const at = refused.err.find(said);
+  ASSERT_NE(at, std::string::npos) << refused.err;
+  int const percent = std::stoi(refused.err.substr(at + said.size()));
+  ASSERT_GT(percent, 0);
+  ASSERT_LT(percent, 99);
+  EXPECT_NE(refused.err.find(fmt::format("at {} % zone '", percent + 1)), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find(fmt::format("--fraction {:.2f}", percent / 100.0)), std::string::npos) << refused.err;
+  auto const part = [&](int p) {
+    return gridmorph(fmt::format("morph case.toml --fraction {} --report r.json", p / 100.0));
+  };
+  EXPECT_EQ(part(percent + 1).status, 4);
+  EXPECT_FALSE(std::filesystem::exists(path("out.cgns")));
+  EXPECT_LE(part(percent).status, 1);
+  EXPECT_TRUE(std::filesystem::exists(path("out.cgns")));
+  auto const certificate = nlohmann::json::parse(contents(path("r.json")))["morphed"]["certificate"];
+  EXPECT_EQ(certificate["holds"], true);
+  EXPECT_EQ(certificate["negative"], 0);
+  EXPECT_GT(certificate["cells"], 5000);
+}
+
+TEST_F(MorphRun, AFractionOfAMotionIsThatOfEveryAmplitude) {
+  std::string const rules =
+      "[[motion]]\npatches = [\"blade\"]\nrule = \"rigid\"\nrotation = { angle_deg = 4, axis = [0, 0, 1], origin = [0, "
+      "0.5, 0] }\n";
+  write_case("whole.toml", rules);
+  write_case("half.toml", rules + "amplitude = 0.5\n");
+  ASSERT_LE(gridmorph("morph half.toml").status, 1);
+  Mesh const half = read_mesh(path("out.cgns").string());
+  ASSERT_LE(gridmorph("morph whole.toml --fraction 0.5").status, 1);
+  Mesh const fraction = read_mesh(path("out.cgns").string());
+  for (Index n = 0; n < half.n_nodes(); ++n) ASSERT_EQ(half.coordinates[n], fraction.coordinates[n]) << n;
+  EXPECT_EQ(gridmorph("morph whole.toml --fraction 1.5").status, 2);
+}
+
 TEST_F(MorphRun, AThresholdThatIsNotMetGivesStatusOneAndTheMesh) {
   std::string text = contents(path("rotation.toml"));
   write("strict.toml", text + "\n[guard]\nmin_determinant = 0.99\n");

@@ -262,11 +262,13 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   std::string advice = "move the boundary less, " + file.traits().change;
   if (newly_inverted(run.quality()) > 0) {
     ValidShare const share = run.largest_valid_share();
+    if (share.percent > 0)
+      advice = fmt::format("morph what is valid with --fraction {:.2f}, ", share.percent / 100.0) + advice;
     std::string const valid =
         fmt::format("valid up to {} % of the motion, every cell of that certified", share.percent) +
         (share.broken.empty() ? "" : fmt::format("; at {} % {}", share.percent + 1, share.broken));
     run.notes.push_back(valid);
-    advice = fmt::format("{}: morph that with --fraction {:.2f}, ", valid, share.percent / 100.0) + advice;
+    advice = valid + ": " + advice;
   }
   auto const shortfalls = run.shortfalls_of(run.quality());
   if (written) run.times.push_back({"write", 0, true});
