@@ -190,6 +190,27 @@ TEST_F(MorphRun, AFractionOfAMotionIsThatOfEveryAmplitude) {
   EXPECT_EQ(gridmorph("morph whole.toml --fraction 1.5").status, 2);
 }
 
+TEST_F(MorphRun, SmoothingLeavesSoundCellsAloneAndMendsLostOnes) {
+  std::string const text = contents(path("rotation.toml"));
+  auto const moved = [&](std::string const& toml, int status) {
+    write("case.toml", toml);
+    Outcome const run = gridmorph("morph case.toml");
+    EXPECT_EQ(run.status, status) << run.err;
+    return std::pair(run.out, read_mesh(path("passage_rotation.cgns").string()));
+  };
+  std::string const guard = "\n[guard]\nsmooth = true\nquality = \"full\"\n";
+  auto const plain = moved(text, 0), smoothed = moved(text + guard, 0);
+  for (Index n = 0; n < plain.second.n_nodes(); ++n)
+    ASSERT_EQ(plain.second.coordinates[n], smoothed.second.coordinates[n]) << n;
+  EXPECT_EQ(plain.first.find("\nguard "), std::string::npos);
+  EXPECT_NE(smoothed.first.find("\nguard "), std::string::npos) << "the time of the guard";
+  std::string large = text;
+  std::string const file = "file    = \"rotation.csv\"";
+  large.replace(large.find(file), file.size(), file + "\namplitude = -4");
+  write("case.toml", large + "\n[guard]\nsmooth = true\nwrite_inverted = true\n");
+  EXPECT_NE(gridmorph("morph case.toml").out.find("displacements around them are smoothed in"), std::string::npos);
+}
+
 TEST_F(MorphRun, AThresholdThatIsNotMetGivesStatusOneAndTheMesh) {
   std::string text = contents(path("rotation.toml"));
   write("strict.toml", text + "\n[guard]\nmin_determinant = 0.99\n");

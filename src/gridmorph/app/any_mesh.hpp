@@ -73,8 +73,10 @@ class AnyPlan {
   [[nodiscard]] virtual std::vector<Vec3> displacement(double share) const = 0;
   /// Moves the mesh from its baseline. `times`: gets what this took, where it is wanted.
   virtual void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) = 0;
+  /// Whether relax() does anything.
+  [[nodiscard]] virtual bool guards() const { return true; }
   /// Smooths around cells that came out bad.
-  virtual RelaxReport relax(Coordinates& /*morphed*/) const { return {}; }
+  [[nodiscard]] virtual RelaxReport relax(Coordinates& morphed) const = 0;
   /// The same motion in several steps, each planned on the mesh before it; nothing where this plan has but one.
   [[nodiscard]] virtual std::optional<Coordinates> morph_in_steps(
       std::vector<Vec3> const& /*displacement*/, int /*steps*/,
@@ -111,7 +113,7 @@ std::vector<std::string> mapping_notes(CaseFile const& case_file);
 struct KindTraits {
   std::string cells;        ///< "cells" or "elements"
   std::string planning;     ///< what is said while planning
-  bool guards;              ///< whether relax() does anything
+  std::string lost;         ///< what relax() finds: "elements had lost ..."
   std::string change;       ///< what helps where cells are inverted: in one morph
   std::string change_many;  ///< and in a sequence
   std::vector<double>

@@ -3,6 +3,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/guard/shape_smoothing.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/trim_note.hpp>
@@ -48,6 +49,12 @@ class BlockPlan final : public AnyPlan {
     if (!morpher_) morpher_.emplace(exec_, prepared_.plan(), mesh_.coordinates());
     apply_on_host(*morpher_, displacement, morphed);
     if (times != nullptr) times->push_back({"morph", watch.lap(), true});
+  }
+
+  [[nodiscard]] bool guards() const override { return case_file_.guard.smooth; }
+  [[nodiscard]] RelaxReport relax(Coordinates& morphed) const override {
+    ShapeSmoothingReport const report = smooth_shapes(exec_, prepared_, mesh_.handedness(), morphed);
+    return {report.triggered_before, report.triggered_after, report.rounds};
   }
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {

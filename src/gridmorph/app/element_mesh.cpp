@@ -26,7 +26,7 @@ constexpr std::array element_fields{Measure::aspect_ratio, Measure::determinant_
 KindTraits const& ElementMesh::traits() {
   static KindTraits const traits{.cells = "elements",
                                  .planning = "finding wrap and layers, making the background mesh, locating nodes",
-                                 .guards = true,
+                                 .lost = "elements had lost four fifths of their determinant or more",
                                  .change = "change [near_field], set steps",
                                  .change_many = "[near_field] or [boundary_layer]",
                                  .costs = {25, 40, 1, 2, 8, 10, 15}};

@@ -78,7 +78,7 @@ RelaxReport Run::morph(Moment const* when, StepTimes* took) {
   }
   plan_->morph(displacement_, result_.morphed, took);
   watch.lap();
-  if (!mesh_->kind().guards) return {};
+  if (!plan_->guards()) return {};
   if (took != nullptr) terminal_.progress("looking for bad " + mesh_->kind().cells);
   RelaxReport const report = plan_->relax(result_.morphed);
   if (took != nullptr) took->push_back({"guard", watch.lap(), true});
@@ -138,7 +138,7 @@ ValidShare Run::largest_valid_share() {
     int const percent = (low + high) / 2;
     terminal_.progress(fmt::format("looking for how much of the motion is valid: {} %", percent));
     plan_->morph(plan_->displacement(percent / 100.0), moved, nullptr);
-    if (mesh_->kind().guards) (void)plan_->relax(moved);
+    if (plan_->guards()) (void)plan_->relax(moved);
     QualityReport const quality = plan_->measure(wanted);
     if (newly_inverted(quality) == 0) {
       low = out.percent = percent;
@@ -235,10 +235,8 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   RelaxReport const relaxed = run.morph(nullptr, &run.times);
   run.notes = run.plan().notes();
   if (relaxed.before > 0)
-    run.notes.push_back(fmt::format(
-        "{} elements had lost four fifths of their determinant or more; displacements around them are smoothed in {} "
-        "rounds, {} are left",
-        relaxed.before, relaxed.rounds, relaxed.after));
+    run.notes.push_back(fmt::format("{} {}; displacements around them are smoothed in {} rounds, {} are left",
+                                    relaxed.before, run.mesh().kind().lost, relaxed.rounds, relaxed.after));
   terminal.progress("measuring quality");
   Stopwatch watch;
   run.measure_baseline();

@@ -149,14 +149,12 @@ std::string shortfall_text(std::vector<StepResult> const& results) {
 }
 
 /// What the guard did in the steps.
-std::vector<std::string> guard_notes(Index relaxed, std::map<int, std::string> const& stepped) {
+std::vector<std::string> guard_notes(Index relaxed, std::string const& lost,
+                                     std::map<int, std::string> const& stepped) {
   constexpr std::size_t most_notes = 8;  // of more of them the number
   std::vector<std::string> notes;
   if (relaxed > 0)
-    notes.push_back(
-        fmt::format("in a step up to {} elements had lost four fifths of their determinant or more; "
-                    "displacements around them are smoothed",
-                    relaxed));
+    notes.push_back(fmt::format("in a step up to {} {}; displacements around them are smoothed", relaxed, lost));
   std::size_t shown = 0;
   for (auto const& [step, text] : stepped)
     if (shown++ < most_notes) notes.push_back(fmt::format("step {}: {}", step + 1, text));
@@ -213,7 +211,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
   }
   PlanOutcome const outcome = run.plan().outcome(run.morphed(), worst_quality.fast, false);
   run.notes = run.plan().notes();
-  for (auto& note : guard_notes(relaxed, stepped)) run.notes.push_back(std::move(note));
+  for (auto& note : guard_notes(relaxed, run.mesh().kind().lost, stepped)) run.notes.push_back(std::move(note));
 
   auto const shortfalls = run.shortfalls_of(worst_quality);
   std::string const shortfall = shortfall_text(results);

@@ -28,7 +28,8 @@ enum class QualityMode { automatic, full, fast };
 struct GuardOptions : CellLimits {
   bool write_inverted = false;  ///< write a mesh with inverted cells all the same
   QualityMode quality = QualityMode::automatic;
-  int steps = 4;  ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
+  bool smooth = false;  ///< move nodes where cells of blocks lost their shape
+  int steps = 4;        ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
 };
 
 /// [output]: what comes with the coordinates.

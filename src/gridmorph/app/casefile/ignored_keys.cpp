@@ -44,6 +44,7 @@ class Ignored {
     refuse("mesh", "matching_tolerance", why + ": connections pair nodes there, which are taken as they are paired");
     if (use_.run == CaseUse::Run::sequence)
       refuse("output", "stages", "is for one morph, and a sequence of unstructured meshes writes none");
+    refuse("guard", "smooth", why + ": elements that come out bad are always smoothed around");
     if (case_.background)
       refuse("guard", "steps",
              "plans every step on the mesh before it, and the background mesh of a file fits the first only");
@@ -59,6 +60,7 @@ class Ignored {
 
   void of_wheel() {
     refuse("", "sequence", "is for `gridmorph morph`, and a wheel is made at one time");
+    refuse("guard", "smooth", "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
     if (case_.output_options.displacement) refuse("output", "displacement", "is not written into wheels");
     if (case_.output_options.quality) refuse("output", "quality", "is not written into wheels; the report has it");
   }
