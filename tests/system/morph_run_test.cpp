@@ -152,7 +152,9 @@ TEST_F(MorphRun, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
 }
 
 TEST_F(MorphRun, WhereAMotionIsTooLargeItSaysHowMuchOfItIsValid) {
-  write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndtheta = \"0.2*sin(200*axial)\"\n");
+  write_case("case.toml",
+             "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndtheta = \"0.2*sin(200*axial)\"\n"
+             "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n");
   Outcome const refused = gridmorph("morph case.toml");
   ASSERT_EQ(refused.status, 4) << refused.err;
   std::string const said = "valid up to ";
@@ -177,11 +179,13 @@ TEST_F(MorphRun, WhereAMotionIsTooLargeItSaysHowMuchOfItIsValid) {
 }
 
 TEST_F(MorphRun, AFractionOfAMotionIsThatOfEveryAmplitude) {
-  std::string const rules =
-      "[[motion]]\npatches = [\"blade\"]\nrule = \"rigid\"\nrotation = { angle_deg = 4, axis = [0, 0, 1], origin = [0, "
-      "0.5, 0] }\n";
+  std::string const blade =
+      "[[motion]]\npatches = [\"blade\"]\nrule = \"rigid\"\nrotation = { angle_deg = 4, axis = [1, 0, 0], origin = [0, "
+      "0, 0] }\n";
+  std::string const slip = "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n";
+  std::string const rules = blade + slip;
   write_case("whole.toml", rules);
-  write_case("half.toml", rules + "amplitude = 0.5\n");
+  write_case("half.toml", blade + "amplitude = 0.5\n" + slip);
   ASSERT_LE(gridmorph("morph half.toml").status, 1);
   Mesh const half = read_mesh(path("out.cgns").string());
   ASSERT_LE(gridmorph("morph whole.toml --fraction 0.5").status, 1);
