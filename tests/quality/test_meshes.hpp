@@ -38,6 +38,18 @@ inline Vec3 wavy(Vec3 const& p, double amplitude) {
          amplitude * Vec3{std::sin(5 * p.y + 3 * p.z + 1), std::cos(4 * p.x - 2 * p.z), std::sin(3 * p.x + 6 * p.y)};
 }
 
+/// Two zones, the second left-handed, more cells than one chunk holds.
+inline Mesh two_handed_zones() {
+  Mesh mesh;
+  mesh.source = "two_handed_zones";
+  mesh.add_zone("right", {23, 11, 9});
+  mesh.add_zone("left", {7, 6, 14});
+  mesh.coordinates = Coordinates(mesh.n_nodes());
+  fill(mesh, 0, [](Index3 const& i) { return wavy({i[0] * 0.1, i[1] * 0.1, i[2] * 0.1}, 0.01); });
+  fill(mesh, 1, [](Index3 const& i) { return wavy({4 - i[0] * 0.1, i[1] * 0.1, i[2] * 0.1}, 0.01); });
+  return mesh;
+}
+
 /// A wavy box of 9 x 6 x 5 nodes' spacing cut into two zones at i = `cut`; the second zone's indices are turned by
 /// `orientation` (one of the 48 signed permutations), and an interface joins them.
 inline Mesh two_zones(Orientation const& orientation, bool both_sides, double amplitude = 0.04) {

@@ -16,18 +16,6 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-/// Two zones, the second left-handed, more cells than one chunk holds.
-Mesh two_zones() {
-  Mesh mesh;
-  mesh.source = "two_zones";
-  mesh.add_zone("right", {23, 11, 9});
-  mesh.add_zone("left", {7, 6, 14});
-  mesh.coordinates = Coordinates(mesh.n_nodes());
-  fill(mesh, 0, [](Index3 const& i) { return wavy({i[0] * 0.1, i[1] * 0.1, i[2] * 0.1}, 0.01); });
-  fill(mesh, 1, [](Index3 const& i) { return wavy({4 - i[0] * 0.1, i[1] * 0.1, i[2] * 0.1}, 0.01); });
-  return mesh;
-}
-
 /// Moved so far that some cells are inverted.
 Coordinates crumpled(Mesh const& mesh) {
   Coordinates x(mesh.n_nodes());
@@ -61,7 +49,7 @@ Validity expected(Mesh const& mesh, Coordinates const& x) {
 }
 
 TEST(Validity, AgreesWithTheReportBitForBit) {
-  Mesh const mesh = two_zones();
+  Mesh const mesh = two_handed_zones();
   ValidityCheck<Exec> const validity(Exec(), mesh);
   Coordinates const moved = crumpled(mesh);
   for (Coordinates const& x : {mesh.coordinates, moved, mesh.coordinates}) {
@@ -74,7 +62,7 @@ TEST(Validity, AgreesWithTheReportBitForBit) {
 }
 
 TEST(Validity, ReadsCoordinatesInAnyLayout) {
-  Mesh const mesh = two_zones();
+  Mesh const mesh = two_handed_zones();
   ValidityCheck<Exec> const validity(Exec(), mesh);
   Coordinates const moved = crumpled(mesh);
   std::vector<Kokkos::View<double****, Kokkos::LayoutRight, Kokkos::HostSpace>> zones;
@@ -93,7 +81,7 @@ TEST(Validity, ReadsCoordinatesInAnyLayout) {
 }
 
 TEST(Validity, OfElementsIsThatOfTheSameCells) {
-  Mesh const mesh = two_zones();
+  Mesh const mesh = two_handed_zones();
   Mesh const elements = as_hexahedra(mesh);
   ValidityCheck<Exec> const validity(Exec(), elements, make_topology(elements));
   for (Coordinates const& x : {mesh.coordinates, crumpled(mesh)}) {
@@ -104,7 +92,7 @@ TEST(Validity, OfElementsIsThatOfTheSameCells) {
 }
 
 TEST(Validity, CountsCellsWithoutNumbersAndRefusesOtherMeshes) {
-  Mesh const mesh = two_zones();
+  Mesh const mesh = two_handed_zones();
   ValidityCheck<Exec> const validity(Exec(), mesh);
   Coordinates x = crumpled(mesh);
   Kokkos::deep_copy(x.x, mesh.coordinates.x);

@@ -1,3 +1,4 @@
+#include <gridmorph/plan/blocks/host_lines.hpp>
 #include <gridmorph/plan/blocks/side_tables.hpp>
 
 #include <algorithm>
@@ -168,11 +169,7 @@ void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout
   }
   kernels::Field<double const> const x{mesh.coordinates.x.data(), mesh.coordinates.y.data(), mesh.coordinates.z.data()};
   // The same walk as the kernels', on borrowed host tables, so that t is the same number.
-  using Host = Kokkos::HostSpace;
-  kernels::LineTable<Host> table;
-  table.chains = Kokkos::View<kernels::Chain const*, Host>(stage.lines.chains.data(), stage.lines.chains.size());
-  table.segments =
-      Kokkos::View<kernels::Segment const*, Host>(stage.lines.segments.data(), stage.lines.segments.size());
+  kernels::LineTable<Kokkos::HostSpace> const table = host_lines(stage.lines);
   for (kernels::Tube const& tube : stage.lines.tubes) {
     if (tube.chain != number) continue;
     auto add_line = [&](int q, int a, int b) {

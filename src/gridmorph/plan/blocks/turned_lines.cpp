@@ -1,3 +1,4 @@
+#include <gridmorph/plan/blocks/host_lines.hpp>
 #include <gridmorph/plan/blocks/turned_lines.hpp>
 #include <gridmorph/plan/blocks/wall_roots.hpp>
 
@@ -94,11 +95,7 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
 
   kernels::Field<double const> const x{context.mesh.coordinates.x.data(), context.mesh.coordinates.y.data(),
                                        context.mesh.coordinates.z.data()};
-  using Host = Kokkos::HostSpace;
-  kernels::LineTable<Host> table;
-  table.chains = Kokkos::View<kernels::Chain const*, Host>(stage.lines.chains.data(), stage.lines.chains.size());
-  table.segments =
-      Kokkos::View<kernels::Segment const*, Host>(stage.lines.segments.data(), stage.lines.segments.size());
+  kernels::LineTable<Kokkos::HostSpace> const table = host_lines(stage.lines);
   for (kernels::Tube const& tube : stage.lines.tubes) {
     if (tube.chain != number) continue;
     kernels::Segment const& segment = stage.lines.segments[tube.first_segment];
