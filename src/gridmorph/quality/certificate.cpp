@@ -1,10 +1,8 @@
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
 #include <gridmorph/quality/certificate.hpp>
-#include <gridmorph/quality/detail/zone_cells.hpp>
+#include <gridmorph/quality/detail/partial_sums.hpp>
 #include <gridmorph/quality/element_tables.hpp>
-
-#include <algorithm>
 
 namespace gridmorph {
 
@@ -14,7 +12,7 @@ using kernels::JacobianSign;
 
 /// What one chunk of cells gives.
 struct ChunkCertificate {
-  int cells = 0, zero = 0, negative = 0, undecided = 0, broken = 0;
+  Index cells = 0, zero = 0, negative = 0, undecided = 0, broken = 0;
   Index first = -1;  ///< number of the first broken cell
 
   KOKKOS_INLINE_FUNCTION void take_positive(int count) { cells += count; }
@@ -69,13 +67,6 @@ Kokkos::View<ChunkCertificate*, typename Exec::memory_space> results(Exec const&
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::certify::of_chunk"), n_chunks);
 }
 
-std::pair<int, Index3> block_cell(Mesh const& mesh, std::vector<Index> const& first, Index cell) {
-  int const z = int(std::upper_bound(first.begin(), first.end(), cell) - first.begin()) - 1;
-  Zone const& zone = mesh.zones[std::size_t(z)];
-  Index const n = cell - first[std::size_t(z)], ni = zone.extent[0] - 1, nj = zone.extent[1] - 1;
-  return {z, {int(n % ni), int(n / ni % nj), int(n / (ni * nj))}};
-}
-
 }  // namespace
 
 template <class Exec>
@@ -109,8 +100,7 @@ Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typenam
               });
         }
       });
-  std::vector<Index> const first = first_cells(mesh);
-  return sum_of(exec, of_chunk, [&](Index cell) { return block_cell(mesh, first, cell); });
+  return sum_of(exec, of_chunk, [&](Index cell) { return detail::place_of_cell(mesh, cell); });
 }
 
 template <class Exec>
@@ -139,9 +129,7 @@ Certificate certify(Exec const& exec, Mesh const& mesh, UnstructuredTopology con
                            [&] { return against_baseline ? sign_in(baseline) : JacobianSign::positive; });
         }
       });
-  return sum_of(exec, of_chunk, [&](Index element) {
-    return std::pair(mesh.zone_of_element(element), Index3{int(number_in_file(mesh, element) - 1), 0, 0});
-  });
+  return sum_of(exec, of_chunk, [&](Index element) { return detail::place_of_element(mesh, element); });
 }
 
 #define GRIDMORPH_INSTANTIATE(Exec)                                                                    \

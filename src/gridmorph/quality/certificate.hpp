@@ -18,7 +18,7 @@ struct CertificateInput {
 };
 
 /// Looks at every cell; fences. Deterministic. Cost per cell: 430 flops and its corners read once in blocks, about 1000 flops in elements;
-/// memory: 40 bytes per thousand cells. Throws MeshError for Views that are shorter than the mesh.
+/// memory: 48 bytes per thousand cells. Throws MeshError for Views that are shorter than the mesh.
 template <class Exec>
 Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typename Exec::memory_space> const& input);
 /// Of a mesh with elements.

@@ -191,9 +191,7 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTo
   auto const sums = measure_elements(exec, mesh, topology, input, signs);
   QualityReport report;
   detail::combine(sums.size(), sums.data(), report.near_field, report.far_field,
-                  [&](Index element) -> detail::CellPlace {
-                    return {mesh.zone_of_element(element), {int(number_in_file(mesh, element) - 1), 0, 0}};
-                  });
+                  [&](Index element) { return detail::place_of_element(mesh, element); });
   if (input.fast) {
     detail::keep_verdict(report);
   } else {

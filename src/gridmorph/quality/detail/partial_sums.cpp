@@ -1,3 +1,4 @@
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/quality/detail/partial_sums.hpp>
 
 #include <algorithm>
@@ -27,11 +28,17 @@ void add(MeasureStatistics& total, PartialMeasure const& part, bool larger_is_wo
 
 void combine(Mesh const& mesh, std::vector<kernels::CellChunk> const& chunks, PartialSums const* sums,
              QualityRegion& near_field, QualityRegion& far_field) {
+  combine(chunks.size(), sums, near_field, far_field, [&](Index cell) { return place_of_cell(mesh, cell); });
+}
+
+CellPlace place_of_cell(Mesh const& mesh, Index cell) {
   std::vector<Index> const first = first_cells(mesh);
-  combine(chunks.size(), sums, near_field, far_field, [&](Index cell) -> CellPlace {
-    int const zone = int(std::upper_bound(first.begin(), first.end(), cell) - first.begin()) - 1;
-    return {zone, cell_index(mesh.zones[zone], cell - first[zone])};
-  });
+  int const zone = int(std::upper_bound(first.begin(), first.end(), cell) - first.begin()) - 1;
+  return {zone, cell_index(mesh.zones[zone], cell - first[zone])};
+}
+
+CellPlace place_of_element(Mesh const& mesh, Index element) {
+  return {mesh.zone_of_element(element), {int(number_in_file(mesh, element) - 1), 0, 0}};
 }
 
 void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_field, QualityRegion& far_field,

@@ -152,6 +152,9 @@ struct CellPlace {
   int zone;
   Index3 cell;
 };
+/// Of the cell of blocks with this number (first_cells()). Cost: O(zones).
+CellPlace place_of_cell(Mesh const& mesh, Index cell);
+CellPlace place_of_element(Mesh const& mesh, Index element);
 
 /// The same for any cells, whose places are asked for where they are the worst.
 void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_field, QualityRegion& far_field,
