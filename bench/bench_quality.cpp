@@ -5,7 +5,7 @@
 //   min_determinant   the smallest 3x3x3 determinant alone                   24 bytes per node
 //   certify           the sign of the Jacobian everywhere in each cell         24 bytes per node
 //
-// About 960, 530 and 430 flops per cell (kernels/gridmorph/kernels/regular_cell.hpp, jacobian_bounds.hpp), 20 per byte: arithmetic sets the time, not
+// About 960, 530 and 260 flops per cell (kernels/gridmorph/kernels/regular_cell.hpp, jacobian_bounds.hpp), 20 per byte: arithmetic sets the time, not
 // memory. "read share": bytes per second over those of reading three arrays of this size, measured in the same run.
 #include "bench.hpp"
 #include "roof.hpp"

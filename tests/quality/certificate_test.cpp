@@ -170,6 +170,71 @@ TEST(JacobianBounds, CollapsedCellsAreZeroAndNotNegative) {
   EXPECT_EQ(kernels::jacobian_sign(wedge, 1), JacobianSign::negative);
 }
 
+TEST(JacobianBounds, TheFloorLiesBelowAllSamplesAndOnThemInParallelepipeds) {
+  std::mt19937 random(6);
+  int told = 0;
+  for (int n = 0; n < 1200; ++n) {
+    double const amplitude = 0.3 * (n % 6) / 5;
+    kernels::HexCell const cell = random_cell(random, amplitude, {1, n % 3 == 0 ? 1e-4 : 0.7, n % 2 == 0 ? 30.0 : 2.0});
+    auto const edges = kernels::cell_edges<double>([&](int i, int j, int k) {
+      Vec3 const& p = cell.corner[i + 2 * j + 4 * k];
+      return kernels::LaneVec3<double>(p.x, p.y, p.z);
+    });
+    for (double const handedness : {1.0, -1.0}) {
+      auto const floor = kernels::jacobian_floor(edges, handedness);
+      Corners const c = corners_of(cell);
+      double least = std::numeric_limits<double>::infinity(), largest = 0;
+      for (int m = 0; m < 125; ++m) {
+        double const j = jacobian(c, m % 5 / 4.0, m / 5 % 5 / 4.0, m / 25 / 4.0);
+        least = std::min(least, handedness * j);
+        largest = std::max(largest, std::abs(j));
+      }
+      EXPECT_LE(floor.least / 64, least + 1e-13 * largest);
+      if (amplitude == 0) {
+        EXPECT_NEAR(floor.least / 64, least, 1e-13 * largest);
+      }
+      if (!(floor.least > floor.arithmetic)) continue;
+      ++told;
+      EXPECT_EQ(kernels::jacobian_sign(cell, handedness), JacobianSign::positive);
+    }
+  }
+  EXPECT_GT(told, 300);
+}
+
+TEST(JacobianBounds, RowsMarkTheCellsWhoseCoefficientsAreNotAllPositive) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off(-1, 1);
+  int marks = 0, clear = 0, doubtful_floor = 0;
+  for (int count = 1; count <= 20; ++count)
+    for (double const amplitude : {0.05, 0.2, 0.4}) {
+      std::vector<double> x, y, z;
+      for (int n = 0; n < 4 * (count + 1); ++n) {
+        x.push_back(n % (count + 1) + amplitude * off(random));
+        y.push_back(3 * (n / (count + 1) % 2 + amplitude * off(random)));
+        z.push_back(0.01 * (n / (count + 1) / 2 + amplitude * off(random)));
+      }
+      kernels::CellRow const row{x.data(), y.data(), z.data(), count + 1, 2 * (count + 1), count, 1};
+      std::vector<double> mark(std::size_t(count), -1), by_one(std::size_t(count), -1);
+      kernels::row_jacobian_signs<kernels::native_lanes>(row, mark.data());
+      kernels::row_jacobian_signs<1>(row, by_one.data());
+      EXPECT_EQ(mark, by_one);
+      for (int n = 0; n < count; ++n) {
+        auto const floor = kernels::jacobian_floor(row.edges<double>(n), 1.0);
+        doubtful_floor += floor.least > floor.arithmetic ? 0 : 1;
+        if (mark[std::size_t(n)] == 0) {
+          EXPECT_EQ(kernels::jacobian_sign(row.cell(n), 1), JacobianSign::positive);
+        }
+        (mark[std::size_t(n)] == 0 ? clear : marks)++;
+      }
+      x[0] = std::numeric_limits<double>::quiet_NaN();
+      kernels::row_jacobian_signs<kernels::native_lanes>(row, mark.data());
+      EXPECT_EQ(mark[0], 1) << "a corner that is no number";
+    }
+  EXPECT_GT(marks, 20);
+  EXPECT_GT(clear, 200);
+  EXPECT_GT(doubtful_floor, 2 * marks) << "cells of which only the coefficients tell";
+}
+
 Coordinates crumpled(Mesh const& mesh, double amplitude) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> off(-amplitude, amplitude);
@@ -205,6 +270,15 @@ TEST(Certificate, CountsEveryCellAsTheFunctionForOneCellDoes) {
     EXPECT_EQ(found.negative, negative);
     EXPECT_EQ(found.broken.cells, negative) << "all are sound in the baseline";
     EXPECT_EQ(found.holds(), negative == 0);
+    Index by_zone = 0, cells_by_zone = 0;
+    for (int z = 0; z < 2; ++z) {
+      Certificate const of_zone = certify(Exec(), mesh, {views(x), views(mesh.coordinates), {}, {}, {z}});
+      cells_by_zone += of_zone.cells;
+      by_zone += of_zone.negative;
+      EXPECT_TRUE(of_zone.holds() || of_zone.broken.worst_zone == z);
+    }
+    EXPECT_EQ(cells_by_zone, cells);
+    EXPECT_EQ(by_zone, negative);
     EXPECT_EQ(negative == 0, amplitude < 0.03);
     if (negative == 0) continue;
     EXPECT_EQ(found.broken.worst_zone, first_zone);

@@ -3,6 +3,7 @@
 #include "wheel/wheel_run.hpp"
 
 #include <generators/passage_demo.hpp>
+#include <nlohmann/json.hpp>
 
 namespace gridmorph::test {
 namespace {
@@ -95,6 +96,31 @@ TEST_F(PassageWheel, OfEqualBladesIsTheMorphedPassageTurned) {
   wheel.expect_watertight();
   Mesh const one = morphed();
   for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_from(wheel, p, n_blades, one), 1e-14 * size()) << p;
+}
+
+TEST_F(PassageWheel, IsCertifiedAsItIsWritten) {
+  std::string const factors = "factors = [1, 1, 1, -40, 1, 1, 1, 1]\n[output]\nreport = \"report.json\"\n";
+  for (bool const sound : {true, false}) {
+    if (sound)
+      (void)wheel("passage.toml", "[output]\nreport = \"report.json\"\n");
+    else
+      (void)wheel("passage.toml", factors + "[guard]\nwrite_inverted = true\n", 1);
+    auto const json = nlohmann::json::parse(text("report.json"));
+    auto const& certificate = json["certificate"];
+    Index cells = 0, negative = 0;
+    for (auto const& passage : json["passages"]) {
+      cells += passage["quality"]["certificate"]["cells"].get<Index>();
+      negative += passage["quality"]["certificate"]["negative"].get<Index>();
+    }
+    EXPECT_EQ(certificate["cells"], cells);
+    EXPECT_EQ(certificate["negative"], negative);
+    EXPECT_EQ(certificate["holds"], sound);
+    EXPECT_EQ(negative == 0, sound);
+    EXPECT_NE(text("out").find("certificate: the Jacobian of "), std::string::npos);
+    if (sound) continue;
+    std::string const zone = certificate["broken"]["first"]["zone"];
+    EXPECT_TRUE(zone.ends_with("_P03") || zone.ends_with("_P04") || zone.ends_with("_P05")) << zone;
+  }
 }
 
 TEST_F(PassageWheel, WithoutMotionIsTheBaselineTurned) {

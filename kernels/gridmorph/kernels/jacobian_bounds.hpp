@@ -12,6 +12,9 @@
 //
 //   f = (2 sum of 4 e - sum of 4 c) / 4,     m = (2 sum of 4 f - sum of 4 e) / 4 in the layer between two sides
 //
+// In rows of cells a looser bound comes first, J at the centre less what the other terms can take away (jacobian_floor()); most cells
+// are that close to parallelepipeds, and nothing else is needed.
+//
 // Prism: of degree 1 in the triangle and 2 along the columns, so a quadratic along each column decides. Pyramid: the factor
 // (1 - t)^2 left out as in element_quality.hpp, of degree 2 in both directions of the base. Tetrahedra have one J.
 //
@@ -19,8 +22,8 @@
 // edges: what is called valid lies above that. What lies below zero by less than jacobian_tolerance() is zero as far as
 // coordinates can tell, as in cell_quality.hpp.
 //
-// Cost per hexahedron of a row: about 430 flops and its corners read once. Others, and those that have to be looked at twice,
-// about 1000, and 600 for each time they are halved.
+// Cost per hexahedron of a row: about 260 flops and its corners read once; 450 more where the looser bound does not tell. Others, and those that
+// have to be looked at twice, about 1000, and 600 for each time they are halved.
 #pragma once
 
 #include <gridmorph/kernels/cell_row.hpp>
@@ -105,8 +108,8 @@ KOKKOS_INLINE_FUNCTION JacobianSign sign_of(BezierCube const& whole, double arit
   return sign;
 }
 
-/// What both cells beside a plane of constant i share: edges along j at k = 0, 1 and along k at j = 0, 1, their cross products at
-/// the corners, and the squares of the longest.
+/// Of a plane of constant i: edges along j at k = 0, 1 and along k at j = 0, 1, their cross products at the corners, and the squares
+/// of the longest.
 template <class T>
 struct PlaneNormals {
   LaneVec3<T> j0, j1, k0, k1;
@@ -124,30 +127,6 @@ struct PlaneNormals {
         n11(cross(e.j1, e.k1)),
         square_j(larger(dot(e.j0, e.j0), dot(e.j1, e.j1))),
         square_k(larger(dot(e.k0, e.k0), dot(e.k1, e.k1))) {}
-
-  /// As store() left them.
-  template <int N>
-  KOKKOS_FORCEINLINE_FUNCTION PlaneNormals(RowPlanes<26, N> const& p, int n)
-      : j0(p.template get_vector<T>(0, n)),
-        j1(p.template get_vector<T>(3, n)),
-        k0(p.template get_vector<T>(6, n)),
-        k1(p.template get_vector<T>(9, n)),
-        n00(p.template get_vector<T>(12, n)),
-        n10(p.template get_vector<T>(15, n)),
-        n01(p.template get_vector<T>(18, n)),
-        n11(p.template get_vector<T>(21, n)),
-        square_j(p.template get<T>(24, n)),
-        square_k(p.template get<T>(25, n)) {}
-  template <int N>
-  KOKKOS_FORCEINLINE_FUNCTION void store(RowPlanes<26, N>& p, int n) const {
-    int at = 0;
-    for (auto const* v : {&j0, &j1, &k0, &k1, &n00, &n10, &n01, &n11}) {
-      p.set(at, n, *v);
-      at += 3;
-    }
-    p.set(24, n, square_j);
-    p.set(25, n, square_k);
-  }
 };
 
 /// Coefficients in a plane: 4 at corners, twice those of its edges along j and k, 4 times that of the face.
@@ -232,27 +211,73 @@ KOKKOS_INLINE_FUNCTION JacobianSign jacobian_sign(HexCell const& cell, double ha
   return sign_of(b, sign_share * la * lb * lc, jacobian_tolerance(la, lb, lc, largest_component(cell.corner, 8)));
 }
 
+/// A lower bound of J, and what rounding may do to it and to the coefficients above; both times 64.
+template <class T>
+struct JacobianFloor {
+  T least, arithmetic;
+};
+
+template <class T>
+KOKKOS_FORCEINLINE_FUNCTION T absolute(T const& a) {
+  return a < 0 ? -a : a;
+}
+/// |x| + |y| + |z|, no less than the length.
+template <class T>
+KOKKOS_FORCEINLINE_FUNCTION T sum_norm(LaneVec3<T> const& a) {
+  return (absolute(a.x) + absolute(a.y)) + absolute(a.z);
+}
+
+/// With coordinates from -1 to 1, 8 x = ... + A xi + B eta + C zeta + P xi eta + Q xi zeta + R eta zeta + S xi eta zeta. Then 64 J is
+/// A . (B x C) and monomials, none of them larger anywhere than its coefficient: those of xi, eta, zeta as they are, others
+/// no larger than the norms of their vectors allow. Loose where cells are far from parallelepipeds; 200 flops.
+template <class T>
+KOKKOS_FORCEINLINE_FUNCTION JacobianFloor<T> jacobian_floor(CellEdges<T> const& e, T const& handedness) {
+  LaneVec3<T> const i0 = e.i.v00 + e.i.v10, i1 = e.i.v01 + e.i.v11, d0 = e.i.v10 - e.i.v00, d1 = e.i.v11 - e.i.v01;
+  LaneVec3<T> const j0 = e.j.v00 + e.j.v10, j1 = e.j.v01 + e.j.v11;
+  LaneVec3<T> const a = i0 + i1, b = j0 + j1, c = (e.k.v00 + e.k.v10) + (e.k.v01 + e.k.v11);
+  LaneVec3<T> const p = d0 + d1, q = i1 - i0, r = j1 - j0, s = d1 - d0;
+  LaneVec3<T> const bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+  T const na = sum_norm(a), nb = sum_norm(b), nc = sum_norm(c);
+  T const np = sum_norm(p), nq = sum_norm(q), nr = sum_norm(r), ns = sum_norm(s);
+  T const first =
+      (absolute(dot(ca, p) + dot(ab, q)) + absolute(dot(bc, p) + dot(ab, r))) + absolute(dot(bc, q) + dot(ca, r));
+  T const with_s = (absolute(dot(bc, s)) + absolute(dot(ca, s))) + absolute(dot(ab, s));
+  T const higher = ((na + nb) + (nc + ns)) * (np * (nq + nr) + nq * nr) + 2 * np * nq * nr +
+                   ns * (na * (np + nq) + nb * (np + nr) + nc * (nq + nr));
+  // Edges are (A +- P +- Q +- S) / 4 and so on.
+  T const edges = ((na + np) + (nq + ns)) * ((nb + np) + (nr + ns)) * ((nc + nq) + (nr + ns));
+  return {handedness * dot(a, bc) - ((first + with_s) + higher), broadcast<T>(16 * sign_share) * edges};
+}
+
+/// 0 where all coefficients of cells are positive, 1 where one is not or may be round-off.
+template <class T>
+KOKKOS_FORCEINLINE_FUNCTION T doubtful_coefficients(CellEdges<T> const& e, T const& handedness) {
+  PlaneNormals<T> const low({e.j.v00, e.j.v01, e.k.v00, e.k.v01}), high({e.j.v10, e.j.v11, e.k.v10, e.k.v11});
+  FourVectors<T> const a{handedness * e.i.v00, handedness * e.i.v10, handedness * e.i.v01, handedness * e.i.v11};
+  T least = dot(a.v00, low.n00), centre = least;
+  hex_coefficients(a, low, high, [&](int i, int j, int k, T const& value) {
+    least = smaller(least, value);
+    if (i == 1 && j == 1 && k == 1) centre = value;
+  });
+  // All corners enter the centre; extremes may drop what is no number.
+  T const squares = longest_square(e.i) * larger(low.square_j, high.square_j) * larger(low.square_k, high.square_k) +
+                    (centre - centre);
+  T const clear = least > 0 ? least * least : broadcast<T>(-1);
+  // What is no number compares as false.
+  return clear > broadcast<T>(sign_share * sign_share) * squares ? broadcast<T>(0) : broadcast<T>(1);
+}
+
 /// mark[n]: 0 where the Jacobian of cell n is positive everywhere, 1 where jacobian_sign() has to tell.
-template <int W, int N>
-KOKKOS_INLINE_FUNCTION void row_jacobian_signs(CellRow const& row, double (&mark)[N]) {
-  RowPlanes<26, N> planes;
-  for_each_lanes<W>(row.count + 1, [&]<class T>(int n) { PlaneNormals<T>(row.plane_edges<T>(n)).store(planes, n); });
+template <int W>
+KOKKOS_INLINE_FUNCTION void row_jacobian_signs(CellRow const& row, double* mark) {
   for_each_lanes<W>(row.count, [&]<class T>(int n) {
-    FourVectors<T> const a = row.i_edges<T>(n);
-    PlaneNormals<T> const low(planes, n), high(planes, n + 1);
-    T const sign = broadcast<T>(row.handedness);
-    T least = sign * dot(a.v00, low.n00), centre = least;
-    hex_coefficients(a, low, high, [&](int i, int j, int k, T const& value) {
-      least = smaller(least, sign * value);
-      if (i == 1 && j == 1 && k == 1) centre = value;
-    });
-    // All corners enter the centre; extremes may drop what is no number.
-    T const squares = longest_square(a) * larger(low.square_j, high.square_j) * larger(low.square_k, high.square_k) +
-                      (centre - centre);
-    T const limit = broadcast<T>(sign_share * sign_share) * squares;
-    T const clear = least > 0 ? least * least : broadcast<T>(-1);
-    // What is no number compares as false.
-    store_lanes(mark + n, clear > limit ? broadcast<T>(0) : broadcast<T>(1));
+    CellEdges<T> const edges = row.edges<T>(n);
+    T const handedness = broadcast<T>(row.handedness);
+    JacobianFloor<T> const floor = jacobian_floor(edges, handedness);
+    store_lanes(mark + n, floor.least > floor.arithmetic ? broadcast<T>(0) : broadcast<T>(1));
+    double marked = 0;
+    for (int m = 0; m < lane_count<T>; ++m) marked += mark[n + m];
+    if (marked != 0) store_lanes(mark + n, doubtful_coefficients(row.edges<T>(n), handedness));
   });
 }
 

@@ -258,7 +258,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
 
   bool const written = newly_inverted(run.quality()) == 0 || case_file.guard.write_inverted;
   std::string advice = "move the boundary less, " + file.traits().change;
-  if (newly_inverted(run.quality()) > 0) {
+  if (!written) {
     ValidShare const share = run.largest_valid_share();
     if (share.percent > 0)
       advice = fmt::format("morph what is valid with --fraction {:.2f}, ", share.percent / 100.0) + advice;

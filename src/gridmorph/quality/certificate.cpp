@@ -4,6 +4,8 @@
 #include <gridmorph/quality/detail/partial_sums.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
+#include <algorithm>
+
 namespace gridmorph {
 
 namespace {
@@ -76,7 +78,9 @@ Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typenam
   auto const coordinates = input.coordinates, baseline = against_baseline ? input.baseline : input.coordinates;
   std::vector<int> const handedness =
       input.handedness.size() == mesh.zones.size() ? input.handedness : zone_handedness(exec, mesh, baseline);
-  std::vector<kernels::CellChunk> const table = detail::chunks_of(mesh);
+  std::vector<kernels::CellChunk> table = detail::chunks_of(mesh);
+  if (!input.zones.empty())
+    std::erase_if(table, [&](auto const& chunk) { return !std::ranges::count(input.zones, chunk.zone); });
   auto const zones = detail::upload(exec, "gridmorph::certify::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::certify::chunks", table);
   auto const of_chunk = results(exec, table.size());

@@ -120,7 +120,9 @@ json definitions(bool unstructured) {
   return list;
 }
 
-json certificate_json(QualityReport const& report) {
+}  // namespace
+
+nlohmann::json certificate_json(QualityReport const& report) {
   Certificate const& c = *report.certificate;
   json out{{"cells", c.cells},         {"zero", c.zero},     {"negative", c.negative},
            {"undecided", c.undecided}, {"holds", c.holds()}, {"broken", {{"cells", c.broken.cells}}}};
@@ -132,8 +134,6 @@ json certificate_json(QualityReport const& report) {
   out["broken"]["first"].erase("value");
   return out;
 }
-
-}  // namespace
 
 void to_json(nlohmann::json& json, QualityReport const& report) {
   json = {{"near_field", region_json(report, report.near_field)},

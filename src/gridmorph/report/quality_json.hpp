@@ -15,6 +15,9 @@ namespace gridmorph {
 /// bound are null.
 void to_json(nlohmann::json& json, QualityReport const& report);
 
+/// What of it is said of the certificate, which it must have: {"cells", "zero", "negative", "undecided", "holds", "broken": {"cells", "first"}}.
+nlohmann::json certificate_json(QualityReport const& report);
+
 /// The whole: "definitions" (formula of each measure), "baseline" (if it has cells), "morphed" (if given), "thresholds",
 /// "shortfalls".
 nlohmann::json quality_json(QualityReport const& baseline, std::optional<QualityReport> const& morphed,

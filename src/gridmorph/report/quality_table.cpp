@@ -60,26 +60,6 @@ void heading(std::string& out, std::string_view title, std::vector<Column> const
   out += '\n';
 }
 
-/// Of how many cells the Jacobian is not positive everywhere, and which is the first that was sound in the baseline.
-std::string certificate_text(QualityReport const& report) {
-  Certificate const& c = *report.certificate;
-  Index const bad = c.negative + c.undecided;
-  std::string_view const cells = report.unstructured ? "elements" : "cells";
-  std::string text =
-      bad == 0 ? fmt::format("certificate: the Jacobian of all {} {} is positive everywhere", c.cells, cells)
-               : fmt::format("certificate: the Jacobian of {} of {} {} is negative somewhere", bad, c.cells, cells);
-  if (c.zero > 0) text += fmt::format(", as far as coordinates can tell zero on {} of them", c.zero);
-  if (!c.holds()) {
-    MeasureStatistics first;
-    first.worst_zone = c.broken.worst_zone;
-    first.worst_cell = c.broken.worst_cell;
-    text += fmt::format("; {} were sound in the baseline, the first is {}", c.broken.cells, worst_place(report, first));
-  } else if (bad > 0) {
-    text += "; none of them was sound in the baseline";
-  }
-  return text + "\n";
-}
-
 void walls(std::string& out, QualityReport const& baseline, std::optional<QualityReport> const& morphed) {
   if (baseline.wall.nodes == 0) return;
   out += fmt::format("\n{:<30}{:>14}", fmt::format("Walls ({} nodes)", baseline.wall.nodes), "baseline");
@@ -201,6 +181,25 @@ std::string format_table(QualityReport const& baseline, std::optional<QualityRep
   for (Shortfall const& s : list_short)
     out += fmt::format("{}: {}\n", s.severity == Shortfall::Severity::failure ? "falls short" : "warning", s.message);
   return out;
+}
+
+std::string certificate_text(QualityReport const& report) {
+  Certificate const& c = *report.certificate;
+  Index const bad = c.negative + c.undecided;
+  std::string_view const cells = report.unstructured ? "elements" : "cells";
+  std::string text =
+      bad == 0 ? fmt::format("certificate: the Jacobian of all {} {} is positive everywhere", c.cells, cells)
+               : fmt::format("certificate: the Jacobian of {} of {} {} is negative somewhere", bad, c.cells, cells);
+  if (c.zero > 0) text += fmt::format(", as far as coordinates can tell zero on {} of them", c.zero);
+  if (!c.holds()) {
+    MeasureStatistics first;
+    first.worst_zone = c.broken.worst_zone;
+    first.worst_cell = c.broken.worst_cell;
+    text += fmt::format("; {} were sound in the baseline, the first is {}", c.broken.cells, worst_place(report, first));
+  } else if (bad > 0) {
+    text += "; none of them was sound in the baseline";
+  }
+  return text + "\n";
 }
 
 std::string format_short_table(QualityReport const& baseline, std::optional<QualityReport> const& morphed) {

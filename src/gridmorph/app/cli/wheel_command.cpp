@@ -10,6 +10,8 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/wheel/seams.hpp>
 #include <gridmorph/wheel/turn.hpp>
 #include <gridmorph/wheel/wheel_mesh.hpp>
@@ -19,6 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -36,6 +39,20 @@ void turn_zone(Exec const& exec, Zone const& zone, Turn const& turn, Coordinates
       [&](Index n) { to.set(n, turn(from[n])); });
 }
 
+/// Adds what one passage gives; `zones`: numbers in the wheel of the zones of its sector.
+void add_passage(Certificate& wheel, Certificate const& passage, std::map<int, int> const& zones) {
+  if (wheel.holds() && !passage.holds()) {
+    wheel.broken = passage.broken;
+    wheel.broken.worst_zone = zones.at(passage.broken.worst_zone);
+    wheel.broken.cells = 0;
+  }
+  wheel.cells += passage.cells;
+  wheel.zero += passage.zero;
+  wheel.negative += passage.negative;
+  wheel.undecided += passage.undecided;
+  wheel.broken.cells += passage.broken.cells;
+}
+
 /// Morphs, measures, turns and writes a wheel, one passage at a time.
 class WheelRun {
  public:
@@ -50,6 +67,8 @@ class WheelRun {
                                case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
         sector_(mesh_) {
     result_.nodes = wheel_.mesh.n_nodes();
+    result_.whole.certificate.emplace();
+    for (Zone const& zone : wheel_.mesh.zones) result_.whole.zone_names.push_back(zone.name);
     time("read");
   }
 
@@ -89,8 +108,10 @@ class WheelRun {
         result_.passages.push_back(result_.passages.back());
       }
       result_.passages.back().blades = blades_of(p);
+      std::map<int, int> zones;
       for (int n = zone; n < int(wheel_.zones.size()) && wheel_.zones[n].passage == p; ++n) {
         int const z = wheel_.zones[n].zone;
+        zones[z] = n;
         turn_zone(exec_, mesh_.zones[z], Turn(case_.motion.axis, p, rows_.rows[rows_.row_of_zone[z]].passages), morphed,
                   placed);
       }
@@ -98,6 +119,7 @@ class WheelRun {
       for (int r = 0; r < int(seams.size()); ++r)
         if (p < setup_.blades[r].passages) close(seams[r], p, placed);
       time("turn");
+      certify_zones(zones, placed);
       for (; zone < int(wheel_.zones.size()) && wheel_.zones[zone].passage == p; ++zone) {
         Index const first = mesh_.zones[wheel_.zones[zone].zone].first_node;
         writer.write_zone(zone, placed.x.data() + first, placed.y.data() + first, placed.z.data() + first);
@@ -121,6 +143,7 @@ class WheelRun {
     quality_.limits = case_.guard;
     quality_.fast = wants_verdict(case_, mesh_.n_cells());
     result_.baseline = sector_.measure(quality_);
+    handedness_ = zone_handedness(exec_, mesh_, views(mesh_.coordinates));
     time("quality");
   }
 
@@ -142,6 +165,14 @@ class WheelRun {
       worst_of_ = diagnose(case_, for_messages(mesh_), passage.quality, morphed);
     time("quality");
     return passage;
+  }
+
+  /// Of a passage in its place, closed to its neighbours: a turn changes no sign. `zones`: those of the sector that it has.
+  void certify_zones(std::map<int, int> const& zones, Coordinates const& placed) {
+    CertificateInput<Kokkos::HostSpace> input{views(placed), views(mesh_.coordinates), handedness_};
+    for (auto const& [of_sector, of_wheel] : zones) input.zones.push_back(of_sector);
+    add_passage(*result_.whole.certificate, certify(exec_, mesh_, input), zones);
+    time("quality");
   }
 
   [[nodiscard]] std::vector<std::string> blades_of(int passage) const {
@@ -180,17 +211,19 @@ class WheelRun {
   WheelMesh wheel_;
   BlockMesh sector_;  ///< the same mesh, to measure
   QualityWanted quality_;
+  std::vector<int> handedness_;
 };
 
 bool any_inverted(WheelResult const& result) {
-  return std::any_of(result.passages.begin(), result.passages.end(),
-                     [](auto const& p) { return newly_inverted(p.quality) > 0; });
+  return !result.whole.certificate->holds() || std::any_of(result.passages.begin(), result.passages.end(),
+                                                           [](auto const& p) { return newly_inverted(p.quality) > 0; });
 }
 
 std::string text_of(WheelRun const& run, WheelResult const& result) {
   std::string text;
   for (auto const& note : result.notes) text += "note: " + note + "\n";
   text += describe_rows(run.mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
+  text += certificate_text(result.whole);
   text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
                       result.gap.distance);
   return text + "\n" + format_times(result.times, result.nodes);

@@ -81,6 +81,7 @@ nlohmann::json wheel_json(Mesh const& mesh, WheelRows const& rows, WheelSetup co
                                 {"quality", passage.quality},
                                 {"shortfalls", std::move(shortfalls)}});
   }
+  json["certificate"] = certificate_json(result.whole);
   json["largest_seam_gap"] = result.gap.distance;
   json["times"] = times_json(result.times, result.nodes);
   return json;

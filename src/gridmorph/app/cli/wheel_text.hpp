@@ -24,7 +24,8 @@ struct PassageResult {
 struct WheelResult {
   QualityReport baseline;
   std::vector<PassageResult> passages;
-  SeamGap gap;  ///< the largest of all rows
+  QualityReport whole;  ///< of the wheel as it is written: certificate and zone names, nothing else
+  SeamGap gap;          ///< the largest of all rows
   std::vector<std::string> notes;
   StepTimes times;
   Index nodes = 0;  ///< of the wheel
