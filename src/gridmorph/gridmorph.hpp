@@ -8,6 +8,7 @@
 #include <gridmorph/mesh/point_ranges.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/prediction.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>

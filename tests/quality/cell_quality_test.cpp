@@ -68,6 +68,29 @@ TEST(CellQuality, ShearKeepsDeterminantAndVolumeAndTiltsTheAngle) {
   EXPECT_NEAR(m.equiangle_skewness, (90 - angle) / 90, 1e-13);
 }
 
+TEST(CellQuality, ScaledJacobianIsTheVolumeOfUnitEdgesAtTheWorstCorner) {
+  for (double const shear : {0.0, 0.75, -2.0})
+    for (double const mirrored : {1.0, -1.0}) {
+      HexCell const cell = mapped_cube([&](Vec3 const& p) {
+        return Vec3{mirrored * (2 * p.x + shear * p.z), 3 * p.y, p.z};
+      });
+      EXPECT_NEAR(scaled_jacobian(hex_edges(cell), 0, mirrored), 1 / std::hypot(1, shear), 1e-14);
+    }
+  HexCell cell = unit_cube();
+  cell.corner[7] = {0.1, 0.1, 0.1};
+  // The edges that meet there are (b, a, a), (a, b, a), (a, a, b).
+  double const a = -0.9, b = 0.1, length = std::sqrt(2 * a * a + b * b);
+  EXPECT_NEAR(scaled_jacobian(hex_edges(cell), 0, 1), (b - a) * (b - a) * (b + 2 * a) / std::pow(length, 3), 1e-14);
+}
+
+TEST(CellQuality, ScaledJacobianLeavesCornersOfCollapsedEdgesOut) {
+  HexCell wedge = unit_cube();
+  wedge.corner[6] = wedge.corner[4];
+  wedge.corner[7] = wedge.corner[5];
+  kernels::HexEdges const edges = hex_edges(wedge);
+  EXPECT_NEAR(kernels::scaled_jacobian(edges, kernels::collapsed_edges(edges), 1), std::sqrt(0.5), 1e-14);
+}
+
 // Top face turned by t against the bottom face: J(zeta) = (1 - zeta)^2 + zeta^2 + 2 zeta (1 - zeta) cos t.
 TEST(CellQuality, TwistShowsInThe27PointsButNotInTheCorners) {
   for (double const t : {0.2, 1.0, 2.0}) {

@@ -79,6 +79,24 @@ TEST_F(CommandInterface, TheJsonOfAMorphIsItsReport) {
   EXPECT_EQ(printed, written);
 }
 
+TEST_F(CommandInterface, PlansPredictWhatMotionsMakeOfCells) {
+  auto const json = nlohmann::json::parse(gridmorph("--json plan case.toml").out);
+  auto const& prediction = json["prediction"];
+  EXPECT_GT(prediction["cells"], 100);
+  EXPECT_EQ(prediction["inverted"], 0);
+  auto const report = nlohmann::json::parse(gridmorph("--json morph case.toml").out)["morphed"];
+  double const smallest = report["far_field"]["measures"]["determinant_3x3x3"]["min"];
+  EXPECT_GE(prediction["determinant_3x3x3"]["value"], smallest - 1e-9);
+  EXPECT_LE(prediction["scaled_jacobian"]["value"], prediction["chains"][1]["scaled_jacobian"]["value"]);
+
+  std::string const gentle = contents(path("case.toml")), by = "angle_deg = 0.2";
+  write("case.toml", std::string(gentle).replace(gentle.find(by), by.size(), "angle_deg = 25"));
+  Outcome const run = gridmorph("plan case.toml");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.err.find("warning: predicted: "), std::string::npos) << run.err << run.out;
+  EXPECT_NE(run.out.find("\npredicted from "), std::string::npos) << run.out;
+}
+
 TEST_F(CommandInterface, QuietRunsPrintOnlyWhatWasAskedFor) {
   if (test::reduced()) GTEST_SKIP() << "the same runs as with --json";
   for (auto const& [arguments, key] : runs()) {

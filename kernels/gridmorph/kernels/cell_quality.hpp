@@ -9,6 +9,8 @@
 //   aspect ratio  longest / shortest of the 12 edges
 //   angles        between the two edges that meet in each corner of each of the 6 faces (24 angles)
 //   skewness      max((largest angle - 90) / 90, (90 - smallest angle) / 90), angles in degrees
+//   scaled        smallest over the corners of J / product of the lengths of the three edges there
+//   Jacobian
 //   relative      for each grid direction the largest |u_p - u_q| over the 4 edges pq along it, divided by the mean
 //   displacement  baseline length of these edges; the largest of the three directions counts (u: displacement)
 //
@@ -194,6 +196,24 @@ KOKKOS_INLINE_FUNCTION JacobianRange jacobian_range(HexCell const& cell, HexEdge
   r.min27 = without_noise(r.min27, tolerance);
   r.max27 = without_noise(r.max27, tolerance);
   return r;
+}
+
+/// Smallest over the 8 corners of J / product of the lengths of the three edges there: 1 for right angles, whatever the lengths; negative
+/// where the cell is inverted. Corners with a collapsed edge are left out, 1 where all have one; -1 where a corner is not finite.
+KOKKOS_INLINE_FUNCTION double scaled_jacobian(HexEdges const& edges, unsigned collapsed, double handedness) {
+  double smallest = 1;
+  for (int z = 0; z < 2; ++z)
+    for (int e = 0; e < 2; ++e)
+      for (int x = 0; x < 2; ++x) {
+        int const of[3] = {e + 2 * z, x + 2 * z, x + 2 * e};
+        if ((collapsed >> of[0] & 1u) != 0 || (collapsed >> (4 + of[1]) & 1u) != 0 ||
+            (collapsed >> (8 + of[2]) & 1u) != 0)
+          continue;
+        Vec3 const a = edges.of[0][of[0]], b = edges.of[1][of[1]], c = edges.of[2][of[2]];
+        double const value = handedness * dot(cross(a, b), c) / (norm(a) * norm(b) * norm(c));
+        smallest = is_finite(value) ? smaller(smallest, value) : -1.0;
+      }
+  return smallest;
 }
 
 /// The 3x3x3 determinant alone; -1 when a corner is not finite.

@@ -24,19 +24,19 @@ struct LineTable {
 };
 
 /// Calls visit(position on the line, t) for every node of line (a, b) of a tube, in order; nodes where segments meet are
-/// visited once per segment.
-template <class MemorySpace, class Visit>
+/// visited once per segment. x: Field<double const>, or what else has places with a distance() between neighbours.
+template <class MemorySpace, class Places, class Visit>
 KOKKOS_INLINE_FUNCTION void walk_line(LineTable<MemorySpace> const& lines, Tube const& tube, int a, int b,
-                                      Field<double const> const& x, Visit const& visit) {
+                                      Places const& x, Visit const& visit) {
   int const n_s = lines.chains(tube.chain).n_s;
   auto walk = [&](auto const& each) {
     double done = 0;
     for (int m = 0; m < tube.n_segments; ++m) {
       Segment const& s = lines.segments(tube.first_segment + m);
       Index n = s.first + a * s.stride_a + b * s.stride_b;
-      Vec3 previous = x[n];
+      auto previous = x[n];
       for (int k = 0; k < s.count; ++k, n += s.stride_s) {
-        Vec3 const here = x[n];
+        auto const here = x[n];
         if (k > 0) done += distance(previous, here);
         previous = here;
         each(s.begin + k, done);

@@ -62,6 +62,13 @@ struct PlanOutcome {
   nlohmann::json json;             ///< for the report
 };
 
+/// What a motion is predicted to make of cells. Empty where a kind of plan cannot tell.
+struct PlanPrediction {
+  std::string text;
+  std::vector<std::string> warnings;
+  nlohmann::json json;
+};
+
 /// A mesh that is planned for the motion of a case file. Boundary displacements are in the order of the plan.
 class AnyPlan {
  public:
@@ -93,6 +100,8 @@ class AnyPlan {
 
   /// Defaults taken, facts found on the way, up to now.
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
+  /// Of the motion as the rules stand; of a sequence, at the step that comes out worst. Moves nothing.
+  [[nodiscard]] virtual PlanPrediction predict() { return {}; }
   /// Of planning.
   [[nodiscard]] virtual StepTimes times() const = 0;
   /// For `gridmorph plan`.

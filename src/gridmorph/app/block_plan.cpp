@@ -5,8 +5,10 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/trim_note.hpp>
+#include <gridmorph/report/prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
 
 #include <fmt/format.h>
@@ -49,6 +51,25 @@ class BlockPlan final : public AnyPlan {
     if (!morpher_) morpher_.emplace(exec_, prepared_.plan(), mesh_.coordinates());
     apply_on_host(*morpher_, displacement, morphed);
     if (times != nullptr) times->push_back({"morph", watch.lap(), true});
+  }
+
+  [[nodiscard]] PlanPrediction predict() override {
+    Predictor predictor(exec_, prepared_, {});
+    int const steps = case_file_.sequence ? case_file_.sequence->steps : 0;
+    Prediction worst = predictor.predict(steps == 0 ? displacement(nullptr) : displacement_at(0));
+    int worst_step = 0;
+    for (int step = 1; step < steps; ++step) {
+      Prediction next = predictor.predict(displacement_at(step));
+      if (next.all.scaled_jacobian.value >= worst.all.scaled_jacobian.value) continue;
+      worst = std::move(next);
+      worst_step = step;
+    }
+    PlanPrediction out{describe(prepared_.mesh, worst), prediction_warnings(prepared_.mesh, worst),
+                       prediction_json(prepared_.mesh, worst)};
+    if (steps == 0) return out;
+    out.text = fmt::format("step {} of {} comes out worst: ", worst_step + 1, steps) + out.text;
+    out.json["step"] = worst_step + 1;
+    return out;
   }
 
   [[nodiscard]] bool guards() const override { return case_file_.guard.smooth; }
@@ -126,6 +147,11 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] MeshForMessages for_messages() const override { return cli::for_messages(prepared_.mesh); }
 
  private:
+  std::vector<Vec3> displacement_at(int step) {
+    Moment const when = case_file_.sequence->moment(step);
+    return displacement(&when);
+  }
+
   CaseFile const& case_file_;
   Exec exec_;
   PreparedMorph prepared_;

@@ -85,6 +85,17 @@ RelaxReport Run::morph(Moment const* when, StepTimes* took) {
   return report;
 }
 
+PlanPrediction Run::predict() {
+  Stopwatch watch;
+  try {
+    PlanPrediction out = plan_->predict();
+    if (!out.text.empty()) add_time(times, "prediction", watch.lap());
+    return out;
+  } catch (MotionError const& e) {  // the plan itself stands
+    return {{}, {fmt::format("the motion cannot be made, so there is no prediction: {}", e.what())}, {}};
+  }
+}
+
 void Run::measure() {
   QualityWanted wanted = wanted_;
   wanted.morphed = &result_.morphed;
@@ -302,8 +313,11 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
 void print_plan(CaseFile const& case_file, Terminal& terminal) {
   MeshSource const file =
       checked_mesh_file(case_file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph);
-  Run const run(case_file, file, terminal);
+  Run run(case_file, file, terminal);
+  PlanPrediction const prediction = run.predict();
+  for (auto const& warning : prediction.warnings) terminal.warn(warning);
   nlohmann::json json = run.plan().json();
+  if (!prediction.json.is_null()) json["prediction"] = prediction.json;
   json["gridmorph"] = GRIDMORPH_VERSION;
   json["case_file"] = case_file.source.string();
   json["input"] = case_file.input.string();
@@ -311,7 +325,9 @@ void print_plan(CaseFile const& case_file, Terminal& terminal) {
   json["notes"] = run.notes;
   json["times"] = times_json(run.times, run.mesh().n_nodes());
   terminal.document(json);
-  if (!terminal.json()) terminal.result(run.plan().text() + "\n" + format_times(run.times, run.mesh().n_nodes()));
+  if (!terminal.json())
+    terminal.result(run.plan().text() + (prediction.text.empty() ? "" : "\n") + prediction.text + "\n" +
+                    format_times(run.times, run.mesh().n_nodes()));
 }
 
 }  // namespace gridmorph::cli

@@ -60,6 +60,9 @@ class Run {
   [[nodiscard]] OutputFields const& fields() const { return result_.fields; }
   [[nodiscard]] QualityReport const& quality() const { return result_.quality; }
 
+  /// What the motion would make of cells.
+  PlanPrediction predict();
+
   /// Of this quality against the baseline.
   [[nodiscard]] std::vector<Shortfall> shortfalls_of(QualityReport const& quality) const;
   /// The report, less the name of the output.

@@ -248,7 +248,10 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   WorkList<kernels::Tube, Memory> const tubes(exec, with_parameters, Parameters::items, "tubes");
   lines.tubes = tubes.entries;
   auto const targets = table(exec, joined.lines.targets, "targets");
-  kernels::line_parameters(exec, lines.chains, tubes, lines.segments, targets, x, t.data());
+  if (plan.line_parameters.empty())
+    kernels::line_parameters(exec, lines.chains, tubes, lines.segments, targets, x, t.data());
+  else
+    Kokkos::deep_copy(exec, t, enqueue_copy(exec, plan.line_parameters, "gridmorph::Morpher::given_parameters"));
   compat::fence(exec, "gridmorph::Morpher (host tables of the plan may go)");
 }
 

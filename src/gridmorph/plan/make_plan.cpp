@@ -1,9 +1,9 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/plan/blocks/boundary.hpp>
 #include <gridmorph/plan/blocks/independent_chains.hpp>
 #include <gridmorph/plan/blocks/loose_nodes.hpp>
-#include <gridmorph/plan/blocks/near_field.hpp>
+#include <gridmorph/plan/blocks/plan_basis.hpp>
 #include <gridmorph/plan/blocks/poles.hpp>
-#include <gridmorph/plan/blocks/priority.hpp>
 #include <gridmorph/plan/blocks/ranked_kinds.hpp>
 #include <gridmorph/plan/blocks/spread_plan.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
@@ -79,8 +79,8 @@ struct HandedOn {
 
 class Scheduler {
  public:
-  Scheduler(HostInstance const& host, PlanContext const& context, ResolvedMotion const& motion,
-            PlanOptions const& options, Plan& plan, Known& known)
+  Scheduler(PlanContext const& context, Priority& priority, ResolvedMotion const& motion, PlanOptions const& options,
+            Plan& plan, Known& known)
       : context_(context),
         mesh_(context.mesh),
         topology_(context.topology),
@@ -88,7 +88,7 @@ class Scheduler {
         options_(options),
         plan_(plan),
         known_(known),
-        priority_(host, context.mesh, context.topology, options.volume, plan.mesh_size) {}
+        priority_(priority) {}
 
   /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of walls
   /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
@@ -149,32 +149,20 @@ class Scheduler {
     return {options_.volume.turn.value_or(is_rigid(fields) ? 1 : 0), kernels::TurnLaw::c1};
   }
 
-  void volume(kernels::TurnLaw turn_law) {
+  /// first: of these stages the chains are given; the others follow by priority. Returns the order of all.
+  ChainOrder volume(kernels::TurnLaw turn_law, ChainOrder const& first) {
+    ChainOrder order;
     for (int number = 1; has_active_blocks(); ++number) {
       bool open = false;
-      std::vector<RankedChain> chains = collect(open);
-      if (chains.empty()) {
-        open = true;
-        chains = collect(open);
-      }
-      if (chains.empty()) throw PlanError(unreachable());
-      // A measure that comes first ranks all chains; one that breaks ties is found where there are some.
-      bool const ranked = priority_.quality_leads();
-      if (ranked) priority_.add_quality(chains);
-      priority_.sort(chains);
-      chains.erase(std::find_if(chains.begin(), chains.end(),
-                                [&](RankedChain const& c) { return !priority_.same_rank(c, chains.front()); }),
-                   chains.end());
-      // Chains that do not get in each other's way need no order among them.
-      if (!ranked && !independent(chains)) {
-        priority_.add_quality(chains);
-        priority_.sort(chains);
-      }
+      std::vector<RankedChain> chains =
+          order.size() < first.size() ? given_chains(first[order.size()], open) : best_chains(open);
       IndependentChains independent(topology_, known_);
       std::vector<StageChain> now;
       std::vector<std::string> description;
+      order.emplace_back();
       for (RankedChain& ranked : chains) {
         if (!independent.add(ranked.chain)) continue;
+        order.back().push_back(ranked.place);
         description.push_back(chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked));
         now.push_back({open ? known_end_first(ranked.chain) : ranked.chain,
                        open ? kernels::LineLaw::constant : line_law(options_.volume.law), open, turn_law});
@@ -184,11 +172,46 @@ class Scheduler {
       stage.description = std::move(description);
       plan_.stages.push_back(std::move(stage));
     }
+    return order;
   }
 
-  [[nodiscard]] std::vector<std::string> const& kind_order() const { return priority_.kind_order(); }
-
  private:
+  /// The chains of the best rank, best first.
+  std::vector<RankedChain> best_chains(bool& open) {
+    std::vector<RankedChain> chains = collect(open);
+    if (chains.empty()) {
+      open = true;
+      chains = collect(open);
+    }
+    if (chains.empty()) throw PlanError(unreachable());
+    // A measure that comes first ranks all chains; one that breaks ties is found where there are some.
+    bool const ranked = priority_.quality_leads();
+    if (ranked) priority_.add_quality(chains);
+    priority_.sort(chains);
+    chains.erase(std::find_if(chains.begin(), chains.end(),
+                              [&](RankedChain const& c) { return !priority_.same_rank(c, chains.front()); }),
+                 chains.end());
+    // Chains that do not get in each other's way need no order among them.
+    if (!ranked && !independent(chains)) {
+      priority_.add_quality(chains);
+      priority_.sort(chains);
+    }
+    return chains;
+  }
+  /// The chains at some places, all of them open or none.
+  std::vector<RankedChain> given_chains(std::vector<ChainPlace> const& places, bool& open) {
+    std::vector<RankedChain> chains;
+    for (ChainPlace const& place : places) {
+      std::optional<Chain> chain = find_chain(mesh_, topology_, known_, place.block, place.axis);
+      if (!chain || !(chain->first.known || chain->last.known))
+        throw PlanError("the order of chains names one along axis " + std::to_string(place.axis) + " of " +
+                        block_name(mesh_, topology_, place.block) + " that comes to no known face when it is its turn");
+      open = !(chain->first.known && chain->last.known);
+      chains.push_back(priority_.rank(std::move(*chain)));
+      chains.back().place = place;
+    }
+    return chains;
+  }
   [[nodiscard]] bool is_active(int block) const {
     int const piece = topology_.blocks[block].pieces.front().piece;
     return !known_(topology_.lattice.class_of(topology_.lattice.entity_of_piece(piece, {1, 1, 1})));
@@ -231,7 +254,9 @@ class Scheduler {
         if (!chain) continue;
         for (ChainStep const& step : chain->steps) seen.insert({step.block, step.to_chain.inverse().axis[0]});
         int const known_ends = int(chain->first.known) + int(chain->last.known);
-        if (known_ends == (open ? 1 : 2)) chains.push_back(priority_.rank(std::move(*chain)));
+        if (known_ends != (open ? 1 : 2)) continue;
+        chains.push_back(priority_.rank(std::move(*chain)));
+        chains.back().place = {block, axis};
       }
     }
     return chains;
@@ -255,7 +280,7 @@ class Scheduler {
   PlanOptions const& options_;
   Plan& plan_;
   Known& known_;
-  Priority priority_;
+  Priority& priority_;
 };
 
 std::string turn_note(double turn, bool given) {
@@ -299,18 +324,25 @@ Index LineTables::n_lines() const {
   return n;
 }
 
-PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
-                       PlanOptions const& options) {
+PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const& surface, PlanOptions const& options) {
+  std::vector<std::string> notes;
+  std::vector<PatchKind> kinds = ranked_kinds(mesh, links, surface, options.boundary_layers, notes);
+  std::vector<NearField> fields = near_fields(mesh, links, surface, kinds, options.boundary_layers);
+  MergeLimits limits = merge_limits(mesh, surface.motion(), kinds, fields, near_field_limits(mesh, links, fields));
+  Topology topology = build_topology(mesh, links, limits);
+  return {mesh, std::move(notes), std::move(kinds), std::move(fields), std::move(limits), std::move(topology)};
+}
+
+PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines const& lines,
+                        BoundaryMotion const& surface, PlanOptions const& options, ChainOrder const& first) {
   ResolvedMotion const& motion = surface.motion();
+  Mesh const& mesh = lines.mesh;
+  Topology const& topology = lines.topology;
   PlannedMorph planned;
   Plan& plan = planned.plan;
-  std::vector<PatchKind> const kinds = ranked_kinds(mesh, links, surface, options.boundary_layers, plan.notes);
-  std::vector<NearField> const fields = near_fields(mesh, links, surface, kinds, options.boundary_layers);
-  MergeLimits const limits = merge_limits(mesh, motion, kinds, fields, near_field_limits(mesh, links, fields));
-  Topology const topology = build_topology(mesh, links, limits);
-
+  plan.notes = basis.notes;
   plan.n_nodes = mesh.n_nodes();
-  plan.mesh_size = links.mesh_size;
+  plan.mesh_size = topology.links.mesh_size;
   plan.notes.push_back(std::to_string(mesh.zones.size()) + " zones, " +
                        std::to_string(topology.lattice.pieces().size()) + " pieces with whole faces, " +
                        std::to_string(topology.blocks.size()) + " blocks");
@@ -319,29 +351,29 @@ PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& 
   plan.n_slots = skeleton.size();
   RotationTable rotations(plan.rotations);
   std::vector<int> const box_of_piece = inner_boxes(mesh, topology.lattice, plan.boxes);
-  PlanContext context{mesh, topology, skeleton, rotations, box_of_piece, kinds};
+  PlanContext context{mesh, topology, skeleton, rotations, box_of_piece, basis.kinds, lines.lengths};
   WallRoots roots(context);
   context.roots = &roots;
   Known known(topology.lattice.n_classes());
-  Scheduler scheduler(host, context, motion, options, plan, known);
-  std::vector<std::string> const& kind_order = scheduler.kind_order();
+  Scheduler scheduler(context, priority, motion, options, plan, known);
+  std::vector<std::string> const& kind_order = priority.kind_order();
   planned.boundary = collect_boundary(context, surface, kind_order, known, plan);
   Known const given = known;
   if (auto poles = pole_stage(context, motion, kind_order, known, plan)) plan.stages.push_back(std::move(*poles));
-  for (NearField const& field : fields)
+  for (NearField const& field : basis.fields)
     if (turns(field)) roots.add_walls(field.walls, field.mode == BoundaryLayer::Mode::blend ? 0 : 1);
   roots.join_coincident();
   roots.mark(known);
-  scheduler.near_field(near_field_chains(mesh, topology, known, fields));
-  HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(fields);
-  scheduler.volume(handed_on.law);
+  scheduler.near_field(near_field_chains(basis.mesh, basis.topology, known, basis.fields));
+  HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(basis.fields);
+  planned.order = scheduler.volume(handed_on.law, first);
   std::vector<int> const surface_of_patch = slip_surface_numbers(mesh, surface, plan.surfaces);
   if (!roots.nodes().empty()) {
     roots.scale_turn(handed_on.turn);
     EndWalls end_walls{surface_of_patch, {}};
     for (int p = 0; p < int(mesh.patches.size()); ++p)
       end_walls.is_given.push_back(motion.patch[p].rule >= 0 && surface.is_explicit(motion.patch[p].rule) ? 1 : 0);
-    plan.turns = turn_tables(context, links, roots, end_walls);
+    plan.turns = turn_tables(context, topology.links, roots, end_walls);
     bool const blends =
         std::none_of(roots.nodes().begin(), roots.nodes().end(), [](RootNode const& n) { return n.turn > 0; });
     if (!blends || handed_on.turn == 0)
@@ -350,7 +382,16 @@ PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& 
   plan_spreads(context, motion, surface_of_patch, given, plan);
   plan.skeleton_nodes = skeleton.to_nodes(rotations);
   planned.boundary.n_boundary_nodes = Index(plan.boundary_nodes.size());
-  note_loose_nodes(mesh, planned.boundary, plan);
+  return planned;
+}
+
+PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
+                       PlanOptions const& options, ChainOrder const& first) {
+  PlanBasis const basis = plan_basis(mesh, links, surface, options);
+  Priority priority(host, mesh, basis.topology, options.volume, links.mesh_size);
+  PlannedMorph planned =
+      build_plan(basis, priority, {mesh, basis.topology, GridLengths(mesh)}, surface, options, first);
+  note_loose_nodes(mesh, planned.boundary, planned.plan);
   return planned;
 }
 

@@ -58,6 +58,7 @@ struct Stage {
   std::vector<kernels::NearFieldLine> near_field;  ///< lines that turn with the wall that they stand on
   bool turns = false;                              ///< whether any of its chains carries rotations
   std::vector<CellBox> cells;                      ///< of the blocks this stage morphs
+  std::vector<int> chain_of_cells;                 ///< per entry of `cells`
   std::string name;                                ///< "near field", "1", "2", ...
   std::vector<std::string> description;            ///< one line per chain: blocks, ends, reasons of its rank
 };
@@ -95,6 +96,8 @@ struct Plan {
   Index n_nodes = 0;
   Index n_slots = 0;  ///< of the skeleton
   double mesh_size = 0;
+  /// Line parameters of all stages and passes, one after another, where they are not to be measured along the baseline's lines.
+  std::vector<double> line_parameters;
 };
 
 /// The stages and chains in order, with the reason for each rank, as text.

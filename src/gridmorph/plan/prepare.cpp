@@ -21,7 +21,7 @@ PreparedMorph prepare(HostInstance const& host, Mesh const& given, Motion const&
   seconds.rules = watch.lap();
   PlannedMorph planned = make_plan(host, mesh, links, surface, options);
   seconds.plan = watch.lap();
-  return {std::move(mesh), std::move(links), std::move(surface), std::move(planned), seconds};
+  return {std::move(mesh), std::move(links), std::move(surface), std::move(planned), seconds, options};
 }
 
 }  // namespace gridmorph

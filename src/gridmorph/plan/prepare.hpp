@@ -21,6 +21,7 @@ struct PreparedMorph {
     double rules = 0;     ///< which rule moves which patch, slip surfaces, blade rows
     double plan = 0;      ///< blocks, chains, stages
   } seconds{};
+  PlanOptions options{};  ///< as given
 
   [[nodiscard]] Plan const& plan() const { return planned.plan; }
   /// Displacements of Plan::boundary_nodes by the rules. Throws MotionError (see evaluate()).

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/plan/blocks/chain.hpp>
+#include <gridmorph/plan/blocks/grid_lengths.hpp>
 #include <gridmorph/plan/blocks/skeleton.hpp>
 #include <gridmorph/plan/plan.hpp>
 
@@ -17,6 +18,7 @@ struct PlanContext {
   RotationTable& rotations;
   std::vector<int> const& box_of_piece;  ///< in Plan::boxes, -1 for pieces without inner nodes
   std::vector<PatchKind> const& kinds;   ///< what patches rank as, see ranked_kinds()
+  GridLengths const& lengths;            ///< between nodes of `mesh`
   WallRoots* roots = nullptr;            ///< of near fields that turn
 };
 

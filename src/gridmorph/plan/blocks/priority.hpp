@@ -3,6 +3,7 @@
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/plan/blocks/chain.hpp>
+#include <gridmorph/plan/chain_order.hpp>
 #include <gridmorph/plan/options.hpp>
 
 #include <array>
@@ -21,6 +22,7 @@ struct RankedChain {
   long long aspect_ratio = 0;                      ///< length / width, 1e-6
   std::array<long long, 3> centre{};               ///< last resort: place of the chain, 1e-9 of the mesh size
   std::array<std::array<long long, 3>, 2> ends{};  ///< and of its two ends
+  ChainPlace place{};                              ///< where it was found
 };
 
 /// Computes ranks; the quality of a block (smallest angle between cell edges on the baseline) is computed when first

@@ -64,35 +64,35 @@ std::vector<kernels::Junction> known_around(Topology const& topology, ChainLayou
   return junctions;
 }
 
-/// Positions of the nodes of a cross-section of the chain (s = first or last node), (n_b, n_a).
-std::vector<Vec3> section_points(Mesh const& mesh, Topology const& topology, ChainLayout const& layout, int side) {
-  std::vector<Vec3> points(std::size_t(layout.n_nodes[1]) * layout.n_nodes[2]);
+/// Lengths of the edges of a cross-section of the chain (s = first or last node) along a (direction 0) or b, each at the node where it
+/// ends: (n_b, n_a).
+std::vector<double> section_edges(PlanContext const& context, ChainLayout const& layout, int side, int direction) {
+  std::vector<double> edges(std::size_t(layout.n_nodes[1]) * layout.n_nodes[2], 0);
   int const ps = side == 0 ? 0 : layout.n[0] - 1;
   for (int pb = 0; pb < layout.n[2]; ++pb)
     for (int pa = 0; pa < layout.n[1]; ++pa) {
-      PieceNodes const nodes = piece_nodes(mesh, topology.lattice, layout.at(ps, pa, pb));
-      for (int b = 0; b < nodes.count[2]; ++b)
-        for (int a = 0; a < nodes.count[1]; ++a)
-          points[std::size_t(layout.a_begin[pa] + a) + std::size_t(layout.n_nodes[1]) * (layout.b_begin[pb] + b)] =
-              mesh.coordinates[nodes.first + a * nodes.stride[1] + b * nodes.stride[2] +
-                               (side == 0 ? 0 : (nodes.count[0] - 1) * nodes.stride[0])];
+      PieceNodes const nodes = piece_nodes(context.mesh, context.topology.lattice, layout.at(ps, pa, pb));
+      Index const first = nodes.first + (side == 0 ? 0 : (nodes.count[0] - 1) * nodes.stride[0]);
+      for (int b = direction == 1 ? 1 : 0; b < nodes.count[2]; ++b)
+        for (int a = direction == 0 ? 1 : 0; a < nodes.count[1]; ++a) {
+          Index const node = first + a * nodes.stride[1] + b * nodes.stride[2];
+          edges[std::size_t(layout.a_begin[pa] + a) + std::size_t(layout.n_nodes[1]) * (layout.b_begin[pb] + b)] =
+              context.lengths(node - nodes.stride[1 + direction], node);
+        }
     }
-  return points;
+  return edges;
 }
 
 /// Arc-length fractions along one direction of a cross-section; node count where a line has no length.
-void append_fractions(std::vector<Vec3> const& points, int n_a, int n_b, int direction, std::vector<double>& out) {
+void append_fractions(std::vector<double> const& edges, int n_a, int n_b, int direction, std::vector<double>& out) {
   std::size_t const base = out.size();
-  out.resize(base + points.size());
+  out.resize(base + edges.size());
   int const n = direction == 0 ? n_a : n_b;
   std::size_t const step = direction == 0 ? 1 : n_a;
   for (int line = 0; line < (direction == 0 ? n_b : n_a); ++line) {
     std::size_t const first = direction == 0 ? std::size_t(line) * n_a : line;
     double length = 0;
-    for (int p = 0; p < n; ++p) {
-      if (p > 0) length += distance(points[first + p * step], points[first + (p - 1) * step]);
-      out[base + first + p * step] = length;
-    }
+    for (int p = 0; p < n; ++p) out[base + first + p * step] = length += edges[first + p * step];
     for (int p = 0; p < n; ++p) {
       double& f = out[base + first + p * step];
       f = length > 0 ? f / length : double(p) / (n - 1);
@@ -131,7 +131,6 @@ void add_side_gathers(PlanContext const& context, Chain const& chain, ChainLayou
 
 void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
                      int number, Stage& stage) {
-  Mesh const& mesh = context.mesh;
   Topology const& topology = context.topology;
   std::vector<kernels::Junction> const junctions = known_around(topology, layout, known);
   kernels::Chain& device = stage.lines.chains[number];
@@ -156,18 +155,16 @@ void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout
   tables.corrected.push_back(number);
   tables.junctions.insert(tables.junctions.end(), junctions.begin(), junctions.end());
 
-  std::vector<Vec3> const lower = section_points(mesh, topology, layout, 0);
-  std::vector<Vec3> const upper = section_points(mesh, topology, layout, 1);
   for (int direction = 0; direction < 2; ++direction)
-    for (auto const* points : {&lower, &upper})
-      append_fractions(*points, device.n_a, device.n_b, direction, tables.section);
+    for (int side = 0; side < 2; ++side)
+      append_fractions(section_edges(context, layout, side, direction), device.n_a, device.n_b, direction,
+                       tables.section);
 
   for (int q = 0; q < 4; ++q) {
     int const n_w = q < 2 ? device.n_b : device.n_a;
     tables.sides.push_back({number, n_w, Index(tables.t.size())});
     tables.t.resize(tables.t.size() + std::size_t(n_w) * device.n_s);
   }
-  kernels::Field<double const> const x{mesh.coordinates.x.data(), mesh.coordinates.y.data(), mesh.coordinates.z.data()};
   // The same walk as the kernels', on borrowed host tables, so that t is the same number.
   kernels::LineTable<Kokkos::HostSpace> const table = host_lines(stage.lines);
   for (kernels::Tube const& tube : stage.lines.tubes) {
@@ -180,7 +177,7 @@ void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout
       if (repeated) return;
       tables.lines.push_back({side, w});
       Index const at = tables.sides[side].first + Index(device.n_s) * w;
-      kernels::walk_line(table, tube, a, b, x, StoreAlong{tables.t.data() + at});
+      kernels::walk_line(table, tube, a, b, context.lengths, StoreAlong{tables.t.data() + at});
     };
     for (int b = 0; b < tube.n_b; ++b) {
       if (tube.a_begin == 0) add_line(0, 0, b);

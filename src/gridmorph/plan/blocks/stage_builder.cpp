@@ -155,6 +155,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
       IndexRange cells = piece.nodes;
       for (int a = 0; a < 3; ++a) --cells.end[a];
       stage.cells.push_back({piece.zone, cells});
+      stage.chain_of_cells.push_back(number);
     }
   }
   for (auto const& [c, entity] : writer) {

@@ -1,0 +1,135 @@
+#include <gridmorph/morph/predictor.hpp>
+
+#include <gridmorph/kernels/cell_quality.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/plan/boundary_size.hpp>
+
+#include <algorithm>
+
+namespace gridmorph {
+namespace {
+
+kernels::HexCell cell_of(Coordinates const& x, Zone const& zone, Index first) {
+  auto const step = zone.strides();
+  kernels::HexCell cell;
+  for (int n = 0; n < 8; ++n)
+    cell.corner[n] = x[first + (n & 1) * step[0] + (n >> 1 & 1) * step[1] + (n >> 2) * step[2]];
+  return cell;
+}
+
+double scaled_jacobian(kernels::HexCell const& cell, double handedness) {
+  kernels::HexEdges const edges = hex_edges(cell);
+  return kernels::scaled_jacobian(edges, collapsed_edges(edges), handedness);
+}
+
+void join(PredictedCells& all, PredictedCells const& some) {
+  if (some.cells == 0) return;
+  auto const smaller = [](CellValue& a, CellValue const& b) {
+    if (a.zone < 0 || b.value < a.value) a = b;
+  };
+  if (all.scaled_jacobian.zone < 0 || some.scaled_jacobian.value < all.scaled_jacobian.value)
+    all.scaled_jacobian_before = some.scaled_jacobian_before;
+  smaller(all.scaled_jacobian, some.scaled_jacobian);
+  smaller(all.determinant, some.determinant);
+  smaller(all.angle_deg, some.angle_deg);
+  for (int d = 0; d < 3; ++d) {
+    CellValue& a = all.relative_displacement[d];
+    CellValue const& b = some.relative_displacement[d];
+    if (a.zone < 0 || b.value > a.value) a = b;
+  }
+  all.cells += some.cells;
+  all.inverted += some.inverted;
+}
+
+}  // namespace
+
+Predictor::Predictor(HostInstance const& host, PreparedMorph const& prepared, PredictionOptions const& options)
+    : host_(host),
+      prepared_(prepared),
+      planner_(host, prepared, options.every),
+      handedness_(host.visit([&](auto const& exec) {
+        Mesh const& mesh = planner_.coarse().mesh;
+        return zone_handedness(exec, mesh, views(mesh.coordinates));
+      })) {}
+
+Prediction Predictor::predict(std::span<Vec3 const> boundary) {
+  return predict(prepared_.planned.order, boundary, &prepared_.plan());
+}
+
+Prediction Predictor::predict(ChainOrder const& first, std::span<Vec3 const> boundary) {
+  return predict(first, boundary, nullptr);
+}
+
+Prediction Predictor::predict(ChainOrder const& first, std::span<Vec3 const> boundary, Plan const* names) {
+  require_boundary_size("gridmorph::predict", boundary.size(), prepared_.plan().boundary_nodes.size(),
+                        "MorphPlan::boundary_nodes()");
+  PlannedMorph const planned = planner_.plan(first);
+  return measure(planned.plan, names != nullptr ? *names : planned.plan, morphed(planned.plan, boundary));
+}
+
+Coordinates Predictor::morphed(Plan const& plan, std::span<Vec3 const> boundary) const {
+  Coordinates const& baseline = planner_.coarse().mesh.coordinates;
+  Coordinates out(baseline.size());
+  std::vector<Vec3> const given = planner_.displacement(plan, boundary);
+  host_.visit([&](auto const& exec) {
+    using Exec = std::remove_cvref_t<decltype(exec)>;
+    Morpher<Exec> const morpher(exec, plan, baseline);
+    morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(given.data(), given.size()), out);
+    compat::fence(exec, "gridmorph::predict (read by the host)");
+  });
+  return out;
+}
+
+void Predictor::add(CellBox const& box, Coordinates const& morphed, std::vector<char>& seen,
+                    PredictedCells& out) const {
+  CoarseMesh const& coarse = planner_.coarse();
+  Zone const& zone = coarse.mesh.zones[std::size_t(box.zone)];
+  double const handedness = handedness_[std::size_t(box.zone)];
+  Index3 p{};
+  for (p[2] = box.cells.begin[2]; p[2] < box.cells.end[2]; ++p[2])
+    for (p[1] = box.cells.begin[1]; p[1] < box.cells.end[1]; ++p[1])
+      for (p[0] = box.cells.begin[0]; p[0] < box.cells.end[0]; ++p[0]) {
+        Index const first = zone.node(p);
+        if (seen[std::size_t(first)] != 0 || !coarse.is_cell(box.zone, p)) continue;
+        seen[std::size_t(first)] = 1;
+        kernels::HexCell const before = cell_of(coarse.mesh.coordinates, zone, first);
+        kernels::HexCell const after = cell_of(morphed, zone, first);
+        kernels::CellMeasures const measures = kernels::cell_measures(after, handedness);
+        Vec3 const relative = kernels::relative_displacement(before, after);
+        Index3 const cell = coarse.fine_index(box.zone, p);
+        auto const value = [&](double v) { return CellValue{v, box.zone, cell}; };
+        PredictedCells one;
+        one.cells = 1;
+        one.inverted = measures.smallest_corner_jacobian < 0 ? 1 : 0;
+        one.scaled_jacobian = value(scaled_jacobian(after, handedness));
+        one.scaled_jacobian_before = scaled_jacobian(before, handedness);
+        one.determinant = value(measures.determinant_3x3x3);
+        one.angle_deg = value(measures.minimum_angle_deg);
+        one.relative_displacement = {value(relative.x), value(relative.y), value(relative.z)};
+        join(out, one);
+      }
+}
+
+Prediction Predictor::measure(Plan const& plan, Plan const& names, Coordinates const& morphed) const {
+  Prediction out;
+  out.every = planner_.every();
+  std::vector<char> seen(std::size_t(plan.n_nodes), 0);
+  for (std::size_t s = 0; s < plan.stages.size(); ++s) {
+    Stage const& stage = plan.stages[s];
+    std::vector<PredictedChain> chains;
+    for (std::string const& name : names.stages[s].description) chains.push_back({names.stages[s].name, name, {}});
+    for (std::size_t b = 0; b < stage.cells.size(); ++b)
+      add(stage.cells[b], morphed, seen, chains[std::size_t(stage.chain_of_cells[b])].cells);
+    for (PredictedChain& chain : chains) {
+      join(out.all, chain.cells);
+      if (chain.cells.cells > 0) out.chains.push_back(std::move(chain));
+    }
+  }
+  std::stable_sort(out.chains.begin(), out.chains.end(), [](PredictedChain const& a, PredictedChain const& b) {
+    return a.cells.scaled_jacobian.value < b.cells.scaled_jacobian.value;
+  });
+  return out;
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,39 @@
+// What is found out before chains are put in order, and plans made on it: of the mesh itself, or of some of its grid lines.
+#pragma once
+
+#include <gridmorph/plan/blocks/grid_lengths.hpp>
+#include <gridmorph/plan/blocks/near_field.hpp>
+#include <gridmorph/plan/blocks/priority.hpp>
+#include <gridmorph/plan/make_plan.hpp>
+
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+struct PlanBasis {
+  Mesh const& mesh;
+  std::vector<std::string> notes;
+  std::vector<PatchKind> kinds;   ///< what patches rank as
+  std::vector<NearField> fields;  ///< of `mesh`, in its cells
+  MergeLimits limits;
+  Topology topology;
+};
+
+/// Borrows the mesh. Throws as make_plan() does.
+PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const& surface, PlanOptions const& options);
+
+/// The grid lines that tables are made of: a mesh with the zones, patches, pieces and blocks of the basis in the same order, and how
+/// long its edges are.
+struct PlanLines {
+  Mesh const& mesh;
+  Topology const& topology;
+  GridLengths lengths;
+};
+
+/// The plan of these lines. What coordinates decide (kinds, near fields, ranks) is decided on the mesh of the basis, whose angles
+/// `priority` keeps; `first` as in make_plan().
+PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines const& lines,
+                        BoundaryMotion const& surface, PlanOptions const& options, ChainOrder const& first);
+
+}  // namespace gridmorph
