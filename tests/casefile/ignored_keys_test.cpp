@@ -66,6 +66,9 @@ TEST(IgnoredKeys, OfOtherRunsAreErrors) {
   Example const fields{"[output]\ndisplacement = true\nquality = false\n", {}};
   EXPECT_TRUE(reported(check(fields, {.run = Run::wheel}), "case.toml:8: [output] displacement", {"wheels"}));
   EXPECT_EQ(check(fields, {.run = Run::wheel}).size(), 1U) << "false says what is the case";
+  Example const order{"[volume]\norder = \"prediction\"\n", {}};
+  EXPECT_TRUE(reported(check(order, {.run = Run::wheel}), "case.toml:8: [volume] order", {"wheel"}));
+  EXPECT_EQ(check(order, {.run = Run::morph}).size(), 0U);
   Example const stages{"[output]\nstages = \"s\"\n", {}};
   EXPECT_TRUE(reported(check(stages, {.unstructured = true, .run = Run::sequence}), "case.toml:8: [output] stages",
                        {"sequence"}));

@@ -23,6 +23,19 @@ TEST(Refusals, BlocksThatNothingReachesAreNamed) {
   expect_all_in(text, {"'L1'", "'L2'", "'L3'", "no chain"});
 }
 
+TEST(Refusals, OrdersOfChainsThatComeToNoKnownFaceAreNamed) {
+  PreparedMorph const prepared = prepare(box({5, 4, 6}, Shape::straight, 1),
+                                         motion({rule({"u_min"}, function_rule(constant({0, 0, 0.25}))),
+                                                 rule({"u_max", "v_min", "v_max", "w_min", "w_max"}, FreeRule{})}),
+                                         {});
+  auto const planned = [&](ChainOrder const& first) {
+    return make_plan(HostInstance(), prepared.mesh, prepared.links, prepared.surface, prepared.options, first);
+  };
+  EXPECT_EQ(planned({{{0, 0}}}).order, prepared.planned.order);
+  for (int const axis : {1, 2})
+    expect_all_in(message_of<PlanError>([&] { planned({{{0, axis}}}); }), {"order of chains", "box1", "known face"});
+}
+
 TEST(Refusals, RulesThatDisagreeOnASharedEdgeAreNamedWithPlaceAndSize) {
   auto const text = message_of<MotionError>([] {
     morph(box({5, 4, 6}, Shape::straight, 1),

@@ -80,6 +80,7 @@ TEST_F(CommandInterface, TheJsonOfAMorphIsItsReport) {
 }
 
 TEST_F(CommandInterface, PlansPredictWhatMotionsMakeOfCells) {
+  expect_bad_input(gridmorph("plan flat.toml --optimise"), {"unstructured", "--optimise"});
   auto const json = nlohmann::json::parse(gridmorph("--json plan case.toml").out);
   auto const& prediction = json["prediction"];
   EXPECT_GT(prediction["cells"], 100);
@@ -89,6 +90,7 @@ TEST_F(CommandInterface, PlansPredictWhatMotionsMakeOfCells) {
   EXPECT_GE(prediction["determinant_3x3x3"]["value"], smallest - 1e-9);
   EXPECT_LE(prediction["scaled_jacobian"]["value"], prediction["chains"][1]["scaled_jacobian"]["value"]);
 
+  EXPECT_NE(gridmorph("plan case.toml --optimise").out.find("by priority"), std::string::npos);
   std::string const gentle = contents(path("case.toml")), by = "angle_deg = 0.2";
   write("case.toml", std::string(gentle).replace(gentle.find(by), by.size(), "angle_deg = 25"));
   Outcome const run = gridmorph("plan case.toml");

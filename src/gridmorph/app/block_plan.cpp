@@ -5,6 +5,7 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/best_order.hpp>
 #include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/trim_note.hpp>
@@ -27,7 +28,9 @@ class BlockPlan final : public AnyPlan {
       : case_file_(case_file),
         prepared_(prepare(mesh.mesh(), case_file.motion, case_file.plan)),
         mesh_(prepared_.mesh),
-        near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)) {}
+        near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)) {
+    if (case_file.plan.volume.order == OrderBy::prediction) order_by_prediction();
+  }
 
   std::vector<Vec3> displacement(Moment const* when) override {
     evaluated_ = true;
@@ -54,21 +57,12 @@ class BlockPlan final : public AnyPlan {
   }
 
   [[nodiscard]] PlanPrediction predict() override {
-    Predictor predictor(exec_, prepared_, {});
-    int const steps = case_file_.sequence ? case_file_.sequence->steps : 0;
-    Prediction worst = predictor.predict(steps == 0 ? displacement(nullptr) : displacement_at(0));
-    int worst_step = 0;
-    for (int step = 1; step < steps; ++step) {
-      Prediction next = predictor.predict(displacement_at(step));
-      if (next.all.scaled_jacobian.value >= worst.all.scaled_jacobian.value) continue;
-      worst = std::move(next);
-      worst_step = step;
-    }
+    auto const [worst, step, boundary] = predict_worst();
     PlanPrediction out{describe(prepared_.mesh, worst), prediction_warnings(prepared_.mesh, worst),
                        prediction_json(prepared_.mesh, worst)};
-    if (steps == 0) return out;
-    out.text = fmt::format("step {} of {} comes out worst: ", worst_step + 1, steps) + out.text;
-    out.json["step"] = worst_step + 1;
+    if (!case_file_.sequence) return out;
+    out.text = fmt::format("step {} of {} comes out worst: ", step + 1, case_file_.sequence->steps) + out.text;
+    out.json["step"] = step + 1;
     return out;
   }
 
@@ -118,7 +112,9 @@ class BlockPlan final : public AnyPlan {
   }
   [[nodiscard]] StepTimes times() const override {
     auto const& seconds = prepared_.seconds;
-    return {{"topology", seconds.topology}, {"rules", seconds.rules}, {"plan", seconds.plan}};
+    StepTimes out{{"topology", seconds.topology}, {"rules", seconds.rules}, {"plan", seconds.plan}};
+    if (ordering_ > 0) out.push_back({"order", ordering_});
+    return out;
   }
 
   [[nodiscard]] std::string text() const override {
@@ -147,9 +143,31 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] MeshForMessages for_messages() const override { return cli::for_messages(prepared_.mesh); }
 
  private:
-  std::vector<Vec3> displacement_at(int step) {
-    Moment const when = case_file_.sequence->moment(step);
-    return displacement(&when);
+  struct StepPrediction {
+    Prediction prediction;
+    int step = 0;
+    std::vector<Vec3> boundary;
+  };
+
+  void order_by_prediction() {
+    Stopwatch watch;
+    plan_by_prediction(exec_, prepared_, predict_worst().boundary);
+    ordering_ = watch.lap();
+  }
+
+  /// Of the motion as the rules stand, or of the step of a sequence that comes out worst.
+  StepPrediction predict_worst() {
+    Predictor predictor(exec_, prepared_, {});
+    StepPrediction worst;
+    int const steps = case_file_.sequence ? case_file_.sequence->steps : 1;
+    for (int step = 0; step < steps; ++step) {
+      Moment const when = case_file_.sequence ? case_file_.sequence->moment(step) : Moment{};
+      StepPrediction now{{}, step, displacement(case_file_.sequence ? &when : nullptr)};
+      now.prediction = predictor.predict(now.boundary);
+      if (step == 0 || now.prediction.all.scaled_jacobian.value < worst.prediction.all.scaled_jacobian.value)
+        worst = std::move(now);
+    }
+    return worst;
   }
 
   CaseFile const& case_file_;
@@ -159,6 +177,7 @@ class BlockPlan final : public AnyPlan {
   NearCells near_;
   std::optional<Morpher<Exec>> morpher_;
   bool evaluated_ = false;
+  double ordering_ = 0;                 ///< seconds that the order of chains took to be found
   std::optional<std::string> trimmed_;  ///< of the rules as they stand
 };
 

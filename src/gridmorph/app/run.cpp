@@ -313,6 +313,9 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
 void print_plan(CaseFile const& case_file, Terminal& terminal) {
   MeshSource const file =
       checked_mesh_file(case_file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph);
+  if (file.kind == MeshKind::unstructured && case_file.plan.volume.order == OrderBy::prediction)
+    throw ConfigError(case_file.input.string() +
+                      " is unstructured: there are no chains to put in order; leave out --optimise");
   Run run(case_file, file, terminal);
   PlanPrediction const prediction = run.predict();
   for (auto const& warning : prediction.warnings) terminal.warn(warning);

@@ -26,6 +26,7 @@ struct PredictedCells {
   CellValue
       scaled_jacobian;  ///< smallest, over the corners of a cell, of J / product of the lengths of the three edges there
   double scaled_jacobian_before = 1;  ///< of that cell in the baseline
+  CellValue kept;                     ///< smallest share of its scaled Jacobian that a cell keeps, at most 1
   CellValue determinant;              ///< smallest 3x3x3
   CellValue angle_deg{180};           ///< smallest
   /// Largest relative displacement along i, j and k of the zones (paper, section 3.2): Measure::relative_displacement.

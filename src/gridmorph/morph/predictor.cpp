@@ -26,11 +26,12 @@ double scaled_jacobian(kernels::HexCell const& cell, double handedness) {
 void join(PredictedCells& all, PredictedCells const& some) {
   if (some.cells == 0) return;
   auto const smaller = [](CellValue& a, CellValue const& b) {
-    if (a.zone < 0 || b.value < a.value) a = b;
+    if (b.zone >= 0 && (a.zone < 0 || b.value < a.value)) a = b;
   };
   if (all.scaled_jacobian.zone < 0 || some.scaled_jacobian.value < all.scaled_jacobian.value)
     all.scaled_jacobian_before = some.scaled_jacobian_before;
   smaller(all.scaled_jacobian, some.scaled_jacobian);
+  smaller(all.kept, some.kept);
   smaller(all.determinant, some.determinant);
   smaller(all.angle_deg, some.angle_deg);
   for (int d = 0; d < 3; ++d) {
@@ -54,21 +55,21 @@ Predictor::Predictor(HostInstance const& host, PreparedMorph const& prepared, Pr
       })) {}
 
 Prediction Predictor::predict(std::span<Vec3 const> boundary) {
-  return predict(prepared_.planned.order, boundary, &prepared_.plan());
+  Plan const plan = planner_.plan(prepared_.planned.order).plan;
+  return measure(plan, prepared_.plan(), morphed(plan, boundary));
 }
 
-Prediction Predictor::predict(ChainOrder const& first, std::span<Vec3 const> boundary) {
-  return predict(first, boundary, nullptr);
-}
-
-Prediction Predictor::predict(ChainOrder const& first, std::span<Vec3 const> boundary, Plan const* names) {
-  require_boundary_size("gridmorph::predict", boundary.size(), prepared_.plan().boundary_nodes.size(),
-                        "MorphPlan::boundary_nodes()");
-  PlannedMorph const planned = planner_.plan(first);
-  return measure(planned.plan, names != nullptr ? *names : planned.plan, morphed(planned.plan, boundary));
+OrderTrial Predictor::try_order(ChainOrder const& first, std::span<Vec3 const> boundary) {
+  OrderTrial out;
+  PlannedMorph planned = planner_.plan(first, &out.next);
+  out.prediction = measure(planned.plan, planned.plan, morphed(planned.plan, boundary));
+  out.order = std::move(planned.order);
+  return out;
 }
 
 Coordinates Predictor::morphed(Plan const& plan, std::span<Vec3 const> boundary) const {
+  require_boundary_size("gridmorph::predict", boundary.size(), prepared_.plan().boundary_nodes.size(),
+                        "MorphPlan::boundary_nodes()");
   Coordinates const& baseline = planner_.coarse().mesh.coordinates;
   Coordinates out(baseline.size());
   std::vector<Vec3> const given = planner_.displacement(plan, boundary);
@@ -104,6 +105,8 @@ void Predictor::add(CellBox const& box, Coordinates const& morphed, std::vector<
         one.inverted = measures.smallest_corner_jacobian < 0 ? 1 : 0;
         one.scaled_jacobian = value(scaled_jacobian(after, handedness));
         one.scaled_jacobian_before = scaled_jacobian(before, handedness);
+        if (one.scaled_jacobian_before > 0)
+          one.kept = value(std::min(1.0, one.scaled_jacobian.value / one.scaled_jacobian_before));
         one.determinant = value(measures.determinant_3x3x3);
         one.angle_deg = value(measures.minimum_angle_deg);
         one.relative_displacement = {value(relative.x), value(relative.y), value(relative.z)};

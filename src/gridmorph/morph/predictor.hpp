@@ -8,20 +8,26 @@
 
 namespace gridmorph {
 
+/// What an order of chains leads to.
+struct OrderTrial {
+  ChainOrder order;  ///< of all stages
+  ChainOrder next;   ///< what the stage after the ones given could have been
+  Prediction prediction;
+};
+
 /// Borrows what was prepared.
 class Predictor {
  public:
   Predictor(HostInstance const& host, PreparedMorph const& prepared, PredictionOptions const& options);
 
-  /// first: order of chains, as in make_plan(). Of names of chains it has the stage alone.
-  [[nodiscard]] Prediction predict(ChainOrder const& first, std::span<Vec3 const> boundary);
+  /// first: order of chains, as in make_plan(). Nodes in names of chains are numbered among those sampled.
+  [[nodiscard]] OrderTrial try_order(ChainOrder const& first, std::span<Vec3 const> boundary);
   /// Of the plan prepared, with its names.
   [[nodiscard]] Prediction predict(std::span<Vec3 const> boundary);
 
  private:
   [[nodiscard]] Coordinates morphed(Plan const& plan, std::span<Vec3 const> boundary) const;
   [[nodiscard]] Prediction measure(Plan const& plan, Plan const& names, Coordinates const& morphed) const;
-  [[nodiscard]] Prediction predict(ChainOrder const& first, std::span<Vec3 const> boundary, Plan const* names);
   void add(CellBox const& box, Coordinates const& morphed, std::vector<char>& seen, PredictedCells& out) const;
 
   HostInstance host_;

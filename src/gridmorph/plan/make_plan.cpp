@@ -150,9 +150,11 @@ class Scheduler {
   }
 
   /// first: of these stages the chains are given; the others follow by priority. Returns the order of all.
-  ChainOrder volume(kernels::TurnLaw turn_law, ChainOrder const& first) {
+  /// `next`: gets what the stage after those could be.
+  ChainOrder volume(kernels::TurnLaw turn_law, ChainOrder const& first, ChainOrder* next) {
     ChainOrder order;
     for (int number = 1; has_active_blocks(); ++number) {
+      if (next != nullptr && order.size() == first.size()) *next = alternatives();
       bool open = false;
       std::vector<RankedChain> chains =
           order.size() < first.size() ? given_chains(first[order.size()], open) : best_chains(open);
@@ -197,6 +199,23 @@ class Scheduler {
       priority_.sort(chains);
     }
     return chains;
+  }
+  /// What could be the next stage: all chains of one rank, in either order where they compete, and each chain by itself.
+  ChainOrder alternatives() {
+    std::vector<RankedChain> chains = collect(false);
+    if (chains.empty()) chains = collect(true);
+    priority_.add_quality(chains);
+    priority_.sort(chains);
+    std::map<std::array<int, 2>, std::vector<ChainPlace>> of_rank;
+    ChainOrder out;
+    for (RankedChain const& chain : chains) of_rank[chain.boundary].push_back(chain.place);
+    for (auto& [rank, places] : of_rank) {
+      out.push_back(places);
+      std::reverse(places.begin(), places.end());
+      out.push_back(places);
+    }
+    for (RankedChain const& chain : chains) out.push_back({chain.place});
+    return out;
   }
   /// The chains at some places, all of them open or none.
   std::vector<RankedChain> given_chains(std::vector<ChainPlace> const& places, bool& open) {
@@ -334,7 +353,8 @@ PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const&
 }
 
 PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines const& lines,
-                        BoundaryMotion const& surface, PlanOptions const& options, ChainOrder const& first) {
+                        BoundaryMotion const& surface, PlanOptions const& options, ChainOrder const& first,
+                        ChainOrder* next) {
   ResolvedMotion const& motion = surface.motion();
   Mesh const& mesh = lines.mesh;
   Topology const& topology = lines.topology;
@@ -366,7 +386,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   roots.mark(known);
   scheduler.near_field(near_field_chains(basis.mesh, basis.topology, known, basis.fields));
   HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(basis.fields);
-  planned.order = scheduler.volume(handed_on.law, first);
+  planned.order = scheduler.volume(handed_on.law, first, next);
   std::vector<int> const surface_of_patch = slip_surface_numbers(mesh, surface, plan.surfaces);
   if (!roots.nodes().empty()) {
     roots.scale_turn(handed_on.turn);

@@ -53,8 +53,15 @@ inline std::vector<PriorityRule> standard_priority() {
           {PriorityRule::Kind::aspect_ratio, {}}};
 }
 
+/// What decides which chain of blocks comes first.
+enum class OrderBy {
+  priority,  ///< VolumeOptions::priority
+  prediction  ///< the order of which predict() says the best, never worse than that by priority; needs the rules' displacements
+};
+
 struct VolumeOptions {
   Law law = Law::linear;
+  OrderBy order = OrderBy::priority;  ///< blocks
   /// Blocks: how much of the turn of their walls near fields that rotate hand on at their outer edge, 0 to 1. Nothing: where all
   /// lines from there end on boundaries at rest that are no walls, 1 if the walls have rule `rigid` and 0 if not; elsewhere 0.25.
   std::optional<double> turn;

@@ -269,6 +269,7 @@ void read_plan(TableReader& root, CaseFile& out) {
   auto volume = root.table("volume");
   if (!volume) return;
   if (auto const law = volume->choice("law", {"linear", "c1", "c2"})) out.plan.volume.law = Law(*law);
+  if (auto const order = volume->choice("order", {"priority", "prediction"})) out.plan.volume.order = OrderBy(*order);
   if (auto const turn = volume->number("turn")) {
     out.plan.volume.turn = *turn;
     if (*turn < 0 || *turn > 1)

@@ -61,6 +61,8 @@ class Ignored {
   void of_wheel() {
     refuse("", "sequence", "is for `gridmorph morph`, and a wheel is made at one time");
     refuse("guard", "smooth", "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
+    if (case_.plan.volume.order == OrderBy::prediction)
+      refuse("volume", "order", "is for `gridmorph morph`, and chains of a wheel, whose blades differ, go by priority");
     if (case_.output_options.displacement) refuse("output", "displacement", "is not written into wheels");
     if (case_.output_options.quality) refuse("output", "quality", "is not written into wheels; the report has it");
   }

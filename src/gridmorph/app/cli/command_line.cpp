@@ -134,6 +134,8 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   commands.emplace_back(add_inspect(app, out), Command::inspect);
   auto* plan = app.add_subcommand("plan", "Print stages and chains in order, with the reason for each rank");
   plan->add_option("case", out.input, "Case file (TOML)")->required();
+  plan->add_flag("--optimise", out.optimise,
+                 "Look for the order of chains of which the best is predicted, as order in [volume]");
   commands.emplace_back(plan, Command::plan);
   auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
   quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS, PLOT3D or SU2)")->required();

@@ -4,7 +4,9 @@
 namespace gridmorph::cli {
 
 int run_plan_command(CommandLine const& options, Terminal& terminal) {
-  print_plan(read_case_file(*options.case_document), terminal);
+  CaseFile case_file = read_case_file(*options.case_document);
+  if (options.optimise) case_file.plan.volume.order = OrderBy::prediction;
+  print_plan(case_file, terminal);
   return done;
 }
 

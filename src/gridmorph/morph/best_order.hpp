@@ -1,0 +1,32 @@
+// The order of chains of which the best is predicted.
+#pragma once
+
+#include <gridmorph/morph/prediction.hpp>
+#include <gridmorph/plan/prepare.hpp>
+
+#include <span>
+#include <string>
+
+namespace gridmorph {
+
+struct FoundOrder {
+  ChainOrder order;  ///< of all stages; that of the rules where no better one was found
+  PredictedCells by_priority, by_prediction;
+  int tried = 0;  ///< plans
+
+  bool better = false;  ///< than the order of the rules
+};
+
+/// Looks for the order and the directions of chains with the fewest cells inverted, then the largest smallest scaled Jacobian, then the
+/// largest smallest share of it that a cell keeps, as predict() sees them for one displacement of the boundary; none of the three is worse than by
+/// the rules. Stage by stage every alternative is tried, what comes after it by the rules, and the best four go on (beam search; its
+/// first one is the greedy choice), until nothing is left to choose or 400 plans were tried. Deterministic. Cost: a prediction per plan.
+FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);
+
+/// Plans again in that order, where it is better, and adds a note on what it gains.
+FoundOrder plan_by_prediction(HostInstance const& host, PreparedMorph& prepared, std::span<Vec3 const> boundary);
+
+/// "smallest scaled Jacobian 0.31 (0.12 by priority), ..."
+std::string describe(FoundOrder const& found);
+
+}  // namespace gridmorph
