@@ -19,6 +19,11 @@ PlanOptions law(Law l, PlanOptions options = {}) {
   return options;
 }
 
+PlanOptions laws(std::vector<LawOfKind> of_kinds, PlanOptions options) {
+  options.volume.laws = std::move(of_kinds);
+  return options;
+}
+
 /// Rules with a field on some families, fixed on others, free on the rest.
 std::function<Motion(double)> moves(VectorField field, std::vector<std::string> moving,
                                     std::vector<std::string> fixed = {}, std::vector<std::string> free = {}) {
@@ -64,6 +69,14 @@ std::vector<Case> make_cases() {
       {"bricks_all_faces", [] { return bricks_with_t_junctions(4); }, moves(waves(0.1), {"*"}), {}},
       {"bricks_one_face", [] { return bricks_with_t_junctions(5); }, moves(waves(0.1), {"u_min"}, {"u_max"}, sides),
        layers(4, {"u_min"})},
+      {"bricks_matched", [] { return bricks_with_t_junctions(5); }, moves(waves(0.1), {"u_min"}, {"u_max"}, sides),
+       law(Law::matched, layers(4, {"u_min"}))},
+      {"around_a_box_mixed", [] { return around_a_box(7); },
+       moves(turn_about_z({1.2, 0.6, 0}, 0.1), {"step"}, {"u_min", "u_max", "v_min", "v_max"}, {"w_min", "w_max"}),
+       law(Law::mixed, layers(1))},
+      {"around_a_box_laws_by_kind", [] { return around_a_box(7); },
+       moves(turn_about_z({1.2, 0.6, 0}, 0.1), {"step"}, {"u_min", "u_max", "v_min", "v_max"}, {"w_min", "w_max"}),
+       laws({{{"wall", "inflow"}, Law::matched}, {{"wall", "outflow"}, Law::c2}}, layers(1))},
       {"l_shape", [] { return l_shape(6); },
        moves(waves(0.05), {"step"}, {"u_min", "v_min"}, {"u_max", "v_max", "w_min", "w_max"}), law(Law::c2)},
       {"around_a_box", [] { return around_a_box(7); },

@@ -45,6 +45,25 @@ TEST(LineLaw, SlopesAndCurvaturesVanishWhereTheySay) {
   }
 }
 
+TEST(LineLaw, CubicsHaveTheSlopesThatTheyAreGiven) {
+  double const h = 1e-5;
+  for (double const a : {0.0, 0.85, 1.0, 1.5})
+    for (double const b : {0.0, 0.3, 1.0, 1.5}) {
+      auto const w = [&](double s) { return kernels::cubic_weight(a, b, s); };
+      EXPECT_EQ(w(0), 0);
+      EXPECT_EQ(w(1), 1);
+      EXPECT_NEAR((w(h) - w(-h)) / (2 * h), a, 1e-9);
+      EXPECT_NEAR((w(1 + h) - w(1 - h)) / (2 * h), b, 1e-9);
+      // Third derivatives of cubics are constant: fourth differences vanish.
+      EXPECT_NEAR(w(0) - 4 * w(0.25) + 6 * w(0.5) - 4 * w(0.75) + w(1), 0, 1e-14);
+    }
+  kernels::Chain mixed{};
+  mixed.law = kernels::LineLaw::cubic;
+  mixed.slope[0] = mixed.slope[1] = 0.7;
+  for (double const s : {0.0, 0.1, 0.4, 0.9, 1.0})
+    EXPECT_NEAR(kernels::law_weight(mixed, s), 0.7 * s + 0.3 * kernels::law_weight(kernels::LineLaw::c1, s), 1e-15);
+}
+
 /// One line of five nodes in two segments; the second one runs backwards through memory.
 ///   positions 0 1 2 | 2 3 4   nodes 0 1 2 | 5 4 3,   x = 0 1 3 | 3 6 10
 struct TwoSegments {

@@ -46,6 +46,58 @@ TEST(Lines, OfNoLengthAreDividedByNodeCount) {
   }
 }
 
+/// Displacement along the lines of a straight box with even spacing whose one wall moves by one unit, 3 of 12 layers as one.
+std::vector<double> along_a_box(std::string const& wall, std::string const& opposite, VolumeOptions const& volume) {
+  PlanOptions options;
+  options.boundary_layers = {{{wall}, BoundaryLayer::Extent::layers, 3, 0, BoundaryLayer::Mode::translate}};
+  options.volume = volume;
+  Outcome const r = morph(box({13, 4, 3}, Shape::straight, 1),
+                          motion({rule({wall}, function_rule([](Vec3 const&) {
+                                         return Vec3{0, 1, 0};
+                                       })),
+                                  rule({opposite}, FixedRule{}), rule(sides, FreeRule{})}),
+                          options);
+  std::vector<double> out;
+  for (int i = 3; i < 13; ++i) out.push_back(r.u(r.mesh.zones[0].node({wall == "u_min" ? i : 12 - i, 2, 1})).y);
+  return out;
+}
+
+TEST(Laws, MatchedLeavesNearFieldsWithTheirSlopeAndEndsWithoutCurvature) {
+  VolumeOptions volume;
+  volume.law = Law::matched;
+  for (auto const& [wall, opposite] : {std::pair("u_min", "u_max"), std::pair("u_max", "u_min")}) {
+    std::vector<double> const u = along_a_box(wall, opposite, volume);
+    for (int n = 0; n < 10; ++n) {
+      double const t = n / 9.0;
+      EXPECT_NEAR(u[n], 1 - (3 * t * t - t * t * t) / 2, 1e-14) << wall << ' ' << n;
+    }
+  }
+}
+
+TEST(Laws, MixedIsPartOfTheLinearAndPartOfTheC1Law) {
+  VolumeOptions volume;
+  volume.law = Law::mixed;
+  for (double const share : {0.0, 0.6, 1.0}) {
+    volume.linear_share = share;
+    std::vector<double> const u = along_a_box("u_min", "u_max", volume);
+    for (int n = 0; n < 10; ++n) {
+      double const t = n / 9.0;
+      EXPECT_NEAR(u[n], 1 - (share * t + (1 - share) * t * t * (3 - 2 * t)), 1e-14);
+    }
+  }
+}
+
+TEST(Laws, GoByTheKindsOfTheEndsOfChainsInEitherOrder) {
+  for (auto const& between : {std::array<std::string, 2>{"wall", "inflow"}, {"inflow", "wall"}, {"wall", "outflow"}}) {
+    VolumeOptions volume;
+    volume.laws = {{between, Law::c1}};
+    bool const fits = between[0] != "wall" || between[1] != "outflow";
+    std::vector<double> const u = along_a_box("u_min", "u_max", volume);
+    double const t = 2 / 9.0;
+    EXPECT_NEAR(u[2], 1 - (fits ? t * t * (3 - 2 * t) : t), 1e-14);
+  }
+}
+
 TEST(Lines, NodesThatMeetOnAPoleMoveAsOne) {
   for (bool free : {false, true}) {
     Mesh mesh = o_grid(0, 1);

@@ -39,7 +39,7 @@ struct Tube {
 };
 
 /// How displacement varies along a line, as a function of the fraction of its baseline arc length.
-enum class LineLaw : std::int32_t { linear, c1, c2, constant };
+enum class LineLaw : std::int32_t { linear, c1, c2, constant, cubic };
 
 /// How rotations of the ends of a line fade along it: see turned_line.hpp.
 enum class TurnLaw : std::int32_t { none, near_field, square, c1 };
@@ -56,6 +56,7 @@ struct Chain {
   Index first_section;            ///< correction: where the chain's cross-section parameters start
   TurnLaw turn = TurnLaw::none;   ///< none: its ends carry no rotation
   std::uint32_t turned_ends = 0;  ///< bit 0: the first end carries one; bit 1: the last
+  double slope[2] = {1, 1};       ///< cubic: dw/dt at the two ends
 
   /// Whether anything asks for the arc lengths of its lines.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_parameters() const {
@@ -84,8 +85,19 @@ KOKKOS_INLINE_FUNCTION double law_weight(LineLaw law, double s) {
     case LineLaw::c1: return s * s * (3 - 2 * s);
     case LineLaw::c2: return s * s * s * (10 + s * (6 * s - 15));
     case LineLaw::constant: return 0;
+    case LineLaw::cubic: break;  // has slopes
   }
   return s;
+}
+
+/// The cubic with slopes a and b at its ends (Hermite): linear where both are 1, c1 where both are 0.
+KOKKOS_INLINE_FUNCTION double cubic_weight(double a, double b, double s) {
+  double const r = 1 - s;
+  return s * s * (3 - 2 * s) + s * r * (a * r - b * s);
+}
+
+KOKKOS_INLINE_FUNCTION double law_weight(Chain const& chain, double s) {
+  return chain.law == LineLaw::cubic ? cubic_weight(chain.slope[0], chain.slope[1], s) : law_weight(chain.law, s);
 }
 
 }  // namespace gridmorph::kernels

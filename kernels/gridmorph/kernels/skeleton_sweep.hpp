@@ -36,7 +36,7 @@ KOKKOS_INLINE_FUNCTION Vec3 between_ends(Field<double const> const& ends, Chain 
   Index const at = chain.first_end_value + a + chain.n_a * b;
   Vec3 const u0 = ends[at];
   if (chain.law == LineLaw::constant) return u0;
-  return u0 + law_weight(chain.law, t) * (ends[at + chain.section_size()] - u0);
+  return u0 + law_weight(chain, t) * (ends[at + chain.section_size()] - u0);
 }
 
 /// What rotations at the ends of chains need on the skeleton; nothing where none turn.

@@ -117,11 +117,11 @@ struct VolumePass {
                       term.t < 0 ? nullptr : t + term.t + i + box.n[0] * (j + Index(box.n[1]) * k),
                       n};
     if (chain.first_side < 0 && term.matrix < 0 && chain.turn == TurnLaw::none) {
-      first ? interpolate<false>(chain.law, row, u) : interpolate<true>(chain.law, row, u);
+      first ? interpolate<false>(chain, row, u) : interpolate<true>(chain, row, u);
       return;
     }
     Row v;
-    interpolate<false>(chain.law, row, v);
+    interpolate<false>(chain, row, v);
     if (chain.turn != TurnLaw::none)
       add_turned(chain, term, f, row, box.first + i + j * box.stride_j + k * box.stride_k, v);
     if (chain.first_side >= 0) add_correction(chain, term, f, i, j, k, n, row.t, v);
@@ -168,9 +168,9 @@ struct VolumePass {
   /// One loop per law, and per step between the lines of neighbouring nodes: the steps that occur most are constants, so
   /// that the compiler sees one line for the whole row, or unit stride.
   template <bool Add>
-  KOKKOS_INLINE_FUNCTION static void interpolate(LineLaw law, RowEnds const& row, Row& u) {
+  KOKKOS_INLINE_FUNCTION static void interpolate(Chain const& chain, RowEnds const& row, Row& u) {
     with_step(row.step, [&](auto step) {
-      switch (law) {
+      switch (chain.law) {
         case LineLaw::linear:
           return between_ends<Add>(
               row, step, [](double t) { return t; }, u);
@@ -180,6 +180,11 @@ struct VolumePass {
         case LineLaw::c2:
           return between_ends<Add>(
               row, step, [](double t) { return law_weight(LineLaw::c2, t); }, u);
+        case LineLaw::cubic: {
+          double const a = chain.slope[0], b = chain.slope[1];
+          return between_ends<Add>(
+              row, step, [a, b](double t) { return cubic_weight(a, b, t); }, u);
+        }
         case LineLaw::constant:
           put<Add>(
               row.n, [&](int w) { return row.e.x[row.lower + w * step]; }, u.x);

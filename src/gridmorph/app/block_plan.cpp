@@ -29,7 +29,7 @@ class BlockPlan final : public AnyPlan {
         prepared_(prepare(mesh.mesh(), case_file.motion, case_file.plan)),
         mesh_(prepared_.mesh),
         near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)) {
-    if (case_file.plan.volume.order == OrderBy::prediction) order_by_prediction();
+    if (case_file.plan.volume.by_prediction()) order_by_prediction();
   }
 
   std::vector<Vec3> displacement(Moment const* when) override {

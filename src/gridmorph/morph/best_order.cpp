@@ -32,10 +32,24 @@ class Search {
     beam_.push_back({{}, std::move(rules)});
   }
 
-  FoundOrder run() {
+  void choose_order() {
     while (!beam_.empty() && best_.tried < most_plans) advance();
-    return std::move(best_);
   }
+  /// Chain by chain, those that come out worst first, until no other law is better.
+  void choose_laws() {
+    int const most = best_.tried + most_plans;
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (std::size_t stage = 0; stage < best_.order.size(); ++stage) {
+        for (std::size_t chain = 0; chain < best_.order[stage].size(); ++chain)
+          for (Law const law : {Law::linear, Law::c1, Law::c2, Law::mixed, Law::matched})
+            if (best_.tried < most) changed = accept(with_law(stage, chain, law)) || changed;
+        for (Law const law : {Law::linear, Law::c1, Law::c2, Law::mixed, Law::matched})
+          if (best_.tried < most) changed = accept(with_law(stage, law)) || changed;
+      }
+    }
+  }
+  [[nodiscard]] FoundOrder result() && { return std::move(best_); }
 
  private:
   static constexpr std::size_t width = 4;
@@ -45,6 +59,47 @@ class Search {
     ChainOrder first;  ///< chosen
     OrderTrial trial;  ///< with the rest by priority
   };
+
+  /// One chain of a stage in a stage of its own, since those of one may share lines.
+  [[nodiscard]] ChainOrder with_law(std::size_t stage, std::size_t chain, Law law) const {
+    ChainOrder order = best_.order;
+    if (chain >= order[stage].size()) return {};
+    ChainPlace place = order[stage][chain];
+    place.law = law;
+    if (order[stage].size() == 1) {
+      order[stage][0] = place;
+      return order;
+    }
+    order[stage].erase(order[stage].begin() + std::ptrdiff_t(chain));
+    order.insert(order.begin() + std::ptrdiff_t(stage) + 1, {place});
+    return order;
+  }
+  [[nodiscard]] ChainOrder with_law(std::size_t stage, Law law) const {
+    ChainOrder order = best_.order;
+    for (ChainPlace& place : order[stage]) place.law = law;
+    return order;
+  }
+
+  /// Takes an order if it is better.
+  bool accept(ChainOrder const& order) {
+    if (order.empty() || !begun_.insert(order).second) return false;
+    OrderTrial trial;
+    try {
+      trial = predictor_.try_order(order, boundary_);
+    } catch (PlanError const&) {
+      return false;
+    }
+    ++best_.tried;
+    return take(trial);
+  }
+  bool take(OrderTrial const& trial) {
+    PredictedCells const& cells = trial.prediction.all;
+    if (!is_no_worse(cells, best_.by_priority) || score(cells) >= score(best_.by_prediction)) return false;
+    best_.by_prediction = cells;
+    best_.order = trial.order;
+    best_.better = true;
+    return true;
+  }
 
   /// One stage more.
   void advance() {
@@ -77,12 +132,7 @@ class Search {
     std::copy_n(trial.order.begin(), first.size(), first.begin());
     begun_.insert(first);
     if (!reached_.insert(state(first, trial.prediction.all)).second) return;
-    PredictedCells const& cells = trial.prediction.all;
-    if (is_no_worse(cells, best_.by_priority) && score(cells) < score(best_.by_prediction)) {
-      best_.by_prediction = cells;
-      best_.order = trial.order;
-      best_.better = true;
-    }
+    take(trial);
     longer.push_back({std::move(first), std::move(trial)});
   }
 
@@ -106,7 +156,11 @@ class Search {
 }  // namespace
 
 FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
-  return Search(host, prepared, boundary).run();
+  VolumeOptions const& options = prepared.options.volume;
+  Search search(host, prepared, boundary);
+  if (options.order == OrderBy::prediction || !options.laws_by_prediction) search.choose_order();
+  if (options.laws_by_prediction) search.choose_laws();
+  return std::move(search).result();
 }
 
 FoundOrder plan_by_prediction(HostInstance const& host, PreparedMorph& prepared, std::span<Vec3 const> boundary) {
@@ -119,11 +173,12 @@ FoundOrder plan_by_prediction(HostInstance const& host, PreparedMorph& prepared,
 
 std::string describe(FoundOrder const& found) {
   if (!found.better)
-    return "no order of chains of " + std::to_string(found.tried) + " is predicted to be better than that by priority";
+    return "of " + std::to_string(found.tried) +
+           " orders and laws of chains none is predicted to be better than that by priority";
   PredictedCells const &now = found.by_prediction, &before = found.by_priority;
   auto const pair = [](double a, double b) { return to_text(a, 3) + " (" + to_text(b, 3) + " by priority)"; };
-  return "order of chains by prediction, the best of " + std::to_string(found.tried) +
-         " tried: smallest scaled Jacobian " + pair(now.scaled_jacobian.value, before.scaled_jacobian.value) +
+  return "order and laws of chains by prediction, the best of " + std::to_string(found.tried) +
+         " plans tried: smallest scaled Jacobian " + pair(now.scaled_jacobian.value, before.scaled_jacobian.value) +
          ", smallest share of it kept " + pair(now.kept.value, before.kept.value) + ", cells inverted " +
          std::to_string(now.inverted) + " (" + std::to_string(before.inverted) + ")";
 }

@@ -17,10 +17,11 @@ struct FoundOrder {
   bool better = false;  ///< than the order of the rules
 };
 
-/// Looks for the order and the directions of chains with the fewest cells inverted, then the largest smallest scaled Jacobian, then the
+/// Where VolumeOptions::order asks for it, or nothing does, looks for the order and the directions of chains with the fewest cells inverted, then the largest smallest scaled Jacobian, then the
 /// largest smallest share of it that a cell keeps, as predict() sees them for one displacement of the boundary; none of the three is worse than by
 /// the rules. Stage by stage every alternative is tried, what comes after it by the rules, and the best four go on (beam search; its
-/// first one is the greedy choice), until nothing is left to choose or 400 plans were tried. Deterministic. Cost: a prediction per plan.
+/// first one is the greedy choice), until nothing is left to choose or 400 plans were tried. Then, where VolumeOptions::laws_by_prediction is set, other
+/// laws for single chains and for all of a stage are taken while they make it better, 400 more at most. Deterministic. Cost: a prediction per plan.
 FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);
 
 /// Plans again in that order, where it is better, and adds a note on what it gains.

@@ -1,6 +1,9 @@
 // Which chains of blocks are morphed one after another.
 #pragma once
 
+#include <gridmorph/plan/options.hpp>
+
+#include <optional>
 #include <vector>
 
 namespace gridmorph {
@@ -9,6 +12,7 @@ namespace gridmorph {
 struct ChainPlace {
   int block = -1;
   int axis = 0;
+  std::optional<Law> law = {};  ///< nothing: as the options say
   friend auto operator<=>(ChainPlace const&, ChainPlace const&) = default;
 };
 

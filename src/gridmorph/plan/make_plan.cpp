@@ -60,13 +60,25 @@ std::string chain_name(Mesh const& mesh, Topology const& topology, Chain const& 
   return text;
 }
 
-kernels::LineLaw line_law(Law law) {
+/// near: of the two ends, those on the edge of a near field, which moves as one with its wall: slope zero there.
+ChainLaw chain_law(Law law, double linear_share, std::array<bool, 2> const& near) {
+  using kernels::LineLaw;
   switch (law) {
-    case Law::linear: return kernels::LineLaw::linear;
-    case Law::c1: return kernels::LineLaw::c1;
-    case Law::c2: return kernels::LineLaw::c2;
+    case Law::linear: return LineLaw::linear;
+    case Law::c1: return LineLaw::c1;
+    case Law::c2: return LineLaw::c2;
+    case Law::mixed: return {LineLaw::cubic, {linear_share, linear_share}};
+    case Law::matched:
+      if (near[0] && near[1]) return LineLaw::c1;
+      if (!near[0] && !near[1]) return LineLaw::linear;
+      return {LineLaw::cubic, {near[0] ? 0 : 1.5, near[1] ? 0 : 1.5}};
   }
-  return kernels::LineLaw::linear;
+  return LineLaw::linear;
+}
+
+char const* name_of(Law law) {
+  constexpr char const* names[] = {"linear", "c1", "c2", "mixed", "matched"};
+  return names[int(law)];
 }
 
 /// Of chains between moving ends (measured: a plateau from 0.15 to 0.35).
@@ -94,10 +106,11 @@ class Scheduler {
   /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
   /// its wall and the face that the earlier one moves.
   void near_field(std::vector<StageChain> chains) {
+    before_near_field_ = known_.known;
     for (int turn = 0; !chains.empty(); ++turn) {
       for (StageChain& chain : chains)
         if (outer_face_is_known(chain.chain)) {
-          chain.law = line_law(options_.volume.law);
+          chain.law = chain_law(options_.volume.law, options_.volume.linear_share, {});
           chain.open_end = false;
           if (chain.turn != kernels::TurnLaw::none) chain.turn = kernels::TurnLaw::square;
           chain.chain.last = {true, chain.chain.first.kind, -1};
@@ -153,6 +166,7 @@ class Scheduler {
   /// `next`: gets what the stage after those could be.
   ChainOrder volume(kernels::TurnLaw turn_law, ChainOrder const& first, ChainOrder* next) {
     ChainOrder order;
+    after_near_field_ = known_.known;
     for (int number = 1; has_active_blocks(); ++number) {
       if (next != nullptr && order.size() == first.size()) *next = alternatives();
       bool open = false;
@@ -163,11 +177,16 @@ class Scheduler {
       std::vector<std::string> description;
       order.emplace_back();
       for (RankedChain& ranked : chains) {
+        // Chains of a stage may share lines, which have one law.
+        Law const law = law_of(ranked);
+        ChainLaw const along = open ? ChainLaw(kernels::LineLaw::constant)
+                                    : chain_law(law, options_.volume.linear_share, near_ends(ranked.chain));
+        if (!now.empty() && along != now.front().law) continue;
         if (!independent.add(ranked.chain)) continue;
         order.back().push_back(ranked.place);
-        description.push_back(chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked));
-        now.push_back({open ? known_end_first(ranked.chain) : ranked.chain,
-                       open ? kernels::LineLaw::constant : line_law(options_.volume.law), open, turn_law});
+        description.push_back(chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked) +
+                              (open || law == options_.volume.law ? "" : std::string(", law ") + name_of(law)));
+        now.push_back({open ? known_end_first(ranked.chain) : ranked.chain, along, open, turn_law});
       }
       Stage stage = build_stage(context_, now, known_, priority_.kind_order());
       stage.name = std::to_string(number);
@@ -246,6 +265,22 @@ class Scheduler {
     return end.patch >= 0 && context_.kinds[end.patch] != PatchKind::wall &&
            std::holds_alternative<FixedRule>(motion_.patch_rule(end.patch));
   }
+  /// Which ends of a chain lie on the edge of a near field.
+  [[nodiscard]] std::array<bool, 2> near_ends(Chain const& chain) const {
+    auto const is_edge = [&](ChainEnd const& end, BlockFace const& face) {
+      int const c = topology_.lattice.class_of(topology_.blocks.face_entities(topology_.lattice, face).front());
+      return end.known && end.patch < 0 && after_near_field_[c] != 0 && before_near_field_[c] == 0;
+    };
+    return {is_edge(chain.first, end_face(chain.steps.front(), 0)),
+            is_edge(chain.last, end_face(chain.steps.back(), 1))};
+  }
+  [[nodiscard]] Law law_of(RankedChain const& ranked) const {
+    if (ranked.place.law) return *ranked.place.law;
+    std::string_view const first = end_kind_name(ranked.chain.first.kind), last = end_kind_name(ranked.chain.last.kind);
+    for (auto const& [between, law] : options_.volume.laws)
+      if ((between[0] == first && between[1] == last) || (between[0] == last && between[1] == first)) return law;
+    return options_.volume.law;
+  }
   [[nodiscard]] bool outer_face_is_known(Chain const& chain) const {
     auto const faces = topology_.blocks.face_entities(topology_.lattice, end_face(chain.steps.back(), 1));
     return std::all_of(faces.begin(), faces.end(), [&](int e) { return known_(topology_.lattice.class_of(e)); });
@@ -300,6 +335,7 @@ class Scheduler {
   Plan& plan_;
   Known& known_;
   Priority& priority_;
+  std::vector<char> before_near_field_, after_near_field_;  ///< what was known, per entity class
 };
 
 std::string turn_note(double turn, bool given) {

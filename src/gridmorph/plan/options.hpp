@@ -4,6 +4,7 @@
 #include <gridmorph/boundary/topology_options.hpp>
 #include <gridmorph/plan/element_options.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,15 @@ struct BoundaryLayer {
 enum class Law {
   linear,  ///< s
   c1,      ///< 3 s^2 - 2 s^3: zero slope at both ends
-  c2       ///< 10 s^3 - 15 s^4 + 6 s^5: zero slope and curvature at both ends
+  c2,      ///< 10 s^3 - 15 s^4 + 6 s^5: zero slope and curvature at both ends
+  mixed,   ///< blocks: a s + (1 - a) c1(s), a: VolumeOptions::linear_share
+  matched  ///< blocks: cubic, with the slope of the near field (zero) at ends on its edge, without curvature at others
+};
+
+/// The law of chains whose ends are of two kinds ("wall", "periodic", ...), in either order.
+struct LawOfKind {
+  std::array<std::string, 2> between;
+  Law law = Law::linear;
 };
 
 /// Kinds of boundaries from first to last, as chains rank by them.
@@ -61,11 +70,18 @@ enum class OrderBy {
 
 struct VolumeOptions {
   Law law = Law::linear;
+  double linear_share = 0.85;   ///< of Law::mixed
+  std::vector<LawOfKind> laws;  ///< blocks: of some chains; the first that fits, else `law`
+  bool laws_by_prediction =
+      false;  ///< blocks: other laws for single chains where predict() says that cells come out better
   OrderBy order = OrderBy::priority;  ///< blocks
   /// Blocks: how much of the turn of their walls near fields that rotate hand on at their outer edge, 0 to 1. Nothing: where all
   /// lines from there end on boundaries at rest that are no walls, 1 if the walls have rule `rigid` and 0 if not; elsewhere 0.25.
   std::optional<double> turn;
   std::vector<PriorityRule> priority = standard_priority();
+
+  /// Whether displacements are looked at to plan.
+  [[nodiscard]] bool by_prediction() const { return order == OrderBy::prediction || laws_by_prediction; }
 };
 
 struct PlanOptions {

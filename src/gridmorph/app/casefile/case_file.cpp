@@ -235,9 +235,36 @@ BoundaryLayer read_boundary_layer(TableReader& table) {
   return layer;
 }
 
+/// Kinds of ends of chains.
+std::vector<std::string> const end_kinds{"wall",     "periodic",   "inflow",     "outflow", "symmetry",
+                                         "farfield", "degenerate", "connection", "other"};
+
+void require_kind(TableReader& table, char const* key, std::string const& word) {
+  if (std::find(end_kinds.begin(), end_kinds.end(), word) == end_kinds.end())
+    table.problem(key, fmt::format("\"{}\" is no kind of boundary{}", word, suggestion(word, end_kinds)));
+}
+
+std::vector<LawOfKind> read_laws(TableReader& volume) {
+  std::vector<LawOfKind> out;
+  for (auto& table : volume.tables("laws")) {
+    table.require("between", "between = [\"wall\", \"periodic\"]");
+    table.require("law", "law = \"c1\"");
+    LawOfKind law;
+    auto const between = table.strings("between");
+    if (between && between->size() != 2)
+      table.problem("between", fmt::format("names the kinds of two ends, found {}", between->size()));
+    for (std::size_t end = 0; between && between->size() == 2 && end < 2; ++end) {
+      law.between[end] = (*between)[end];
+      require_kind(table, "between", law.between[end]);
+    }
+    if (auto const word = table.choice("law", {"linear", "c1", "c2", "mixed", "matched"})) law.law = Law(*word);
+    table.finish();
+    out.push_back(std::move(law));
+  }
+  return out;
+}
+
 std::vector<PriorityRule> read_priority(TableReader& volume) {
-  std::vector<std::string> const kinds{"wall",     "periodic",   "inflow",     "outflow", "symmetry",
-                                       "farfield", "degenerate", "connection", "other"};
   std::vector<PriorityRule> priority;
   for (auto& table : volume.tables("priority")) {
     PriorityRule rule;
@@ -249,8 +276,7 @@ std::vector<PriorityRule> read_priority(TableReader& volume) {
         rule.order = *order;
         for (std::size_t i = 0; i < order->size(); ++i) {
           std::string const& word = (*order)[i];
-          if (std::find(kinds.begin(), kinds.end(), word) == kinds.end())
-            table.problem("order", fmt::format("\"{}\" is no kind of boundary{}", word, suggestion(word, kinds)));
+          require_kind(table, "order", word);
           if (std::find(order->begin(), order->begin() + std::ptrdiff_t(i), word) != order->begin() + std::ptrdiff_t(i))
             table.problem("order", fmt::format("names \"{}\" twice", word));
         }
@@ -268,7 +294,16 @@ void read_plan(TableReader& root, CaseFile& out) {
   for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
   auto volume = root.table("volume");
   if (!volume) return;
-  if (auto const law = volume->choice("law", {"linear", "c1", "c2"})) out.plan.volume.law = Law(*law);
+  if (auto const law = volume->choice("law", {"linear", "c1", "c2", "mixed", "matched", "prediction"})) {
+    out.plan.volume.laws_by_prediction = *law == 5;
+    out.plan.volume.law = *law == 5 ? Law::linear : Law(*law);
+  }
+  if (auto const share = volume->number("linear_share")) {
+    out.plan.volume.linear_share = *share;
+    if (*share < 0 || *share > 1)
+      volume->problem("linear_share", fmt::format("is a share of the linear law, 0 to 1, found {}", *share));
+  }
+  out.plan.volume.laws = read_laws(*volume);
   if (auto const order = volume->choice("order", {"priority", "prediction"})) out.plan.volume.order = OrderBy(*order);
   if (auto const turn = volume->number("turn")) {
     out.plan.volume.turn = *turn;

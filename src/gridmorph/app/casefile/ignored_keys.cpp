@@ -63,6 +63,8 @@ class Ignored {
     refuse("guard", "smooth", "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
     if (case_.plan.volume.order == OrderBy::prediction)
       refuse("volume", "order", "is for `gridmorph morph`, and chains of a wheel, whose blades differ, go by priority");
+    if (case_.plan.volume.laws_by_prediction)
+      refuse("volume", "law", "is \"prediction\", for `gridmorph morph`, and blades of a wheel differ; name a law");
     if (case_.output_options.displacement) refuse("output", "displacement", "is not written into wheels");
     if (case_.output_options.quality) refuse("output", "quality", "is not written into wheels; the report has it");
   }

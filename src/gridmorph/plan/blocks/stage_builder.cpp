@@ -70,12 +70,13 @@ void for_end_entities(PlanContext const& context, Chain const& chain, ChainLayou
     }
 }
 
-kernels::Chain device_chain(ChainLayout const& layout, kernels::LineLaw law, bool open_end) {
+kernels::Chain device_chain(ChainLayout const& layout, ChainLaw const& law, bool open_end) {
   kernels::Chain c{};
   c.n_s = layout.n_nodes[0];
   c.n_a = layout.n_nodes[1];
   c.n_b = layout.n_nodes[2];
-  c.law = law;
+  c.law = law.law;
+  for (int end = 0; end < 2; ++end) c.slope[end] = law.slope[end];
   c.open_end = open_end ? 1 : 0;
   c.first_side = -1;
   return c;

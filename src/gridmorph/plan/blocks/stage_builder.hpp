@@ -7,9 +7,18 @@
 
 namespace gridmorph {
 
+/// How displacement varies along the lines of a chain.
+struct ChainLaw {
+  kernels::LineLaw law;
+  std::array<double, 2> slope;  ///< of LineLaw::cubic
+
+  ChainLaw(kernels::LineLaw l = kernels::LineLaw::linear, std::array<double, 2> const& s = {1, 1}) : law(l), slope(s) {}
+  friend bool operator==(ChainLaw const&, ChainLaw const&) = default;
+};
+
 struct StageChain {
   Chain chain;
-  kernels::LineLaw law = kernels::LineLaw::linear;
+  ChainLaw law;
   bool open_end = false;                           ///< carry the first end's displacement to the last end
   kernels::TurnLaw turn = kernels::TurnLaw::none;  ///< how rotations of its ends fade, where they carry any
 };
