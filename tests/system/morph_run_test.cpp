@@ -217,6 +217,61 @@ TEST_F(MorphRun, SmoothingLeavesSoundCellsAloneAndMendsLostOnes) {
   EXPECT_NE(gridmorph("morph case.toml").out.find("displacements around them are smoothed in"), std::string::npos);
 }
 
+TEST_F(MorphRun, OtherRecipesAreTriedWhereAskedForAndTheirKeysGiveTheSameMesh) {
+  std::string large = contents(path("rotation.toml"));
+  std::string const file = "file    = \"rotation.csv\"";
+  large.replace(large.find(file), file.size(), file + "\namplitude = 10");
+  auto const moved = [&](std::string const& toml) {
+    write("case.toml", toml);
+    Outcome const run = gridmorph("morph case.toml --report r.json");
+    return std::pair(run, nlohmann::json::parse(contents(path("r.json"))));
+  };
+  auto const [refused, plain] = moved(large);
+  ASSERT_EQ(refused.status, 4) << "the motion is too large";
+  EXPECT_FALSE(plain.contains("retry")) << "nothing is tried unasked";
+  auto const [run, report] = moved(large + "\n[guard]\nretry = true\n");
+  ASSERT_LE(run.status, 1) << run.err;
+  auto const& retry = report["retry"];
+  EXPECT_GT(retry["first"]["newly_inverted"], 0);
+  std::string const kept = retry["kept"];
+  EXPECT_NE(run.out.find(kept), std::string::npos) << "the keys are said";
+  bool found = false;
+  for (auto const& tried : retry["tried"])
+    if (tried["keys"] == kept) {
+      found = true;
+      EXPECT_EQ(tried["newly_inverted"], 0);
+      EXPECT_LT(tried["newly_inverted"], retry["first"]["newly_inverted"]);
+    }
+  EXPECT_TRUE(found);
+  Mesh const best = read_mesh(path("passage_rotation.cgns").string());
+  // By hand: each "[table] key = value" into its table.
+  std::string by_hand = large;
+  std::istringstream keys(kept);
+  for (std::string key; std::getline(keys >> std::ws, key, ',');) {
+    auto const end = key.find("] ") + 1;
+    std::string const table = key.substr(0, end), value = key.substr(end + 1), name = value.substr(0, value.find(' '));
+    auto at = by_hand.find("\n" + table);
+    if (at == std::string::npos) {
+      by_hand += "\n" + table + "\n" + value + "\n";
+      continue;
+    }
+    for (auto const& old : {"\nmode ", "\nlaw "})  // no key stands twice
+      if (std::string(old).find(name) != std::string::npos) {
+        auto const line = by_hand.find(old, at);
+        by_hand.erase(line, by_hand.find('\n', line + 1) - line);
+      }
+    at = by_hand.find('\n', at + 1);
+    by_hand.insert(at, "\n" + value);
+  }
+  auto const [again, same] = moved(by_hand);
+  ASSERT_EQ(again.status, run.status) << again.err << by_hand;
+  Mesh const repeated = read_mesh(path("passage_rotation.cgns").string());
+  for (Index n = 0; n < best.n_nodes(); ++n) ASSERT_EQ(best.coordinates[n], repeated.coordinates[n]) << n << by_hand;
+  auto const [sound, untried] = moved(contents(path("rotation.toml")) + "\n[guard]\nretry = true\n");
+  EXPECT_EQ(sound.status, 0);
+  EXPECT_FALSE(untried.contains("retry")) << "nothing falls short";
+}
+
 TEST_F(MorphRun, AThresholdThatIsNotMetGivesStatusOneAndTheMesh) {
   std::string text = contents(path("rotation.toml"));
   write("strict.toml", text + "\n[guard]\nmin_determinant = 0.99\n");

@@ -48,7 +48,7 @@ KindTraits const& BlockMesh::traits() {
       .cells = "cells",
       .planning = "connecting zones, applying rules, planning",
       .lost = "cells had corners whose scaled Jacobian was below 0.2 and half of what it was",
-      .change = "change [volume] or [boundary_layer], set smooth = true in [guard]",
+      .change = "change [volume] or [boundary_layer], set smooth or retry = true in [guard]",
       .change_many = "[volume] or [boundary_layer]",
       .costs = {20, 20, 2, 8, 15, 35}};
   return traits;

@@ -69,7 +69,8 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] bool guards() const override { return case_file_.guard.smooth; }
   [[nodiscard]] RelaxReport relax(Coordinates& morphed) const override {
     ShapeSmoothingReport const report = smooth_shapes(exec_, prepared_, mesh_.handedness(), morphed);
-    return {report.triggered_before, report.triggered_after, report.rounds};
+    return {report.triggered_before, report.triggered_after, report.rounds, report.inverted_before,
+            report.inverted_after};
   }
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {

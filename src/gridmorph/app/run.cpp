@@ -244,10 +244,10 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   terminal.expect(file.traits().costs);
   Run run(case_file, file, terminal);
   RelaxReport const relaxed = run.morph(nullptr, &run.times);
-  run.notes = run.plan().notes();
+  std::vector<std::string> guarded;
   if (relaxed.before > 0)
-    run.notes.push_back(fmt::format("{} {}; displacements around them are smoothed in {} rounds, {} are left",
-                                    relaxed.before, run.mesh().kind().lost, relaxed.rounds, relaxed.after));
+    guarded.push_back(fmt::format("{} {}; displacements around them are smoothed in {} rounds, {} are left",
+                                  relaxed.before, run.mesh().kind().lost, relaxed.rounds, relaxed.after));
   terminal.progress("measuring quality");
   Stopwatch watch;
   run.measure_baseline();
@@ -256,12 +256,23 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   if (newly_inverted(run.quality()) > 0) {
     terminal.expect({});  // how many steps it will take is not known
     auto const tried = run.try_steps();
-    run.notes.insert(run.notes.end(), tried.notes.begin(), tried.notes.end());
+    guarded.insert(guarded.end(), tried.notes.begin(), tried.notes.end());
     if (!tried.text.empty()) {
-      run.notes.push_back(tried.text);
+      guarded.push_back(tried.text);
       run.times.push_back({"steps", watch.lap(), true});
     }
   }
+  nlohmann::json retried;
+  if (case_file.guard.retry && any_failure(run.shortfalls_of(run.quality()))) {
+    terminal.expect({});
+    watch.lap();
+    Retried const retry = run.retry();
+    retried = retry.json;
+    if (!retry.text.empty()) guarded.push_back(retry.text);
+    run.times.push_back({"retries", watch.lap(), true});
+  }
+  run.notes = run.plan().notes();
+  run.notes.insert(run.notes.end(), guarded.begin(), guarded.end());
   watch.lap();
   PlanOutcome const outcome = run.plan().outcome(run.morphed(), run.quality().fast, true);
   run.notes.insert(run.notes.end(), outcome.notes.begin(), outcome.notes.end());
@@ -287,7 +298,12 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                    .report = options.report,
                    .written = written,
                    .falls_short = any_failure(shortfalls),
-                   .json = [&] { return run.json(run.quality(), outcome); },
+                   .json =
+                       [&] {
+                         nlohmann::json json = run.json(run.quality(), outcome);
+                         if (!retried.is_null()) json["retry"] = retried;
+                         return json;
+                       },
                    .write =
                        [&] {
                          watch.lap();

@@ -28,6 +28,12 @@ struct TriedSteps {
   std::vector<std::string> notes;  ///< numbers of steps that could not be planned
 };
 
+/// What came of other recipes.
+struct Retried {
+  std::string text;     ///< for people: what was tried, and with which keys it comes out as it did; empty: nothing was
+  nlohmann::json json;  ///< "first", "tried": {"keys", "newly_inverted", "beyond_limits", "min_determinant"}, "kept": keys or null
+};
+
 /// How much of a motion leaves every cell valid.
 struct ValidShare {
   int percent = 0;     ///< certified
@@ -50,6 +56,10 @@ class Run {
   /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the best stays
   /// the result.
   TriedSteps try_steps();
+  /// Where the result falls short: the same motion with other modes and turns of the near field, with the best of them other laws, and of that what
+  /// smoothing makes, until nothing falls short. What has the fewest inverted cells, then the fewest beyond a limit, then the largest smallest determinant
+  /// stays the result, with its plan. Cost: a plan, a morph and a measurement each, up to seven of them, and one smoothing.
+  Retried retry();
   /// The largest whole percentage of the motion, every rule at that share of its amplitude, at which the certificate holds, found by halving: at most
   /// seven morphs. The result stays as it is.
   ValidShare largest_valid_share();
@@ -88,6 +98,7 @@ class Run {
   CaseFile const& case_file_;
   Terminal& terminal_;
   std::unique_ptr<AnyMesh> mesh_;
+  std::unique_ptr<CaseFile> recipe_;  ///< that the plan refers to, where it is not the case file
   std::unique_ptr<AnyPlan> plan_;
   QualityWanted wanted_;
   QualityReport baseline_;  ///< without cells where only a verdict was asked for

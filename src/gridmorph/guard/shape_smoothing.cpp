@@ -1,7 +1,7 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/guard/detail/shape_sweeps.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
-#include <gridmorph/kernels/cell_quality.hpp>
+#include <gridmorph/kernels/jacobian_bounds.hpp>
 
 #include <cmath>
 
@@ -18,7 +18,7 @@ using detail::ShapeRegion;
 struct CellShape {
   double smallest =
       1;  ///< scaled Jacobian of corners that can change, positive where they are turned as in the baseline
-  bool lost = false, inverted = false;
+  bool lost = false, inverted = false;  ///< inverted: at a corner or, by the certificate, elsewhere
 };
 
 /// What became of some cells.
@@ -72,7 +72,28 @@ class ShapeSmoothing {
   }
 
  private:
-  [[nodiscard]] CellShape shape(CellNodes const& nodes, unsigned changing = 0) const {
+  [[nodiscard]] double handedness(Index cell) const { return handedness_[std::size_t(cells_.zone(cell))]; }
+
+  static kernels::HexCell corners(Coordinates const& x, CellNodes const& nodes) {
+    kernels::HexCell cell;
+    for (int c = 0; c < 8; ++c) cell.corner[c] = x[nodes.node(c)];
+    return cell;
+  }
+  /// Inside out somewhere, by the certificate, and not in the baseline.
+  [[nodiscard]] bool broken(CellNodes const& nodes, double handedness) const {
+    auto const edges = kernels::cell_edges<double>([&](int i, int j, int k) {
+      Vec3 const p = x_[nodes.node(i + 2 * j + 4 * k)];
+      return kernels::LaneVec3<double>(p.x, p.y, p.z);
+    });
+    auto const floor = kernels::jacobian_floor(edges, handedness);
+    if (floor.least > floor.arithmetic) return false;
+    auto const negative = [&](Coordinates const& x) {
+      return kernels::jacobian_sign(corners(x, nodes), handedness) >= kernels::JacobianSign::negative;
+    };
+    return negative(x_) && !negative(prepared_.mesh.coordinates);
+  }
+
+  [[nodiscard]] CellShape shape(CellNodes const& nodes, double handedness, unsigned changing = 0) const {
     CellShape out;
     for (int c = 0; c < 8; ++c) {
       Vec3 now[3], before[3];
@@ -85,6 +106,7 @@ class ShapeSmoothing {
       if (!(is > kernels::flat_fraction)) out.inverted = true;
       if (!(is >= options_.least_sine) && !(is >= options_.share * std::abs(was))) out.lost = true;
     }
+    if (!out.inverted && broken(nodes, handedness)) out.inverted = out.lost = true;
     return out;
   }
   static double scaled_jacobian(Vec3 const (&edge)[3]) {
@@ -114,7 +136,8 @@ class ShapeSmoothing {
     detail::for_all_parts(host_, "gridmorph::shape_smoothing::trigger", n_parts, [&](Index n) {
       for (Index cell = n * part; cell < std::min(cells_.size(), (n + 1) * part); ++cell) {
         CellNodes const nodes = cells_.nodes(cell);
-        if (suspicious(nodes, handedness_[std::size_t(cells_.zone(cell))]) && shape(nodes).lost)
+        double const hand = handedness(cell);
+        if ((suspicious(nodes, hand) || broken(nodes, hand)) && shape(nodes, hand).lost)
           found[std::size_t(n)].push_back(cell);
       }
     });
@@ -126,7 +149,8 @@ class ShapeSmoothing {
   [[nodiscard]] std::vector<CellShape> shapes(ShapeRegion const& region) const {
     std::vector<CellShape> out(region.cells.size());
     detail::for_all(host_, "gridmorph::shape_smoothing::shapes", Index(out.size()), [&](Index n) {
-      out[std::size_t(n)] = shape(region.cells[std::size_t(n)], region.changing[std::size_t(n)]);
+      out[std::size_t(n)] = shape(region.cells[std::size_t(n)], handedness(region.numbers[std::size_t(n)]),
+                                  region.changing[std::size_t(n)]);
     });
     return out;
   }
@@ -140,7 +164,7 @@ class ShapeSmoothing {
       add(s);
       out.smallest = std::min(out.smallest, s.smallest);
     }
-    for (Index const cell : region.others) add(shape(cells_.nodes(cell)));
+    for (Index const cell : region.others) add(shape(cells_.nodes(cell), handedness(cell)));
     return out;
   }
   [[nodiscard]] std::vector<Index> still_lost(ShapeRegion const& region) const {

@@ -13,7 +13,7 @@ struct PreparedMorph;  ///< plan/prepare.hpp
 
 struct ShapeSmoothingOptions {
   /// A corner has lost its shape when its scaled Jacobian (volume of its edges' box / product of their lengths) is below
-  /// `least_sine` and below `share` of what it was.
+  /// `least_sine` and below `share` of what it was; so has a cell that the certificate finds broken between corners.
   double least_sine = 0.2, share = 0.5;
   /// One pass over the points of a region per sweep. Where cells are inverted after one round, the next follows.
   struct Round {
@@ -26,9 +26,10 @@ struct ShapeSmoothingOptions {
 
 struct ShapeSmoothingReport {
   Index triggered_before = 0, triggered_after = 0;  ///< cells with a corner that lost its shape
-  Index inverted_before = 0, inverted_after = 0;    ///< cells with a corner inverted that was not in the baseline
-  double smallest_before = 1, smallest_after = 1;   ///< scaled Jacobian, over the corners that could change
-  int rounds = 0;                                   ///< that were kept
+  Index inverted_before = 0,
+        inverted_after = 0;  ///< cells with a corner inverted that was not in the baseline, or broken
+  double smallest_before = 1, smallest_after = 1;  ///< scaled Jacobian, over the corners that could change
+  int rounds = 0;                                  ///< that were kept
 };
 
 /// Moves nodes so that the sum of the relative shapes f (kernels/relative_shape.hpp) of all corners around becomes smaller: each

@@ -28,6 +28,7 @@ enum class QualityMode { automatic, full, fast };
 struct GuardOptions : CellLimits {
   bool write_inverted = false;  ///< write a mesh with inverted cells all the same
   QualityMode quality = QualityMode::automatic;
+  bool retry = false;   ///< try other recipes where the mesh falls short
   bool smooth = false;  ///< move nodes where cells of blocks lost their shape
   int steps = 4;        ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
 };

@@ -24,8 +24,10 @@ class Ignored {
     else
       of_structured();
     if (use_.run == CaseUse::Run::wheel) of_wheel();
-    if (use_.run == CaseUse::Run::sequence)
+    if (use_.run == CaseUse::Run::sequence) {
       refuse("mesh", "output", "names one file, and the meshes of a sequence go where output in [sequence] says");
+      refuse("guard", "retry", "is for a single morph, and the meshes of a sequence have one plan");
+    }
     if (use_.run == CaseUse::Run::morph)
       refuse("motion modes", "harmonic", "says how often a shape oscillates in time, and there is no [sequence]");
     fields();
@@ -60,7 +62,8 @@ class Ignored {
 
   void of_wheel() {
     refuse("", "sequence", "is for `gridmorph morph`, and a wheel is made at one time");
-    refuse("guard", "smooth", "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
+    for (char const* key : {"retry", "smooth"})
+      refuse("guard", key, "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
     if (case_.plan.volume.order == OrderBy::prediction)
       refuse("volume", "order", "is for `gridmorph morph`, and chains of a wheel, whose blades differ, go by priority");
     if (case_.plan.volume.laws_by_prediction)
