@@ -107,7 +107,7 @@ TEST(MotionPath, WhatBendsGoesStraight) {
 TEST(SteppedMorph, ABodyTurnsByARightAngle) {
   for (Index const elements : reduced() ? std::vector<Index>{40'000} : std::vector<Index>{40'000, 90'000}) {
     auto c = sphere(elements);
-    auto const motion = turn(90);
+    auto const motion = turn(150);
     auto const in_one = c.guarded_morph(motion);
     EXPECT_GT(c.inverted(in_one.x), 0) << "one step is enough now: turn further";
     Coordinates const baseline = c.mesh.coordinates;

@@ -1,15 +1,21 @@
 #include <gridmorph/core/for_all.hpp>
+#include <gridmorph/guard/detail/element_shapes.hpp>
 #include <gridmorph/guard/guard.hpp>
-#include <gridmorph/kernels/element_quality.hpp>
+#include <gridmorph/kernels/jacobian_bounds.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
 
 namespace {
+
+/// Elements whose determinant is above this are not asked for their certificate: of 27 points one would be negative long before.
+constexpr double doubtful_determinant = 0.5;
 
 class Relaxation {
  public:
@@ -24,54 +30,92 @@ class Relaxation {
 
   RelaxReport run() {
     RelaxReport report;
-    std::vector<Index32> bad = find_bad();
-    report.before = report.after = Index(bad.size());
-    if (bad.empty()) return report;
+    Judged now = judge(all_elements());
+    report.before = report.after = Index(now.bad.size());
+    report.inverted_before = report.inverted_after = now.inverted;
+    if (now.bad.empty()) return report;
     find_held();
-    int sweeps = options_.sweeps;
-    for (; report.rounds < options_.rounds && !bad.empty(); ++report.rounds) {
-      std::vector<Index32> const nodes = nodes_around(bad);
+    int sweeps = options_.sweeps, rings = options_.rings;
+    bool shapes = by_shape();
+    for (; report.rounds < options_.rounds && !now.bad.empty(); ++report.rounds) {
+      std::vector<Index32> const nodes = nodes_around(now.bad, rings);
       std::vector<Vec3> before;
       for (Index32 const n : nodes) before.push_back(x_[n]);
-      smooth(nodes, sweeps);
-      std::vector<Index32> now = touched(nodes, bad);
-      std::erase_if(now, [this](Index32 e) { return !is_bad(e); });
-      if (now.size() > bad.size()) {
+      if (shapes)
+        smooth_shapes(nodes, sweeps);
+      else
+        smooth(nodes, sweeps);
+      Judged after = judge(touched(nodes, now.bad));
+      if (after.worse_than(now)) {
         for (std::size_t k = 0; k < nodes.size(); ++k) x_.set(nodes[k], before[k]);
         copy_coincident();
+        if (std::exchange(shapes, false)) continue;
         if ((sweeps /= 2) == 0) break;
         continue;
       }
-      bad = std::move(now);
-      report.after = Index(bad.size());
+      now = std::move(after);
+      report.after = Index(now.bad.size());
+      report.inverted_after = now.inverted;
+      if (shapes && now.inverted > 0) {  // what is tangled needs room
+        rings *= 2;
+        sweeps *= 2;
+      }
     }
     return report;
   }
 
  private:
-  [[nodiscard]] double determinant(Index32 e, double sign, Coordinates const& x) const {
+  [[nodiscard]] kernels::ElementCorners corners(Index32 e, Coordinates const& x) const {
     kernels::ElementCorners c;
     auto const nodes = mesh_.elements.corners(e);
     for (std::size_t k = 0; k < nodes.size(); ++k) c.at[k] = x[nodes[k]];
-    return element_determinant(mesh_.elements.type[std::size_t(e)], c, sign, prepared_.plan.plane_normal);
+    return c;
+  }
+  [[nodiscard]] double determinant(Index32 e, double sign, Coordinates const& x) const {
+    return element_determinant(mesh_.elements.type[std::size_t(e)], corners(e, x), sign, prepared_.plan.plane_normal);
+  }
+  /// Inside out somewhere, by the certificate.
+  [[nodiscard]] bool negative(Index32 e, double sign, Coordinates const& x) const {
+    return kernels::jacobian_sign(mesh_.elements.type[std::size_t(e)], corners(e, x), sign,
+                                  prepared_.plan.plane_normal) >= kernels::JacobianSign::negative;
   }
 
-  [[nodiscard]] bool is_bad(Index32 e) const {
-    if (mesh_.elements.type[std::size_t(e)] == ElementType::polyhedron) return false;
+  enum class State : std::uint8_t { sound, bad, inverted };
+  struct Judged {
+    std::vector<Index32> bad;  ///< inverted ones too; ascending
+    Index inverted = 0;
+
+    [[nodiscard]] bool worse_than(Judged const& other) const {
+      return inverted != other.inverted ? inverted > other.inverted : bad.size() > other.bad.size();
+    }
+  };
+
+  [[nodiscard]] State state(Index32 e) const {
+    if (mesh_.elements.type[std::size_t(e)] == ElementType::polyhedron) return State::sound;
     double const sign = signs_[std::size_t(e)], now = determinant(e, sign, x_);
-    if (now > options_.share) return false;  // no determinant is above 1
+    if (now > doubtful_determinant) return State::sound;  // no determinant is above 1
+    if (negative(e, sign, x_) && !negative(e, sign, mesh_.coordinates)) return State::inverted;
+    if (now > options_.share) return State::sound;
     double const before = determinant(e, sign, mesh_.coordinates);
-    return before > 0 ? !(now > options_.share * before) : before == 0 && now < 0;
+    bool const is_bad = before > 0 ? !(now > options_.share * before) : before == 0 && now < 0;
+    return is_bad ? State::bad : State::sound;
   }
 
-  [[nodiscard]] std::vector<Index32> find_bad() const {
-    std::vector<std::uint8_t> mark(std::size_t(mesh_.n_elements()), 0);
-    detail::for_all({}, "gridmorph::find_bad_elements", mesh_.n_elements(),
-                    [&](Index e) { mark[std::size_t(e)] = is_bad(Index32(e)) ? 1 : 0; });
-    std::vector<Index32> bad;
-    for (std::size_t e = 0; e < mark.size(); ++e)
-      if (mark[e] != 0) bad.push_back(Index32(e));
-    return bad;
+  [[nodiscard]] std::vector<Index32> all_elements() const {
+    std::vector<Index32> all(std::size_t(mesh_.n_elements()));
+    std::iota(all.begin(), all.end(), Index32(0));
+    return all;
+  }
+  [[nodiscard]] Judged judge(std::vector<Index32> const& elements) const {
+    std::vector<State> states(elements.size());
+    detail::for_all({}, "gridmorph::find_bad_elements", Index(elements.size()),
+                    [&](Index n) { states[std::size_t(n)] = state(elements[std::size_t(n)]); });
+    Judged out;
+    for (std::size_t n = 0; n < elements.size(); ++n) {
+      if (states[n] != State::sound) out.bad.push_back(elements[n]);
+      out.inverted += states[n] == State::inverted ? 1 : 0;
+    }
+    return out;
   }
 
   /// Elements that change when `nodes` move, and those that were bad; ascending.
@@ -98,7 +142,7 @@ class Relaxation {
     for (Index32 const n : plan.middle.target) held_[std::size_t(n)] = 1;
   }
 
-  std::vector<Index32> nodes_around(std::vector<Index32> const& bad) const {
+  std::vector<Index32> nodes_around(std::vector<Index32> const& bad, int rings) const {
     std::vector<std::uint8_t> seen(std::size_t(mesh_.n_nodes()), 0);
     std::vector<Index32> found;
     auto const add = [&](Index32 n) {
@@ -108,7 +152,7 @@ class Relaxation {
     };
     for (Index32 const e : bad)
       for (Index32 const c : mesh_.elements.corners(e)) add(prepared_.graph.representative[std::size_t(c)]);
-    for (std::size_t begin = 0, ring = 0; ring < std::size_t(options_.rings); ++ring) {
+    for (std::size_t begin = 0, ring = 0; ring < std::size_t(rings); ++ring) {
       std::size_t const end = found.size();
       for (; begin < end; ++begin)
         for (Index32 const m : prepared_.graph.neighbours[found[begin]]) add(m);
@@ -116,6 +160,19 @@ class Relaxation {
     std::erase_if(found, [&](Index32 n) { return held_[std::size_t(n)] != 0; });
     std::sort(found.begin(), found.end());
     return found;
+  }
+
+  /// In space, and where all elements have corners that say what shape is.
+  [[nodiscard]] bool by_shape() const { return mesh_.dimension == 3 && mesh_.polyhedra.element.size() == 0; }
+
+  void smooth_shapes(std::vector<Index32> const& nodes, int sweeps) {
+    UnstructuredPlan const& plan = prepared_.plan;
+    std::vector<std::pair<Index32, Index32>> copies;
+    for (std::size_t k = 0; k < plan.copies.size(); ++k)
+      if (std::binary_search(nodes.begin(), nodes.end(), plan.copied[k]))
+        copies.emplace_back(plan.copied[k], plan.copies[k]);
+    std::sort(copies.begin(), copies.end());
+    detail::ElementShapes(mesh_, topology_, nodes, copies).smooth(sweeps, 1, x_);
   }
 
   /// Displacement at a node by the affine function that fits those of its neighbours best.

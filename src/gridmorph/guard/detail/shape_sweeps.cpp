@@ -1,4 +1,5 @@
 #include <gridmorph/core/for_all.hpp>
+#include <gridmorph/guard/detail/shape_step.hpp>
 #include <gridmorph/guard/detail/shape_sweeps.hpp>
 #include <gridmorph/kernels/slip_edge.hpp>
 
@@ -37,22 +38,15 @@ class Sweeps {
 
   void move(Index point, double delta, double relaxation, std::vector<CornerChange>& corners) {
     changes(point, corners);
-    kernels::ShapeSum sum;
-    for (CornerChange const& c : corners) sum.add(c, delta);
     Vec3 const u = displacement(point);
     SlidingPoint const* const slide = slide_of(point);
-    if (slide != nullptr) restrict(*slide, u, sum);
-    Vec3 step = relaxation * descent_step(sum);
-    constexpr int most_halvings = 6;
-    for (int n = 0; n <= most_halvings; ++n, step = 0.5 * step) {
-      Vec3 const there = slide != nullptr ? slid(*slide, u + step) : u + step;
-      double value = 0;
-      for (CornerChange const& c : corners)
-        value += kernels::relative_shape(c.n_after(there - u), c.d_after(there - u), delta);
-      if (!(value < sum.value)) continue;
-      place(point, there);
-      return;
-    }
+    make_shape_step(
+        corners, u, delta, relaxation,
+        [&](kernels::ShapeSum& sum) {
+          if (slide != nullptr) restrict(*slide, u, sum);
+        },
+        [&](Vec3 const& there) { return slide != nullptr ? slid(*slide, there) : there; },
+        [&](Vec3 const& there) { place(point, there); });
   }
 
   [[nodiscard]] double smallest_volume(Index cell) const {
@@ -133,17 +127,11 @@ double smallest_volume(HostInstance const& host, ShapeRegion const& region, Swee
 
 void smooth_region(HostInstance const& host, PreparedMorph const& prepared, ShapeRegion const& region, int sweeps,
                    double relaxation, Coordinates& x) {
-  constexpr int eighths = 8;
-  constexpr double first_delta = 0.1, shrink = 0.6, enough_volume = 0.02;
   constexpr Index part = 64;  // points that one core takes at a time
   Sweeps points(prepared, region, x);
-  double smoothing = first_delta, delta = 0;
-  for (int sweep = 0, eighth = -1; sweep < sweeps; ++sweep) {
-    if (int const now = sweep * eighths / sweeps; now != eighth) {
-      if (eighth >= 0) smoothing *= shrink;
-      eighth = now;
-      delta = smallest_volume(host, region, points) < enough_volume ? smoothing : 0;
-    }
+  UntanglingSchedule schedule(sweeps);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    double const delta = schedule.delta(sweep, [&] { return smallest_volume(host, region, points); });
     for (std::vector<Index32> const& colour : region.colours) {
       Index const count = Index(colour.size());
       for_all_parts(host, "gridmorph::shape_smoothing::sweep", (count + part - 1) / part, [&](Index n) {

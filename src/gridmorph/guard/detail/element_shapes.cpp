@@ -1,0 +1,205 @@
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/guard/detail/element_shapes.hpp>
+#include <gridmorph/guard/detail/shape_step.hpp>
+#include <gridmorph/kernels/vector_array.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gridmorph::detail {
+
+namespace {
+
+using Ends = std::array<std::int8_t, 3>;
+
+/// The corners at the other ends of the edges of a corner.
+Ends ends_of(ElementType type, int corner) {
+  auto const around = [](int k, int n) { return Ends{std::int8_t((k + 1) % n), std::int8_t((k + n - 1) % n), 0}; };
+  Ends out{};
+  switch (type) {
+    case ElementType::tetrahedron: return {1, 2, 3};
+    case ElementType::pyramid:
+      out = around(corner, 4);
+      out[2] = 4;
+      return out;
+    case ElementType::prism:
+    case ElementType::hexahedron: {
+      int const n = type == ElementType::prism ? 3 : 4, side = corner / n;
+      out = around(corner % n, n);
+      for (int d = 0; d < 2; ++d) out[std::size_t(d)] = std::int8_t(out[std::size_t(d)] + n * side);
+      out[2] = std::int8_t(corner % n + n * (1 - side));
+      return out;
+    }
+    default: return out;
+  }
+}
+
+int n_shape_corners(ElementType type) {
+  switch (type) {
+    case ElementType::tetrahedron: return 1;
+    case ElementType::pyramid: return 4;
+    case ElementType::prism: return 6;
+    case ElementType::hexahedron: return 8;
+    default: return 0;
+  }
+}
+
+}  // namespace
+
+ElementShapes::ElementShapes(Mesh const& mesh, UnstructuredTopology const& topology, std::span<Index32 const> nodes,
+                             std::span<std::pair<Index32, Index32> const> copies)
+    : mesh_(mesh) {
+  for (Index32 const n : nodes) {
+    nodes_.push_back(n);
+    auto copy = std::lower_bound(copies.begin(), copies.end(), std::pair(n, Index32(-1)));
+    for (; copy != copies.end() && copy->first == n; ++copy) nodes_.push_back(copy->second);
+    first_node_.push_back(Index(nodes_.size()));
+  }
+  find_corners(topology);
+  colour();
+}
+
+std::array<Index32, 4> ElementShapes::nodes_of(ElementCorner const& c) const {
+  auto const nodes = mesh_.elements.corners(c.element);
+  Ends const ends = ends_of(mesh_.elements.type[std::size_t(c.element)], c.corner);
+  return {Index32(nodes[std::size_t(c.corner)]), Index32(nodes[std::size_t(ends[0])]),
+          Index32(nodes[std::size_t(ends[1])]), Index32(nodes[std::size_t(ends[2])])};
+}
+
+void ElementShapes::edges(ElementCorner const& corner, Coordinates const& x, Vec3 (&edge)[3]) const {
+  auto const n = nodes_of(corner);
+  for (std::size_t d = 0; d < 3; ++d) edge[d] = x[n[d + 1]] - x[n[0]];
+}
+
+void ElementShapes::find_corners(UnstructuredTopology const& topology) {
+  std::vector<Index32> elements;
+  for (Index32 const n : nodes_) {
+    auto const around = topology.elements_of_nodes[n];
+    elements.insert(elements.end(), around.begin(), around.end());
+  }
+  std::sort(elements.begin(), elements.end());
+  elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
+  std::vector<Index> first{0};  // corner of each of them
+  for (Index32 const e : elements) {
+    for (int c = 0; c < n_shape_corners(mesh_.elements.type[std::size_t(e)]); ++c)
+      corners_.push_back({e, std::int8_t(c)});
+    first.push_back(Index(corners_.size()));
+  }
+  for (ElementCorner const& corner : corners_) {
+    Vec3 edge[3];
+    edges(corner, mesh_.coordinates, edge);
+    baseline_.push_back(kernels::BaselineCorner::of(edge));
+  }
+  std::vector<Change> found;
+  for (std::size_t p = 0; p + 1 < first_node_.size(); ++p) {
+    found.clear();
+    for (Index m = first_node_[p]; m < first_node_[p + 1]; ++m) {
+      Index32 const node = nodes_[std::size_t(m)];
+      for (Index32 const e : topology.elements_of_nodes[node]) {
+        auto const at = std::size_t(std::lower_bound(elements.begin(), elements.end(), e) - elements.begin());
+        for (Index c = first[at]; c < first[at + 1]; ++c) {
+          auto const of_corner = nodes_of(corners_[std::size_t(c)]);
+          unsigned roles = 0;
+          for (unsigned k = 0; k < 4; ++k) roles |= of_corner[k] == node ? 1u << k : 0u;
+          if (roles != 0 && baseline_[std::size_t(c)].inverse_det != 0)
+            found.push_back({Index32(c), std::uint8_t(roles)});
+        }
+      }
+    }
+    std::stable_sort(found.begin(), found.end(), [](auto const& a, auto const& b) { return a.corner < b.corner; });
+    for (Change const& change : found) {
+      bool const again = Index(changes_.size()) > first_change_.back() && changes_.back().corner == change.corner;
+      if (again)
+        changes_.back().roles |= change.roles;
+      else
+        changes_.push_back(change);
+    }
+    first_change_.push_back(Index(changes_.size()));
+  }
+}
+
+void ElementShapes::colour() {
+  std::vector<std::pair<Index32, Index32>> users;  // (corner's element, point)
+  std::size_t const n_points = first_node_.size() - 1;
+  for (std::size_t p = 0; p < n_points; ++p)
+    for (Index c = first_change_[p]; c < first_change_[p + 1]; ++c)
+      users.emplace_back(corners_[std::size_t(changes_[std::size_t(c)].corner)].element, Index32(p));
+  std::sort(users.begin(), users.end());
+  users.erase(std::unique(users.begin(), users.end()), users.end());
+  std::vector<Index32> colour(n_points, -1), taken_by;
+  for (std::size_t p = 0; p < n_points; ++p) {
+    Index32 last = -1;
+    for (Index c = first_change_[p]; c < first_change_[p + 1]; ++c) {
+      Index32 const e = corners_[std::size_t(changes_[std::size_t(c)].corner)].element;
+      if (e == last) continue;
+      last = e;
+      for (auto user = std::lower_bound(users.begin(), users.end(), std::pair(e, Index32(-1)));
+           user != users.end() && user->first == e; ++user)
+        if (Index32 const k = colour[std::size_t(user->second)]; k >= 0) taken_by[std::size_t(k)] = Index32(p);
+    }
+    std::size_t free = 0;
+    while (free < taken_by.size() && taken_by[free] == Index32(p)) ++free;
+    if (free == taken_by.size()) {
+      taken_by.push_back(-1);
+      colours_.emplace_back();
+    }
+    colour[p] = Index32(free);
+    colours_[free].push_back(Index32(p));
+  }
+}
+
+double ElementShapes::smallest_volume(Coordinates const& x) const {
+  double smallest = HUGE_VAL;
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    if (baseline_[c].inverse_det == 0) continue;
+    Vec3 edge[3];
+    edges(corners_[c], x, edge);
+    smallest = std::min(smallest, baseline_[c].inverse_det * dot(cross(edge[0], edge[1]), edge[2]));
+  }
+  return smallest;
+}
+
+void ElementShapes::move(Index32 point, double delta, double relaxation, Coordinates& x,
+                         std::vector<kernels::CornerChange>& changes) const {
+  auto const p = std::size_t(point);
+  changes.clear();
+  for (Index c = first_change_[p]; c < first_change_[p + 1]; ++c) {
+    Change const& at = changes_[std::size_t(c)];
+    Vec3 edge[3];
+    edges(corners_[std::size_t(at.corner)], x, edge);
+    double share[3];
+    for (int d = 0; d < 3; ++d) share[d] = double(at.roles >> (1 + d) & 1) - double(at.roles & 1);
+    changes.push_back(corner_change(baseline_[std::size_t(at.corner)], edge, share));
+  }
+  Coordinates const& before = mesh_.coordinates;
+  Index32 const own = nodes_[std::size_t(first_node_[p])];
+  make_shape_step(
+      changes, x[own] - before[own], delta, relaxation, [](kernels::ShapeSum&) {}, [](Vec3 const& u) { return u; },
+      [&](Vec3 const& u) {
+        for (Index m = first_node_[p]; m < first_node_[p + 1]; ++m)
+          x.set(nodes_[std::size_t(m)], before[nodes_[std::size_t(m)]] + u);
+      });
+}
+
+void ElementShapes::smooth(int sweeps, double relaxation, Coordinates& x) const {
+  constexpr Index part = 64, few_parts = 4;  // points that one core takes at a time; what one core does alone
+  UntanglingSchedule schedule(sweeps);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    double const delta = schedule.delta(sweep, [&] { return smallest_volume(x); });
+    for (std::vector<Index32> const& colour : colours_) {
+      Index const count = Index(colour.size());
+      auto const move_part = [&](Index n) {
+        std::vector<kernels::CornerChange> changes;
+        for (Index at = n * part; at < std::min(count, (n + 1) * part); ++at)
+          move(colour[std::size_t(at)], delta, relaxation, x, changes);
+      };
+      Index const parts = (count + part - 1) / part;
+      if (parts > few_parts)
+        for_all_parts({}, "gridmorph::element_shapes::sweep", parts, move_part);
+      else  // threads would wait for one another longer than they work
+        for (Index n = 0; n < parts; ++n) move_part(n);
+    }
+  }
+}
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,52 @@
+// The step of one point towards the shapes that its corners have in the baseline; points of blocks and of elements share it.
+#pragma once
+
+#include <gridmorph/kernels/relative_shape.hpp>
+
+#include <vector>
+
+namespace gridmorph::detail {
+
+/// How delta follows the sweeps, in eighths of them: 0.1, then 0.6 times as much each, as long as a corner has lost 98 % of its volume, else 0.
+class UntanglingSchedule {
+ public:
+  explicit UntanglingSchedule(int sweeps) : sweeps_(sweeps) {}
+
+  /// smallest_volume(): smallest d of all corners, asked once per eighth.
+  template <class SmallestVolume>
+  [[nodiscard]] double delta(int sweep, SmallestVolume const& smallest_volume) {
+    constexpr int eighths = 8;
+    constexpr double shrink = 0.6, enough_volume = 0.02;
+    if (int const now = sweep * eighths / sweeps_; now != eighth_) {
+      if (eighth_ >= 0) smoothing_ *= shrink;
+      eighth_ = now;
+      delta_ = smallest_volume() < enough_volume ? smoothing_ : 0;
+    }
+    return delta_;
+  }
+
+ private:
+  int sweeps_, eighth_ = -1;
+  double smoothing_ = 0.1, delta_ = 0;
+};
+
+/// Moves a point at u by `relaxation` times descent_step(), halved up to six times until the sum of f over its corners falls; else not at all.
+/// restrict(sum): leaves the directions that are allowed; allowed(u): the nearest place that is; place(u).
+template <class Restrict, class Allowed, class Place>
+void make_shape_step(std::vector<kernels::CornerChange> const& corners, Vec3 const& u, double delta, double relaxation,
+                     Restrict const& restrict, Allowed const& allowed, Place const& place) {
+  constexpr int most_halvings = 6;
+  kernels::ShapeSum sum;
+  for (kernels::CornerChange const& c : corners) sum.add(c, delta);
+  restrict(sum);
+  Vec3 step = relaxation * descent_step(sum);
+  for (int n = 0; n <= most_halvings; ++n, step = 0.5 * step) {
+    Vec3 const there = allowed(u + step);
+    double value = 0;
+    for (kernels::CornerChange const& c : corners)
+      value += kernels::relative_shape(c.n_after(there - u), c.d_after(there - u), delta);
+    if (value < sum.value) return place(there);
+  }
+}
+
+}  // namespace gridmorph::detail
