@@ -30,8 +30,9 @@ struct TriedSteps {
 
 /// What came of other recipes.
 struct Retried {
-  std::string text;     ///< for people: what was tried, and with which keys it comes out as it did; empty: nothing was
-  nlohmann::json json;  ///< "first", "tried": {"keys", "newly_inverted", "beyond_limits", "min_determinant"}, "kept": keys or null
+  std::string text;  ///< for people: what was tried, and with which keys it comes out as it did; empty: nothing was
+  nlohmann::json
+      json;  ///< "first", "tried": {"keys", "newly_inverted", "beyond_limits", "min_determinant"}, "kept": keys or null
 };
 
 /// How much of a motion leaves every cell valid.
