@@ -11,7 +11,8 @@ namespace {
 
 using Mode = BoundaryLayer::Mode;
 
-constexpr std::array<char const*, 3> mode_names{"translate", "rotate", "blend"}, law_names{"linear", "c1", "c2"};
+constexpr std::array<char const*, 3> mode_names{"translate", "rotate", "blend"};
+constexpr std::array<char const*, 5> law_names{"linear", "c1", "c2", "mixed", "matched"};
 
 }  // namespace
 
@@ -20,7 +21,11 @@ CaseFile Recipe::of(CaseFile const& case_file) const {
   if (mode)
     for (BoundaryLayer& layer : out.plan.boundary_layers) layer.mode = *mode;
   if (turn) out.plan.volume.turn = turn;
-  if (law) out.plan.volume.law = *law;
+  if (law) {
+    out.plan.volume.law = *law;
+    out.plan.volume.laws_by_prediction = false;
+  }
+  if (by_prediction) out.plan.volume.order = OrderBy::prediction;
   if (smooth) out.guard.smooth = true;
   return out;
 }
@@ -32,6 +37,7 @@ std::string Recipe::keys(bool unstructured) const {
   if (turn) add(fmt::format("[volume] turn = {}", *turn));
   if (law)
     add(fmt::format("[{}] law = \"{}\"", unstructured ? "background" : "volume", law_names.at(std::size_t(*law))));
+  if (by_prediction) add("[volume] order = \"prediction\"");
   if (smooth) add("[guard] smooth = true");
   return out;
 }
@@ -58,10 +64,12 @@ std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructur
   return out;
 }
 
-std::vector<Recipe> other_laws(CaseFile const& case_file, Recipe const& recipe) {
+std::vector<Recipe> other_laws(CaseFile const& case_file, Recipe const& recipe, bool unstructured) {
+  VolumeOptions const& volume = case_file.plan.volume;
   std::vector<Recipe> out;
-  for (Law const law : {Law::linear, Law::c1, Law::c2}) {
-    if (law == recipe.law.value_or(case_file.plan.volume.law)) continue;
+  for (Law const law : {Law::linear, Law::c1, Law::c2, Law::mixed, Law::matched}) {
+    if (unstructured && law > Law::c2) break;
+    if (recipe.law ? law == *recipe.law : !volume.laws_by_prediction && law == volume.law) continue;
     out.push_back(recipe);
     out.back().law = law;
   }

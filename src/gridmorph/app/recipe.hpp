@@ -14,6 +14,7 @@ struct Recipe {
   std::optional<BoundaryLayer::Mode> mode = {};  ///< of every near field
   std::optional<double> turn = {};
   std::optional<Law> law = {};
+  bool by_prediction = false;  ///< order of chains
   bool smooth = false;
 
   /// The case file with these keys.
@@ -25,7 +26,7 @@ struct Recipe {
 /// Near fields that translate, and that turn and hand on nothing, a quarter and all of it; those that the case file names are left out, and all
 /// where it has no near field. Of elements: that translate, rotate or blend.
 std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructured);
-/// `recipe` with each of the laws that it does not have.
-std::vector<Recipe> other_laws(CaseFile const& case_file, Recipe const& recipe);
+/// `recipe` with each of the laws that it does not have; elements have three.
+std::vector<Recipe> other_laws(CaseFile const& case_file, Recipe const& recipe, bool unstructured);
 
 }  // namespace gridmorph::cli

@@ -80,7 +80,12 @@ Retried Run::retry() {
     recipe_ = std::move(other);
   };
   for (Recipe const& recipe : other_near_fields(case_file_, elements)) attempt(recipe);
-  for (Recipe const& recipe : other_laws(case_file_, best)) attempt(recipe);
+  for (Recipe const& recipe : other_laws(case_file_, best, elements)) attempt(recipe);
+  if (!elements && case_file_.plan.volume.order != OrderBy::prediction) {
+    Recipe ordered = best;
+    ordered.by_prediction = true;
+    attempt(ordered);
+  }
   if (!elements && !case_file_.guard.smooth) {
     Recipe smoothed = best;
     smoothed.smooth = true;

@@ -57,9 +57,9 @@ class Run {
   /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the best stays
   /// the result.
   TriedSteps try_steps();
-  /// Where the result falls short: the same motion with other modes and turns of the near field, with the best of them other laws, and of that what
+  /// Where the result falls short: the same motion with other modes and turns of the near field, with the best of them other laws, of that the predicted order of chains, and of that what
   /// smoothing makes, until nothing falls short. What has the fewest inverted cells, then the fewest beyond a limit, then the largest smallest determinant
-  /// stays the result, with its plan. Cost: a plan, a morph and a measurement each, up to seven of them, and one smoothing.
+  /// stays the result, with its plan. Cost: a plan, a morph and a measurement each, up to ten of them, and one smoothing.
   Retried retry();
   /// The largest whole percentage of the motion, every rule at that share of its amplitude, at which the certificate holds, found by halving: at most
   /// seven morphs. The result stays as it is.
