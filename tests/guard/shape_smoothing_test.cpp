@@ -85,6 +85,34 @@ class ShapeSmoothing : public testing::TestWithParam<Case> {
   static inline int tried = 0, helped = 0;
 };
 
+double largest_distance(Coordinates const& a, Coordinates const& b) {
+  double largest = 0;
+  for (Index n = 0; n < a.size(); ++n) largest = std::max(largest, distance(a[n], b[n]));
+  return largest;
+}
+
+TEST_P(ShapeSmoothing, WhatIsFrozenFollowsTheMotionWithoutJumps) {
+  auto const& [run, smoothed] = overdone(GetParam());
+  FrozenSmoothing const frozen = lost_shapes({}, run.prepared, handedness(run.mesh), copy_of(run.morphed.position));
+  EXPECT_EQ(Index(frozen.cells.size()), smoothed.report.triggered_before);
+  Coordinates const& home = run.mesh.coordinates;
+  auto const at = [&](double share) {
+    Coordinates plain(home.size());
+    for (Index n = 0; n < home.size(); ++n) plain.set(n, home[n] + share * (run.morphed.position[n] - home[n]));
+    Coordinates x = copy_of(plain);
+    (void)smooth_frozen({}, run.prepared, handedness(run.mesh), x, frozen);
+    return std::pair(plain, x);
+  };
+  EXPECT_EQ(largest_distance(at(0).second, home), 0);
+  auto const little = at(1e-4);
+  EXPECT_LT(largest_distance(little.second, home), 100 * largest_distance(little.first, home)) << "from nothing on";
+  // Below the amplitude at which the first corner loses its shape, and through it.
+  for (double const share : {0.3, 0.6, 0.9}) {
+    auto const one = at(share), other = at(share + 1e-4);
+    EXPECT_LT(largest_distance(one.second, other.second), 100 * largest_distance(one.first, other.first)) << share;
+  }
+}
+
 TEST_P(ShapeSmoothing, KeepsWhatItMust) {
   auto const& [run, smoothed] = overdone(GetParam());
   auto const& [x, report] = smoothed;

@@ -84,6 +84,8 @@ class AnyPlan {
   [[nodiscard]] virtual bool guards() const { return true; }
   /// Smooths around cells that came out bad.
   [[nodiscard]] virtual RelaxReport relax(Coordinates& morphed) const = 0;
+  /// Remembers where a mesh of a sequence lost its shape: relax() then does the same to all of them, so that they do not jump.
+  virtual void freeze(Coordinates const& /*morphed*/) {}
   /// The same motion in several steps, each planned on the mesh before it; nothing where this plan has but one.
   [[nodiscard]] virtual std::optional<Coordinates> morph_in_steps(
       std::vector<Vec3> const& /*displacement*/, int /*steps*/,

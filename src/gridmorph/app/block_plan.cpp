@@ -68,9 +68,16 @@ class BlockPlan final : public AnyPlan {
 
   [[nodiscard]] bool guards() const override { return case_file_.guard.smooth; }
   [[nodiscard]] RelaxReport relax(Coordinates& morphed) const override {
-    ShapeSmoothingReport const report = smooth_shapes(exec_, prepared_, mesh_.handedness(), morphed);
+    ShapeSmoothingReport const report = frozen_ ? smooth_frozen(exec_, prepared_, mesh_.handedness(), morphed, *frozen_)
+                                                : smooth_shapes(exec_, prepared_, mesh_.handedness(), morphed);
     return {report.triggered_before, report.triggered_after, report.rounds, report.inverted_before,
             report.inverted_after};
+  }
+
+  void freeze(Coordinates const& morphed) override {
+    FrozenSmoothing const lost = lost_shapes(exec_, prepared_, mesh_.handedness(), morphed);
+    if (!frozen_) frozen_.emplace();
+    frozen_->join(lost);
   }
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
@@ -108,6 +115,11 @@ class BlockPlan final : public AnyPlan {
     append(prepared_.surface.notes());
     append(prepared_.plan().notes);
     if (trimmed_) out.push_back(*trimmed_);
+    if (frozen_ && !frozen_->cells.empty())
+      out.push_back(
+          fmt::format("{} cells lose their shape in some of the steps; nodes around them are smoothed in all "
+                      "of the steps alike",
+                      frozen_->cells.size()));
     if (evaluated_) append(mapping_notes(case_file_));
     return out;
   }
@@ -177,6 +189,7 @@ class BlockPlan final : public AnyPlan {
   BlockMesh mesh_;  ///< with the patches that planning added
   NearCells near_;
   std::optional<Morpher<Exec>> morpher_;
+  std::optional<FrozenSmoothing> frozen_;
   bool evaluated_ = false;
   double ordering_ = 0;                 ///< seconds that the order of chains took to be found
   std::optional<std::string> trimmed_;  ///< of the rules as they stand

@@ -96,6 +96,14 @@ PlanPrediction Run::predict() {
   }
 }
 
+void Run::freeze_guard(std::vector<Moment> const& moments) {
+  Coordinates moved(mesh_->n_nodes());
+  for (Moment const& when : moments) {
+    plan_->morph(plan_->displacement(&when), moved, nullptr);
+    plan_->freeze(moved);
+  }
+}
+
 void Run::measure() {
   QualityWanted wanted = wanted_;
   wanted.morphed = &result_.morphed;

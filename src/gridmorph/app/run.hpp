@@ -52,6 +52,8 @@ class Run {
   /// Morphs by the rules as they are at a moment, as they stand where there is none, and smooths around cells that came out bad.
   /// `times`: gets what it took.
   RelaxReport morph(Moment const* when = nullptr, StepTimes* times = nullptr);
+  /// Makes the meshes of these moments to see where any of them loses its shape: smoothing is then the same in all of them.
+  void freeze_guard(std::vector<Moment> const& moments);
   /// Quality of the result, and fields on the way.
   void measure();
   /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the best stays

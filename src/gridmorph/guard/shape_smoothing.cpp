@@ -3,7 +3,9 @@
 #include <gridmorph/guard/shape_smoothing.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace gridmorph {
 
@@ -71,7 +73,31 @@ class ShapeSmoothing {
     return report;
   }
 
+  ShapeSmoothingReport run(FrozenSmoothing const& frozen) {
+    ShapeSmoothingReport report;
+    if (frozen.cells.empty() || options_.rounds.empty() || is_baseline()) return report;
+    ShapeSmoothingOptions::Round const round = frozen.inverted ? options_.rounds.back() : options_.rounds.front();
+    BlockPoints points(prepared_);
+    ShapeRegion const region = detail::shape_region(host_, prepared_, cells_, points, frozen.cells, round.rings);
+    ShapeCount const before = count(region);
+    detail::smooth_region(host_, prepared_, region, round.sweeps, round.relaxation, x_, true);
+    ShapeCount const after = count(region);
+    return {before.lost, after.lost, before.inverted, after.inverted, before.smallest, after.smallest, 1};
+  }
+
+  [[nodiscard]] FrozenSmoothing lost() const {
+    FrozenSmoothing out{find_lost(), false};
+    for (Index const cell : out.cells)
+      out.inverted = out.inverted || shape(cells_.nodes(cell), handedness(cell)).inverted;
+    return out;
+  }
+
  private:
+  [[nodiscard]] bool is_baseline() const {
+    for (Index n = 0; n < x_.size(); ++n)
+      if (!(x_[n] == prepared_.mesh.coordinates[n])) return false;
+    return true;
+  }
   [[nodiscard]] double handedness(Index cell) const { return handedness_[std::size_t(cells_.zone(cell))]; }
 
   static kernels::HexCell corners(Coordinates const& x, CellNodes const& nodes) {
@@ -195,6 +221,25 @@ class ShapeSmoothing {
 };
 
 }  // namespace
+
+void FrozenSmoothing::join(FrozenSmoothing const& other) {
+  std::vector<Index> all;
+  std::ranges::set_union(cells, other.cells, std::back_inserter(all));
+  cells = std::move(all);
+  inverted = inverted || other.inverted;
+}
+
+FrozenSmoothing lost_shapes(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,
+                            Coordinates const& morphed, ShapeSmoothingOptions const& options) {
+  Coordinates x = morphed;  // the same memory, which is only looked at
+  return ShapeSmoothing(host, prepared, handedness, x, options).lost();
+}
+
+ShapeSmoothingReport smooth_frozen(HostInstance const& host, PreparedMorph const& prepared,
+                                   std::span<int const> handedness, Coordinates& morphed, FrozenSmoothing const& frozen,
+                                   ShapeSmoothingOptions const& options) {
+  return ShapeSmoothing(host, prepared, handedness, morphed, options).run(frozen);
+}
 
 ShapeSmoothingReport smooth_shapes(HostInstance const& host, PreparedMorph const& prepared,
                                    std::span<int const> handedness, Coordinates& morphed,

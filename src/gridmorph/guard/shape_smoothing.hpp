@@ -24,6 +24,15 @@ struct ShapeSmoothingOptions {
   std::vector<Round> rounds{{8, 32, 1}, {24, 100, 1.7}};
 };
 
+/// What is smoothed whatever a morph looks like, so that meshes of a sequence do not jump where the first cell loses its shape.
+struct FrozenSmoothing {
+  std::vector<Index> cells;  ///< that lost their shape in some of the meshes; ascending
+  bool inverted = false;     ///< some of them were inside out: the last round of the options is made, else the first
+
+  /// Adds what another mesh lost.
+  void join(FrozenSmoothing const& other);
+};
+
 struct ShapeSmoothingReport {
   Index triggered_before = 0, triggered_after = 0;  ///< cells with a corner that lost its shape
   Index inverted_before = 0,
@@ -31,6 +40,16 @@ struct ShapeSmoothingReport {
   double smallest_before = 1, smallest_after = 1;  ///< scaled Jacobian, over the corners that could change
   int rounds = 0;                                  ///< that were kept
 };
+
+/// What a morph lost of shapes: what smooth_shapes() starts from. Cost: one look at all cells.
+FrozenSmoothing lost_shapes(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,
+                            Coordinates const& morphed, ShapeSmoothingOptions const& options = {});
+
+/// Smooths around the given cells, with the same points and sweeps for every displacement, delta growing with what is lost, and takes nothing back: the result follows
+/// the displacement without jumps. Otherwise as smooth_shapes().
+ShapeSmoothingReport smooth_frozen(HostInstance const& host, PreparedMorph const& prepared,
+                                   std::span<int const> handedness, Coordinates& morphed, FrozenSmoothing const& frozen,
+                                   ShapeSmoothingOptions const& options = {});
 
 /// Moves nodes so that the sum of the relative shapes f (kernels/relative_shape.hpp) of all corners around becomes smaller: each
 /// point in turn by a step that does not let the sum over its corners grow, with delta > 0 as long as a corner of the region has

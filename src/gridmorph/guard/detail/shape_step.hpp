@@ -3,14 +3,16 @@
 
 #include <gridmorph/kernels/relative_shape.hpp>
 
+#include <algorithm>
 #include <vector>
 
 namespace gridmorph::detail {
 
 /// How delta follows the sweeps, in eighths of them: 0.1, then 0.6 times as much each, as long as a corner has lost 98 % of its volume, else 0.
+/// `gradual`: growing evenly as that volume falls from 2 % to nothing, so that it does not jump with the motion.
 class UntanglingSchedule {
  public:
-  explicit UntanglingSchedule(int sweeps) : sweeps_(sweeps) {}
+  explicit UntanglingSchedule(int sweeps, bool gradual = false) : sweeps_(sweeps), gradual_(gradual) {}
 
   /// smallest_volume(): smallest d of all corners, asked once per eighth.
   template <class SmallestVolume>
@@ -20,13 +22,15 @@ class UntanglingSchedule {
     if (int const now = sweep * eighths / sweeps_; now != eighth_) {
       if (eighth_ >= 0) smoothing_ *= shrink;
       eighth_ = now;
-      delta_ = smallest_volume() < enough_volume ? smoothing_ : 0;
+      double const lacking = 1 - smallest_volume() / enough_volume;
+      delta_ = smoothing_ * (gradual_ ? std::clamp(lacking, 0.0, 1.0) : lacking > 0 ? 1.0 : 0.0);
     }
     return delta_;
   }
 
  private:
   int sweeps_, eighth_ = -1;
+  bool gradual_;
   double smoothing_ = 0.1, delta_ = 0;
 };
 

@@ -126,10 +126,10 @@ double smallest_volume(HostInstance const& host, ShapeRegion const& region, Swee
 }  // namespace
 
 void smooth_region(HostInstance const& host, PreparedMorph const& prepared, ShapeRegion const& region, int sweeps,
-                   double relaxation, Coordinates& x) {
+                   double relaxation, Coordinates& x, bool gradual) {
   constexpr Index part = 64;  // points that one core takes at a time
   Sweeps points(prepared, region, x);
-  UntanglingSchedule schedule(sweeps);
+  UntanglingSchedule schedule(sweeps, gradual);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     double const delta = schedule.delta(sweep, [&] { return smallest_volume(host, region, points); });
     for (std::vector<Index32> const& colour : region.colours) {
