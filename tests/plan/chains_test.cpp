@@ -3,6 +3,8 @@
 #include "support/motions.hpp"
 #include "support/scramble.hpp"
 
+#include <gridmorph/core/error.hpp>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,6 +47,22 @@ TEST(Priority, TheOrderOfKindsIsTheUsers) {
   volume.priority = {{PriorityRule::Kind::boundary, {"outflow", "inflow", "wall"}}};
   EXPECT_EQ(nodes_along(plan_of_box({wall, wall, inflow, inflow, far, outflow}, volume)), 5);
   EXPECT_EQ(nodes_along(plan_of_box({wall, wall, inflow, inflow, far, far}, volume)), 7);
+}
+
+TEST(Priority, PatchesThatItNamesComeBeforeAllKinds) {
+  std::array<PatchKind, 6> const kinds{wall, wall, inflow, far, outflow, far};
+  EXPECT_EQ(nodes_along(plan_of_box(kinds)), 9) << "wall to wall";
+  auto const with = [&](std::vector<std::string> const& patches) {
+    VolumeOptions volume;
+    volume.priority = {{PriorityRule::Kind::boundary, standard_order(), patches}};
+    return nodes_along(plan_of_box(kinds, volume));
+  };
+  EXPECT_EQ(with({"w_max"}), 5);
+  EXPECT_EQ(with({"v_*"}), 7);
+  EXPECT_EQ(with({"v_max", "w_max"}), 7) << "in the order given";
+  EXPECT_EQ(with({"w_max", "v_max"}), 5);
+  EXPECT_EQ(with({"v_max", "w_*", "v_min"}), 7) << "the better end";
+  EXPECT_THROW(with({"nowhere"}), Error);
 }
 
 TEST(Priority, TheShortestChainBreaksATie) {

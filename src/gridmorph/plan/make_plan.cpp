@@ -1,3 +1,4 @@
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/plan/blocks/boundary.hpp>
 #include <gridmorph/plan/blocks/independent_chains.hpp>
@@ -18,8 +19,19 @@
 namespace gridmorph {
 namespace {
 
+/// What chains rank by where they end on patches: kinds, and what the priority names.
+std::vector<EndKind> ranked_ends(Mesh const& mesh, std::vector<PatchKind> const& kinds, VolumeOptions const& options) {
+  std::vector<EndKind> ends;
+  for (PatchKind const kind : kinds) ends.push_back(end_kind(kind));
+  for (PriorityRule const& rule : options.priority)
+    for (int n = 0; n < int(rule.patches.size()); ++n)
+      for (int const p : select_patches(mesh, {rule.patches[n]}))
+        if (ends[p] < named_ends) ends[p] = named_end(n, ends[p]);
+  return ends;
+}
+
 /// Patches that must not share a block face: other rules, other kinds, other near fields.
-MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::vector<PatchKind> const& kinds,
+MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::vector<EndKind> const& ends,
                          std::vector<NearField> const& fields, std::vector<CutPlane> planes) {
   MergeLimits limits;
   std::map<std::tuple<int, int, int>, int> labels;
@@ -28,7 +40,7 @@ MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::ve
     for (std::size_t f = 0; f < fields.size(); ++f)
       if (std::count(fields[f].walls.begin(), fields[f].walls.end(), p) > 0) field = int(f);
     limits.patch_label.push_back(
-        labels.try_emplace({motion.patch[p].rule, int(kinds[p]), field}, int(labels.size())).first->second);
+        labels.try_emplace({motion.patch[p].rule, ends[p], field}, int(labels.size())).first->second);
   }
   for (Resolution const& r : motion.interface) limits.interface_label.push_back(1 + r.rule);
   limits.kept_planes = std::move(planes);
@@ -382,10 +394,17 @@ Index LineTables::n_lines() const {
 PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const& surface, PlanOptions const& options) {
   std::vector<std::string> notes;
   std::vector<PatchKind> kinds = ranked_kinds(mesh, links, surface, options.boundary_layers, notes);
+  std::vector<EndKind> ends = ranked_ends(mesh, kinds, options.volume);
   std::vector<NearField> fields = near_fields(mesh, links, surface, kinds, options.boundary_layers);
-  MergeLimits limits = merge_limits(mesh, surface.motion(), kinds, fields, near_field_limits(mesh, links, fields));
+  MergeLimits limits = merge_limits(mesh, surface.motion(), ends, fields, near_field_limits(mesh, links, fields));
   Topology topology = build_topology(mesh, links, limits);
-  return {mesh, std::move(notes), std::move(kinds), std::move(fields), std::move(limits), std::move(topology)};
+  return {mesh,
+          std::move(notes),
+          std::move(kinds),
+          std::move(ends),
+          std::move(fields),
+          std::move(limits),
+          std::move(topology)};
 }
 
 PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines const& lines,
@@ -407,7 +426,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   plan.n_slots = skeleton.size();
   RotationTable rotations(plan.rotations);
   std::vector<int> const box_of_piece = inner_boxes(mesh, topology.lattice, plan.boxes);
-  PlanContext context{mesh, topology, skeleton, rotations, box_of_piece, basis.kinds, lines.lengths};
+  PlanContext context{mesh, topology, skeleton, rotations, box_of_piece, basis.kinds, basis.ends, lines.lengths};
   WallRoots roots(context);
   context.roots = &roots;
   Known known(topology.lattice.n_classes());

@@ -52,6 +52,7 @@ struct PriorityRule {
   Kind kind = Kind::boundary;
   /// boundary: kinds from first to last; a chain ranks by its better end, then by its other end.
   std::vector<std::string> order = standard_order();
+  std::vector<std::string> patches{};  ///< boundary: selectors of patches that come before all kinds, first to last
 };
 
 /// Boundary types, then quality, then aspect ratio. A function, not a braced list beside the member: g++ 12 ends with an internal

@@ -272,6 +272,7 @@ std::vector<PriorityRule> read_priority(TableReader& volume) {
     auto const kind = table.choice("rule", {"boundary", "quality", "aspect-ratio"});
     if (kind) rule.kind = PriorityRule::Kind(*kind);
     if (kind && *kind == 0) {
+      if (auto const patches = table.strings("patches")) rule.patches = *patches;
       if (auto const order = table.strings("order")) {
         rule.order = *order;
         for (std::size_t i = 0; i < order->size(); ++i) {

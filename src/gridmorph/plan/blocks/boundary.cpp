@@ -69,7 +69,7 @@ BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion con
   Lattice const& lattice = topology.lattice;
   std::vector<ExplicitFace> faces = explicit_faces(topology, surface);
   for (ExplicitFace const& face : faces) {
-    EndKind const kind = face.patch >= 0 ? end_kind(context.kinds[face.patch]) : periodic_end;
+    EndKind const kind = face.patch >= 0 ? context.ends[face.patch] : periodic_end;
     for_closure(lattice, lattice.copies(face.face_class).front().entity, [&](int entity) {
       int const c = lattice.class_of(entity);
       bool const better = !known(c) || kind_rank(kind, kind_order) < kind_rank(known.kind[c], kind_order);

@@ -18,6 +18,7 @@ struct PlanContext {
   RotationTable& rotations;
   std::vector<int> const& box_of_piece;  ///< in Plan::boxes, -1 for pieces without inner nodes
   std::vector<PatchKind> const& kinds;   ///< what patches rank as, see ranked_kinds()
+  std::vector<EndKind> const& ends;      ///< the same, but those that the priority names apart
   GridLengths const& lengths;            ///< between nodes of `mesh`
   WallRoots* roots = nullptr;            ///< of near fields that turn
 };

@@ -14,7 +14,11 @@ using EndKind = int;
 inline constexpr EndKind periodic_end = 100;
 inline constexpr EndKind unknown_end = -1;
 inline EndKind end_kind(PatchKind kind) { return kind == PatchKind::periodic ? periodic_end : int(kind); }
-inline std::string_view end_kind_name(EndKind kind) {
+/// Patches that the priority names have kinds of their own, which hold what they are besides.
+inline constexpr EndKind named_ends = 1000;
+inline EndKind named_end(int number, EndKind kind) { return named_ends * (number + 1) + kind % named_ends; }
+inline std::string_view end_kind_name(EndKind named_or_not) {
+  EndKind const kind = named_or_not % named_ends;
   return kind == periodic_end ? "periodic" : (kind == unknown_end ? "open" : to_string(PatchKind(kind)));
 }
 

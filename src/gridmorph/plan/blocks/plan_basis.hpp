@@ -15,6 +15,7 @@ struct PlanBasis {
   Mesh const& mesh;
   std::vector<std::string> notes;
   std::vector<PatchKind> kinds;   ///< what patches rank as
+  std::vector<EndKind> ends;      ///< the same, but those that the priority names apart
   std::vector<NearField> fields;  ///< of `mesh`, in its cells
   MergeLimits limits;
   Topology topology;

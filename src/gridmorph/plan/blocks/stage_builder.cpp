@@ -9,6 +9,7 @@
 namespace gridmorph {
 
 int kind_rank(EndKind kind, std::vector<std::string> const& order) {
+  if (kind >= named_ends) return kind / named_ends - named_ends;  // before all others
   auto const it = std::find(order.begin(), order.end(), end_kind_name(kind));
   return int(it - order.begin());
 }

@@ -35,7 +35,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
 SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains,
                         std::vector<int> const& surface_of_patch, Known const& given, Plan const& plan);
 
-/// Position of a kind in the priority's order; kinds that are not listed come after all that are.
+/// Position of a kind in the priority's order, negative for patches that it names; kinds that are not listed come after all that are.
 int kind_rank(EndKind kind, std::vector<std::string> const& order);
 
 }  // namespace gridmorph
