@@ -97,7 +97,6 @@ std::vector<Case> some_cases() {
       out.push_back(std::move(c));
   return out;
 }
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Laws);
 
 INSTANTIATE_TEST_SUITE_P(Few, Laws, ::testing::ValuesIn(some_cases()),
                          [](auto const& test) { return test.param.name; });
