@@ -6,6 +6,8 @@
 //   apply_to    the same into other arrays                        48 bytes per node, 8 per line parameter
 //   displace    displacements only                                24 bytes per node, 8 per line parameter
 //   displace_4  four displacement fields at once                  96 bytes per node, 8 per line parameter
+//   rotate      apply with a near field that turns with the blade   48 bytes per node, 8 per line parameter
+//   rotate_to_the_end  its turn handed on to all chains from it      the same
 //
 // Bytes are those that must move at least; "share" compares with an in-place update, so stores that first read the line
 // they write (apply_to, displace) count as what they are: slower.
@@ -19,8 +21,17 @@
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
+#include <optional>
+
 namespace gridmorph::bench {
 namespace {
+
+/// How much of the blade's turn the mesh around it takes: `turn` of the volume, or none at all.
+struct Turned {
+  std::int64_t nodes;
+  std::optional<double> turn;
+  [[nodiscard]] auto operator<=>(Turned const&) const = default;
+};
 
 struct Passage {
   PassageOptions options;
@@ -29,10 +40,10 @@ struct Passage {
   std::vector<Vec3> boundary;
   Index n_parameters = 0;
 
-  explicit Passage(std::int64_t nodes)
-      : options(of_size(nodes)),
+  explicit Passage(Turned const& which)
+      : options(of_size(which.nodes)),
         mesh(make_passage(options)),
-        prepared(plan(options, mesh)),
+        prepared(plan(options, mesh, which.turn)),
         boundary(prepared.boundary_displacement()) {
     for (Stage const& stage : prepared.plan().stages) n_parameters += stage.lines.n_parameters;
     for (SpreadPass const& pass : prepared.plan().spreads) n_parameters += pass.lines.n_parameters;
@@ -42,7 +53,7 @@ struct Passage {
     options.nodes = std::max<std::int64_t>(nodes, 10'000);
     return options;
   }
-  static PreparedMorph plan(PassageOptions const& options, Mesh const& mesh) {
+  static PreparedMorph plan(PassageOptions const& options, Mesh const& mesh, std::optional<double> turn) {
     PassageMotion const section = rotated_sections();
     Motion motion;
     motion.axis = {{0, 0, 0}, {1, 0, 0}};
@@ -55,16 +66,18 @@ struct Passage {
                     {{"type:periodic"}, FollowRule{{"blade"}}, 0, "follow"},
                     {{"hub", "case"}, SlipRule{SlipRule::Surface::revolution}, 0, "slip"}};
     PlanOptions plan;
-    plan.boundary_layers = {{{"blade"}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::translate}};
+    auto const mode = turn ? BoundaryLayer::Mode::rotate : BoundaryLayer::Mode::translate;
+    plan.boundary_layers = {{{"blade"}, BoundaryLayer::Extent::block, 0, 0, mode}};
+    plan.volume.turn = turn;
     return prepare(mesh, motion, plan);
   }
   [[nodiscard]] double parameters_per_node() const { return double(n_parameters) / double(mesh.n_nodes()); }
 };
 
 /// One passage at a time: the large ones take gigabytes.
-Passage const& passage(std::int64_t nodes) {
-  static LastMade<std::int64_t, Passage> last;
-  return last.get(nodes, [&] { return Passage(nodes); });
+Passage const& passage(Turned const& which) {
+  static LastMade<Turned, Passage> last;
+  return last.get(which, [&] { return Passage(which); });
 }
 
 template <class ExecutionSpace>
@@ -88,10 +101,11 @@ struct OnPassage {
   Work work;
   double fixed_bytes;  ///< per node
   double bytes_per_parameter;
+  std::optional<double> turn;
 
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
-    Passage const& p = passage(state.range(0));
+    Passage const& p = passage({state.range(0), turn});
     OnDevice<ExecutionSpace> const mesh(exec, p);
     auto const step = work(exec, p, mesh);
     double const mean = time_iterations(state, exec, step);
@@ -100,8 +114,9 @@ struct OnPassage {
 };
 
 template <class Work>
-void add(std::string const& name, double fixed_bytes, double bytes_per_parameter, Work const& work) {
-  register_benchmark("passage/" + name, OnPassage<Work>{work, fixed_bytes, bytes_per_parameter}, passage_sizes);
+void add(std::string const& name, double fixed_bytes, double bytes_per_parameter, Work const& work,
+         std::optional<double> turn = {}) {
+  register_benchmark("passage/" + name, OnPassage<Work>{work, fixed_bytes, bytes_per_parameter, turn}, passage_sizes);
 }
 
 }  // namespace
@@ -118,11 +133,14 @@ void register_all() {
     using Exec = std::decay_t<decltype(exec)>;
     return [&, mesh] { Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh); };
   });
-  add("apply", 48, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
+  auto const apply = [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
     Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
     return [&, mesh, morpher] { morpher.positions(exec, mesh.boundary, mesh); };
-  });
+  };
+  add("apply", 48, 8, apply);
+  add("rotate", 48, 8, apply, 0.0);
+  add("rotate_to_the_end", 48, 8, apply, 0.25);
   add("apply_to", 48, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
     Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);

@@ -54,7 +54,11 @@ TEST(Turns, BetweenTwoDirectionsIsTheSmallestRotation) {
   }
   Vec3 const x{1, 0, 0};
   EXPECT_EQ(kernels::turn_between(x, 2 * x), Vec3{});
-  EXPECT_EQ(kernels::turn_between(x, -x), Vec3{}) << "no one axis";
+  EXPECT_NEAR(norm(kernels::turn_between(x, -x)), std::numbers::pi, 1e-15);
+  EXPECT_EQ(dot(kernels::turn_between(x, -x), x), 0) << "about any axis across";
+  Vec3 const axis{0, 0.6, 0.8};
+  EXPECT_EQ(kernels::turn_between(x, -x, axis), std::numbers::pi * axis);
+  EXPECT_EQ(kernels::turn_between(Vec3{}, x), Vec3{});
   EXPECT_EQ(kernels::turn_between(x, Vec3{}), Vec3{});
 }
 
@@ -67,6 +71,18 @@ TEST(Turns, OneAfterTheOtherMultiplyAsMatricesDo) {
     EXPECT_LE(norm(both), std::numbers::pi + 1e-14);
   }
   EXPECT_EQ(kernels::turn_then(Vec3{}, Vec3{}), Vec3{});
+}
+
+TEST(Turns, HalfATurnHasOneDirection) {
+  Random random(9);
+  for (int n = 0; n < 100; ++n) {
+    Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v, round_off = random.vector(1e-9);
+    Vec3 const one = kernels::settled(std::numbers::pi * axis + round_off),
+               other = kernels::settled(-std::numbers::pi * axis + round_off);
+    EXPECT_LT(distance(one, other), 1e-8) << n;
+    EXPECT_LT(distance(matrix_of(one) * v, matrix_of(-std::numbers::pi * axis) * v), 1e-8) << n;
+    EXPECT_EQ(kernels::settled(3.1 * axis), 3.1 * axis);
+  }
 }
 
 /// f(a + h a', b + h b') by differences, against duals.

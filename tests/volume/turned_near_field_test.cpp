@@ -5,11 +5,13 @@
 #include "support/random.hpp"
 
 #include <gridmorph/geometry/rigid_transform.hpp>
+#include <gridmorph/quality/quality.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace gridmorph::test {
 namespace {
@@ -48,27 +50,91 @@ TEST(TurnedNearField, IsRigidRoundABodyThatTurns) {
   }
 }
 
-// x' = x + (1 - t) u0 + (1 - c1(t)) (R - I)(x - p0), recomputed from the nodes of each line.
-TEST(TurnedNearField, HandsItsTurnOnAlongTheLines) {
+/// How the turn of a body goes on to the far boundary: about which point, and over how many sizes of the body.
+struct FarTurn {
+  Vec3 centre;
+  double reach = 0;
+};
+FarTurn far_turn(Plan const& plan) {
+  for (Stage const& stage : plan.stages)
+    for (kernels::Chain const& chain : stage.lines.chains)
+      if (chain.turn == kernels::TurnLaw::far)
+        return {stage.lines.end_pivots[std::size_t(chain.first_end_value)], chain.turn_reach};
+  throw std::logic_error("no chain takes the turn on");
+}
+
+// The body's centre moves on along a straight line and fades linearly, the turn about it like the logarithm; recomputed from the nodes
+// of each line.
+TEST(TurnedNearField, HandsItsTurnOnAboutTheCentreOfTheBody) {
   int const layers = 2;
   Outcome const r = turned_o_grid(layers, Mode::rotate, 1.0);
   Zone const& zone = r.mesh.zones[0];
   int const last = zone.extent[1] - 1;
+  auto const [centre, reach] = far_turn(r.plan());
+  double const turn = 0.7;
+  EXPECT_GE(reach, 1);
+  EXPECT_LT(distance(centre, {0.1, 0, 0.5}), 0.1);  // of the undistorted ellipse, which leans by 0.2 along x
+  auto const growth = [](double s) { return std::pow(1 + s * s / (1 + s), 0.125); };
   for (int k = 0; k < zone.extent[2]; ++k)
     for (int i = 0; i < zone.extent[0]; ++i) {
       std::vector<double> length{0};
       for (int j = layers; j < last; ++j)
         length.push_back(length.back() + distance(r.mesh.coordinates[zone.node({i, j, k})],
                                                   r.mesh.coordinates[zone.node({i, j + 1, k})]));
-      Vec3 const p0 = r.mesh.coordinates[zone.node({i, layers, k})];
       for (int j = layers; j <= last; ++j) {
         Index const n = zone.node({i, j, k});
-        Vec3 const x = r.mesh.coordinates[n], arm = x - p0;
-        double const t = length[std::size_t(j - layers)] / length.back(), c1 = t * t * (3 - 2 * t);
-        Vec3 const u = (1 - t) * (about_z(p0) - p0) + (1 - c1) * (about_z.rotation * arm - arm);
+        Vec3 const x = r.mesh.coordinates[n];
+        double const t = length[std::size_t(j - layers)] / length.back();
+        double const f = 1 - (growth(reach * t) - 1) / (growth(reach) - 1);
+        double const angle = 2 * std::atan2(f * std::sin(turn / 2), 1 - f * (1 - std::cos(turn / 2)));
+        Vec3 const u = (1 - t) * (about_z(centre) - centre) + rotation_about(centre, {0, 0, 1}, angle)(x) - x;
         EXPECT_LT(distance(r.u(n), u), 1e-12) << i << " " << j << " " << k;
       }
     }
+}
+
+/// Around an ellipse, to a circle ten chords away; cells grow as they go out.
+Mesh ellipse_in_circle() {
+  Bricks b;
+  b.name = "ring";
+  b.extent = {65, 33, 2};
+  b.position = [](Vec3 const& q) {
+    double const angle = 2 * std::numbers::pi * q.x, far = (std::pow(1.15, 32 * q.y) - 1) / (std::pow(1.15, 32) - 1);
+    return Vec3{((1 - far) + 20 * far) * std::cos(angle), (0.2 * (1 - far) + 20 * far) * std::sin(angle), 0.2 * q.z};
+  };
+  b.wrap[0].kind = Wrap::Kind::closed;
+  b.family = {"", "", "body", "far", "sides", "sides"};
+  b.kind = {PatchKind::other,    PatchKind::other,    PatchKind::wall,
+            PatchKind::farfield, PatchKind::symmetry, PatchKind::symmetry};
+  return make(b);
+}
+
+/// Smallest determinant after the body has turned; RigidRule or the same as a function.
+double smallest_determinant(Mesh const& ring, double degrees, bool as_function) {
+  RigidTransform const turn = rotation_about({0.4, 0, 0}, {0, 0, 1}, degrees * std::numbers::pi / 180);
+  Rule const body = as_function ? Rule(function_rule([=](Vec3 const& p) { return turn(p) - p; }))
+                                : Rule(RigidRule{turn.rotation, turn.translation});
+  Outcome const r = morph(ring, motion({rule({"body"}, body), rule({"far"}, FixedRule{})}),
+                          turning(4, Mode::rotate, as_function ? std::optional(1.0) : std::nullopt));
+  Exec const exec;
+  Index3 const n = ring.zones[0].extent;
+  std::vector<CellBox> const all{{0, {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}}};
+  return min_determinant(exec, ring, views(r.morphed.position), zone_handedness(exec, ring, views(ring.coordinates)),
+                         all)
+      .value;
+}
+
+// The shear of a turn that fades like the logarithm is the same everywhere: half a turn of a body leaves all cells sound.
+TEST(TurnedNearField, TurnsABodyByHalfATurn) {
+  Mesh const ring = ellipse_in_circle();
+  double before = smallest_determinant(ring, 0, false);
+  for (double const degrees : {30, 60, 90, 120, 150, 180}) {
+    double const left = smallest_determinant(ring, degrees, false);
+    EXPECT_GT(left, 0.4) << degrees;
+    EXPECT_LT(left, before + 1e-9) << degrees;
+    EXPECT_NEAR(smallest_determinant(ring, -degrees, true), left, 1e-9) << degrees;
+    before = left;
+  }
 }
 
 TEST(TurnedNearField, BlendsToNoTurnAtItsOuterEdge) {
@@ -96,9 +162,11 @@ double handed_on(Rule const& of_body, Rule const& of_far) {
 TEST(TurnedNearField, ChoosesWhatItHandsOnByWhatMovesAndWhereLinesEnd) {
   RigidRule const turn{about_z.rotation, about_z.translation};
   Rule const bend = function_rule(waves(0.05));
+  Rule const given = function_rule([](Vec3 const& p) { return about_z(p) - p; });
   EXPECT_EQ(handed_on(turn, FixedRule{}), 1);
+  EXPECT_EQ(handed_on(given, FixedRule{}), 1) << "rigid by what it does, not by its name";
   EXPECT_EQ(handed_on(bend, FixedRule{}), 0);
-  EXPECT_EQ(handed_on(bend, bend), 0.25);
+  EXPECT_EQ(handed_on(turn, bend), 0);
 }
 
 /// Height of the first node above the plane of its wall node's neighbours in centred differences.

@@ -42,7 +42,7 @@ struct Tube {
 enum class LineLaw : std::int32_t { linear, c1, c2, constant, cubic };
 
 /// How rotations of the ends of a line fade along it: see turned_line.hpp.
-enum class TurnLaw : std::int32_t { none, near_field, square, c1 };
+enum class TurnLaw : std::int32_t { none, near_field, square, c1, far, common };
 
 struct Chain {
   std::int32_t n_s, n_a, n_b;  ///< nodes
@@ -57,6 +57,8 @@ struct Chain {
   TurnLaw turn = TurnLaw::none;   ///< none: its ends carry no rotation
   std::uint32_t turned_ends = 0;  ///< bit 0: the first end carries one; bit 1: the last
   double slope[2] = {1, 1};       ///< cubic: dw/dt at the two ends
+  double turn_reach = 0;          ///< TurnLaw::far: length of its lines over the size of the body
+  double turn_scale = 0;          ///< TurnLaw::far: see turned_line.hpp
 
   /// Whether anything asks for the arc lengths of its lines.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_parameters() const {

@@ -32,15 +32,20 @@ struct Root {
   double turn;          ///< share of its turn that the outer edge of the near field makes
 };
 
-/// An end wall beside a root, at the end of the wall's grid line through it. All rotations in frames of slots.
-struct RootEnd {
-  std::int32_t root = -1;     ///< on the end wall and the wall; -1: no end
+/// An end wall where a wall's grid lines end. Rotations and normals of it are in the frame of its root's slot.
+struct EndWall {
+  std::int32_t root = -1;     ///< on the end wall and the wall
   std::int32_t wall = -1;     ///< root whose neighbours are the end wall's own, -1: a slip surface
   std::int32_t surface = -1;  ///< slip surface
-  std::int32_t to_zone = -1;  ///< frame of the end's slot -> frame of the surface
+  std::int32_t to_zone = -1;  ///< frame of the slot -> frame of the surface
+  Vec3 position;              ///< of the root, frame of the surface
+};
+
+/// An end wall beside a root, at the end of the wall's grid line through it.
+struct RootEnd {
+  std::int32_t end = -1;      ///< -1: none
   std::int32_t to_root = -1;  ///< frame of the end's slot -> frame of this root's slot
   double share = 0;           ///< 1 - c1(h / H)
-  Vec3 position;              ///< of the end, frame of the surface
 };
 struct RootEnds {
   RootEnd end[2];
@@ -52,6 +57,7 @@ struct RootTable {
   Kokkos::View<Root const*, MemorySpace> roots;
   Kokkos::View<RootNeighbour const*, MemorySpace> neighbours;
   Kokkos::View<RootEnds const*, MemorySpace> ends;  ///< per root
+  Kokkos::View<EndWall const*, MemorySpace> end_walls;
   Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
   Kokkos::View<Mat3 const*, MemorySpace> matrices;
 
@@ -121,57 +127,42 @@ struct RawRootTurn {
   }
 };
 
-/// inner of every root, to its slot, and outer.
+/// Per end wall: alpha, and its normal before and after where it is a slip surface.
+template <class V>
+struct EndWallVectors {
+  VectorsWithRates<V> all;  ///< 3 per end wall
+  KOKKOS_INLINE_FUNCTION V alpha(Index e) const { return all[3 * e]; }
+  KOKKOS_INLINE_FUNCTION V normal(Index e) const { return all[3 * e + 1]; }
+  KOKKOS_INLINE_FUNCTION V moved(Index e) const { return all[3 * e + 2]; }
+};
+
+/// alpha of every end wall.
 template <class MemorySpace, class V>
-struct NearFieldTurn {
+struct EndWallTurn {
   RootTable<MemorySpace> table;
   VectorsWithRates<V> u;    ///< per slot
   VectorsWithRates<V> raw;  ///< per root
-  Field<double> inner;      ///< per slot
-  Field<double> outer;      ///< per root
+  Field<double> out;        ///< 3 per end wall
 
-  [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
-    Root const& root = table.roots(r);
-    if (root.stands == 0) return;
-    RootEnds const& ends = table.ends(r);
-    V const own = raw[r];
-    V correction{}, before{}, after{};
-    int n_slip = 0;
-    for (int m = 0; m < 2; ++m) {
-      RootEnd const& end = ends.end[m];
-      if (end.root < 0) continue;
-      V alpha{};
-      if (end.wall >= 0) {
-        alpha = turn_then(-raw[end.root], raw[end.wall]);
-      } else {
-        V const n = normal(end, V{}), moved = normal(end, u[table.roots(end.root).slot]);
-        V const at = raw[end.root];
-        alpha = turn_between(n + turned_by(at, 1, n), moved);
-        V const n_here = table.in_frame(end.to_root, n), moved_here = table.in_frame(end.to_root, moved);
-        double const share = (m == 0 ? 1 - ends.fraction : ends.fraction);
-        double const sign = n_slip > 0 && opposite(n_here, before) ? -share : share;
-        before = before + sign * n_here;
-        after = after + sign * moved_here;
-        ++n_slip;
-      }
-      correction = correction + end.share * table.in_frame(end.to_root, alpha);
+  [[nodiscard]] Index size() const { return Index(table.end_walls.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index e) const {
+    EndWall const& end = table.end_walls(e);
+    V alpha{}, before{}, after{};
+    if (end.wall >= 0) {
+      alpha = turn_then(-raw[end.root], raw[end.wall]);
+    } else {
+      before = normal(end, V{});
+      after = normal(end, u[table.roots(end.root).slot]);
+      alpha = turn_between(before + turned_by(raw[end.root], 1, before), after);
     }
-    V const turned = turn_then(own, correction);
-    inner.set(root.slot, written(turned));
-    V const section = n_slip == 2 && ends.fraction >= 0
-                          ? turn_then(own, turn_between(before + turned_by(own, 1, before), after))
-                          : turned;
-    outer.set(r, written(root.turn * section));
+    out.set(3 * e, written(alpha));
+    out.set(3 * e + 1, written(before));
+    out.set(3 * e + 2, written(after));
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION static bool opposite(Vec3 const& a, Vec3 const& b) { return dot(a, b) < 0; }
-  KOKKOS_INLINE_FUNCTION static bool opposite(DualVec3 const& a, DualVec3 const& b) {
-    return dot(a.value, b.value) < 0;
-  }
   /// Of the surface where the displacement takes the end; frame of the end's slot.
-  KOKKOS_INLINE_FUNCTION V normal(RootEnd const& end, V const& displacement) const {
+  KOKKOS_INLINE_FUNCTION V normal(EndWall const& end, V const& displacement) const {
     V const there = table.in_frame(end.to_zone, displacement);
     if constexpr (has_rate<V>) {
       double const size = norm(there.rate);
@@ -185,11 +176,52 @@ struct NearFieldTurn {
       return table.back(end.to_zone, normal_at(end, there));
     }
   }
-  KOKKOS_INLINE_FUNCTION Vec3 normal_at(RootEnd const& end, Vec3 const& u) const {
+  KOKKOS_INLINE_FUNCTION Vec3 normal_at(EndWall const& end, Vec3 const& u) const {
     Vec3 n;
     table.surfaces(end.surface).excess(end.position, 0, u, n);
     double const size = norm(n);
     return size > 0 ? (1 / size) * n : n;
+  }
+};
+
+/// inner of every root, to its slot, and outer.
+template <class MemorySpace, class V>
+struct NearFieldTurn {
+  RootTable<MemorySpace> table;
+  VectorsWithRates<V> raw;  ///< per root
+  EndWallVectors<V> at_end;
+  Field<double> inner;  ///< per slot
+  Field<double> outer;  ///< per root
+
+  [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    Root const& root = table.roots(r);
+    if (root.stands == 0) return;
+    RootEnds const& ends = table.ends(r);
+    V correction{};
+    for (RootEnd const& end : ends.end)
+      if (end.end >= 0 && end.share > 0)
+        correction = correction + end.share * table.in_frame(end.to_root, at_end.alpha(end.end));
+    V const own = raw[r], turned = turn_then(own, correction);
+    inner.set(root.slot, written(turned));
+    outer.set(r, written(root.turn == 0 ? V{} : root.turn * section(ends, own, turned)));
+  }
+
+ private:
+  /// Between two slip surfaces about the spanwise direction alone, otherwise the turn itself.
+  KOKKOS_INLINE_FUNCTION V section(RootEnds const& ends, V const& own, V const& turned) const {
+    if (!(ends.fraction >= 0)) return turned;
+    V before{}, after{};
+    for (int m = 0; m < 2; ++m) {
+      RootEnd const& end = ends.end[m];
+      if (table.end_walls(end.end).surface < 0) return turned;
+      V const n = table.in_frame(end.to_root, at_end.normal(end.end));
+      double const share = m == 0 ? 1 - ends.fraction : ends.fraction;
+      double const signed_share = m == 1 && dot(value_of(n), value_of(before)) < 0 ? -share : share;
+      before = before + signed_share * n;
+      after = after + signed_share * table.in_frame(end.to_root, at_end.moved(end.end));
+    }
+    return turn_then(own, turn_between(before + turned_by(own, 1, before), after));
   }
 };
 

@@ -1,9 +1,9 @@
-// Rotations at the ends of lines made ready for the nodes between (turned_line.hpp): M = R - I and b = -M p.
+// Rotations at the ends of lines made ready for the nodes between (turned_line.hpp): quaternions, pivots, stretches.
 //
-// A line of the near field has both about its wall node p: M0 = s R(inner) - I and M1 = R(outer) - I (root_turn.hpp). The stretch s
+// A line of the near field turns about its wall node, from the wall's R(inner) to R(outer) (root_turn.hpp). The stretch s
 // keeps the height l.n of its first node above the wall, n' = R(raw) n the wall's normal after:
 //
-//   f0 s n'.R(inner) l + (1 - f0) n'.R(outer) l = n.l,   f0 = (1 - t)^3 at that node
+//   (1 + f0 (s - 1)) n'.R(f0) l = n.l,   f0 that of the node
 #pragma once
 
 #include <gridmorph/kernels/root_turn.hpp>
@@ -21,29 +21,26 @@ struct NearFieldLine {
   double f0;            ///< there
 };
 
-template <class V>
-struct TurnColumns {
-  V x, y, z;
-  KOKKOS_INLINE_FUNCTION V operator*(Vec3 const& p) const { return p.x * x + p.y * y + p.z * z; }
-};
-/// R - I.
-template <class V>
-KOKKOS_INLINE_FUNCTION TurnColumns<V> columns_of(V const& turn) {
-  return {turned_by(turn, 1, V{Vec3{1, 0, 0}}), turned_by(turn, 1, V{Vec3{0, 1, 0}}),
-          turned_by(turn, 1, V{Vec3{0, 0, 1}})};
-}
-template <class V>
-KOKKOS_INLINE_FUNCTION void set_end(TurnedEnds<double> const& ends, Index at, TurnColumns<V> const& m, Vec3 const& p) {
-  ends.set(at, written(m.x), written(m.y), written(m.z), written(-(m * p)));
+/// What is kept of an end: its value, or its rate. The pivot does not move.
+KOKKOS_INLINE_FUNCTION TurnedEnd<Vec3> written(TurnedEnd<Vec3> const& e) { return e; }
+KOKKOS_INLINE_FUNCTION TurnedEnd<Vec3> written(TurnedEnd<DualVec3> const& e) {
+  return {{e.q.imaginary.rate, e.q.less.rate}, {}, e.stretch.rate};
 }
 
-/// Ends of chains from their rotation vectors.
+/// Ends of chains from their rotation vectors. What an end's turn about its pivot displaces the end itself by is taken off its
+/// displacement: it comes back with the turn, and fades with it.
 template <class V>
 struct TurnEnds {
   VectorsWithRates<V> turn;
-  Field<double const> position;  ///< baseline, chain frame
+  Field<double const> position, pivot;  ///< baseline, chain frame
   TurnedEnds<double> ends;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { set_end(ends, n, columns_of(turn[n]), position[n]); }
+  Field<double> u;  ///< of the ends
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
+    Vec3 const arm = position[n] - pivot[n];
+    TurnedEnd<V> const end{quaternion(turn[n]), pivot[n]};
+    ends.set(n, written(end));
+    if (dot(arm, arm) > 0) u.set(n, u[n] - written(end.q.turned(V{arm})));
+  }
 };
 
 /// Lines of the near field.
@@ -63,28 +60,32 @@ struct TurnNearField {
     V const in = table.in_frame(line.matrix, inner[slot]), out = table.in_frame(line.matrix, outer[line.root]);
     turn.set(line.lower, written(in));
     turn.set(line.upper, written(out));
-    TurnColumns<V> m0 = columns_of(in);
-    TurnColumns<V> const m1 = columns_of(out);
-    auto const s = stretch(line, table.in_frame(line.matrix, raw[line.root]), m0 * line.edge, m1 * line.edge);
-    m0.x = m0.x + s * (V{Vec3{1, 0, 0}} + m0.x);
-    m0.y = m0.y + s * (V{Vec3{0, 1, 0}} + m0.y);
-    m0.z = m0.z + s * (V{Vec3{0, 0, 1}} + m0.z);
-    set_end(ends, line.lower, m0, position[line.lower]);
-    set_end(ends, line.upper, m1, position[line.lower]);
+    Vec3 const pivot = position[line.lower];
+    Quaternion<V> const wall = quaternion(in), edge = nearer(wall, quaternion(out));
+    auto const s = stretch(line, table.in_frame(line.matrix, raw[line.root]), Q::between(edge, wall, line.f0));
+    ends.set(line.lower, written(TurnedEnd<V>{wall, pivot, s}));
+    ends.set(line.upper, written(TurnedEnd<V>{edge, pivot}));
   }
 
  private:
+  using Q = Quaternion<V>;
+
+  /// q or -q, the same rotation.
+  KOKKOS_INLINE_FUNCTION static Q nearer(Q const& to, Q const& q) {
+    auto const cosine = dot(to.imaginary, q.imaginary) + (Scalar{1} - to.less) * (Scalar{1} - q.less);
+    return cosine < 0 ? Q{-q.imaginary, Scalar{2} - q.less} : q;
+  }
   /// s - 1, by differences: zero where nothing turns.
-  KOKKOS_INLINE_FUNCTION auto stretch(NearFieldLine const& line, V const& wall, V const& in, V const& out) const {
+  using Scalar = typename Q::Scalar;
+  KOKKOS_INLINE_FUNCTION Scalar stretch(NearFieldLine const& line, V const& wall, Q const& first) const {
     V const change = turned_by(wall, 1, V{line.normal}), normal = V{line.normal} + change;
-    auto const inner_height = dot(normal, V{line.edge} + in);
-    auto const missing = -dot(change, V{line.edge}) - dot(normal, line.f0 * in + (1 - line.f0) * out);
+    V const edge{line.edge}, moved = first.turned(edge);
+    Scalar const inner_height = dot(normal, edge + moved), missing = -dot(change, edge) - dot(normal, moved);
     double const height = dot(line.normal, line.edge);
     // Lines along the wall have no height to keep, and a near field of one cell has none to give.
     bool const none = !(line.f0 > 0.1) || !(height * height > 0.01 * dot(line.edge, line.edge)) ||
                       !(height * inner_height > 0.1 * height * height);
-    using Scalar = std::decay_t<decltype(inner_height)>;
-    if (none) return Scalar{};
+    if (none) return {};
     return missing / (line.f0 * inner_height);
   }
 };

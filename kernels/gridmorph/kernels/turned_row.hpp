@@ -9,7 +9,7 @@ namespace gridmorph::kernels {
 /// Nodes w = 0 ... n - 1 at fractions t[w] of their lines, whose first ends are `lower` + w step.
 template <int width>
 struct TurnedRow {
-  TurnedEnds<double const> ends;
+  TurnedEndsWithRates const& ends;
   Chain const& chain;
   Index lower;
   double const* t;
@@ -18,46 +18,93 @@ struct TurnedRow {
   /// x: positions in the frame of the chain.
   template <class Step>
   KOKKOS_INLINE_FUNCTION void add_to(Step step, VectorRow<width> const& x, VectorRow<width>& v) const {
-    if (chain.turned_ends & 1u) add_end(step, weights<0>(), lower, x, v);
-    if (chain.turned_ends & 2u) add_end(step, weights<1>(), lower + chain.section_size(), x, v);
+    Weights f;
+    if (ends.has_rates()) {
+      add_rates(step, x, v);
+    } else if (turns_as_one(chain)) {
+      if (chain.turn == TurnLaw::near_field)
+        fill([](double at) { return near_field_weight(at); }, f);
+      else
+        fill([](double at) { return 1 - smooth_step(at); }, f);
+      add_as_one(step, f, x, v);
+    } else {
+      for (unsigned end = 0; end < 2; ++end)
+        if (chain.turned_ends & (1u + end)) {
+          fill_end(end, f);
+          add_end(step, f, lower + Index(end) * chain.section_size(), x, v);
+        }
+    }
   }
 
  private:
   struct Weights {
     double of[width];
   };
-  template <int end>
-  KOKKOS_INLINE_FUNCTION Weights weights() const {
-    Weights f;
-    auto const fill = [&](TurnLaw law) {
-      for (int w = 0; w < n; ++w) {
-        TurnWeights const both = turn_weights(law, t[w]);
-        f.of[w] = end == 0 ? both.lower : both.upper;
-      }
-    };
-    // One loop per law, so that none has a choice in it.
-    switch (chain.turn) {
-      case TurnLaw::near_field: fill(TurnLaw::near_field); break;
-      case TurnLaw::square: fill(TurnLaw::square); break;
-      case TurnLaw::c1: fill(TurnLaw::c1); break;
-      case TurnLaw::none: fill(TurnLaw::none); break;
+  template <class Law>
+  KOKKOS_INLINE_FUNCTION void fill(Law const& law, Weights& f) const {
+    for (int w = 0; w < n; ++w) f.of[w] = law(t[w]);
+  }
+  /// One loop per law, so that none has a choice in it. All laws of two rotations are the same from both ends.
+  KOKKOS_INLINE_FUNCTION void fill_end(unsigned end, Weights& f) const {
+    double const from = end, sign = end == 0 ? 1 : -1;
+    if (chain.turn == TurnLaw::far)
+      fill([&](double at) { return far_weight(chain, from + sign * at); }, f);
+    else if (chain.turn == TurnLaw::c1)
+      fill([&](double at) { return 1 - smooth_step(from + sign * at); }, f);
+    else
+      fill([&](double at) { return (1 - from - sign * at) * (1 - from - sign * at); }, f);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3 get(VectorRow<width> const& x, int w) { return {x.x[w], x.y[w], x.z[w]}; }
+  /// Through a row of its own: nothing that is read can lie where it is written, so that the compiler can vectorise the loop.
+  template <class Change>
+  KOKKOS_FORCEINLINE_FUNCTION void add(Change const& change, VectorRow<width>& v) const {
+    VectorRow<width> row;
+    for (int w = 0; w < n; ++w) {
+      Vec3 const c = change(w);
+      row.x[w] = c.x;
+      row.y[w] = c.y;
+      row.z[w] = c.z;
     }
-    return f;
+    for (int w = 0; w < n; ++w) {
+      v.x[w] += row.x[w];
+      v.y[w] += row.y[w];
+      v.z[w] += row.z[w];
+    }
   }
+
   template <class Step>
-  KOKKOS_INLINE_FUNCTION void add_end(Step step, Weights const& f, Index at, VectorRow<width> const& x,
+  KOKKOS_INLINE_FUNCTION void add_end(Step step, Weights const& f, Index first, VectorRow<width> const& x,
                                       VectorRow<width>& v) const {
-    add_component(step, f, at, 0, x, v.x);
-    add_component(step, f, at, 1, x, v.y);
-    add_component(step, f, at, 2, x, v.z);
+    TurnedEnds<double const> const at = ends.values;
+    add(
+        [&](int w) {
+          TurnedEnd<Vec3> const e = at[first + w * step];
+          return Quaternion<Vec3>::share(e.q, f.of[w]).turned(get(x, w) - e.pivot);
+        },
+        v);
   }
   template <class Step>
-  KOKKOS_INLINE_FUNCTION void add_component(Step step, Weights const& f, Index at, int row, VectorRow<width> const& x,
-                                            double* v) const {
-    double const *const mx = ends.component(3 * row) + at, *const my = ends.component(3 * row + 1) + at,
-                        *const mz = ends.component(3 * row + 2) + at, *const b = ends.component(9 + row) + at;
-    for (int w = 0; w < n; ++w)
-      v[w] += f.of[w] * (mx[w * step] * x.x[w] + my[w * step] * x.y[w] + mz[w * step] * x.z[w] + b[w * step]);
+  KOKKOS_INLINE_FUNCTION void add_as_one(Step step, Weights const& f, VectorRow<width> const& x,
+                                         VectorRow<width>& v) const {
+    TurnedEnds<double const> const at = ends.values;
+    Index const first = lower, upper = lower + chain.section_size();
+    add(
+        [&](int w) {
+          TurnedEnd<Vec3> const wall = at[first + w * step], outer = at[upper + w * step];
+          Vec3 const r = get(x, w) - wall.pivot;
+          Vec3 const change = Quaternion<Vec3>::between(outer.q, wall.q, f.of[w]).turned(r);
+          return change + (f.of[w] * wall.stretch) * (r + change);
+        },
+        v);
+  }
+  template <class Step>
+  KOKKOS_INLINE_FUNCTION void add_rates(Step step, VectorRow<width> const& x, VectorRow<width>& v) const {
+    add(
+        [&](int w) {
+          Index const at = lower + w * step;
+          return turned_between<DualVec3>(ends, chain, at, at + chain.section_size(), t[w], get(x, w)).rate;
+        },
+        v);
   }
 };
 

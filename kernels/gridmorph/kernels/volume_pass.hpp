@@ -52,12 +52,12 @@ struct FieldBatch {
 /// Fields that one pass writes; they share what it reads.
 inline constexpr int most_fields_at_once = 8;
 
-/// Ends of lines that turn, of several fields.
+/// Ends of lines that turn, of several fields; with rates, of one.
 struct TurnedEndsBatch {
-  TurnedEnds<double const> first;
+  TurnedEndsWithRates first;
   Index stride = 0;
-  KOKKOS_INLINE_FUNCTION TurnedEnds<double const> operator[](int f) const {
-    return {first.first + f * stride, first.n};
+  KOKKOS_INLINE_FUNCTION TurnedEndsWithRates operator[](int f) const {
+    return {{first.values.first + f * stride, first.values.n}, first.rates};
   }
 };
 
@@ -154,7 +154,8 @@ struct VolumePass {
     });
     if (term.matrix >= 0) turn(transpose(matrices(term.matrix)), row.n, x);
     add_vector(term.offset, row.n, x);
-    TurnedRow<width> const turned_row{turned[f], chain, row.lower, row.t, row.n};
+    TurnedEndsWithRates const turned_ends = turned[f];
+    TurnedRow<width> const turned_row{turned_ends, chain, row.lower, row.t, row.n};
     with_step(row.step, [&](auto step) { turned_row.add_to(step, x, v); });
   }
   KOKKOS_INLINE_FUNCTION static void add_vector(Vec3 const& a, int n, Row& x) {

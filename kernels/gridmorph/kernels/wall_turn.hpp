@@ -23,6 +23,7 @@
 #include <gridmorph/kernels/launch.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <type_traits>
 
 namespace gridmorph::kernels {
@@ -30,13 +31,25 @@ namespace gridmorph::kernels {
 template <class V>
 inline constexpr bool has_rate = std::is_same_v<V, DualVec3>;
 
-/// The smallest rotation that takes direction `before` to `after`; zero where either is zero, where they are the same, and
-/// where they are opposite (no one axis).
+/// A unit vector across v, which is not zero.
+KOKKOS_INLINE_FUNCTION Vec3 across(Vec3 const& v) {
+  bool const x_is_least = v.x * v.x <= v.y * v.y && v.x * v.x <= v.z * v.z;
+  Vec3 const other = x_is_least ? Vec3{1, 0, 0} : v.y * v.y <= v.z * v.z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+  Vec3 const c = cross(v, other);
+  return (1 / norm(c)) * c;
+}
+KOKKOS_INLINE_FUNCTION Vec3 value_of(Vec3 const& v) { return v; }
+KOKKOS_INLINE_FUNCTION Vec3 value_of(DualVec3 const& v) { return v.value; }
+
+/// The smallest rotation that takes direction `before` to `after`; zero where either is zero and where they are the same; about
+/// `half_turn_axis` (unit, across them), with no rate, where they are opposite to round-off.
 template <class V>
-KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after) {
+KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after, Vec3 const& half_turn_axis) {
   using std::atan2;
   V const c = cross(before, after);
   auto const sine = norm(c), cosine = dot(before, after);
+  double const least = 1e-8 * norm(value_of(before)) * norm(value_of(after));
+  if (cosine < -least && !(sine > least)) return V{std::numbers::pi * half_turn_axis};
   if (!(sine > 0)) {
     if constexpr (has_rate<V>) return cosine > 0 ? (1 / cosine) * c : V{};
     return {};
@@ -44,19 +57,56 @@ KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after) {
   return (atan2(sine, cosine) / sine) * c;
 }
 
-/// v turned by `share` of a rotation, minus v (Rodrigues): exactly zero where the angle is.
-/// R v - v = sin(a) k x v + (1 - cos(a)) k x (k x v)
+/// About some axis where they are opposite.
+template <class V>
+KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after) {
+  Vec3 const v = value_of(before);
+  return turn_between(before, after, dot(v, v) > 0 ? across(v) : Vec3{});
+}
+
+/// R - I of `share` of a rotation (Rodrigues), with k the axis and a the angle: exactly zero where the angle is.
+///
+///   R v - v = sin(a) k x v + (1 - cos(a)) k x (k x v)
+template <class V>
+struct Turning {
+  using Scalar = std::decay_t<decltype(dot(V{}, V{}))>;
+  V axis{};
+  Scalar sine{}, versine{};
+
+  KOKKOS_INLINE_FUNCTION explicit Turning(V const& turn, double share = 1) {
+    using std::sin;
+    auto const angle = norm(turn);
+    if (angle > 0) {
+      auto const a = share * angle, half = sin(0.5 * a);
+      axis = (1 / angle) * turn;
+      sine = sin(a);
+      versine = 2 * half * half;
+    } else if constexpr (has_rate<V>) {
+      axis = turn;
+      sine = {share, 0};
+    }
+  }
+  KOKKOS_INLINE_FUNCTION V operator()(V const& v) const {
+    V const across = cross(axis, v);
+    return sine * across + versine * cross(axis, across);
+  }
+};
 template <class V>
 KOKKOS_INLINE_FUNCTION V turned_by(V const& turn, double share, V const& v) {
-  using std::sin;
+  return Turning<V>(turn, share)(v);
+}
+
+/// Half a turn is one rotation about either direction of its axis. Neighbours that blend theirs have to agree on one, whatever round-off
+/// says of each: the direction along which z, else y, else x rises.
+template <class V>
+KOKKOS_INLINE_FUNCTION V settled(V const& turn) {
+  double constexpr half = std::numbers::pi;
   auto const angle = norm(turn);
-  if (!(angle > 0)) {
-    if constexpr (has_rate<V>) return share * cross(turn, v);
-    return {};
-  }
-  V const k = (1 / angle) * turn, kv = cross(k, v);
-  auto const a = share * angle, half = sin(0.5 * a);
-  return sin(a) * kv + (2 * half * half) * cross(k, kv);
+  if (!(angle > (1 - 1e-6) * half)) return turn;
+  Vec3 const v = value_of(turn);
+  auto const counts = [&](double c) { return c > 0.3 * half || c < -0.3 * half; };
+  double const along = counts(v.z) ? v.z : counts(v.y) ? v.y : v.x;
+  return along < 0 ? (2 * half / angle) * -turn + turn : turn;
 }
 
 /// First one rotation, then the other; exactly zero where both are. By unit quaternions.
@@ -67,8 +117,8 @@ KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
   using std::sin;
   auto const a = norm(first), b = norm(next);
   if constexpr (!has_rate<V>) {
-    if (!(a > 0)) return next;
-    if (!(b > 0)) return first;
+    if (!(a > 0)) return settled(next);
+    if (!(b > 0)) return settled(first);
   }
   auto const half_sine = [](auto const& angle) {  // over the angle
     return angle > 0 ? sin(0.5 * angle) / angle : std::decay_t<decltype(angle)>{0.5};
@@ -82,7 +132,7 @@ KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
     imaginary = -imaginary;
   }
   auto const sine = norm(imaginary);
-  if (sine > 0) return (2 * atan2(sine, real) / sine) * imaginary;
+  if (sine > 0) return settled((2 * atan2(sine, real) / sine) * imaginary);
   if constexpr (has_rate<V>) return (2 / real) * imaginary;
   return {};
 }
@@ -97,8 +147,9 @@ KOKKOS_INLINE_FUNCTION auto twist_about(V const& axis, V const& swing, Index n, 
   V t1{}, t2{};
   Scalar c11{}, c12{}, c22{}, b11{}, b12{}, b21{}, b22{};
   bool has_frame = false;
+  Turning<V> const turning(swing);
   for (Index k = 0; k < n; ++k) {
-    V const arm = before(k), p = arm + turned_by(swing, 1, arm), q = after(k);
+    V const arm = before(k), p = arm + turning(arm), q = after(k);
     if (!has_frame) {
       V const across = p - dot(p, axis) * axis;
       auto const size = norm(across);
@@ -178,9 +229,11 @@ struct WallTurn {
  private:
   KOKKOS_INLINE_FUNCTION V turn_at(Index r) const {
     V const after = wall.normal(r, moved);
-    V const swing = turn_between(wall.normal(r, baseline), after);
+    V const before = wall.normal(r, baseline);
+    if (wall.flat) return settled(turn_between(before, after, wall.across));
+    V const swing = turn_between(before, after);
     auto const size = norm(after);
-    if (wall.flat || !(size > 0)) return swing;
+    if (!(size > 0)) return swing;
     V const axis = (1 / size) * after;
     V const x = baseline[wall.node(r)], y = moved[wall.node(r)];
     Index const first = wall.first(r);
@@ -201,17 +254,21 @@ struct WallFrames {
 
   [[nodiscard]] Index size() const { return Index(wall.node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
-    Vec3 const x = column(r, {1, 0, 0}), y = column(r, {0, 1, 0}), z = column(r, {0, 0, 1});
+    Turning<V> const turning(turn_of(r));
+    auto const column = [&](Vec3 const& e) { return change(turning(V{e})); };
+    Vec3 const x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
     frame[r] = {u[wall.node(r)], {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}}};
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION Vec3 column(Index r, Vec3 const& e) const {
+  KOKKOS_INLINE_FUNCTION V turn_of(Index r) const {
     if constexpr (has_rate<V>)
-      return turned_by(V{turn[r], turn_rate[r]}, 1, V{e}).rate;
+      return {turn[r], turn_rate[r]};
     else
-      return turned_by(turn[r], 1, e);
+      return turn[r];
   }
+  KOKKOS_INLINE_FUNCTION static Vec3 change(Vec3 const& v) { return v; }
+  KOKKOS_INLINE_FUNCTION static Vec3 change(DualVec3 const& v) { return v.rate; }
 };
 
 }  // namespace gridmorph::kernels

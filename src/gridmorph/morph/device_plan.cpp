@@ -57,6 +57,8 @@ void join_lines(LineTables const& from, Shift const& shift, LineTables& to) {
   if (!from.end_positions.empty()) {
     to.end_positions.resize(std::size_t(to.n_end_values));
     append(to.end_positions, from.end_positions);
+    to.end_pivots.resize(std::size_t(to.n_end_values));
+    append(to.end_pivots, from.end_pivots);
   }
   append(to.swept_positions, from.swept_positions);
   to.n_parameters += from.n_parameters;
@@ -133,6 +135,7 @@ DeviceTurns<Exec> device_turns(Exec const& exec, Plan const& plan, JoinedTables&
   out.table.roots = table(exec, plan.turns.roots, "roots");
   out.table.neighbours = table(exec, plan.turns.neighbours, "root_neighbours");
   out.table.ends = table(exec, plan.turns.ends, "root_ends");
+  out.table.end_walls = table(exec, plan.turns.end_walls, "end_walls");
   out.table.surfaces = surfaces.surfaces;
   out.table.matrices = rotations;
   out.n_ends = joined.lines.n_end_values;
@@ -140,13 +143,16 @@ DeviceTurns<Exec> device_turns(Exec const& exec, Plan const& plan, JoinedTables&
   out.slots = Work(exec, plan.n_slots, fields, "turns");
   out.raw = Work(exec, n_roots, fields, "root_turns");
   out.outer = Work(exec, n_roots, fields, "outer_turns");
+  out.at_end = Work(exec, 3 * Index(plan.turns.end_walls.size()), fields, "end_wall_turns");
   out.end_turns = Work(exec, out.n_ends, fields, "end_turns");
   out.ends = Kokkos::View<double*, typename Exec::memory_space>(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::turned_ends"),
       out.ends_stride() * fields);
   joined.lines.end_positions.resize(std::size_t(out.n_ends));
+  joined.lines.end_pivots.resize(std::size_t(out.n_ends));
   joined.sides.positions.resize(joined.sides.t.size());
   out.end_position = positions(exec, joined.lines.end_positions, "end_positions");
+  out.end_pivot = positions(exec, joined.lines.end_pivots, "end_pivots");
   out.swept_position = positions(exec, joined.lines.swept_positions, "swept_positions");
   out.side_position = positions(exec, joined.sides.positions, "side_positions");
   return out;

@@ -91,21 +91,26 @@ template <class Exec>
 struct DeviceTurns {
   using Memory = typename Exec::memory_space;
   kernels::RootTable<Memory> table;
-  Workspace<Memory> slots, raw, outer, end_turns;  ///< per slot, root, root, line end
-  Kokkos::View<double*, Memory> ends;              ///< of fields, each as kernels::TurnedEnds has them
-  Workspace<Memory> end_position, swept_position, side_position;
+  Workspace<Memory> slots, raw, outer;  ///< per slot, root, root
+  Workspace<Memory> at_end, end_turns;  ///< 3 per end wall; per line end
+  Kokkos::View<double*, Memory> ends;   ///< of fields, each as kernels::TurnedEnds has them
+  Workspace<Memory> end_position, end_pivot, swept_position, side_position;
   Index n_ends = 0;
 
   [[nodiscard]] bool any() const { return table.roots.extent(0) > 0; }
   [[nodiscard]] Index ends_stride() const { return kernels::TurnedEnds<double>::components * n_ends; }
   [[nodiscard]] kernels::TurnedEnds<double> ends_of(int f) const { return {ends.data() + f * ends_stride(), n_ends}; }
-  [[nodiscard]] kernels::TurnedEnds<double const> read_ends(int f) const {
-    return {ends.data() + f * ends_stride(), n_ends};
+  /// Of field f; where f holds the rates of field `of`, both.
+  [[nodiscard]] kernels::TurnedEndsWithRates read_ends(int f, int of) const {
+    auto const values = ends_of(of), rates = ends_of(f);
+    kernels::TurnedEndsWithRates both{{values.first, n_ends}};
+    if (f != of) both.rates = {rates.first, n_ends};
+    return both;
   }
   /// What sweeps and residuals of field f ask for.
-  [[nodiscard]] kernels::SkeletonTurns of_skeleton(int f) const {
+  [[nodiscard]] kernels::SkeletonTurns of_skeleton(int f, int of) const {
     if (!any()) return {};
-    return {read_ends(f), end_turns.read()[f], slots.batch()[f], swept_position.read()[0], side_position.read()[0]};
+    return {read_ends(f, of), end_turns.read()[f], slots.batch()[f], swept_position.read()[0], side_position.read()[0]};
   }
 };
 

@@ -91,6 +91,7 @@ struct Morpher<Exec>::State {
     Field f = list.fields[0], r = list.fields[1];
     f.boundary = boundary.array();
     r.boundary = boundary_rate.array();
+    r.of = f.number;
     for_each_stage([&](auto const& stage) {
       if constexpr (requires { stage.rate(exec, flat.field, f, r); }) {
         stage.rate(exec, flat.field, f, r);

@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/plan/blocks/boundary.hpp>
 #include <gridmorph/plan/blocks/independent_chains.hpp>
 #include <gridmorph/plan/blocks/loose_nodes.hpp>
@@ -93,22 +94,25 @@ char const* name_of(Law law) {
   return names[int(law)];
 }
 
-/// Of chains between moving ends (measured: a plateau from 0.15 to 0.35).
-constexpr double passage_turn = 0.25;
+/// Of chains between moving ends: a line that starts turned has to turn back, which costs more reach than the near field gains
+/// (docs/quality.md has the figures).
+constexpr double passage_turn = 0;
 
 struct HandedOn {
   double turn = 0;
   kernels::TurnLaw law = kernels::TurnLaw::none;
+  double reach = 0;  ///< TurnLaw::far
 };
 
 class Scheduler {
  public:
-  Scheduler(PlanContext const& context, Priority& priority, ResolvedMotion const& motion, PlanOptions const& options,
+  Scheduler(PlanContext const& context, Priority& priority, BoundaryMotion const& surface, PlanOptions const& options,
             Plan& plan, Known& known)
       : context_(context),
+        surface_(surface),
         mesh_(context.mesh),
         topology_(context.topology),
-        motion_(motion),
+        motion_(surface.motion()),
         options_(options),
         plan_(plan),
         known_(known),
@@ -156,7 +160,7 @@ class Scheduler {
   /// What near fields hand on of their turn, and how it fades. Where their lines end at rest: all of it if they move as rigid
   /// bodies, as far as the bodies' own motion does; none otherwise, as what turns differently from line to line tears far from the
   /// wall.
-  HandedOn hand_on(std::vector<NearField> const& fields) {
+  HandedOn hand_on(std::vector<NearField> const& fields, WallRoots const& roots) {
     bool open = false, any = false;
     HandedOn const between_moving{options_.volume.turn.value_or(passage_turn), kernels::TurnLaw::square};
     for (RankedChain const& ranked : collect(open)) {
@@ -171,12 +175,15 @@ class Scheduler {
       any = true;
     }
     if (!any) return between_moving;
-    return {options_.volume.turn.value_or(is_rigid(fields) ? 1 : 0), kernels::TurnLaw::c1};
+    double const turn = options_.volume.turn.value_or(is_rigid(fields, roots) ? 1 : 0);
+    if (!(roots.body_size() > 0)) return {turn, kernels::TurnLaw::c1};
+    return {turn, kernels::TurnLaw::far, std::max(1.0, 0.5 * plan_.mesh_size / roots.body_size())};
   }
 
   /// first: of these stages the chains are given; the others follow by priority. Returns the order of all.
   /// `next`: gets what the stage after those could be.
-  ChainOrder volume(kernels::TurnLaw turn_law, ChainOrder const& first, ChainOrder* next) {
+  ChainOrder volume(HandedOn const& handed_on, ChainOrder const& first, ChainOrder* next) {
+    kernels::TurnLaw const turn_law = handed_on.turn > 0 ? handed_on.law : kernels::TurnLaw::none;
     ChainOrder order;
     after_near_field_ = known_.known;
     for (int number = 1; has_active_blocks(); ++number) {
@@ -198,7 +205,7 @@ class Scheduler {
         order.back().push_back(ranked.place);
         description.push_back(chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked) +
                               (open || law == options_.volume.law ? "" : std::string(", law ") + name_of(law)));
-        now.push_back({open ? known_end_first(ranked.chain) : ranked.chain, along, open, turn_law});
+        now.push_back({open ? known_end_first(ranked.chain) : ranked.chain, along, open, turn_law, handed_on.reach});
       }
       Stage stage = build_stage(context_, now, known_, priority_.kind_order());
       stage.name = std::to_string(number);
@@ -266,12 +273,35 @@ class Scheduler {
     int const piece = topology_.blocks[block].pieces.front().piece;
     return !known_(topology_.lattice.class_of(topology_.lattice.entity_of_piece(piece, {1, 1, 1})));
   }
-  [[nodiscard]] bool is_rigid(std::vector<NearField> const& fields) const {
+  /// By what the rules do to places on the walls; where that says nothing, by the rules themselves.
+  [[nodiscard]] bool is_rigid(std::vector<NearField> const& fields, WallRoots const& roots) const {
+    constexpr Index enough = 2000;
+    std::vector<WallRoots::BodySample> const bodies = roots.sample_bodies(enough);
+    if (!bodies.empty() && std::all_of(bodies.begin(), bodies.end(), [&](auto const& b) { return moves_rigidly(b); }))
+      return true;
     return std::all_of(fields.begin(), fields.end(), [&](NearField const& field) {
       return !turns(field) || std::all_of(field.walls.begin(), field.walls.end(), [&](int wall) {
         return std::holds_alternative<RigidRule>(motion_.patch_rule(wall));
       });
     });
+  }
+  /// To two per cent of its largest displacement.
+  [[nodiscard]] bool moves_rigidly(WallRoots::BodySample const& body) const {
+    std::vector<Vec3> moved = body.places;
+    double largest = 0;
+    for (std::size_t n = 0; n < moved.size(); ++n) {
+      int const rule = motion_.patch[body.patches[n]].rule;
+      if (rule < 0 || !surface_.is_explicit(rule)) return false;
+      Vec3 u;
+      surface_.displacement(rule, {&body.places[n], 1}, {&u, 1});
+      moved[n] += u;
+      largest = std::max(largest, norm(u));
+    }
+    if (!(largest > 0)) return false;
+    RigidTransform const fit = fit_rigid_transform(body.places, moved);
+    for (std::size_t n = 0; n < moved.size(); ++n)
+      if (distance(fit(body.places[n]), moved[n]) > 0.02 * largest) return false;
+    return true;
   }
   [[nodiscard]] bool ends_at_rest(ChainEnd const& end) const {
     return end.patch >= 0 && context_.kinds[end.patch] != PatchKind::wall &&
@@ -340,6 +370,7 @@ class Scheduler {
   }
 
   PlanContext const& context_;
+  BoundaryMotion const& surface_;
   Mesh const& mesh_;
   Topology const& topology_;
   ResolvedMotion const& motion_;
@@ -350,15 +381,19 @@ class Scheduler {
   std::vector<char> before_near_field_, after_near_field_;  ///< what was known, per entity class
 };
 
-std::string turn_note(double turn, bool given) {
-  std::string number = std::to_string(turn);
+std::string turn_note(HandedOn const& handed_on, bool given) {
+  std::string number = std::to_string(handed_on.turn);
   number.erase(number.find_last_not_of('0') + 1);
   if (number.back() == '.') number.pop_back();
-  return "near fields turn with their walls and hand on " + number + " of their turn" +
-         (given       ? ""
-          : turn == 1 ? ", as they are rigid and chains from them end at rest"
-          : turn == 0 ? ", as they are not rigid and chains from them end at rest"
-                      : ", as chains from them end on what moves or on walls");
+  std::string text = "near fields turn with their walls and hand on " +
+                     (handed_on.turn == 0   ? "none"
+                      : handed_on.turn == 1 ? "all"
+                                            : number) +
+                     " of their turn";
+  if (given) return text;
+  if (handed_on.law == kernels::TurnLaw::square) return text + ", as chains from them end on what moves or on walls";
+  return text + (handed_on.turn > 0 ? ", as they move rigidly and chains from them end at rest"
+                                    : ", as they do not move rigidly and chains from them end at rest");
 }
 
 /// The nodes inside every piece that has any. Returns the box of each piece, -1 for the others.
@@ -430,7 +465,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   WallRoots roots(context);
   context.roots = &roots;
   Known known(topology.lattice.n_classes());
-  Scheduler scheduler(context, priority, motion, options, plan, known);
+  Scheduler scheduler(context, priority, surface, options, plan, known);
   std::vector<std::string> const& kind_order = priority.kind_order();
   planned.boundary = collect_boundary(context, surface, kind_order, known, plan);
   Known const given = known;
@@ -438,10 +473,14 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   for (NearField const& field : basis.fields)
     if (turns(field)) roots.add_walls(field.walls, field.mode == BoundaryLayer::Mode::blend ? 0 : 1);
   roots.join_coincident();
+  // A body's centre is a place in one frame; where zones are turned into one another, each line end turns about itself.
+  if (std::none_of(topology.links.all.begin(), topology.links.all.end(),
+                   [](Link const& link) { return link.periodic; }))
+    roots.find_bodies();
   roots.mark(known);
   scheduler.near_field(near_field_chains(basis.mesh, basis.topology, known, basis.fields));
-  HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(basis.fields);
-  planned.order = scheduler.volume(handed_on.law, first, next);
+  HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(basis.fields, roots);
+  planned.order = scheduler.volume(handed_on, first, next);
   std::vector<int> const surface_of_patch = slip_surface_numbers(mesh, surface, plan.surfaces);
   if (!roots.nodes().empty()) {
     roots.scale_turn(handed_on.turn);
@@ -451,8 +490,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
     plan.turns = turn_tables(context, topology.links, roots, end_walls);
     bool const blends =
         std::none_of(roots.nodes().begin(), roots.nodes().end(), [](RootNode const& n) { return n.turn > 0; });
-    if (!blends || handed_on.turn == 0)
-      plan.notes.push_back(turn_note(handed_on.turn, options.volume.turn.has_value()));
+    if (!blends || handed_on.turn == 0) plan.notes.push_back(turn_note(handed_on, options.volume.turn.has_value()));
   }
   plan_spreads(context, motion, surface_of_patch, given, plan);
   plan.skeleton_nodes = skeleton.to_nodes(rotations);

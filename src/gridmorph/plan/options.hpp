@@ -77,7 +77,7 @@ struct VolumeOptions {
       false;  ///< blocks: other laws for single chains where predict() says that cells come out better
   OrderBy order = OrderBy::priority;  ///< blocks
   /// Blocks: how much of the turn of their walls near fields that rotate hand on at their outer edge, 0 to 1. Nothing: where all
-  /// lines from there end on boundaries at rest that are no walls, 1 if the walls have rule `rigid` and 0 if not; elsewhere 0.25.
+  /// lines from there end on boundaries at rest that are no walls and the walls move rigidly, 1; elsewhere 0.
   std::optional<double> turn;
   std::vector<PriorityRule> priority = standard_priority();
 

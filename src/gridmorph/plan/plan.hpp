@@ -26,6 +26,7 @@ struct LineTables {
   Index n_parameters = 0;             ///< line parameters that are kept
   Index n_end_values = 0;             ///< displacements at the ends of all chains
   std::vector<Vec3> end_positions;    ///< of chains that turn: per end value, chain frame
+  std::vector<Vec3> end_pivots;       ///< what they turn about, likewise
   std::vector<Vec3> swept_positions;  ///< SkeletonSweep::x, chain frame
 
   [[nodiscard]] Index n_lines() const;
@@ -77,6 +78,7 @@ struct TurnTables {
   std::vector<kernels::Root> roots;
   std::vector<kernels::RootNeighbour> neighbours;
   std::vector<kernels::RootEnds> ends;
+  std::vector<kernels::EndWall> end_walls;
 };
 
 struct Plan {

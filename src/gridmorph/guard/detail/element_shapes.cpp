@@ -182,23 +182,12 @@ void ElementShapes::move(Index32 point, double delta, double relaxation, Coordin
 }
 
 void ElementShapes::smooth(int sweeps, double relaxation, Coordinates& x) const {
-  constexpr Index part = 64, few_parts = 4;  // points that one core takes at a time; what one core does alone
   UntanglingSchedule schedule(sweeps);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     double const delta = schedule.delta(sweep, [&] { return smallest_volume(x); });
-    for (std::vector<Index32> const& colour : colours_) {
-      Index const count = Index(colour.size());
-      auto const move_part = [&](Index n) {
-        std::vector<kernels::CornerChange> changes;
-        for (Index at = n * part; at < std::min(count, (n + 1) * part); ++at)
-          move(colour[std::size_t(at)], delta, relaxation, x, changes);
-      };
-      Index const parts = (count + part - 1) / part;
-      if (parts > few_parts)
-        for_all_parts({}, "gridmorph::element_shapes::sweep", parts, move_part);
-      else  // threads would wait for one another longer than they work
-        for (Index n = 0; n < parts; ++n) move_part(n);
-    }
+    for (std::vector<Index32> const& colour : colours_)
+      sweep_colour({}, "gridmorph::element_shapes::sweep", colour,
+                   [&](Index32 point, auto& changes) { move(point, delta, relaxation, x, changes); });
   }
 }
 

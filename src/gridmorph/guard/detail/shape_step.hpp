@@ -1,6 +1,8 @@
 // The step of one point towards the shapes that its corners have in the baseline; points of blocks and of elements share it.
 #pragma once
 
+#include <gridmorph/core/csr_graph.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/relative_shape.hpp>
 
 #include <algorithm>
@@ -51,6 +53,21 @@ void make_shape_step(std::vector<kernels::CornerChange> const& corners, Vec3 con
       value += kernels::relative_shape(c.n_after(there - u), c.d_after(there - u), delta);
     if (value < sum.value) return place(there);
   }
+}
+
+/// move(point, room for its corners) for all points of a colour, which do not see one another.
+template <class Move>
+void sweep_colour(HostInstance const& host, char const* label, std::vector<Index32> const& colour, Move const& move) {
+  constexpr Index part = 64, few_parts = 4;  // points that one core takes at a time; what one core does alone
+  Index const count = Index(colour.size()), parts = (count + part - 1) / part;
+  auto const move_part = [&](Index n) {
+    std::vector<kernels::CornerChange> corners;
+    for (Index at = n * part; at < std::min(count, (n + 1) * part); ++at) move(colour[std::size_t(at)], corners);
+  };
+  if (parts > few_parts)
+    for_all_parts(host, label, parts, move_part);
+  else  // threads would wait for one another longer than they work
+    for (Index n = 0; n < parts; ++n) move_part(n);
 }
 
 }  // namespace gridmorph::detail

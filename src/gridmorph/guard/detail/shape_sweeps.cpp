@@ -127,19 +127,13 @@ double smallest_volume(HostInstance const& host, ShapeRegion const& region, Swee
 
 void smooth_region(HostInstance const& host, PreparedMorph const& prepared, ShapeRegion const& region, int sweeps,
                    double relaxation, Coordinates& x, bool gradual) {
-  constexpr Index part = 64;  // points that one core takes at a time
   Sweeps points(prepared, region, x);
   UntanglingSchedule schedule(sweeps, gradual);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     double const delta = schedule.delta(sweep, [&] { return smallest_volume(host, region, points); });
-    for (std::vector<Index32> const& colour : region.colours) {
-      Index const count = Index(colour.size());
-      for_all_parts(host, "gridmorph::shape_smoothing::sweep", (count + part - 1) / part, [&](Index n) {
-        std::vector<CornerChange> corners;
-        for (Index at = n * part; at < std::min(count, (n + 1) * part); ++at)
-          points.move(colour[std::size_t(at)], delta, relaxation, corners);
-      });
-    }
+    for (std::vector<Index32> const& colour : region.colours)
+      sweep_colour(host, "gridmorph::shape_smoothing::sweep", colour,
+                   [&](Index32 point, auto& corners) { points.move(point, delta, relaxation, corners); });
   }
 }
 

@@ -23,9 +23,13 @@ class BlockTurns {
                     kernels::ClearVectors{turns_.slots.batch()[f_]});
     kernels::launch("gridmorph::turns::walls", exec,
                     kernels::RawRootTurn<Memory, V>{turns_.table, both(plan_.skeleton), turns_.raw.batch()[f_]});
-    kernels::launch("gridmorph::turns::near_field", exec,
-                    kernels::NearFieldTurn<Memory, V>{turns_.table, both(plan_.skeleton), both(turns_.raw),
-                                                      turns_.slots.batch()[f_], turns_.outer.batch()[f_]});
+    kernels::launch("gridmorph::turns::end_walls", exec,
+                    kernels::EndWallTurn<Memory, V>{turns_.table, both(plan_.skeleton), both(turns_.raw),
+                                                    turns_.at_end.batch()[f_]});
+    kernels::launch(
+        "gridmorph::turns::near_field", exec,
+        kernels::NearFieldTurn<Memory, V>{
+            turns_.table, both(turns_.raw), {both(turns_.at_end)}, turns_.slots.batch()[f_], turns_.outer.batch()[f_]});
   }
 
   /// From the slots to the ends of a stage's chains.
@@ -36,7 +40,8 @@ class BlockTurns {
                         turns_.end_turns.batch()[f_]);
     kernels::launch("gridmorph::turns::matrices", exec, stage.first_end_value,
                     stage.first_end_value + stage.n_end_values,
-                    kernels::TurnEnds<V>{both(turns_.end_turns), position, turns_.ends_of(f_)});
+                    kernels::TurnEnds<V>{both(turns_.end_turns), position, turns_.end_pivot.read()[0],
+                                         turns_.ends_of(f_), plan_.ends.batch()[f_]});
     kernels::launch("gridmorph::turns::near_field_lines", exec,
                     kernels::TurnNearField<Memory, V>{stage.near_field, turns_.table, both(turns_.slots),
                                                       both(turns_.raw), both(turns_.outer), position,

@@ -39,7 +39,7 @@ class OnSkeleton {
   void sweep(Exec const& exec, detail::WorkList<kernels::SkeletonSweep, Memory> const& list,
              StageField<Exec> const& f) const {
     kernels::sweep_skeleton<Add>(exec, list, plan().lines.chains, plan().rotations, sides(f), plan().t.data(),
-                                 read(f.ends), f.skeleton, plan().turns.of_skeleton(f.number));
+                                 read(f.ends), f.skeleton, plan().turns.of_skeleton(f.number, f.of));
   }
 
  private:
@@ -54,19 +54,18 @@ class BoundaryValues : OnSkeleton<Exec> {
 
   explicit BoundaryValues(BlockTables<Exec> tables) : OnSkeleton<Exec>(std::move(tables)) {}
 
-  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const { set<false>(exec, f, f); }
+  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const { set<false>(exec, f); }
   void rate(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& r) const {
-    set<false>(exec, f, f);
-    set<true>(exec, r, f);
+    set<false>(exec, f);
+    set<true>(exec, r);
   }
 
  private:
-  /// With `Rate`, `f` holds the rates of `at`.
   template <bool Rate>
-  void set(Exec const& exec, StageField<Exec> const& f, StageField<Exec> const& at) const {
+  void set(Exec const& exec, StageField<Exec> const& f) const {
     kernels::scatter_boundary(exec, this->plan().boundary_slots, f.boundary, f.skeleton);
     this->copy("gridmorph::boundary::axis", exec, this->plan().boundary_projections, f.skeleton, f.skeleton);
-    detail::BlockTurns<Exec, Rate>(this->plan(), f.number, at.number).of_walls(exec);
+    detail::BlockTurns<Exec, Rate>(this->plan(), f.number, f.of).of_walls(exec);
   }
 };
 
@@ -80,23 +79,22 @@ class LineSweep : OnSkeleton<Exec> {
   LineSweep(BlockTables<Exec> tables, std::size_t number)
       : OnSkeleton<Exec>(std::move(tables)), region(this->plan().stages[number].region), number_(number) {}
 
-  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const { run<false>(exec, f, f); }
+  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const { run<false>(exec, f); }
   void rate(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& r) const {
-    run<false>(exec, f, f);
-    run<true>(exec, r, f);
+    run<false>(exec, f);
+    run<true>(exec, r);
   }
 
  private:
-  /// With `Rate`, `f` holds the rates of `at`.
   template <bool Rate>
-  void run(Exec const& exec, StageField<Exec> const& f, StageField<Exec> const& at) const {
+  void run(Exec const& exec, StageField<Exec> const& f) const {
     auto const& stage = this->plan().stages[number_];
     this->copy("gridmorph::chain_ends", exec, stage.ends, f.skeleton, f.ends);
-    detail::BlockTurns<Exec, Rate>(this->plan(), f.number, at.number).of_ends(exec, stage);
+    detail::BlockTurns<Exec, Rate>(this->plan(), f.number, f.of).of_ends(exec, stage);
     if (stage.side_lines.extent(0) > 0) {
       this->copy("gridmorph::side_residual::known", exec, stage.gathers, f.skeleton, f.residuals);
       kernels::fill_sides(exec, this->plan().lines.chains, this->sides(f), stage.side_lines, stage.corrected,
-                          read(f.ends), f.residuals, this->plan().turns.of_skeleton(f.number));
+                          read(f.ends), f.residuals, this->plan().turns.of_skeleton(f.number, f.of));
     }
     this->template sweep<false>(exec, stage.sweeps, f);
   }

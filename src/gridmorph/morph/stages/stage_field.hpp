@@ -21,6 +21,7 @@ struct StageField {
 
   // Blocks: parts of the workspaces of DevicePlan.
   int number = 0;                                               ///< which field of theirs
+  int of = 0;                                                   ///< itself, or which field it holds the rates of
   kernels::Field<double> skeleton{nullptr, nullptr, nullptr};   ///< per slot
   kernels::Field<double> ends{nullptr, nullptr, nullptr};       ///< at the ends of lines
   kernels::Field<double> residuals{nullptr, nullptr, nullptr};  ///< on known sides of chains

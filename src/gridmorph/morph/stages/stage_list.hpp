@@ -41,7 +41,7 @@ StageList<Exec> stage_list(Exec const& exec, Plan const& plan, Baseline const& x
   for (std::size_t n = 0; n < tables->spreads.size(); ++n) out.stages.emplace_back(SlipSpread<Exec>(tables, n));
   for (int f = 0; f < n_fields; ++f)
     out.fields.push_back(
-        {{}, f, tables->skeleton.batch()[f], tables->ends.batch()[f], tables->residuals.batch()[f], {}, {}, {}});
+        {{}, f, f, tables->skeleton.batch()[f], tables->ends.batch()[f], tables->residuals.batch()[f], {}, {}, {}});
   return out;
 }
 

@@ -46,7 +46,7 @@ class WriteBlocks {
         plan.t.data(),
         {read(fields.front().ends), plan.ends.read().stride},
         {read(fields.front().residuals), plan.residuals.read().stride},
-        {plan.turns.read_ends(fields.front().number), plan.turns.ends_stride()},
+        {plan.turns.read_ends(fields.front().number, fields.front().of), plan.turns.ends_stride()},
         x,
         {},
         0};

@@ -13,6 +13,7 @@ namespace gridmorph {
 using EndKind = int;
 inline constexpr EndKind periodic_end = 100;
 inline constexpr EndKind unknown_end = -1;
+inline constexpr int no_body = -1;
 inline EndKind end_kind(PatchKind kind) { return kind == PatchKind::periodic ? periodic_end : int(kind); }
 /// Patches that the priority names have kinds of their own, which hold what they are besides.
 inline constexpr EndKind named_ends = 1000;
@@ -27,8 +28,10 @@ struct Known {
   std::vector<char> known;
   std::vector<EndKind> kind;
   std::vector<char> turns;  ///< whether its displacement comes with a rotation
+  std::vector<int> body;    ///< whose rotation that is, where it is one body's; see WallRoots::centre_of_body()
 
-  explicit Known(int n_classes) : known(n_classes, 0), kind(n_classes, unknown_end), turns(n_classes, 0) {}
+  explicit Known(int n_classes)
+      : known(n_classes, 0), kind(n_classes, unknown_end), turns(n_classes, 0), body(n_classes, no_body) {}
   [[nodiscard]] bool operator()(int entity_class) const { return known[entity_class] != 0; }
 };
 

@@ -19,6 +19,7 @@ class EndFinder {
   }
   /// Nodes of end walls that rules move, after the roots that lines stand on.
   [[nodiscard]] std::vector<RootNode> const& end_nodes() const { return end_nodes_; }
+  [[nodiscard]] std::vector<kernels::EndWall> const& found() const { return found_; }
 
   [[nodiscard]] kernels::RootEnds ends(std::int32_t root) const {
     std::vector<Passed> list = passed_[root];
@@ -28,10 +29,10 @@ class EndFinder {
     ends.fraction = -1;
     if (list.empty()) return ends;
     Passed const& first = list.front();
-    auto second = std::find_if(list.begin(), list.end(), [&](Passed const& p) { return p.end.root == first.last; });
+    auto second = std::find_if(list.begin(), list.end(), [&](Passed const& p) { return root_of(p) == first.last; });
     bool const one_line = second != list.end() && second != list.begin();
     if (!one_line)
-      second = std::find_if(list.begin(), list.end(), [&](Passed const& p) { return p.end.root != first.end.root; });
+      second = std::find_if(list.begin(), list.end(), [&](Passed const& p) { return root_of(p) != root_of(first); });
     double const length = one_line ? first.distance + second->distance : 0;
     ends.end[0] = with_share(first, length);
     if (second != list.end()) ends.end[1] = with_share(*second, length);
@@ -46,6 +47,7 @@ class EndFinder {
     double distance = 0;
     std::int32_t last = -1;  ///< root where it leaves the wall
   };
+  [[nodiscard]] std::int32_t root_of(Passed const& passed) const { return found_[passed.end.end].root; }
 
   /// Calls visit(axis along the wall, side, face class) for the sides of a wall's face that lie on end walls.
   template <class Visit>
@@ -92,7 +94,7 @@ class EndFinder {
   /// One line off an end wall, as far as the wall goes in this frame.
   void walk(LinePlace place, int face_class) {
     WallRoots::Place const start = at(place);
-    kernels::RootEnd end;
+    kernels::EndWall end;
     end.root = start.root;
     end.surface = surface_of(face_class);
     if (end.surface < 0) {
@@ -112,13 +114,13 @@ class EndFinder {
       if (here.root < 0 || !same_frame) break;
       line.emplace_back(here, length);
     }
+    auto const number = std::int32_t(found_.size());
+    found_.push_back(end);
     for (auto const& [here, distance] : line) {
       auto& list = passed_[here.root];
-      auto const again = [&](Passed const& p) { return p.end.root == end.root; };
+      auto const again = [&](Passed const& p) { return root_of(p) == end.root; };
       if (std::find_if(list.begin(), list.end(), again) != list.end()) continue;
-      kernels::RootEnd mine = end;
-      mine.to_root = frame(*start.copy, *here.copy);
-      list.push_back({mine, distance, line.back().first.root});
+      list.push_back({{number, frame(*start.copy, *here.copy), 0}, distance, line.back().first.root});
     }
   }
   [[nodiscard]] WallRoots::Place at(LinePlace const& place) const {
@@ -135,7 +137,7 @@ class EndFinder {
 
   /// The correction reaches two thicknesses of the near field, and not beyond the middle between two end walls.
   [[nodiscard]] kernels::RootEnd with_share(Passed const& passed, double length) const {
-    double reach = 2 * walls_.nodes()[passed.end.root].thickness;
+    double reach = 2 * walls_.nodes()[root_of(passed)].thickness;
     if (length > 0) reach = std::min(reach, length / 2);
     double const s = reach > 0 ? std::min(1.0, passed.distance / reach) : (passed.distance > 0 ? 1.0 : 0.0);
     kernels::RootEnd end = passed.end;
@@ -147,6 +149,7 @@ class EndFinder {
   Links const& links_;
   WallRoots const& walls_;
   EndWalls const& end_walls_;
+  std::vector<kernels::EndWall> found_;
   std::vector<std::vector<Passed>> passed_;  ///< per root
   std::vector<RootNode> end_nodes_;
   std::unordered_map<Index, std::int32_t> end_node_;  ///< per slot
@@ -169,6 +172,7 @@ TurnTables turn_tables(PlanContext const& context, Links const& links, WallRoots
   finder.find();
   append(walls.nodes(), true, tables);
   append(finder.end_nodes(), false, tables);
+  tables.end_walls = finder.found();
   tables.ends.resize(tables.roots.size());
   for (std::size_t r = 0; r < walls.nodes().size(); ++r) tables.ends[r] = finder.ends(std::int32_t(r));
   return tables;

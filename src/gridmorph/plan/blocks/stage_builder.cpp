@@ -1,6 +1,9 @@
 #include <gridmorph/plan/blocks/side_tables.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
 #include <gridmorph/plan/blocks/turned_lines.hpp>
+#include <gridmorph/plan/blocks/wall_roots.hpp>
+
+#include <gridmorph/kernels/turned_line.hpp>
 
 #include <algorithm>
 #include <map>
@@ -83,16 +86,54 @@ kernels::Chain device_chain(ChainLayout const& layout, ChainLaw const& law, bool
   return c;
 }
 
+/// From a body to what is at rest; between two ends that turn, about what they have in common.
+void set_far_law(double reach, bool one_body, kernels::Chain& device) {
+  if (device.turned_ends == 3) {
+    device.turn = one_body ? kernels::TurnLaw::common : kernels::TurnLaw::c1;
+  } else {
+    device.turn_reach = reach;
+    device.turn_scale = 1 / (kernels::far_growth(reach) - 1);
+  }
+}
+
+/// Ends that turn with a body turn about its centre.
+void set_pivots(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
+                kernels::Chain const& device, LineTables& lines) {
+  for (int end = 0; end < 2; ++end)
+    for_end_entities(context, chain, layout, end, [&](PlacedBox const& box, int entity) {
+      int const body = known.body[context.topology.lattice.class_of(entity)];
+      auto const rows = context.skeleton.rows(entity);
+      if (body == no_body || !rows) return;
+      Vec3 const centre = box.in_chain_frame(context.roots->centre_of_body(body));
+      for (int q = 0; q < rows->n_q; ++q)
+        for (int p = 0; p < rows->n_p; ++p) {
+          Index3 const at = box.position(node_at(*rows, p, q));
+          lines.end_pivots[std::size_t(device.first_end_value + end * device.section_size() + at[1] +
+                                       Index(device.n_a) * at[2])] = centre;
+        }
+    });
+}
+
 /// Which ends carry a rotation, and how it fades: a near field turns with its wall, other chains where an end of theirs does.
-void set_turn(PlanContext const& context, Chain const& chain, ChainLayout const& layout, StageChain const& entry,
-              Known const& known, kernels::Chain& device) {
-  if (entry.turn == kernels::TurnLaw::near_field) device.turned_ends = 3;
-  if (entry.turn != kernels::TurnLaw::near_field && entry.turn != kernels::TurnLaw::none)
-    for (int end = 0; end < (entry.open_end ? 1 : 2); ++end)
-      for_end_entities(context, chain, layout, end, [&](PlacedBox const&, int entity) {
-        if (known.turns[context.topology.lattice.class_of(entity)] != 0) device.turned_ends |= 1u << end;
-      });
-  device.turn = device.turned_ends != 0 ? entry.turn : kernels::TurnLaw::none;
+/// Returns whose rotation the chain carries, where all of it is one body's.
+int set_turn(PlanContext const& context, Chain const& chain, ChainLayout const& layout, StageChain const& entry,
+             Known const& known, kernels::Chain& device) {
+  bool const near_field = entry.turn == kernels::TurnLaw::near_field;
+  if (entry.turn == kernels::TurnLaw::none) return no_body;
+  std::set<int> bodies;
+  for (int end = 0; end < (near_field || entry.open_end ? 1 : 2); ++end)
+    for_end_entities(context, chain, layout, end, [&](PlacedBox const&, int entity) {
+      int const c = context.topology.lattice.class_of(entity);
+      if (known.turns[c] == 0) return;
+      device.turned_ends |= 1u << end;
+      bodies.insert(known.body[c]);
+    });
+  int const body = bodies.size() == 1 ? *bodies.begin() : no_body;
+  if (near_field) device.turned_ends = 3;
+  if (device.turned_ends == 0) return no_body;
+  device.turn = entry.turn;
+  if (entry.turn == kernels::TurnLaw::far) set_far_law(entry.turn_reach, body != no_body, device);
+  return body;
 }
 
 /// Turns the cross-section of a chain so that a and b run forward in memory, a through nearer nodes than b.
@@ -117,7 +158,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
   Lattice const& lattice = context.topology.lattice;
   std::map<int, int> writer;       // entity class -> entity that is written
   std::map<int, EndKind> becomes;  // entity class -> kind
-  std::set<int> turning;           // entity classes that get a rotation
+  std::map<int, int> turning;      // entity class that gets a rotation -> whose it is
   for (StageChain const& entry : chains) {
     Chain const chain = with_contiguous_a(context, entry.chain);
     ChainLayout const layout = lay_out(context.topology, chain);
@@ -129,7 +170,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
     std::size_t const first_segment = stage.lines.segments.size();
     kernels::Chain device = device_chain(layout, entry.law, entry.open_end);
     device.first_end_value = stage.lines.n_end_values;
-    set_turn(context, chain, layout, entry, known, device);
+    int const body = set_turn(context, chain, layout, entry, known, device);
     stage.turns = stage.turns || device.turn != kernels::TurnLaw::none;
     stage.lines.n_end_values += 2 * device.section_size();
     stage.lines.chains.push_back(device);
@@ -142,12 +183,14 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
     append_lines(context, chain, layout, number, stage.lines);
     add_side_tables(context, chain, layout, known, number, stage);
     if (device.turn != kernels::TurnLaw::none) add_turn_positions(context, chain, layout, number, stage);
+    if (entry.turn == kernels::TurnLaw::far && device.turned_ends != 0)
+      set_pivots(context, chain, layout, known, device, stage.lines);
     if (device.turn == kernels::TurnLaw::near_field) add_near_field_lines(context, chain, layout, number, stage);
     append_writers(context, chain, layout, number, first_segment, stage.lines, stage.sweeps, stage.volume,
                    [&](int entity) {
                      int const c = lattice.class_of(entity);
                      if (known(c)) return false;
-                     if (device.turn != kernels::TurnLaw::none) turning.insert(c);
+                     if (device.turn != kernels::TurnLaw::none) turning.try_emplace(c, body);
                      auto const [it, fresh] = becomes.try_emplace(c, kind);
                      if (!fresh && kind_rank(kind, kind_order) < kind_rank(it->second, kind_order)) it->second = kind;
                      return writer.try_emplace(c, entity).first->second == entity && fresh;
@@ -164,7 +207,10 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
     known.known[c] = 1;
     known.kind[c] = becomes.at(c);
   }
-  for (int const c : turning) known.turns[c] = 1;
+  for (auto const& [c, body] : turning) {
+    known.turns[c] = 1;
+    known.body[c] = body;
+  }
   return stage;
 }
 

@@ -21,6 +21,7 @@ struct StageChain {
   ChainLaw law;
   bool open_end = false;                           ///< carry the first end's displacement to the last end
   kernels::TurnLaw turn = kernels::TurnLaw::none;  ///< how rotations of its ends fade, where they carry any
+  double turn_reach = 0;                           ///< TurnLaw::far: length of lines over the size of bodies
 };
 
 /// Tables of all chains; entities not known yet are written by the first chain that holds them. Marks them known with

@@ -1,3 +1,4 @@
+#include <gridmorph/kernels/turned_line.hpp>
 #include <gridmorph/plan/blocks/host_lines.hpp>
 #include <gridmorph/plan/blocks/turned_lines.hpp>
 #include <gridmorph/plan/blocks/wall_roots.hpp>
@@ -61,6 +62,8 @@ void add_turn_positions(PlanContext const& context, Chain const& chain, ChainLay
     for_end_nodes(context, chain, layout, 0, end, [&](Index3 const& at, Vec3 const& x) {
       ends[std::size_t(device.first_end_value + end * device.section_size() + at[1] + Index(device.n_a) * at[2])] = x;
     });
+  stage.lines.end_pivots.insert(stage.lines.end_pivots.end(), ends.begin() + Index(stage.lines.end_pivots.size()),
+                                ends.end());
   if (device.first_side < 0) return;
   auto& sides = stage.sides.positions;
   sides.resize(stage.sides.t.size());
@@ -112,7 +115,7 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
         double const size = norm(normal);
         stage.near_field.push_back({device.first_end_value + at, device.first_end_value + device.section_size() + at,
                                     root, matrix, size > 0 ? (1 / size) * normal : Vec3{}, edge,
-                                    (1 - t) * (1 - t) * (1 - t)});
+                                    kernels::near_field_weight(t)});
         if (t > 0) context.roots->set_thickness(root, norm(edge) / t);
       }
   }

@@ -1,8 +1,32 @@
 #include <gridmorph/plan/blocks/wall_roots.hpp>
 
+#include <gridmorph/kernels/box_tree.hpp>
+
 #include <numeric>
+#include <utility>
 
 namespace gridmorph {
+namespace {
+
+/// Per root the first one of its group, where `pairs` calls join(a, b) for roots that belong together.
+template <class Pairs>
+std::vector<std::int32_t> first_of_groups(std::size_t n, Pairs const& pairs) {
+  std::vector<std::int32_t> first(n);
+  std::iota(first.begin(), first.end(), 0);
+  auto const find = [&](std::int32_t r) {
+    while (first[std::size_t(r)] != r) r = first[std::size_t(r)] = first[std::size_t(first[std::size_t(r)])];
+    return r;
+  };
+  pairs([&](std::int32_t a, std::int32_t b) {
+    a = find(a);
+    b = find(b);
+    first[std::size_t(std::max(a, b))] = std::min(a, b);
+  });
+  for (std::size_t r = 0; r < n; ++r) first[r] = find(std::int32_t(r));
+  return first;
+}
+
+}  // namespace
 
 RootFace::RootFace(PlanContext const& context, FaceSide const& face)
     : piece(face.piece), axis(face.axis), side(face.side) {
@@ -79,6 +103,7 @@ void WallRoots::add_walls(std::vector<int> const& patches, double turn) {
     int const patch = context_.topology.blocks.patch_of_face()[c];
     if (patch < 0 || wanted[patch] == 0) continue;
     RootFace face(context_, lattice.face_sides(c).front());
+    face.patch = patch;
     Zone const& zone = context_.mesh.zones[face.zone];
     for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
       for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
@@ -102,32 +127,79 @@ void WallRoots::mark(Known& known) const {
         which[face.axis] = 2 * face.side;
         which[face.along[0]] += dp;
         which[face.along[1]] += dq;
-        known.turns[lattice.class_of(lattice.entity_of_piece(face.piece, which))] = 1;
+        int const c = lattice.class_of(lattice.entity_of_piece(face.piece, which));
+        known.turns[c] = 1;
+        if (!body_.empty()) known.body[c] = body_[std::size_t(of_slot(face(0, 0).slot))];
       }
 }
 
-void WallRoots::join_coincident() {
-  std::vector<std::int32_t> first(nodes_.size());
-  std::iota(first.begin(), first.end(), 0);
-  auto const find = [&](std::int32_t n) {
-    while (first[n] != n) n = first[n] = first[first[n]];
-    return n;
-  };
-  bool any = false;
-  for (std::size_t r = 0; r < nodes_.size(); ++r)
-    for (kernels::RootNeighbour const& k : nodes_[r].around) {
-      if (norm(k.arm) > 0 || k.matrix >= 0) continue;
-      std::int32_t const a = find(std::int32_t(r)), b = find(of_slot_.at(k.slot));
-      first[std::max(a, b)] = std::min(a, b);
-      any = true;
+void WallRoots::find_bodies() {
+  std::vector<std::int32_t> first = first_of_groups(nodes_.size(), [&](auto const& join) {
+    for (std::size_t r = 0; r < nodes_.size(); ++r)
+      for (kernels::RootNeighbour const& k : nodes_[r].around) join(std::int32_t(r), of_slot_.at(k.slot));
+  });
+  std::vector<int> number(nodes_.size(), no_body);
+  body_.assign(nodes_.size(), no_body);
+  for (std::size_t r = 0; r < nodes_.size(); ++r) {
+    if (first[r] == std::int32_t(r)) {
+      number[r] = int(centre_.size());
+      centre_.emplace_back();
     }
+    body_[r] = number[std::size_t(first[r])];
+  }
+  std::vector<kernels::Box> box(centre_.size());
+  std::vector<double> area(centre_.size(), 0);
+  std::vector<char> seen(nodes_.size(), 0);
+  for (RootFace const& face : faces_)
+    for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
+      for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
+        auto const root = std::size_t(of_slot(face(p, q).slot)), body = std::size_t(body_[root]);
+        if (std::exchange(seen[root], 1) != 0) continue;
+        Vec3 const x = context_.mesh.coordinates[context_.mesh.zones[face.zone].node(face.at(p, q))];
+        double const weight = norm(fan_normal(nodes_[root].around));
+        centre_[body] += weight * x;
+        area[body] += weight;
+        box[body].include(x);
+      }
+  for (std::size_t b = 0; b < centre_.size(); ++b) {
+    if (area[b] > 0) centre_[b] = (1 / area[b]) * centre_[b];
+    body_size_ = std::max(body_size_, norm(box[b].high - box[b].low));
+  }
+}
+
+std::vector<WallRoots::BodySample> WallRoots::sample_bodies(Index most) const {
+  std::vector<BodySample> samples(centre_.size());
+  if (samples.empty()) return samples;
+  Index const step = 1 + Index(nodes_.size()) / most;
+  Index passed = 0;
+  for (RootFace const& face : faces_)
+    for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
+      for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
+        if (passed++ % step != 0) continue;
+        BodySample& sample = samples[std::size_t(body_[std::size_t(of_slot(face(p, q).slot))])];
+        sample.places.push_back(context_.mesh.coordinates[context_.mesh.zones[face.zone].node(face.at(p, q))]);
+        sample.patches.push_back(face.patch);
+      }
+  return samples;
+}
+
+void WallRoots::join_coincident() {
+  bool any = false;
+  std::vector<std::int32_t> const first = first_of_groups(nodes_.size(), [&](auto const& join) {
+    for (std::size_t r = 0; r < nodes_.size(); ++r)
+      for (kernels::RootNeighbour const& k : nodes_[r].around) {
+        if (norm(k.arm) > 0 || k.matrix >= 0) continue;
+        join(std::int32_t(r), of_slot_.at(k.slot));
+        any = true;
+      }
+  });
   if (!any) return;
   std::vector<std::vector<kernels::RootNeighbour>> together(nodes_.size());
   for (std::size_t r = 0; r < nodes_.size(); ++r) {
-    auto& list = together[find(std::int32_t(r))];
+    auto& list = together[std::size_t(first[r])];
     list.insert(list.end(), nodes_[r].around.begin(), nodes_[r].around.end());
   }
-  for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].around = together[find(std::int32_t(r))];
+  for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].around = together[std::size_t(first[r])];
 }
 
 }  // namespace gridmorph

@@ -14,7 +14,7 @@ struct RootFace {
     Index slot = -1;
     EntityCopy const* copy = nullptr;
   };
-  int zone = -1, piece = -1;
+  int zone = -1, piece = -1, patch = -1;
   int axis = 0, side = 0;  ///< of the piece, across the face
   int along[2] = {};       ///< the other axes
   IndexRange nodes;
@@ -62,8 +62,22 @@ class WallRoots {
   void add_walls(std::vector<int> const& patches, double turn);
   /// Nodes at one place turn alike: those of edges that have no length. Call after all walls.
   void join_coincident();
+  /// Finds the bodies: walls that touch. Call after all walls, where all zones share one frame.
+  void find_bodies();
   /// Marks what is on the walls as coming with a rotation.
   void mark(Known& known) const;
+
+  /// Places on the walls of one body, and of which patch each is.
+  struct BodySample {
+    std::vector<Vec3> places;
+    std::vector<int> patches;
+  };
+  /// Some places of every body, about `most` of all in all; they depend on the numbering of nodes.
+  [[nodiscard]] std::vector<BodySample> sample_bodies(Index most) const;
+  /// The mean of its walls over their area.
+  [[nodiscard]] Vec3 const& centre_of_body(int body) const { return centre_[body]; }
+  /// Diagonal of the box around the largest body, 0 where none has been found.
+  [[nodiscard]] double body_size() const { return body_size_; }
 
   [[nodiscard]] std::vector<RootNode> const& nodes() const { return nodes_; }
   [[nodiscard]] std::vector<RootFace> const& faces() const { return faces_; }
@@ -83,6 +97,9 @@ class WallRoots {
   std::vector<RootNode> nodes_;
   std::unordered_map<Index, std::int32_t> of_slot_;
   std::unordered_map<Index, Place> place_;  ///< per node of the mesh
+  std::vector<int> body_;                   ///< per root, empty before they are found
+  std::vector<Vec3> centre_;                ///< per body
+  double body_size_ = 0;
 };
 
 /// What bounds a wall's grid lines: slip surface per patch (-1: none), and patches that a rule moves.
