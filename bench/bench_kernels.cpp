@@ -4,6 +4,7 @@
 //   line_parameters/<axis>                  arc-length fractions of all nodes along one axis    32 bytes per node
 //   volume/<axis>/<law>/<known sides>       the pass over the volume, in place        48 bytes, 8 per line parameter
 //   volume/<axis>/near_field                the same under the constant law           48 bytes
+//   volume/<axis>/near_field_turns          and turned about the wall                 48 bytes, 8 per line parameter
 //   volume/<axis>/<law>/slip_sides          with a finalize pass: two terms           48 bytes, 8 per line parameter
 //   skeleton_sweep                          faces that chains make known              32 bytes
 //   node_copy                               skeleton -> nodes, in place               72 bytes
@@ -154,7 +155,7 @@ std::string axis_name(int axis) { return std::string(1, "ijk"[axis]); }
 template <class Work>
 void add(std::string const& kernel, CubeCase const& c, std::int64_t nodes) {
   std::string name = "kernels/" + kernel + "/" + axis_name(c.axis);
-  if (c.known != KnownSides::near_field) name += c.law == Law::c1 ? "/c1" : "/linear";
+  if (c.known < KnownSides::near_field) name += c.law == Law::c1 ? "/c1" : "/linear";
   register_benchmark(name + "/" + known_names[int(c.known)], OnCubes<Work>{c}, {nodes});
 }
 
@@ -174,7 +175,8 @@ void register_one_cube(std::int64_t nodes) {
       for (KnownSides const known : {KnownSides::no_side, KnownSides::two_sides, KnownSides::four_sides})
         add<Volume>("volume", {axis, law, known}, nodes);
     add<Volume>("volume", {axis, Law::linear, KnownSides::slip_sides}, nodes);
-    add<Volume>("volume", {axis, Law::linear, KnownSides::near_field}, nodes);
+    for (KnownSides const known : {KnownSides::near_field, KnownSides::near_field_turns})
+      add<Volume>("volume", {axis, Law::linear, known}, nodes);
   }
   add<Apply>("apply", {2, Law::linear, KnownSides::no_side}, nodes);
   add<Apply>("apply", {2, Law::linear, KnownSides::four_sides}, nodes);

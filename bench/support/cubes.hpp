@@ -76,12 +76,14 @@ inline Mesh make_cubes(Cubes const& cubes) {
 /// What is known on the sides of the chains that run along one axis between two known ends.
 enum class KnownSides {
   no_side,
-  two_sides,   ///< one pair of opposite sides
-  four_sides,  ///< transfinite interpolation
-  slip_sides,  ///< none, but one pair of opposite sides slips on its planes: a finalize pass follows
-  near_field   ///< none, and the constant law over all cells of a cube but the last
+  two_sides,        ///< one pair of opposite sides
+  four_sides,       ///< transfinite interpolation
+  slip_sides,       ///< none, but one pair of opposite sides slips on its planes: a finalize pass follows
+  near_field,       ///< none, and the constant law over all cells of a cube but the last
+  near_field_turns  ///< the same, and the near field turns with its wall
 };
-inline constexpr std::array known_names{"no_side", "two_sides", "four_sides", "slip_sides", "near_field"};
+inline constexpr std::array known_names{"no_side",    "two_sides",  "four_sides",
+                                        "slip_sides", "near_field", "near_field_turns"};
 
 struct CubeCase {
   int axis = 0;
@@ -102,8 +104,14 @@ inline PreparedMorph prepare_case(Mesh const& cubes, CubeCase const& c) {
   options.volume.law = c.law;
   auto const rule = [&](int axis, Rule const& what) { motion.rules.push_back({faces(axis), what, 0, "bench"}); };
   rule(c.axis, moving);
-  if (c.known == KnownSides::near_field)  // all cells but the last one: a near field may not reach another patch
-    options.boundary_layers = {{{faces(c.axis)[0]}, BoundaryLayer::Extent::layers, mesh.zones[0].extent[c.axis] - 2}};
+  bool const turns = c.known == KnownSides::near_field_turns;
+  if (turns ||
+      c.known == KnownSides::near_field)  // all cells but the last one: a near field may not reach another patch
+    options.boundary_layers = {{{faces(c.axis)[0]},
+                                BoundaryLayer::Extent::layers,
+                                mesh.zones[0].extent[c.axis] - 2,
+                                0,
+                                turns ? BoundaryLayer::Mode::rotate : BoundaryLayer::Mode::translate}};
   bool const pair_moves = c.known == KnownSides::two_sides || c.known == KnownSides::four_sides;
   rule(paired, pair_moves ? Rule(moving) : c.known == KnownSides::slip_sides ? Rule(SlipRule{}) : Rule(FreeRule{}));
   rule(other, c.known == KnownSides::four_sides ? Rule(moving) : Rule(FreeRule{}));

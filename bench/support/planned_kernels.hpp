@@ -21,13 +21,14 @@ struct Timed {
   double bytes_per_node = 0;
 };
 
-/// The tables of a plan in an execution space, all displacements of its workspace small and alike.
+/// The tables of a plan in an execution space, all displacements of its workspace small and alike, as all rotations.
 template <class Exec>
 std::shared_ptr<detail::DevicePlan<Exec>> device_plan(Exec const& exec, Plan const& plan,
                                                       kernels::Field<double const> const& x) {
   auto device = std::make_shared<detail::DevicePlan<Exec>>(exec, plan, x, 1);
   for (auto const* work : {&device->skeleton, &device->ends, &device->residuals})
     Kokkos::deep_copy(exec, work->values, 1e-9);
+  Kokkos::deep_copy(exec, device->turns.ends, 1e-9);
   return device;
 }
 
@@ -59,10 +60,10 @@ struct Volume {
     using Memory = typename Exec::memory_space;
     auto const d = device_plan(exec, prepared.plan(), x.read());
     VectorView<Memory> const field(x);
+    kernels::TurnedEndsBatch const turned{d->turns.read_ends(0, 0), d->turns.ends_stride()};
     kernels::VolumePass<Memory, kernels::TileShape<Exec>, true> const kernel{
-        d->boxes.entries,    d->terms, d->boxes.first_item, d->lines.chains,
-        d->rotations,        d->sides, d->t.data(),         d->ends.read(),
-        d->residuals.read(), {},       field.array(),       {field.array()}};
+        d->boxes.entries, d->terms,       d->boxes.first_item, d->lines.chains, d->rotations,  d->sides,
+        d->t.data(),      d->ends.read(), d->residuals.read(), turned,          field.array(), {field.array()}};
     Touched const touched = touched_by_volume(prepared.plan());
     return {[=] { kernels::launch("gridmorph::bench::volume", exec, 0, d->boxes.n_items, kernel); }, touched.nodes,
             48 + 8 * double(touched.parameters) / double(touched.nodes)};

@@ -60,7 +60,7 @@ std::string passage_case_file(PassageOptions const& options, PassageFiles const&
          "[boundary_layer]                    # the ring round the blade moves with it\n"
          "walls  = [\"blade\"]\n"
          "extent = \"block\"\n"
-         "mode   = \"translate\"\n"
+         "mode   = \"rotate\"\n"
          "\n"
          "[volume]\n"
          "law = \"linear\"\n"

@@ -29,12 +29,12 @@ TEST_F(Example, TurbineStageTurnsEachRowByItsOwnAngleAndSlidesOnItsEnds) {
   expect_turn("BLADE2", 0.21, 38.6, [](double r) { return 3 + 4 * (r - 0.92) / 0.15; });
 
   expect_periodic_copies_move_alike(0);
-  // The motion is purely circumferential, so nodes on the end walls keep axial position and radius.
+  // The motion is purely circumferential, so nodes keep their radius; on hub and case near fields turn with the blades.
   for (std::string const wall : {"HUB", "SHROUD", "INLET", "OUTLET", "MIXING"})
     for_patch(wall, "", [&](Index n) {
       Cylindrical const u = motion(n, 0);
-      EXPECT_NEAR(u.axial, 0, 1e-15) << wall;
       EXPECT_NEAR(u.r, 0, 2e-15) << wall;
+      if (wall != "HUB" && wall != "SHROUD") EXPECT_NEAR(u.axial, 0, 1e-15) << wall;
     });
 
   double vane = 0, rotor = 0;
@@ -115,7 +115,7 @@ TEST_F(Example, WingBendsAndTwistsAsItsFormulaSays) {
     return Vec3{x * c - p.y * s - x, x * s + p.y * c - p.y + 2.1 * t * t, 0};
   });
   expect_fixed("far");
-  for_patch("sym", "", [&](Index n) { EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n)); });
+  for_patch("sym", "", [&](Index n) { EXPECT_NEAR(after.coordinates.z(n), before.coordinates.z(n), 1e-15); });
 }
 
 TEST_F(Example, WingReachesItsTargetSurface) {
@@ -322,7 +322,7 @@ TEST_P(StandInExample, KaplanRedesignTurnsItsBladesInTheirCylinders) {
 TEST_F(Example, WingRedesignChangesChordAlongTheSpanAndLeavesTheRoot) {
   ASSERT_NO_FATAL_FAILURE(morph("wing_redesign", "mdo_tutorial_000_vol.cgns"));
   expect_fixed("far");
-  for_patch("sym", "", [&](Index n) { EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n)); });
+  for_patch("sym", "", [&](Index n) { EXPECT_NEAR(after.coordinates.z(n), before.coordinates.z(n), 1e-15); });
   std::vector<Index> nodes;
   for_patch("wall", "", [&](Index n) {
     EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n));

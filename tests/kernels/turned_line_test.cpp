@@ -30,17 +30,22 @@ double shared(double f, double angle) {
   return 2 * std::atan2(f * std::sin(angle / 2), 1 - f * (1 - std::cos(angle / 2)));
 }
 
+/// That of the rotation about `turn` by its length.
+Q quaternion(Vec3 const& turn) {
+  double const angle = norm(turn);
+  return kernels::quaternion_of(angle > 0 ? (std::tan(angle / 4) / angle) * turn : turn);
+}
+
 TEST(Quaternions, TurnAsMatricesDo) {
   Random random(1);
   for (int n = 0; n < 200; ++n) {
     Vec3 const turn = random.vector(1.8), y = random.vector(1);
     if (norm(turn) > std::numbers::pi) continue;
     double const f = random.between(0, 1);
-    EXPECT_LT(distance(kernels::quaternion(turn).turned(y), turned(turn, norm(turn), y)), 1e-14);
-    EXPECT_LT(distance(Q::share(kernels::quaternion(turn), f).turned(y), turned(turn, shared(f, norm(turn)), y)),
-              1e-14);
+    EXPECT_LT(distance(quaternion(turn).turned(y), turned(turn, norm(turn), y)), 1e-14);
+    EXPECT_LT(distance(Q::share(quaternion(turn), f).turned(y), turned(turn, shared(f, norm(turn)), y)), 1e-14);
   }
-  EXPECT_EQ(kernels::quaternion(Vec3{}).turned({1, 2, 3}), Vec3{});
+  EXPECT_EQ(quaternion(Vec3{}).turned({1, 2, 3}), Vec3{});
 }
 
 TEST(Quaternions, SharesAreCloseToThoseOfTheAngle) {
@@ -52,7 +57,7 @@ TEST(Quaternions, SharesAreCloseToThoseOfTheAngle) {
 TEST(Quaternions, BetweenTwoOfOneAxisTurnAboutThatAxis) {
   Vec3 const axis{0.48, -0.6, 0.64}, y{1, 2, -0.5};
   double const a = 0.3, b = 1.4;
-  Q const from = kernels::quaternion(a * axis), to = kernels::quaternion(b * axis);
+  Q const from = quaternion(a * axis), to = quaternion(b * axis);
   for (double const f : {0.0, 0.3, 0.5, 1.0})
     EXPECT_LT(distance(Q::between(from, to, f).turned(y), turned(axis, a + shared(f, b - a), y)), 1e-14);
 }
@@ -70,7 +75,7 @@ struct Lines {
     Random random(seed);
     kernels::TurnedEnds<double> const value{values.data(), 2 * n}, rate{rates.data(), 2 * n};
     for (Index e = 0; e < 2 * n; ++e) {
-      value.set(e, {kernels::quaternion(random.vector(1)), random.vector(2), e < n ? 0.1 * random.between(-1, 1) : 0});
+      value.set(e, {quaternion(random.vector(1)), random.vector(2), e < n ? 0.1 * random.between(-1, 1) : 0});
       rate.set(e, {{random.vector(1), random.between(-1, 1)}, {}, e < n ? random.between(-1, 1) : 0});
     }
     ends = {{values.data(), 2 * n}, {}};
@@ -148,10 +153,11 @@ TEST_P(TurnedLines, NothingIsAddedAtAnEndThatTurnsAboutItself) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, TurnedLines,
-                         ::testing::Values(std::pair{TurnLaw::near_field, 3u}, std::pair{TurnLaw::square, 1u},
-                                           std::pair{TurnLaw::square, 2u}, std::pair{TurnLaw::square, 3u},
-                                           std::pair{TurnLaw::c1, 3u}, std::pair{TurnLaw::far, 1u},
-                                           std::pair{TurnLaw::far, 2u}, std::pair{TurnLaw::common, 3u}));
+                         ::testing::Values(std::pair{TurnLaw::near_field, 3u}, std::pair{TurnLaw::near_field, 1u},
+                                           std::pair{TurnLaw::square, 1u}, std::pair{TurnLaw::square, 2u},
+                                           std::pair{TurnLaw::square, 3u}, std::pair{TurnLaw::c1, 3u},
+                                           std::pair{TurnLaw::far, 1u}, std::pair{TurnLaw::far, 2u},
+                                           std::pair{TurnLaw::common, 3u}));
 
 TEST(NearFieldLaw, FallsFromOneToNoneWithoutASlopeAtEitherEnd) {
   EXPECT_EQ(kernels::near_field_weight(0), 1);

@@ -32,57 +32,83 @@ Mat3 matrix_of(Vec3 const& turn) {
   return sum;
 }
 
-TEST(Turns, TurnedByIsTheMatrixExponential) {
+/// What kernels call the rotation about `turn` by its length, and back.
+Vec3 rotation(Vec3 const& turn) {
+  double const angle = norm(turn);
+  return angle > 0 ? (std::tan(angle / 4) / angle) * turn : Vec3{};
+}
+Vec3 axis_times_angle(Vec3 const& r) {
+  double const size = norm(r);
+  return size > 0 ? (4 * std::atan(size) / size) * r : Vec3{};
+}
+
+TEST(Rotations, TurnAsTheMatrixExponential) {
   Random random(1);
   for (int n = 0; n < 200; ++n) {
     Vec3 const turn = random.vector(1.7), v = random.vector(1);
-    double const share = random.between(0, 1);
-    EXPECT_LT(distance(v + kernels::turned_by(turn, share, v), matrix_of(share * turn) * v), 1e-14);
+    EXPECT_LT(distance(v + kernels::turned_by(rotation(turn), v), matrix_of(turn) * v), 1e-14);
+    EXPECT_LT(distance(kernels::quaternion_of(rotation(turn)).turned(v), matrix_of(turn) * v - v), 1e-14);
   }
-  EXPECT_EQ(kernels::turned_by(Vec3{}, 1, Vec3{1, 2, 3}), Vec3{});
+  EXPECT_EQ(kernels::turned_by(Vec3{}, Vec3{1, 2, 3}), Vec3{});
+  EXPECT_EQ(kernels::quaternion_of(Vec3{}).turned({1, 2, 3}), Vec3{});
 }
 
-TEST(Turns, BetweenTwoDirectionsIsTheSmallestRotation) {
+TEST(Rotations, SharesAreCloseToThoseOfTheAngle) {
+  for (auto const& [angle, degrees] : {std::pair{1.0, 0.5}, {std::numbers::pi / 2, 2.0}, {std::numbers::pi, 16.5}})
+    for (double f = 0; f <= 1; f += 0.01)
+      EXPECT_NEAR(norm(axis_times_angle(f * rotation({0, angle, 0}))), f * angle, degrees * std::numbers::pi / 180);
+}
+
+TEST(Rotations, BetweenTwoDirectionsAreTheSmallest) {
   Random random(2);
   for (int n = 0; n < 200; ++n) {
-    Vec3 const before = random.vector(2), after = random.vector(3);
-    Vec3 const turn = kernels::turn_between(before, after);
+    Vec3 const before = random.vector(2), after = n % 4 != 0 ? random.vector(3) : -2 * before + random.vector(1e-5);
+    Vec3 const turn = axis_times_angle(kernels::turn_between(before, after));
     Vec3 const there = matrix_of(turn) * before;
-    EXPECT_LT(distance((1 / norm(there)) * there, (1 / norm(after)) * after), 1e-13);
-    EXPECT_NEAR(dot(turn, before), 0, 1e-13);
+    EXPECT_LT(distance((1 / norm(there)) * there, (1 / norm(after)) * after), n % 4 != 0 ? 1e-13 : 1e-10);
+    EXPECT_NEAR(dot(turn, before), 0, n % 4 != 0 ? 1e-13 : 1e-10);
     EXPECT_LE(norm(turn), std::numbers::pi);
   }
   Vec3 const x{1, 0, 0};
   EXPECT_EQ(kernels::turn_between(x, 2 * x), Vec3{});
-  EXPECT_NEAR(norm(kernels::turn_between(x, -x)), std::numbers::pi, 1e-15);
+  EXPECT_NEAR(norm(kernels::turn_between(x, -x)), 1, 1e-15) << "half a turn";
   EXPECT_EQ(dot(kernels::turn_between(x, -x), x), 0) << "about any axis across";
   Vec3 const axis{0, 0.6, 0.8};
-  EXPECT_EQ(kernels::turn_between(x, -x, axis), std::numbers::pi * axis);
+  EXPECT_EQ(kernels::turn_between(x, -x, axis), axis);
   EXPECT_EQ(kernels::turn_between(Vec3{}, x), Vec3{});
   EXPECT_EQ(kernels::turn_between(x, Vec3{}), Vec3{});
 }
 
-TEST(Turns, OneAfterTheOtherMultiplyAsMatricesDo) {
+TEST(Rotations, OneAfterTheOtherMultiplyAsMatricesDo) {
   Random random(3);
   for (int n = 0; n < 200; ++n) {
     Vec3 const first = random.vector(1.8), next = random.vector(1.8), v = random.vector(1);
-    Vec3 const both = kernels::turn_then(first, next);
-    EXPECT_LT(distance(matrix_of(both) * v, matrix_of(next) * (matrix_of(first) * v)), 1e-13);
-    EXPECT_LE(norm(both), std::numbers::pi + 1e-14);
+    Vec3 const both = kernels::turn_then(rotation(first), rotation(next));
+    EXPECT_LT(distance(v + kernels::turned_by(both, v), matrix_of(next) * (matrix_of(first) * v)), 1e-13);
+    EXPECT_LE(norm(both), 1 + 1e-14);
   }
   EXPECT_EQ(kernels::turn_then(Vec3{}, Vec3{}), Vec3{});
 }
 
-TEST(Turns, HalfATurnHasOneDirection) {
+TEST(Rotations, OfHalfATurnHaveOneDirection) {
   Random random(9);
   for (int n = 0; n < 100; ++n) {
     Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v, round_off = random.vector(1e-9);
-    Vec3 const one = kernels::settled(std::numbers::pi * axis + round_off),
-               other = kernels::settled(-std::numbers::pi * axis + round_off);
+    Vec3 const one = kernels::settled(axis + round_off), other = kernels::settled(-axis + round_off);
     EXPECT_LT(distance(one, other), 1e-8) << n;
-    EXPECT_LT(distance(matrix_of(one) * v, matrix_of(-std::numbers::pi * axis) * v), 1e-8) << n;
-    EXPECT_EQ(kernels::settled(3.1 * axis), 3.1 * axis);
+    Vec3 const w = random.vector(1);
+    EXPECT_LT(distance(w + kernels::turned_by(one, w), matrix_of(-std::numbers::pi * axis) * w), 1e-8) << n;
+    EXPECT_EQ(kernels::settled(0.99 * axis), 0.99 * axis);
   }
+}
+
+TEST(Rotations, QuarterTangentsAreThoseOfTheAngle) {
+  for (double angle = -3.14; angle < 3.14; angle += 0.01)
+    EXPECT_NEAR(kernels::quarter_tangent(3 * std::sin(angle), 3 * std::cos(angle)), std::tan(angle / 4), 1e-15);
+  EXPECT_EQ(kernels::quarter_tangent(0.0, -1.0), 1) << "half a turn";
+  EXPECT_EQ(kernels::quarter_tangent(0.0, 0.0), 0);
+  double const tiny = 1e-12;
+  EXPECT_NEAR(kernels::quarter_tangent(tiny, -1.0), 1, 1e-11);
 }
 
 /// f(a + h a', b + h b') by differences, against duals.
@@ -95,20 +121,21 @@ void expect_rates(F const& f, Vec3 const& a, Vec3 const& a_rate, Vec3 const& b, 
   EXPECT_LT(distance(found.value, f(a, b)), 1e-14 * (1 + norm(found.value)));
 }
 
-TEST(Turns, RatesAreDerivativesAlsoWhereNothingTurnsYet) {
+TEST(Rotations, HaveRatesAlsoWhereNothingTurnsYet) {
   auto const between = [](auto const& a, auto const& b) { return kernels::turn_between(a, b); };
   auto const then = [](auto const& a, auto const& b) { return kernels::turn_then(a, b); };
-  auto const by = [](auto const& a, auto const& b) { return kernels::turned_by(a, 0.7, b); };
+  auto const by = [](auto const& a, auto const& b) { return kernels::turned_by(a, b); };
   Random random(4);
   for (int n = 0; n < 100; ++n) {
     Vec3 const a = random.vector(0.8), b = random.vector(0.8);
     if (norm(a) < 0.3 || norm(b) < 0.3) continue;  // differences are no measure there
     Vec3 const p = random.vector(1), q = random.vector(1);
-    if (norm(kernels::turn_between(a, b)) < 2.5) expect_rates(between, a, p, b, q);
+    if (norm(axis_times_angle(kernels::turn_between(a, b))) < 2.5) expect_rates(between, a, p, b, q);
     expect_rates(between, a, p, 2 * a, q);
-    expect_rates(then, a, p, b, q);
-    expect_rates(then, Vec3{}, p, b, q);
-    expect_rates(then, a, p, Vec3{}, q);
+    Vec3 const r = 0.3 * a, s = 0.3 * b;  // far from half a turn in all
+    expect_rates(then, r, p, s, q);
+    expect_rates(then, Vec3{}, p, s, q);
+    expect_rates(then, r, p, Vec3{}, q);
     expect_rates(then, Vec3{}, p, Vec3{}, q);
     expect_rates(by, a, p, b, q);
     expect_rates(by, Vec3{}, p, b, q);
@@ -158,12 +185,12 @@ TEST(WallTurn, OfARigidWallIsItsRotation) {
   for (Vec3 const& turn : {Vec3{0.3, -0.2, 0.5}, Vec3{1.5, 1, -0.4}, Vec3{0, 0, 2.9}, Vec3{1e-7, 0, 0}, Vec3{}}) {
     Wall wall(false);
     wall.turn(turn, {3, -1, 2});
-    EXPECT_LT(distance(wall.turn_found(), turn), 1e-13);
+    EXPECT_LT(distance(wall.turn_found(), rotation(turn)), 1e-13);
   }
   for (double const angle : {0.4, -2.5}) {
     Wall wall(true);
     wall.turn({0, 0, angle}, {1, 1, 0});
-    EXPECT_LT(distance(wall.turn_found(), {0, 0, angle}), 1e-14);
+    EXPECT_LT(distance(wall.turn_found(), rotation({0, 0, angle})), 1e-14);
   }
 }
 
@@ -213,14 +240,15 @@ TEST(WallTurn, OfAWallThatStretchesAndShearsIsThePolarRotation) {
       Vec3 const p = before(k);
       return Vec3{a * p.x + b * p.y, c * p.x + d * p.y, 0};
     };
-    EXPECT_NEAR(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after), std::atan2(c - b, a + d), 1e-9);
+    Vec3 const twist = axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after));
+    EXPECT_LT(distance(twist, {0, 0, std::atan2(c - b, a + d)}), 1e-9);
   }
 }
 
 TEST(WallFrames, AreTheMotionAroundTheWall) {
   Wall wall(false);
-  Vec3 const turn{0.3, -0.9, 0.5};
-  wall.turn(turn, {3, -1, 2});
+  Vec3 const by{0.3, -0.9, 0.5}, turn = rotation(by);
+  wall.turn(by, {3, -1, 2});
   kernels::AffineMotion frame;
   kernels::WallFrames<Host, Vec3>{wall.table, &turn, nullptr, wall.u.data(), &frame}(0);
   Vec3 const x0 = wall.x.read()[0];
@@ -229,8 +257,8 @@ TEST(WallFrames, AreTheMotionAroundTheWall) {
 
 TEST(MoveColumns, TakeTheirShareOfTheWallsRotation) {
   Wall wall(false);
-  Vec3 const turn{0.3, -0.9, 0.5}, x0 = wall.x.read()[0];
-  wall.turn(turn, {3, -1, 2});
+  Vec3 const by{0.3, -0.9, 0.5}, turn = rotation(by), x0 = wall.x.read()[0];
+  wall.turn(by, {3, -1, 2});
   Vec3 const whole = wall.u[8], root = wall.u[0];
   for (float const share : {0.f, 0.5f, 1.f}) {
     kernels::MoveColumns<Host, Vec3> const kernel{
@@ -243,7 +271,8 @@ TEST(MoveColumns, TakeTheirShareOfTheWallsRotation) {
     EXPECT_EQ(kernel.size(), 1);
     kernel(0);
     Vec3 const away = wall.x.read()[8] - x0;
-    EXPECT_LT(distance(wall.u[8], root + matrix_of(double(share) * turn) * away - away), 1e-14) << share;
+    EXPECT_LT(distance(wall.u[8], root + matrix_of(axis_times_angle(double(share) * turn)) * away - away), 1e-14)
+        << share;
   }
   EXPECT_LT(distance(wall.u[8], whole), 1e-14) << "as the wall itself";
 }

@@ -30,10 +30,11 @@ struct MoveColumns {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Index const root = columns.root(k), n = columns.node(k), w = wall(root);
     Vec3 const away = x[n] - x[w];
+    double const share = columns.share(k);
     if constexpr (has_rate<V>)
-      u[n] = u[w] + turned_by(V{turn[root], turn_rate[root]}, columns.share(k), V{away}).rate;
+      u[n] = u[w] + turned_by(share * V{turn[root], turn_rate[root]}, V{away}).rate;
     else
-      u[n] = u[w] + turned_by(turn[root], columns.share(k), away);
+      u[n] = u[w] + turned_by(share * turn[root], away);
   }
 };
 

@@ -3,7 +3,7 @@
 //
 //   (a + a' e)(b + b' e) = a b + (a' b + a b') e,   f(a + a' e) = f(a) + f'(a) a' e
 //
-// Values are rounded as those of double and Vec3 are. A norm of zero has the rate zero: formulas that divide by one look first.
+// Values are rounded as those of double and Vec3 are. A root or a norm of zero has the rate zero: formulas that divide by one look first.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
@@ -28,22 +28,14 @@ KOKKOS_INLINE_FUNCTION Dual operator/(Dual const& a, Dual const& b) {
   return {q, (a.rate - q * b.rate) / b.value};
 }
 KOKKOS_INLINE_FUNCTION Dual operator/(double a, Dual const& b) { return Dual{a} / b; }
+KOKKOS_INLINE_FUNCTION double value_of(double a) { return a; }
+KOKKOS_INLINE_FUNCTION double value_of(Dual const& a) { return a.value; }
 KOKKOS_INLINE_FUNCTION bool operator>(Dual const& a, double b) { return a.value > b; }
 KOKKOS_INLINE_FUNCTION bool operator<(Dual const& a, double b) { return a.value < b; }
-KOKKOS_INLINE_FUNCTION Dual sin(Dual const& a) {
-  using std::cos;
-  using std::sin;
-  return {sin(a.value), cos(a.value) * a.rate};
-}
-KOKKOS_INLINE_FUNCTION Dual cos(Dual const& a) {
-  using std::cos;
-  using std::sin;
-  return {cos(a.value), -sin(a.value) * a.rate};
-}
-KOKKOS_INLINE_FUNCTION Dual atan2(Dual const& y, Dual const& x) {
-  using std::atan2;
-  double const square = x.value * x.value + y.value * y.value;
-  return {atan2(y.value, x.value), square > 0 ? (y.rate * x.value - y.value * x.rate) / square : 0};
+KOKKOS_INLINE_FUNCTION Dual sqrt(Dual const& a) {
+  using std::sqrt;
+  double const root = sqrt(a.value);
+  return {root, root > 0 ? a.rate / (2 * root) : 0};
 }
 
 struct DualVec3 {

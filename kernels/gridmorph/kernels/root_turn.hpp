@@ -1,11 +1,13 @@
 // How the near field of a wall of blocks turns, line by line. A root is the slot that a line of the near field stands on.
 //
 //   raw     the wall's rotation there (wall_turn.hpp), over all near-field walls that touch, across the edges of blocks
+//             At an edge of the wall, where its faces may turn differently: of directions, not areas, and no further than the line keeps
+//             a share of its height above each of the faces, as far as it would keep it without a turn
 //   inner   raw, corrected towards end walls so that lines that stand beside one stay on it:
-//             exp(sum over its ends of (1 - c1(h / H)) log(alpha)) raw
+//             (sum over its ends of (1 - c1(h / H)) alpha) raw
 //           alpha at the end: onto a slip surface the smallest rotation that takes raw N to N', N its normal there before
 //           and after; onto a wall that a rule moves its own rotation after raw's inverse
-//   outer   turn * raw, where lines along the wall run between two slip surfaces turn * log(Align(raw N -> N') raw), N mixed by span
+//   outer   turn * raw, where lines along the wall run between two slip surfaces turn * (Align(raw N -> N') raw), N mixed by span
 //           fraction: the outer edge turns about the spanwise direction alone
 //
 // written for V = Vec3, or V = DualVec3 for exact rates of all but the curvature of slip surfaces, which is a difference.
@@ -21,6 +23,7 @@ struct RootNeighbour {
   Index slot;
   std::int32_t matrix;  ///< frame of its slot -> frame of the root's, -1: the same
   Vec3 arm;             ///< from the root to it, frame of the root's slot
+  double weight = 1;    ///< of the arm; 1 / |arm| at an edge of the wall
 };
 
 /// Neighbours are pairs as in wall_turn.hpp.
@@ -30,6 +33,7 @@ struct Root {
   std::int32_t n_neighbours;
   std::int32_t stands;  ///< a line of the near field stands on it; otherwise it is there for RootEnd::wall alone
   double turn;          ///< share of its turn that the outer edge of the near field makes
+  Vec3 line;  ///< unit, along its first edge or against it, as the wall's normals; zero but at an edge of the wall
 };
 
 /// An end wall where a wall's grid lines end. Rotations and normals of it are in the frame of its root's slot.
@@ -109,10 +113,13 @@ struct RawRootTurn {
   /// By differences of displacements: nothing turns where all are the same.
   KOKKOS_INLINE_FUNCTION V turn_at(Root const& root) const {
     V const here = u[root.slot];
-    auto const before = [&](Index k) { return V{table.neighbours(root.first_neighbour + k).arm}; };
+    auto const before = [&](Index k) {
+      RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
+      return V{other.weight * other.arm};
+    };
     auto const after = [&](Index k) {
       RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
-      return V{other.arm} + (table.in_frame(other.matrix, u[other.slot]) - here);
+      return other.weight * (V{other.arm} + (table.in_frame(other.matrix, u[other.slot]) - here));
     };
     V normal{}, moved{};
     for (Index k = 0; k < root.n_neighbours; k += 2) {
@@ -123,7 +130,35 @@ struct RawRootTurn {
     auto const size = norm(moved);
     if (!(size > 0)) return swing;
     V const axis = (1 / size) * moved;
-    return turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after) * axis);
+    V const turn = turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after));
+    return dot(root.line, root.line) > 0 ? share_that_keeps_heights(root, turn, before, after) * turn : turn;
+  }
+  /// With h(f) the height of the line's first node above a face after a share f of the turn, over that before: the largest f with
+  /// h(f) >= min(k, h(0)) for all faces, h taken as linear. k is 1/2 where the line stands half way between a face and its normal, and
+  /// 0.99 where it leans to the face.
+  template <class Before, class After>
+  KOKKOS_INLINE_FUNCTION static auto share_that_keeps_heights(Root const& root, V const& turn, Before const& before,
+                                                              After const& after) {
+    using Scalar = std::decay_t<decltype(dot(turn, turn))>;
+    V const line{root.line}, change = turned_by(turn, line);
+    Scalar share{1};
+    for (Index k = 0; k < root.n_neighbours; k += 2) {
+      V const face = cross(before(k), before(k + 1)), moved = cross(after(k), after(k + 1));
+      auto const height = dot(face, line), size = norm(moved);
+      bool const above = height > 0.05 * norm(value_of(face)) && size > 0;
+      if (!above) continue;
+      auto const unit = norm(face) / (size * height), stays = unit * dot(moved, line);
+      double const sine = value_of(height / norm(face)), keep = 1.2 - 1.4 * sine * sine;
+      auto const loss = -unit * dot(moved, change), room = stays - Scalar{keep < 0.99 ? keep : 0.99};
+      if (!((loss - room) > 0)) continue;
+      if (room > 0) {
+        auto const most = room / loss;
+        if ((share - most) > 0) share = most;
+      } else if (loss > 0) {
+        return Scalar{};
+      }
+    }
+    return share;
   }
 };
 
@@ -153,7 +188,7 @@ struct EndWallTurn {
     } else {
       before = normal(end, V{});
       after = normal(end, u[table.roots(end.root).slot]);
-      alpha = turn_between(before + turned_by(raw[end.root], 1, before), after);
+      alpha = turn_between(before + turned_by(raw[end.root], before), after);
     }
     out.set(3 * e, written(alpha));
     out.set(3 * e + 1, written(before));
@@ -221,7 +256,7 @@ struct NearFieldTurn {
       before = before + signed_share * n;
       after = after + signed_share * table.in_frame(end.to_root, at_end.moved(end.end));
     }
-    return turn_then(own, turn_between(before + turned_by(own, 1, before), after));
+    return turn_then(own, turn_between(before + turned_by(own, before), after));
   }
 };
 

@@ -42,7 +42,7 @@ KOKKOS_INLINE_FUNCTION Vec3 between_ends(Field<double const> const& ends, Chain 
 /// What rotations at the ends of chains need on the skeleton; nothing where none turn.
 struct SkeletonTurns {
   TurnedEndsWithRates ends;
-  Field<double const> end_turns;  ///< rotation vectors of line ends
+  Field<double const> end_turns;  ///< rotations of line ends
   Field<double> slot_turns;       ///< of slots, written by sweeps
   Field<double const> position;   ///< of what SkeletonSweep::x counts, chain frames
   Field<double const> side_position;

@@ -27,7 +27,7 @@ KOKKOS_INLINE_FUNCTION TurnedEnd<Vec3> written(TurnedEnd<DualVec3> const& e) {
   return {{e.q.imaginary.rate, e.q.less.rate}, {}, e.stretch.rate};
 }
 
-/// Ends of chains from their rotation vectors. What an end's turn about its pivot displaces the end itself by is taken off its
+/// Ends of chains from their rotations. What an end's turn about its pivot displaces the end itself by is taken off its
 /// displacement: it comes back with the turn, and fades with it.
 template <class V>
 struct TurnEnds {
@@ -37,7 +37,7 @@ struct TurnEnds {
   Field<double> u;  ///< of the ends
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
     Vec3 const arm = position[n] - pivot[n];
-    TurnedEnd<V> const end{quaternion(turn[n]), pivot[n]};
+    TurnedEnd<V> const end{quaternion_of(turn[n]), pivot[n]};
     ends.set(n, written(end));
     if (dot(arm, arm) > 0) u.set(n, u[n] - written(end.q.turned(V{arm})));
   }
@@ -61,7 +61,7 @@ struct TurnNearField {
     turn.set(line.lower, written(in));
     turn.set(line.upper, written(out));
     Vec3 const pivot = position[line.lower];
-    Quaternion<V> const wall = quaternion(in), edge = nearer(wall, quaternion(out));
+    Quaternion<V> const wall = quaternion_of(in), edge = nearer(wall, quaternion_of(out));
     auto const s = stretch(line, table.in_frame(line.matrix, raw[line.root]), Q::between(edge, wall, line.f0));
     ends.set(line.lower, written(TurnedEnd<V>{wall, pivot, s}));
     ends.set(line.upper, written(TurnedEnd<V>{edge, pivot}));
@@ -78,7 +78,7 @@ struct TurnNearField {
   /// s - 1, by differences: zero where nothing turns.
   using Scalar = typename Q::Scalar;
   KOKKOS_INLINE_FUNCTION Scalar stretch(NearFieldLine const& line, V const& wall, Q const& first) const {
-    V const change = turned_by(wall, 1, V{line.normal}), normal = V{line.normal} + change;
+    V const change = turned_by(wall, V{line.normal}), normal = V{line.normal} + change;
     V const edge{line.edge}, moved = first.turned(edge);
     Scalar const inner_height = dot(normal, edge + moved), missing = -dot(change, edge) - dot(normal, moved);
     double const height = dot(line.normal, line.edge);

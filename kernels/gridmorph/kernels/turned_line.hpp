@@ -13,19 +13,19 @@
 //   near_field  one rotation about the wall node, from the wall's to that of the outer edge, and the stretch s of the wall's
 //               lines (turned_ends.hpp):  u0 + [(1 + f0 (s - 1)) R(f0) - I](x - p0),  f0 = (1 - 1.03 t^2 / (t + 0.03))^3
 //
-// Shares of rotations are taken by unit quaternions q = (cos(a / 2), k sin(a / 2)), here from that of no rotation or of the other end,
+// Shares of rotations (rotation.hpp) are taken by unit quaternions, here from that of no rotation or of the other end,
 //
 //   q(f) = (q1 + f (q0 - q1)) / |q1 + f (q0 - q1)|
 //
 // so what is between two ends is turned and never shrunk, as it would be by a mean of matrices, and a node costs no trigonometry
 // (K. Shoemake, Computer Graphics 19 (1985) 245; the angle is that of f to 2 degrees over two radians, to 8 over half a turn).
-// Nothing is added where x = p and where nothing turns. The rotation vector itself goes on as f0 w0 + f1 w1.
+// Nothing is added where x = p and where nothing turns. The rotation itself goes on as f0 r0 + f1 r1.
 //
-// Cost per node and turned end: about 50 flops with one division, 56 bytes from cache (near field 96 in all).
+// Cost per node and turned end: about 50 flops with one division, 56 bytes from cache (near field 64, 96 where its outer edge turns).
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
-#include <gridmorph/kernels/wall_turn.hpp>
+#include <gridmorph/kernels/rotation.hpp>
 
 namespace gridmorph::kernels {
 
@@ -47,7 +47,6 @@ KOKKOS_INLINE_FUNCTION double near_field_weight(double t) {
   double const left = 1 - (1 + start) * t * t / (t + start);
   return left * left * left;
 }
-KOKKOS_INLINE_FUNCTION double smooth_step(double t) { return t * t * (3 - 2 * t); }
 
 /// What a chain that turns gives its two ends; only the first counts where there is one rotation for both.
 KOKKOS_INLINE_FUNCTION TurnWeights turn_weights(Chain const& chain, double t) {
@@ -55,46 +54,11 @@ KOKKOS_INLINE_FUNCTION TurnWeights turn_weights(Chain const& chain, double t) {
     case TurnLaw::near_field: return {near_field_weight(t), 1 - near_field_weight(t)};
     case TurnLaw::square: return {(1 - t) * (1 - t), t * t};
     case TurnLaw::c1:
-    case TurnLaw::common: return {1 - smooth_step(t), 1 - smooth_step(1 - t)};
+    case TurnLaw::common: return {1 - law_weight(LineLaw::c1, t), 1 - law_weight(LineLaw::c1, 1 - t)};
     case TurnLaw::far: return {far_weight(chain, t), far_weight(chain, 1 - t)};
     case TurnLaw::none: return {0, 0};
   }
   return {0, 0};
-}
-
-/// A quaternion whose size does not matter; `less` is what its real part is less than one, exactly zero for no rotation.
-template <class V>
-struct Quaternion {
-  using Scalar = std::decay_t<decltype(dot(V{}, V{}))>;
-  V imaginary{};
-  Scalar less{};
-
-  /// f of the way from b to a.
-  KOKKOS_FORCEINLINE_FUNCTION static Quaternion between(Quaternion const& b, Quaternion const& a, double f) {
-    return {b.imaginary + f * (a.imaginary - b.imaginary), b.less + f * (a.less - b.less)};
-  }
-  KOKKOS_FORCEINLINE_FUNCTION static Quaternion share(Quaternion const& a, double f) {
-    return {f * a.imaginary, f * a.less};
-  }
-  /// R y - y.
-  KOKKOS_FORCEINLINE_FUNCTION V turned(V const& y) const {
-    Scalar const real = Scalar{1} - less;
-    V const across = cross(imaginary, y);
-    return (2 / (real * real + dot(imaginary, imaginary))) * (real * across + cross(imaginary, across));
-  }
-};
-
-/// Of a rotation vector of at most half a turn.
-template <class V>
-KOKKOS_INLINE_FUNCTION Quaternion<V> quaternion(V const& turn) {
-  using std::sin;
-  auto const angle = norm(turn);
-  if (!(angle > 0)) {
-    if constexpr (has_rate<V>) return {0.5 * turn, {}};
-    return {};
-  }
-  auto const quarter = sin(0.25 * angle);
-  return {(sin(0.5 * angle) / angle) * turn, 2 * (quarter * quarter)};
 }
 
 /// How a line end turns.
@@ -145,6 +109,13 @@ struct TurnedEndsWithRates {
 KOKKOS_INLINE_FUNCTION bool turns_as_one(Chain const& chain) {
   return chain.turn == TurnLaw::near_field || chain.turn == TurnLaw::common;
 }
+/// What one rotation for both ends, `between` them, adds to a node at x with the share f of the first one, which stretches.
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION V turned_as_one(Quaternion<V> const& between, TurnedEnd<V> const& wall, double f,
+                                            Vec3 const& x) {
+  V const r{x - wall.pivot}, change = between.turned(r);
+  return change + (f * wall.stretch) * (r + change);
+}
 
 /// What the ends at `lower` and `upper` add to a node at x of a chain that turns, in its frame.
 template <class V>
@@ -153,9 +124,10 @@ KOKKOS_INLINE_FUNCTION V turned_between(TurnedEndsWithRates const& all, Chain co
   using Q = Quaternion<V>;
   TurnWeights const f = turn_weights(chain, t);
   if (turns_as_one(chain)) {
-    TurnedEnd<V> const wall = all.at<V>(lower), outer = all.at<V>(upper);
-    V const r{x - wall.pivot}, change = Q::between(outer.q, wall.q, f.lower).turned(r);
-    return change + (f.lower * wall.stretch) * (r + change);
+    TurnedEnd<V> const wall = all.at<V>(lower);
+    bool const outer = (chain.turned_ends & 2u) != 0;
+    return turned_as_one(outer ? Q::between(all.at<V>(upper).q, wall.q, f.lower) : Q::share(wall.q, f.lower), wall,
+                         f.lower, x);
   }
   V sum{};
   auto const add = [&](Index end, double share) {
@@ -175,7 +147,7 @@ KOKKOS_INLINE_FUNCTION Vec3 turned_between(TurnedEndsWithRates const& all, Chain
   return turned_between<Vec3>(all, chain, lower, upper, t, x);
 }
 
-/// The rotation vector there.
+/// The rotation there.
 KOKKOS_INLINE_FUNCTION Vec3 turn_between_ends(Field<double const> const& turns, Chain const& chain, Index a, Index b,
                                               double t) {
   Index const at = chain.first_end_value + a + chain.n_a * b;

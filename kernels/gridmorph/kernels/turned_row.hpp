@@ -25,8 +25,8 @@ struct TurnedRow {
       if (chain.turn == TurnLaw::near_field)
         fill([](double at) { return near_field_weight(at); }, f);
       else
-        fill([](double at) { return 1 - smooth_step(at); }, f);
-      add_as_one(step, f, x, v);
+        fill([](double at) { return 1 - law_weight(LineLaw::c1, at); }, f);
+      chain.turned_ends & 2u ? add_as_one<true>(step, f, x, v) : add_as_one<false>(step, f, x, v);
     } else {
       for (unsigned end = 0; end < 2; ++end)
         if (chain.turned_ends & (1u + end)) {
@@ -50,7 +50,7 @@ struct TurnedRow {
     if (chain.turn == TurnLaw::far)
       fill([&](double at) { return far_weight(chain, from + sign * at); }, f);
     else if (chain.turn == TurnLaw::c1)
-      fill([&](double at) { return 1 - smooth_step(from + sign * at); }, f);
+      fill([&](double at) { return 1 - law_weight(LineLaw::c1, from + sign * at); }, f);
     else
       fill([&](double at) { return (1 - from - sign * at) * (1 - from - sign * at); }, f);
   }
@@ -83,17 +83,18 @@ struct TurnedRow {
         },
         v);
   }
-  template <class Step>
+  /// Outer: whether the other end turns too.
+  template <bool Outer, class Step>
   KOKKOS_INLINE_FUNCTION void add_as_one(Step step, Weights const& f, VectorRow<width> const& x,
                                          VectorRow<width>& v) const {
     TurnedEnds<double const> const at = ends.values;
     Index const first = lower, upper = lower + chain.section_size();
     add(
         [&](int w) {
-          TurnedEnd<Vec3> const wall = at[first + w * step], outer = at[upper + w * step];
-          Vec3 const r = get(x, w) - wall.pivot;
-          Vec3 const change = Quaternion<Vec3>::between(outer.q, wall.q, f.of[w]).turned(r);
-          return change + (f.of[w] * wall.stretch) * (r + change);
+          using Q = Quaternion<Vec3>;
+          TurnedEnd<Vec3> const wall = at[first + w * step];
+          Q const q = Outer ? Q::between(at[upper + w * step].q, wall.q, f.of[w]) : Q::share(wall.q, f.of[w]);
+          return turned_as_one(q, wall, f.of[w], get(x, w));
         },
         v);
   }

@@ -1,6 +1,6 @@
 // How walls turn, and what stands on them turns with them.
 //
-// A rotation is a vector: axis times angle [rad]. The rotation of a wall at its node x, whose neighbours in the wall faces
+// Rotations are vectors (rotation.hpp). The rotation of a wall at its node x, whose neighbours in the wall faces
 // around it are pairs (a, b), is the smallest one that takes its normal before to its normal after,
 //
 //   n = sum over faces of (a - x) x (b - x)      (2-D: over edges of (b - a) x plane normal)
@@ -10,146 +10,29 @@
 //   atan2(F21 - F12, F11 + F22),   F = (sum of q p^T) (sum of p p^T)^-1
 //
 // with p their places from x before, turned by the first rotation, and q those after. On structured walls n is what centred
-// differences give. All formulas are written for V = Vec3, or V = DualVec3 for their
-// exact rates (dual.hpp), also where nothing turns yet.
+// differences give.
 //
-// Cost per wall node: its faces' nodes read twice (48 bytes each, from cache), about 150 flops per face, 24 bytes written; the
+// Cost per wall node: its faces' nodes read twice (48 bytes each, from cache), about 100 flops per face, 24 bytes written; the
 // motion around it 48 bytes read, 96 written.
 #pragma once
 
-#include <gridmorph/kernels/dual.hpp>
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/inverse_distance.hpp>
 #include <gridmorph/kernels/launch.hpp>
-
-#include <cmath>
-#include <numbers>
-#include <type_traits>
+#include <gridmorph/kernels/rotation.hpp>
 
 namespace gridmorph::kernels {
 
-template <class V>
-inline constexpr bool has_rate = std::is_same_v<V, DualVec3>;
-
-/// A unit vector across v, which is not zero.
-KOKKOS_INLINE_FUNCTION Vec3 across(Vec3 const& v) {
-  bool const x_is_least = v.x * v.x <= v.y * v.y && v.x * v.x <= v.z * v.z;
-  Vec3 const other = x_is_least ? Vec3{1, 0, 0} : v.y * v.y <= v.z * v.z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
-  Vec3 const c = cross(v, other);
-  return (1 / norm(c)) * c;
-}
-KOKKOS_INLINE_FUNCTION Vec3 value_of(Vec3 const& v) { return v; }
-KOKKOS_INLINE_FUNCTION Vec3 value_of(DualVec3 const& v) { return v.value; }
-
-/// The smallest rotation that takes direction `before` to `after`; zero where either is zero and where they are the same; about
-/// `half_turn_axis` (unit, across them), with no rate, where they are opposite to round-off.
-template <class V>
-KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after, Vec3 const& half_turn_axis) {
-  using std::atan2;
-  V const c = cross(before, after);
-  auto const sine = norm(c), cosine = dot(before, after);
-  double const least = 1e-8 * norm(value_of(before)) * norm(value_of(after));
-  if (cosine < -least && !(sine > least)) return V{std::numbers::pi * half_turn_axis};
-  if (!(sine > 0)) {
-    if constexpr (has_rate<V>) return cosine > 0 ? (1 / cosine) * c : V{};
-    return {};
-  }
-  return (atan2(sine, cosine) / sine) * c;
-}
-
-/// About some axis where they are opposite.
-template <class V>
-KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after) {
-  Vec3 const v = value_of(before);
-  return turn_between(before, after, dot(v, v) > 0 ? across(v) : Vec3{});
-}
-
-/// R - I of `share` of a rotation (Rodrigues), with k the axis and a the angle: exactly zero where the angle is.
-///
-///   R v - v = sin(a) k x v + (1 - cos(a)) k x (k x v)
-template <class V>
-struct Turning {
-  using Scalar = std::decay_t<decltype(dot(V{}, V{}))>;
-  V axis{};
-  Scalar sine{}, versine{};
-
-  KOKKOS_INLINE_FUNCTION explicit Turning(V const& turn, double share = 1) {
-    using std::sin;
-    auto const angle = norm(turn);
-    if (angle > 0) {
-      auto const a = share * angle, half = sin(0.5 * a);
-      axis = (1 / angle) * turn;
-      sine = sin(a);
-      versine = 2 * half * half;
-    } else if constexpr (has_rate<V>) {
-      axis = turn;
-      sine = {share, 0};
-    }
-  }
-  KOKKOS_INLINE_FUNCTION V operator()(V const& v) const {
-    V const across = cross(axis, v);
-    return sine * across + versine * cross(axis, across);
-  }
-};
-template <class V>
-KOKKOS_INLINE_FUNCTION V turned_by(V const& turn, double share, V const& v) {
-  return Turning<V>(turn, share)(v);
-}
-
-/// Half a turn is one rotation about either direction of its axis. Neighbours that blend theirs have to agree on one, whatever round-off
-/// says of each: the direction along which z, else y, else x rises.
-template <class V>
-KOKKOS_INLINE_FUNCTION V settled(V const& turn) {
-  double constexpr half = std::numbers::pi;
-  auto const angle = norm(turn);
-  if (!(angle > (1 - 1e-6) * half)) return turn;
-  Vec3 const v = value_of(turn);
-  auto const counts = [&](double c) { return c > 0.3 * half || c < -0.3 * half; };
-  double const along = counts(v.z) ? v.z : counts(v.y) ? v.y : v.x;
-  return along < 0 ? (2 * half / angle) * -turn + turn : turn;
-}
-
-/// First one rotation, then the other; exactly zero where both are. By unit quaternions.
-template <class V>
-KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
-  using std::atan2;
-  using std::cos;
-  using std::sin;
-  auto const a = norm(first), b = norm(next);
-  if constexpr (!has_rate<V>) {
-    if (!(a > 0)) return settled(next);
-    if (!(b > 0)) return settled(first);
-  }
-  auto const half_sine = [](auto const& angle) {  // over the angle
-    return angle > 0 ? sin(0.5 * angle) / angle : std::decay_t<decltype(angle)>{0.5};
-  };
-  auto const p = cos(0.5 * a), q = cos(0.5 * b);
-  V const v = half_sine(a) * first, w = half_sine(b) * next;
-  auto real = p * q - dot(v, w);
-  V imaginary = p * w + q * v + cross(w, v);
-  if (real < 0) {
-    real = -real;
-    imaginary = -imaginary;
-  }
-  auto const sine = norm(imaginary);
-  if (sine > 0) return settled((2 * atan2(sine, real) / sine) * imaginary);
-  if constexpr (has_rate<V>) return (2 / real) * imaginary;
-  return {};
-}
-
-/// The angle about the unit vector `axis` by which n arms turn that a rotation `swing` has taken to it: before(k) and after(k),
-/// V each. Where they lie on one line, their mean angle.
+/// By what n arms turn about the unit vector `axis` to which a rotation `swing` has taken them: before(k) and after(k), V each.
+/// Where they lie on one line, their mean angle.
 template <class V, class Before, class After>
-KOKKOS_INLINE_FUNCTION auto twist_about(V const& axis, V const& swing, Index n, Before const& before,
-                                        After const& after) {
-  using std::atan2;
+KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Before const& before, After const& after) {
   using Scalar = std::decay_t<decltype(dot(axis, axis))>;
   V t1{}, t2{};
   Scalar c11{}, c12{}, c22{}, b11{}, b12{}, b21{}, b22{};
   bool has_frame = false;
-  Turning<V> const turning(swing);
   for (Index k = 0; k < n; ++k) {
-    V const arm = before(k), p = arm + turning(arm), q = after(k);
+    V const arm = before(k), p = arm + turned_by(swing, arm), q = after(k);
     if (!has_frame) {
       V const across = p - dot(p, axis) * axis;
       auto const size = norm(across);
@@ -169,10 +52,10 @@ KOKKOS_INLINE_FUNCTION auto twist_about(V const& axis, V const& swing, Index n, 
   }
   auto const size = c11 + c22, determinant = c11 * c22 - c12 * c12;
   bool const on_a_line = !((determinant - 1e-12 * (size * size)) > 0);
-  if (on_a_line) return atan2(b21 - b12, b11 + b22);
+  if (on_a_line) return quarter_tangent(b21 - b12, b11 + b22) * axis;
   auto const f11 = b11 * c22 - b12 * c12, f12 = b12 * c11 - b11 * c12;
   auto const f21 = b21 * c22 - b22 * c12, f22 = b22 * c11 - b21 * c12;
-  return atan2(f21 - f12, f11 + f22);
+  return quarter_tangent(f21 - f12, f11 + f22) * axis;
 }
 
 /// Position of a node: of the baseline, or moved by what it is displaced by so far.
@@ -237,10 +120,10 @@ struct WallTurn {
     V const axis = (1 / size) * after;
     V const x = baseline[wall.node(r)], y = moved[wall.node(r)];
     Index const first = wall.first(r);
-    auto const angle = twist_about(
+    V const twist = twist_about(
         axis, swing, wall.first(r + 1) - first, [&](Index k) { return baseline[wall.around(first + k)] - x; },
         [&](Index k) { return moved[wall.around(first + k)] - y; });
-    return turn_then(swing, angle * axis);
+    return turn_then(swing, twist);
   }
 };
 
@@ -254,8 +137,8 @@ struct WallFrames {
 
   [[nodiscard]] Index size() const { return Index(wall.node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
-    Turning<V> const turning(turn_of(r));
-    auto const column = [&](Vec3 const& e) { return change(turning(V{e})); };
+    V const turn = turn_of(r);
+    auto const column = [&](Vec3 const& e) { return change(turned_by(turn, V{e})); };
     Vec3 const x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
     frame[r] = {u[wall.node(r)], {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}}};
   }

@@ -46,10 +46,7 @@ std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructur
   auto const& layers = case_file.plan.boundary_layers;
   if (layers.empty()) return {};
   auto const all_are = [&](Mode mode) {
-    return std::ranges::all_of(layers, [&](BoundaryLayer const& layer) {
-      Mode const standard = unstructured ? Mode::rotate : Mode::translate;
-      return (layer.mode == Mode::standard ? standard : layer.mode) == mode;
-    });
+    return std::ranges::all_of(layers, [&](BoundaryLayer const& layer) { return layer.mode == mode; });
   };
   std::vector<Recipe> out;
   if (!all_are(Mode::translate)) out.push_back({.mode = Mode::translate});

@@ -9,6 +9,7 @@
 #include <gridmorph/plan/blocks/ranked_kinds.hpp>
 #include <gridmorph/plan/blocks/spread_plan.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
+#include <gridmorph/plan/blocks/turned_lines.hpp>
 #include <gridmorph/plan/blocks/wall_roots.hpp>
 #include <gridmorph/plan/make_plan.hpp>
 
@@ -484,6 +485,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   std::vector<int> const surface_of_patch = slip_surface_numbers(mesh, surface, plan.surfaces);
   if (!roots.nodes().empty()) {
     roots.scale_turn(handed_on.turn);
+    for (Stage& stage : plan.stages) leave_out_outer_edges_at_rest(roots, stage);
     EndWalls end_walls{surface_of_patch, {}};
     for (int p = 0; p < int(mesh.patches.size()); ++p)
       end_walls.is_given.push_back(motion.patch[p].rule >= 0 && surface.is_explicit(motion.patch[p].rule) ? 1 : 0);

@@ -17,15 +17,14 @@ struct BoundaryLayer {
   enum class Mode {
     translate,  ///< every node of a grid line or column takes the displacement of its wall node
     rotate,     ///< and the rotation of the wall there
-    blend,      ///< the rotation fades to none at the end of the column
-    standard    ///< translate in structured meshes, rotate in unstructured ones
+    blend       ///< the rotation fades to none at the end of the column
   };
 
   std::vector<std::string> walls;  ///< selectors; empty: every wall patch whose rule moves it
   Extent extent = Extent::block;   ///< block: up to the first opposite block face
   int layers = 0;                  ///< cells, for Extent::layers; runs through block and zone limits
   double thickness = 0;            ///< length, for Extent::thickness
-  Mode mode = Mode::standard;
+  Mode mode = Mode::rotate;
 };
 
 /// How a displacement varies along a grid line, as a function of the fraction s of its baseline arc length.

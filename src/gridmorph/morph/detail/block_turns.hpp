@@ -36,12 +36,15 @@ class BlockTurns {
   void of_ends(Exec const& exec, DeviceStage<Exec> const& stage) const {
     if (!stage.turns) return;
     kernels::Field<double const> const position = turns_.end_position.read()[0];
-    kernels::copy_nodes(exec, "gridmorph::turns::ends", stage.ends, plan_.rotations, turns_.slots.read()[f_],
-                        turns_.end_turns.batch()[f_]);
-    kernels::launch("gridmorph::turns::matrices", exec, stage.first_end_value,
-                    stage.first_end_value + stage.n_end_values,
-                    kernels::TurnEnds<V>{both(turns_.end_turns), position, turns_.end_pivot.read()[0],
-                                         turns_.ends_of(f_), plan_.ends.batch()[f_]});
+    bool const all_near_field = 2 * Index(stage.near_field.extent(0)) == stage.n_end_values;
+    if (!all_near_field) {
+      kernels::copy_nodes(exec, "gridmorph::turns::ends", stage.ends, plan_.rotations, turns_.slots.read()[f_],
+                          turns_.end_turns.batch()[f_]);
+      kernels::launch("gridmorph::turns::ends_of_lines", exec, stage.first_end_value,
+                      stage.first_end_value + stage.n_end_values,
+                      kernels::TurnEnds<V>{both(turns_.end_turns), position, turns_.end_pivot.read()[0],
+                                           turns_.ends_of(f_), plan_.ends.batch()[f_]});
+    }
     kernels::launch("gridmorph::turns::near_field_lines", exec,
                     kernels::TurnNearField<Memory, V>{stage.near_field, turns_.table, both(turns_.slots),
                                                       both(turns_.raw), both(turns_.outer), position,

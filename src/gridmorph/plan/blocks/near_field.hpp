@@ -11,13 +11,11 @@ namespace gridmorph {
 struct NearField {
   std::vector<int> walls;  ///< patch numbers
   int layers = 0;
-  BoundaryLayer::Mode mode = BoundaryLayer::Mode::standard;
+  BoundaryLayer::Mode mode = BoundaryLayer::Mode::rotate;
 };
 
 /// Whether the near field turns with its walls.
-inline bool turns(NearField const& field) {
-  return field.mode == BoundaryLayer::Mode::rotate || field.mode == BoundaryLayer::Mode::blend;
-}
+inline bool turns(NearField const& field) { return field.mode != BoundaryLayer::Mode::translate; }
 
 /// Walls and layer counts from the options: an empty wall list takes every patch that ranks as a wall (`kinds`, see
 /// ranked_kinds()) and that an explicit rule other than `fixed` moves; a thickness becomes the median, over all wall nodes, of the layers that reach it.

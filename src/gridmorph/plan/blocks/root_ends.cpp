@@ -2,6 +2,7 @@
 #include <gridmorph/plan/blocks/wall_roots.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace gridmorph {
 namespace {
@@ -75,7 +76,7 @@ class EndFinder {
         [&](Index slot) {
           if (walls_.of_slot(slot) < 0) return std::int32_t(-1);
           auto const [found, fresh] = end_node_.try_emplace(slot, std::int32_t(end_nodes_.size()));
-          if (fresh) end_nodes_.push_back({slot, {}, 0, 0});
+          if (fresh) end_nodes_.push_back({.slot = slot});
           return found->second;
         },
         end_nodes_);
@@ -155,11 +156,32 @@ class EndFinder {
   std::unordered_map<Index, std::int32_t> end_node_;  ///< per slot
 };
 
+/// Whether the faces around a node look more than 30 degrees away from what they look along together.
+bool is_edge(RootNode const& node) {
+  Vec3 const normal = fan_normal(node.around);
+  double const size = norm(normal);
+  for (std::size_t k = 0; k + 1 < node.around.size(); k += 2) {
+    Vec3 const face = cross(node.around[k].arm, node.around[k + 1].arm);
+    if (dot(face, normal) < std::sqrt(0.75) * norm(face) * size) return true;
+  }
+  return false;
+}
+
+/// The line on the side of the wall's faces to which their normals look.
+Vec3 along_normals(RootNode const& node) {
+  return dot(fan_normal(node.around), node.line) < 0 ? -node.line : node.line;
+}
+
 void append(std::vector<RootNode> const& nodes, bool stand, TurnTables& tables) {
   for (RootNode const& n : nodes) {
-    tables.roots.push_back(
-        {n.slot, Index(tables.neighbours.size()), std::int32_t(n.around.size()), stand ? 1 : 0, n.turn});
-    tables.neighbours.insert(tables.neighbours.end(), n.around.begin(), n.around.end());
+    bool const edge = is_edge(n);
+    tables.roots.push_back({n.slot, Index(tables.neighbours.size()), std::int32_t(n.around.size()), stand ? 1 : 0,
+                            n.turn, edge ? along_normals(n) : Vec3{}});
+    for (kernels::RootNeighbour neighbour : n.around) {
+      double const length = norm(neighbour.arm);
+      if (edge && length > 0) neighbour.weight = 1 / length;
+      tables.neighbours.push_back(neighbour);
+    }
   }
 }
 

@@ -3,6 +3,9 @@
 #include <gridmorph/plan/blocks/turned_lines.hpp>
 #include <gridmorph/plan/blocks/wall_roots.hpp>
 
+#include <algorithm>
+#include <iterator>
+
 namespace gridmorph {
 namespace {
 
@@ -116,8 +119,25 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
         stage.near_field.push_back({device.first_end_value + at, device.first_end_value + device.section_size() + at,
                                     root, matrix, size > 0 ? (1 / size) * normal : Vec3{}, edge,
                                     kernels::near_field_weight(t)});
-        if (t > 0) context.roots->set_thickness(root, norm(edge) / t);
+        double const length = norm(edge);
+        if (t > 0) context.roots->set_thickness(root, length / t);
+        if (length > 0)
+          context.roots->add_line(root,
+                                  (1 / length) * (matrix >= 0 ? transpose(context.rotations[matrix]) * edge : edge));
       }
+  }
+}
+
+void leave_out_outer_edges_at_rest(WallRoots const& roots, Stage& stage) {
+  std::vector<kernels::Chain>& chains = stage.lines.chains;
+  for (kernels::Chain& chain : chains)
+    if (chain.turn == kernels::TurnLaw::near_field) chain.turned_ends = 1;
+  for (kernels::NearFieldLine const& line : stage.near_field) {
+    if (roots.nodes()[std::size_t(line.root)].turn == 0) continue;
+    auto const after =
+        std::upper_bound(chains.begin(), chains.end(), line.lower,
+                         [](Index end, kernels::Chain const& chain) { return end < chain.first_end_value; });
+    std::prev(after)->turned_ends = 3;
   }
 }
 

@@ -109,7 +109,7 @@ void WallRoots::add_walls(std::vector<int> const& patches, double turn) {
       for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
         RootFace::Node const& node = face(p, q);
         auto const [found, fresh] = of_slot_.try_emplace(node.slot, std::int32_t(nodes_.size()));
-        if (fresh) nodes_.push_back({node.slot, {}, 0, turn});
+        if (fresh) nodes_.push_back({.slot = node.slot, .turn = turn});
         place_[zone.node(face.at(p, q))] = {found->second, node.copy};
       }
     add_neighbours(
@@ -181,6 +181,13 @@ std::vector<WallRoots::BodySample> WallRoots::sample_bodies(Index most) const {
         sample.patches.push_back(face.patch);
       }
   return samples;
+}
+
+void WallRoots::add_line(std::int32_t root, Vec3 const& line) {
+  RootNode& node = nodes_[std::size_t(root)];
+  bool const same = node.n_lines == 1 && distance(node.line, line) < 1e-6;
+  if (same) return;
+  node.line = node.n_lines++ == 0 ? line : Vec3{};
 }
 
 void WallRoots::join_coincident() {

@@ -35,9 +35,11 @@ struct RootFace {
 /// A node of a wall and those beside it in its faces.
 struct RootNode {
   Index slot = -1;
-  std::vector<kernels::RootNeighbour> around;
+  std::vector<kernels::RootNeighbour> around = {};
   double thickness = 0;  ///< of the near field there
   double turn = 0;       ///< share of the turn that the outer edge makes
+  Vec3 line{};           ///< unit, from it along the line of the near field; zero where several stand on it
+  int n_lines = 0;       ///< directions in which lines leave it
 };
 
 /// Adds to each corner of each cell of a face its neighbours there; `number(slot)` is its place in `nodes`, -1: not wanted.
@@ -86,6 +88,8 @@ class WallRoots {
   [[nodiscard]] std::int32_t of_slot(Index slot) const;
   [[nodiscard]] Place at(Index node) const;
   void set_thickness(std::int32_t root, double thickness) { nodes_[root].thickness = thickness; }
+  /// A line of the near field that stands on a root leaves it along this unit vector, in the frame of its slot.
+  void add_line(std::int32_t root, Vec3 const& line);
   void scale_turn(double turn) {
     for (RootNode& n : nodes_) n.turn *= turn;
   }

@@ -105,7 +105,7 @@ std::vector<double> UnstructuredPlanner::most_heights() const {
 
 void UnstructuredPlanner::plan_columns() {
   using Mode = BoundaryLayer::Mode;
-  std::vector<Mode> mode(std::size_t(mesh_.n_nodes()), Mode::standard);
+  std::vector<Mode> mode(std::size_t(mesh_.n_nodes()), Mode::rotate);
   for (Index32 const f : driving_faces_)
     if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])]; l >= 0)
       for (Index32 const n : topology_.boundary.nodes[f])

@@ -1,0 +1,134 @@
+// Rotations without trigonometry. A rotation by the angle a about the unit vector k is the vector
+//
+//   r = k tan(a / 4)
+//
+// (modified Rodrigues parameters; H. Schaub, J. L. Junkins, J. Astronaut. Sci. 44 (1996) 1): zero for none, of length one for
+// half a turn, which is one rotation with r and -r, and smooth between. Longer ones are not used: -r / |r|^2 is the same rotation.
+// For small angles r is a quarter of axis times angle; a share f of it is f r, whose angle is f a to 2 degrees up to a right
+// angle, to 16 up to half a turn. By square roots and quotients, which every machine rounds alike.
+//
+//   R y - y = (4 (1 - r.r) r x y + 8 r x (r x y)) / (1 + r.r)^2
+//
+// as a unit quaternion (cos(a / 2), k sin(a / 2)) = (1 - r.r, 2 r) / (1 + r.r). All formulas are written for V = Vec3, or
+// V = DualVec3 for their exact rates (dual.hpp), also where nothing turns yet.
+#pragma once
+
+#include <gridmorph/kernels/dual.hpp>
+
+#include <cmath>
+#include <type_traits>
+
+namespace gridmorph::kernels {
+
+template <class V>
+inline constexpr bool has_rate = std::is_same_v<V, DualVec3>;
+
+/// A unit vector across v, which is not zero.
+KOKKOS_INLINE_FUNCTION Vec3 across(Vec3 const& v) {
+  bool const x_is_least = v.x * v.x <= v.y * v.y && v.x * v.x <= v.z * v.z;
+  Vec3 const other = x_is_least ? Vec3{1, 0, 0} : v.y * v.y <= v.z * v.z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+  Vec3 const c = cross(v, other);
+  return (1 / norm(c)) * c;
+}
+KOKKOS_INLINE_FUNCTION Vec3 value_of(Vec3 const& v) { return v; }
+KOKKOS_INLINE_FUNCTION Vec3 value_of(DualVec3 const& v) { return v.value; }
+
+/// The smallest rotation that takes direction `before` to `after`; zero where either is zero and where they are the same; about
+/// `half_turn_axis` (unit, across them), with no rate, where they are opposite to round-off.
+template <class V>
+KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after, Vec3 const& half_turn_axis) {
+  using std::sqrt;
+  V const c = cross(before, after);
+  auto const size = norm(before) * norm(after), square = dot(c, c), cosine = dot(before, after);
+  if (!(size > 0)) return {};
+  if (cosine < 0 && !((square - 1e-16 * (size * size)) > 0)) return V{half_turn_axis};
+  // size times 1 + cos(a), and below 2 cos(a / 2) times that; 1 + cos(a) is sin(a)^2 / (1 - cos(a)).
+  auto const real = cosine > 0 ? size + cosine : square / (size - cosine);
+  return (1 / (real + sqrt(real * real + square))) * c;
+}
+
+/// About some axis where they are opposite.
+template <class V>
+KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after) {
+  Vec3 const v = value_of(before);
+  return turn_between(before, after, dot(v, v) > 0 ? across(v) : Vec3{});
+}
+
+/// tan(a / 4) of the angle a with sine and cosine in the ratio of these two, from -1 to 1; 0 where both are.
+template <class Scalar>
+KOKKOS_INLINE_FUNCTION Scalar quarter_tangent(Scalar const& sine, Scalar const& cosine) {
+  using std::sqrt;
+  auto const size = sqrt(sine * sine + cosine * cosine);
+  if (!(size > 0)) return {};
+  auto const real = cosine > 0 ? size + cosine : (sine * sine) / (size - cosine);
+  auto const whole = real + sqrt(real * real + sine * sine);
+  return whole > 0 ? sine / whole : Scalar{1};
+}
+
+/// R y - y: exactly zero where r is.
+template <class V>
+KOKKOS_INLINE_FUNCTION V turned_by(V const& r, V const& y) {
+  using Scalar = std::decay_t<decltype(dot(r, r))>;
+  auto const square = dot(r, r), whole = Scalar{1} + square;
+  V const across = cross(r, y);
+  return (4 / (whole * whole)) * ((Scalar{1} - square) * across + 2 * cross(r, across));
+}
+
+/// Neighbours that blend their half turns have to agree on one of r and -r, whatever round-off says of each: the direction along
+/// which z, else y, else x rises.
+template <class V>
+KOKKOS_INLINE_FUNCTION V settled(V const& r) {
+  auto const square = dot(r, r);
+  if (!(square > 1 - 3e-6)) return r;
+  Vec3 const v = value_of(r);
+  auto const counts = [](double c) { return c > 0.3 || c < -0.3; };
+  double const along = counts(v.z) ? v.z : counts(v.y) ? v.y : v.x;
+  return along < 0 ? (1 / square) * -r : r;
+}
+
+/// First one rotation, then the other; zero where both are.
+template <class V>
+KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
+  using Scalar = std::decay_t<decltype(dot(first, next))>;
+  auto const a = dot(first, first), b = dot(next, next);
+  auto const p = Scalar{1} - a, q = Scalar{1} - b;
+  auto real = p * q - 4 * dot(first, next);  // the product of their quaternions, times (1 + a) (1 + b)
+  V imaginary = (2 * p) * next + (2 * q) * first + 4 * cross(next, first);
+  if (real < 0) {
+    real = -real;
+    imaginary = -imaginary;
+  }
+  return settled((1 / ((Scalar{1} + a) * (Scalar{1} + b) + real)) * imaginary);
+}
+
+/// A quaternion whose size does not matter; `less` is what its real part is less than one, exactly zero for no rotation.
+template <class V>
+struct Quaternion {
+  using Scalar = std::decay_t<decltype(dot(V{}, V{}))>;
+  V imaginary{};
+  Scalar less{};
+
+  /// f of the way from b to a.
+  KOKKOS_FORCEINLINE_FUNCTION static Quaternion between(Quaternion const& b, Quaternion const& a, double f) {
+    return {b.imaginary + f * (a.imaginary - b.imaginary), b.less + f * (a.less - b.less)};
+  }
+  KOKKOS_FORCEINLINE_FUNCTION static Quaternion share(Quaternion const& a, double f) {
+    return {f * a.imaginary, f * a.less};
+  }
+  /// R y - y.
+  KOKKOS_FORCEINLINE_FUNCTION V turned(V const& y) const {
+    Scalar const real = Scalar{1} - less;
+    V const across = cross(imaginary, y);
+    return (2 / (real * real + dot(imaginary, imaginary))) * (real * across + cross(imaginary, across));
+  }
+};
+
+/// The unit quaternion of a rotation.
+template <class V>
+KOKKOS_INLINE_FUNCTION Quaternion<V> quaternion_of(V const& r) {
+  using Scalar = typename Quaternion<V>::Scalar;
+  auto const square = dot(r, r), share = 2 / (Scalar{1} + square);
+  return {share * r, share * square};
+}
+
+}  // namespace gridmorph::kernels

@@ -1,0 +1,139 @@
+// Rotations of walls at their edges, where faces turn differently, against heights above the faces and differences.
+#include "kernels/tables.hpp"
+#include "support/random.hpp"
+
+#include <gridmorph/geometry/rotation.hpp>
+#include <gridmorph/kernels/root_turn.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace gridmorph::test {
+namespace {
+
+using kernels::DualVec3;
+
+/// Slot 0 at the corner of a body where three faces meet, its neighbours along the edges at slots 1 to 3, cells as flat as those of
+/// boundary layers are; a line that leans to one face.
+struct Corner {
+  std::array<Vec3, 3> arm;
+  Vec3 line;
+  Arrays u{4}, rate{4};
+  kernels::RootTable<Host> table;
+
+  explicit Corner(Random& random) {
+    std::array<double, 3> const length{1, 0.05, 3};
+    for (int k = 0; k < 3; ++k) {
+      Vec3 direction{k == 0 ? -1.0 : 0, k == 1 ? -1.0 : 0, k == 2 ? -1.0 : 0};
+      direction += random.vector(0.1);
+      arm[std::size_t(k)] = (length[std::size_t(k)] / norm(direction)) * direction;
+    }
+    Vec3 const off = Vec3{random.between(0.2, 1), random.between(0.2, 1), random.between(0.2, 1)};
+    line = (1 / norm(off)) * off;
+    std::vector<kernels::RootNeighbour> neighbours;
+    for (int k = 0; k < 3; ++k)
+      for (int const m : {k, (k + 1) % 3}) {
+        Vec3 const& a = arm[std::size_t(m)];
+        neighbours.push_back({Index(m + 1), -1, a, 1 / norm(a)});
+      }
+    table.roots = view<kernels::Root>({{0, 0, 6, 1, 0, line}});
+    table.neighbours = view(neighbours);
+  }
+  /// Of the corner and its neighbours by a function of the place.
+  template <class Motion>
+  void move(Motion const& motion) {
+    for (int n = 0; n < 4; ++n) {
+      Vec3 const x = n == 0 ? Vec3{} : arm[std::size_t(n - 1)];
+      u.field().set(n, motion(x));
+    }
+  }
+  [[nodiscard]] Vec3 found() {
+    Arrays raw(1);
+    kernels::RawRootTurn<Host, Vec3>{table, {u.read(), {}}, raw.field()}(0);
+    return raw.read()[0];
+  }
+  [[nodiscard]] Vec3 rate_found() {
+    Arrays raw(1);
+    kernels::RawRootTurn<Host, DualVec3>{table, {u.read(), rate.read()}, raw.field()}(0);
+    return raw.read()[0];
+  }
+  /// Sines of the angle between a line and the three faces; after: the faces as they are moved.
+  [[nodiscard]] std::array<double, 3> sines(Vec3 const& along, bool after) {
+    std::array<double, 3> out{};
+    for (int k = 0; k < 3; ++k) {
+      auto const arm_now = [&](int m) {
+        return after ? arm[std::size_t(m)] + (u.read()[m + 1] - u.read()[0]) : arm[std::size_t(m)];
+      };
+      Vec3 const normal = cross(arm_now(k), arm_now((k + 1) % 3));
+      double const sign = dot(cross(arm[0], arm[1]), arm[2]) < 0 ? 1 : -1;
+      out[std::size_t(k)] = sign * dot(normal, along) / norm(normal);
+    }
+    return out;
+  }
+};
+
+TEST(RootTurn, OfARigidBodyIsItsRotationAtItsEdgesToo) {
+  Random random(1);
+  for (int n = 0; n < 100; ++n) {
+    Corner corner(random);
+    Vec3 const turn = random.vector(1.7), v = random.vector(1), shift = random.vector(2);
+    Mat3 const r = rotation_by(turn);
+    corner.move([&](Vec3 const& x) { return shift + r * x - x; });
+    EXPECT_LT(distance(v + kernels::turned_by(corner.found(), v), r * v), 1e-12) << n;
+  }
+}
+
+TEST(RootTurn, KeepsLinesOffTheFacesOfAnEdgeAsWellAsNoTurnWould) {
+  Random random(2);
+  int limited = 0;
+  for (int n = 0; n < 400; ++n) {
+    Corner corner(random);
+    std::array<Vec3, 3> const gradient{random.vector(0.7), random.vector(0.7), random.vector(0.7)};
+    auto const sheared = [&](Vec3 const& x) {
+      return Vec3{dot(gradient[0], x), dot(gradient[1], x), dot(gradient[2], x)};
+    };
+    corner.move(sheared);
+    Vec3 const turned = corner.line + kernels::turned_by(corner.found(), corner.line);
+    auto const before = corner.sines(corner.line, false), still = corner.sines(corner.line, true),
+               after = corner.sines(turned, true);
+    for (std::size_t k = 0; k < 3; ++k) {
+      double const keep = std::min({0.99, 1.2 - 1.4 * before[k] * before[k], still[k] / before[k]});
+      // The share of a turn is taken as linear in what it does to the line.
+      EXPECT_GT(after[k] / before[k], keep - 0.25) << n << " face " << k;
+      limited += after[k] / before[k] < keep + 0.01 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(limited, 20) << "there is something to keep";
+}
+
+TEST(RootTurn, HasTheRateThatDifferencesHaveAtEdges) {
+  Random random(3);
+  int far_off = 0;
+  for (int n = 0; n < 60; ++n) {
+    Corner corner(random);
+    for (int k = 0; k < 4; ++k) {
+      corner.u.field().set(k, 0.3 * (k == 0 ? 1 : norm(corner.arm[std::size_t(k - 1)])) * random.vector(1));
+      corner.rate.field().set(k, 0.1 * random.vector(1));
+    }
+    Vec3 const rate = corner.rate_found();
+    std::vector<Vec3> u;
+    for (int k = 0; k < 4; ++k) u.push_back(corner.u.read()[k]);
+    double const h = 1e-6;
+    Vec3 side[2];
+    for (int s = 0; s < 2; ++s) {
+      for (int k = 0; k < 4; ++k)
+        corner.u.field().set(k, u[std::size_t(k)] + (s == 0 ? -h : h) * corner.rate.read()[k]);
+      side[s] = corner.found();
+    }
+    Vec3 const difference = (0.5 / h) * (side[1] - side[0]);
+    far_off += distance(rate, difference) < 1e-5 * (1 + norm(rate)) ? 0 : 1;
+  }
+  EXPECT_LE(far_off, 1) << "but where another face begins to limit";
+}
+
+}  // namespace
+}  // namespace gridmorph::test
