@@ -29,12 +29,13 @@ TEST_F(Example, TurbineStageTurnsEachRowByItsOwnAngleAndSlidesOnItsEnds) {
   expect_turn("BLADE2", 0.21, 38.6, [](double r) { return 3 + 4 * (r - 0.92) / 0.15; });
 
   expect_periodic_copies_move_alike(0);
-  // The motion is purely circumferential, so nodes keep their radius; on hub and case near fields turn with the blades.
+  // The motion is purely circumferential; on hub and case near fields turn with the blades, along profiles that rise by less than a half.
   for (std::string const wall : {"HUB", "SHROUD", "INLET", "OUTLET", "MIXING"})
     for_patch(wall, "", [&](Index n) {
       Cylindrical const u = motion(n, 0);
-      EXPECT_NEAR(u.r, 0, 2e-15) << wall;
-      if (wall != "HUB" && wall != "SHROUD") EXPECT_NEAR(u.axial, 0, 1e-15) << wall;
+      bool const turns = wall == "HUB" || wall == "SHROUD";
+      EXPECT_NEAR(u.r, 0, 2e-15 + (turns ? 0.5 * std::abs(u.axial) : 0)) << wall;
+      EXPECT_NEAR(u.axial, 0, turns ? 1e-3 : 1e-15) << wall;
     });
 
   double vane = 0, rotor = 0;
