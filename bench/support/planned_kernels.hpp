@@ -62,8 +62,9 @@ struct Volume {
     VectorView<Memory> const field(x);
     kernels::TurnedEndsBatch const turned{d->turns.read_ends(0, 0), d->turns.ends_stride()};
     kernels::VolumePass<Memory, kernels::TileShape<Exec>, true> const kernel{
-        d->boxes.entries, d->terms,       d->boxes.first_item, d->lines.chains, d->rotations,  d->sides,
-        d->t.data(),      d->ends.read(), d->residuals.read(), turned,          field.array(), {field.array()}};
+        d->boxes.entries, d->terms,      d->boxes.first_item, d->lines.chains, d->rotations,
+        d->sides,         d->t.data(),   d->law_knots.data(), d->ends.read(),  d->residuals.read(),
+        turned,           field.array(), {field.array()}};
     Touched const touched = touched_by_volume(prepared.plan());
     return {[=] { kernels::launch("gridmorph::bench::volume", exec, 0, d->boxes.n_items, kernel); }, touched.nodes,
             48 + 8 * double(touched.parameters) / double(touched.nodes)};

@@ -88,6 +88,29 @@ TEST(CaseFileErrors, AllProblemsAreReportedInOnePass) {
   EXPECT_EQ(lines.size(), 7u);
 }
 
+TEST(CaseFileErrors, LawsThatAreNone) {
+  auto const of_volume = [](std::string const& keys) { return problems_of(head + rule + "[volume]\n" + keys + "\n"); };
+  EXPECT_TRUE(of_volume("law = \"formula\"\nw = \"t^2 * (3 - 2*t)\"").empty());
+  EXPECT_TRUE(
+      of_volume("laws = [ { between = [\"blade\", \"type:periodic\"], law = \"formula\", w = \"t^3\" } ]").empty());
+  EXPECT_TRUE(reported(of_volume("law = \"formula\""), "case.toml:6: ", {"'w' is missing"}));
+  EXPECT_TRUE(reported(of_volume("law = \"c1\"\nw = \"t\""), "case.toml:8: ", {"[volume] w", "formula"}));
+  EXPECT_TRUE(
+      reported(of_volume("law = \"formula\"\nw = \"t + 0.5\""), "case.toml:8: ", {"[volume] w", "0.5 at t = 0"}));
+  EXPECT_TRUE(reported(of_volume("law = \"formula\"\nw = \"t * x\""), "case.toml:8: ", {"uses x", "alone"}));
+  EXPECT_TRUE(reported(of_volume("law = \"formula\"\nw = \"t * step\""), "case.toml:8: ", {"uses step", "alone"}));
+  EXPECT_TRUE(reported(of_volume("law = \"formula\"\nw = \"t^\""), "case.toml:8: ", {"formula w"}));
+  EXPECT_TRUE(reported(of_volume("law = \"formula\"\nw = \"t > 0.5 && t < 0.6 ? sqrt(-1) : t\""),
+                       "case.toml:8: ", {"not finite at t = 0.5"}));
+  EXPECT_TRUE(reported(of_volume("laws = [ { between = [\"wall\", \"inflow\", \"wall\"], law = \"c1\" } ]"),
+                       "case.toml:7: ", {"between", "two ends", "found 3"}));
+  EXPECT_TRUE(reported(
+      problems_of(head + rule + "[[volume.laws]]\nbetween = [\"wall\", \"wall\"]\nlaw = \"formula\"\nw = \"1 - t\"\n"),
+      "case.toml:9: ", {"w", "is 1 at t = 0"}));
+  EXPECT_TRUE(reported(problems_of(head + rule + "[background]\nlaw = \"formula\"\nw = \"2 * t\"\n"),
+                       "case.toml:8: ", {"[background] w", "2 at t = 1"}));
+}
+
 TEST(CaseFileErrors, AnEmptyFileIsToldWhatItNeeds) {
   auto const lines = problems_of("");
   EXPECT_TRUE(reported(lines, "case.toml", {"'mesh' is missing", "input = "}));

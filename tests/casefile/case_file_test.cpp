@@ -44,6 +44,21 @@ TEST(CaseFileText, ReadsTheAxisAsTableAndAsLetter) {
   EXPECT_EQ(axis_of("\"y\"").direction, (Vec3{0, 1, 0}));
 }
 
+TEST(CaseFileText, ReadsLawsOfTheUsersOwn) {
+  CaseFile const c = parse(
+      "[mesh]\ninput = \"in.cgns\"\n[constants]\npower = 3\n[[motion]]\npatches = [\"a\"]\nrule = \"fixed\"\n"
+      "[volume]\nlaw = \"formula\"\nw = \"t^power\"\n"
+      "laws = [ { between = [\"wall\", \"case\"], law = \"formula\", w = \"smoothstep(0, 1, t)\" } ]\n");
+  VolumeOptions const& volume = c.plan.volume;
+  EXPECT_EQ(volume.law, Law::own);
+  EXPECT_DOUBLE_EQ(volume.own_law.weight(0.5), 0.125);
+  EXPECT_EQ(volume.own_law.name, "w = \"t^power\"");
+  ASSERT_EQ(volume.laws.size(), 1u);
+  EXPECT_EQ(volume.laws[0].law, Law::own);
+  EXPECT_DOUBLE_EQ(volume.laws[0].own.weight(0.25), 3 * 0.0625 - 2 * 0.015625);
+  EXPECT_EQ(volume.laws[0].where, "case.toml:11");
+}
+
 TEST(CaseFileText, ReadsEverySetting) {
   CaseFile const c = parse(
       "default = \"error\"\n"

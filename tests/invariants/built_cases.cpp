@@ -16,11 +16,12 @@ PlanOptions layers(int n, std::vector<std::string> walls = {}) {
 
 PlanOptions law(Law l, PlanOptions options = {}) {
   options.volume.law = l;
+  options.volume.own_law = {[](double t) { return t * (1.25 - 0.25 * t * t); }, "steep"};
   return options;
 }
 
-PlanOptions laws(std::vector<LawOfKind> of_kinds, PlanOptions options) {
-  options.volume.laws = std::move(of_kinds);
+PlanOptions laws(std::vector<LawOfEnds> of_ends, PlanOptions options) {
+  options.volume.laws = std::move(of_ends);
   return options;
 }
 
@@ -77,6 +78,9 @@ std::vector<Case> make_cases() {
       {"around_a_box_laws_by_kind", [] { return around_a_box(7); },
        moves(turn_about_z({1.2, 0.6, 0}, 0.1), {"step"}, {"u_min", "u_max", "v_min", "v_max"}, {"w_min", "w_max"}),
        laws({{{"wall", "inflow"}, Law::matched}, {{"wall", "outflow"}, Law::c2}}, layers(1))},
+      {"around_a_box_own_laws", [] { return around_a_box(7); },
+       moves(turn_about_z({1.2, 0.6, 0}, 0.1), {"step"}, {"u_min", "u_max", "v_min", "v_max"}, {"w_min", "w_max"}),
+       laws({{{"u_min", "step"}, Law::own, {[](double t) { return t * t; }, "square"}}}, law(Law::own, layers(1)))},
       {"l_shape", [] { return l_shape(6); },
        moves(waves(0.05), {"step"}, {"u_min", "v_min"}, {"u_max", "v_max", "w_min", "w_max"}), law(Law::c2)},
       {"around_a_box", [] { return around_a_box(7); },

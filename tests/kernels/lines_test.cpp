@@ -61,7 +61,25 @@ TEST(LineLaw, CubicsHaveTheSlopesThatTheyAreGiven) {
   mixed.law = kernels::LineLaw::cubic;
   mixed.slope[0] = mixed.slope[1] = 0.7;
   for (double const s : {0.0, 0.1, 0.4, 0.9, 1.0})
-    EXPECT_NEAR(kernels::law_weight(mixed, s), 0.7 * s + 0.3 * kernels::law_weight(kernels::LineLaw::c1, s), 1e-15);
+    EXPECT_NEAR(kernels::law_weight(mixed, nullptr, s), 0.7 * s + 0.3 * kernels::law_weight(kernels::LineLaw::c1, s),
+                1e-15);
+}
+
+TEST(LineLaw, TablesAreTheCubicsThroughTheirKnots) {
+  // Any cubic with w(0) = 0 is its own table, however many knots it has; a second table in front moves the first one along.
+  auto const w = [](double s) { return s * (0.25 + s * (2.5 - 1.75 * s)); };
+  auto const slope = [](double s) { return 0.25 + s * (5 - 5.25 * s); };
+  for (int const n : {1, 3, 8}) {
+    std::vector<double> knots{9, 9, 9, 9};
+    for (int m = 0; m <= n; ++m) knots.insert(knots.end(), {w(double(m) / n), slope(double(m) / n) / n});
+    kernels::Chain chain{};
+    chain.law = kernels::LineLaw::table;
+    chain.first_knot = 4;
+    chain.n_intervals = n;
+    for (int k = 0; k <= 100; ++k)
+      EXPECT_NEAR(kernels::law_weight(chain, knots.data(), 0.01 * k), w(0.01 * k), 2e-15) << n << ' ' << k;
+    EXPECT_EQ(kernels::law_weight(chain, knots.data(), 0), 0);
+  }
 }
 
 /// One line of five nodes in two segments; the second one runs backwards through memory.

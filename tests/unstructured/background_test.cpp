@@ -28,10 +28,12 @@ struct Planned {
 
 Planned planned(Bodies const& bodies, WrapOptions const& options, Vec3 const& low, Vec3 const& high, int dimension = 3,
                 Law law = Law::linear) {
+  VolumeOptions volume;
+  volume.law = law;
   Mesh const mesh = bodies.in_domain(low, high, dimension);
   gridmorph::Wrap wrap = make_wrap({}, mesh, bodies.walls, options);
   Background background = make_background(wrap);
-  PreparedMorph prepared = prepare_background({}, background, law);
+  PreparedMorph prepared = prepare_background({}, background, volume);
   WrapNodes nodes = wrap_nodes(background, prepared);
   return {std::move(wrap), std::move(background), std::move(prepared), std::move(nodes)};
 }

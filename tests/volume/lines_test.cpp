@@ -98,6 +98,57 @@ TEST(Laws, GoByTheKindsOfTheEndsOfChainsInEitherOrder) {
   }
 }
 
+OwnLaw square() {
+  return {[](double t) { return t * t; }, "square"};
+}
+
+TEST(Laws, OfTheUsersOwnStartFromTheEndThatRanksBetter) {
+  VolumeOptions volume;
+  volume.law = Law::own;
+  volume.own_law = square();
+  std::vector<double> const u = along_a_box("u_min", "u_max", volume);
+  for (int n = 0; n < 10; ++n) EXPECT_NEAR(u[n], 1 - n * n / 81.0, 1e-14) << "from the wall to the inflow, node " << n;
+  // The same box seen from the other side: the wall stands still, and the law starts from it all the same.
+  std::vector<double> const v = along_a_box("u_max", "u_min", volume);
+  for (int n = 0; n < 10; ++n) EXPECT_NEAR(v[n], (9 - n) * (9 - n) / 81.0, 1e-14) << n;
+}
+
+TEST(Laws, BetweenPatchesStartFromTheFirstOfThem) {
+  for (auto const& [wall, opposite] : {std::pair("u_min", "u_max"), std::pair("u_max", "u_min")})
+    for (bool const from_wall : {true, false}) {
+      VolumeOptions volume;
+      // A selector that fits nothing here, one of a patch that chains do not end on, and the ends of the chain.
+      volume.laws = {{{wall, "v_min"}, Law::c1},
+                     {{from_wall ? wall : opposite, from_wall ? opposite : wall}, Law::own, square()}};
+      std::vector<double> const u = along_a_box(wall, opposite, volume);
+      for (int n = 0; n < 10; ++n) {
+        double const t = n / 9.0;
+        EXPECT_NEAR(u[n], from_wall ? 1 - t * t : (1 - t) * (1 - t), 1e-14) << wall << ' ' << from_wall << ' ' << n;
+      }
+    }
+}
+
+TEST(Laws, OfTheUsersOwnBetweenEndsThatRankAlikeAreTheSameFromBoth) {
+  VolumeOptions volume;
+  volume.laws = {{{"u_*", "u_*"}, Law::own, square()}};
+  std::vector<double> const u = along_a_box("u_min", "u_max", volume);
+  for (int n = 0; n < 10; ++n) EXPECT_NEAR(u[n], 1 - n / 9.0, 1e-14) << "(t^2 + 1 - (1 - t)^2) / 2 = t, node " << n;
+}
+
+TEST(Laws, OfTheUsersOwnThatAreTheC1LawGiveItsMesh) {
+  Motion const m =
+      motion({rule({"step"}, function_rule(turn_about_z({1.2, 0.6, 0}, 0.1))),
+              rule({"u_min", "u_max", "v_min", "v_max"}, FixedRule{}), rule({"w_min", "w_max"}, FreeRule{})});
+  PlanOptions options;
+  options.boundary_layers = {{{}, BoundaryLayer::Extent::layers, 1, 0, BoundaryLayer::Mode::translate}};
+  options.volume.law = Law::c1;
+  Outcome const c1 = morph(around_a_box(7), m, options);
+  options.volume.law = Law::own;
+  options.volume.own_law = {[](double t) { return t * t * (3 - 2 * t); }, "c1"};
+  Outcome const own = morph(around_a_box(7), m, options);
+  for (Index n = 0; n < own.mesh.n_nodes(); ++n) EXPECT_LT(distance(own.u(n), c1.u(n)), 1e-14) << n;
+}
+
 TEST(Lines, NodesThatMeetOnAPoleMoveAsOne) {
   for (bool free : {false, true}) {
     Mesh mesh = o_grid(0, 1);

@@ -39,7 +39,7 @@ struct Tube {
 };
 
 /// How displacement varies along a line, as a function of the fraction of its baseline arc length.
-enum class LineLaw : std::int32_t { linear, c1, c2, constant, cubic };
+enum class LineLaw : std::int32_t { linear, c1, c2, constant, cubic, table };
 
 /// How rotations of the ends of a line fade along it: see turned_line.hpp.
 enum class TurnLaw : std::int32_t { none, near_field, square, c1, far, common };
@@ -57,8 +57,10 @@ struct Chain {
   TurnLaw turn = TurnLaw::none;   ///< none: its ends carry no rotation
   std::uint32_t turned_ends = 0;  ///< bit 0: the first end carries one; bit 1: the last
   double slope[2] = {1, 1};       ///< cubic: dw/dt at the two ends
-  double turn_reach = 0;          ///< TurnLaw::far: length of its lines over the size of the body
-  double turn_scale = 0;          ///< TurnLaw::far: see turned_line.hpp
+  std::int32_t first_knot = 0;    ///< table: see table_weight()
+  std::int32_t n_intervals = 0;
+  double turn_reach = 0;  ///< TurnLaw::far: length of its lines over the size of the body
+  double turn_scale = 0;  ///< TurnLaw::far: see turned_line.hpp
 
   /// Whether anything asks for the arc lengths of its lines.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool has_parameters() const {
@@ -87,7 +89,8 @@ KOKKOS_INLINE_FUNCTION double law_weight(LineLaw law, double s) {
     case LineLaw::c1: return s * s * (3 - 2 * s);
     case LineLaw::c2: return s * s * s * (10 + s * (6 * s - 15));
     case LineLaw::constant: return 0;
-    case LineLaw::cubic: break;  // has slopes
+    case LineLaw::cubic:
+    case LineLaw::table: break;  // have numbers of their own
   }
   return s;
 }
@@ -98,8 +101,21 @@ KOKKOS_INLINE_FUNCTION double cubic_weight(double a, double b, double s) {
   return s * s * (3 - 2 * s) + s * r * (a * r - b * s);
 }
 
-KOKKOS_INLINE_FUNCTION double law_weight(Chain const& chain, double s) {
-  return chain.law == LineLaw::cubic ? cubic_weight(chain.slope[0], chain.slope[1], s) : law_weight(chain.law, s);
+/// Where a law is given by its values and slopes at n + 1 knots s = m / n: the cubic between two of them (Hermite). knots: w and
+/// (dw/ds) / n of each, one after another.
+KOKKOS_INLINE_FUNCTION double table_weight(double const* knots, int n, double s) {
+  double const place = s * n;
+  int const m = place < n - 1 ? int(place) : n - 1;
+  double const* const k = knots + 2 * m;
+  double const f = place - m, r = 1 - f;
+  return k[0] + f * f * (3 - 2 * f) * (k[2] - k[0]) + f * r * (k[1] * r - k[3] * f);
+}
+
+/// knots: of all laws that are tables.
+KOKKOS_INLINE_FUNCTION double law_weight(Chain const& chain, double const* knots, double s) {
+  if (chain.law == LineLaw::cubic) return cubic_weight(chain.slope[0], chain.slope[1], s);
+  if (chain.law == LineLaw::table) return table_weight(knots + chain.first_knot, chain.n_intervals, s);
+  return law_weight(chain.law, s);
 }
 
 }  // namespace gridmorph::kernels

@@ -34,6 +34,7 @@ struct SideResidual {
   Kokkos::View<SideLine const*, MemorySpace> side_lines;
   Field<double const> ends;
   Field<double> c;
+  double const* law_knots = nullptr;
   SkeletonTurns turns = {};
 
   [[nodiscard]] Index size() const { return Index(side_lines.extent(0)); }
@@ -49,7 +50,7 @@ struct SideResidual {
       Vec3 residual;
       if (!end && side_node_is_known(sides, chain, q, side.n_w, position, on.w)) {
         double const t = sides.t(at + position);
-        residual = c[at + position] - between_ends(ends, chain, a, b, t);
+        residual = c[at + position] - between_ends(ends, law_knots, chain, a, b, t);
         if (chain.turn != TurnLaw::none)
           residual += -turned_between(turns.ends, chain, a, b, t, turns.side_position[at + position]);
       }
@@ -151,9 +152,11 @@ void fill_sides(Exec const& exec, Kokkos::View<Chain const*, typename Exec::memo
                 SideTable<typename Exec::memory_space> const& sides,
                 Kokkos::View<SideLine const*, typename Exec::memory_space> const& side_lines,
                 Kokkos::View<std::int32_t const*, typename Exec::memory_space> const& corrected,
-                Field<double const> const& ends, Field<double> const& c, SkeletonTurns const& turns = {}) {
+                Field<double const> const& ends, Field<double> const& c, double const* law_knots = nullptr,
+                SkeletonTurns const& turns = {}) {
   using MemorySpace = typename Exec::memory_space;
-  launch("gridmorph::side_residual", exec, SideResidual<MemorySpace>{chains, sides, side_lines, ends, c, turns});
+  launch("gridmorph::side_residual", exec,
+         SideResidual<MemorySpace>{chains, sides, side_lines, ends, c, law_knots, turns});
   launch("gridmorph::side_residual::edges", exec, EdgeFill<MemorySpace>{chains, sides, corrected, c});
   launch("gridmorph::side_residual::sides", exec, SideFill<MemorySpace>{chains, sides, side_lines, c});
 }

@@ -31,12 +31,12 @@ struct SkeletonSweep {
 };
 
 /// u0 + w (u1 - u0): exactly u0 where both ends move alike.
-KOKKOS_INLINE_FUNCTION Vec3 between_ends(Field<double const> const& ends, Chain const& chain, Index a, Index b,
-                                         double t) {
+KOKKOS_INLINE_FUNCTION Vec3 between_ends(Field<double const> const& ends, double const* law_knots, Chain const& chain,
+                                         Index a, Index b, double t) {
   Index const at = chain.first_end_value + a + chain.n_a * b;
   Vec3 const u0 = ends[at];
   if (chain.law == LineLaw::constant) return u0;
-  return u0 + law_weight(chain, t) * (ends[at + chain.section_size()] - u0);
+  return u0 + law_weight(chain, law_knots, t) * (ends[at + chain.section_size()] - u0);
 }
 
 /// What rotations at the ends of chains need on the skeleton; nothing where none turn.
@@ -59,6 +59,7 @@ struct SweepSkeleton {
   double const* t;
   Field<double const> ends;
   Field<double> u;
+  double const* law_knots = nullptr;  ///< of laws that are tables
   SkeletonTurns turns = {};
 
   static Index items(SkeletonSweep const& s) { return tiles(s.n_p, Width) * s.n_q; }
@@ -73,7 +74,7 @@ struct SweepSkeleton {
     for (int p = begin; p < end; ++p) {
       int const a = sweep.a[0] + p * sweep.a[1] + q * sweep.a[2], b = sweep.b[0] + p * sweep.b[1] + q * sweep.b[2];
       double const f = sweep.t < 0 ? 0 : t[sweep.t + p * sweep.t_p + q * sweep.t_q];
-      Vec3 v = between_ends(ends, chain, a, b, f);
+      Vec3 v = between_ends(ends, law_knots, chain, a, b, f);
       Index const slot = sweep.slot + p + q * sweep.slot_q;
       if (chain.turn != TurnLaw::none) {
         v += turned_between(turns.ends, chain, a, b, f, turns.position[sweep.x + p + q * sweep.n_p]);
@@ -93,10 +94,11 @@ void sweep_skeleton(Exec const& exec, TileList<SkeletonSweep, typename Exec::mem
                     Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
                     Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,
                     SideTable<typename Exec::memory_space> const& sides, double const* t,
-                    Field<double const> const& ends, Field<double> const& u, SkeletonTurns const& turns = {}) {
+                    Field<double const> const& ends, Field<double> const& u, double const* law_knots = nullptr,
+                    SkeletonTurns const& turns = {}) {
   launch(Add ? "gridmorph::skeleton_spread" : "gridmorph::skeleton_sweep", exec, 0, sweeps.n_items,
          SweepSkeleton<typename Exec::memory_space, TileShape<Exec>::row, Add>{
-             sweeps.entries, sweeps.first_item, chains, matrices, sides, t, ends, u, turns});
+             sweeps.entries, sweeps.first_item, chains, matrices, sides, t, ends, u, law_knots, turns});
 }
 
 }  // namespace gridmorph::kernels

@@ -71,6 +71,7 @@ struct VolumePass {
   Kokkos::View<Mat3 const*, MemorySpace> matrices;
   SideTable<MemorySpace> sides;
   double const* t;
+  double const* law_knots;  ///< of laws that are tables
   FieldBatch<double const> ends, residuals;
   TurnedEndsBatch turned;
   VectorArray baseline;
@@ -169,7 +170,7 @@ struct VolumePass {
   /// One loop per law, and per step between the lines of neighbouring nodes: the steps that occur most are constants, so
   /// that the compiler sees one line for the whole row, or unit stride.
   template <bool Add>
-  KOKKOS_INLINE_FUNCTION static void interpolate(Chain const& chain, RowEnds const& row, Row& u) {
+  KOKKOS_INLINE_FUNCTION void interpolate(Chain const& chain, RowEnds const& row, Row& u) const {
     with_step(row.step, [&](auto step) {
       switch (chain.law) {
         case LineLaw::linear:
@@ -185,6 +186,12 @@ struct VolumePass {
           double const a = chain.slope[0], b = chain.slope[1];
           return between_ends<Add>(
               row, step, [a, b](double t) { return cubic_weight(a, b, t); }, u);
+        }
+        case LineLaw::table: {
+          double const* const knots = law_knots + chain.first_knot;
+          int const n = chain.n_intervals;
+          return between_ends<Add>(
+              row, step, [knots, n](double t) { return table_weight(knots, n, t); }, u);
         }
         case LineLaw::constant:
           put<Add>(

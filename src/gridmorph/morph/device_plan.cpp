@@ -238,6 +238,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   skeleton_nodes = copies(plan.skeleton_nodes, "skeleton_nodes");
   boxes = WorkList<kernels::VolumeBox, Memory>(exec, joined.boxes, Volume::items, "boxes");
   terms = table(exec, joined.terms, "terms");
+  law_knots = table(exec, plan.law_knots, "law_knots");
   skeleton = Workspace<Memory>(exec, plan.n_slots, fields, "skeleton");
   ends = Workspace<Memory>(exec, joined.lines.n_end_values, fields, "end_values");
   residuals = Workspace<Memory>(exec, Index(joined.sides.t.size()), fields, "side_residuals");

@@ -133,7 +133,8 @@ struct DevicePlan {
   std::vector<DeviceSpread<Exec>> spreads;
   WorkList<kernels::VolumeBox, Memory> boxes;
   Kokkos::View<kernels::VolumeTerm*, Memory> terms;
-  Kokkos::View<double*, Memory> t;  ///< line parameters
+  Kokkos::View<double*, Memory> t;          ///< line parameters
+  Kokkos::View<double*, Memory> law_knots;  ///< of laws that are tables
   Workspace<Memory> skeleton, ends, residuals;
   DeviceTurns<Exec> turns;
   int fields = 1;

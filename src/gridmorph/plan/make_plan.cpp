@@ -2,6 +2,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/plan/blocks/boundary.hpp>
+#include <gridmorph/plan/blocks/chain_laws.hpp>
 #include <gridmorph/plan/blocks/independent_chains.hpp>
 #include <gridmorph/plan/blocks/loose_nodes.hpp>
 #include <gridmorph/plan/blocks/plan_basis.hpp>
@@ -32,19 +33,25 @@ std::vector<EndKind> ranked_ends(Mesh const& mesh, std::vector<PatchKind> const&
   return ends;
 }
 
-/// Patches that must not share a block face: other rules, other kinds, other near fields.
+/// Patches that must not share a block face: other rules, other kinds, other near fields, named by other laws.
 MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::vector<EndKind> const& ends,
-                         std::vector<NearField> const& fields, std::vector<CutPlane> planes) {
+                         ChainLaws const& laws, std::vector<NearField> const& fields, std::vector<CutPlane> planes) {
   MergeLimits limits;
-  std::map<std::tuple<int, int, int>, int> labels;
+  std::map<std::tuple<int, int, int, std::vector<char>>, int> labels;
   for (int p = 0; p < int(mesh.patches.size()); ++p) {
     int field = -1;
     for (std::size_t f = 0; f < fields.size(); ++f)
       if (std::count(fields[f].walls.begin(), fields[f].walls.end(), p) > 0) field = int(f);
     limits.patch_label.push_back(
-        labels.try_emplace({motion.patch[p].rule, ends[p], field}, int(labels.size())).first->second);
+        labels.try_emplace({motion.patch[p].rule, ends[p], field, laws.naming(p)}, int(labels.size())).first->second);
   }
-  for (Resolution const& r : motion.interface) limits.interface_label.push_back(1 + r.rule);
+  std::map<std::tuple<int, std::vector<char>>, int> of_interfaces;
+  for (int i = 0; i < int(motion.interface.size()); ++i)
+    limits.interface_label.push_back(
+        of_interfaces
+            .try_emplace({motion.interface[i].rule, laws.naming(int(mesh.patches.size()) + i)},
+                         int(of_interfaces.size()))
+            .first->second);
   limits.kept_planes = std::move(planes);
   return limits;
 }
@@ -74,25 +81,20 @@ std::string chain_name(Mesh const& mesh, Topology const& topology, Chain const& 
   return text;
 }
 
-/// near: of the two ends, those on the edge of a near field, which moves as one with its wall: slope zero there.
-ChainLaw chain_law(Law law, double linear_share, std::array<bool, 2> const& near) {
-  using kernels::LineLaw;
-  switch (law) {
-    case Law::linear: return LineLaw::linear;
-    case Law::c1: return LineLaw::c1;
-    case Law::c2: return LineLaw::c2;
-    case Law::mixed: return {LineLaw::cubic, {linear_share, linear_share}};
-    case Law::matched:
-      if (near[0] && near[1]) return LineLaw::c1;
-      if (!near[0] && !near[1]) return LineLaw::linear;
-      return {LineLaw::cubic, {near[0] ? 0 : 1.5, near[1] ? 0 : 1.5}};
-  }
-  return LineLaw::linear;
-}
-
-char const* name_of(Law law) {
-  constexpr char const* names[] = {"linear", "c1", "c2", "mixed", "matched"};
-  return names[int(law)];
+/// "'blade' to 'inlet'": what the ends of a chain lie on, or what made the faces known that they lie on; nothing where neither is named.
+std::string names_of_ends(Mesh const& mesh, Chain const& chain) {
+  auto const name_of = [](auto const& any) { return any.families.empty() ? any.name : any.families.front(); };
+  auto const names = [&](ChainEnd const& end) {
+    constexpr std::size_t most = 3;
+    std::set<std::string> all;
+    for (int const p : end.patches) {
+      std::size_t const n = std::size_t(p), n_patches = mesh.patches.size();
+      all.insert(n < n_patches ? name_of(mesh.patches[n]) : name_of(mesh.interfaces[n - n_patches]));
+    }
+    return all.empty() ? std::string("a pole") : quote_list({all.begin(), all.end()}, most);
+  };
+  if (chain.first.patches.empty() && chain.last.patches.empty()) return {};
+  return names(chain.first) + " to " + names(chain.last);
 }
 
 /// Of chains between moving ends: a line that starts turned has to turn back, which costs more reach than the near field gains
@@ -107,8 +109,8 @@ struct HandedOn {
 
 class Scheduler {
  public:
-  Scheduler(PlanContext const& context, Priority& priority, BoundaryMotion const& surface, PlanOptions const& options,
-            Plan& plan, Known& known)
+  Scheduler(PlanContext const& context, Priority& priority, ChainLaws const& laws, BoundaryMotion const& surface,
+            PlanOptions const& options, Plan& plan, Known& known)
       : context_(context),
         surface_(surface),
         mesh_(context.mesh),
@@ -117,7 +119,8 @@ class Scheduler {
         options_(options),
         plan_(plan),
         known_(known),
-        priority_(priority) {}
+        priority_(priority),
+        laws_(laws) {}
 
   /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of walls
   /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
@@ -127,10 +130,10 @@ class Scheduler {
     for (int turn = 0; !chains.empty(); ++turn) {
       for (StageChain& chain : chains)
         if (outer_face_is_known(chain.chain)) {
-          chain.law = chain_law(options_.volume.law, options_.volume.linear_share, {});
+          chain.law = laws_.along({laws_.usual()}, {});
           chain.open_end = false;
           if (chain.turn != kernels::TurnLaw::none) chain.turn = kernels::TurnLaw::square;
-          chain.chain.last = {true, chain.chain.first.kind, -1};
+          chain.chain.last = {true, chain.chain.first.kind, -1, chain.chain.first.patches};
           if (is_active(chain.chain.steps.back().block))
             plan_.notes.push_back(
                 "the near field at " + chain_name(mesh_, topology_, chain.chain) +
@@ -198,15 +201,16 @@ class Scheduler {
       order.emplace_back();
       for (RankedChain& ranked : chains) {
         // Chains of a stage may share lines, which have one law.
-        Law const law = law_of(ranked);
-        ChainLaw const along = open ? ChainLaw(kernels::LineLaw::constant)
-                                    : chain_law(law, options_.volume.linear_share, near_ends(ranked.chain));
+        ChainLaws::OfChain const law = laws_.of(ranked.chain, ranked.place.law, priority_.kind_order());
+        bool const from_last = open ? !ranked.chain.first.known : law.from == ChainLaws::From::last;
+        Chain const chain = from_last ? reversed(ranked.chain) : ranked.chain;
+        ChainLaw const along = open ? ChainLaw(kernels::LineLaw::constant) : laws_.along(law, near_ends(chain));
         if (!now.empty() && along != now.front().law) continue;
-        if (!independent.add(ranked.chain)) continue;
+        if (!independent.add(chain, along.is_directed())) continue;
         order.back().push_back(ranked.place);
-        description.push_back(chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked) +
-                              (open || law == options_.volume.law ? "" : std::string(", law ") + name_of(law)));
-        now.push_back({open ? known_end_first(ranked.chain) : ranked.chain, along, open, turn_law, handed_on.reach});
+        description.push_back(described(ranked) +
+                              (open || law.choice == laws_.usual() ? "" : ", law " + laws_.name(law.choice)));
+        now.push_back({chain, along, open, turn_law, handed_on.reach});
       }
       Stage stage = build_stage(context_, now, known_, priority_.kind_order());
       stage.name = std::to_string(number);
@@ -317,12 +321,10 @@ class Scheduler {
     return {is_edge(chain.first, end_face(chain.steps.front(), 0)),
             is_edge(chain.last, end_face(chain.steps.back(), 1))};
   }
-  [[nodiscard]] Law law_of(RankedChain const& ranked) const {
-    if (ranked.place.law) return *ranked.place.law;
-    std::string_view const first = end_kind_name(ranked.chain.first.kind), last = end_kind_name(ranked.chain.last.kind);
-    for (auto const& [between, law] : options_.volume.laws)
-      if ((between[0] == first && between[1] == last) || (between[0] == last && between[1] == first)) return law;
-    return options_.volume.law;
+  [[nodiscard]] std::string described(RankedChain const& ranked) const {
+    std::string const names = names_of_ends(mesh_, ranked.chain);
+    return chain_name(mesh_, topology_, ranked.chain) + ": " + priority_.reason(ranked) +
+           (names.empty() ? "" : ", " + names);
   }
   [[nodiscard]] bool outer_face_is_known(Chain const& chain) const {
     auto const faces = topology_.blocks.face_entities(topology_.lattice, end_face(chain.steps.back(), 1));
@@ -337,7 +339,6 @@ class Scheduler {
     IndependentChains independent(topology_, known_);
     return std::all_of(chains.begin(), chains.end(), [&](RankedChain const& c) { return independent.add(c.chain); });
   }
-  static Chain known_end_first(Chain const& chain) { return chain.first.known ? chain : reversed(chain); }
 
   /// Every chain through active blocks with two known ends (open: one known, the other on the boundary).
   std::vector<RankedChain> collect(bool open) {
@@ -379,6 +380,7 @@ class Scheduler {
   Plan& plan_;
   Known& known_;
   Priority& priority_;
+  ChainLaws const& laws_;
   std::vector<char> before_near_field_, after_near_field_;  ///< what was known, per entity class
 };
 
@@ -432,13 +434,16 @@ PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const&
   std::vector<PatchKind> kinds = ranked_kinds(mesh, links, surface, options.boundary_layers, notes);
   std::vector<EndKind> ends = ranked_ends(mesh, kinds, options.volume);
   std::vector<NearField> fields = near_fields(mesh, links, surface, kinds, options.boundary_layers);
-  MergeLimits limits = merge_limits(mesh, surface.motion(), ends, fields, near_field_limits(mesh, links, fields));
+  ChainLaws laws(mesh, options.volume);
+  notes.insert(notes.end(), laws.notes().begin(), laws.notes().end());
+  MergeLimits limits = merge_limits(mesh, surface.motion(), ends, laws, fields, near_field_limits(mesh, links, fields));
   Topology topology = build_topology(mesh, links, limits);
   return {mesh,
           std::move(notes),
           std::move(kinds),
           std::move(ends),
           std::move(fields),
+          std::move(laws),
           std::move(limits),
           std::move(topology)};
 }
@@ -452,6 +457,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   PlannedMorph planned;
   Plan& plan = planned.plan;
   plan.notes = basis.notes;
+  plan.law_knots = basis.laws.knots();
   plan.n_nodes = mesh.n_nodes();
   plan.mesh_size = topology.links.mesh_size;
   plan.notes.push_back(std::to_string(mesh.zones.size()) + " zones, " +
@@ -466,7 +472,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   WallRoots roots(context);
   context.roots = &roots;
   Known known(topology.lattice.n_classes());
-  Scheduler scheduler(context, priority, surface, options, plan, known);
+  Scheduler scheduler(context, priority, basis.laws, surface, options, plan, known);
   std::vector<std::string> const& kind_order = priority.kind_order();
   planned.boundary = collect_boundary(context, surface, kind_order, known, plan);
   Known const given = known;

@@ -5,6 +5,7 @@
 #include <gridmorph/plan/element_options.hpp>
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,17 +30,29 @@ struct BoundaryLayer {
 
 /// How a displacement varies along a grid line, as a function of the fraction s of its baseline arc length.
 enum class Law {
-  linear,  ///< s
-  c1,      ///< 3 s^2 - 2 s^3: zero slope at both ends
-  c2,      ///< 10 s^3 - 15 s^4 + 6 s^5: zero slope and curvature at both ends
-  mixed,   ///< blocks: a s + (1 - a) c1(s), a: VolumeOptions::linear_share
-  matched  ///< blocks: cubic, with the slope of the near field (zero) at ends on its edge, without curvature at others
+  linear,   ///< s
+  c1,       ///< 3 s^2 - 2 s^3: zero slope at both ends
+  c2,       ///< 10 s^3 - 15 s^4 + 6 s^5: zero slope and curvature at both ends
+  mixed,    ///< blocks: a s + (1 - a) c1(s), a: VolumeOptions::linear_share
+  matched,  ///< blocks: cubic, with the slope of the near field (zero) at ends on its edge, without curvature at others
+  own       ///< the OwnLaw beside it
 };
 
-/// The law of chains whose ends are of two kinds ("wall", "periodic", ...), in either order.
-struct LawOfKind {
+/// A law of the user's own: w(s), the weight of a line's far end, for s = 0 ... 1, with w(0) = 0 and w(1) = 1 to 1e-12 and finite between;
+/// PlanError otherwise. Plans call it a few hundred times, from one thread, and keep a table of cubics through its values
+/// (tabulate() in plan/law_table.hpp says how near they come); kernels read that, so that all execution spaces get the same bits.
+struct OwnLaw {
+  std::function<double(double)> weight;
+  std::string name;  ///< in what plans print
+};
+
+/// The law of chains between two kinds of ends ("wall", "periodic", ...) or patches and periodic interfaces (any selector that is no
+/// kind), in either order. A face that a chain made known counts as the better of that chain's ends, as both where they rank alike.
+struct LawOfEnds {
   std::array<std::string, 2> between;
   Law law = Law::linear;
+  OwnLaw own{};         ///< of Law::own
+  std::string where{};  ///< "case.toml:14", for messages
 };
 
 /// Kinds of boundaries from first to last, as chains rank by them.
@@ -70,8 +83,9 @@ enum class OrderBy {
 
 struct VolumeOptions {
   Law law = Law::linear;
+  OwnLaw own_law;               ///< of Law::own
   double linear_share = 0.85;   ///< of Law::mixed
-  std::vector<LawOfKind> laws;  ///< blocks: of some chains; the first that fits, else `law`
+  std::vector<LawOfEnds> laws;  ///< blocks: of some chains; the first that fits, else `law`
   bool laws_by_prediction =
       false;  ///< blocks: other laws for single chains where predict() says that cells come out better
   OrderBy order = OrderBy::priority;  ///< blocks

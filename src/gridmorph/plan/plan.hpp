@@ -91,6 +91,7 @@ struct Plan {
   std::vector<kernels::NodeCopy> skeleton_nodes;  ///< from slots to all nodes of the skeleton
   std::vector<kernels::VolumeBox> boxes;          ///< the nodes inside pieces; terms come from stages and spreads
   TurnTables turns;
+  std::vector<double> law_knots;  ///< of laws of the user's own, see kernels::table_weight()
   std::vector<SlipSurface> surfaces;
   std::vector<Mat3> rotations;
   std::vector<CellBox> near_field;  ///< cells of the near field of moving walls

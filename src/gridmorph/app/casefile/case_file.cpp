@@ -1,4 +1,5 @@
 #include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/casefile/detail/law_reader.hpp>
 #include <gridmorph/app/casefile/detail/near_field_reader.hpp>
 #include <gridmorph/app/casefile/detail/rule_reader.hpp>
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -184,7 +186,8 @@ void read_sequence(TableReader& root, CaseFile& out) {
   out.sequence = sequence;
 }
 
-void read_motion(TableReader& root, CaseFile& out) {
+/// Returns the constants of all formulas.
+std::map<std::string, double> read_motion(TableReader& root, CaseFile& out) {
   if (auto const word = root.choice("default", {"type", "error"})) out.motion.strict = *word == 1;
   if (auto conformity = root.table("conformity")) {
     if (auto const tolerance = conformity->number("tolerance")) {
@@ -208,6 +211,7 @@ void read_motion(TableReader& root, CaseFile& out) {
     root.context().problem(root.line("sequence"),
                            "[sequence]: no rule changes with time, so that all steps would be alike; give a rule an "
                            "amplitude over time, use t or step in a formula, or add modes to a rule \"field\"");
+  return shared.constants;
 }
 
 BoundaryLayer read_boundary_layer(TableReader& table) {
@@ -244,20 +248,19 @@ void require_kind(TableReader& table, char const* key, std::string const& word) 
     table.problem(key, fmt::format("\"{}\" is no kind of boundary{}", word, suggestion(word, end_kinds)));
 }
 
-std::vector<LawOfKind> read_laws(TableReader& volume) {
-  std::vector<LawOfKind> out;
+std::vector<LawOfEnds> read_laws(TableReader& volume, std::map<std::string, double> const& constants) {
+  std::vector<LawOfEnds> out;
   for (auto& table : volume.tables("laws")) {
     table.require("between", "between = [\"wall\", \"periodic\"]");
     table.require("law", "law = \"c1\"");
-    LawOfKind law;
+    LawOfEnds law;
+    law.where = table.where("between");
     auto const between = table.strings("between");
     if (between && between->size() != 2)
-      table.problem("between", fmt::format("names the kinds of two ends, found {}", between->size()));
-    for (std::size_t end = 0; between && between->size() == 2 && end < 2; ++end) {
-      law.between[end] = (*between)[end];
-      require_kind(table, "between", law.between[end]);
-    }
-    if (auto const word = table.choice("law", {"linear", "c1", "c2", "mixed", "matched"})) law.law = Law(*word);
+      table.problem("between", fmt::format("names two ends, found {}", between->size()));
+    else if (between)
+      law.between = {between->front(), between->back()};
+    casefile::read_law(table, {"linear", "c1", "c2", "mixed", "matched", "formula"}, constants, law.law, law.own);
     table.finish();
     out.push_back(std::move(law));
   }
@@ -291,20 +294,23 @@ std::vector<PriorityRule> read_priority(TableReader& volume) {
   return priority;
 }
 
-void read_plan(TableReader& root, CaseFile& out) {
+void read_plan(TableReader& root, std::map<std::string, double> const& constants, CaseFile& out) {
   for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
   auto volume = root.table("volume");
   if (!volume) return;
-  if (auto const law = volume->choice("law", {"linear", "c1", "c2", "mixed", "matched", "prediction"})) {
-    out.plan.volume.laws_by_prediction = *law == 5;
-    out.plan.volume.law = *law == 5 ? Law::linear : Law(*law);
+  std::vector<std::string> const laws{"linear", "c1", "c2", "mixed", "matched", "formula", "prediction"};
+  VolumeOptions& to = out.plan.volume;
+  if (auto const law = casefile::read_law(*volume, laws, constants, to.law, to.own_law);
+      law && laws[*law] == "prediction") {
+    to.laws_by_prediction = true;
+    to.law = Law::linear;
   }
   if (auto const share = volume->number("linear_share")) {
     out.plan.volume.linear_share = *share;
     if (*share < 0 || *share > 1)
       volume->problem("linear_share", fmt::format("is a share of the linear law, 0 to 1, found {}", *share));
   }
-  out.plan.volume.laws = read_laws(*volume);
+  out.plan.volume.laws = read_laws(*volume, constants);
   if (auto const order = volume->choice("order", {"priority", "prediction"})) out.plan.volume.order = OrderBy(*order);
   if (auto const turn = volume->number("turn")) {
     out.plan.volume.turn = *turn;
@@ -387,9 +393,9 @@ CaseFile read(CaseDocument const& document, CaseKeyUse* asked) {
   TableReader root(context, document.root().value, "");
   read_mesh(root, out);
   read_sequence(root, out);
-  read_motion(root, out);
-  read_plan(root, out);
-  casefile::read_near_field(root, out);
+  auto const constants = read_motion(root, out);
+  read_plan(root, constants, out);
+  casefile::read_near_field(root, constants, out);
   read_results(root, out);
   root.finish();
   context.problems.throw_if_any<ConfigError>();

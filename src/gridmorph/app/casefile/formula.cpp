@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <numbers>
@@ -275,14 +276,38 @@ bool uses_time(std::string const& expression) {
   return std::any_of(names.begin(), names.end(), [](std::string const& n) { return n == "t" || n == "step"; });
 }
 
+namespace {
+
+void refuse_variables(FormulaComponent const& formula, std::vector<std::string> const& allowed,
+                      std::string const& advice, Problems& problems) {
+  auto const holds = [](std::vector<std::string> const& list, std::string const& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (auto const& name : names_in(formula.expression))
+    if (holds(variable_names, name) && !holds(allowed, name))
+      problems.add(fmt::format("{}: formula {} = \"{}\" uses {}; it may depend on {}", formula.where, formula.key,
+                               formula.expression, name, advice));
+}
+
+}  // namespace
+
+std::function<double(double t)> make_law_formula(FormulaComponent const& formula,
+                                                 std::map<std::string, double> const& constants, Problems& problems) {
+  refuse_variables(formula, {"t"}, "t, the fraction of a line's length, alone", problems);
+  auto const w = make_time_formula(formula, constants, problems);
+  return [w](double t) {
+    try {
+      return w({0, t, 1});
+    } catch (MotionError const&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+}
+
 std::function<double(Moment const& when)> make_time_formula(FormulaComponent const& formula,
                                                             std::map<std::string, double> const& constants,
                                                             Problems& problems) {
-  for (auto const& name : names_in(formula.expression))
-    if (name != "t" && name != "step" &&
-        std::find(variable_names.begin(), variable_names.end(), name) != variable_names.end())
-      problems.add(fmt::format("{}: formula {} = \"{}\" uses {}; it may depend on t and step, not on the position",
-                               formula.where, formula.key, formula.expression, name));
+  refuse_variables(formula, {"t", "step"}, "t and step, not on the position", problems);
   auto const rule = make_formula_in_time(FormulaFrame::cartesian, {formula, {}, {}}, constants, Axis{}, problems);
   return [rule](Moment const& when) {
     Vec3 const origin;

@@ -46,6 +46,11 @@ std::function<double(Moment const& when)> make_time_formula(FormulaComponent con
                                                             std::map<std::string, double> const& constants,
                                                             Problems& problems);
 
+/// w(t), t the fraction of a grid line's length, of t and the constants alone; not a number where the expression has no value. Problems are
+/// added as above.
+std::function<double(double t)> make_law_formula(FormulaComponent const& formula,
+                                                 std::map<std::string, double> const& constants, Problems& problems);
+
 /// Whether a name can be a constant of a formula: letters, digits and '_', not starting with a digit, and neither a
 /// variable, a built-in constant nor a function.
 bool is_free_formula_name(std::string const& name);

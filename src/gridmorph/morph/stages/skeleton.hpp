@@ -39,7 +39,8 @@ class OnSkeleton {
   void sweep(Exec const& exec, detail::WorkList<kernels::SkeletonSweep, Memory> const& list,
              StageField<Exec> const& f) const {
     kernels::sweep_skeleton<Add>(exec, list, plan().lines.chains, plan().rotations, sides(f), plan().t.data(),
-                                 read(f.ends), f.skeleton, plan().turns.of_skeleton(f.number, f.of));
+                                 read(f.ends), f.skeleton, plan().law_knots.data(),
+                                 plan().turns.of_skeleton(f.number, f.of));
   }
 
  private:
@@ -94,7 +95,8 @@ class LineSweep : OnSkeleton<Exec> {
     if (stage.side_lines.extent(0) > 0) {
       this->copy("gridmorph::side_residual::known", exec, stage.gathers, f.skeleton, f.residuals);
       kernels::fill_sides(exec, this->plan().lines.chains, this->sides(f), stage.side_lines, stage.corrected,
-                          read(f.ends), f.residuals, this->plan().turns.of_skeleton(f.number, f.of));
+                          read(f.ends), f.residuals, this->plan().law_knots.data(),
+                          this->plan().turns.of_skeleton(f.number, f.of));
     }
     this->template sweep<false>(exec, stage.sweeps, f);
   }

@@ -44,6 +44,7 @@ class WriteBlocks {
         plan.rotations,
         plan.sides,
         plan.t.data(),
+        plan.law_knots.data(),
         {read(fields.front().ends), plan.ends.read().stride},
         {read(fields.front().residuals), plan.residuals.read().stride},
         {plan.turns.read_ends(fields.front().number, fields.front().of), plan.turns.ends_stride()},

@@ -70,11 +70,14 @@ BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion con
   std::vector<ExplicitFace> faces = explicit_faces(topology, surface);
   for (ExplicitFace const& face : faces) {
     EndKind const kind = face.patch >= 0 ? context.ends[face.patch] : periodic_end;
+    int const patch = face.patch >= 0 ? face.patch : int(mesh.patches.size()) + face.interface;
     for_closure(lattice, lattice.copies(face.face_class).front().entity, [&](int entity) {
       int const c = lattice.class_of(entity);
       bool const better = !known(c) || kind_rank(kind, kind_order) < kind_rank(known.kind[c], kind_order);
       known.known[c] = 1;
-      if (better) known.kind[c] = kind;
+      if (!better) return;
+      known.kind[c] = kind;
+      known.patches[c] = {patch};
     });
   }
 

@@ -34,6 +34,10 @@ Crossing cross(Mesh const& mesh, Topology const& topology, Known const& known, C
   int const face = lattice.class_of(entities.front());
   int const patch = blocks.patch_of_face()[face];
   crossing.end = {all_known, all_known ? known.kind[face] : unknown_end, patch};
+  if (all_known)
+    crossing.end.patches = known.patches[face];
+  else if (patch >= 0)
+    crossing.end.patches = {patch};
   if (all_known) return crossing;
   auto const sides = lattice.face_sides(face);
   if (patch >= 0 || sides.size() != 2) {

@@ -24,7 +24,8 @@ BlockFace end_face(ChainStep const& step, int side);
 struct ChainEnd {
   bool known = false;
   EndKind kind = unknown_end;
-  int patch = -1;  ///< boundary patch under the end, -1 when it is an inner face
+  int patch = -1;                 ///< boundary patch under the end, -1 when it is an inner face
+  std::vector<int> patches = {};  ///< whose kind that is, see Known::patches; the patch where nothing fixes it
 };
 
 struct Chain {

@@ -17,7 +17,7 @@ std::uint64_t hash(std::vector<int> const& numbers) {
 
 }  // namespace
 
-bool IndependentChains::add(Chain const& chain) {
+bool IndependentChains::add(Chain const& chain, bool directed) {
   Lattice const& lattice = topology_.lattice;
   ChainLayout const layout = lay_out(topology_, chain);
   std::unordered_map<int, std::uint64_t> fresh;
@@ -32,7 +32,7 @@ bool IndependentChains::add(Chain const& chain) {
         line.push_back(lattice.class_of(chain_entity(lattice, layout.at(ps, pa, pb), {is - 2 * ps, ca, cb})));
       }
       std::vector<int> sorted = line;
-      std::sort(sorted.begin(), sorted.end());
+      if (!directed) std::sort(sorted.begin(), sorted.end());
       std::uint64_t const key = hash(sorted);
       for (int c : line) {
         if (known_(c)) continue;

@@ -27,11 +27,16 @@ inline std::string_view end_kind_name(EndKind named_or_not) {
 struct Known {
   std::vector<char> known;
   std::vector<EndKind> kind;
-  std::vector<char> turns;  ///< whether its displacement comes with a rotation
-  std::vector<int> body;    ///< whose rotation that is, where it is one body's; see WallRoots::centre_of_body()
+  std::vector<std::vector<int>> patches;  ///< whose kind that is, ascending: Mesh::patches, then Mesh::interfaces
+  std::vector<char> turns;                ///< whether its displacement comes with a rotation
+  std::vector<int> body;  ///< whose rotation that is, where it is one body's; see WallRoots::centre_of_body()
 
   explicit Known(int n_classes)
-      : known(n_classes, 0), kind(n_classes, unknown_end), turns(n_classes, 0), body(n_classes, no_body) {}
+      : known(n_classes, 0),
+        kind(n_classes, unknown_end),
+        patches(n_classes),
+        turns(n_classes, 0),
+        body(n_classes, no_body) {}
   [[nodiscard]] bool operator()(int entity_class) const { return known[entity_class] != 0; }
 };
 

@@ -123,7 +123,7 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
                         (beyond >= 0 ? " reaches patch " + describe_patch(mesh, mesh.patches[beyond])
                                      : std::string(" comes to a boundary or back to itself")) +
                         "; give its boundary layer fewer layers or a smaller thickness");
-      chain->first = {true, known.kind[c], patch};
+      chain->first = {true, known.kind[c], patch, known.patches[c]};
       chain->last = {};
       chains.push_back({std::move(*chain), kernels::LineLaw::constant, true,
                         turns(field) ? kernels::TurnLaw::near_field : kernels::TurnLaw::none});

@@ -1,6 +1,7 @@
 // What is found out before chains are put in order, and plans made on it: of the mesh itself, or of some of its grid lines.
 #pragma once
 
+#include <gridmorph/plan/blocks/chain_laws.hpp>
 #include <gridmorph/plan/blocks/grid_lengths.hpp>
 #include <gridmorph/plan/blocks/near_field.hpp>
 #include <gridmorph/plan/blocks/priority.hpp>
@@ -17,6 +18,7 @@ struct PlanBasis {
   std::vector<PatchKind> kinds;   ///< what patches rank as
   std::vector<EndKind> ends;      ///< the same, but those that the priority names apart
   std::vector<NearField> fields;  ///< of `mesh`, in its cells
+  ChainLaws laws;
   MergeLimits limits;
   Topology topology;
 };

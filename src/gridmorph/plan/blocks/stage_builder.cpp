@@ -6,6 +6,7 @@
 #include <gridmorph/kernels/turned_line.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -81,6 +82,8 @@ kernels::Chain device_chain(ChainLayout const& layout, ChainLaw const& law, bool
   c.n_b = layout.n_nodes[2];
   c.law = law.law;
   for (int end = 0; end < 2; ++end) c.slope[end] = law.slope[end];
+  c.first_knot = law.knots[0];
+  c.n_intervals = law.knots[1];
   c.open_end = open_end ? 1 : 0;
   c.first_side = -1;
   return c;
@@ -112,6 +115,25 @@ void set_pivots(PlanContext const& context, Chain const& chain, ChainLayout cons
                                        Index(device.n_a) * at[2])] = centre;
         }
     });
+}
+
+/// What a face counts as when a chain has made it known.
+struct Origin {
+  EndKind kind = unknown_end;
+  std::vector<int> patches;
+};
+/// The one that ranks better, both where they rank alike.
+Origin better_of(Origin const& a, Origin const& b, std::vector<std::string> const& kind_order) {
+  int const first = kind_rank(a.kind, kind_order), second = kind_rank(b.kind, kind_order);
+  if (first != second) return first < second ? a : b;
+  Origin both{std::min(a.kind, b.kind), {}};
+  std::set_union(a.patches.begin(), a.patches.end(), b.patches.begin(), b.patches.end(),
+                 std::back_inserter(both.patches));
+  return both;
+}
+Origin origin_of(Chain const& chain, bool open_end, std::vector<std::string> const& kind_order) {
+  Origin const first{chain.first.kind, chain.first.patches};
+  return open_end ? first : better_of(first, {chain.last.kind, chain.last.patches}, kind_order);
 }
 
 /// Which ends carry a rotation, and how it fades: a near field turns with its wall, other chains where an end of theirs does.
@@ -156,16 +178,13 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
                   std::vector<std::string> const& kind_order) {
   Stage stage;
   Lattice const& lattice = context.topology.lattice;
-  std::map<int, int> writer;       // entity class -> entity that is written
-  std::map<int, EndKind> becomes;  // entity class -> kind
-  std::map<int, int> turning;      // entity class that gets a rotation -> whose it is
+  std::map<int, int> writer;      // entity class -> entity that is written
+  std::map<int, Origin> becomes;  // entity class -> what it counts as
+  std::map<int, int> turning;     // entity class that gets a rotation -> whose it is
   for (StageChain const& entry : chains) {
     Chain const chain = with_contiguous_a(context, entry.chain);
     ChainLayout const layout = lay_out(context.topology, chain);
-    EndKind const kind =
-        entry.open_end || kind_rank(chain.first.kind, kind_order) <= kind_rank(chain.last.kind, kind_order)
-            ? chain.first.kind
-            : chain.last.kind;
+    Origin const origin = origin_of(chain, entry.open_end, kind_order);
     int const number = int(stage.lines.chains.size());
     std::size_t const first_segment = stage.lines.segments.size();
     kernels::Chain device = device_chain(layout, entry.law, entry.open_end);
@@ -191,8 +210,8 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
                      int const c = lattice.class_of(entity);
                      if (known(c)) return false;
                      if (device.turn != kernels::TurnLaw::none) turning.try_emplace(c, body);
-                     auto const [it, fresh] = becomes.try_emplace(c, kind);
-                     if (!fresh && kind_rank(kind, kind_order) < kind_rank(it->second, kind_order)) it->second = kind;
+                     auto const [it, fresh] = becomes.try_emplace(c, origin);
+                     if (!fresh) it->second = better_of(it->second, origin, kind_order);
                      return writer.try_emplace(c, entity).first->second == entity && fresh;
                    });
     for (ChainPiece const& p : layout.pieces) {
@@ -205,7 +224,8 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
   }
   for (auto const& [c, entity] : writer) {
     known.known[c] = 1;
-    known.kind[c] = becomes.at(c);
+    known.kind[c] = becomes.at(c).kind;
+    known.patches[c] = becomes.at(c).patches;
   }
   for (auto const& [c, body] : turning) {
     known.turns[c] = 1;

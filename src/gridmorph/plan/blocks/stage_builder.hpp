@@ -11,8 +11,14 @@ namespace gridmorph {
 struct ChainLaw {
   kernels::LineLaw law;
   std::array<double, 2> slope;  ///< of LineLaw::cubic
+  std::array<std::int32_t, 2> knots =
+      {};  ///< of LineLaw::table: where they start in Plan::law_knots, intervals between them
 
   ChainLaw(kernels::LineLaw l = kernels::LineLaw::linear, std::array<double, 2> const& s = {1, 1}) : law(l), slope(s) {}
+  /// Whether it may differ from one end to the other.
+  [[nodiscard]] bool is_directed() const {
+    return law == kernels::LineLaw::table || (law == kernels::LineLaw::cubic && slope[0] != slope[1]);
+  }
   friend bool operator==(ChainLaw const&, ChainLaw const&) = default;
 };
 

@@ -214,7 +214,7 @@ Background make_background(Mesh mesh, std::vector<std::string> wrap, std::vector
   return out;
 }
 
-PreparedMorph prepare_background(HostInstance const& host, Background const& background, Law law) {
+PreparedMorph prepare_background(HostInstance const& host, Background const& background, VolumeOptions const& volume) {
   Motion motion;
   // Values come from elsewhere: the rule says only that they are given.
   FunctionRule const given{"displacement of the wrap",
@@ -224,7 +224,8 @@ PreparedMorph prepare_background(HostInstance const& host, Background const& bac
   if (background.dimension == 2 && background.lattice)
     motion.rules.push_back({{"sides"}, FreeRule{}, 2, "background mesh"});
   PlanOptions options;
-  options.volume.law = law;
+  options.volume.law = volume.law;
+  options.volume.own_law = volume.own_law;
   return prepare(host, background.mesh, motion, options);
 }
 

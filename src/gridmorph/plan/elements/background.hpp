@@ -52,7 +52,8 @@ Background make_background(Wrap const& wrap, int cells = 4, double growth = 1.4)
 Background make_background(Mesh mesh, std::vector<std::string> wrap, std::vector<std::string> outer);
 
 /// The plan of a background: displacements given on the wrap, zero on the outer patches, 2-D sides free.
-PreparedMorph prepare_background(HostInstance const& host, Background const& background, Law law = Law::linear);
+PreparedMorph prepare_background(HostInstance const& host, Background const& background,
+                                 VolumeOptions const& volume = {});
 
 /// The nodes of the wrap, each point once.
 struct WrapNodes {

@@ -76,7 +76,7 @@ void UnstructuredPlanner::classify_by_background() {
 
 void UnstructuredPlanner::take_background(Background background) {
   out_.plan.background = std::move(background);
-  out_.plan.background_morph = prepare_background(host_, *out_.plan.background, options_.volume.law);
+  out_.plan.background_morph = prepare_background(host_, *out_.plan.background, options_.volume);
 }
 
 }  // namespace gridmorph::detail

@@ -1,3 +1,4 @@
+#include <gridmorph/app/casefile/detail/law_reader.hpp>
 #include <gridmorph/app/casefile/detail/near_field_reader.hpp>
 
 #include <fmt/format.h>
@@ -38,7 +39,7 @@ void read_background_file(TableReader& root, TableReader& background, CaseFile& 
 
 }  // namespace
 
-void read_near_field(TableReader& root, CaseFile& case_file) {
+void read_near_field(TableReader& root, std::map<std::string, double> const& constants, CaseFile& case_file) {
   ElementOptions& out = case_file.plan.elements;
   if (auto near = root.table("near_field")) {
     out.walls = near->strings("walls").value_or(std::vector<std::string>{});
@@ -56,7 +57,8 @@ void read_near_field(TableReader& root, CaseFile& case_file) {
   if (auto background = root.table("background")) {
     read_count(*background, "cells", 1, 32, out.cells);
     read_background_file(root, *background, case_file);
-    if (auto const law = background->choice("law", {"linear", "c1", "c2"})) case_file.plan.volume.law = Law(*law);
+    VolumeOptions& volume = case_file.plan.volume;
+    read_law(*background, {"linear", "c1", "c2", "formula"}, constants, volume.law, volume.own_law);
     background->finish();
   }
 }

@@ -4,9 +4,12 @@
 #include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 
+#include <map>
+#include <string>
+
 namespace gridmorph::casefile {
 
-/// Reads both tables where they are; notes every problem.
-void read_near_field(TableReader& root, CaseFile& out);
+/// Reads both tables where they are; notes every problem. constants: of formulas.
+void read_near_field(TableReader& root, std::map<std::string, double> const& constants, CaseFile& out);
 
 }  // namespace gridmorph::casefile
