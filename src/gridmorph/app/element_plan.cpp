@@ -4,7 +4,9 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/element_prediction.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/report/element_prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
 
 #include <fmt/format.h>
@@ -125,6 +127,26 @@ class ElementPlan final : public AnyPlan {
     auto out = mesh_.notes();
     for (auto const& more : {prepared_.notes, mapping_notes(case_file_)})
       out.insert(out.end(), more.begin(), more.end());
+    return out;
+  }
+  [[nodiscard]] PlanPrediction predict() override {
+    ElementPrediction worst;
+    int const steps = case_file_.sequence ? case_file_.sequence->steps : 1;
+    int worst_step = 0;
+    Coordinates displaced(mesh_.n_nodes());
+    for (int step = 0; step < steps; ++step) {
+      Moment const when = case_file_.sequence ? case_file_.sequence->moment(step) : Moment{};
+      morph(displacement(case_file_.sequence ? &when : nullptr), displaced, nullptr);
+      ElementPrediction now = gridmorph::predict({}, mesh_.mesh, prepared_, displaced, mesh_.signs);
+      if (step > 0 && !(now.all.kept.value < worst.all.kept.value)) continue;
+      worst = std::move(now);
+      worst_step = step;
+    }
+    PlanPrediction out{describe(mesh_.mesh, worst), prediction_warnings(mesh_.mesh, worst),
+                       prediction_json(mesh_.mesh, worst)};
+    if (!case_file_.sequence) return out;
+    out.text = fmt::format("step {} of {} comes out worst: ", worst_step + 1, steps) + out.text;
+    out.json["step"] = worst_step + 1;
     return out;
   }
   [[nodiscard]] StepTimes times() const override { return {{"plan", planning_, true}}; }
