@@ -292,15 +292,20 @@ class Scheduler {
   }
   /// To two per cent of its largest displacement.
   [[nodiscard]] bool moves_rigidly(WallRoots::BodySample const& body) const {
+    std::map<int, std::vector<std::size_t>> of_rule;
+    for (std::size_t n = 0; n < body.places.size(); ++n)
+      of_rule[motion_.patch[std::size_t(body.patches[n])].rule].push_back(n);
     std::vector<Vec3> moved = body.places;
     double largest = 0;
-    for (std::size_t n = 0; n < moved.size(); ++n) {
-      int const rule = motion_.patch[body.patches[n]].rule;
+    for (auto const& [rule, nodes] : of_rule) {
       if (rule < 0 || !surface_.is_explicit(rule)) return false;
-      Vec3 u;
-      surface_.displacement(rule, {&body.places[n], 1}, {&u, 1});
-      moved[n] += u;
-      largest = std::max(largest, norm(u));
+      std::vector<Vec3> places, u(nodes.size());
+      for (std::size_t const n : nodes) places.push_back(body.places[n]);
+      surface_.displacement(rule, places, u);
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        moved[nodes[k]] += u[k];
+        largest = std::max(largest, norm(u[k]));
+      }
     }
     if (!(largest > 0)) return false;
     RigidTransform const fit = fit_rigid_transform(body.places, moved);
