@@ -80,17 +80,18 @@ std::vector<char> ChainLaws::naming(int patch) const {
 
 ChainLaws::OfChain ChainLaws::of(Chain const& chain, std::optional<Law> given,
                                  std::vector<std::string> const& kind_order) const {
-  auto const starts = [](bool first, bool last) {
-    return first == last ? From::either : first ? From::first : From::last;
+  // All others know their ends themselves; their chains stay as they were found.
+  auto const starts = [](Choice const& choice, bool first, bool last) {
+    return choice.law != Law::own || first == last ? From::either : first ? From::first : From::last;
   };
   if (given) return {{*given, -1}, From::either};
   for (auto const& [end, choice] : between_) {
     bool const first = end[0].fits(chain.first) && end[1].fits(chain.last);
     bool const last = end[0].fits(chain.last) && end[1].fits(chain.first);
-    if (first || last) return {choice, starts(first, last)};
+    if (first || last) return {choice, starts(choice, first, last)};
   }
   int const first = kind_rank(chain.first.kind, kind_order), last = kind_rank(chain.last.kind, kind_order);
-  return {usual_, starts(first <= last, last <= first)};
+  return {usual_, starts(usual_, first <= last, last <= first)};
 }
 
 ChainLaw ChainLaws::along(OfChain const& of, std::array<bool, 2> const& near) const {
