@@ -1,10 +1,10 @@
 // Eigenvalues and eigenvectors of small symmetric matrices.
 #pragma once
 
+#include <gridmorph/kernels/symmetric_eigen.hpp>
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -20,37 +20,17 @@ struct SymmetricEigen {
   SmallMatrix<N> vector{};
 };
 
-/// Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, section 8.5). Entries off the diagonal that are exactly
-/// zero stay so: points on a coordinate plane have its exact normal. Cost: 5 sweeps or so of N (N - 1) / 2 rotations.
+/// kernels::diagonalise(), in order.
 template <std::size_t N>
-SymmetricEigen<N> symmetric_eigen(SmallMatrix<N> a) {
+SymmetricEigen<N> symmetric_eigen(SmallMatrix<N> const& matrix) {
   SymmetricEigen<N> out;
+  double a[N][N], vector[N][N];
+  for (std::size_t p = 0; p < N; ++p)
+    for (std::size_t q = 0; q < N; ++q) a[p][q] = matrix[p][q];
+  kernels::diagonalise(a, vector);
   auto& v = out.vector;
-  for (std::size_t k = 0; k < N; ++k) v[k][k] = 1;
-  constexpr int most_sweeps = 60;
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    double off = 0, diagonal = 0;
-    for (std::size_t p = 0; p < N; ++p) {
-      diagonal += a[p][p] * a[p][p];
-      for (std::size_t q = p + 1; q < N; ++q) off += a[p][q] * a[p][q];
-    }
-    if (off <= 1e-40 * diagonal) break;
-    for (std::size_t p = 0; p < N; ++p)
-      for (std::size_t q = p + 1; q < N; ++q) {
-        if (a[p][q] == 0) continue;
-        double const h = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        double const t = (h >= 0 ? 1 : -1) / (std::abs(h) + std::sqrt(h * h + 1));
-        double const c = 1 / std::sqrt(t * t + 1), s = t * c;
-        auto const turn = [&](double& left, double& right) {
-          double const l = left, r = right;
-          left = c * l - s * r;
-          right = s * l + c * r;
-        };
-        for (std::size_t k = 0; k < N; ++k) turn(a[k][p], a[k][q]);
-        for (std::size_t k = 0; k < N; ++k) turn(a[p][k], a[q][k]);
-        for (std::size_t k = 0; k < N; ++k) turn(v[p][k], v[q][k]);
-      }
-  }
+  for (std::size_t p = 0; p < N; ++p)
+    for (std::size_t q = 0; q < N; ++q) v[p][q] = vector[p][q];
   for (std::size_t k = 0; k < N; ++k) out.value[k] = a[k][k];
   for (std::size_t k = 1; k < N; ++k)
     for (std::size_t n = k; n > 0 && out.value[n] > out.value[n - 1]; --n) {

@@ -30,7 +30,7 @@ struct MorpherOptions {
 /// Memory, blocks: 8 bytes per node of the far field and 8 per node and finalize pass, plus about 50 bytes per node on the faces of
 /// pieces; while it is made, 24 bytes per node more where the baseline is in float or zone by zone. A Morpher's workspace serves
 /// one call at a time; copies of a Morpher share it. Elements: 48 bytes per node (96 with MorpherOptions::velocity), about 60 per near
-/// node, 70 per far node, 50 for the residual, and the background mesh.
+/// node, 70 per far node, 50 for the residual, 8 for each body that turns, and the background mesh.
 template <class ExecutionSpace>
 class Morpher {
  public:

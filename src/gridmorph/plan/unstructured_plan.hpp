@@ -7,6 +7,7 @@
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
+#include <gridmorph/kernels/body_turn.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/plan/elements/background.hpp>
 #include <gridmorph/plan/elements/classify.hpp>
@@ -31,6 +32,22 @@ struct ColumnPlan {
   std::vector<float> turn;  ///< share of the wall's rotation that the node makes: 0 translate, 1 rotate, between: blend
 };
 
+/// Bodies: walls that touch, that move and may turn as a whole. kernels/body_turn.hpp has what becomes of them.
+struct TurningBodies {
+  std::vector<Vec3> centre;              ///< per body: mean place of its walls
+  std::vector<Vec3> axis;                ///< per body: the one axis about which it may turn, unit; zero: any
+  std::vector<Index32> wall;             ///< wall nodes, numbers in UnstructuredPlan::driving, body after body
+  std::vector<double> weight;            ///< likewise: share in the area of its body
+  std::vector<Index> first;              ///< first wall node of each chunk, and the end
+  std::vector<Index> first_chunk;        ///< of each body, and the end
+  std::vector<Index32> slot;             ///< in UnstructuredPlan::known, of the wall nodes
+  std::vector<Index32> body_of_driving;  ///< (UnstructuredPlan::driving) -1: none
+  std::vector<Index32> rigid;            ///< nodes of the bodies' walls and of the columns on them
+  std::vector<double> share;  ///< (bodies, n_nodes) of the body's turn that a node makes, plan/elements/turn_share.hpp
+
+  [[nodiscard]] Index size() const { return Index(centre.size()); }
+};
+
 struct UnstructuredPlan {
   Index n_nodes = 0;
   Vec3 plane_normal{0, 0, 1};  ///< of a 2-D mesh
@@ -42,6 +59,7 @@ struct UnstructuredPlan {
   std::vector<std::uint8_t> turns;     ///< (driving) whether the rotation of the wall there is followed
   CsrGraph one_rings;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see one_rings.hpp
   ColumnPlan columns;
+  TurningBodies turns_of_bodies;
   /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements what it misses.
   InverseDistanceField walls;
   LayerRows near;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/morph/stages/body_turns.hpp>
 #include <gridmorph/morph/stages/far_field.hpp>
 #include <gridmorph/morph/stages/joined_nodes.hpp>
 #include <gridmorph/morph/stages/near_field.hpp>
@@ -20,8 +21,8 @@ namespace gridmorph::stages {
 
 /// Visited by the host, once per stage and call.
 template <class Exec>
-using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, SlipSpread<Exec>, WallMotion<Exec>, NearField<Exec>,
-                           FarField<Exec>, OtherBoundaries<Exec>, JoinedNodes<Exec>>;
+using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, SlipSpread<Exec>, WallMotion<Exec>, TakeTurns<Exec>,
+                           NearField<Exec>, FarField<Exec>, AddTurns<Exec>, OtherBoundaries<Exec>, JoinedNodes<Exec>>;
 
 template <class Exec>
 struct StageList {
@@ -49,8 +50,14 @@ template <class Exec>
 StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, MorpherOptions const& options) {
   StageList<Exec> out{{}, {}, WriteElements<Exec>()};
   out.stages.emplace_back(WallMotion<Exec>(exec, plan, options.velocity));
+  SharedBodyTurns<Exec> turns;
+  if (plan.turns_of_bodies.size() > 0) {
+    turns = std::make_shared<BodyTurnTables<Exec> const>(exec, plan, options.velocity);
+    out.stages.emplace_back(TakeTurns<Exec>(turns));
+  }
   out.stages.emplace_back(NearField<Exec>(exec, plan));
   if (plan.background) out.stages.emplace_back(FarField<Exec>(exec, plan, options.velocity));
+  if (turns) out.stages.emplace_back(AddTurns<Exec>(turns));
   out.stages.emplace_back(OtherBoundaries<Exec>(exec, plan));
   out.stages.emplace_back(JoinedNodes<Exec>(exec, plan));
   auto const n = std::size_t(plan.n_nodes);

@@ -40,6 +40,7 @@ void UnstructuredPlanner::find_driving_faces() {
 
 void UnstructuredPlanner::find_columns() {
   find_driving_faces();
+  find_turning_bodies();
   std::vector<ColumnExtent> extents;
   for (Index32 const f : driving_faces_) extents.push_back(extent_of_face(f));
   columns_ = make_columns(mesh_, topology_, out_.graph, driving_faces_, extents, is_known_);
@@ -48,6 +49,7 @@ void UnstructuredPlanner::find_columns() {
   for (double const h : columns_.height) out_.report.layer_height = std::max(out_.report.layer_height, h);
   plan_columns();
   find_standing_columns();
+  plan_turns();
 }
 
 ColumnExtent UnstructuredPlanner::extent_of_face(Index32 face) const {
@@ -103,20 +105,29 @@ std::vector<double> UnstructuredPlanner::most_heights() const {
   return most;
 }
 
-void UnstructuredPlanner::plan_columns() {
-  using Mode = BoundaryLayer::Mode;
-  std::vector<Mode> mode(std::size_t(mesh_.n_nodes()), Mode::rotate);
+std::vector<BoundaryLayer::Mode> UnstructuredPlanner::modes_of_walls() const {
+  std::vector<BoundaryLayer::Mode> mode(std::size_t(mesh_.n_nodes()), BoundaryLayer::Mode::rotate);
   for (Index32 const f : driving_faces_)
     if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])]; l >= 0)
       for (Index32 const n : topology_.boundary.nodes[f])
         mode[std::size_t(owner(n))] = options_.boundary_layers[std::size_t(l)].mode;
+  return mode;
+}
+
+void UnstructuredPlanner::plan_one_rings() {
+  UnstructuredPlan& plan = out_.plan;
+  auto const mode = modes_of_walls();
+  for (Index32 const n : plan.driving)
+    plan.turns.push_back(mode[std::size_t(n)] == BoundaryLayer::Mode::translate ? 0 : 1);
+  plan.one_rings = wall_one_rings(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
+}
+
+void UnstructuredPlanner::plan_columns() {
+  using Mode = BoundaryLayer::Mode;
+  auto const mode = modes_of_walls();
   UnstructuredPlan& plan = out_.plan;
   std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
-  for (std::size_t k = 0; k < plan.driving.size(); ++k) {
-    place[std::size_t(plan.driving[k])] = Index32(k);
-    plan.turns.push_back(mode[std::size_t(plan.driving[k])] == Mode::translate ? 0 : 1);
-  }
-  plan.one_rings = wall_one_rings(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
+  for (std::size_t k = 0; k < plan.driving.size(); ++k) place[std::size_t(plan.driving[k])] = Index32(k);
   for (std::size_t k = 0; k < columns_.node.size(); ++k) {
     Index32 const root = columns_.root[k];
     double const s = std::min(1.0, columns_.above_wall[k] / columns_.height[std::size_t(root)]);

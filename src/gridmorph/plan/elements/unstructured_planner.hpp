@@ -1,10 +1,11 @@
-// The steps from an unstructured mesh to its plan, one file per step: make_unstructured_plan.cpp, then plan_columns.cpp,
+// The steps from an unstructured mesh to its plan, one file per step: make_unstructured_plan.cpp, then plan_columns.cpp, plan_turns.cpp,
 // plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/wall_distance.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
@@ -59,6 +60,22 @@ class UnstructuredPlanner {
   /// The extent that a user gave the boundary layer on a face's patch, or the default one.
   [[nodiscard]] ColumnExtent extent_of_face(Index32 face) const;
 
+  /// How the columns on driving nodes follow them.
+  [[nodiscard]] std::vector<BoundaryLayer::Mode> modes_of_walls() const;
+  /// How moving walls turn at their nodes.
+  void plan_one_rings();
+
+  // plan_turns.cpp
+  /// Needs the faces of the walls. What motion the offset and columns reckon with is then what turns leave of it.
+  void find_turning_bodies();
+  void add_turning_body(WallBody const& body);
+  /// The largest displacement less the turns of the bodies.
+  [[nodiscard]] double reach_beyond_turns() const;
+  /// Needs the columns.
+  void plan_turns();
+  /// Of all nodes that are not settled, by their distances.
+  void share_turns(Mask const& settled);
+
   // plan_regions.cpp
   double offset();
   void find_regions();
@@ -102,6 +119,8 @@ class UnstructuredPlanner {
   PreparedUnstructured out_;
   std::vector<int> layer_of_patch_;
   std::vector<Index32> driving_faces_;
+  WallBodies wall_bodies_;  ///< those that turn, and what does not turn with them
+  std::vector<double> body_sizes_;
   Columns columns_, standing_;
   Mask is_known_, drives_, is_other_, near_;
   NearestSource from_wall_, from_other_;

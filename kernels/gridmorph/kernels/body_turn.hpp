@@ -1,0 +1,284 @@
+// Bodies that turn: the rotation that the walls of each make as a whole, and what it does to every node.
+//
+//   u(x) += sum over bodies b of (R_b(f_b(x)) - I)(x - c_b)
+//
+// c_b is the mean place of the body's walls, R_b the mean of how they turn around their nodes (wall_turn.hpp), R(f) the share f of a
+// rotation, and f_b a share that is planned for each node: 1 on the body and 0 on all other boundaries. What walls do beyond R_b is
+// carried by the rest of a morph. The mean of rotations, not the rigid motion that fits displacements best: a wing that bends does not pitch, although
+// its swept tip goes up.
+//
+// R_b: the rotation nearest to s = sum of w R_w, w the share of a wall node in the area: the unit quaternion that is the eigenvector of
+// the greatest eigenvalue of a symmetric 4x4 matrix of sums of entries of s (B. K. P. Horn, "Closed-form solution of absolute
+// orientation using unit quaternions", JOSA A 4 (1987) 629). Where a body may turn about one axis n alone (in the plane, on a plane that its
+// nodes slide on): by the angle with the tangent n . axial part of s / (trace of s - n . s n). Its rate: R' = R [p]x with
+//
+//   (tr(P) I - P) p = axial part of R^T s' - s'^T R,   P = R^T s
+//
+// A body that is not displaced turns by exactly nothing; one whose walls turn in all directions alike by nothing.
+//
+// R(f): the quaternion h of half of R_b, f of the chord from no rotation to h and back onto the sphere, squared. So the angle is f
+// times the whole one to 2 degrees over half a turn, nothing shrinks, and a node costs no trigonometry. Half a turn has one axis for all
+// nodes (settled()).
+//
+// Cost per wall node: 12 bytes of tables and 96 of its motion read, 18 flops. Per node: 8 bytes of shares for each body, 24 of coordinates
+// and 48 of displacements, about 70 flops where the share is not zero.
+#pragma once
+
+#include <gridmorph/kernels/inverse_distance.hpp>
+#include <gridmorph/kernels/lanes.hpp>
+#include <gridmorph/kernels/launch.hpp>
+#include <gridmorph/kernels/rotation.hpp>
+#include <gridmorph/kernels/symmetric_eigen.hpp>
+#include <gridmorph/kernels/vector_array.hpp>
+
+namespace gridmorph::kernels {
+
+/// Sums of products of two vectors; zero at first, unlike Mat3.
+struct VectorMoments {
+  double m[3][3] = {};  ///< [a][b]: component a of the first, b of the second
+
+  KOKKOS_INLINE_FUNCTION void add(Vec3 const& first, Vec3 const& second) {
+    double const a[3] = {first.x, first.y, first.z}, b[3] = {second.x, second.y, second.z};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) m[i][j] += a[i] * b[j];
+  }
+  KOKKOS_INLINE_FUNCTION VectorMoments& operator+=(VectorMoments const& other) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) m[i][j] += other.m[i][j];
+    return *this;
+  }
+  /// Sum of the cross products, first x second.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Vec3 crossed() const {
+    return {m[1][2] - m[2][1], m[2][0] - m[0][2], m[0][1] - m[1][0]};
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double trace() const { return m[0][0] + m[1][1] + m[2][2]; }
+  /// Sum of the products of the components along n.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double along(Vec3 const& n) const {
+    double const c[3] = {n.x, n.y, n.z};
+    double sum = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) sum += c[i] * m[i][j] * c[j];
+    return sum;
+  }
+};
+
+/// Of moments of rotated vectors, with those before as first and those after as second ones: (real, imaginary), real not negative; no rotation
+/// where the best one is not the only one.
+KOKKOS_INLINE_FUNCTION void best_quaternion(VectorMoments const& s, double& real, Vec3& imaginary) {
+  auto const& m = s.m;
+  Vec3 const c = s.crossed();
+  double a[4][4] = {{s.trace(), c.x, c.y, c.z},
+                    {c.x, m[0][0] - m[1][1] - m[2][2], m[0][1] + m[1][0], m[2][0] + m[0][2]},
+                    {c.y, m[0][1] + m[1][0], -m[0][0] + m[1][1] - m[2][2], m[1][2] + m[2][1]},
+                    {c.z, m[2][0] + m[0][2], m[1][2] + m[2][1], -m[0][0] - m[1][1] + m[2][2]}};
+  double v[4][4];
+  diagonalise(a, v);
+  int best = 0;
+  double size = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (a[k][k] > a[best][best]) best = k;
+    size = larger(size, a[k][k] < 0 ? -a[k][k] : a[k][k]);
+  }
+  double gap = HUGE_VAL;
+  for (int k = 0; k < 4; ++k)
+    if (k != best) gap = smaller(gap, a[best][best] - a[k][k]);
+  real = 1;
+  imaginary = {};
+  if (!(gap > 1e-10 * size)) return;
+  double const sign = v[best][0] < 0 ? -1 : 1;
+  real = sign * v[best][0];
+  imaginary = {sign * v[best][1], sign * v[best][2], sign * v[best][3]};
+}
+
+/// The vector p of the head of this file: how the best rotation of moments s turns on, seen from what turns, where they change by `rate`.
+KOKKOS_INLINE_FUNCTION Vec3 best_rate(VectorMoments const& s, VectorMoments const& rate, Quaternion<Vec3> const& q) {
+  // What R^T makes of vectors after is R^T of each row.
+  Quaternion<Vec3> const back{-q.imaginary, q.less};
+  auto const turned_back = [&](VectorMoments const& from) {
+    VectorMoments to;
+    for (int i = 0; i < 3; ++i) {
+      Vec3 const row{from.m[i][0], from.m[i][1], from.m[i][2]}, r = row + back.turned(row);
+      to.m[i][0] = r.x;
+      to.m[i][1] = r.y;
+      to.m[i][2] = r.z;
+    }
+    return to;
+  };
+  VectorMoments const p = turned_back(s);
+  Vec3 const axial = turned_back(rate).crossed();
+  double const trace = p.trace();
+  Vec3 rows[3];
+  for (int i = 0; i < 3; ++i) {
+    double r[3];
+    for (int j = 0; j < 3; ++j) r[j] = (i == j ? trace : 0) - 0.5 * (p.m[i][j] + p.m[j][i]);
+    rows[i] = {r[0], r[1], r[2]};
+  }
+  Vec3 const c0 = cross(rows[1], rows[2]), c1 = cross(rows[2], rows[0]), c2 = cross(rows[0], rows[1]);
+  double const determinant = dot(rows[0], c0);
+  if (!(determinant > 1e-30 * trace * trace * trace)) return {};
+  return (1 / determinant) * (axial.x * c0 + axial.y * c1 + axial.z * c2);
+}
+
+/// The best rotation (as in rotation.hpp) of moments s (vectors before, after), about any axis, or about the unit vector `axis`, if
+/// that is not zero. rate: of s, where V has rates.
+template <class V>
+KOKKOS_INLINE_FUNCTION V best_turn(VectorMoments const& s, [[maybe_unused]] VectorMoments const& rate,
+                                   Vec3 const& axis) {
+  if (dot(axis, axis) > 0) {
+    double const sine = dot(axis, s.crossed()), cosine = s.trace() - s.along(axis);
+    if constexpr (has_rate<V>)
+      return settled(
+          quarter_tangent(Dual{sine, dot(axis, rate.crossed())}, Dual{cosine, rate.trace() - rate.along(axis)}) *
+          V{axis});
+    else
+      return settled(quarter_tangent(sine, cosine) * axis);
+  }
+  double real;
+  Vec3 imaginary;
+  best_quaternion(s, real, imaginary);
+  if constexpr (has_rate<V>) {
+    Vec3 const p = best_rate(s, rate, {imaginary, 1 - real});
+    Dual const whole{1 + real, -0.5 * dot(imaginary, p)};
+    return settled((1 / whole) * V{imaginary, 0.5 * (real * p + cross(imaginary, p))});
+  } else {
+    return settled((1 / (1 + real)) * imaginary);
+  }
+}
+
+/// The unit quaternion of half of a rotation.
+template <class V>
+KOKKOS_INLINE_FUNCTION Quaternion<V> quaternion_of_half(V const& r) {
+  using std::sqrt;
+  using Scalar = typename Quaternion<V>::Scalar;
+  auto const square = dot(r, r), size = sqrt(Scalar{1} + square);
+  return {(1 / size) * r, square / (size * (Scalar{1} + size))};
+}
+
+/// The walls of bodies that turn.
+template <class MemorySpace>
+struct BodyWalls {
+  Kokkos::View<std::int32_t const*, MemorySpace>
+      wall;  ///< wall nodes, numbers in the list of those that drive, body after body
+  Kokkos::View<double const*, MemorySpace> weight;      ///< likewise: share in the area of its body
+  Kokkos::View<Index const*, MemorySpace> first;        ///< first of each chunk, and the end
+  Kokkos::View<Index const*, MemorySpace> first_chunk;  ///< (n_bodies + 1)
+  Kokkos::View<Vec3 const*, MemorySpace> axis;          ///< (n_bodies)
+};
+
+/// Per chunk of wall nodes: sum of w (R - I)^T. Chunks are those of the plan, so that sums do not depend on threads.
+template <class MemorySpace>
+struct SumBodyWalls {
+  BodyWalls<MemorySpace> walls;
+  AffineMotion const* frame;  ///< around the nodes that drive; or its rates
+  VectorMoments* sum;
+
+  [[nodiscard]] Index size() const { return Index(walls.first.extent(0)) - 1; }
+  KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
+    VectorMoments s;
+    for (Index k = walls.first(c); k < walls.first(c + 1); ++k) {
+      Mat3 const& g = frame[walls.wall(k)].gradient;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) s.m[i][j] += walls.weight(k) * g.m[j][i];
+    }
+    sum[c] = s;
+  }
+};
+
+/// Per body: the quaternion of half its rotation; with rates: the rate of that.
+template <class MemorySpace, class V>
+struct TurnBodies {
+  BodyWalls<MemorySpace> walls;
+  VectorMoments const *sum, *sum_rate;
+  Quaternion<Vec3>* half;
+
+  [[nodiscard]] Index size() const { return Index(walls.axis.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index b) const {
+    VectorMoments s, rate;
+    for (int i = 0; i < 3; ++i) s.m[i][i] = 1;
+    for (Index c = walls.first_chunk(b); c < walls.first_chunk(b + 1); ++c) {
+      s += sum[c];
+      if constexpr (has_rate<V>) rate += sum_rate[c];
+    }
+    auto const q = quaternion_of_half(best_turn<V>(s, rate, walls.axis(b)));
+    if constexpr (has_rate<V>)
+      half[b] = {q.imaginary.rate, q.less.rate};
+    else
+      half[b] = q;
+  }
+};
+
+/// What the turns of all bodies add to a node, and to the motion around a body's walls.
+template <class MemorySpace, class V>
+struct BodyTurnField {
+  Kokkos::View<double const*, MemorySpace> share;  ///< (n_bodies, n_nodes)
+  Kokkos::View<Vec3 const*, MemorySpace> centre;   ///< (n_bodies)
+  Quaternion<Vec3> const *half, *half_rate;        ///< (n_bodies)
+  Field<double const> x;
+
+  /// R y - y of the share f of body b's rotation.
+  KOKKOS_INLINE_FUNCTION V turned(Index b, double f, Vec3 const& y) const {
+    auto const h = Quaternion<V>::share(of_body(b), f);
+    // The square of (1 - less) + imaginary.
+    using Scalar = typename Quaternion<V>::Scalar;
+    Scalar const square = dot(h.imaginary, h.imaginary), double_less = 2 * h.less;
+    return Quaternion<V>{(Scalar{2} - double_less) * h.imaginary, double_less - h.less * h.less + square}.turned(V{y});
+  }
+  KOKKOS_INLINE_FUNCTION V operator()(Index n) const {
+    V sum{};
+    Index const n_bodies = Index(centre.extent(0)), n_nodes = Index(share.extent(0)) / n_bodies;
+    for (Index b = 0; b < n_bodies; ++b)
+      if (double const f = share(b * n_nodes + n); f != 0) sum = sum + turned(b, f, x[n] - centre(b));
+    return sum;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION Quaternion<V> of_body(Index b) const {
+    if constexpr (has_rate<V>)
+      return {{half[b].imaginary, half_rate[b].imaginary}, {half[b].less, half_rate[b].less}};
+    else
+      return half[b];
+  }
+};
+
+KOKKOS_INLINE_FUNCTION Vec3 change_of(Vec3 const& v) { return v; }
+KOKKOS_INLINE_FUNCTION Vec3 change_of(DualVec3 const& v) { return v.rate; }
+
+/// u(node) loses what the turns add.
+template <class MemorySpace, class V>
+struct TakeBodyTurns {
+  BodyTurnField<MemorySpace, V> field;
+  Kokkos::View<std::int32_t const*, MemorySpace> node;
+  Vec3* u;  ///< with rates: their rates
+
+  [[nodiscard]] Index size() const { return Index(node.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u[node(k)] = u[node(k)] - change_of(field(node(k))); }
+};
+
+/// The motion around wall nodes becomes what it is beyond their body's turn, in the places of the baseline.
+template <class MemorySpace, class V>
+struct TakeTurnsFromFrames {
+  BodyTurnField<MemorySpace, V> field;
+  Kokkos::View<std::int32_t const*, MemorySpace> node, body;  ///< per wall node; body -1: none
+  Vec3 const* u;
+  AffineMotion* frame;
+
+  [[nodiscard]] Index size() const { return Index(node.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    Index const b = body(r);
+    if (b < 0) return;
+    auto const column = [&](Vec3 const& e) { return change_of(field.turned(b, 1, e)); };
+    Vec3 const x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
+    frame[r] = frame[r] - AffineMotion{{}, {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}}};
+    frame[r].u = u[node(r)];
+  }
+};
+
+/// All nodes gain what the turns add.
+template <class MemorySpace, class V>
+struct AddBodyTurns {
+  BodyTurnField<MemorySpace, V> field;
+  Vec3* u;  ///< with rates: their rates
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u[n] += change_of(field(n)); }
+};
+
+}  // namespace gridmorph::kernels

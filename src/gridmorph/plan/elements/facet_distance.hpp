@@ -1,0 +1,32 @@
+// Distance from boundary faces, exact: a function of position alone, however faces and nodes are numbered.
+#pragma once
+
+#include <gridmorph/core/csr_graph.hpp>
+#include <gridmorph/geometry/facet_boxes.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+
+#include <array>
+#include <vector>
+
+namespace gridmorph {
+
+/// Of edges (2-D), triangles, and polygons as triangles around the mean of their corners. Making it: O(n log n); host.
+class FacetDistance {
+ public:
+  /// faces: lists of nodes, in their order around each face.
+  FacetDistance(Coordinates const& coordinates, CsrGraph const& faces);
+
+  [[nodiscard]] bool empty() const { return triangles_.empty(); }
+  /// Infinite where there are no faces. start: any number from an earlier call, left for the next; the closer its place was, the faster: about
+  /// O(log faces) where places follow one another.
+  [[nodiscard]] double operator()(Vec3 const& p, int& start) const;
+
+ private:
+  using Triangle = std::array<Vec3, 3>;
+  [[nodiscard]] static double squared(Triangle const& t, Vec3 const& p);
+
+  std::vector<Triangle> triangles_;
+  FacetBoxes boxes_;
+};
+
+}  // namespace gridmorph

@@ -1,0 +1,226 @@
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/plan/elements/facet_distance.hpp>
+#include <gridmorph/plan/elements/turn_share.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace gridmorph::detail {
+
+namespace {
+
+/// Wall nodes that are summed in one go.
+constexpr std::size_t chunk_size = 512;
+
+constexpr std::size_t most_bodies = 16;
+
+}  // namespace
+
+void UnstructuredPlanner::find_turning_bodies() {
+  auto const extent_of = [&](WallBody const& body) {
+    Box box;
+    for (Index32 const n : body.nodes) box.include(mesh_.coordinates[n]);
+    return gridmorph::distance(box.low, box.high);
+  };
+  wall_bodies_ = find_wall_bodies(mesh_, topology_, face_patches_, out_.graph, out_.boundary, driving_faces_,
+                                  out_.plan.plane_normal);
+  plan_one_rings();
+  auto const modes = modes_of_walls();
+  std::vector<WallBody> turning;
+  auto const rest = [&](WallBody const& body) {
+    for (Index32 const f : body.faces) {
+      wall_bodies_.resting.faces.add(topology_.boundary.nodes[f]);
+      wall_bodies_.resting.slides_on.push_back(-1);
+    }
+  };
+  for (WallBody const& body : wall_bodies_.bodies) {
+    bool const rotates = std::all_of(body.nodes.begin(), body.nodes.end(),
+                                     [&](Index32 n) { return modes[std::size_t(n)] == BoundaryLayer::Mode::rotate; });
+    if (rotates && !body.attached)
+      turning.push_back(body);
+    else
+      rest(body);
+  }
+  // Each costs a distance and 8 bytes per node of the mesh.
+  if (turning.size() > most_bodies) {
+    std::stable_sort(turning.begin(), turning.end(),
+                     [&](WallBody const& a, WallBody const& b) { return extent_of(a) > extent_of(b); });
+    std::for_each(turning.begin() + most_bodies, turning.end(), rest);
+    out_.notes.push_back("of " + std::to_string(turning.size()) + " bodies that could turn as wholes the largest " +
+                         std::to_string(most_bodies) + " do");
+    turning.resize(most_bodies);
+  }
+  wall_bodies_.bodies = std::move(turning);
+  for (WallBody const& body : wall_bodies_.bodies) add_turning_body(body);
+  if (!wall_bodies_.bodies.empty() && out_.displacement && options_.elements.motion < 0) reach_ = reach_beyond_turns();
+}
+
+void UnstructuredPlanner::add_turning_body(WallBody const& body) {
+  TurningBodies& all = out_.plan.turns_of_bodies;
+  auto const area = areas(body.nodes);
+  double sum = 0, size = 0;
+  Vec3 centre;
+  for (std::size_t k = 0; k < body.nodes.size(); ++k) {
+    sum += area[k];
+    centre += area[k] * mesh_.coordinates[body.nodes[k]];
+  }
+  centre = (1 / sum) * centre;
+  auto const& driving = out_.plan.driving;
+  if (all.first_chunk.empty()) all.first_chunk.push_back(0);
+  for (std::size_t k = 0; k < body.nodes.size(); ++k) {
+    if (k % chunk_size == 0) all.first.push_back(Index(all.wall.size()));
+    auto const place = std::lower_bound(driving.begin(), driving.end(), body.nodes[k]) - driving.begin();
+    all.wall.push_back(Index32(place));
+    all.slot.push_back(out_.plan.driving_slots[std::size_t(place)]);
+    all.weight.push_back(area[k] / sum);
+    size = std::max(size, gridmorph::distance(mesh_.coordinates[body.nodes[k]], centre));
+  }
+  all.first_chunk.push_back(Index(all.first.size()));
+  body_sizes_.push_back(size);
+  all.centre.push_back(centre);
+  all.axis.push_back(body.axis);
+}
+
+double UnstructuredPlanner::reach_beyond_turns() const {
+  using Host = Kokkos::HostSpace;
+  UnstructuredPlan const& plan = out_.plan;
+  TurningBodies const& all = plan.turns_of_bodies;
+  std::vector<Vec3> u(std::size_t(mesh_.n_nodes()));
+  for (std::size_t k = 0; k < plan.known.size(); ++k) u[std::size_t(plan.known[k])] = (*out_.displacement)[k];
+  auto const view = [](auto const& list) {
+    using T = typename std::decay_t<decltype(list)>::value_type;
+    return Kokkos::View<T const*, Host>(list.data(), list.size());
+  };
+  kernels::WallTable<Host> const walls{view(plan.driving), view(plan.one_rings.first), view(plan.one_rings.item),
+                                       view(plan.turns),   plan.dimension == 2,        plan.plane_normal};
+  auto const& c = mesh_.coordinates;
+  kernels::Field<double const> const x{c.x.data(), c.y.data(), c.z.data()};
+  std::vector<Vec3> turn(plan.driving.size());
+  kernels::WallTurn<Host, Vec3> const turns{walls, {x}, {x, u.data()}, turn.data()};
+  for_all(host_, "gridmorph::wall_turn", Index(turn.size()), [&](Index r) { turns(r); });
+  double largest = 0;
+  std::size_t k = 0;
+  for (std::size_t b = 0; b < wall_bodies_.bodies.size(); ++b) {
+    std::size_t const first = k, end = k + wall_bodies_.bodies[b].nodes.size();
+    kernels::VectorMoments s;
+    for (; k < end; ++k) {
+      auto const q = kernels::quaternion_of(turn[std::size_t(all.wall[k])]);
+      for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) s.add(all.weight[k] * e, e + q.turned(e));
+    }
+    auto const q = kernels::quaternion_of(kernels::best_turn<Vec3>(s, {}, all.axis[b]));
+    for (k = first; k < end; ++k) {
+      Index32 const n = plan.driving[std::size_t(all.wall[k])];
+      u[std::size_t(n)] = u[std::size_t(n)] - q.turned(c[n] - all.centre[b]);
+    }
+  }
+  for (Index32 const n : plan.known) largest = std::max(largest, norm(u[std::size_t(n)]));
+  return largest;
+}
+
+void UnstructuredPlanner::plan_turns() {
+  TurningBodies& all = out_.plan.turns_of_bodies;
+  std::size_t const n_bodies = wall_bodies_.bodies.size(), n_nodes = std::size_t(mesh_.n_nodes());
+  if (n_bodies == 0) return;
+  all.first.push_back(Index(all.wall.size()));
+  std::vector<Index32> body_of(n_nodes, -1);
+  for (std::size_t b = 0; b < n_bodies; ++b)
+    for (Index32 const n : wall_bodies_.bodies[b].nodes) body_of[std::size_t(n)] = Index32(b);
+  for (Index32 const n : out_.plan.driving) all.body_of_driving.push_back(body_of[std::size_t(n)]);
+  for (Index32 const n : out_.plan.driving)
+    if (body_of[std::size_t(n)] >= 0) all.rigid.push_back(n);
+  for (std::size_t k = 0; k < columns_.node.size(); ++k)
+    if (Index32 const b = body_of[std::size_t(columns_.root[k])]; b >= 0) {
+      body_of[std::size_t(columns_.node[k])] = b;
+      all.rigid.push_back(columns_.node[k]);
+    }
+  all.share.assign(n_bodies * n_nodes, 0);
+  // Nodes that have their share whatever their distances are.
+  Mask settled = mask();
+  for (std::size_t n = 0; n < n_nodes; ++n)
+    if (body_of[n] >= 0) {
+      all.share[std::size_t(body_of[n]) * n_nodes + n] = 1;
+      settled[n] = 1;
+    }
+  for (std::size_t n = 0; n < n_nodes; ++n)
+    if (!out_.graph.carries(Index32(n)) || out_.graph.neighbours[Index32(n)].empty() || is_known_[n]) settled[n] = 1;
+  for (Index32 const n : standing_.node) settled[std::size_t(n)] = 1;
+  for (auto const& image : out_.boundary.images)
+    settled[std::size_t(image.node)] = settled[std::size_t(image.owner)] = 1;
+  share_turns(settled);
+}
+
+void UnstructuredPlanner::share_turns(Mask const& settled) {
+  std::vector<double>& share = out_.plan.turns_of_bodies.share;
+  auto const& bodies = wall_bodies_.bodies;
+  auto const& surfaces = out_.plan.surfaces;
+  std::size_t const n_nodes = std::size_t(mesh_.n_nodes());
+  /// Faces that turn with some bodies, or with none.
+  struct Group {
+    Index32 surface = -1;
+    CsrGraph faces;
+    double layer = 0;
+  };
+  auto const turns_along = [&](WallBody const& body, Index32 surface) {
+    return surface >= 0 && mesh_.dimension == 3 && surfaces[std::size_t(surface)].kind == SlipSurface::Kind::plane &&
+           dot(body.axis, body.axis) > 0 && are_parallel(surfaces[std::size_t(surface)].direction, body.axis);
+  };
+  std::vector<Group> groups(1);
+  RestingFaces const& resting = wall_bodies_.resting;
+  for (Index f = 0; f < resting.faces.size(); ++f) {
+    Index32 const s = resting.slides_on[std::size_t(f)];
+    bool const own = std::any_of(bodies.begin(), bodies.end(), [&](WallBody const& b) { return turns_along(b, s); });
+    std::size_t g = 0;
+    if (own) {
+      for (g = 1; g < groups.size() && groups[g].surface != s;) ++g;
+      if (g == groups.size()) groups.push_back({s, {}, 0});
+    }
+    groups[g].faces.add(resting.faces[f]);
+    for (Index32 const n : resting.faces[f])
+      groups[g].layer = std::max({groups[g].layer, standing_.height[std::size_t(n)], columns_.height[std::size_t(n)]});
+  }
+  std::vector<FacetDistance> from;
+  std::vector<double> layer;
+  for (Group const& g : groups) {
+    from.emplace_back(mesh_.coordinates, g.faces);
+    layer.push_back(g.layer);
+  }
+  for (WallBody const& body : bodies) {
+    CsrGraph faces;
+    double highest = 0, edges = 0;
+    Index n_edges = 0;
+    for (Index32 const f : body.faces) {
+      auto const face = topology_.boundary.nodes[f];
+      faces.add(face);
+      for (std::size_t k = 0; k < face.size(); ++k, ++n_edges)
+        edges += gridmorph::distance(mesh_.coordinates[face[k]], mesh_.coordinates[face[(k + 1) % face.size()]]);
+    }
+    for (Index32 const n : body.nodes) highest = std::max(highest, columns_.height[std::size_t(n)]);
+    from.emplace_back(mesh_.coordinates, faces);
+    // Without columns the first cells turn with the wall, about as high as its faces are long.
+    layer.push_back(highest > 0 ? highest : edges / double(n_edges));
+  }
+  constexpr std::size_t at_once = 512;
+  for_all_parts(host_, "gridmorph::turn_shares", Index((n_nodes + at_once - 1) / at_once), [&](Index part) {
+    std::vector<int> start(from.size(), 0);
+    std::vector<double> distance(from.size());
+    std::size_t const end = std::min(n_nodes, std::size_t(part + 1) * at_once);
+    for (std::size_t n = std::size_t(part) * at_once; n < end; ++n) {
+      if (settled[n] != 0) continue;
+      for (std::size_t k = 0; k < from.size(); ++k) distance[k] = from[k](mesh_.coordinates[Index(n)], start[k]);
+      for (std::size_t b = 0; b < bodies.size(); ++b) {
+        TurnDistances at{distance[groups.size() + b], infinity, layer[groups.size() + b], 0, body_sizes_[b]};
+        for (std::size_t k = 0; k < from.size(); ++k) {
+          if (k == groups.size() + b || (k < groups.size() && turns_along(bodies[b], groups[k].surface))) continue;
+          at.others = std::min(at.others, distance[k]);
+          at.other_layer = std::max(at.other_layer, layer[k]);
+        }
+        share[b * n_nodes + n] = turn_share(at);
+      }
+    }
+  });
+}
+
+}  // namespace gridmorph::detail

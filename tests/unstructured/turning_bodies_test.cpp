@@ -1,0 +1,393 @@
+// Bodies that turn as a whole: the rotation that their walls make, how it fades, and what large turns leave of meshes.
+#include "support/made_bodies.hpp"
+#include "support/random.hpp"
+#include "support/reduced.hpp"
+#include "support/unstructured_case.hpp"
+
+#include <generators/airfoil.hpp>
+#include <generators/sphere.hpp>
+#include <gridmorph/geometry/rotation.hpp>
+#include <gridmorph/kernels/body_turn.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/plan/elements/facet_distance.hpp>
+#include <gridmorph/plan/elements/turn_share.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace gridmorph::test {
+namespace {
+
+using Case = UnstructuredCase;
+constexpr double degrees = std::numbers::pi / 180;
+
+// ---- the rotation of a cloud of points -----------------------------------------------------------------------------------
+
+struct Cloud {
+  std::vector<Vec3> arms;
+
+  explicit Cloud(unsigned seed, bool flat = false) {
+    Random random(seed);
+    Vec3 mean;
+    for (int k = 0; k < 40; ++k) {
+      arms.push_back(random.vector(1));
+      if (flat) arms.back().z = 0;
+      mean += (1.0 / 40) * arms.back();
+    }
+    for (Vec3& a : arms) a = a - mean;
+  }
+  template <class After>
+  [[nodiscard]] kernels::VectorMoments moments(After const& after) const {
+    kernels::VectorMoments s;
+    for (Vec3 const& a : arms) s.add(a, after(a));
+    return s;
+  }
+};
+
+TEST(BestTurn, IsTheRotationThatWasMade) {
+  for (bool const flat : {false, true})
+    for (double const angle : {1e-9, 0.3, 2.0, 3.1}) {
+      Vec3 const axis = flat ? Vec3{0, 0, 1} : (1 / std::sqrt(14.0)) * Vec3{1, -2, 3};
+      Mat3 const r = rotation_by(angle * axis);
+      auto const s = Cloud(5, flat).moments([&](Vec3 const& a) { return r * a + Vec3{7, 8, 9}; });
+      Vec3 const expected = std::tan(angle / 4) * axis;
+      EXPECT_LT(norm(kernels::best_turn<Vec3>(s, {}, {}) - expected), 1e-13) << angle;
+      EXPECT_LT(norm(kernels::best_turn<Vec3>(s, {}, axis) - expected), 1e-13) << angle;
+    }
+}
+
+TEST(BestTurn, OfPointsThatStayOrHaveNoShapeIsExactlyNothing) {
+  Cloud const cloud(3);
+  EXPECT_EQ(norm(kernels::best_turn<Vec3>(cloud.moments([](Vec3 const& a) { return a; }), {}, {})), 0);
+  EXPECT_EQ(norm(kernels::best_turn<Vec3>(cloud.moments([](Vec3 const& a) { return a; }), {}, {0, 0, 1})), 0);
+  EXPECT_EQ(norm(kernels::best_turn<Vec3>({}, {}, {})), 0);
+}
+
+TEST(BestTurn, HasTheRateOfItsDifferences) {
+  Cloud const cloud(11);
+  auto const after = [&](double t) {
+    return cloud.moments([&](Vec3 const& a) {
+      Vec3 const turned = rotation_by(Vec3{0.4 + t, 1.1 - 0.5 * t, 0.3 * t}) * a;
+      return turned + Vec3{0.3 * a.y * a.y, t * a.x * a.z, 0.2 * a.x};
+    });
+  };
+  double const h = 1e-6;
+  auto const before = after(0.7 - h), later = after(0.7 + h);
+  kernels::VectorMoments rate;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) rate.m[i][j] = (later.m[i][j] - before.m[i][j]) / (2 * h);
+  for (Vec3 const& axis : {Vec3{}, Vec3{0, 0, 1}}) {
+    Vec3 const expected =
+        (0.5 / h) * (kernels::best_turn<Vec3>(later, {}, axis) - kernels::best_turn<Vec3>(before, {}, axis));
+    auto const found = kernels::best_turn<kernels::DualVec3>(after(0.7), rate, axis);
+    EXPECT_LT(norm(found.rate - expected), 1e-8);
+    EXPECT_LT(norm(found.value - kernels::best_turn<Vec3>(after(0.7), {}, axis)), 1e-14);
+    EXPECT_GT(norm(found.rate), 0.1);
+  }
+}
+
+// ---- how it fades --------------------------------------------------------------------------------------------------------
+
+TEST(TurnShare, FallsFromTheBodyToTheOthersAndHasNoJumps) {
+  for (double const way : {1e-3, 0.1, 3.0, 400.0})
+    for (double const layer : {0.0, 0.02}) {
+      double last = 1;
+      constexpr int n = 2000;
+      for (int k = 0; k <= n; ++k) {
+        double const d = way * k / n;
+        double const f = turn_share({d, way - d, layer, 0, 1});
+        if (d <= std::min(layer, way / 3) || k == 0) {
+          EXPECT_EQ(f, 1);
+        }
+        EXPECT_LE(f, last);
+        EXPECT_LT(last - f, way < 100 ? 0.01 : 0.2);
+        last = f;
+      }
+      EXPECT_EQ(last, 0);
+    }
+  EXPECT_EQ(turn_share({5, HUGE_VAL, 0, 0, 1}), 1) << "nothing else is there";
+  // The two forms meet.
+  EXPECT_NEAR(turn_share({1.9e-5, 1.99e-5, 0, 0, 1}), turn_share({1.9e-5, 2.11e-5, 0, 0, 1}), 0.06);
+}
+
+TEST(TurnShare, SpreadsTheShearEvenlyAroundARoundBody) {
+  // r da/dr of a turn by one radian; evenly would be 1 / log(outer / inner radius) everywhere.
+  double const outer = 20, even = 1 / std::log(outer), h = 1e-4;
+  double largest = 0;
+  for (double r = 1 + h; r < outer - h; r += 0.01) {
+    auto const share = [&](double at) { return turn_share({at - 1, outer - at, 0, 0, 1}); };
+    largest = std::max(largest, r * (share(r - h) - share(r + h)) / (2 * h));
+  }
+  EXPECT_LT(largest, 1.7 * even);
+}
+
+TEST(FacetDistance, IsThatOfTheNearestFaceHoweverTheyAreListed) {
+  Mesh const mesh = box_around({6, 5, 4}, [](Vec3 const& p) { return norm(p - Vec3{3, 2.5, 2}) < 1.2; });
+  CsrGraph faces, backwards;
+  for (auto const& patch : mesh.patches)
+    if (patch.name == "body")
+      for (Index f = 0; f < patch.faces.size(); ++f) faces.add(patch.faces[f]);
+  for (Index f = faces.size(); f-- > 0;) {
+    std::vector<Index32> face(faces[f].begin(), faces[f].end());
+    std::rotate(face.begin(), face.begin() + 1, face.end());
+    backwards.add(face);
+  }
+  FacetDistance const a(mesh.coordinates, faces), b(mesh.coordinates, backwards);
+  Random random(7);
+  int start_a = 0, start_b = 0;
+  for (int k = 0; k < 300; ++k) {
+    Vec3 const p = random.vector(6);
+    double nearest = HUGE_VAL;
+    // Flat axis-parallel squares: the distance of a box without thickness.
+    for (Index f = 0; f < faces.size(); ++f) {
+      Box box;
+      for (Index32 const n : faces[f]) box.include(mesh.coordinates[n]);
+      auto const off = [](double low, double high, double x) { return std::max({low - x, x - high, 0.0}); };
+      nearest = std::min(nearest, norm(Vec3{off(box.low.x, box.high.x, p.x), off(box.low.y, box.high.y, p.y),
+                                            off(box.low.z, box.high.z, p.z)}));
+    }
+    EXPECT_NEAR(a(p, start_a), nearest, 1e-13);
+    EXPECT_NEAR(b(p, start_b), nearest, 1e-13);
+  }
+}
+
+// ---- morphs --------------------------------------------------------------------------------------------------------------
+
+Case c_mesh(int fineness = 1) {
+  AirfoilOptions options;
+  options.around = 96 * fineness;
+  options.wake = 24 * fineness;
+  options.across = 32 * fineness;
+  options.first_cell = 1e-3;
+  return Case(make_airfoil(options));
+}
+Motion pitch(double angle, Vec3 const& shift = {}) {
+  return motion_of({rule_for({"airfoil"}, rotation({0.25, 0.1, 0}, {0, 0, 1}, angle, shift))});
+}
+/// Largest distance of walls and of the columns on them from where a rigid motion puts them.
+double largest_from(Case const& c, UnstructuredMorphed const& m, RigidTransform const& motion) {
+  double largest = 0;
+  auto const& plan = m.prepared.plan;
+  for (auto const* nodes : {&plan.driving, &plan.columns.node})
+    for (Index32 const n : *nodes) largest = std::max(largest, distance(m.x[n], motion(c.mesh.coordinates[n])));
+  return largest;
+}
+
+TEST(TurningBody, AnAirfoilTurnsByHalfATurnInOneStep) {
+  auto const c = c_mesh(reduced() ? 1 : 2);
+  for (double const angle : {-60.0, 60.0, 120.0, 180.0}) {
+    auto const m = c.morph(pitch(angle * degrees));
+    ASSERT_EQ(m.prepared.plan.turns_of_bodies.size(), 1);
+    EXPECT_EQ(c.inverted(m.x), 0) << angle;
+    EXPECT_EQ(c.largest_miss(m), 0);
+    EXPECT_GT(m.prepared.plan.columns.node.size(), 500u);
+    EXPECT_LT(largest_from(c, m, rotation_about({0.25, 0.1, 0}, {0, 0, 1}, angle * degrees)), 1e-10);
+    if (std::abs(angle) <= 60) {
+      EXPECT_GT(c.quality(m.x)[Measure::minimum_angle_deg].min, 60);
+    }
+  }
+}
+
+TEST(TurningBody, ASphereTurnsInAnOuterOneFourDiametersAway) {
+  SphereOptions options;
+  options.elements = 40'000;
+  Case const c(make_sphere(options));
+  for (double const angle : {90.0, 180.0}) {
+    auto const m = c.guarded_morph(motion_of(
+        {rule_for({"sphere"}, rotation({0, 0, 0}, {1, 2, 3}, angle * degrees)), rule_for({"outer"}, FixedRule{})}));
+    EXPECT_EQ(c.inverted(m.x), 0) << angle;
+    EXPECT_LT(largest_from(c, m, rotation_about({0, 0, 0}, {1, 2, 3}, angle * degrees)), 1e-10);
+    if (reduced()) break;
+  }
+}
+
+/// Two blocks in a box, or one.
+Mesh blocks(bool two) {
+  return box_around({28, 16, 12}, [&](Vec3 const& p) {
+    bool const inside = p.y > 6 && p.y < 10 && p.z > 4 && p.z < 8;
+    return inside && ((p.x > 6 && p.x < 10) || (two && p.x > 18 && p.x < 22));
+  });
+}
+
+TEST(TurningBody, TwoThatTurnDifferentlyEachHaveTheirs) {
+  Case const c(blocks(true));
+  Vec3 const first{8, 8, 6}, second{20, 8, 6};
+  auto const left = rotation_about(first, {0, 0, 1}, 25 * degrees),
+             right = rotation_about(second, {1, 0, 0}, -30 * degrees);
+  FunctionRule const turns{"turns", [&](std::span<Vec3 const> x, std::span<Vec3> u) {
+                             for (std::size_t n = 0; n < x.size(); ++n)
+                               u[n] = (x[n].x < 14 ? left(x[n]) : right(x[n])) - x[n];
+                           }};
+  PlanOptions options;
+  options.boundary_layers.push_back({.walls = {"body"}, .extent = BoundaryLayer::Extent::layers, .layers = 1});
+  auto const m = c.morph(motion_of({rule_for({"body"}, turns)}), options);
+  ASSERT_EQ(m.prepared.plan.turns_of_bodies.size(), 2);
+  EXPECT_EQ(c.inverted(m.x), 0);
+  EXPECT_EQ(c.largest_miss(m), 0);
+  ASSERT_GT(m.prepared.plan.columns.node.size(), 100u);
+  for (Index32 const n : m.prepared.plan.columns.node) {
+    Vec3 const x = c.mesh.coordinates[n];
+    EXPECT_LT(distance(m.x[n], (x.x < 14 ? left : right)(x)), 1e-10);
+  }
+}
+
+TEST(TurningBody, BesideAWallThatStands) {
+  // As far from it as half the body is wide.
+  Case const c(box_around({20, 16, 12}, [](Vec3 const& p) {
+    return std::abs(p.x - 4) < 2 && std::abs(p.y - 8) < 2 && std::abs(p.z - 6) < 2;
+  }));
+  for (double const angle : {15.0, 30.0}) {
+    auto const m = c.morph(motion_of({rule_for({"body"}, rotation({4, 8, 6}, {1, 0, 0}, angle * degrees)),
+                                      rule_for({"i_min"}, FixedRule{}), rule_for({"i_max"}, FreeRule{})}));
+    EXPECT_EQ(m.prepared.plan.turns_of_bodies.size(), 1);
+    EXPECT_EQ(c.inverted(m.x), 0) << angle;
+    EXPECT_EQ(c.largest_miss(m), 0);
+  }
+}
+
+TEST(TurningBody, SlidesAboutTheNormalOfAPlaneThatItStandsOn) {
+  Case const c(
+      box_around({16, 16, 8}, [](Vec3 const& p) { return std::abs(p.x - 8) < 3 && std::abs(p.y - 8) < 1 && p.z < 4; }));
+  auto const turned = [&](Vec3 const& axis) {
+    return c.morph(motion_of({rule_for({"body"}, rotation({8, 8, 0}, axis, 60 * degrees)),
+                              rule_for({"k_min"}, SlipRule{}), rule_for({"k_max"}, FixedRule{})}));
+  };
+  auto const m = turned({0, 0, 1});
+  auto const& bodies = m.prepared.plan.turns_of_bodies;
+  ASSERT_EQ(bodies.size(), 1);
+  EXPECT_NEAR(std::abs(bodies.axis[0].z), 1, 1e-14);
+  EXPECT_EQ(c.inverted(m.x), 0);
+  double slid = 0;
+  for (Index32 const n : c.nodes_of("k_min")) {
+    EXPECT_NEAR(m.x[n].z, 0, 1e-13);
+    if (distance(c.mesh.coordinates[n], {8, 8, 0}) < 5) slid = std::max(slid, distance(m.x[n], c.mesh.coordinates[n]));
+  }
+  EXPECT_GT(slid, 2) << "its nodes go round with the body";
+}
+
+TEST(TurningBody, WhatEndsOnBoundariesThatStandDoesNotTurnAsAWhole) {
+  Case const c(
+      box_around({12, 12, 8}, [](Vec3 const& p) { return std::abs(p.x - 6) < 2 && std::abs(p.y - 6) < 2 && p.z < 4; }));
+  FunctionRule const twist{"twists", [](std::span<Vec3 const> x, std::span<Vec3> u) {
+                             for (std::size_t n = 0; n < x.size(); ++n)
+                               u[n] = rotation_about({6, 6, 0}, {0, 0, 1}, 0.1 * x[n].z)(x[n]) - x[n];
+                           }};
+  auto const m = c.morph(motion_of({rule_for({"body"}, twist), rule_for({"k_min"}, FixedRule{})}));
+  EXPECT_EQ(m.prepared.plan.turns_of_bodies.size(), 0);
+}
+
+TEST(TurningBody, ThatIsNotDisplacedLeavesEveryBit) {
+  auto const c = c_mesh();
+  auto const planned = c.morph(pitch(2));
+  Coordinates x(c.mesh.n_nodes());
+  std::vector<Vec3> const rest(planned.boundary.size());
+  apply_on_host(Morpher<Case::Host>(Case::Host(), planned.prepared.plan, c.mesh.coordinates), rest, x);
+  for (Index n = 0; n < x.size(); ++n) EXPECT_EQ(x[n], c.mesh.coordinates[n]) << n;
+}
+
+TEST(TurningBody, ThatBendsTooKeepsItsColumnsUprightAndItsElements) {
+  auto const c = c_mesh();
+  // A quarter turn of a section whose rear half is bent by 11 degrees.
+  auto const turn = rotation_about({0.5, 0, 0}, {0, 0, 1}, 90 * degrees);
+  FunctionRule const rule{"bends", [&](std::span<Vec3 const> x, std::span<Vec3> u) {
+                            for (std::size_t n = 0; n < x.size(); ++n) {
+                              double const s = std::max(0.0, x[n].x - 0.5);
+                              u[n] = turn(x[n] + Vec3{0, 0.2 * s * s, 0}) - x[n];
+                            }
+                          }};
+  auto const m = c.morph(motion_of({rule_for({"airfoil"}, rule)}));
+  EXPECT_EQ(c.inverted(m.x), 0);
+  EXPECT_EQ(c.largest_miss(m), 0);
+  auto const& plan = m.prepared.plan;
+  for (std::size_t k = 0; k < plan.columns.node.size(); ++k) {
+    Index32 const n = plan.columns.node[k], w = plan.driving[std::size_t(plan.columns.root[k])];
+    EXPECT_NEAR(distance(m.x[n], m.x[w]), distance(c.mesh.coordinates[n], c.mesh.coordinates[w]), 1e-12);
+  }
+  EXPECT_GT(c.quality(m.x)[Measure::minimum_angle_deg].min, 40);
+}
+
+TEST(TurningBody, GivesTheSameBitsWithAnyThreads) {
+  auto const c = c_mesh();
+  auto const with = [&](auto const& exec) {
+    auto const prepared = prepare(exec, c.mesh, c.topology, c.face_patches, pitch(1.7, {0.3, 0.1, 0}), {});
+    auto const boundary = prepared.boundary_displacement(c.mesh);
+    Coordinates x(c.mesh.n_nodes());
+    Morpher<std::decay_t<decltype(exec)>> const morpher(exec, prepared.plan, c.mesh.coordinates);
+    morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(boundary.data(), boundary.size()), x);
+    exec.fence();
+    return x;
+  };
+  Coordinates const serial = with(Kokkos::Serial()), host = with(Case::Host());
+  for (Index n = 0; n < serial.size(); ++n) ASSERT_EQ(serial[n], host[n]) << n;
+}
+
+TEST(TurningBody, DoesNotDependOnNumbers) {
+  auto const c = c_mesh();
+  // About its own centre: all that moves is the turn.
+  auto const planned = prepare(c.mesh, c.topology, c.face_patches, pitch(1), {});
+  Vec3 const centre = planned.plan.turns_of_bodies.centre.front();
+  auto const motion = motion_of({rule_for({"airfoil"}, rotation(centre, {0, 0, 1}, 2.5))});
+  Mesh mesh = c.mesh;
+  Random random(17);
+  FileOrder order;
+  order.node.resize(std::size_t(mesh.n_nodes()));
+  order.element.resize(std::size_t(mesh.n_elements()));
+  std::iota(order.node.begin(), order.node.end(), 0);
+  std::iota(order.element.begin(), order.element.end(), 0);
+  random.shuffle(order.node);
+  random.shuffle(order.element);
+  auto const place = order.node;
+  reorder(mesh, std::move(order));
+  Case const other(mesh);
+  auto const a = c.morph(motion), b = other.morph(motion);
+  double largest = 0;
+  for (std::size_t n = 0; n < place.size(); ++n)
+    largest = std::max(largest, distance(b.x[Index(n)], a.x[Index(place[n])]));
+  EXPECT_LT(largest, 1e-11);
+}
+
+TEST(TurningBody, HasTheVelocityOfItsDifferences) {
+  auto const c = c_mesh();
+  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, pitch(1), {});
+  Morpher<Case::Host> const morpher(Case::Host(), prepared.plan, c.mesh.coordinates, {1, true});
+  auto const view = [](std::vector<Vec3> const& v) {
+    return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(v.data(), v.size());
+  };
+  auto const at = [&](double t) {
+    std::vector<Vec3> out;
+    auto const turn = rotation_about({0.25, 0.1, 0}, {0, 0, 1}, 2.6 + t);
+    for (Index32 const n : prepared.plan.known) {
+      Vec3 const x = c.mesh.coordinates[n];
+      bool const moves = std::binary_search(prepared.plan.driving.begin(), prepared.plan.driving.end(), n);
+      out.push_back(moves ? turn(x + Vec3{0.1 * t, 0.2 * (1 + t) * x.x * x.x, 0}) - x : Vec3{});
+    }
+    return out;
+  };
+  auto const displacements = [&](std::vector<Vec3> const& boundary) {
+    Coordinates u(c.mesh.n_nodes());
+    morpher.displacements(Case::Host(), view(boundary), u);
+    Case::Host().fence();
+    return u;
+  };
+  double const h = 1e-5;
+  auto const before = at(-h), after = at(h), now = at(0);
+  std::vector<Vec3> rate;
+  for (std::size_t k = 0; k < now.size(); ++k) rate.push_back((0.5 / h) * (after[k] - before[k]));
+  Coordinates const u0 = displacements(before), u1 = displacements(after), v(c.mesh.n_nodes());
+  morpher.velocities(Case::Host(), view(now), view(rate), v);
+  Case::Host().fence();
+  double error = 0, size = 0;
+  for (Index n = 0; n < v.size(); ++n) {
+    error = std::max(error, norm(v[n] - (0.5 / h) * (u1[n] - u0[n])));
+    size = std::max(size, norm(v[n]));
+  }
+  EXPECT_GT(size, 0.5);
+  EXPECT_LT(error, 1e-8 * size);
+}
+
+}  // namespace
+}  // namespace gridmorph::test
