@@ -253,7 +253,7 @@ TEST(TurningBody, SlidesAboutTheNormalOfAPlaneThatItStandsOn) {
   Case const c(
       box_around({16, 16, 8}, [](Vec3 const& p) { return std::abs(p.x - 8) < 3 && std::abs(p.y - 8) < 1 && p.z < 4; }));
   auto const turned = [&](Vec3 const& axis) {
-    return c.morph(motion_of({rule_for({"body"}, rotation({8, 8, 0}, axis, 60 * degrees)),
+    return c.morph(motion_of({rule_for({"body"}, rotation({8, 8, 0}, axis, 45 * degrees)),
                               rule_for({"k_min"}, SlipRule{}), rule_for({"k_max"}, FixedRule{})}));
   };
   auto const m = turned({0, 0, 1});
@@ -266,7 +266,7 @@ TEST(TurningBody, SlidesAboutTheNormalOfAPlaneThatItStandsOn) {
     EXPECT_NEAR(m.x[n].z, 0, 1e-13);
     if (distance(c.mesh.coordinates[n], {8, 8, 0}) < 5) slid = std::max(slid, distance(m.x[n], c.mesh.coordinates[n]));
   }
-  EXPECT_GT(slid, 2) << "its nodes go round with the body";
+  EXPECT_GT(slid, 1.5) << "its nodes go round with the body";
 }
 
 TEST(TurningBody, WhatEndsOnBoundariesThatStandDoesNotTurnAsAWhole) {

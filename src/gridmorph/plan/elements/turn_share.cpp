@@ -17,7 +17,8 @@ double growth(double s) {
 double turn_share(TurnDistances const& at) {
   constexpr double start_of_logarithm = 0.21;
   if (!std::isfinite(at.others)) return 1;
-  double const way = at.body + at.others, length = start_of_logarithm * std::sqrt(at.size * std::sqrt(at.size * way));
+  double const way = at.body + at.others, far = std::max(way, 8 * at.size);
+  double const length = start_of_logarithm * std::sqrt(at.size * std::sqrt(at.size * far));
   if (!(way > 0 && length > 0)) return 0;
   double const start = std::min(at.body_layer, way / 3), end = way - std::min(at.other_layer, way / 3);
   double const done = (std::clamp(at.body, start, end) - start) / (end - start), all = (end - start) / length;

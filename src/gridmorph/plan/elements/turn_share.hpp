@@ -16,7 +16,7 @@ struct TurnDistances {
 ///
 ///   f = 1 - Q(d / L) / Q(D / L),   Q(s) = log(1 + s) - e log(1 + s / e),   e = 0.25,   L = 0.21 (S^3 W)^(1/4)
 ///
-/// S the size of the body, W the distance from it plus that from the others. Around a body that turns by a(r) the shear is r da/dr, which is
+/// S the size of the body, W the distance from it plus that from the others, 8 S at least. Around a body that turns by a(r) the shear is r da/dr, which is
 /// smallest at its worst where it is the same everywhere: a logarithm. Q is one, but for having no slope at its start:
 /// Q'(s) = (1 - e) s / ((1 + s) (e + s)). Where the way is much shorter than the body, f is 1 - (d / D)^2. e and L by measurement, on an airfoil in
 /// a C mesh, viscous spheres and squares beside one another (docs/unstructured.md): shorter L favour narrow gaps and coarse cells
