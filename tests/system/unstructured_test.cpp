@@ -128,7 +128,9 @@ TEST_F(UnstructuredSequence, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
     auto const alone = coordinates("single.su2"), together = coordinates(fmt::format("out_{}.su2", step + 1));
     for (Index n = 0; n < alone.size(); ++n) EXPECT_LT(distance(alone[n], together[n]), 1e-6) << step << " " << n;
     double const largest = json["sequence"]["steps"][std::size_t(step)]["largest_displacement"];
-    EXPECT_NEAR(largest, std::abs(factor) * 0.15, 0.02 * std::abs(factor)) << step;
+    // On the walls 0.15; what turns with the body further out moves further.
+    EXPECT_GT(largest, std::abs(factor) * 0.14) << step;
+    EXPECT_LT(largest, std::abs(factor) * 0.20) << step;
   }
 }
 
@@ -175,7 +177,7 @@ TEST_F(UnstructuredSequence, AStepThatInvertsOrASeriesInOneFileLeavesNothing) {
   expect_bad_input(gridmorph("morph case.toml"), {"one file per step", "step_{step}.su2"});
 }
 
-/// The same ring, its body turned.
+/// The same ring, its body turned, with nodes that turn with its wall less and less: a body that turns as a whole needs no steps.
 class UnstructuredTurn : public UnstructuredSequence {
  protected:
   [[nodiscard]] Outcome turn(double degrees, int steps) const {
@@ -183,6 +185,7 @@ class UnstructuredTurn : public UnstructuredSequence {
     write("case.toml",
           fmt::format("[mesh]\ninput = \"ring.su2\"\noutput = \"turned.su2\"\n[[motion]]\npatches = [\"body\"]\n"
                       "rule = \"rigid\"\nrotation = {{ axis = [0, 0, 1], origin = [0, 0, 0], angle_deg = {} }}\n"
+                      "[boundary_layer]\nwalls = [\"body\"]\nmode = \"blend\"\n"
                       "[guard]\nmin_determinant = 0.001\nsteps = {}\n",
                       degrees, steps));
     return gridmorph("morph case.toml");
@@ -196,6 +199,7 @@ TEST_F(UnstructuredTurn, ASequenceGoesThereInStepsToo) {
           fmt::format("[mesh]\ninput = \"ring.su2\"\n[sequence]\ntimes = [0, 0.25, 1]\noutput = \"turn_{{step}}.su2\"\n"
                       "[[motion]]\npatches = [\"body\"]\nrule = \"rigid\"\namplitude = [[0, 0], [1, 1]]\n"
                       "rotation = {{ axis = [0, 0, 1], origin = [0, 0, 0], angle_deg = 120 }}\n"
+                      "[boundary_layer]\nwalls = [\"body\"]\nmode = \"blend\"\n"
                       "[guard]\nmin_determinant = 0.001\nsteps = {}\n",
                       steps));
     return gridmorph("morph case.toml");
@@ -240,6 +244,19 @@ TEST_F(UnstructuredTurn, WhatOneStepCannotMakeIsMadeInSteps) {
   Outcome const small = turn(60, 4);
   EXPECT_EQ(small.status, 0) << small.err;
   EXPECT_EQ((small.out + small.err).find("steps"), std::string::npos);
+}
+
+TEST_F(UnstructuredTurn, ABodyThatTurnsAsAWholeNeedsNone) {
+  write("case.toml",
+        "[mesh]\ninput = \"ring.su2\"\noutput = \"turned.su2\"\n[[motion]]\npatches = [\"body\"]\nrule = \"rigid\"\n"
+        "rotation = { axis = [0, 0, 1], origin = [0, 0, 0], angle_deg = 180 }\n[guard]\nsteps = 1\n");
+  Outcome const run = gridmorph("morph case.toml");
+  EXPECT_EQ(run.status, 0) << run.err;
+  auto const before = coordinates("ring.su2"), after = coordinates("turned.su2");
+  for (int i = 0; i < around; ++i) {
+    EXPECT_LT(distance(after[i], -before[i]), 1e-15);
+    EXPECT_EQ(distance(after[i + around * rows], before[i + around * rows]), 0);
+  }
 }
 
 TEST_F(UnstructuredTurn, WhereStepsDoNotHelpNothingIsWritten) {
