@@ -38,7 +38,7 @@ struct Corner {
     for (int k = 0; k < 3; ++k)
       for (int const m : {k, (k + 1) % 3}) {
         Vec3 const& a = arm[std::size_t(m)];
-        neighbours.push_back({Index(m + 1), -1, a, 1 / norm(a)});
+        neighbours.push_back({Index(m + 1), -1, a});
       }
     table.roots = view<kernels::Root>({{0, 0, 6, 1, 0, line}});
     table.neighbours = view(neighbours);

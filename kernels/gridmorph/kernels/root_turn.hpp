@@ -1,8 +1,8 @@
 // How the near field of a wall of blocks turns, line by line. A root is the slot that a line of the near field stands on.
 //
 //   raw     the wall's rotation there (wall_turn.hpp), over all near-field walls that touch, across the edges of blocks
-//             At an edge of the wall, where its faces may turn differently: of directions, not areas, and no further than the line keeps
-//             a share of its height above each of the faces, as far as it would keep it without a turn
+//             At an edge of the wall, where its faces may turn differently, no further than the line keeps a share of its height above
+//             each of the faces, as far as it would keep it without a turn
 //   inner   raw, corrected towards end walls so that lines that stand beside one stay on it:
 //             (sum over its ends of (1 - c1(h / H)) alpha) raw
 //           alpha at the end: onto a slip surface the smallest rotation that takes raw N to N', N its normal there before
@@ -23,7 +23,6 @@ struct RootNeighbour {
   Index slot;
   std::int32_t matrix;  ///< frame of its slot -> frame of the root's, -1: the same
   Vec3 arm;             ///< from the root to it, frame of the root's slot
-  double weight = 1;    ///< of the arm; 1 / |arm| at an edge of the wall
 };
 
 /// Neighbours are pairs as in wall_turn.hpp.
@@ -113,13 +112,10 @@ struct RawRootTurn {
   /// By differences of displacements: nothing turns where all are the same.
   KOKKOS_INLINE_FUNCTION V turn_at(Root const& root) const {
     V const here = u[root.slot];
-    auto const before = [&](Index k) {
-      RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
-      return V{other.weight * other.arm};
-    };
+    auto const before = [&](Index k) { return V{table.neighbours(root.first_neighbour + k).arm}; };
     auto const after = [&](Index k) {
       RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
-      return other.weight * (V{other.arm} + (table.in_frame(other.matrix, u[other.slot]) - here));
+      return V{other.arm} + (table.in_frame(other.matrix, u[other.slot]) - here);
     };
     V normal{}, moved{};
     for (Index k = 0; k < root.n_neighbours; k += 2) {

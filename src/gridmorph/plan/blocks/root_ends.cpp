@@ -174,14 +174,9 @@ Vec3 along_normals(RootNode const& node) {
 
 void append(std::vector<RootNode> const& nodes, bool stand, TurnTables& tables) {
   for (RootNode const& n : nodes) {
-    bool const edge = is_edge(n);
     tables.roots.push_back({n.slot, Index(tables.neighbours.size()), std::int32_t(n.around.size()), stand ? 1 : 0,
-                            n.turn, edge ? along_normals(n) : Vec3{}});
-    for (kernels::RootNeighbour neighbour : n.around) {
-      double const length = norm(neighbour.arm);
-      if (edge && length > 0) neighbour.weight = 1 / length;
-      tables.neighbours.push_back(neighbour);
-    }
+                            n.turn, is_edge(n) ? along_normals(n) : Vec3{}});
+    tables.neighbours.insert(tables.neighbours.end(), n.around.begin(), n.around.end());
   }
 }
 
