@@ -240,9 +240,6 @@ struct BodyTurnField {
   }
 };
 
-KOKKOS_INLINE_FUNCTION Vec3 change_of(Vec3 const& v) { return v; }
-KOKKOS_INLINE_FUNCTION Vec3 change_of(DualVec3 const& v) { return v.rate; }
-
 /// u(node) loses what the turns add.
 template <class MemorySpace, class V>
 struct TakeBodyTurns {
@@ -251,7 +248,7 @@ struct TakeBodyTurns {
   Vec3* u;  ///< with rates: their rates
 
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u[node(k)] = u[node(k)] - change_of(field(node(k))); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u[node(k)] = u[node(k)] - written(field(node(k))); }
 };
 
 /// The motion around wall nodes becomes what it is beyond their body's turn, in the places of the baseline.
@@ -266,9 +263,8 @@ struct TakeTurnsFromFrames {
   KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
     Index const b = body(r);
     if (b < 0) return;
-    auto const column = [&](Vec3 const& e) { return change_of(field.turned(b, 1, e)); };
-    Vec3 const x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
-    frame[r] = frame[r] - AffineMotion{{}, {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}}};
+    frame[r] =
+        frame[r] - AffineMotion{{}, matrix_of_map([&](Vec3 const& e) { return written(field.turned(b, 1, e)); })};
     frame[r].u = u[node(r)];
   }
 };
@@ -278,7 +274,7 @@ template <class MemorySpace, class V>
 struct AddBodyTurns {
   BodyTurnField<MemorySpace, V> field;
   Vec3* u;  ///< with rates: their rates
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u[n] += change_of(field(n)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u[n] += written(field(n)); }
 };
 
 }  // namespace gridmorph::kernels

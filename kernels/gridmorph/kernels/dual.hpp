@@ -42,6 +42,13 @@ struct DualVec3 {
   Vec3 value{}, rate{};
 };
 
+KOKKOS_INLINE_FUNCTION Vec3 value_of(Vec3 const& v) { return v; }
+KOKKOS_INLINE_FUNCTION Vec3 value_of(DualVec3 const& v) { return v.value; }
+
+/// What a kernel writes of a V: its rate, where it has one.
+KOKKOS_INLINE_FUNCTION Vec3 written(Vec3 const& v) { return v; }
+KOKKOS_INLINE_FUNCTION Vec3 written(DualVec3 const& v) { return v.rate; }
+
 KOKKOS_INLINE_FUNCTION DualVec3 operator+(DualVec3 const& a, DualVec3 const& b) {
   return {a.value + b.value, a.rate + b.rate};
 }

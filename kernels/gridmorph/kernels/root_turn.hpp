@@ -94,10 +94,6 @@ struct ClearVectors {
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { v.set(n, {}); }
 };
 
-/// What is written of a V: its rate, where it has one.
-KOKKOS_INLINE_FUNCTION Vec3 written(Vec3 const& v) { return v; }
-KOKKOS_INLINE_FUNCTION Vec3 written(DualVec3 const& v) { return v.rate; }
-
 /// raw of every root.
 template <class MemorySpace, class V>
 struct RawRootTurn {

@@ -30,8 +30,6 @@ KOKKOS_INLINE_FUNCTION Vec3 across(Vec3 const& v) {
   Vec3 const c = cross(v, other);
   return (1 / norm(c)) * c;
 }
-KOKKOS_INLINE_FUNCTION Vec3 value_of(Vec3 const& v) { return v; }
-KOKKOS_INLINE_FUNCTION Vec3 value_of(DualVec3 const& v) { return v.value; }
 
 /// The smallest rotation that takes direction `before` to `after`; zero where either is zero and where they are the same; about
 /// `half_turn_axis` (unit, across them), with no rate, where they are opposite to round-off.
@@ -72,6 +70,13 @@ KOKKOS_INLINE_FUNCTION V turned_by(V const& r, V const& y) {
   auto const square = dot(r, r), whole = Scalar{1} + square;
   V const across = cross(r, y);
   return (4 / (whole * whole)) * ((Scalar{1} - square) * across + 2 * cross(r, across));
+}
+
+/// The matrix of a linear map Vec3 -> Vec3.
+template <class Map>
+KOKKOS_INLINE_FUNCTION Mat3 matrix_of_map(Map const& map) {
+  Vec3 const x = map(Vec3{1, 0, 0}), y = map(Vec3{0, 1, 0}), z = map(Vec3{0, 0, 1});
+  return {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
 }
 
 /// Neighbours that blend their half turns have to agree on one of r and -r, whatever round-off says of each: the direction along

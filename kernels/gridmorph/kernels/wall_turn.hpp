@@ -138,9 +138,7 @@ struct WallFrames {
   [[nodiscard]] Index size() const { return Index(wall.node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
     V const turn = turn_of(r);
-    auto const column = [&](Vec3 const& e) { return change(turned_by(turn, V{e})); };
-    Vec3 const x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
-    frame[r] = {u[wall.node(r)], {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}}};
+    frame[r] = {u[wall.node(r)], matrix_of_map([&](Vec3 const& e) { return written(turned_by(turn, V{e})); })};
   }
 
  private:
@@ -150,8 +148,6 @@ struct WallFrames {
     else
       return turn[r];
   }
-  KOKKOS_INLINE_FUNCTION static Vec3 change(Vec3 const& v) { return v; }
-  KOKKOS_INLINE_FUNCTION static Vec3 change(DualVec3 const& v) { return v.rate; }
 };
 
 }  // namespace gridmorph::kernels

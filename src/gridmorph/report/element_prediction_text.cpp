@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 namespace gridmorph {
 
 namespace {
@@ -14,8 +12,6 @@ std::string least_determinant(Mesh const& mesh, PredictedElements const& element
   return fmt::format("{} ({} in the baseline) at {}", format_value(elements.determinant.value),
                      format_value(elements.determinant_before), describe_element(mesh, elements.determinant.element));
 }
-
-nlohmann::json finite_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
 
 nlohmann::json element_json(Mesh const& mesh, ElementValue const& at) {
   if (at.element < 0) return nullptr;

@@ -1,6 +1,7 @@
 #include <gridmorph/report/measure_text.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -82,6 +83,8 @@ std::string format_value(double value) {
   if (std::isinf(value)) return value > 0 ? "unbounded" : "-unbounded";
   return fmt::format("{:.4g}", value);
 }
+
+nlohmann::json finite_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
 
 std::string worst_place(QualityReport const& report, MeasureStatistics const& statistics) {
   if (statistics.worst_zone < 0) return "-";

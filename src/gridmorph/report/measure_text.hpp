@@ -3,6 +3,8 @@
 
 #include <gridmorph/quality/quality.hpp>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <string>
 #include <string_view>
 
@@ -20,6 +22,9 @@ std::string_view element_formula(Measure measure);
 
 /// A value as tables and messages show it: four significant digits, "unbounded" for infinity.
 std::string format_value(double value);
+
+/// As JSON, which has no infinity: null for what is not finite.
+nlohmann::json finite_or_null(double value);
 
 /// "zone 'Zone 1' cell (i 3, j 1, k 7)" for the worst cell of one measure; "-" where nothing was measured.
 std::string worst_place(QualityReport const& report, MeasureStatistics const& statistics);

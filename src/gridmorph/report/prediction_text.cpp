@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace gridmorph {
 
@@ -37,18 +36,16 @@ std::string largest_relative(PredictedCells const& cells) {
 
 std::string name_of(PredictedChain const& chain) { return fmt::format("stage {}, {}", chain.stage, chain.chain); }
 
-nlohmann::json number(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
-
 nlohmann::json value_json(Mesh const& mesh, CellValue const& at) {
   if (at.zone < 0) return nullptr;
-  return {{"value", number(at.value)},
+  return {{"value", finite_or_null(at.value)},
           {"zone", mesh.zones[std::size_t(at.zone)].name},
           {"cell", {at.cell[0] + 1, at.cell[1] + 1, at.cell[2] + 1}}};
 }
 
 nlohmann::json cells_json(Mesh const& mesh, PredictedCells const& cells) {
   nlohmann::json jacobian = value_json(mesh, cells.scaled_jacobian);
-  if (!jacobian.is_null()) jacobian["baseline"] = number(cells.scaled_jacobian_before);
+  if (!jacobian.is_null()) jacobian["baseline"] = finite_or_null(cells.scaled_jacobian_before);
   nlohmann::json relative;
   for (int d = 0; d < 3; ++d)
     relative[std::string(1, direction_name[d])] = value_json(mesh, cells.relative_displacement[d]);

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cmath>
 #include <string>
 
 namespace gridmorph {
@@ -12,13 +11,10 @@ namespace {
 
 using nlohmann::json;
 
-/// JSON has no infinity.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 json one_based(Index3 const& p) { return {p[0] + 1, p[1] + 1, p[2] + 1}; }
 
 json worst_json(QualityReport const& report, MeasureStatistics const& s) {
-  json worst{{"value", number(s.worst)}, {"zone", report.zone_names.at(std::size_t(s.worst_zone))}};
+  json worst{{"value", finite_or_null(s.worst)}, {"zone", report.zone_names.at(std::size_t(s.worst_zone))}};
   if (report.unstructured)
     worst["element"] = s.worst_cell[0] + 1;
   else
@@ -27,7 +23,10 @@ json worst_json(QualityReport const& report, MeasureStatistics const& s) {
 }
 
 json statistics_json(QualityReport const& report, MeasureStatistics const& s) {
-  return {{"min", number(s.min)}, {"mean", number(s.mean)}, {"max", number(s.max)}, {"worst", worst_json(report, s)}};
+  return {{"min", finite_or_null(s.min)},
+          {"mean", finite_or_null(s.mean)},
+          {"max", finite_or_null(s.max)},
+          {"worst", worst_json(report, s)}};
 }
 
 json fallen_json(QualityReport const& report, QualityRegion const& region) {
@@ -65,17 +64,17 @@ json place_json(QualityReport const& report, NodeLocation const& location) {
 json wall_json(QualityReport const& report, WallQuality const& w) {
   json walls = {{"nodes", w.nodes},
                 {"first_height",
-                 {{"min", number(w.first_height_min)},
-                  {"mean", number(w.first_height_mean)},
-                  {"max", number(w.first_height_max)}}},
+                 {{"min", finite_or_null(w.first_height_min)},
+                  {"mean", finite_or_null(w.first_height_mean)},
+                  {"max", finite_or_null(w.first_height_max)}}},
                 {"orthogonality_deg",
-                 {{"mean", number(w.orthogonality_deg_mean)},
-                  {"max", number(w.orthogonality_deg_max)},
+                 {{"mean", finite_or_null(w.orthogonality_deg_mean)},
+                  {"max", finite_or_null(w.orthogonality_deg_max)},
                   {"worst", place_json(report, w.orthogonality_worst)}}}};
   if (report.against_baseline) {
-    walls["first_height_change"] = {{"max", number(w.height_change_max)},
+    walls["first_height_change"] = {{"max", finite_or_null(w.height_change_max)},
                                     {"worst", place_json(report, w.height_change_worst)}};
-    walls["orthogonality_change_deg"] = {{"max", number(w.orthogonality_change_deg_max)},
+    walls["orthogonality_change_deg"] = {{"max", finite_or_null(w.orthogonality_change_deg_max)},
                                          {"worst", place_json(report, w.orthogonality_change_worst)}};
   }
   return walls;
