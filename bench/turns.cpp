@@ -1,15 +1,17 @@
 // How shapes of elements stand turns and shifts: this project, in one step and without its guard, beside thin plate splines with every
 // boundary node as a centre (thin_plate.hpp).
 //
-//   bench_turns [--small] [CASE ...]      cases: airfoil, sphere, pair, gap, shift; all of them where none is named
+//   bench_turns [--small] [CASE ...]      cases: airfoil, sphere, pair, gap, shift, wide, plunge; all of them where none is named
 //
 //   airfoil   a C mesh of 24,576 quadrilaterals, outer boundary 29 chords away, turned about the middle of its chord
 //   sphere    prisms and tetrahedra, outer sphere four diameters away, turned about an axis that no grid line follows
 //   pair      two squares as far from one another as they are wide, turned against one another in a box of squares
 //   gap       a square half its width beside a wall that stands
-//   shift     the sphere, moved by diameters
+//   shift     the sphere, moved by diameters; outer sphere twenty diameters away
+//   wide      the same, outer sphere sixty diameters away
+//   plunge    the airfoil, moved across its chord by chords
 //
-// Writes lines of comma separated values: case, amount (degrees or diameters), method, smallest scaled Jacobian, inverted elements.
+// Writes lines of comma separated values: case, amount (degrees, diameters or chords), method, smallest scaled Jacobian, inverted elements.
 // Scaled Jacobian: determinant of the edges at a corner over the product of their lengths, the smallest over all corners of all elements.
 // scripts/plot-turns draws them. --small: meshes of a few thousand elements and two amounts each, which the tests run.
 #include "thin_plate.hpp"
@@ -238,15 +240,32 @@ Case airfoil_case(bool small) {
   return {"airfoil", make_airfoil(options), {{"airfoil", {0.5, 0, 0}}}, {0, 0, 1}, false, by_degrees(small)};
 }
 
-Case sphere_case(bool small, bool shifts) {
+Case plunge_case(bool small) {
+  Case c = airfoil_case(small);
+  c.name = "plunge";
+  c.axis = {0, 1, 0};
+  c.shifts = true;
+  c.unit = 1;
+  c.amounts = {1, 2, 4, 8, 12, 16};
+  if (small) c.amounts = {2, 8};
+  return c;
+}
+
+Vec3 const oblique = (1 / std::sqrt(14.0)) * Vec3{1, 2, 3};
+
+Case sphere_case(bool small) {
   SphereOptions options;
   options.elements = small ? 12'000 : 40'000;
-  Vec3 const axis = (1 / std::sqrt(14.0)) * Vec3{1, 2, 3};
-  if (!shifts) return {"sphere", make_sphere(options), {{"sphere", {}}}, axis, false, by_degrees(small)};
-  options.distance = 20;
+  return {"sphere", make_sphere(options), {{"sphere", {}}}, oblique, false, by_degrees(small)};
+}
+Case shift_case(bool small, std::string const& name, double distance) {
+  SphereOptions options;
+  options.elements = small ? 12'000 : 40'000;
+  options.distance = distance;
   std::vector<double> amounts{1, 2, 4, 6, 8, 10, 12, 14, 16};
+  if (distance > 20) amounts.insert(amounts.end(), {20, 30, 40});
   if (small) amounts = {4, 8};
-  return {"shift", make_sphere(options), {{"sphere", {}}}, axis, true, amounts, 2 * options.radius};
+  return {name, make_sphere(options), {{"sphere", {}}}, oblique, true, amounts, 2 * options.radius};
 }
 
 void run(Case const& c) {
@@ -279,8 +298,10 @@ int main(int argc, char** argv) {
   std::map<std::string, std::function<Case()>> const cases{{"airfoil", [&] { return airfoil_case(small); }},
                                                            {"pair", [&] { return pair_case(small); }},
                                                            {"gap", [&] { return gap_case(small); }},
-                                                           {"sphere", [&] { return sphere_case(small, false); }},
-                                                           {"shift", [&] { return sphere_case(small, true); }}};
+                                                           {"sphere", [&] { return sphere_case(small); }},
+                                                           {"shift", [&] { return shift_case(small, "shift", 20); }},
+                                                           {"wide", [&] { return shift_case(small, "wide", 60); }},
+                                                           {"plunge", [&] { return plunge_case(small); }}};
   for (std::string const& name : wanted)
     if (!cases.contains(name)) {
       std::fprintf(stderr, "bench_turns: no case '%s'\n", name.c_str());

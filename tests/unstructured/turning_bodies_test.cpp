@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -125,6 +126,51 @@ TEST(TurnShare, SpreadsTheShearEvenlyAroundARoundBody) {
   EXPECT_LT(largest, 1.7 * even);
 }
 
+TEST(TurnShare, OfTwoBodiesIsLessBetweenThem) {
+  std::array far{0.5, 0.0}, between{0.5, 0.5}, at_one{1.0, 0.0};
+  for (auto* shares : {&far, &between, &at_one}) share_between(*shares);
+  EXPECT_EQ(far, (std::array{0.5, 0.0}));
+  EXPECT_EQ(at_one, (std::array{1.0, 0.0}));
+  EXPECT_DOUBLE_EQ(between[0], 0.4);
+  EXPECT_DOUBLE_EQ(between[1], 0.4);
+}
+
+TEST(ShiftShare, FallsFromTheBodyToTheOthersAlmostEvenly) {
+  double const way = 40, size = 1, infinite = HUGE_VAL;
+  double share = 0, last = 1;
+  auto const at = [&](double d, double others) {
+    shift_shares({&d, 1}, {&size, 1}, others, {&share, 1});
+    return share;
+  };
+  EXPECT_EQ(at(3, infinite), 1) << "nothing else is there";
+  constexpr int n = 400;
+  for (int k = 0; k <= n; ++k) {
+    double const d = way * k / n, s = at(d, way - d);
+    EXPECT_LE(s, last);
+    EXPECT_LT(last - s, 1.4 / n);
+    last = s;
+  }
+  EXPECT_EQ(at(0, way), 1);
+  EXPECT_EQ(last, 0);
+}
+
+TEST(ShiftShare, OfSeveralBodiesAddUpToOneAtMost) {
+  Random random(23);
+  std::array const sizes{1.0, 0.3, 2.0};
+  for (int k = 0; k < 200; ++k) {
+    std::array<double, 3> from{}, shares{};
+    for (double& d : from) d = std::abs(random.vector(9).x);
+    double const others = std::abs(random.vector(9).x);
+    shift_shares(from, sizes, others, shares);
+    EXPECT_LE(shares[0] + shares[1] + shares[2], 1 + 1e-12);
+    for (double const s : shares) EXPECT_GE(s, 0);
+    // At a body none of the others'.
+    from[1] = 0;
+    shift_shares(from, sizes, others, shares);
+    EXPECT_EQ(shares, (std::array{0.0, 1.0, 0.0}));
+  }
+}
+
 TEST(FacetDistance, IsThatOfTheNearestFaceHoweverTheyAreListed) {
   Mesh const mesh = box_around({6, 5, 4}, [](Vec3 const& p) { return norm(p - Vec3{3, 2.5, 2}) < 1.2; });
   CsrGraph faces, backwards;
@@ -211,6 +257,33 @@ Mesh blocks(bool two) {
     bool const inside = p.y > 6 && p.y < 10 && p.z > 4 && p.z < 8;
     return inside && ((p.x > 6 && p.x < 10) || (two && p.x > 18 && p.x < 22));
   });
+}
+
+TEST(TurningBody, ASphereShiftsByMostOfTheWayToAnOuterOneTwentyDiametersAway) {
+  SphereOptions options;
+  options.elements = reduced() ? 12'000 : 40'000;
+  options.distance = 20;
+  Case const c(make_sphere(options));
+  double const before = c.quality(c.mesh.coordinates)[Measure::minimum_angle_deg].min;
+  for (double const diameters : {4.0, 16.0}) {
+    Vec3 const shift = (diameters * 2 * options.radius / std::sqrt(14.0)) * Vec3{1, 2, 3};
+    auto const m =
+        c.morph(motion_of({rule_for({"sphere"}, rotation({}, {0, 0, 1}, 0, shift)), rule_for({"outer"}, FixedRule{})}));
+    EXPECT_EQ(c.inverted(m.x), 0) << diameters;
+    EXPECT_EQ(c.largest_miss(m), 0);
+    EXPECT_LT(largest_from(c, m, {Mat3{}, shift}), 1e-10);
+    if (diameters < 5) {
+      EXPECT_GT(c.quality(m.x)[Measure::minimum_angle_deg].min, 0.6 * before);
+    }
+  }
+}
+
+TEST(TurningBody, LeavesAShiftThatAllBoundariesShareToTheRest) {
+  Case const c(blocks(true));
+  Vec3 const shift{3, -2, 1};
+  auto const m = c.morph(motion_of({rule_for({"*"}, rotation({}, {0, 0, 1}, 0, shift))}));
+  EXPECT_EQ(m.prepared.plan.turns_of_bodies.size(), 2);
+  for (Index n = 0; n < m.x.size(); ++n) EXPECT_LT(distance(m.x[n], c.mesh.coordinates[n] + shift), 1e-12) << n;
 }
 
 TEST(TurningBody, TwoThatTurnDifferentlyEachHaveTheirs) {
@@ -327,10 +400,7 @@ TEST(TurningBody, GivesTheSameBitsWithAnyThreads) {
 
 TEST(TurningBody, DoesNotDependOnNumbers) {
   auto const c = c_mesh();
-  // About its own centre: all that moves is the turn.
-  auto const planned = prepare(c.mesh, c.topology, c.face_patches, pitch(1), {});
-  Vec3 const centre = planned.plan.turns_of_bodies.centre.front();
-  auto const motion = motion_of({rule_for({"airfoil"}, rotation(centre, {0, 0, 1}, 2.5))});
+  auto const motion = pitch(2.5, {3, -2, 0});
   Mesh mesh = c.mesh;
   Random random(17);
   FileOrder order;

@@ -1,10 +1,11 @@
-// Bodies that turn: the rotation that the walls of each make as a whole, and what it does to every node.
+// Bodies that move: the rotation and the shift that the walls of each make as a whole, and what they do to every node.
 //
-//   u(x) += sum over bodies b of (R_b(f_b(x)) - I)(x - c_b)
+//   u(x) += sum over bodies b of (R_b(f_b(x)) - I)(x - c_b) + s_b(x) (t_b - t_0)
 //
 // c_b is the mean place of the body's walls, R_b the mean of how they turn around their nodes (wall_turn.hpp), R(f) the share f of a
-// rotation, and f_b a share that is planned for each node: 1 on the body and 0 on all other boundaries. What walls do beyond R_b is
-// carried by the rest of a morph. The mean of rotations, not the rigid motion that fits displacements best: a wing that bends does not pitch, although
+// rotation, t_b the mean displacement of its walls over their area, t_0 that of all other boundaries that are displaced by rules. f_b and s_b are shares planned
+// for each node: 1 on the body and 0 on other boundaries. What walls do beyond that is
+// carried by the rest of a morph; t_0 leaves a motion that all boundaries have in common to it. The mean of rotations, not the rigid motion that fits displacements best: a wing that bends does not pitch, although
 // its swept tip goes up.
 //
 // R_b: the rotation nearest to s = sum of w R_w, w the share of a wall node in the area: the unit quaternion that is the eigenvector of
@@ -20,8 +21,8 @@
 // times the whole one to 2 degrees over half a turn, nothing shrinks, and a node costs no trigonometry. Half a turn has one axis for all
 // nodes (settled()).
 //
-// Cost per wall node: 12 bytes of tables and 96 of its motion read, 18 flops. Per node: 8 bytes of shares for each body, 24 of coordinates
-// and 48 of displacements, about 70 flops where the share is not zero.
+// Cost per wall node: 24 bytes of tables and 120 of its motion read, 24 flops. Per node: 16 bytes of shares for each body, 24 of coordinates
+// and 48 of displacements, about 76 flops where the shares are not zero.
 #pragma once
 
 #include <gridmorph/kernels/inverse_distance.hpp>
@@ -159,10 +160,12 @@ template <class MemorySpace>
 struct BodyWalls {
   Kokkos::View<std::int32_t const*, MemorySpace>
       wall;  ///< wall nodes, numbers in the list of those that drive, body after body
-  Kokkos::View<double const*, MemorySpace> weight;      ///< likewise: share in the area of its body
-  Kokkos::View<Index const*, MemorySpace> first;        ///< first of each chunk, and the end
-  Kokkos::View<Index const*, MemorySpace> first_chunk;  ///< (n_bodies + 1)
+  Kokkos::View<std::int32_t const*, MemorySpace> slot;  ///< of the wall nodes, then of the nodes of other boundaries
+  Kokkos::View<double const*, MemorySpace> weight;      ///< likewise: share in the area of its body, or of the others
+  Kokkos::View<Index const*, MemorySpace> first;        ///< first slot of each chunk, and the end
+  Kokkos::View<Index const*, MemorySpace> first_chunk;  ///< of each body, of the others, and the end
   Kokkos::View<Vec3 const*, MemorySpace> axis;          ///< (n_bodies)
+  Index n_wall_chunks = 0;                              ///< chunks of bodies
 };
 
 /// Per chunk of wall nodes: sum of w (R - I)^T. Chunks are those of the plan, so that sums do not depend on threads.
@@ -172,7 +175,7 @@ struct SumBodyWalls {
   AffineMotion const* frame;  ///< around the nodes that drive; or its rates
   VectorMoments* sum;
 
-  [[nodiscard]] Index size() const { return Index(walls.first.extent(0)) - 1; }
+  [[nodiscard]] Index size() const { return walls.n_wall_chunks; }
   KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
     VectorMoments s;
     for (Index k = walls.first(c); k < walls.first(c + 1); ++k) {
@@ -207,12 +210,46 @@ struct TurnBodies {
   }
 };
 
-/// What the turns of all bodies add to a node, and to the motion around a body's walls.
+/// Per chunk of slots, those of other boundaries included: sum of w u.
+template <class MemorySpace>
+struct SumBodyShifts {
+  BodyWalls<MemorySpace> walls;
+  VectorArray boundary;  ///< displacements, or their rates
+  Vec3* sum;
+
+  [[nodiscard]] Index size() const { return Index(walls.first.extent(0)) - 1; }
+  KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
+    Vec3 s;
+    for (Index k = walls.first(c); k < walls.first(c + 1); ++k) s += walls.weight(k) * boundary[walls.slot(k)];
+    sum[c] = s;
+  }
+};
+
+/// Per body: its mean displacement less that of the other boundaries; or the rate of that.
+template <class MemorySpace>
+struct ShiftBodies {
+  BodyWalls<MemorySpace> walls;
+  Vec3 const* sum;
+  Vec3* shift;
+
+  [[nodiscard]] Index size() const { return Index(walls.axis.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index b) const { shift[b] = total(b) - total(Index(walls.axis.extent(0))); }
+
+ private:
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Vec3 total(Index b) const {
+    Vec3 s;
+    for (Index c = walls.first_chunk(b); c < walls.first_chunk(b + 1); ++c) s += sum[c];
+    return s;
+  }
+};
+
+/// What the turns and shifts of all bodies add to a node, and to the motion around a body's walls.
 template <class MemorySpace, class V>
 struct BodyTurnField {
-  Kokkos::View<double const*, MemorySpace> share;  ///< (n_bodies, n_nodes)
-  Kokkos::View<Vec3 const*, MemorySpace> centre;   ///< (n_bodies)
-  Quaternion<Vec3> const *half, *half_rate;        ///< (n_bodies)
+  Kokkos::View<double const*, MemorySpace> share, shift_share;  ///< (n_bodies, n_nodes)
+  Kokkos::View<Vec3 const*, MemorySpace> centre;                ///< (n_bodies)
+  Quaternion<Vec3> const *half, *half_rate;                     ///< (n_bodies)
+  Vec3 const *shift, *shift_rate;                               ///< (n_bodies)
   Field<double const> x;
 
   /// R y - y of the share f of body b's rotation.
@@ -226,12 +263,20 @@ struct BodyTurnField {
   KOKKOS_INLINE_FUNCTION V operator()(Index n) const {
     V sum{};
     Index const n_bodies = Index(centre.extent(0)), n_nodes = Index(share.extent(0)) / n_bodies;
-    for (Index b = 0; b < n_bodies; ++b)
+    for (Index b = 0; b < n_bodies; ++b) {
       if (double const f = share(b * n_nodes + n); f != 0) sum = sum + turned(b, f, x[n] - centre(b));
+      if (double const s = shift_share(b * n_nodes + n); s != 0) sum = sum + s * shift_of_body(b);
+    }
     return sum;
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION V shift_of_body(Index b) const {
+    if constexpr (has_rate<V>)
+      return {shift[b], shift_rate[b]};
+    else
+      return shift[b];
+  }
   KOKKOS_INLINE_FUNCTION Quaternion<V> of_body(Index b) const {
     if constexpr (has_rate<V>)
       return {{half[b].imaginary, half_rate[b].imaginary}, {half[b].less, half_rate[b].less}};

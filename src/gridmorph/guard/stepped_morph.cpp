@@ -24,15 +24,14 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
         "steps");
   MotionPath const path(mesh.coordinates, prepared.graph, prepared.boundary, displacement);
   auto const& known = prepared.plan.known;
-  PlanOptions plan = options.plan;
   Mesh now = mesh;
   for (int step = 1; step <= options.steps; ++step) {
     if (options.progress) options.progress(step);
     auto given = path.at(double(step) / options.steps);
     for (std::size_t k = 0; k < given.size(); ++k)
       given[k] = mesh.coordinates[known[k]] + given[k] - now.coordinates[known[k]];
-    plan.elements.motion = largest_norm(given);
-    auto const step_plan = prepare({}, now, topology, face_patches, prepared.graph, prepared.boundary, plan);
+    auto const step_plan =
+        prepare({}, now, topology, face_patches, prepared.graph, prepared.boundary, options.plan, given);
     Coordinates moved(mesh.n_nodes());
     apply_on_host(Morpher<Exec>(Exec(), step_plan.plan, now.coordinates), given, moved);
     // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more bad

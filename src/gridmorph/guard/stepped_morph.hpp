@@ -11,7 +11,7 @@ namespace gridmorph {
 
 struct StepOptions {
   int steps = 2;
-  PlanOptions plan;  ///< of every step; `motion` is found per step
+  PlanOptions plan;  ///< of every step; `motion` is what the step does
   RelaxOptions relax;
   std::function<void(int step)> progress;  ///< called before each step, from 1; may be empty
 };

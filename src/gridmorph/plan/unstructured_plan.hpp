@@ -32,18 +32,20 @@ struct ColumnPlan {
   std::vector<float> turn;  ///< share of the wall's rotation that the node makes: 0 translate, 1 rotate, between: blend
 };
 
-/// Bodies: walls that touch, that move and may turn as a whole. kernels/body_turn.hpp has what becomes of them.
+/// Bodies: walls that touch, that move and may turn and shift as a whole. kernels/body_turn.hpp has what becomes of them.
 struct TurningBodies {
-  std::vector<Vec3> centre;              ///< per body: mean place of its walls
-  std::vector<Vec3> axis;                ///< per body: the one axis about which it may turn, unit; zero: any
-  std::vector<Index32> wall;             ///< wall nodes, numbers in UnstructuredPlan::driving, body after body
-  std::vector<double> weight;            ///< likewise: share in the area of its body
-  std::vector<Index> first;              ///< first wall node of each chunk, and the end
-  std::vector<Index> first_chunk;        ///< of each body, and the end
-  std::vector<Index32> slot;             ///< in UnstructuredPlan::known, of the wall nodes
+  std::vector<Vec3> centre;   ///< per body: mean place of its walls
+  std::vector<Vec3> axis;     ///< per body: the one axis about which it may turn, unit; zero: any
+  std::vector<Index32> wall;  ///< wall nodes, numbers in UnstructuredPlan::driving, body after body
+  /// Slots in UnstructuredPlan::known: of the wall nodes, then of all others, and their shares in the area of their body, or of the others.
+  std::vector<Index32> slot;
+  std::vector<double> weight;
+  std::vector<Index> first;              ///< first of `slot` in each chunk, and the end
+  std::vector<Index> first_chunk;        ///< of each body, of the others, and the end
   std::vector<Index32> body_of_driving;  ///< (UnstructuredPlan::driving) -1: none
   std::vector<Index32> rigid;            ///< nodes of the bodies' walls and of the columns on them
   std::vector<double> share;  ///< (bodies, n_nodes) of the body's turn that a node makes, plan/elements/turn_share.hpp
+  std::vector<double> shift_share;  ///< likewise, of its shift
 
   [[nodiscard]] Index size() const { return Index(centre.size()); }
 };
@@ -124,7 +126,7 @@ struct PreparedUnstructured {
   UnstructuredPlan plan;
   UnstructuredReport report;
   std::vector<std::string> notes;
-  /// Of UnstructuredPlan::known, by the rules as they stand, where planning asked for it: ElementOptions::motion was not given.
+  /// Of UnstructuredPlan::known, which planning reckoned with: by the rules as they stand, or given to prepare(). None where ElementOptions::motion was given.
   std::optional<std::vector<Vec3>> displacement;
 
   /// The same, evaluated where planning did not; throws MotionError.
@@ -143,9 +145,9 @@ inline PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const
   return prepare(HostInstance(), mesh, topology, face_patches, motion, options);
 }
 /// The same for rules that are resolved already, make_node_graph() and boundary_conditions() of the mesh: for several plans of
-/// one mesh.
+/// one mesh. displacement: of BoundaryConditions::known, to reckon with instead of what the rules give now and of ElementOptions::motion.
 PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
-                             PlanOptions const& options);
+                             PlanOptions const& options, std::optional<std::vector<Vec3>> displacement = {});
 
 }  // namespace gridmorph

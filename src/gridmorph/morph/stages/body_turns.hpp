@@ -1,5 +1,5 @@
-// Bodies that turn, in an unstructured morph: after the walls the turn of each as a whole is taken off what they and their columns do, so that
-// all stages up to the far field carry what is left (shifts, bending); then every node gets its share of the turns.
+// Bodies that turn and shift, in an unstructured morph: after the walls what each does as a whole is taken off what they and their columns do, so that
+// all stages up to the far field carry what is left (bending, say); then every node gets its share of the turns and shifts.
 #pragma once
 
 #include <gridmorph/kernels/body_turn.hpp>
@@ -8,6 +8,7 @@
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <memory>
+#include <utility>
 
 namespace gridmorph::stages {
 
@@ -16,34 +17,43 @@ template <class Exec>
 struct BodyTurnTables {
   using Memory = typename Exec::memory_space;
 
-  List<Exec, Index32> known, slots, driving, body_of_driving, rigid;
+  List<Exec, Index32> known, driving, body_of_driving, rigid;
   kernels::BodyWalls<Memory> walls;
-  List<Exec, double> share;
+  List<Exec, double> share, shift_share;
   List<Exec, Vec3> centre;
   List<Exec, kernels::VectorMoments> sum, sum_rate;
   List<Exec, kernels::Quaternion<Vec3>> half, half_rate;
+  List<Exec, Vec3> shift_sum, shift, shift_rate;
 
   BodyTurnTables(Exec const& exec, UnstructuredPlan const& plan, bool with_rate)
       : known(upload(exec, plan.known, name("known"))),
-        slots(upload(exec, plan.turns_of_bodies.slot, name("slots"))),
         driving(upload(exec, plan.driving, name("driving"))),
         body_of_driving(upload(exec, plan.turns_of_bodies.body_of_driving, name("body"))),
         rigid(upload(exec, plan.turns_of_bodies.rigid, name("rigid"))),
         walls{upload(exec, plan.turns_of_bodies.wall, name("wall")),
+              upload(exec, plan.turns_of_bodies.slot, name("slot")),
               upload(exec, plan.turns_of_bodies.weight, name("weight")),
               upload(exec, plan.turns_of_bodies.first, name("first")),
               upload(exec, plan.turns_of_bodies.first_chunk, name("first_chunk")),
-              upload(exec, plan.turns_of_bodies.axis, name("axis"))},
+              upload(exec, plan.turns_of_bodies.axis, name("axis")),
+              plan.turns_of_bodies.first_chunk[std::size_t(plan.turns_of_bodies.size())]},
         share(upload(exec, plan.turns_of_bodies.share, name("share"))),
+        shift_share(upload(exec, plan.turns_of_bodies.shift_share, name("shift_share"))),
         centre(upload(exec, plan.turns_of_bodies.centre, name("centre"))),
-        sum(room_for<kernels::VectorMoments>(exec, walls.first.extent(0) - 1, name("sum"))),
+        sum(room_for<kernels::VectorMoments>(exec, std::size_t(walls.n_wall_chunks), name("sum"))),
         sum_rate(room_for<kernels::VectorMoments>(exec, with_rate ? sum.extent(0) : 0, name("sum_rate"))),
         half(room_for<kernels::Quaternion<Vec3>>(exec, centre.extent(0), name("half"))),
-        half_rate(room_for<kernels::Quaternion<Vec3>>(exec, with_rate ? centre.extent(0) : 0, name("half_rate"))) {}
+        half_rate(room_for<kernels::Quaternion<Vec3>>(exec, with_rate ? centre.extent(0) : 0, name("half_rate"))),
+        shift_sum(room_for<Vec3>(exec, walls.first.extent(0) - 1, name("shift_sum"))),
+        shift(room_for<Vec3>(exec, centre.extent(0), name("shift"))),
+        shift_rate(room_for<Vec3>(exec, with_rate ? centre.extent(0) : 0, name("shift_rate"))) {}
 
   template <class V>
   [[nodiscard]] kernels::BodyTurnField<Memory, V> field(Baseline const& x) const {
-    return {share, centre, half.data(), half_rate.data(), x};
+    return {share, shift_share, centre, half.data(), half_rate.data(), shift.data(), shift_rate.data(), x};
+  }
+  [[nodiscard]] List<Exec, Index32 const> wall_slots() const {
+    return Kokkos::subview(walls.slot, std::pair<std::size_t, std::size_t>(0, walls.wall.extent(0)));
   }
 
  private:
@@ -53,7 +63,7 @@ struct BodyTurnTables {
 template <class Exec>
 using SharedBodyTurns = std::shared_ptr<BodyTurnTables<Exec> const>;
 
-/// The turns of the bodies, taken off.
+/// What bodies do as wholes, taken off.
 template <class Exec>
 class TakeTurns {
  public:
@@ -64,6 +74,7 @@ class TakeTurns {
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     sum(exec, f, tables_->sum);
     turn<Vec3>(exec, tables_->half);
+    shift(exec, f, tables_->shift);
     take<Vec3>(exec, x, f);
   }
 
@@ -72,6 +83,7 @@ class TakeTurns {
     enqueue(exec, x, f);
     sum(exec, r, tables_->sum_rate);
     turn<kernels::DualVec3>(exec, tables_->half_rate);
+    shift(exec, r, tables_->shift_rate);
     take<kernels::DualVec3>(exec, x, r);
   }
 
@@ -88,6 +100,13 @@ class TakeTurns {
         "gridmorph::bodies::turn", exec,
         kernels::TurnBodies<Memory, V>{tables_->walls, tables_->sum.data(), tables_->sum_rate.data(), to.data()});
   }
+  /// Linear: rates as well.
+  void shift(Exec const& exec, StageField<Exec> const& f, List<Exec, Vec3> const& to) const {
+    kernels::launch("gridmorph::bodies::sum_shifts", exec,
+                    kernels::SumBodyShifts<Memory>{tables_->walls, f.boundary, tables_->shift_sum.data()});
+    kernels::launch("gridmorph::bodies::shift", exec,
+                    kernels::ShiftBodies<Memory>{tables_->walls, tables_->shift_sum.data(), to.data()});
+  }
   template <class V>
   void take(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     auto const field = tables_->template field<V>(x);
@@ -101,7 +120,7 @@ class TakeTurns {
   SharedBodyTurns<Exec> tables_;
 };
 
-/// The turns of the bodies, added to every node; walls are where they were asked to be, to the last bit.
+/// What bodies do as wholes, added to every node by its shares; walls are where they were asked to be, to the last bit.
 template <class Exec>
 class AddTurns {
  public:
@@ -110,7 +129,7 @@ class AddTurns {
   explicit AddTurns(SharedBodyTurns<Exec> tables) : tables_(std::move(tables)) {}
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const { add<Vec3>(exec, x, f); }
-  /// Of the turns that TakeTurns found.
+  /// Of what TakeTurns found.
   void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
     add<Vec3>(exec, x, f);
     add<kernels::DualVec3>(exec, x, r);
@@ -125,7 +144,7 @@ class AddTurns {
     launch("gridmorph::bodies::add", exec, 0, Index(f.u.extent(0)),
            kernels::AddBodyTurns<Memory, V>{tables_->template field<V>(x), f.u.data()});
     launch("gridmorph::bodies::walls", exec,
-           kernels::SetFromSlots<Memory>{tables_->slots, tables_->known, f.boundary, f.u.data()});
+           kernels::SetFromSlots<Memory>{tables_->wall_slots(), tables_->known, f.boundary, f.u.data()});
   }
 
   SharedBodyTurns<Exec> tables_;

@@ -61,8 +61,8 @@ void UnstructuredPlanner::take_boundary() {
       plan.copied.push_back(o);
     }
   plan.middle = corner_means(mesh_, out_.graph);
-  if (options_.elements.motion < 0) out_.displacement = evaluate(mesh_, b);
-  reach_ = out_.displacement ? largest_norm(*out_.displacement) : options_.elements.motion;
+  if (!out_.displacement && options_.elements.motion < 0) out_.displacement = evaluate(mesh_, b);
+  reach_ = rest_reach_ = out_.displacement ? largest_norm(*out_.displacement) : options_.elements.motion;
 }
 
 void UnstructuredPlanner::measure_distances() {
@@ -112,10 +112,11 @@ PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, Unstruc
 
 PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
-                             PlanOptions const& options) {
+                             PlanOptions const& options, std::optional<std::vector<Vec3>> displacement) {
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
-  return detail::UnstructuredPlanner(host, mesh, topology, face_patches, std::move(graph), std::move(boundary), options)
+  return detail::UnstructuredPlanner(host, mesh, topology, face_patches, std::move(graph), std::move(boundary), options,
+                                     std::move(displacement))
       .run();
 }
 

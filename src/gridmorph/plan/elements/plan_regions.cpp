@@ -13,7 +13,7 @@ namespace gridmorph::detail {
 double UnstructuredPlanner::offset() {
   OffsetHints hints;
   hints.layer_height = out_.report.layer_height;
-  hints.motion = reach_;
+  hints.motion = rest_reach_;
   double sum = 0;
   Index count = 0;
   Box box;

@@ -75,8 +75,15 @@ void UnstructuredPlanner::plan_start() {
 
 std::vector<double> UnstructuredPlanner::areas(std::vector<Index32> const& nodes) const {
   std::vector<double> area(std::size_t(mesh_.n_nodes()), 0);
+  Mask is_periodic = mask();
+  for (auto const& image : out_.boundary.images)
+    is_periodic[std::size_t(image.node)] = is_periodic[std::size_t(image.owner)] = 1;
   for (Index f = 0; f < topology_.boundary.size(); ++f) {
     auto const face = topology_.boundary.nodes[f];
+    // Between two zones there is no boundary.
+    if (face_patches_.patch[std::size_t(f)] == BoundaryFacePatches::connection &&
+        std::none_of(face.begin(), face.end(), [&](Index32 n) { return is_periodic[std::size_t(owner(n))] != 0; }))
+      continue;
     Vec3 const a = mesh_.coordinates[face[0]];
     double size = 0;
     if (mesh_.dimension == 2) size = distance(a, mesh_.coordinates[face[1]]);

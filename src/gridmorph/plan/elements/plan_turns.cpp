@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
+#include <tuple>
 
 namespace gridmorph::detail {
 
@@ -34,6 +36,7 @@ void UnstructuredPlanner::find_turning_bodies() {
     for (Index32 const f : body.faces) {
       wall_bodies_.resting.faces.add(topology_.boundary.nodes[f]);
       wall_bodies_.resting.slides_on.push_back(-1);
+      wall_bodies_.resting.given.push_back(1);
     }
   };
   for (WallBody const& body : wall_bodies_.bodies) {
@@ -55,7 +58,9 @@ void UnstructuredPlanner::find_turning_bodies() {
   }
   wall_bodies_.bodies = std::move(turning);
   for (WallBody const& body : wall_bodies_.bodies) add_turning_body(body);
-  if (!wall_bodies_.bodies.empty() && out_.displacement && options_.elements.motion < 0) reach_ = reach_beyond_turns();
+  if (wall_bodies_.bodies.empty()) return;
+  add_other_boundaries();
+  if (out_.displacement) std::tie(reach_, rest_reach_) = reach_beyond_turns();
 }
 
 void UnstructuredPlanner::add_turning_body(WallBody const& body) {
@@ -84,7 +89,26 @@ void UnstructuredPlanner::add_turning_body(WallBody const& body) {
   all.axis.push_back(body.axis);
 }
 
-double UnstructuredPlanner::reach_beyond_turns() const {
+void UnstructuredPlanner::add_other_boundaries() {
+  TurningBodies& all = out_.plan.turns_of_bodies;
+  Mask of_body = mask();
+  for (WallBody const& body : wall_bodies_.bodies)
+    for (Index32 const n : body.nodes) of_body[std::size_t(n)] = 1;
+  std::vector<Index32> nodes;
+  for (std::size_t k = 0; k < out_.plan.known.size(); ++k) {
+    if (of_body[std::size_t(out_.plan.known[k])] != 0) continue;
+    if (nodes.size() % chunk_size == 0) all.first.push_back(Index(all.slot.size()));
+    all.slot.push_back(Index32(k));
+    nodes.push_back(out_.plan.known[k]);
+  }
+  auto const area = areas(nodes);
+  double const sum = std::accumulate(area.begin(), area.end(), 0.0);
+  for (double const a : area) all.weight.push_back(a / sum);
+  all.first_chunk.push_back(Index(all.first.size()));
+  all.first.push_back(Index(all.slot.size()));
+}
+
+std::pair<double, double> UnstructuredPlanner::reach_beyond_turns() const {
   using Host = Kokkos::HostSpace;
   UnstructuredPlan const& plan = out_.plan;
   TurningBodies const& all = plan.turns_of_bodies;
@@ -101,12 +125,17 @@ double UnstructuredPlanner::reach_beyond_turns() const {
   std::vector<Vec3> turn(plan.driving.size());
   kernels::WallTurn<Host, Vec3> const turns{walls, {x}, {x, u.data()}, turn.data()};
   for_all(host_, "gridmorph::wall_turn", Index(turn.size()), [&](Index r) { turns(r); });
-  double largest = 0;
+  Vec3 shift_of_others;
+  for (std::size_t k = all.wall.size(); k < all.slot.size(); ++k)
+    shift_of_others += all.weight[k] * (*out_.displacement)[std::size_t(all.slot[k])];
+  auto rest = u;
   std::size_t k = 0;
   for (std::size_t b = 0; b < wall_bodies_.bodies.size(); ++b) {
     std::size_t const first = k, end = k + wall_bodies_.bodies[b].nodes.size();
     kernels::VectorMoments s;
+    Vec3 shift;
     for (; k < end; ++k) {
+      shift += all.weight[k] * (*out_.displacement)[std::size_t(all.slot[k])];
       auto const q = kernels::quaternion_of(turn[std::size_t(all.wall[k])]);
       for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) s.add(all.weight[k] * e, e + q.turned(e));
     }
@@ -114,17 +143,21 @@ double UnstructuredPlanner::reach_beyond_turns() const {
     for (k = first; k < end; ++k) {
       Index32 const n = plan.driving[std::size_t(all.wall[k])];
       u[std::size_t(n)] = u[std::size_t(n)] - q.turned(c[n] - all.centre[b]);
+      rest[std::size_t(n)] = u[std::size_t(n)] - (shift - shift_of_others);
     }
   }
-  for (Index32 const n : plan.known) largest = std::max(largest, norm(u[std::size_t(n)]));
-  return largest;
+  double largest = 0, largest_rest = 0;
+  for (Index32 const n : plan.known) {
+    largest = std::max(largest, norm(u[std::size_t(n)]));
+    largest_rest = std::max(largest_rest, norm(rest[std::size_t(n)]));
+  }
+  return {largest, largest_rest};
 }
 
 void UnstructuredPlanner::plan_turns() {
   TurningBodies& all = out_.plan.turns_of_bodies;
   std::size_t const n_bodies = wall_bodies_.bodies.size(), n_nodes = std::size_t(mesh_.n_nodes());
   if (n_bodies == 0) return;
-  all.first.push_back(Index(all.wall.size()));
   std::vector<Index32> body_of(n_nodes, -1);
   for (std::size_t b = 0; b < n_bodies; ++b)
     for (Index32 const n : wall_bodies_.bodies[b].nodes) body_of[std::size_t(n)] = Index32(b);
@@ -137,23 +170,25 @@ void UnstructuredPlanner::plan_turns() {
       all.rigid.push_back(columns_.node[k]);
     }
   all.share.assign(n_bodies * n_nodes, 0);
-  // Nodes that have their share whatever their distances are.
+  all.shift_share.assign(n_bodies * n_nodes, 0);
   Mask settled = mask();
   for (std::size_t n = 0; n < n_nodes; ++n)
     if (body_of[n] >= 0) {
-      all.share[std::size_t(body_of[n]) * n_nodes + n] = 1;
-      settled[n] = 1;
+      all.share[std::size_t(body_of[n]) * n_nodes + n] = all.shift_share[std::size_t(body_of[n]) * n_nodes + n] = 1;
+      settled[n] = Settled::all;
     }
   for (std::size_t n = 0; n < n_nodes; ++n)
-    if (!out_.graph.carries(Index32(n)) || out_.graph.neighbours[Index32(n)].empty() || is_known_[n]) settled[n] = 1;
-  for (Index32 const n : standing_.node) settled[std::size_t(n)] = 1;
+    if (!out_.graph.carries(Index32(n)) || out_.graph.neighbours[Index32(n)].empty() || is_known_[n])
+      settled[n] = Settled::all;
+  for (Index32 const n : standing_.node) settled[std::size_t(n)] = Settled::all;
   for (auto const& image : out_.boundary.images)
-    settled[std::size_t(image.node)] = settled[std::size_t(image.owner)] = 1;
+    for (Index32 const n : {image.node, image.owner})
+      settled[std::size_t(n)] = std::max<std::uint8_t>(settled[std::size_t(n)], Settled::turns);
   share_turns(settled);
 }
 
 void UnstructuredPlanner::share_turns(Mask const& settled) {
-  std::vector<double>& share = out_.plan.turns_of_bodies.share;
+  std::vector<double>&share = out_.plan.turns_of_bodies.share, &shift_share = out_.plan.turns_of_bodies.shift_share;
   auto const& bodies = wall_bodies_.bodies;
   auto const& surfaces = out_.plan.surfaces;
   std::size_t const n_nodes = std::size_t(mesh_.n_nodes());
@@ -167,14 +202,16 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
     return surface >= 0 && mesh_.dimension == 3 && surfaces[std::size_t(surface)].kind == SlipSurface::Kind::plane &&
            dot(body.axis, body.axis) > 0 && are_parallel(surfaces[std::size_t(surface)].direction, body.axis);
   };
-  std::vector<Group> groups(1);
+  // What a rule displaces; what no body turns along.
+  constexpr std::size_t given = 0, crosswise = 1;
+  std::vector<Group> groups(2);
   RestingFaces const& resting = wall_bodies_.resting;
   for (Index f = 0; f < resting.faces.size(); ++f) {
     Index32 const s = resting.slides_on[std::size_t(f)];
     bool const own = std::any_of(bodies.begin(), bodies.end(), [&](WallBody const& b) { return turns_along(b, s); });
-    std::size_t g = 0;
+    std::size_t g = resting.given[std::size_t(f)] != 0 ? given : crosswise;
     if (own) {
-      for (g = 1; g < groups.size() && groups[g].surface != s;) ++g;
+      for (g = 2; g < groups.size() && groups[g].surface != s;) ++g;
       if (g == groups.size()) groups.push_back({s, {}, 0});
     }
     groups[g].faces.add(resting.faces[f]);
@@ -205,10 +242,10 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
   constexpr std::size_t at_once = 512;
   for_all_parts(host_, "gridmorph::turn_shares", Index((n_nodes + at_once - 1) / at_once), [&](Index part) {
     std::vector<int> start(from.size(), 0);
-    std::vector<double> distance(from.size());
+    std::vector<double> distance(from.size()), turn(bodies.size()), shift(bodies.size()), beyond(bodies.size());
     std::size_t const end = std::min(n_nodes, std::size_t(part + 1) * at_once);
     for (std::size_t n = std::size_t(part) * at_once; n < end; ++n) {
-      if (settled[n] != 0) continue;
+      if (settled[n] == Settled::all) continue;
       for (std::size_t k = 0; k < from.size(); ++k) distance[k] = from[k](mesh_.coordinates[Index(n)], start[k]);
       for (std::size_t b = 0; b < bodies.size(); ++b) {
         TurnDistances at{distance[groups.size() + b], infinity, layer[groups.size() + b], 0, body_sizes_[b]};
@@ -217,7 +254,23 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
           at.others = std::min(at.others, distance[k]);
           at.other_layer = std::max(at.other_layer, layer[k]);
         }
-        share[b * n_nodes + n] = turn_share(at);
+        turn[b] = turn_share(at);
+      }
+      share_between(turn);
+      // As columns count for turns.
+      double nearest = distance[given];
+      for (std::size_t b = 0; b < bodies.size(); ++b) {
+        double others = distance[given];
+        for (std::size_t k = 0; k < bodies.size(); ++k)
+          if (k != b) others = std::min(others, distance[groups.size() + k]);
+        double const d = distance[groups.size() + b], way = d + others;
+        beyond[b] = std::max(0.0, d - std::min(layer[groups.size() + b], way / 3));
+        nearest = std::min(nearest, distance[given] - std::min(layer[given], (d + distance[given]) / 3));
+      }
+      shift_shares(beyond, body_sizes_, std::max(0.0, nearest), shift);
+      for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (settled[n] == Settled::nothing) share[b * n_nodes + n] = turn[b];
+        shift_share[b * n_nodes + n] = shift[b];
       }
     }
   });

@@ -7,10 +7,7 @@ namespace gridmorph {
 namespace {
 
 /// Q of the law.
-double growth(double s) {
-  constexpr double early = 0.25;
-  return std::log1p(s) - early * std::log1p(s / early);
-}
+double growth(double s, double early) { return std::log1p(s) - early * std::log1p(s / early); }
 
 }  // namespace
 
@@ -18,13 +15,46 @@ double turn_share(TurnDistances const& at) {
   constexpr double start_of_logarithm = 0.21;
   if (!std::isfinite(at.others)) return 1;
   double const way = at.body + at.others, far = std::max(way, 8 * at.size);
-  double const length = start_of_logarithm * std::sqrt(at.size * std::sqrt(at.size * far));
+  double const gap = std::min(1.0, way / (8 * at.size)), early = std::max(0.02, 0.25 * gap);
+  double const length = start_of_logarithm * std::sqrt(at.size * std::sqrt(at.size * far) / gap);
   if (!(way > 0 && length > 0)) return 0;
   double const start = std::min(at.body_layer, way / 3), end = way - std::min(at.other_layer, way / 3);
   double const done = (std::clamp(at.body, start, end) - start) / (end - start), all = (end - start) / length;
   // Where the way is short Q is s^2 and what differences of logarithms leave.
   constexpr double least = 1e-4;
-  return 1 - (all < least ? done * done : growth(done * all) / growth(all));
+  return 1 - (all < least ? done * done : growth(done * all, early) / growth(all, early));
+}
+
+void share_between(std::span<double> turn_shares) {
+  constexpr double given_up = 0.4;
+  double all = 1;
+  for (double const f : turn_shares) all *= 1 - given_up * f;
+  for (double& f : turn_shares) f *= all / (1 - given_up * f);
+}
+
+void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, double from_others,
+                  std::span<double> shares) {
+  constexpr double cubic = 0.1;
+  double nearest = from_others, second = from_others;
+  for (double const d : from_bodies) {
+    second = std::min(second, std::max(d, nearest));
+    nearest = std::min(nearest, d);
+  }
+  // Of body b, and how much of what is around is nearer than 8 of its sizes.
+  auto const grown = [&](std::size_t b) {
+    double const d = from_bodies[b], others = d > nearest ? nearest : second;
+    if (!std::isfinite(d) || !std::isfinite(others)) return d;
+    double const gap = std::min(1.0, (d + others) / (8 * sizes[b])), start = sizes[b] * gap * gap;
+    return start > 0 ? d - start * std::log1p(d / start) : d;
+  };
+  for (std::size_t b = 0; b < shares.size(); ++b) {
+    double nearness = 1 / from_others;
+    for (std::size_t k = 0; k < shares.size(); ++k)
+      if (k != b) nearness += 1 / grown(k);
+    // Zero at the others, whatever the distance from the body is.
+    double const done = grown(b) * nearness, t = std::isinf(nearness) ? 1 : done / (1 + done);
+    shares[b] = 1 - t - cubic * (t * t * (3 - 2 * t) - t);
+  }
 }
 
 }  // namespace gridmorph

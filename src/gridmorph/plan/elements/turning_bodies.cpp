@@ -27,6 +27,7 @@ struct OtherFace {
   enum class Kind { free, resting, slipping };
   Kind kind = Kind::free;
   Index32 surface = -1;
+  bool given = false;  ///< all of it
 
   OtherFace(std::vector<Index32> const& nodes, NodeKinds const& all, BoundaryConditions const& b) {
     std::size_t count[5] = {}, fewest = 0;
@@ -43,6 +44,7 @@ struct OtherFace {
       kind = Kind::slipping;
     else if (count[NodeKinds::none] == 0 && count[NodeKinds::drives] < nodes.size())
       kind = Kind::resting;
+    given = kind == Kind::resting && count[NodeKinds::periodic] == 0;
   }
 };
 
@@ -105,6 +107,7 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
     if (face.kind != OtherFace::Kind::free) {
       out.resting.faces.add(nodes);
       out.resting.slides_on.push_back(slips ? face.surface : -1);
+      out.resting.given.push_back(face.given ? 1 : 0);
     }
     for (Index32 const n : nodes) {
       if (body_of[std::size_t(n)] < 0) continue;

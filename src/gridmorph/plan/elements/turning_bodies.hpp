@@ -20,8 +20,9 @@ struct WallBody {
 
 /// Boundary faces that do not move with the driving walls.
 struct RestingFaces {
-  CsrGraph faces;                  ///< given, periodic, slipping; representatives
-  std::vector<Index32> slides_on;  ///< per face: number of the slip surface, -1: given or periodic
+  CsrGraph faces;                   ///< given, periodic, slipping; representatives
+  std::vector<Index32> slides_on;   ///< per face: number of the slip surface, -1: given or periodic
+  std::vector<std::uint8_t> given;  ///< per face: whether all its nodes are displaced by a rule
 };
 
 struct WallBodies {

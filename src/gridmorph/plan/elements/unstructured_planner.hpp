@@ -24,10 +24,11 @@ class UnstructuredPlanner {
  public:
   UnstructuredPlanner(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                       BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
-                      PlanOptions const& options)
+                      PlanOptions const& options, std::optional<std::vector<Vec3>> displacement)
       : host_(host), mesh_(mesh), topology_(topology), face_patches_(face_patches), options_(options) {
     out_.graph = std::move(graph);
     out_.boundary = std::move(boundary);
+    out_.displacement = std::move(displacement);
   }
   PreparedUnstructured run();
 
@@ -69,10 +70,14 @@ class UnstructuredPlanner {
   /// Needs the faces of the walls. What motion the offset and columns reckon with is then what turns leave of it.
   void find_turning_bodies();
   void add_turning_body(WallBody const& body);
-  /// The largest displacement less the turns of the bodies.
-  [[nodiscard]] double reach_beyond_turns() const;
+  /// All boundary nodes whose displacement is known but for those of the bodies: what shifts are measured against.
+  void add_other_boundaries();
+  /// The largest displacement less the turns of the bodies, and less their shifts too.
+  [[nodiscard]] std::pair<double, double> reach_beyond_turns() const;
   /// Needs the columns.
   void plan_turns();
+  /// What nodes have their shares whatever their distances are: those of turns, or all.
+  enum Settled : std::uint8_t { nothing, turns, all };
   /// Of all nodes that are not settled, by their distances.
   void share_turns(Mask const& settled);
 
@@ -126,7 +131,8 @@ class UnstructuredPlanner {
   NearestSource from_wall_, from_other_;
   NearestSource from_given_;  ///< boundaries beyond the moving walls that a rule displaces, and their columns
   double gap_ = infinity;     ///< smallest one between moving walls and other boundaries
-  double reach_ = 0;          ///< largest displacement that the offset and columns reckon with
+  double reach_ = 0;          ///< largest displacement that columns reckon with
+  double rest_reach_ = 0;     ///< largest one that the wrap carries
 };
 
 }  // namespace gridmorph::detail
