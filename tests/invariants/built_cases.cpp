@@ -1,6 +1,9 @@
 // Meshes made in memory, one of each kind of topology.
 #include "invariants/cases.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace gridmorph::test {
 namespace {
 
@@ -46,6 +49,47 @@ std::function<Motion(double)> on_planes(SlipRule const& sides) {
                         })),
                    rule({"u_max"}, FixedRule{}), rule({"v_min", "v_max"}, sides), rule({"w_min", "w_max"}, sides)});
   };
+}
+
+/// The cells of some ranges of nodes, however the mesh is stored.
+InnerRegion region(Mesh const& mesh, std::vector<std::pair<int, IndexRange>> const& ranges) {
+  std::vector<Vec3> centres;
+  for (auto const& [z, range] : ranges)
+    for (int k = range.begin[2]; k + 1 < range.end[2]; ++k)
+      for (int j = range.begin[1]; j + 1 < range.end[1]; ++j)
+        for (int i = range.begin[0]; i + 1 < range.end[0]; ++i) {
+          Vec3 sum;
+          for (int c = 0; c < 8; ++c)
+            sum += mesh.coordinates[mesh.zones[std::size_t(z)].node({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)})];
+          centres.push_back(0.125 * sum);
+        }
+  InnerRegion out;
+  out.name = "part";
+  out.holds = [centres = std::move(centres)](Vec3 const& p) {
+    return std::any_of(centres.begin(), centres.end(), [&](Vec3 const& c) { return distance(p, c) < 1e-9; });
+  };
+  return out;
+}
+
+/// The motion, and a rule for the cells of some ranges of nodes.
+std::function<Motion(double)> with_region(std::function<Motion(double)> motion, std::function<Mesh()> mesh,
+                                          std::vector<std::pair<int, IndexRange>> ranges,
+                                          std::function<Rule(double)> rule_of) {
+  return [=](double factor) {
+    Motion out = motion(factor);
+    out.regions = {region(mesh(), ranges)};
+    out.rules.push_back(rule({"part"}, rule_of(factor), 1));
+    return out;
+  };
+}
+
+/// As with_region(), by a field.
+std::function<Rule(double)> by(VectorField field) {
+  return [=](double factor) { return Rule(function_rule(scaled(factor, field))); };
+}
+
+std::function<Rule(double)> attached(std::string const& wall, AttachedRule::How how) {
+  return [=](double) { return Rule(AttachedRule{{wall}, how}); };
 }
 
 }  // namespace
@@ -157,6 +201,41 @@ std::vector<Case> make_cases() {
        layers(2, {"bottom"}),
        {0.3, -0.7, 0.2},
        {"bottom", "top", "side"}},
+      {"box_with_a_region",
+       [=] { return box(n, Shape::straight, 3); },
+       with_region(
+           on_planes(SlipRule{}), [=] { return box(n, Shape::straight, 3); }, {{0, {{2, 2, 2}, {6, 6, 5}}}},
+           by(waves(0.05))),
+       {}},
+      {"bricks_with_a_region",
+       [] { return bricks_with_t_junctions(4); },
+       with_region(
+           moves(waves(0.1), {"*"}), [] { return bricks_with_t_junctions(4); },
+           {{0, {{1, 1, 1}, {4, 4, 4}}}, {2, {{0, 0, 1}, {3, 2, 4}}}}, by(waves(0.1))),
+       {}},
+      {"around_a_box_with_a_region", [] { return around_a_box(7); },
+       with_region(
+           moves(turn_about_z({1.2, 0.6, 0}, 0.05), {"step"}, {"u_min", "u_max", "v_min", "v_max"}, {"w_min", "w_max"}),
+           [] { return around_a_box(7); }, {{4, {{2, 1, 0}, {4, 4, 4}}}}, attached("step", AttachedRule::How::rigid)),
+       layers(1)},
+      {"o_grid_with_a_region", [] { return o_grid(0.8, 12); },
+       with_region(
+           moves(turn_about_z({0.1, 0, 0}, 0.1), {"body"}, {"far"}), [] { return o_grid(0.8, 12); },
+           {{0, {{0, 1, 0}, {3, 4, 4}}}, {0, {{11, 1, 0}, {13, 4, 4}}}}, by(turn_about_z({0.1, 0, 0}, 0.07))),
+       layers(2)},
+      {"c_grid_with_a_region", [] { return c_grid(15); },
+       with_region(
+           moves(turn_about_z({0.3, 0, 0}, 0.05), {"body"}, {"far"}, {"exit"}), [] { return c_grid(15); },
+           {{0, {{1, 0, 0}, {4, 3, 4}}}, {0, {{13, 0, 0}, {16, 3, 4}}}}, attached("body", AttachedRule::How::nearest)),
+       layers(2)},
+      {"sector_with_a_region",
+       [=] { return annulus_sector(sector, 17); },
+       with_region(
+           moves(turning_waves(sector, 0.1), {"hub"}, {"case"}, {"inlet", "outlet"}),
+           [=] { return annulus_sector(sector, 17); }, {{0, {{2, 3, 0}, {5, 5, 3}}}}, by(turning_waves(sector, 0.05))),
+       layers(2),
+       axial,
+       {"hub", "case", "inlet", "outlet"}},
       {"translational_twice",
        [] { return translational(2, 22); },
        moves(layered_waves(0.1), {"bottom"}, {"top"}),

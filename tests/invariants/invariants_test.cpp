@@ -149,7 +149,9 @@ unsigned n_seeds(Case const& c) { return reduced() ? 1 : (c.file.empty() ? 4 : 2
 
 /// The displacement of no node changes by more than 1e-12 of the mesh size when the mesh is stored otherwise.
 void expect_same_when_scrambled(Case const& c, Outcome const& plain, Scramble const& what) {
-  ScrambledMesh scrambled = scramble(plain.mesh, what);
+  Mesh mesh = plain.mesh;  // regions are added by its motion
+  std::erase_if(mesh.patches, [](Patch const& p) { return p.kind == PatchKind::region; });
+  ScrambledMesh scrambled = scramble(mesh, what);
   SCOPED_TRACE("seed " + std::to_string(what.seed));
   Outcome const other = morph(std::move(scrambled.mesh), c.motion(1), c.options);
   double worst = 0;

@@ -3,6 +3,7 @@
 #include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/range_nodes.hpp>
+#include <gridmorph/boundary/regions.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
@@ -34,9 +35,11 @@ Mesh without_elements(Mesh const& mesh) {
 
 BoundarySurface surface_of(Mesh const& mesh, Patch const& patch) {
   BoundarySurface out;
-  out.grid = {1, 1};
-  for (int axis = 0, d = 0; axis < 3 && d < 2; ++axis)
-    if (patch.range.extent(axis) > 1) (*out.grid)[std::size_t(d++)] = patch.range.extent(axis);
+  if (!is_box(patch)) {
+    out.grid = {1, 1};
+    for (int axis = 0, d = 0; axis < 3 && d < 2; ++axis)
+      if (patch.range.extent(axis) > 1) (*out.grid)[std::size_t(d++)] = patch.range.extent(axis);
+  }
   for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range, [&](Index n) { out.nodes.push_back(n); });
   return out;
 }

@@ -11,8 +11,9 @@ namespace gridmorph {
 
 namespace {
 
-constexpr std::array kinds{PatchKind::wall,     PatchKind::inflow,     PatchKind::outflow,    PatchKind::symmetry,
-                           PatchKind::farfield, PatchKind::degenerate, PatchKind::connection, PatchKind::other};
+constexpr std::array kinds{PatchKind::wall,       PatchKind::inflow,   PatchKind::outflow,
+                           PatchKind::symmetry,   PatchKind::farfield, PatchKind::degenerate,
+                           PatchKind::connection, PatchKind::other,    PatchKind::region};
 constexpr std::string_view type_prefix = "type:";
 constexpr std::string_view periodic = "periodic";
 

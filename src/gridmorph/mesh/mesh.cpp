@@ -55,6 +55,7 @@ std::string_view to_string(PatchKind kind) {
     case PatchKind::connection: return "connection";
     case PatchKind::other: return "other";
     case PatchKind::periodic: return "periodic";
+    case PatchKind::region: return "region";
   }
   return "other";
 }
@@ -148,6 +149,8 @@ std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range) 
 }
 
 std::string describe_patch(Mesh const& mesh, Patch const& patch) {
+  if (patch.kind == PatchKind::region)
+    return "'" + patch.name + "' (region, zone '" + mesh.zones[patch.zone].name + "')";
   std::string text = "'" + (patch.families.empty() ? patch.name : patch.families.front()) + "'";
   return text + " (BC '" + patch.name + "', zone '" + mesh.zones[patch.zone].name + "')";
 }

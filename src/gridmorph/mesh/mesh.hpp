@@ -29,7 +29,8 @@ enum class PatchKind {
   degenerate,  ///< BCDegenerateLine, BCDegeneratePoint, BCAxisymmetricWedge: a face collapsed to a line or point
   connection,  ///< a connection that does not match node to node: abutting, overset, mixing plane
   other,       ///< BCGeneral, BCDirichlet, BCNeumann, BCExtrapolate, UserDefined, Null, none at all
-  periodic  ///< one side of a periodic pair whose two sides move independently (passages of a wheel); never from a file
+  periodic,  ///< one side of a periodic pair whose two sides move independently (passages of a wheel); never from a file
+  region  ///< no boundary: cells or a grid surface inside the domain that a rule moves (regions.hpp); never from a file
 };
 
 /// "wall", "inflow", ... as used by `type:` selectors and in messages. Periodic interfaces are "periodic".
@@ -43,8 +44,9 @@ struct Patch {
   PatchKind kind = PatchKind::other;
   std::vector<std::string> families;  ///< FamilyName_t first, then AdditionalFamilyName_t; may be empty
   int zone = -1;                      ///< number in Mesh::zones
-  IndexRange range{};                 ///< blocks: nodes; extent 1 along exactly one axis (the face normal)
-  CsrGraph faces{};              ///< elements: corner nodes of each face (each edge in 2-D), in any order around it
+  IndexRange
+      range{};       ///< blocks: nodes; extent 1 along exactly one axis (the face normal), of regions along one or none
+  CsrGraph faces{};  ///< elements: corner nodes of each face (each edge in 2-D), in any order around it
   std::vector<Index32> nodes{};  ///< instead of faces, where the file lists nodes; ascending, each once
 };
 

@@ -6,6 +6,8 @@
 #include <gridmorph/plan/boundary_size.hpp>
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 namespace gridmorph {
 namespace {
@@ -128,6 +130,17 @@ Prediction Predictor::measure(Plan const& plan, Plan const& names, Coordinates c
       join(out.all, chain.cells);
       if (chain.cells.cells > 0) out.chains.push_back(std::move(chain));
     }
+  }
+  std::map<std::string, PredictedChain> regions;
+  for (std::size_t r = 0; r < plan.regions.size(); ++r) {
+    PredictedChain& region = regions[plan.region_names[r]];
+    region.stage = "given";
+    region.chain = plan.region_names[r];
+    add(plan.regions[r], morphed, seen, region.cells);
+  }
+  for (auto& [name, region] : regions) {
+    join(out.all, region.cells);
+    if (region.cells.cells > 0) out.chains.push_back(std::move(region));
   }
   std::stable_sort(out.chains.begin(), out.chains.end(), [](PredictedChain const& a, PredictedChain const& b) {
     return a.cells.scaled_jacobian.value < b.cells.scaled_jacobian.value;

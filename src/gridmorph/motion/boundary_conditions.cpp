@@ -23,6 +23,10 @@ class Finder {
         size_(extent_of(host, mesh.coordinates).size()) {}
 
   BoundaryConditions run(Motion const& motion, std::vector<std::string> const& walls, Displacements displacements) {
+    if (!motion.regions.empty())
+      throw MotionError("region '" + motion.regions.front().name +
+                        "' is in a mesh of elements, and regions are boxes of "
+                        "cells of structured meshes; remove it");
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
     ResolvedMotion const resolved = resolve(mesh_, with_periodic_patches(*boundary, motion));
     out_.notes.insert(out_.notes.end(), resolved.notes.begin(), resolved.notes.end());

@@ -3,6 +3,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/motion/attached_motion.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/target/target_motion.hpp>
@@ -36,6 +37,7 @@ struct BoundaryMotion::Impl {
   std::vector<RowMotion const*> row_of_rule;   ///< per rule, null for rules without a blade
   std::vector<std::unique_ptr<SectionMotion>> sections_of_rule;  ///< per rule, null for other rules
   std::map<int, std::shared_ptr<TargetMotion const>> targets;    ///< by rule
+  std::map<int, AttachedMotion> attached;                        ///< by rule
 
   Impl(std::shared_ptr<Boundary const> of, ResolvedMotion resolved)
       : boundary(std::move(of)),
@@ -43,6 +45,7 @@ struct BoundaryMotion::Impl {
         slip(std::make_shared<SlipSurfaces const>(*boundary, motion, notes)) {
     make_targets();
     make_blades();
+    attach();
   }
 
   Impl(Impl const& other, Motion const& now) : boundary(other.boundary), motion(other.motion), slip(other.slip) {
@@ -51,6 +54,7 @@ struct BoundaryMotion::Impl {
       targets[r] =
           std::make_shared<TargetMotion const>(*target, std::get<TargetRule>(rules[std::size_t(r)].rule).share);
     make_blades();
+    attach();
   }
 
   Impl(Impl const&) = delete;
@@ -99,6 +103,37 @@ struct BoundaryMotion::Impl {
     problems.throw_if_any<MotionError>();
   }
 
+  /// After all that parts can be attached to.
+  void attach() {
+    Problems problems;
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      auto const* rule = std::get_if<AttachedRule>(&rules[r].rule);
+      if (rule == nullptr) continue;
+      try {
+        std::vector<int> const walls = select_patches(boundary->mesh(), rule->of);
+        require_direct(walls);
+        attached.try_emplace(int(r), *boundary, walls, *rule,
+                             [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
+                               evaluate(motion.patch[std::size_t(p)].rule, points, out);
+                             });
+      } catch (MotionError const& e) {
+        problems.add(label(int(r)) + ": " + e.what());
+      }
+    }
+    problems.throw_if_any<MotionError>();
+  }
+
+  void require_direct(std::vector<int> const& patches) const {
+    Mesh const& mesh = boundary->mesh();
+    for (int p : patches)
+      if (Rule const& rule = motion.patch_rule(p); !is_direct(rule))
+        throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
+                          std::string(rule_name(rule)) +
+                          "', whose displacement is not known beforehand; give "
+                          "it fixed, rigid, formula, field, sections or target");
+    if (patches.empty()) throw MotionError("of: names no patch");
+  }
+
   /// Sections are found along the grid lines of a blade's patches.
   void require_grids(std::vector<int> const& patches) const {
     Mesh const& mesh = boundary->mesh();
@@ -112,15 +147,8 @@ struct BoundaryMotion::Impl {
 
   RowMotion const& row(std::vector<int> const& blades) {
     if (auto const known = rows.find(blades); known != rows.end()) return known->second;
-    Mesh const& mesh = boundary->mesh();
     require_grids(blades);
-    for (int p : blades)
-      if (Rule const& rule = motion.patch_rule(p); !is_direct(rule))
-        throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
-                          std::string(rule_name(rule)) +
-                          "', whose displacement is not known beforehand; give "
-                          "it fixed, rigid, formula, field, sections or target");
-    if (blades.empty()) throw MotionError("of: names no patch");
+    require_direct(blades);
     auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[p].rule, points, out);
     };
@@ -165,6 +193,10 @@ struct BoundaryMotion::Impl {
                      [sections](Vec3 const& p) { return sections->displacement(p); });
     } else if (std::holds_alternative<TargetRule>(rule)) {
       targets.at(r)->displacement(points, out);
+    } else if (std::holds_alternative<AttachedRule>(rule)) {
+      AttachedMotion const& motion_of_walls = attached.at(r);
+      std::transform(points.begin(), points.end(), out.begin(),
+                     [&](Vec3 const& p) { return motion_of_walls.displacement(p); });
     } else {
       RowMotion const& row = *row_of_rule[r];
       bool const slides = std::holds_alternative<CircumferentialSlideRule>(rule);
@@ -190,8 +222,9 @@ BoundaryMotion::BoundaryMotion(BoundaryMotion&&) noexcept = default;
 BoundaryMotion& BoundaryMotion::operator=(BoundaryMotion&&) noexcept = default;
 
 bool BoundaryMotion::is_explicit(int rule) const {
-  return Impl::is_direct(impl_->rules[rule].rule) || impl_->row_of_rule[rule] != nullptr ||
-         std::holds_alternative<PrescribedRule>(impl_->rules[rule].rule);
+  Rule const& own = impl_->rules[rule].rule;
+  return Impl::is_direct(own) || impl_->row_of_rule[rule] != nullptr || std::holds_alternative<AttachedRule>(own) ||
+         std::holds_alternative<PrescribedRule>(own);
 }
 
 void BoundaryMotion::displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const {

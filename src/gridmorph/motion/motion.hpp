@@ -2,10 +2,12 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// circumferential slide, follow, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
-// carries the nodes and the finalize step puts them back on their surface).
+// circumferential slide, follow, attached, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// carries the nodes and the finalize step puts them back on their surface). Regions inside the domain are addressed by their names
+// and take explicit rules that need no surface.
 #pragma once
 
+#include <gridmorph/boundary/regions.hpp>
 #include <gridmorph/geometry/axis.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/target_rule.hpp>
@@ -111,8 +113,21 @@ struct FreeRule {
 /// zero, and no rule beside them disagrees with it.
 struct PrescribedRule {};
 
+/// Goes along with walls that other rules move: regions around a wake or of refinement, bodies carried by a wing.
+struct AttachedRule {
+  std::vector<std::string> of;  ///< patches with a rule of their own
+  enum class How {
+    rigid,  ///< one rigid motion, x' = t + R (x - s): the one that fits that of the walls' nodes best (least squares)
+    shift,  ///< the mean displacement of the walls' nodes
+    nearest  ///< each point takes the displacement of the nearest place on the walls, linear between the corners of its face
+  };
+  How how = How::rigid;
+  /// rigid, shift: only the nodes within a distance of a place, which is the second [length].
+  std::optional<std::pair<Vec3, double>> near{};
+};
+
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
-                          SectionsRule, TargetRule, PrescribedRule>;
+                          SectionsRule, TargetRule, PrescribedRule, AttachedRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").
@@ -129,6 +144,7 @@ struct MotionRule {
 struct Motion {
   Axis axis;
   std::vector<MotionRule> rules;
+  std::vector<InnerRegion> regions;  ///< inside meshes of blocks, for rules to name
   /// A patch that no rule matches: its CGNS type's default (symmetry slips on its plane, periodic pairs move freely as
   /// one, everything else stays fixed), or an error when strict.
   bool strict = false;

@@ -91,6 +91,7 @@ class Resolver {
     settle_interfaces();
     settle_patches();
     for (std::size_t r = 0; r < motion_.rules.size(); ++r) check_blades(int(r));
+    check_regions();
     problems_.throw_if_any<MotionError>();
     return std::move(result_);
   }
@@ -133,6 +134,11 @@ class Resolver {
                       " rad; it must be positive");
     } else if (auto const* sections = std::get_if<SectionsRule>(&rule)) {
       check_sections(r, *sections);
+    } else if (auto const* attached = std::get_if<AttachedRule>(&rule); attached != nullptr && attached->near) {
+      auto const& [place, distance] = *attached->near;
+      if (!finite(place) || !std::isfinite(distance) || !(distance > 0))
+        problems_.add(label(r) + ": the place that it is attached near must be finite and the distance " +
+                      std::to_string(distance) + " positive");
     } else if (auto const* target = std::get_if<TargetRule>(&rule);
                target != nullptr && !std::isfinite(target->share)) {
       problems_.add(label(r) + ": its share of the way to the target is not finite");
@@ -198,7 +204,7 @@ class Resolver {
     }
     Rule const& rule = motion_.rules[r].rule;
     auto const* free = std::get_if<FreeRule>(&rule);
-    if (is<SlipRule>(rule) || is<SectionsRule>(rule) || is<TargetRule>(rule) ||
+    if (is<SlipRule>(rule) || is<SectionsRule>(rule) || is<TargetRule>(rule) || is<AttachedRule>(rule) ||
         (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
       problems_.add(label(r) + " names the periodic " + name +
                     "; periodic interfaces take free without constraint, "
@@ -290,8 +296,9 @@ class Resolver {
     std::vector<std::string> const* of = nullptr;
     if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule)) of = &slide->of;
     if (auto const* follow = std::get_if<FollowRule>(&rule)) of = &follow->of;
+    if (auto const* attached = std::get_if<AttachedRule>(&rule)) of = &attached->of;
     if (of == nullptr) return;
-    if (of->empty()) problems_.add(label(r) + ": `of` is empty; name the blade whose motion it takes up");
+    if (of->empty()) problems_.add(label(r) + ": `of` is empty; name the walls whose motion it takes up");
     std::vector<int> blades;
     try {
       blades = select_patches(mesh_, *of);
@@ -308,6 +315,21 @@ class Resolver {
                     "fixed, rigid, formula, field, sections or target");
   }
 
+  /// What is asked for at places inside the domain, with no surface to go by.
+  void check_regions() {
+    std::map<int, std::set<std::string>> unfit;
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+      if (mesh_.patches[p].kind != PatchKind::region) continue;
+      Rule const& rule = result_.rules[std::size_t(result_.patch[p].rule)].rule;
+      if (!is<FixedRule>(rule) && !is<RigidRule>(rule) && !is<FunctionRule>(rule) && !is<AttachedRule>(rule) &&
+          !is<PrescribedRule>(rule))
+        unfit[result_.patch[p].rule].insert(mesh_.patches[p].name);
+    }
+    for (auto const& [r, names] : unfit)
+      problems_.add(label(r) + " names the region " + quote_list({names.begin(), names.end()}) +
+                    "; regions take fixed, rigid, formula, field or attached");
+  }
+
   Mesh const& mesh_;
   Motion const& motion_;
   std::vector<int> patch_claim_;
@@ -322,8 +344,8 @@ class Resolver {
 
 std::string_view rule_name(Rule const& rule) {
   static constexpr std::array<std::string_view, std::variant_size_v<Rule>> names{
-      "fixed",    "rigid",  "function",  "circumferential-slide", "follow", "slip", "free",
-      "sections", "target", "prescribed"};
+      "fixed",  "rigid",      "function", "circumferential-slide", "follow", "slip", "free", "sections",
+      "target", "prescribed", "attached"};
   return names[rule.index()];
 }
 

@@ -137,7 +137,7 @@ class Scheduler {
           if (is_active(chain.chain.steps.back().block))
             plan_.notes.push_back(
                 "the near field at " + chain_name(mesh_, topology_, chain.chain) +
-                " touches that of another wall and is interpolated between the two; fewer layers keep "
+                " touches that of another wall, or a region, and is interpolated between the two; fewer layers keep "
                 "both rigid");
         }
       IndependentChains independent(topology_, known_);
@@ -404,10 +404,10 @@ std::string turn_note(HandedOn const& handed_on, bool given) {
                                     : ", as they do not move rigidly and chains from them end at rest");
 }
 
-/// The nodes inside every piece that has any. Returns the box of each piece, -1 for the others.
-std::vector<int> inner_boxes(Mesh const& mesh, Lattice const& lattice, std::vector<kernels::VolumeBox>& boxes) {
+/// The nodes inside every piece that has any and is in no region. Returns the box of each piece, -1 for the others.
+std::vector<int> inner_boxes(Mesh const& mesh, Topology const& topology, std::vector<kernels::VolumeBox>& boxes) {
   std::vector<int> box_of_piece;
-  for (Piece const& piece : lattice.pieces()) {
+  for (Piece const& piece : topology.lattice.pieces()) {
     Zone const& zone = mesh.zones[piece.zone];
     kernels::VolumeBox box{};
     Index3 first{};
@@ -415,7 +415,8 @@ std::vector<int> inner_boxes(Mesh const& mesh, Lattice const& lattice, std::vect
       first[d] = piece.nodes.begin[d] + 1;
       box.n[d] = piece.nodes.extent(d) - 2;
     }
-    bool const empty = box.n[0] <= 0 || box.n[1] <= 0 || box.n[2] <= 0;
+    bool const empty =
+        box.n[0] <= 0 || box.n[1] <= 0 || box.n[2] <= 0 || topology.blocks.region_of(int(box_of_piece.size())) >= 0;
     box_of_piece.push_back(empty ? -1 : int(boxes.size()));
     if (empty) continue;
     box.first = zone.node(first);
@@ -469,10 +470,10 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
                        std::to_string(topology.lattice.pieces().size()) + " pieces with whole faces, " +
                        std::to_string(topology.blocks.size()) + " blocks");
 
-  Skeleton const skeleton(mesh, topology.lattice);
+  Skeleton const skeleton(mesh, topology.lattice, topology.blocks);
   plan.n_slots = skeleton.size();
   RotationTable rotations(plan.rotations);
-  std::vector<int> const box_of_piece = inner_boxes(mesh, topology.lattice, plan.boxes);
+  std::vector<int> const box_of_piece = inner_boxes(mesh, topology, plan.boxes);
   PlanContext context{mesh, topology, skeleton, rotations, box_of_piece, basis.kinds, basis.ends, lines.lengths};
   WallRoots roots(context);
   context.roots = &roots;
@@ -507,6 +508,14 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   }
   plan_spreads(context, motion, surface_of_patch, given, plan);
   plan.skeleton_nodes = skeleton.to_nodes(rotations);
+  for (int piece = 0; piece < int(topology.lattice.pieces().size()); ++piece) {
+    int const region = topology.blocks.region_of(piece);
+    if (region < 0) continue;
+    Piece const& place = topology.lattice.pieces()[piece];
+    plan.regions.push_back({place.zone, place.nodes});
+    for (int& end : plan.regions.back().cells.end) --end;
+    plan.region_names.push_back("region '" + mesh.patches[region].name + "'");
+  }
   planned.boundary.n_boundary_nodes = Index(plan.boundary_nodes.size());
   return planned;
 }

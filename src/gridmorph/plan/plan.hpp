@@ -94,7 +94,9 @@ struct Plan {
   std::vector<double> law_knots;  ///< of laws of the user's own, see kernels::table_weight()
   std::vector<SlipSurface> surfaces;
   std::vector<Mat3> rotations;
-  std::vector<CellBox> near_field;  ///< cells of the near field of moving walls
+  std::vector<CellBox> near_field;        ///< cells of the near field of moving walls
+  std::vector<CellBox> regions;           ///< cells of regions that rules move
+  std::vector<std::string> region_names;  ///< per entry of `regions`
   std::vector<std::string> notes;
   Index n_nodes = 0;
   Index n_slots = 0;  ///< of the skeleton

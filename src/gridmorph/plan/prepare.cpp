@@ -16,6 +16,7 @@ PreparedMorph prepare(HostInstance const& host, Mesh const& given, Motion const&
   Mesh mesh = given;
   PreparedMorph::Seconds seconds;
   Links links = connect_and_check(host, mesh, options.topology);
+  add_regions(mesh, motion.regions);
   seconds.topology = watch.lap();
   BoundaryMotion surface(std::make_shared<Boundary const>(mesh, links.mesh_size), resolve(mesh, motion));
   seconds.rules = watch.lap();

@@ -1,6 +1,7 @@
 #include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/app/casefile/detail/law_reader.hpp>
 #include <gridmorph/app/casefile/detail/near_field_reader.hpp>
+#include <gridmorph/app/casefile/detail/region_reader.hpp>
 #include <gridmorph/app/casefile/detail/rule_reader.hpp>
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 #include <gridmorph/app/casefile/detail/wheel_reader.hpp>
@@ -201,6 +202,7 @@ std::map<std::string, double> read_motion(TableReader& root, CaseFile& out) {
   casefile::RuleContext shared{out.axis, {}, out.sequence.has_value()};
   casefile::read_constants(root, "constants", shared.constants);
   for (auto& table : root.tables("motion")) casefile::read_motion_rule(table, shared, out);
+  for (auto& table : root.tables("region")) out.motion.regions.push_back(casefile::read_region(table, out.axis));
   casefile::read_wheel(root, shared, out);
   if (!root.has("motion"))
     root.context().problems.add(root.context().file +
@@ -241,7 +243,7 @@ BoundaryLayer read_boundary_layer(TableReader& table) {
 
 /// Kinds of ends of chains.
 std::vector<std::string> const end_kinds{"wall",     "periodic",   "inflow",     "outflow", "symmetry",
-                                         "farfield", "degenerate", "connection", "other"};
+                                         "farfield", "degenerate", "connection", "other",   "region"};
 
 void require_kind(TableReader& table, char const* key, std::string const& word) {
   if (std::find(end_kinds.begin(), end_kinds.end(), word) == end_kinds.end())

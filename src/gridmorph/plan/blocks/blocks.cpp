@@ -1,3 +1,4 @@
+#include <gridmorph/boundary/regions.hpp>
 #include <gridmorph/plan/blocks/blocks.hpp>
 
 #include <algorithm>
@@ -72,6 +73,7 @@ Orientation across(Lattice const& lattice, FaceSide const& from, FaceSide const&
 
 Blocks::Blocks(Mesh const& mesh, Links const& links, Lattice const& lattice, MergeLimits const& limits) {
   label_faces(mesh, links, lattice);
+  label_regions(mesh, lattice);
   std::vector<char> removable = removable_faces(mesh, links, lattice, limits);
   while (!assemble(lattice, removable)) {
   }
@@ -93,9 +95,38 @@ void Blocks::label_faces(Mesh const& mesh, Links const& links, Lattice const& la
           if (p % 2 + q % 2 + r % 2 == 2) visit(lattice.class_of(lattice.entity(zone, {p, q, r})));
   };
   for (int p = 0; p < int(mesh.patches.size()); ++p)
-    for_each_face_entity(mesh.patches[p].zone, mesh.patches[p].range, [&](int f) { patch_of_face_[f] = p; });
+    if (!is_box(mesh.patches[p]))
+      for_each_face_entity(mesh.patches[p].zone, mesh.patches[p].range, [&](int f) { patch_of_face_[f] = p; });
   for (Link const& link : links.all)
     for_each_face_entity(link.zone, link.range, [&](int f) { interface_of_face_[f] = link.interface; });
+}
+
+/// Faces around regions belong to these where they are inside the domain.
+void Blocks::label_regions(Mesh const& mesh, Lattice const& lattice) {
+  auto const n = int(lattice.pieces().size());
+  region_of_piece_.assign(n, -1);
+  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+    Patch const& patch = mesh.patches[p];
+    if (!is_box(patch)) continue;
+    for (int piece = 0; piece < n; ++piece)
+      if (region_of_piece_[piece] < 0 && is_within(lattice.pieces()[piece], patch)) region_of_piece_[piece] = p;
+  }
+  auto const region = [&](FaceSide const& side) {
+    int const p = region_of_piece_[side.piece];
+    return p < 0 ? std::string_view() : std::string_view(mesh.patches[p].name);
+  };
+  for (int piece = 0; piece < n; ++piece) {
+    if (region_of_piece_[piece] < 0) continue;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        Index3 which{1, 1, 1};
+        which[axis] = 2 * side;
+        int const face = lattice.class_of(lattice.entity_of_piece(piece, which));
+        auto const sides = lattice.face_sides(face);
+        if (patch_of_face_[face] < 0 && sides.size() == 2 && region(sides[0]) != region(sides[1]))
+          patch_of_face_[face] = region_of_piece_[piece];
+      }
+  }
 }
 
 std::vector<char> Blocks::removable_faces(Mesh const& mesh, Links const& links, Lattice const& lattice,
@@ -108,16 +139,14 @@ std::vector<char> Blocks::removable_faces(Mesh const& mesh, Links const& links, 
 
   for (int c = 0; c < n; ++c) {
     if (lattice.dimension(lattice.copies(c).front().entity) != 2) continue;
-    if (patch_of_face_[c] >= 0) {
-      label[c] = 1 + limits.patch_label[patch_of_face_[c]];
-      continue;
-    }
+    int const patch = patch_of_face_[c], face = interface_of_face_[c];
+    if (patch >= 0) label[c] = 1 + limits.patch_label[patch];
     auto const sides = lattice.face_sides(c);
     if (sides.size() != 2) continue;
     is_interior[c] = 1;
-    int const face = interface_of_face_[c];
+    if (patch >= 0) keep[c] = 1;
     if (face >= 0 && periodic_interface[face]) {
-      label[c] = -1 - limits.interface_label[face];
+      if (patch < 0) label[c] = -1 - limits.interface_label[face];
       keep[c] = 1;
     }
     if (sides[0].piece == sides[1].piece) keep[c] = 1;

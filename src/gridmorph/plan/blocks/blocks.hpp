@@ -56,13 +56,16 @@ class Blocks {
   [[nodiscard]] BlockFace face_of(FaceSide const& side) const;
   /// The face entities (in their pieces' zones) of a block face.
   [[nodiscard]] std::vector<int> face_entities(Lattice const& lattice, BlockFace const& face) const;
-  /// Patch number of each face class that lies on the boundary, -1 inside.
+  /// Patch number of each face class that lies on the boundary or around a region, -1 elsewhere.
   [[nodiscard]] std::vector<int> const& patch_of_face() const { return patch_of_face_; }
+  /// Number of a patch of kind `region` that holds the piece; -1: none does.
+  [[nodiscard]] int region_of(int piece) const { return region_of_piece_[piece]; }
   /// Interface number of each face class that lies on a 1-to-1 interface, -1 elsewhere.
   [[nodiscard]] std::vector<int> const& interface_of_face() const { return interface_of_face_; }
 
  private:
   void label_faces(Mesh const& mesh, Links const& links, Lattice const& lattice);
+  void label_regions(Mesh const& mesh, Lattice const& lattice);
   [[nodiscard]] std::vector<char> removable_faces(Mesh const& mesh, Links const& links, Lattice const& lattice,
                                                   MergeLimits const& limits);
   bool assemble(Lattice const& lattice, std::vector<char>& removable);
@@ -71,6 +74,7 @@ class Blocks {
   std::vector<int> block_of_;
   std::vector<Orientation> to_block_;
   std::vector<int> patch_of_face_, interface_of_face_;
+  std::vector<int> region_of_piece_;
   std::vector<int> sheet_of_face_;
 };
 

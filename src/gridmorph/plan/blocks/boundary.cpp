@@ -1,3 +1,4 @@
+#include <gridmorph/boundary/regions.hpp>
 #include <gridmorph/plan/blocks/boundary.hpp>
 
 #include <algorithm>
@@ -8,34 +9,32 @@
 namespace gridmorph {
 namespace {
 
-struct ExplicitFace {
-  int face_class = -1;
+/// A face of a patch or interface, or a piece in a region.
+struct ExplicitEntity {
+  int entity_class = -1;
   int rule = -1;
   int patch = -1, interface = -1;
 };
 
-std::vector<ExplicitFace> explicit_faces(Topology const& topology, BoundaryMotion const& surface) {
+std::vector<ExplicitEntity> explicit_entities(Mesh const& mesh, Topology const& topology,
+                                              BoundaryMotion const& surface) {
   ResolvedMotion const& motion = surface.motion();
-  std::vector<ExplicitFace> faces;
+  std::vector<ExplicitEntity> out;
   Blocks const& blocks = topology.blocks;
   for (int c = 0; c < topology.lattice.n_classes(); ++c) {
     int const patch = blocks.patch_of_face()[c], interface = blocks.interface_of_face()[c];
+    if (patch >= 0 && is_box(mesh.patches[patch])) continue;
     int const rule = patch >= 0 ? motion.patch[patch].rule : (interface >= 0 ? motion.interface[interface].rule : -1);
-    if (rule >= 0 && surface.is_explicit(rule)) faces.push_back({c, rule, patch, patch >= 0 ? -1 : interface});
+    if (rule >= 0 && surface.is_explicit(rule)) out.push_back({c, rule, patch, patch >= 0 ? -1 : interface});
   }
-  return faces;
-}
-
-/// Calls visit(entity) for the face, its four edges and four corners (entities of the same zone).
-template <class Visit>
-void for_closure(Lattice const& lattice, int face_entity, Visit&& visit) {
-  int const zone = lattice.zone_of(face_entity);
-  Index3 const p = lattice.position(face_entity);
-  Index3 d{};
-  for (d[2] = -(p[2] % 2); d[2] <= p[2] % 2; ++d[2])
-    for (d[1] = -(p[1] % 2); d[1] <= p[1] % 2; ++d[1])
-      for (d[0] = -(p[0] % 2); d[0] <= p[0] % 2; ++d[0])
-        visit(lattice.entity(zone, {p[0] + d[0], p[1] + d[1], p[2] + d[2]}));
+  Lattice const& lattice = topology.lattice;
+  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+    if (!is_box(mesh.patches[p])) continue;
+    for (int piece = 0; piece < int(lattice.pieces().size()); ++piece)
+      if (is_within(lattice.pieces()[piece], mesh.patches[p]))
+        out.push_back({lattice.class_of(lattice.entity_of_piece(piece, {1, 1, 1})), motion.patch[p].rule, p, -1});
+  }
+  return out;
 }
 
 }  // namespace
@@ -67,11 +66,11 @@ BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion con
   Mesh const& mesh = context.mesh;
   Topology const& topology = context.topology;
   Lattice const& lattice = topology.lattice;
-  std::vector<ExplicitFace> faces = explicit_faces(topology, surface);
-  for (ExplicitFace const& face : faces) {
-    EndKind const kind = face.patch >= 0 ? context.ends[face.patch] : periodic_end;
-    int const patch = face.patch >= 0 ? face.patch : int(mesh.patches.size()) + face.interface;
-    for_closure(lattice, lattice.copies(face.face_class).front().entity, [&](int entity) {
+  std::vector<ExplicitEntity> given = explicit_entities(mesh, topology, surface);
+  for (ExplicitEntity const& own : given) {
+    EndKind const kind = own.patch >= 0 ? context.ends[own.patch] : periodic_end;
+    int const patch = own.patch >= 0 ? own.patch : int(mesh.patches.size()) + own.interface;
+    for_closure(lattice, lattice.copies(own.entity_class).front().entity, [&](int entity) {
       int const c = lattice.class_of(entity);
       bool const better = !known(c) || kind_rank(kind, kind_order) < kind_rank(known.kind[c], kind_order);
       known.known[c] = 1;
@@ -89,11 +88,11 @@ BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion con
   }
 
   // The rule that outranks the others gives the value of a shared node, the earlier rule where ranks are equal.
-  std::stable_sort(faces.begin(), faces.end(), [&](ExplicitFace const& a, ExplicitFace const& b) {
+  std::stable_sort(given.begin(), given.end(), [&](ExplicitEntity const& a, ExplicitEntity const& b) {
     return std::pair(motion.rules[a.rule].rank, a.rule) < std::pair(motion.rules[b.rule].rank, b.rule);
   });
-  for (ExplicitFace const& face : faces) {
-    int const entity = lattice.copies(face.face_class).front().entity;
+  for (ExplicitEntity const& asks : given) {
+    int const entity = lattice.copies(asks.entity_class).front().entity;
     Zone const& zone = mesh.zones[lattice.zone_of(entity)];
     for_closure(lattice, entity, [&](int part) {
       int const c = lattice.class_of(part);
@@ -105,7 +104,7 @@ BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion con
         for (int j = own.begin[1]; j < own.end[1]; ++j)
           for (int i = own.begin[0]; i < own.end[0]; ++i)
             boundary.requests.push_back({boundary_node++, zone.node(copy.from_owner(Index3{i, j, k})), rotation,
-                                         face.rule, face.patch, face.interface});
+                                         asks.rule, asks.patch, asks.interface});
     });
   }
   return boundary;

@@ -40,7 +40,7 @@ Crossing cross(Mesh const& mesh, Topology const& topology, Known const& known, C
     crossing.end.patches = {patch};
   if (all_known) return crossing;
   auto const sides = lattice.face_sides(face);
-  if (patch >= 0 || sides.size() != 2) {
+  if (sides.size() != 2) {
     crossing.kind = Crossing::Kind::boundary;
     return crossing;
   }

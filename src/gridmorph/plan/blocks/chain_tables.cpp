@@ -89,6 +89,41 @@ kernels::Segment make_segment(Mesh const& mesh, PlacedBox const& box) {
   return segment;
 }
 
+namespace {
+
+/// One layer of an entity's nodes.
+void add_sweep(PlanContext const& context, LineTables& lines, std::vector<kernels::SkeletonSweep>& sweeps, int number,
+               PlacedBox const& box, int entity, ParameterRange const& range, SkeletonRows const& rows) {
+  kernels::Chain const& chain = lines.chains[number];
+  kernels::SkeletonSweep sweep{};
+  sweep.chain = number;
+  sweep.matrix = from_chain_frame(context, box, entity);
+  sweep.n_p = rows.n_p;
+  sweep.n_q = rows.n_q;
+  sweep.slot = rows.slot;
+  sweep.slot_q = rows.slot_q;
+  Index3 const steps[3] = {{0, 0, 0}, rows.step_p, rows.step_q};
+  Index3 const origin = box.position(rows.at);
+  sweep.t = chain.has_parameters() ? range.at(rows.at) : -1;
+  sweep.t_p = range.at(plus(rows.at, rows.step_p)) - range.at(rows.at);
+  sweep.t_q = range.at(plus(rows.at, rows.step_q)) - range.at(rows.at);
+  for (int d = 0; d < 3; ++d) {
+    Index3 const at = box.position(plus(rows.at, steps[d]));
+    sweep.s[d] = d == 0 ? at[0] : at[0] - origin[0];
+    sweep.a[d] = d == 0 ? at[1] : at[1] - origin[1];
+    sweep.b[d] = d == 0 ? at[2] : at[2] - origin[2];
+  }
+  if (chain.turn != kernels::TurnLaw::none) {
+    sweep.x = Index(lines.swept_positions.size());
+    for (int q = 0; q < sweep.n_q; ++q)
+      for (int p = 0; p < sweep.n_p; ++p)
+        lines.swept_positions.push_back(box.in_chain_frame(node_position(context.mesh, box.zone, rows, p, q)));
+  }
+  sweeps.push_back(sweep);
+}
+
+}  // namespace
+
 void add_writer(PlanContext const& context, LineTables& lines, std::vector<kernels::SkeletonSweep>& sweeps,
                 std::vector<VolumePart>& volume, int number, PlacedBox const& box, int piece, int entity, int category,
                 kernels::Segment& segment) {
@@ -103,7 +138,7 @@ void add_writer(PlanContext const& context, LineTables& lines, std::vector<kerne
   }
   auto const value = [&](Index3 const& at) { return at[1] + Index(chain.n_a) * at[2]; };
 
-  if (lattice.dimension(entity) == 3) {
+  if (lattice.dimension(entity) == 3 && context.topology.blocks.region_of(piece) < 0) {
     VolumePart part{context.box_of_piece[piece], {}};
     kernels::VolumeTerm& term = part.term;
     term.chain = number;
@@ -125,32 +160,8 @@ void add_writer(PlanContext const& context, LineTables& lines, std::vector<kerne
     return;
   }
 
-  auto const rows = context.skeleton.rows(entity);
-  kernels::SkeletonSweep sweep{};
-  sweep.chain = number;
-  sweep.matrix = from_chain_frame(context, box, entity);
-  sweep.n_p = rows->n_p;
-  sweep.n_q = rows->n_q;
-  sweep.slot = rows->slot;
-  sweep.slot_q = rows->slot_q;
-  Index3 const steps[3] = {{0, 0, 0}, rows->step_p, rows->step_q};
-  Index3 const origin = box.position(rows->at);
-  sweep.t = chain.has_parameters() ? range.at(rows->at) : -1;
-  sweep.t_p = range.at(plus(rows->at, rows->step_p)) - range.at(rows->at);
-  sweep.t_q = range.at(plus(rows->at, rows->step_q)) - range.at(rows->at);
-  for (int d = 0; d < 3; ++d) {
-    Index3 const at = box.position(plus(rows->at, steps[d]));
-    sweep.s[d] = d == 0 ? at[0] : at[0] - origin[0];
-    sweep.a[d] = d == 0 ? at[1] : at[1] - origin[1];
-    sweep.b[d] = d == 0 ? at[2] : at[2] - origin[2];
-  }
-  if (chain.turn != kernels::TurnLaw::none) {
-    sweep.x = Index(lines.swept_positions.size());
-    for (int q = 0; q < sweep.n_q; ++q)
-      for (int p = 0; p < sweep.n_p; ++p)
-        lines.swept_positions.push_back(box.in_chain_frame(node_position(context.mesh, box.zone, *rows, p, q)));
-  }
-  sweeps.push_back(sweep);
+  for (int layer = 0; layer < n_layers(range.nodes); ++layer)
+    add_sweep(context, lines, sweeps, number, box, entity, range, *context.skeleton.rows(entity, layer));
 }
 
 }  // namespace gridmorph

@@ -79,6 +79,26 @@ class Lattice {
   std::vector<std::optional<Vec3>> axis_;
 };
 
+/// Whether a patch of kind `region` holds a piece.
+inline bool is_within(Piece const& piece, Patch const& region) {
+  if (piece.zone != region.zone) return false;
+  for (int a = 0; a < 3; ++a)
+    if (piece.nodes.begin[a] < region.range.begin[a] || piece.nodes.end[a] > region.range.end[a]) return false;
+  return true;
+}
+
+/// Calls visit(entity) for a face or volume and its faces, edges and corners (entities of the same zone).
+template <class Visit>
+void for_closure(Lattice const& lattice, int closed, Visit&& visit) {
+  int const zone = lattice.zone_of(closed);
+  Index3 const p = lattice.position(closed);
+  Index3 d{};
+  for (d[2] = -(p[2] % 2); d[2] <= p[2] % 2; ++d[2])
+    for (d[1] = -(p[1] % 2); d[1] <= p[1] % 2; ++d[1])
+      for (d[0] = -(p[0] % 2); d[0] <= p[0] % 2; ++d[0])
+        visit(lattice.entity(zone, {p[0] + d[0], p[1] + d[1], p[2] + d[2]}));
+}
+
 /// The nodes of a face with its border.
 IndexRange closed_nodes(Lattice const& lattice, int face_entity);
 

@@ -34,6 +34,14 @@ int median_layers(Mesh const& mesh, Links const& links, std::vector<int> const& 
   return std::max(1, counts[counts.size() / 2]);
 }
 
+/// Of the face that a chain ends on, -1 inside the domain.
+int patch_at_end(Topology const& topology, Chain const& chain) {
+  auto const faces = topology.blocks.face_entities(topology.lattice, end_face(chain.steps.back(), 1));
+  return topology.blocks.patch_of_face()[topology.lattice.class_of(faces.front())];
+}
+
+bool is_region(Mesh const& mesh, int patch) { return patch >= 0 && mesh.patches[patch].kind == PatchKind::region; }
+
 }  // namespace
 
 std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
@@ -54,11 +62,15 @@ std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, Boundar
         throw PlanError("the boundary layer names no walls and no wall patch has a moving rule; name its walls");
     } else {
       field.walls = select_patches(mesh, option.walls);
-      for (int p : field.walls)
+      for (int p : field.walls) {
+        if (is_region(mesh, p))
+          throw PlanError("boundary layer wall " + describe_patch(mesh, mesh.patches[p]) +
+                          ": near fields are off walls; a larger region moves what is around this one");
         if (!surface.is_explicit(motion.patch[p].rule))
           throw PlanError("boundary layer wall " + describe_patch(mesh, mesh.patches[p]) +
                           " has no prescribed displacement (its rule is '" +
                           std::string(rule_name(motion.patch_rule(p))) + "'); near fields need walls that are moved");
+      }
     }
     switch (option.extent) {
       case BoundaryLayer::Extent::block: break;
@@ -105,19 +117,19 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
     for (int c = 0; c < lattice.n_classes(); ++c) {
       int const patch = blocks.patch_of_face()[c];
       if (patch < 0 || !walls.contains(patch)) continue;
-      BlockFace const wall = blocks.face_of(lattice.face_sides(c).front());
-      if (!done.insert(wall).second) continue;
+      FaceSide const off_wall = lattice.face_sides(c).front();
+      BlockFace const wall = blocks.face_of(off_wall);
+      if (blocks.region_of(off_wall.piece) >= 0 || !done.insert(wall).second) continue;
 
       int cells = 0;
       std::optional<Chain> chain = walk_from(mesh, topology, nothing, wall, [&](Chain const& so_far) {
         Chain one;
         one.steps = {so_far.steps.back()};
         cells += lay_out(topology, one).n_nodes[0] - 1;
-        return cells >= field.layers;
+        return cells >= field.layers || is_region(mesh, patch_at_end(topology, so_far));
       });
-      std::vector<int> outer;
-      if (chain) outer = blocks.face_entities(lattice, end_face(chain->steps.back(), 1));
-      int const beyond = outer.empty() ? -1 : blocks.patch_of_face()[lattice.class_of(outer.front())];
+      int beyond = chain ? patch_at_end(topology, *chain) : -1;
+      if (is_region(mesh, beyond)) beyond = -1;
       if (!chain || beyond >= 0)
         throw PlanError("the near field of wall " + describe_patch(mesh, mesh.patches[patch]) +
                         (beyond >= 0 ? " reaches patch " + describe_patch(mesh, mesh.patches[beyond])

@@ -23,17 +23,24 @@ Mat3 onto(Vec3 const& a) {
   return {{{a.x * a.x, a.x * a.y, a.x * a.z}, {a.y * a.x, a.y * a.y, a.y * a.z}, {a.z * a.x, a.z * a.y, a.z * a.z}}};
 }
 
-Skeleton::Skeleton(Mesh const& mesh, Lattice const& lattice)
+int n_layers(IndexRange const& nodes) {
+  int directions = 0, layers = 1;
+  for (int a = 0; a < 3; ++a)
+    if (nodes.extent(a) > 1 && ++directions == 3) layers = nodes.extent(a);
+  return layers;
+}
+
+Skeleton::Skeleton(Mesh const& mesh, Lattice const& lattice, Blocks const& blocks)
     : mesh_(mesh), lattice_(lattice), first_slot_(lattice.n_classes(), -1) {
   for (int c = 0; c < lattice.n_classes(); ++c) {
     int const owner = lattice.copies(c).front().entity;
-    if (lattice.dimension(owner) == 3) continue;
+    if (lattice.dimension(owner) == 3 && blocks.region_of(lattice.piece_of_volume(owner)) < 0) continue;
     first_slot_[c] = n_slots_;
     n_slots_ += lattice.nodes(owner).size();
   }
 }
 
-std::optional<SkeletonRows> Skeleton::rows(int entity) const {
+std::optional<SkeletonRows> Skeleton::rows(int entity, int layer) const {
   int const c = lattice_.class_of(entity);
   IndexRange const own = lattice_.nodes(lattice_.copies(c).front().entity);
   if (own.size() == 0) return std::nullopt;
@@ -46,11 +53,17 @@ std::optional<SkeletonRows> Skeleton::rows(int entity) const {
     if (own.extent(a) == 1) continue;
     Index3 step{0, 0, 0};
     step[a] = 1;
+    if (used == 2) {
+      step = map.orientation.apply(step);
+      for (int d = 0; d < 3; ++d) rows.at[d] += layer * step[d];
+      break;
+    }
     (used == 0 ? rows.n_p : rows.n_q) = own.extent(a);
     (used == 0 ? rows.step_p : rows.step_q) = map.orientation.apply(step);
     ++used;
   }
   rows.slot_q = rows.n_p;
+  rows.slot += Index(layer) * rows.n_p * rows.n_q;
   return rows;
 }
 
@@ -60,13 +73,16 @@ std::vector<kernels::NodeCopy> Skeleton::to_nodes(RotationTable& rotations) cons
     if (first_slot_[c] < 0) continue;
     bool const on_axis = lattice_.axis_of(c).has_value();  // rotations leave it alone
     for (EntityCopy const& copy : lattice_.copies(c)) {
-      auto const rows = this->rows(copy.entity);
-      if (!rows) continue;
       Zone const& zone = mesh_.zones[lattice_.zone_of(copy.entity)];
       auto const stride = zone.strides();
       auto along = [&](Index3 const& step) { return step[0] * stride[0] + step[1] * stride[1] + step[2] * stride[2]; };
-      out.push_back({rows->slot, 1, rows->slot_q, zone.node(rows->at), along(rows->step_p), along(rows->step_q),
-                     rows->n_p, rows->n_q, copy.moved && !on_axis ? rotations.number(copy.transform.rotation) : -1});
+      int const layers = n_layers(lattice_.nodes(lattice_.copies(c).front().entity));
+      for (int layer = 0; layer < layers; ++layer) {
+        auto const rows = this->rows(copy.entity, layer);
+        if (!rows) continue;
+        out.push_back({rows->slot, 1, rows->slot_q, zone.node(rows->at), along(rows->step_p), along(rows->step_q),
+                       rows->n_p, rows->n_q, copy.moved && !on_axis ? rotations.number(copy.transform.rotation) : -1});
+      }
     }
   }
   return out;

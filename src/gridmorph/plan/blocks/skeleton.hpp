@@ -1,5 +1,5 @@
-// The skeleton: all nodes on faces, edges and corners of pieces. It carries the displacement from stage to stage; the nodes
-// inside pieces depend on nothing but the skeleton.
+// The skeleton: all nodes on faces, edges and corners of pieces, and all in regions that rules move. It carries the displacement
+// from stage to stage; the nodes inside other pieces depend on nothing but the skeleton.
 //
 // Every entity class has its slots, in the order of its owner's nodes and in its owner's frame, so that nodes that
 // coincide share one displacement.
@@ -26,7 +26,7 @@ class RotationTable {
 
 bool same_rotation(Mat3 const& a, Mat3 const& b);
 
-/// The nodes of one entity as rows: node (p, q) has slot + p + slot_q * q and zone index at + p * step_p + q * step_q.
+/// The nodes of one entity as rows, of a volume those of one of its layers: node (p, q) has slot + p + slot_q * q and zone index at + p * step_p + q * step_q.
 struct SkeletonRows {
   int n_p = 1, n_q = 1;
   Index slot = 0, slot_q = 0;
@@ -43,13 +43,17 @@ inline Vec3 node_position(Mesh const& mesh, int zone, SkeletonRows const& rows, 
   return mesh.coordinates[mesh.zones[zone].node(node_at(rows, p, q))];
 }
 
+/// Layers of an entity's nodes: 1, but of a volume as many as nodes along its last axis.
+int n_layers(IndexRange const& nodes);
+
 class Skeleton {
  public:
-  Skeleton(Mesh const& mesh, Lattice const& lattice);
+  /// The volumes of blocks.region_of() belong to it: what a region moves is known node by node.
+  Skeleton(Mesh const& mesh, Lattice const& lattice, Blocks const& blocks);
 
   [[nodiscard]] Index size() const { return n_slots_; }
-  /// Rows of one occurrence of an entity; nothing when it has no nodes.
-  [[nodiscard]] std::optional<SkeletonRows> rows(int entity) const;
+  /// Rows of one occurrence of an entity; nothing when it has no nodes. Slots of a volume's layers follow one another.
+  [[nodiscard]] std::optional<SkeletonRows> rows(int entity, int layer = 0) const;
   /// From slots to all nodes of the mesh that belong to the skeleton, each in its zone's frame.
   [[nodiscard]] std::vector<kernels::NodeCopy> to_nodes(RotationTable& rotations) const;
 

@@ -19,12 +19,67 @@ struct Candidate {
   [[nodiscard]] bool whole() const { return steps == int(chain.steps.size()); }
 };
 
+/// Regions keep what their rules give them: chains end on them, and so do those beside them.
+class Held {
+ public:
+  Held(Mesh const& mesh, Topology const& topology)
+      : topology_(topology),
+        faces_(topology.lattice.n_classes()),
+        inside_(std::size_t(topology.lattice.n_classes()), 0) {
+    Lattice const& lattice = topology.lattice;
+    for (int c = 0; c < lattice.n_classes(); ++c) {
+      int const patch = topology.blocks.patch_of_face()[c];
+      bool const region = patch >= 0 && mesh.patches[patch].kind == PatchKind::region;
+      faces_.known[c] = region ? 1 : 0;
+      int const owner = lattice.copies(c).front().entity;
+      bool const held =
+          region || (lattice.dimension(owner) == 3 && topology.blocks.region_of(lattice.piece_of_volume(owner)) >= 0);
+      if (held) for_closure(lattice, owner, [&](int entity) { inside_[std::size_t(lattice.class_of(entity))] = 1; });
+      any_ = any_ || held;
+    }
+  }
+
+  /// The faces that chains end on.
+  [[nodiscard]] Known const& faces() const { return faces_; }
+
+  /// How many steps of a chain, one at least, have no region beside them; a chain inside of one has only itself.
+  [[nodiscard]] int free_steps(Chain const& chain) const {
+    auto const all = int(chain.steps.size());
+    if (!any_) return all;
+    for (int m = 0; m < all; ++m)
+      if (is_beside(chain.steps[std::size_t(m)])) return std::max(1, m);
+    return all;
+  }
+
+ private:
+  [[nodiscard]] bool is_beside(ChainStep const& step) const {
+    Lattice const& lattice = topology_.lattice;
+    for (PlacedPiece const& placed : topology_.blocks[step.block].pieces) {
+      if (topology_.blocks.region_of(placed.piece) >= 0) return false;
+      int const along = placed.to_block.then(step.to_chain).inverse().axis[0];
+      Index3 which{};
+      for (which[0] = 0; which[0] < 3; ++which[0])
+        for (which[1] = 0; which[1] < 3; ++which[1])
+          for (which[2] = 0; which[2] < 3; ++which[2])
+            if (which[along] == 1 &&
+                inside_[std::size_t(lattice.class_of(lattice.entity_of_piece(placed.piece, which)))] != 0)
+              return true;
+    }
+    return false;
+  }
+
+  Topology const& topology_;
+  Known faces_;
+  std::vector<char> inside_;  ///< entity classes of regions, with what bounds them
+  bool any_ = false;
+};
+
 std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
                                        std::vector<int> const& surface_of_patch,
                                        std::vector<SlipSurface> const& surfaces) {
   Lattice const& lattice = topology.lattice;
   Blocks const& blocks = topology.blocks;
-  Known const nothing(lattice.n_classes());
+  Held const held(mesh, topology);
   std::vector<Candidate> candidates;
   std::set<BlockFace> seen;
   for (int c = 0; c < lattice.n_classes(); ++c) {
@@ -34,15 +89,15 @@ std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topolog
     if (!seen.insert(face).second) continue;
     // To the opposite boundary, or through one block where the way there would come back to one of its blocks.
     Chain chain;
-    if (auto whole = find_chain(mesh, topology, nothing, face.block, face.axis)) {
+    if (auto whole = find_chain(mesh, topology, held.faces(), face.block, face.axis)) {
       bool const slip_first = end_face(whole->steps.front(), 0) == face;
       chain = slip_first ? std::move(*whole) : reversed(std::move(*whole));
     } else {
-      auto one = walk_from(mesh, topology, nothing, face, [](Chain const&) { return true; });
+      auto one = walk_from(mesh, topology, held.faces(), face, [](Chain const&) { return true; });
       if (!one) continue;
       chain = std::move(*one);
     }
-    int const steps = int(chain.steps.size());
+    int const steps = held.free_steps(chain);
     SlipKind const kind = surfaces[surface_of_patch[patch]].kind;
     bool const curved = kind == SlipKind::revolution || kind == SlipKind::meridional || kind == SlipKind::facets;
     candidates.push_back({motion.patch[patch].rule, curved, std::move(chain), steps});

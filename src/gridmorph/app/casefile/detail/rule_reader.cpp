@@ -22,9 +22,9 @@ namespace gridmorph::casefile {
 
 namespace {
 
-std::vector<std::string> const rule_names{"fixed",  "rigid", "formula", "field",    "circumferential-slide",
-                                          "follow", "slip",  "free",    "sections", "target",
-                                          "contour"};
+std::vector<std::string> const rule_names{"fixed",   "rigid",   "formula", "field",    "circumferential-slide",
+                                          "follow",  "slip",    "free",    "sections", "target",
+                                          "contour", "attached"};
 
 /// rotation = { axis, origin, angle_deg }. Without axis and origin: about the machine axis.
 void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid) {
@@ -349,12 +349,34 @@ std::optional<TimedRule> read_explicit(std::size_t number, TableReader& table, R
   }
 }
 
+Rule read_attached(TableReader& table) {
+  AttachedRule rule;
+  rule.of = read_of(table);
+  auto const how = table.choice("how", {"rigid", "shift", "nearest"});
+  if (how) rule.how = AttachedRule::How(*how);
+  if (auto near = table.table("near")) {
+    if (rule.how == AttachedRule::How::nearest)
+      table.problem("near", "belongs to how = \"rigid\" or \"shift\"; remove it, or change how");
+    auto const point = near->vector("point");
+    auto const distance = near->number("distance");
+    near->require("point", "point = [x, y, z]");
+    near->require("distance", "distance = 0.1");
+    if (distance && *distance <= 0)
+      near->problem("distance", fmt::format("must be a positive length, found {}", *distance));
+    else if (point && distance)
+      rule.near = {*point, *distance};
+    near->finish();
+  }
+  return rule;
+}
+
 Rule read_other(std::size_t number, TableReader& table, RuleContext const& shared) {
   switch (number) {
     case 4: needs_axis(table, shared, rule_names[number]); return CircumferentialSlideRule{read_of(table)};
     case 5: needs_axis(table, shared, rule_names[number]); return FollowRule{read_of(table)};
     case 6: return read_slip(table, shared);
     case 7: return read_free(table, shared);
+    case 11: return read_attached(table);
     default: return FixedRule{};
   }
 }
@@ -423,8 +445,8 @@ void read_motion_rule(TableReader& table, RuleContext const& shared, CaseFile& o
   } else {
     motion.rule = read_other(number, table, shared);
     if (table.find("amplitude") != nullptr)
-      table.problem("amplitude", number == 4 || number == 5
-                                     ? "belongs to the rule of the blade, which this rule goes along with"
+      table.problem("amplitude", number == 4 || number == 5 || number == 11
+                                     ? "belongs to the rule of the blade or wall, which this rule goes along with"
                                      : fmt::format("multiplies a displacement, and \"{}\" gives none", *name));
   }
   table.finish();

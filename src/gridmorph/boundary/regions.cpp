@@ -1,0 +1,217 @@
+#include <gridmorph/boundary/regions.hpp>
+
+#include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <algorithm>
+#include <set>
+
+namespace gridmorph {
+
+namespace {
+
+/// A box of cells while it is looked at: cells.begin <= c < cells.end.
+class Marks {
+ public:
+  Marks(Index3 const& cells, std::vector<char> const& inside) : cells_(cells), inside_(inside) {}
+
+  /// Which layers along each axis hold cells inside.
+  [[nodiscard]] std::array<std::vector<char>, 3> layers(IndexRange const& box) const {
+    std::array<std::vector<char>, 3> out;
+    for (int a = 0; a < 3; ++a) out[std::size_t(a)].assign(std::size_t(box.extent(a)), 0);
+    for (int k = box.begin[2]; k < box.end[2]; ++k)
+      for (int j = box.begin[1]; j < box.end[1]; ++j)
+        for (int i = box.begin[0]; i < box.end[0]; ++i)
+          if (inside_[std::size_t(i + cells_[0] * (j + Index(cells_[1]) * k))] != 0) {
+            out[0][std::size_t(i - box.begin[0])] = 1;
+            out[1][std::size_t(j - box.begin[1])] = 1;
+            out[2][std::size_t(k - box.begin[2])] = 1;
+          }
+    return out;
+  }
+
+ private:
+  Index3 cells_;
+  std::vector<char> const& inside_;
+};
+
+/// Runs of layers that hold cells, [begin, end).
+std::vector<std::array<int, 2>> runs(std::vector<char> const& layers) {
+  std::vector<std::array<int, 2>> out;
+  for (int n = 0; n < int(layers.size()); ++n) {
+    if (layers[std::size_t(n)] == 0) continue;
+    if (out.empty() || out.back()[1] != n) out.push_back({n, n});
+    ++out.back()[1];
+  }
+  return out;
+}
+
+void divide(Marks const& marks, IndexRange const& box, std::vector<IndexRange>& out) {
+  auto const layers = marks.layers(box);
+  bool whole = true;
+  std::array<std::vector<std::array<int, 2>>, 3> held;
+  for (int a = 0; a < 3; ++a) {
+    held[std::size_t(a)] = runs(layers[std::size_t(a)]);
+    if (held[std::size_t(a)].empty()) return;
+    whole = whole && held[std::size_t(a)].size() == 1 &&
+            held[std::size_t(a)][0][1] - held[std::size_t(a)][0][0] == box.extent(a);
+  }
+  if (whole) {
+    out.push_back(box);
+    return;
+  }
+  for (auto const& [k0, k1] : held[2])
+    for (auto const& [j0, j1] : held[1])
+      for (auto const& [i0, i1] : held[0])
+        divide(marks,
+               {{box.begin[0] + i0, box.begin[1] + j0, box.begin[2] + k0},
+                {box.begin[0] + i1, box.begin[1] + j1, box.begin[2] + k1}},
+               out);
+}
+
+Vec3 middle(Mesh const& mesh, Zone const& zone, Index3 const& cell) {
+  Vec3 sum;
+  for (int c = 0; c < 8; ++c)
+    sum += mesh.coordinates[zone.node({cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2)})];
+  return 0.125 * sum;
+}
+
+class Finder {
+ public:
+  explicit Finder(Mesh& mesh) : mesh_(mesh) {
+    for (Patch const& patch : mesh.patches) {
+      taken_.insert(patch.name);
+      taken_.insert(patch.families.begin(), patch.families.end());
+    }
+  }
+
+  void add(InnerRegion const& region) {
+    std::string const label = "region '" + region.name + "'" + (region.where.empty() ? "" : " (" + region.where + ")");
+    if (region.name.empty()) {
+      problems_.add(label + " has no name; give one, for rules to name it by");
+      return;
+    }
+    if (!taken_.insert(region.name).second) {
+      problems_.add(label + ": the name is that of a patch, of a family or of another region; choose another one");
+      return;
+    }
+    std::optional<std::vector<int>> const zones = zones_of(region, label);
+    if (!zones) return;
+    region.nodes ? add_nodes(region, *zones, label) : add_cells(region, *zones, label);
+  }
+
+  void finish() { problems_.throw_if_any<MotionError>(); }
+
+ private:
+  std::optional<std::vector<int>> zones_of(InnerRegion const& region, std::string const& label) {
+    std::set<int> out;
+    for (std::string const& name : region.zones) {
+      bool found = false;
+      for (int z = 0; z < int(mesh_.zones.size()); ++z)
+        if (glob_match(name, mesh_.zones[std::size_t(z)].name)) {
+          out.insert(z);
+          found = true;
+        }
+      if (found) continue;
+      constexpr std::size_t most = 12;
+      std::vector<std::string> names;
+      for (Zone const& zone : mesh_.zones) names.push_back(zone.name);
+      problems_.add(label + ": there is no zone '" + name + "'; the zones are " + quote_list(names, most));
+      return std::nullopt;
+    }
+    if (region.zones.empty())
+      for (int z = 0; z < int(mesh_.zones.size()); ++z) out.insert(z);
+    return std::vector<int>(out.begin(), out.end());
+  }
+
+  void add_nodes(InnerRegion const& region, std::vector<int> const& zones, std::string const& label) {
+    if (zones.size() != 1)
+      return problems_.add(label + ": its nodes are those of one zone, and it names " + std::to_string(zones.size()) +
+                           "; name the zone");
+    Zone const& zone = mesh_.zones[std::size_t(zones.front())];
+    IndexRange const all{{0, 0, 0}, zone.extent}, &range = *region.nodes;
+    int flat = 0;
+    bool inside = true, on_face = false;
+    for (int a = 0; a < 3; ++a) {
+      inside = inside && range.begin[a] >= 0 && range.end[a] <= zone.extent[a] && range.extent(a) > 0;
+      if (range.extent(a) != 1) continue;
+      ++flat;
+      on_face = on_face || range.begin[a] == 0 || range.end[a] == zone.extent[a];
+    }
+    if (!inside)
+      problems_.add(label + ": its nodes " + to_string(range) + " are not all in zone '" + zone.name + "' " +
+                    to_string(all));
+    else if (flat > 1)
+      problems_.add(label + ": its nodes " + to_string(range) +
+                    " are a line or a point; give a box of nodes, or a surface of the grid");
+    else if (on_face)
+      problems_.add(label + ": its nodes " + to_string(range) + " are on the boundary of zone '" + zone.name + "' " +
+                    to_string(all) + ", where patches and interfaces are moved by rules of their own");
+    else
+      append(region.name, zones.front(), range);
+  }
+
+  void add_cells(InnerRegion const& region, std::vector<int> const& zones, std::string const& label) {
+    Index held = 0, taken = 0, looked_at = 0;
+    std::size_t boxes = 0;
+    std::set<int> in;
+    for (int const z : zones) {
+      Zone const& zone = mesh_.zones[std::size_t(z)];
+      Index3 const cells{zone.extent[0] - 1, zone.extent[1] - 1, zone.extent[2] - 1};
+      std::vector<char> inside(std::size_t(Index(cells[0]) * cells[1] * cells[2]), 1);
+      looked_at += Index(inside.size());
+      std::size_t c = 0;
+      Index3 at{};
+      if (region.holds)
+        for (at[2] = 0; at[2] < cells[2]; ++at[2])
+          for (at[1] = 0; at[1] < cells[1]; ++at[1])
+            for (at[0] = 0; at[0] < cells[0]; ++at[0]) inside[c++] = region.holds(middle(mesh_, zone, at)) ? 1 : 0;
+      held += std::count(inside.begin(), inside.end(), 1);
+      for (IndexRange const& box : boxes_of_cells(cells, inside)) {
+        append(region.name, z, box);
+        Index n = 1;
+        for (int a = 0; a < 3; ++a) n *= box.extent(a) - 1;
+        taken += n;
+        ++boxes;
+        in.insert(z);
+      }
+    }
+    if (held == 0)
+      return problems_.add(label + " holds none of the " + std::to_string(looked_at) + " cells that it looks at, in " +
+                           std::to_string(zones.size()) + " zones; correct where it lies");
+    std::vector<std::string> names;
+    for (int const z : in) names.push_back(mesh_.zones[std::size_t(z)].name);
+    constexpr std::size_t most = 4;
+    mesh_.notes.push_back("region '" + region.name + "': " + std::to_string(taken) + " cells in " +
+                          std::to_string(boxes) + (boxes == 1 ? " box" : " boxes") + " of zones " +
+                          quote_list(names, most) +
+                          (taken == held ? "" : ", of which " + std::to_string(held) + " were asked for"));
+  }
+
+  void append(std::string const& name, int zone, IndexRange const& range) {
+    mesh_.patches.push_back({name, "", PatchKind::region, {}, zone, range, {}, {}});
+  }
+
+  Mesh& mesh_;
+  std::set<std::string> taken_;
+  Problems problems_;
+};
+
+}  // namespace
+
+std::vector<IndexRange> boxes_of_cells(Index3 const& cells, std::vector<char> const& inside) {
+  std::vector<IndexRange> out;
+  divide({cells, inside}, {{0, 0, 0}, cells}, out);
+  for (IndexRange& box : out)
+    for (int& end : box.end) ++end;
+  return out;
+}
+
+void add_regions(Mesh& mesh, std::span<InnerRegion const> regions) {
+  if (regions.empty()) return;
+  Finder finder(mesh);
+  for (InnerRegion const& region : regions) finder.add(region);
+  finder.finish();
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,41 @@
+// Regions inside the domain that motion rules address by name, as they do patches: cells around a wake or a shock, refinement that
+// is to follow a wall, parts that stay as they are, grid surfaces. All their nodes are given a displacement by the rule.
+#pragma once
+
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gridmorph {
+
+struct InnerRegion {
+  std::string name;                ///< what rules call it: neither the name nor the family of a patch
+  std::vector<std::string> zones;  ///< names of zones, globs; empty: all
+  /// Nodes of the one zone that `zones` names; extent 1 along one axis: a grid surface.
+  std::optional<IndexRange> nodes;
+  /// Whether a place lies in the region; nothing: everything in the zones does.
+  std::function<bool(Vec3 const& place)> holds;
+  std::string where;  ///< "case.toml:14", for messages
+};
+
+/// Boxes of cells that hold all cells c of a zone with `inside[c]`, i fastest, as ranges of nodes: where no cell of a whole layer is
+/// inside, the layer separates two boxes. Cost O(cells) for each time a box is divided.
+std::vector<IndexRange> boxes_of_cells(Index3 const& cells, std::vector<char> const& inside);
+
+/// Whether a patch is a region of cells, not of a surface.
+inline bool is_box(Patch const& patch) {
+  return patch.kind == PatchKind::region && patch.range.extent(0) > 1 && patch.range.extent(1) > 1 &&
+         patch.range.extent(2) > 1;
+}
+
+/// Appends a patch of kind `region` for each box of each region of a mesh of blocks, and says in a note of the mesh what it holds.
+/// Cells are inside where the mean of their corners is; as plans are made of boxes, some around them may come along. Throws
+/// MotionError naming every region without cells, whose name is taken, or whose zones or nodes there are not.
+/// Cost: a look at each cell of the zones that regions name without nodes.
+void add_regions(Mesh& mesh, std::span<InnerRegion const> regions);
+
+}  // namespace gridmorph

@@ -1,0 +1,61 @@
+// [[region]] tables become the regions they say.
+#include "case_text.hpp"
+
+namespace gridmorph::testing {
+namespace {
+
+std::string const mesh_and_rule =
+    "[mesh]\ninput = \"in.cgns\"\naxis = \"x\"\n[[motion]]\npatches = \"blade\"\nrule = \"fixed\"\n";
+
+InnerRegion region_of(std::string const& lines) {
+  return parse_case_file(mesh_and_rule + "[[region]]\nname = \"part\"\n" + lines, "case.toml").motion.regions.at(0);
+}
+
+TEST(RegionText, ConditionsThatStandTogetherMustAllHold) {
+  InnerRegion const r = region_of(
+      "box = { from = [0, -1, -1], to = [1, 1, 1] }\nsphere = { centre = [0.5, 0, 0], radius = 0.9 }\n"
+      "axial = [0.2, 5]\nradius = [0.3, 0.8]");
+  EXPECT_EQ(r.name, "part");
+  EXPECT_EQ(r.where, "case.toml:7");
+  EXPECT_TRUE(r.holds({0.5, 0.5, 0}));
+  EXPECT_FALSE(r.holds({1.2, 0.5, 0}));    // box
+  EXPECT_FALSE(r.holds({0.9, 0.6, 0.6}));  // sphere and radius
+  EXPECT_FALSE(r.holds({0.1, 0.5, 0}));    // axial
+  EXPECT_FALSE(r.holds({0.5, 0.1, 0}));    // radius
+}
+
+TEST(RegionText, NodesAreCountedFromOneAndBothEndsBelongToThem) {
+  InnerRegion const r = region_of("zones = \"Zone 3\"\nnodes = { from = [1, 2, 5], to = [33, 17, 5] }");
+  ASSERT_TRUE(r.nodes);
+  EXPECT_EQ(*r.nodes, (IndexRange{{0, 1, 4}, {33, 17, 5}}));
+  EXPECT_FALSE(r.holds);
+}
+
+TEST(RegionText, EveryProblemIsReportedWithItsLine) {
+  auto const problems =
+      problems_of(mesh_and_rule +
+                  "[[region]]\nname = \"a\"\n"
+                  "[[region]]\nname = \"b\"\nbox = { from = [1, 0, 0], to = [0, 1, 1] }\n"
+                  "[[region]]\nzones = [\"x\", \"y\"]\nnodes = { from = [0, 1, 1], to = [2.5, 2, 2] }\n"
+                  "[[region]]\nname = \"d\"\nradius = [2, 1]\n");
+  EXPECT_TRUE(reported(problems, "case.toml:8", {"say where the region lies"}));
+  EXPECT_TRUE(reported(problems, "case.toml:11", {"from its smaller to its larger"}));
+  EXPECT_TRUE(reported(problems, "case.toml:12", {"name"}));
+  EXPECT_TRUE(reported(problems, "case.toml:14", {"whole numbers from 1 on, found 0"}));
+  EXPECT_TRUE(reported(problems, "case.toml:14", {"whole numbers from 1 on, found 2.5"}));
+  EXPECT_TRUE(reported(problems, "case.toml:14", {"those of one zone"}));
+  EXPECT_TRUE(reported(problems, "case.toml:17", {"the smaller one first"}));
+}
+
+TEST(AttachedRuleText, IsRead) {
+  auto const rule = std::get<AttachedRule>(rule_of(
+      "rule = \"attached\"\nof = [\"a\", \"b\"]\nhow = \"shift\"\nnear = { point = [1, 2, 3], distance = 0.5 }"));
+  EXPECT_EQ(rule.of, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(rule.how, AttachedRule::How::shift);
+  ASSERT_TRUE(rule.near);
+  EXPECT_EQ(rule.near->first, (Vec3{1, 2, 3}));
+  EXPECT_EQ(rule.near->second, 0.5);
+}
+
+}  // namespace
+}  // namespace gridmorph::testing
