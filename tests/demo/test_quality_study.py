@@ -78,7 +78,7 @@ class WallsOfAStudy(unittest.TestCase):
     def test_a_case_file_names_what_it_is_of(self):
         case = next(c for c in study.CASES if c.name == "passage")
         motions = case.motions(0.1)
-        text = case.text("m.cgns", motions["rotate"], "blend", True, -2)
+        text = case.text("m.cgns", motions["rotate"], "blend", -2, guard=True)
         for line in ('input = "m.cgns"', "twist_deg = 10", "chord = -0.05", "amplitude = -2", 'mode = "blend"', "smooth = true"):
             self.assertIn(line, text.splitlines())
 
