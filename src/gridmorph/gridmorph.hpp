@@ -3,6 +3,7 @@
 
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/point_ranges.hpp>

@@ -4,6 +4,7 @@
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
 
+#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morph.hpp>
@@ -119,6 +120,37 @@ TEST_F(Manners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
                              "gridmorph::skeleton_sweep", "gridmorph::skeleton_spread", "gridmorph::slip_ends",
                              "gridmorph::skeleton_nodes", "gridmorph::volume", "gridmorph::line_parameters"})
     EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
+}
+
+/// Nodes of slip surfaces and inner ones, moved by something.
+TEST_F(Manners, AFrozenGuardAddsKernelsAndNothingElse) {
+  std::vector<Vec3> const given = prepared.boundary_displacement();
+  Coordinates plain(mesh.n_nodes()), guarded(mesh.n_nodes());
+  apply_on_host(Morpher<Kokkos::DefaultHostExecutionSpace>({}, prepared.plan(), mesh.coordinates), given, plain);
+  for (Index n = 0; n < plain.size(); ++n) guarded.set(n, plain[n] + Vec3{1e-3, 0, 0});
+  SmoothingRecord smoothing(prepared);
+  smoothing.add(given, plain, guarded);
+  Listener const made;
+  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true, smoothing.map()});
+  exec.fence();
+  expect_labels(record.allocations);
+  std::vector<std::string> first;
+  for (int n = 0; n < 2; ++n) {
+    Listener const listener;
+    record = {};
+    morpher.displacements(exec, two_in, two_out);
+    morpher.positions(exec, boundary, u);
+    morpher.velocities(exec, boundary, boundary, u);
+    EXPECT_EQ(record.allocations, std::vector<std::string>());
+    EXPECT_EQ(record.copies, std::vector<std::string>());
+    for (auto const& fence : record.fences) EXPECT_TRUE(is_profiling_fence(fence)) << fence;
+    expect_labels(record.kernels);
+    EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), "gridmorph::frozen_shifts::add"),
+              record.kernels.end());
+    if (n == 0) first = record.kernels;
+    EXPECT_EQ(record.kernels, first);
+    Kokkos::deep_copy(boundary, Vec3{});
+  }
 }
 
 TEST_F(Manners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {

@@ -71,6 +71,12 @@ std::vector<std::string> MorphPlan::notes() const {
   return out;
 }
 
+MorphPlan MorphPlan::with(std::shared_ptr<SmoothingMap const> smoothing) const {
+  MorphPlan out = *this;
+  out.smoothing_ = std::move(smoothing);
+  return out;
+}
+
 PreparedMorph const* MorphPlan::blocks() const { return state_->blocks ? &*state_->blocks : nullptr; }
 PreparedUnstructured const* MorphPlan::elements() const { return state_->elements ? &*state_->elements : nullptr; }
 

@@ -14,6 +14,7 @@ namespace gridmorph {
 
 struct PreparedMorph;
 struct PreparedUnstructured;
+struct SmoothingMap;
 
 /// A patch that gives a boundary node of a plan its displacement, and where the node lies there.
 struct BoundaryPlace {
@@ -46,6 +47,11 @@ class MorphPlan {
   /// Defaults taken and facts found on the way, for users.
   [[nodiscard]] std::vector<std::string> notes() const;
 
+  /// The same plan, and what a guard did to some of its meshes as a linear part of every morph (guard/smoothing_record.hpp).
+  [[nodiscard]] MorphPlan with(std::shared_ptr<SmoothingMap const> smoothing) const;
+  /// Null where the plan carries none.
+  [[nodiscard]] std::shared_ptr<SmoothingMap const> const& smoothing() const { return smoothing_; }
+
   /// For the library: of the two one is null.
   [[nodiscard]] PreparedMorph const* blocks() const;
   [[nodiscard]] PreparedUnstructured const* elements() const;
@@ -53,6 +59,7 @@ class MorphPlan {
  private:
   struct State;
   std::shared_ptr<State const> state_;
+  std::shared_ptr<SmoothingMap const> smoothing_;
 };
 
 /// New coordinates of a mesh whose patches move as the rules say, on the host; fences `exec`, where it plans too if that is one of the

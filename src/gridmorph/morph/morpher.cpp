@@ -84,6 +84,13 @@ struct Morpher<Exec>::State {
         for_each_stage([&](auto const& stage) { stage.enqueue(exec, flat.field, f); });
       }
       write<Move>(exec, {list.fields.data(), n}, out.subspan(done, n));
+      if (!list.shifts) continue;
+      ProfilingRegion const region(list.shifts->region);
+      for (std::size_t k = 0; k < n; ++k) {
+        Field f = list.fields[k];
+        f.boundary = boundary[done + k].array();
+        list.shifts->add(exec, f, out[done + k]);
+      }
     }
   }
 
@@ -101,6 +108,9 @@ struct Morpher<Exec>::State {
       }
     });
     write<false>(exec, {&r, 1}, {&v, 1});
+    if (!list.shifts) return;
+    ProfilingRegion const region(list.shifts->region);
+    list.shifts->add_rate(exec, f, r, v);
   }
 };
 
@@ -112,6 +122,11 @@ std::shared_ptr<State const> state_of(Exec const& exec, AnyPlan const& plan,
                                       MorpherOptions const& options) {
   require_all_nodes("gridmorph::Morpher", baseline.size(), plan.n_nodes);
   return std::make_shared<State const>(exec, plan, baseline, options);
+}
+
+MorpherOptions with_smoothing(MorpherOptions options, MorphPlan const& plan) {
+  if (!options.smoothing) options.smoothing = plan.smoothing();
+  return options;
 }
 
 }  // namespace
@@ -127,8 +142,8 @@ Morpher<Exec>::Morpher(Exec const& exec, UnstructuredPlan const& plan, In const&
 
 template <class Exec>
 Morpher<Exec>::Morpher(Exec const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options)
-    : Morpher(plan.blocks() ? Morpher(exec, plan.blocks()->plan(), baseline, options)
-                            : Morpher(exec, plan.elements()->plan, baseline, options)) {}
+    : Morpher(plan.blocks() ? Morpher(exec, plan.blocks()->plan(), baseline, with_smoothing(options, plan))
+                            : Morpher(exec, plan.elements()->plan, baseline, with_smoothing(options, plan))) {}
 
 template <class Exec>
 void Morpher<Exec>::positions(Exec const& exec, In const& boundary, Out const& moved) const {

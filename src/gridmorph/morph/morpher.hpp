@@ -12,11 +12,14 @@ namespace gridmorph {
 
 class MorphPlan;
 struct Plan;
+struct SmoothingMap;
 struct UnstructuredPlan;
 
 struct MorpherOptions {
   int fields = 1;  ///< displacement fields of blocks that go through the volume together; elements: one after another
   bool velocity = false;  ///< room for velocities()
+  /// What a guard did, on top of every displacement, position and velocity; none: that of the MorphPlan, where it carries any.
+  std::shared_ptr<SmoothingMap const> smoothing = nullptr;
 };
 
 /// A plan on an execution space, of blocks or of elements, as a list of stages. Construction uploads their tables, allocates the workspace and, for blocks,

@@ -106,4 +106,34 @@ std::vector<int> BlockPoints::surfaces(Index node) const {
   return out;
 }
 
+std::optional<SlidingPoint> sliding_point(PreparedMorph const& prepared, BlockPoints const& points,
+                                          std::vector<PointNode> const& nodes) {
+  std::vector<int> all;
+  PointNode frame = nodes.front();
+  std::size_t most = 0;
+  for (PointNode const& n : nodes) {
+    std::vector<int> const own = points.surfaces(n.node);
+    if (own.size() > most) frame = n;
+    most = std::max(most, own.size());
+  }
+  for (PointNode const& n : nodes)
+    for (int const s : points.surfaces(n.node)) {
+      if (std::find(all.begin(), all.end(), s) != all.end()) continue;
+      auto const in_frame = points.surfaces(frame.node);
+      bool const known = std::find(in_frame.begin(), in_frame.end(), s) != in_frame.end();
+      if (!known && n.matrix != frame.matrix) return {};
+      all.push_back(s);
+    }
+  SlidingPoint out;
+  if (all.size() > out.surface.size()) return {};
+  out.node = frame;
+  out.count = int(all.size());
+  Vec3 const at = prepared.mesh.coordinates[frame.node];
+  for (std::size_t m = 0; m < all.size(); ++m) {
+    out.surface[m] = all[m];
+    out.own_offset[m] = prepared.surface.slip_surfaces()[std::size_t(all[m])].view().own_offset(at);
+  }
+  return out;
+}
+
 }  // namespace gridmorph::detail

@@ -6,7 +6,9 @@
 #include <gridmorph/quality/quality.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -72,6 +74,14 @@ class BlockCells {
   std::vector<Index> first_;
 };
 
+/// The surfaces that a point slides on, in the frame of one of its nodes.
+struct SlidingPoint {
+  PointNode node{-1, -1};
+  int count = 0;
+  std::array<int, 3> surface{};
+  std::array<double, 3> own_offset{};
+};
+
 class BlockPoints {
  public:
   /// Throws nothing; cost: O(nodes), two numbers per node of the skeleton and five bytes per node of the mesh.
@@ -92,6 +102,8 @@ class BlockPoints {
     }
     for (Index n = first_[std::size_t(slot)]; n < first_[std::size_t(slot) + 1]; ++n) visit(nodes_[std::size_t(n)]);
   }
+  /// Where the plan keeps a node's displacement; -1 inside pieces.
+  [[nodiscard]] Index slot(Index node) const { return slot_[std::size_t(node)]; }
   /// Slip surfaces (BoundaryMotion::slip_surfaces()) that the patches of a node lie on.
   [[nodiscard]] std::vector<int> surfaces(Index node) const;
 
@@ -108,5 +120,9 @@ class BlockPoints {
   std::vector<std::uint8_t> stays_;
   std::vector<std::pair<Index, int>> slips_;  ///< (node, surface), ascending, each once
 };
+
+/// nodes: all those of a point. In the frame of the node with most surfaces; nothing where another node of the point adds one in another frame.
+std::optional<SlidingPoint> sliding_point(PreparedMorph const& prepared, BlockPoints const& points,
+                                          std::vector<PointNode> const& nodes);
 
 }  // namespace gridmorph::detail

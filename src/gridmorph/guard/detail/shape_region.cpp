@@ -80,7 +80,7 @@ class RegionBuilder {
   void add_point(Index node) {
     std::vector<PointNode> nodes;
     points_.for_each_node(node, [&](PointNode const& n) { nodes.push_back(n); });
-    auto const slide = sliding(nodes);
+    auto const slide = sliding_point(prepared_, points_, nodes);
     auto const corners = slide ? changed_corners(nodes) : std::nullopt;
     if (!corners) {
       points_.keep(node);
@@ -108,36 +108,6 @@ class RegionBuilder {
       region_.changing.push_back(0);
     }
     return number;
-  }
-
-  /// In the frame of the node with most surfaces; nothing where another node of the point adds one in another frame.
-  [[nodiscard]] std::optional<SlidingPoint> sliding(std::vector<PointNode> const& nodes) const {
-    std::vector<int> all;
-    PointNode frame = nodes.front();
-    std::size_t most = 0;
-    for (PointNode const& n : nodes) {
-      std::vector<int> const own = points_.surfaces(n.node);
-      if (own.size() > most) frame = n;
-      most = std::max(most, own.size());
-    }
-    for (PointNode const& n : nodes)
-      for (int const s : points_.surfaces(n.node)) {
-        if (std::find(all.begin(), all.end(), s) != all.end()) continue;
-        auto const in_frame = points_.surfaces(frame.node);
-        bool const known = std::find(in_frame.begin(), in_frame.end(), s) != in_frame.end();
-        if (!known && n.matrix != frame.matrix) return {};
-        all.push_back(s);
-      }
-    SlidingPoint out;
-    if (all.size() > out.surface.size()) return {};
-    out.node = frame;
-    out.count = int(all.size());
-    Vec3 const at = prepared_.mesh.coordinates[frame.node];
-    for (std::size_t m = 0; m < all.size(); ++m) {
-      out.surface[m] = all[m];
-      out.own_offset[m] = prepared_.surface.slip_surfaces()[std::size_t(all[m])].view().own_offset(at);
-    }
-    return out;
   }
 
   using CornerOfCell = std::pair<Index, PointCorner>;

@@ -18,14 +18,6 @@ struct PointCorner {
   std::int16_t matrix;  ///< of the point's node there
 };
 
-/// The surfaces that a point slides on, in the frame of one of its nodes.
-struct SlidingPoint {
-  PointNode node{-1, -1};
-  int count = 0;
-  std::array<int, 3> surface{};
-  std::array<double, 3> own_offset{};
-};
-
 struct ShapeRegion {
   std::vector<CellNodes> cells;                                 ///< that a free point changes
   std::vector<Index> numbers;                                   ///< of these cells in the mesh

@@ -4,6 +4,7 @@
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/morph/stages/body_turns.hpp>
 #include <gridmorph/morph/stages/far_field.hpp>
+#include <gridmorph/morph/stages/frozen_shifts.hpp>
 #include <gridmorph/morph/stages/joined_nodes.hpp>
 #include <gridmorph/morph/stages/near_field.hpp>
 #include <gridmorph/morph/stages/other_boundaries.hpp>
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -29,6 +31,7 @@ struct StageList {
   std::vector<Stage<Exec>> stages;
   std::vector<StageField<Exec>> fields;  ///< that one pass through the stages may have
   std::variant<WriteBlocks<Exec>, WriteElements<Exec>> writer;
+  std::optional<FrozenShifts<Exec>> shifts;  ///< after it
 };
 
 /// x: only while the list is made.
@@ -36,19 +39,21 @@ template <class Exec>
 StageList<Exec> stage_list(Exec const& exec, Plan const& plan, Baseline const& x, MorpherOptions const& options) {
   int const n_fields = std::max(options.fields, options.velocity ? 2 : 1);
   auto const tables = std::make_shared<detail::DevicePlan<Exec> const>(exec, plan, x, n_fields);
-  StageList<Exec> out{{}, {}, WriteBlocks<Exec>(tables)};
+  StageList<Exec> out{{}, {}, WriteBlocks<Exec>(tables), {}};
   out.stages.emplace_back(BoundaryValues<Exec>(tables));
   for (std::size_t n = 0; n < tables->stages.size(); ++n) out.stages.emplace_back(LineSweep<Exec>(tables, n));
   for (std::size_t n = 0; n < tables->spreads.size(); ++n) out.stages.emplace_back(SlipSpread<Exec>(tables, n));
   for (int f = 0; f < n_fields; ++f)
     out.fields.push_back(
         {{}, f, f, tables->skeleton.batch()[f], tables->ends.batch()[f], tables->residuals.batch()[f], {}, {}, {}});
+  if (options.smoothing && options.smoothing->n_modes > 0)
+    out.shifts.emplace(exec, *options.smoothing, Index(plan.boundary_nodes.size()), plan.n_nodes, tables->rotations);
   return out;
 }
 
 template <class Exec>
 StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, MorpherOptions const& options) {
-  StageList<Exec> out{{}, {}, WriteElements<Exec>()};
+  StageList<Exec> out{{}, {}, WriteElements<Exec>(), {}};
   out.stages.emplace_back(WallMotion<Exec>(exec, plan, options.velocity));
   SharedBodyTurns<Exec> turns;
   if (plan.turns_of_bodies.size() > 0) {
@@ -68,6 +73,9 @@ StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Morph
     field.frames = room_for<kernels::AffineMotion>(exec, plan.driving.size(), "gridmorph::Morpher::frames");
     out.fields.push_back(field);
   }
+  if (options.smoothing && options.smoothing->n_modes > 0)
+    out.shifts.emplace(exec, *options.smoothing, Index(plan.known.size()), plan.n_nodes,
+                       Kokkos::View<Mat3*, typename Exec::memory_space>());
   compat::fence(exec, "gridmorph::Morpher (host tables of the plan may go)");
   return out;
 }

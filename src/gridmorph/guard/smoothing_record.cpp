@@ -1,0 +1,221 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/guard/detail/block_points.hpp>
+#include <gridmorph/guard/guard.hpp>
+#include <gridmorph/guard/shape_smoothing.hpp>
+#include <gridmorph/guard/smoothing_record.hpp>
+#include <gridmorph/kernels/symmetric_eigen.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/morph.hpp>
+#include <gridmorph/plan/boundary_size.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/smoothing_map.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/quality/quality.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr char const* who = "gridmorph::SmoothingRecord::add";
+
+struct Mode {
+  double value;                    ///< eigenvalue
+  std::vector<double> of_records;  ///< eigenvector
+};
+
+/// Eigenvectors of the products of vectors with one another, largest values first, down to `least` of the largest.
+std::vector<Mode> modes_of(std::vector<std::vector<Vec3> const*> const& u, double least) {
+  constexpr std::size_t most = SmoothingRecord::most;
+  static double a[most][most], v[most][most];
+  for (std::size_t k = 0; k < most; ++k)
+    for (std::size_t m = 0; m < most; ++m) a[k][m] = 0;
+  for (std::size_t k = 0; k < u.size(); ++k)
+    for (std::size_t m = 0; m <= k; ++m) {
+      for (std::size_t b = 0; b < u[k]->size(); ++b) a[k][m] += dot((*u[k])[b], (*u[m])[b]);
+      a[m][k] = a[k][m];
+    }
+  kernels::diagonalise(a, v);
+  std::vector<Mode> out;
+  for (std::size_t d = 0; d < most; ++d) out.push_back({a[d][d], {v[d], v[d] + u.size()}});
+  std::stable_sort(out.begin(), out.end(), [](Mode const& l, Mode const& r) { return l.value > r.value; });
+  double const largest = out.front().value;
+  std::erase_if(out, [&](Mode const& m) { return !(m.value > least * largest) || !(m.value > 0); });
+  return out;
+}
+
+}  // namespace
+
+SmoothingRecord::SmoothingRecord(MorphPlan const& plan) : blocks_(plan.blocks()), elements_(plan.elements()) {}
+SmoothingRecord::SmoothingRecord(PreparedMorph const& prepared) : blocks_(&prepared) {}
+
+void SmoothingRecord::add(std::span<Vec3 const> boundary, Coordinates const& plain, Coordinates const& guarded) {
+  std::size_t const n_boundary = blocks_ ? blocks_->plan().boundary_nodes.size() : elements_->plan.known.size();
+  Index const n_nodes = blocks_ ? blocks_->plan().n_nodes : elements_->plan.n_nodes;
+  require_boundary_size(who, boundary.size(), n_boundary, "MorphPlan::boundary_nodes()");
+  if (plain.size() != n_nodes || guarded.size() != n_nodes)
+    throw ConfigError(std::string(who) + ": " + std::to_string(plain.size()) + " and " +
+                      std::to_string(guarded.size()) + " nodes, and the plan's mesh has " + std::to_string(n_nodes));
+  if (size() == most)
+    throw ConfigError(std::string(who) + ": " + std::to_string(most) +
+                      " displacements are recorded already; leave out some between them");
+  Recorded now{{boundary.begin(), boundary.end()}, {}};
+  for (Index n = 0; n < n_nodes; ++n)
+    if (Vec3 const s = guarded[n] - plain[n]; !(s == Vec3{})) now.shift.emplace_back(n, s);
+  recorded_.push_back(std::move(now));
+}
+
+std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& options) const {
+  auto made = std::make_shared<SmoothingMap>();
+  SmoothingMap& out = *made;
+  out.n_nodes = blocks_ ? blocks_->plan().n_nodes : elements_->plan.n_nodes;
+  out.n_boundary = Index(blocks_ ? blocks_->plan().boundary_nodes.size() : elements_->plan.known.size());
+  std::vector<std::vector<Vec3> const*> u;
+  for (Recorded const& r : recorded_) {
+    u.push_back(&r.boundary);
+    for (auto const& [node, shift] : r.shift) out.node.push_back(node);
+  }
+  std::sort(out.node.begin(), out.node.end());
+  out.node.erase(std::unique(out.node.begin(), out.node.end()), out.node.end());
+  std::vector<Mode> const modes =
+      out.node.empty() ? std::vector<Mode>() : modes_of(u, options.least_share * options.least_share);
+  out.n_modes = int(modes.size());
+  out.n_records = size();
+  if (modes.empty()) {
+    out.node.clear();
+    return made;
+  }
+  out.gauge.resize(modes.size() * std::size_t(out.n_boundary));
+  out.shift.resize(out.node.size() * modes.size());
+  for (std::size_t d = 0; d < modes.size(); ++d)
+    for (std::size_t k = 0; k < recorded_.size(); ++k) {
+      double const share = modes[d].of_records[k];
+      for (std::size_t b = 0; b < std::size_t(out.n_boundary); ++b)
+        out.gauge[d * std::size_t(out.n_boundary) + b] += share / modes[d].value * (*u[k])[b];
+      std::size_t at = 0;
+      for (auto const& [node, shift] : recorded_[k].shift) {
+        while (out.node[at] != node) ++at;
+        out.shift[at * modes.size() + d] += share * shift;
+      }
+    }
+  // a_d(u_k) = v_d(k)
+  for (std::size_t k = 0; k < recorded_.size(); ++k) {
+    auto next = recorded_[k].shift.begin();
+    for (std::size_t at = 0; at < out.node.size(); ++at) {
+      bool const moved = next != recorded_[k].shift.end() && next->first == out.node[at];
+      Vec3 left = moved ? (next++)->second : Vec3{};
+      out.largest_shift = std::max(out.largest_shift, norm(left));
+      for (std::size_t d = 0; d < modes.size(); ++d)
+        left = left - modes[d].of_records[k] * out.shift[at * modes.size() + d];
+      out.misfit = std::max(out.misfit, norm(left));
+    }
+  }
+  if (blocks_) add_slides(out);
+  return made;
+}
+
+/// Takes nodes on slip surfaces, point by point, out of those that move in space.
+void SmoothingRecord::add_slides(SmoothingMap& map) const {
+  detail::BlockPoints const points(*blocks_);
+  auto const& surfaces = blocks_->surface.slip_surfaces();
+  std::map<int, std::int32_t> number;  // of a surface, in the map
+  std::vector<std::uint8_t> done(std::size_t(map.n_nodes), 0);
+  std::vector<Index> free;
+  std::vector<Vec3> shifts;
+  auto const modes = std::size_t(map.n_modes);
+  auto const append = [&](std::vector<Vec3>& to, std::size_t at) {
+    to.insert(to.end(), map.shift.begin() + std::ptrdiff_t(at * modes),
+              map.shift.begin() + std::ptrdiff_t((at + 1) * modes));
+  };
+  for (std::size_t at = 0; at < map.node.size(); ++at) {
+    if (done[std::size_t(map.node[at])] != 0) continue;
+    std::vector<detail::PointNode> nodes;
+    points.for_each_node(map.node[at], [&](detail::PointNode const& n) { nodes.push_back(n); });
+    auto const slide = detail::sliding_point(*blocks_, points, nodes);
+    auto const of_frame = slide && slide->count > 0
+                              ? std::lower_bound(map.node.begin(), map.node.end(), slide->node.node)
+                              : map.node.end();
+    if (of_frame == map.node.end() || *of_frame != slide->node.node) {
+      free.push_back(map.node[at]);
+      append(shifts, at);
+      continue;
+    }
+    kernels::SlidingShift entry{points.slot(slide->node.node),
+                                slide->node.node,
+                                slide->node.matrix,
+                                {-1, -1, -1},
+                                {0, 0, 0},
+                                blocks_->mesh.coordinates[slide->node.node]};
+    for (int m = 0; m < slide->count; ++m) {
+      int const surface = slide->surface[std::size_t(m)];
+      auto const [known, fresh] = number.try_emplace(surface, std::int32_t(map.surfaces.size()));
+      if (fresh) map.surfaces.push_back(surfaces[std::size_t(surface)]);
+      entry.surface[m] = known->second;
+      entry.own_offset[m] = slide->own_offset[std::size_t(m)];
+    }
+    for (detail::PointNode const& n : nodes) {
+      done[std::size_t(n.node)] = 1;
+      map.slide_nodes.push_back({n.node, std::int32_t(map.slides.size()), n.matrix});
+    }
+    append(map.slide_shift, std::size_t(of_frame - map.node.begin()));
+    map.slides.push_back(entry);
+  }
+  map.node = std::move(free);
+  map.shift = std::move(shifts);
+}
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+Coordinates copy_of(Coordinates const& x) {
+  Coordinates out(x.size());
+  Kokkos::deep_copy(out.x, x.x);
+  Kokkos::deep_copy(out.y, x.y);
+  Kokkos::deep_copy(out.z, x.z);
+  return out;
+}
+
+}  // namespace
+
+MorphPlan freeze_guard(HostInstance const& host, Mesh const& mesh, MorphPlan const& plan,
+                       std::span<std::vector<Vec3> const> boundaries, FreezeOptions const& options) {
+  SmoothingRecord record(plan);
+  Morpher<Exec> const morpher(Exec(), plan.with(nullptr), mesh.coordinates);
+  Coordinates plain(mesh.n_nodes());
+  auto const morph = [&](std::vector<Vec3> const& boundary) { apply_on_host(morpher, boundary, plain); };
+  auto const record_all = [&](auto const& guard) {
+    for (std::vector<Vec3> const& boundary : boundaries) {
+      morph(boundary);
+      Coordinates guarded = copy_of(plain);
+      guard(guarded);
+      record.add(boundary, plain, guarded);
+    }
+  };
+  if (PreparedMorph const* const blocks = plan.blocks()) {
+    std::vector<int> const handedness = zone_handedness(Exec(), mesh, views(mesh.coordinates));
+    FrozenSmoothing lost;
+    if (boundaries.size() > 1)
+      for (std::vector<Vec3> const& boundary : boundaries) {
+        morph(boundary);
+        lost.join(lost_shapes(host, *blocks, handedness, plain));
+      }
+    record_all([&](Coordinates& x) {
+      if (boundaries.size() > 1)
+        (void)smooth_frozen(host, *blocks, handedness, x, lost);
+      else
+        (void)smooth_shapes(host, *blocks, handedness, x);
+    });
+  } else {
+    UnstructuredTopology const topology = make_topology(host, mesh);
+    record_all([&](Coordinates& x) { (void)relax_bad_elements(mesh, topology, *plan.elements(), x); });
+  }
+  return plan.with(record.map(options));
+}
+
+}  // namespace gridmorph
