@@ -1,6 +1,7 @@
 // Morphing from case file to mesh file.
 #include "run_command.hpp"
 #include "support/shared_mesh.hpp"
+#include "support/with_keys.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
 
@@ -217,6 +218,27 @@ TEST_F(MorphRun, SmoothingLeavesSoundCellsAloneAndMendsLostOnes) {
   EXPECT_NE(gridmorph("morph case.toml").out.find("displacements around them are smoothed in"), std::string::npos);
 }
 
+TEST_F(MorphRun, AFrozenGuardGivesTheMeshThatTheGuardMade) {
+  std::string large = contents(path("rotation.toml"));
+  std::string const file = "file    = \"rotation.csv\"";
+  large.replace(large.find(file), file.size(), file + "\namplitude = -4");
+  auto const moved = [&](std::string const& guard) {
+    write("case.toml", large + "\n[guard]\nsmooth = true\nwrite_inverted = true\n" + guard);
+    Outcome const run = gridmorph("morph case.toml --report r.json");
+    EXPECT_LE(run.status, 1) << run.err;
+    return std::pair(read_mesh(path("passage_rotation.cgns").string()),
+                     nlohmann::json::parse(contents(path("r.json"))));
+  };
+  auto const [smoothed, plain] = moved("");
+  auto const [frozen, report] = moved("freeze = true\n");
+  EXPECT_FALSE(plain.contains("frozen_guard"));
+  EXPECT_EQ(report["frozen_guard"]["modes"], 1);
+  EXPECT_EQ(report["frozen_guard"]["displacements"], 1);
+  EXPECT_GT(report["frozen_guard"]["nodes"], 100);
+  for (Index n = 0; n < frozen.n_nodes(); ++n)
+    ASSERT_LT(distance(frozen.coordinates[n], smoothed.coordinates[n]), 1e-12 * frozen.size()) << n;
+}
+
 TEST_F(MorphRun, OtherRecipesAreTriedWhereAskedForAndTheirKeysGiveTheSameMesh) {
   std::string large = contents(path("rotation.toml"));
   std::string const file = "file    = \"rotation.csv\"";
@@ -244,25 +266,7 @@ TEST_F(MorphRun, OtherRecipesAreTriedWhereAskedForAndTheirKeysGiveTheSameMesh) {
     }
   EXPECT_TRUE(found);
   Mesh const best = read_mesh(path("passage_rotation.cgns").string());
-  // By hand: each "[table] key = value" into its table.
-  std::string by_hand = large;
-  std::istringstream keys(kept);
-  for (std::string key; std::getline(keys >> std::ws, key, ',');) {
-    auto const end = key.find("] ") + 1;
-    std::string const table = key.substr(0, end), value = key.substr(end + 1), name = value.substr(0, value.find(' '));
-    auto at = by_hand.find("\n" + table);
-    if (at == std::string::npos) {
-      by_hand += "\n" + table + "\n" + value + "\n";
-      continue;
-    }
-    for (auto const& old : {"\nmode ", "\nlaw "})  // no key stands twice
-      if (std::string(old).find(name) != std::string::npos) {
-        auto const line = by_hand.find(old, at);
-        by_hand.erase(line, by_hand.find('\n', line + 1) - line);
-      }
-    at = by_hand.find('\n', at + 1);
-    by_hand.insert(at, "\n" + value);
-  }
+  std::string const by_hand = test::with_keys(large, kept);
   auto const [again, same] = moved(by_hand);
   ASSERT_EQ(again.status, run.status) << again.err << by_hand;
   Mesh const repeated = read_mesh(path("passage_rotation.cgns").string());

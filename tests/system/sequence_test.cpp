@@ -1,6 +1,7 @@
 // Sequences of meshes from one plan.
 #include "run_command.hpp"
 #include "support/reduced.hpp"
+#include "support/with_keys.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
 
@@ -111,6 +112,59 @@ TEST_F(SequenceRun, ZeroAmplitudeLeavesEveryStepBitIdentical) {
   ASSERT_EQ(gridmorph("morph case.toml").status, 0);
   for (int step = 1; step <= 3; ++step)
     expect_same(mesh("out_" + std::to_string(step) + ".cgns"), mesh("passage.cgns"));
+}
+
+TEST_F(SequenceRun, OtherRecipesAreTriedOnTheWorstStepAndTheirKeysGiveTheSameMeshes) {
+  std::string const near = "[boundary_layer]\nwalls = [\"blade\"]\nextent = \"block\"\nmode = \"rotate\"\n";
+  auto const run = [&](std::string const& text) {
+    write("case.toml", text);
+    Outcome const out = gridmorph("morph case.toml --report r.json");
+    return std::pair(out, nlohmann::json::parse(contents(path("r.json"))));
+  };
+  write_sequence("steps = 3\nperiods = 0.3\noutput = \"out_{step}.cgns\"\n", ", amplitude = 10, phase_deg = -36", near);
+  std::string const text = contents(path("case.toml"));
+  ASSERT_EQ(run(text).first.status, 4) << "the motion is too large";
+  auto const [out, report] = run(text + "\n[guard]\nretry = true\n");
+  ASSERT_LE(out.status, 1) << out.err;
+  auto const& retry = report["retry"];
+  EXPECT_EQ(retry["step"], 2) << "at 10 times the shape";
+  EXPECT_GT(retry["first"]["newly_inverted"], 0);
+  std::string const kept = retry["kept"];
+  EXPECT_NE(out.out.find(kept), std::string::npos) << "the keys are said";
+  for (auto const& step : report["sequence"]["steps"]) EXPECT_EQ(step["newly_inverted"], 0);
+  std::vector<Mesh> best;
+  for (int step = 1; step <= 3; ++step) best.push_back(mesh(fmt::format("out_{}.cgns", step)));
+  auto const [again, same] = run(test::with_keys(text, kept));
+  ASSERT_EQ(again.status, out.status) << again.err;
+  for (int step = 1; step <= 3; ++step)
+    expect_same(mesh(fmt::format("out_{}.cgns", step)), best[std::size_t(step - 1)]);
+}
+
+TEST_F(SequenceRun, AFrozenGuardMendsEveryStepByOneLinearMap) {
+  std::string const near = "[boundary_layer]\nwalls = [\"blade\"]\nextent = \"block\"\n";
+  write_sequence("steps = 4\noutput = \"out_{step}.cgns\"\n", ", amplitude = 4.5, phase_deg = 90", near);
+  std::string const text = contents(path("case.toml"));
+  ASSERT_EQ(gridmorph("morph case.toml").status, 4) << "the motion is too large";
+  write("case.toml", text + "\n[guard]\nsmooth = true\nfreeze = true\n");
+  Outcome const run = gridmorph("morph case.toml --report r.json");
+  ASSERT_LE(run.status, 1) << run.err;
+  auto const report = nlohmann::json::parse(contents(path("r.json")));
+  auto const& frozen = report["frozen_guard"];
+  EXPECT_EQ(frozen["displacements"], 4);
+  EXPECT_GE(frozen["modes"], 1);
+  EXPECT_GT(frozen["nodes"], 0);
+  EXPECT_LT(frozen["largest_distance"], frozen["largest_shift"]);
+  EXPECT_NE(run.out.find("the guard is frozen into the plan"), std::string::npos);
+  for (auto const& step : report["sequence"]["steps"]) EXPECT_EQ(step["newly_inverted"], 0);
+  expect_same(mesh("out_1.cgns"), mesh("passage.cgns"));  // at rest
+  expect_bad_input(
+      [&] {
+        write("case.toml", text + "\n[guard]\nfreeze = true\n");
+        for (int step = 1; step <= 4; ++step) std::filesystem::remove(path(fmt::format("out_{}.cgns", step)));
+        std::filesystem::remove(path("r.json"));
+        return gridmorph("morph case.toml");
+      }(),
+      {"[guard] freeze", "smooth = true"});
 }
 
 TEST_F(SequenceRun, AStepThatInvertsKeepsAllFilesFromAppearing) {

@@ -22,6 +22,10 @@
 #include <string>
 #include <vector>
 
+namespace gridmorph {
+struct SmoothingMap;  ///< plan/smoothing_map.hpp
+}
+
 namespace gridmorph::cli {
 
 /// What lies near moving walls.
@@ -86,6 +90,10 @@ class AnyPlan {
   [[nodiscard]] virtual RelaxReport relax(Coordinates& morphed) const = 0;
   /// Remembers where a mesh of a sequence lost its shape: relax() then does the same to all of them, so that they do not jump.
   virtual void freeze(Coordinates const& /*morphed*/) {}
+  /// Remembers what became of a displacement that morph() brings to `plain`.
+  virtual void record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded) = 0;
+  /// From here on morph() does what was recorded, linear in the displacement (SmoothingRecord), and relax() nothing.
+  virtual SmoothingMap const& freeze_recorded() = 0;
   /// The same motion in several steps, each planned on the mesh before it; nothing where this plan has but one.
   [[nodiscard]] virtual std::optional<Coordinates> morph_in_steps(
       std::vector<Vec3> const& /*displacement*/, int /*steps*/,

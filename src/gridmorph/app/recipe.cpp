@@ -1,4 +1,6 @@
 #include <gridmorph/app/recipe.hpp>
+#include <gridmorph/app/run.hpp>
+#include <gridmorph/core/error.hpp>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,13 @@ using Mode = BoundaryLayer::Mode;
 
 constexpr std::array<char const*, 3> mode_names{"translate", "rotate", "blend"};
 constexpr std::array<char const*, 5> law_names{"linear", "c1", "c2", "mixed", "matched"};
+
+nlohmann::json json_of(std::string const& keys, Badness const& badness) {
+  return {{"keys", keys},
+          {"newly_inverted", badness.inverted},
+          {"beyond_limits", badness.fallen},
+          {"min_determinant", 1 - badness.lost_determinant}};
+}
 
 }  // namespace
 
@@ -70,6 +79,66 @@ std::vector<Recipe> other_laws(CaseFile const& case_file, Recipe const& recipe, 
     out.push_back(recipe);
     out.back().law = law;
   }
+  return out;
+}
+
+Badness badness_of(QualityReport const& quality) {
+  Badness out{newly_inverted(quality), 0, 0};
+  for (auto const* region : {&quality.near_field, &quality.far_field}) {
+    if (region->cells == 0) continue;
+    for (Fall const fall : {Fall::determinant, Fall::angle, Fall::skewness, Fall::loss, Fall::collapsed})
+      out.fallen += (*region)[fall].cells;
+    out.lost_determinant = std::max(out.lost_determinant, 1 - (*region)[Measure::determinant_3x3x3].min);
+  }
+  return out;
+}
+
+Retried RecipeSearch::run(Trial const& first) const {
+  Retried out;
+  Recipe best;
+  Trial least = first;
+  out.json = {{"first", json_of("", first.badness)}, {"tried", nlohmann::json::array()}, {"kept", nullptr}};
+  auto const attempt = [&](Recipe const& recipe) {
+    if (!least.falls_short) return;
+    std::string const keys = recipe.keys(unstructured);
+    progress(keys);
+    auto other = std::make_unique<CaseFile>(recipe.of(case_file));
+    try {
+      Trial const trial = make(*other);
+      out.json["tried"].push_back(json_of(keys, trial.badness));
+      if (!(trial.badness < least.badness)) return decide(nullptr);
+      least = trial;
+      best = recipe;
+      decide(std::move(other));
+    } catch (Error const& e) {
+      out.json["tried"].push_back({{"keys", keys}, {"error", e.what()}});
+      decide(nullptr);
+    }
+  };
+  for (Recipe const& recipe : other_near_fields(case_file, unstructured)) attempt(recipe);
+  for (Recipe const& recipe : other_laws(case_file, best, unstructured)) attempt(recipe);
+  if (chains && case_file.plan.volume.order != OrderBy::prediction) {
+    Recipe ordered = best;
+    ordered.by_prediction = true;
+    attempt(ordered);
+  }
+  if (smoothing && !case_file.guard.smooth) {
+    Recipe smoothed = best;
+    smoothed.smooth = true;
+    attempt(smoothed);
+  }
+  std::size_t const tried = out.json["tried"].size();
+  if (tried == 0) return out;
+  if (!(least.badness < first.badness)) {
+    out.text = fmt::format("{} other recipes for the same motion were tried, and none is better", tried);
+    return out;
+  }
+  out.json["kept"] = best.keys(unstructured);
+  out.text = fmt::format(
+      "{} {} were inverted and {} beyond a limit; of {} other recipes {} leaves {} and {}: with these keys a case file "
+      "gives this mesh",
+      first.badness.inverted, cells, first.badness.fallen, tried, best.keys(unstructured), least.badness.inverted,
+      least.badness.fallen);
   return out;
 }
 

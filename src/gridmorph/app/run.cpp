@@ -5,7 +5,9 @@
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
+#include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 
@@ -102,6 +104,41 @@ void Run::freeze_guard(std::vector<Moment> const& moments) {
     plan_->morph(plan_->displacement(&when), moved, nullptr);
     plan_->freeze(moved);
   }
+}
+
+FrozenIntoPlan Run::freeze_into_plan(std::vector<Moment> const& moments) {
+  Coordinates plain(mesh_->n_nodes());
+  if (moments.empty()) {
+    plan_->morph(displacement_, plain, nullptr);
+    plan_->record(displacement_, plain, result_.morphed);
+  }
+  std::size_t const n = std::min(moments.size(), std::size_t(SmoothingRecord::most));
+  for (std::size_t k = 0; k < n; ++k) {
+    terminal_.progress(fmt::format("what the guard does in step {} of {}", k + 1, n));
+    Moment const& when = moments[n == 1 ? 0 : k * (moments.size() - 1) / (n - 1)];
+    std::vector<Vec3> const displacement = plan_->displacement(&when);
+    plan_->morph(displacement, plain, nullptr);
+    plan_->morph(displacement, result_.morphed, nullptr);
+    (void)plan_->relax(result_.morphed);
+    plan_->record(displacement, plain, result_.morphed);
+  }
+  SmoothingMap const& map = plan_->freeze_recorded();
+  if (moments.empty()) {
+    plan_->morph(displacement_, result_.morphed, nullptr);
+    measure();
+  }
+  return {map.n_modes == 0
+              ? std::string("the guard moved no node: there is nothing to freeze into the plan")
+              : fmt::format("the guard is frozen into the plan: {} nodes move by a linear function of the "
+                            "boundary's displacement, {} of {} displacements, by {:.3g} at most and "
+                            "within {:.3g} of where the guard had them",
+                            map.n_moved(), map.n_modes == 1 ? "one mode" : fmt::format("{} modes", map.n_modes),
+                            map.n_records, map.largest_shift, map.misfit),
+          {{"displacements", map.n_records},
+           {"modes", map.n_modes},
+           {"nodes", map.n_moved()},
+           {"largest_shift", map.largest_shift},
+           {"largest_distance", map.misfit}}};
 }
 
 void Run::measure() {
@@ -279,6 +316,14 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
     if (!retry.text.empty()) guarded.push_back(retry.text);
     run.times.push_back({"retries", watch.lap(), true});
   }
+  nlohmann::json frozen;
+  if (case_file.guard.freeze) {
+    watch.lap();
+    FrozenIntoPlan freeze = run.freeze_into_plan();
+    frozen = std::move(freeze.json);
+    guarded.push_back(std::move(freeze.text));
+    run.times.push_back({"freeze", watch.lap(), true});
+  }
   run.notes = run.plan().notes();
   run.notes.insert(run.notes.end(), guarded.begin(), guarded.end());
   watch.lap();
@@ -310,6 +355,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                        [&] {
                          nlohmann::json json = run.json(run.quality(), outcome);
                          if (!retried.is_null()) json["retry"] = retried;
+                         if (!frozen.is_null()) json["frozen_guard"] = frozen;
                          return json;
                        },
                    .write =

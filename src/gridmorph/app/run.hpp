@@ -6,6 +6,7 @@
 #include <gridmorph/app/any_mesh.hpp>
 #include <gridmorph/app/casefile/ignored_keys.hpp>
 #include <gridmorph/app/cli/terminal.hpp>
+#include <gridmorph/app/recipe.hpp>
 #include <gridmorph/report/shortfalls.hpp>
 
 namespace gridmorph::cli {
@@ -28,11 +29,10 @@ struct TriedSteps {
   std::vector<std::string> notes;  ///< numbers of steps that could not be planned
 };
 
-/// What came of other recipes.
-struct Retried {
-  std::string text;  ///< for people: what was tried, and with which keys it comes out as it did; empty: nothing was
-  nlohmann::json
-      json;  ///< "first", "tried": {"keys", "newly_inverted", "beyond_limits", "min_determinant"}, "kept": keys or null
+/// What the guard did, as a part of the plan.
+struct FrozenIntoPlan {
+  std::string text;  ///< for people
+  nlohmann::json json;
 };
 
 /// How much of a motion leaves every cell valid.
@@ -61,8 +61,11 @@ class Run {
   TriedSteps try_steps();
   /// Where the result falls short: the same motion with other modes and turns of the near field, with the best of them other laws, of that the predicted order of chains, and of that what
   /// smoothing makes, until nothing falls short. What has the fewest inverted cells, then the fewest beyond a limit, then the largest smallest determinant
-  /// stays the result, with its plan. Cost: a plan, a morph and a measurement each, up to ten of them, and one smoothing.
-  Retried retry();
+  /// stays the result, with its plan. Of a sequence the worst of its moments is what is made again, and all have that plan. Cost: a plan, a morph and a measurement each, up to ten of them, and one
+  /// smoothing; before that a morph and a measurement per moment.
+  Retried retry(std::vector<Moment> const& moments = {});
+  /// Makes what the guard did to the result, or does at these moments (at most SmoothingRecord::most of them, evenly spaced), a linear part of the plan; the result then is what that gives. Cost: a morph and a guard per moment.
+  FrozenIntoPlan freeze_into_plan(std::vector<Moment> const& moments = {});
   /// The largest whole percentage of the motion, every rule at that share of its amplitude, at which the certificate holds, found by halving: at most
   /// seven morphs. The result stays as it is.
   ValidShare largest_valid_share();

@@ -179,12 +179,26 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
   std::string const count = fmt::format(", {} steps", options.steps);
   Stopwatch part;
   terminal.expect({});
+  std::vector<Moment> moments;
+  for (int step = 0; step < options.steps; ++step) moments.push_back(options.moment(step));
   if (case_file.guard.smooth) {
     terminal.progress("looking for cells that lose their shape");
-    std::vector<Moment> moments;
-    for (int step = 0; step < options.steps; ++step) moments.push_back(options.moment(step));
     run.freeze_guard(moments);
     run.times.push_back({"guard, all steps", part.lap()});
+  }
+  std::vector<std::string> guarded;
+  nlohmann::json of_guard = nlohmann::json::object();
+  if (case_file.guard.retry) {
+    Retried const retry = run.retry(moments);
+    if (!retry.json.is_null()) of_guard["retry"] = retry.json;
+    if (!retry.text.empty()) guarded.push_back(retry.text);
+    run.times.push_back({"retries", part.lap()});
+  }
+  if (case_file.guard.freeze) {
+    FrozenIntoPlan freeze = run.freeze_into_plan(moments);
+    of_guard["frozen_guard"] = std::move(freeze.json);
+    guarded.push_back(std::move(freeze.text));
+    run.times.push_back({"freeze", part.lap()});
   }
   for (int step = 0; step < options.steps; ++step) {
     terminal.progress(fmt::format("step {} of {}", step + 1, options.steps), double(step) / options.steps);
@@ -193,7 +207,8 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
     relaxed = std::max(relaxed, run.morph(&moment).before);
     add_time(run.times, "morph" + count, part.lap(), false);
     run.measure();
-    if (auto const tried = run.try_steps(); !tried.text.empty()) stepped[step] = tried.text;
+    if (!case_file.guard.freeze)  // steps would be beside the plan
+      if (auto const tried = run.try_steps(); !tried.text.empty()) stepped[step] = tried.text;
     add_time(run.times, "quality" + count, part.lap(), false);
     auto& result = results.emplace_back(
         step_result(options.time_at(step), run.mesh().coordinates(), run.morphed(), run.quality()));
@@ -214,10 +229,11 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
   run.morph(&moment);
   if (!written) {  // what is said of the worst cell needs it as it came out in the end
     run.measure();
-    (void)run.try_steps();
+    if (!case_file.guard.freeze) (void)run.try_steps();
   }
   PlanOutcome const outcome = run.plan().outcome(run.morphed(), worst_quality.fast, false);
   run.notes = run.plan().notes();
+  run.notes.insert(run.notes.end(), guarded.begin(), guarded.end());
   for (auto& note : guard_notes(relaxed, run.mesh().kind().lost, stepped)) run.notes.push_back(std::move(note));
 
   auto const shortfalls = run.shortfalls_of(worst_quality);
@@ -235,6 +251,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
                        [&] {
                          nlohmann::json json = run.json(worst_quality, outcome);
                          json["sequence"] = steps_json(results, worst, options);
+                         json.update(of_guard);
                          return json;
                        },
                    .write =

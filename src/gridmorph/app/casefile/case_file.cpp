@@ -346,6 +346,7 @@ void read_results(TableReader& root, CaseFile& out) {
     if (auto const mode = guard->choice("quality", {"auto", "full", "fast"})) out.guard.quality = QualityMode(*mode);
     out.guard.write_inverted = guard->boolean("write_inverted").value_or(false);
     out.guard.retry = guard->boolean("retry").value_or(false);
+    out.guard.freeze = guard->boolean("freeze").value_or(false);
     out.guard.smooth = guard->boolean("smooth").value_or(false);
     if (auto const steps = guard->integer("steps")) {
       constexpr int most = 64;

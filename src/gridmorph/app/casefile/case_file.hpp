@@ -30,6 +30,7 @@ struct GuardOptions : CellLimits {
   QualityMode quality = QualityMode::automatic;
   bool retry = false;   ///< try other recipes where the mesh falls short
   bool smooth = false;  ///< move nodes where cells of blocks lost their shape
+  bool freeze = false;  ///< what the guard does becomes a linear part of the plan
   int steps = 4;        ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
 };
 

@@ -24,10 +24,8 @@ class Ignored {
     else
       of_structured();
     if (use_.run == CaseUse::Run::wheel) of_wheel();
-    if (use_.run == CaseUse::Run::sequence) {
+    if (use_.run == CaseUse::Run::sequence)
       refuse("mesh", "output", "names one file, and the meshes of a sequence go where output in [sequence] says");
-      refuse("guard", "retry", "is for a single morph, and the meshes of a sequence have one plan");
-    }
     if (use_.run == CaseUse::Run::morph)
       refuse("motion modes", "harmonic", "says how often a shape oscillates in time, and there is no [sequence]");
     fields();
@@ -59,11 +57,13 @@ class Ignored {
     refuse("", "background", why + ": law in [volume] says there how displacements fall off");
     refuse("guard", "steps", why + ": displacements follow grid lines there, and steps add up to what one gives");
     refuse("output", "stages", why + ": `gridmorph plan` prints the stages");
+    if (use_.run != CaseUse::Run::wheel && !case_.guard.smooth && !case_.guard.retry)
+      refuse("guard", "freeze", "keeps what smooth or retry do, and neither is true; use smooth = true");
   }
 
   void of_wheel() {
     refuse("", "sequence", "is for `gridmorph morph`, and a wheel is made at one time");
-    for (char const* key : {"retry", "smooth"})
+    for (char const* key : {"smooth", "freeze"})
       refuse("guard", key, "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
     if (case_.plan.volume.order == OrderBy::prediction)
       refuse("volume", "order", "is for `gridmorph morph`, and chains of a wheel, whose blades differ, go by priority");

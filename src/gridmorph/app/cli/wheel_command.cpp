@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -77,15 +78,22 @@ class WheelRun {
   [[nodiscard]] WheelRows const& rows() const { return rows_; }
   [[nodiscard]] WheelSetup const& setup() const { return setup_; }
   [[nodiscard]] Diagnosis const& diagnosis() const { return worst_of_; }
+  [[nodiscard]] nlohmann::json const& retried() const { return retried_.json; }
 
   WheelResult run(MeshFileWriter& writer) {
     terminal_.progress("connecting zones, applying rules, planning");
-    WheelMotion const motion(mesh_, links_, rows_, setup_.motions, case_.plan, setup_.blades);
+    auto planned = std::make_unique<WheelMotion>(motion_of(case_));
+    time("plan");
+    prepare_quality(planned->plan());
+    if (case_.guard.retry) {
+      retry(planned);
+      time("retries");
+    }
+    WheelMotion const& motion = *planned;
     result_.notes = mesh_.notes;
     result_.notes.insert(result_.notes.end(), motion.notes().begin(), motion.notes().end());
+    if (!retried_.text.empty()) result_.notes.push_back(retried_.text);
     Morpher<Exec> const morpher(exec_, motion.plan(), mesh_.coordinates);
-    time("plan");
-    prepare_quality(motion.plan());
     SharedNodes const shared(mesh_, links_, rows_, true);
     std::vector<Seams> seams;
     for (int r = 0; r < int(rows_.rows.size()); ++r)
@@ -134,6 +142,57 @@ class WheelRun {
   static Mesh read(CaseFile const& case_file, Terminal& terminal) {
     terminal.progress("reading " + case_file.input.string());
     return load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
+  }
+
+  [[nodiscard]] WheelMotion motion_of(CaseFile const& case_file) const {
+    return {mesh_, links_, rows_, setup_.motions, case_file.plan, setup_.blades};
+  }
+
+  /// Where the worst passage falls short: other recipes for it, and the best of them for all passages.
+  void retry(std::unique_ptr<WheelMotion>& motion) {
+    Coordinates morphed(mesh_.n_nodes());
+    auto const trial_of = [&](Morpher<Exec> const& morpher, std::vector<Vec3> const& boundary) {
+      morph(morpher, boundary, morphed);
+      quality_.morphed = &morphed;
+      QualityReport const quality = sector_.measure(quality_);
+      return Trial{badness_of(quality), newly_inverted(quality) > 0 ||
+                                            any_failure(shortfalls(result_.baseline, quality, thresholds_of(case_)))};
+    };
+    int const n_passages = wheel_.zones.back().passage + 1;
+    int worst = -1;
+    Trial first;
+    {
+      Morpher<Exec> const morpher(exec_, motion->plan(), mesh_.coordinates);
+      for (int p = 0; p < n_passages; ++p) {
+        int same = 0;
+        while (same < p && !motion->alike(p, same)) ++same;
+        if (same < p) continue;
+        Trial const now = trial_of(morpher, motion->boundary(p));
+        if (worst >= 0 && !(first.badness < now.badness)) continue;
+        worst = p;
+        first = now;
+      }
+    }
+    if (!first.falls_short) return;
+    std::unique_ptr<WheelMotion> other;
+    retried_ = RecipeSearch{
+        .case_file = case_,
+        .unstructured = false,
+        .chains = false,
+        .smoothing = false,
+        .cells = BlockMesh::traits().cells,
+        .progress = [&](std::string const& keys) { terminal_.progress("trying " + keys); },
+        .make =
+            [&](CaseFile const& recipe) {
+              other = std::make_unique<WheelMotion>(motion_of(recipe));
+              return trial_of(Morpher<Exec>(exec_, other->plan(), mesh_.coordinates), other->boundary(worst));
+            },
+        .decide =
+            [&](std::unique_ptr<CaseFile> const& kept) {
+              if (kept) motion = std::move(other);
+            }}.run(first);
+    retried_.json["passage"] = worst + 1;
+    if (!retried_.text.empty()) retried_.text = fmt::format("passage {}, the worst one: {}", worst + 1, retried_.text);
   }
 
   void time(std::string const& step) { add_time(result_.times, step, watch_.lap(), step != "plan" && step != "read"); }
@@ -200,6 +259,7 @@ class WheelRun {
 
   CaseFile const& case_;
   Terminal& terminal_;
+  Retried retried_;
   Diagnosis worst_of_;  ///< of the first passage with inverted cells
   Stopwatch watch_;
   Exec exec_;
@@ -264,6 +324,7 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
                          nlohmann::json json = wheel_json(run.mesh(), run.rows(), run.setup(), result);
                          json["case_file"] = case_file.source.string();
                          json["input"] = case_file.input.string();
+                         if (!run.retried().is_null()) json["retry"] = run.retried();
                          return json;
                        },
                    .write =
