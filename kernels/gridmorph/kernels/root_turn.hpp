@@ -1,6 +1,7 @@
 // How the near field of a wall of blocks turns, line by line. A root is the slot that a line of the near field stands on.
 //
 //   raw     the wall's rotation there (wall_turn.hpp), over all near-field walls that touch, across the edges of blocks
+//             Where faces lie on one another, as at the ends of a tip that is a line, their normals count as those of one side
 //             At an edge of the wall, where its faces may turn differently, no further than the line keeps a share of its height above
 //             each of the faces, as far as it would keep it without a turn
 //   inner   raw, corrected towards end walls so that lines that stand beside one stay on it:
@@ -114,16 +115,33 @@ struct RawRootTurn {
       return V{other.arm} + (table.in_frame(other.matrix, u[other.slot]) - here);
     };
     V normal{}, moved{};
+    double area = 0;
     for (Index k = 0; k < root.n_neighbours; k += 2) {
-      normal = normal + cross(before(k), before(k + 1));
+      V const face = cross(before(k), before(k + 1));
+      normal = normal + face;
       moved = moved + cross(after(k), after(k + 1));
+      area += norm(value_of(face));
     }
+    constexpr double folded = 1e-6;
+    if (!(norm(value_of(normal)) > folded * area)) add_one_side(root, before, after, normal, moved);
     V const swing = turn_between(normal, moved);
     auto const size = norm(moved);
     if (!(size > 0)) return swing;
     V const axis = (1 / size) * moved;
     V const turn = turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after));
     return dot(root.line, root.line) > 0 ? share_that_keeps_heights(root, turn, before, after) * turn : turn;
+  }
+  /// Normals of faces that lie on one another, all towards the side of the first.
+  template <class Before, class After>
+  KOKKOS_INLINE_FUNCTION static void add_one_side(Root const& root, Before const& before, After const& after, V& normal,
+                                                  V& moved) {
+    normal = moved = V{};
+    for (Index k = 0; k < root.n_neighbours; k += 2) {
+      V const face = cross(before(k), before(k + 1));
+      double const side = dot(value_of(face), value_of(normal)) < 0 ? -1 : 1;
+      normal = normal + side * face;
+      moved = moved + side * cross(after(k), after(k + 1));
+    }
   }
   /// With h(f) the height of the line's first node above a face after a share f of the turn, over that before: the largest f with
   /// h(f) >= min(k, h(0)) for all faces, h taken as linear. k is 1/2 where the line stands half way between a face and its normal, and
