@@ -32,9 +32,7 @@ struct Mode {
 /// Eigenvectors of the products of vectors with one another, largest values first, down to `least` of the largest.
 std::vector<Mode> modes_of(std::vector<std::vector<Vec3> const*> const& u, double least) {
   constexpr std::size_t most = SmoothingRecord::most;
-  static double a[most][most], v[most][most];
-  for (std::size_t k = 0; k < most; ++k)
-    for (std::size_t m = 0; m < most; ++m) a[k][m] = 0;
+  double a[most][most] = {}, v[most][most];
   for (std::size_t k = 0; k < u.size(); ++k)
     for (std::size_t m = 0; m <= k; ++m) {
       for (std::size_t b = 0; b < u[k]->size(); ++b) a[k][m] += dot((*u[k])[b], (*u[m])[b]);
