@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/file_kind.hpp>
+#include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
 
 #include <algorithm>
@@ -127,7 +128,7 @@ Foreign foreign_text(std::string_view head) {
   if (has(start, "<Xdmf")) return {"an XDMF file", by_paraview};
   if (is_fluent(text)) return {"a Fluent mesh", "export CGNS from Fluent, or open it in ParaView and save CGNS"};
   if (has(text.substr(0, 4096), "FoamFile"))
-    return {"a file of an OpenFOAM case", "open the case in ParaView and save CGNS"};
+    return {"one file of an OpenFOAM case", "name the folder of the case, or its constant/polyMesh"};
   if (text.starts_with("solid") && (has(start, "facet") || has(start, "endsolid")))
     return {"an STL surface", "it has no volume to morph; use it as file of a rule \"target\""};
   if (text.starts_with("ply\n") || text.starts_with("ply\r")) return {"a PLY surface", by_maker};
@@ -167,11 +168,16 @@ Foreign foreign(std::string_view head, std::uintmax_t size, std::string const& e
   return {};
 }
 
+/// A folder, or an empty file in it that stands for it, as ParaView wants it.
+bool is_openfoam(fs::path const& path) {
+  std::error_code ignored;
+  return (fs::is_directory(path, ignored) || ending_of(path.string()) == "foam") && foam::poly_mesh(path).has_value();
+}
+
 Foreign foreign_folder(fs::path const& path) {
   std::error_code ignored;
-  if (fs::exists(path / "constant" / "polyMesh", ignored) || fs::exists(path / "polyMesh", ignored) ||
-      (fs::exists(path / "faces", ignored) && fs::exists(path / "points", ignored)))
-    return {"an OpenFOAM case", "open it in ParaView (an empty file case.foam beside constant) and save CGNS"};
+  if (fs::exists(path / "constant", ignored) || fs::exists(path / "system", ignored))
+    return {"an OpenFOAM case without a mesh", "make it first (blockMesh, snappyHexMesh, reconstructParMesh)"};
   return {};
 }
 
@@ -182,11 +188,13 @@ std::string_view to_string(MeshFormat format) {
     case MeshFormat::cgns: return "CGNS";
     case MeshFormat::plot3d: return "PLOT3D";
     case MeshFormat::su2: return "SU2";
+    case MeshFormat::openfoam: return "OpenFOAM";
   }
   return "";
 }
 
 void refuse_other_format(std::string const& path) {
+  if (is_openfoam(path)) return;
   std::error_code failure;
   auto const status = fs::status(path, failure);
   Foreign found;
@@ -195,12 +203,13 @@ void refuse_other_format(std::string const& path) {
   else if (fs::is_regular_file(status))
     found = foreign(head_of(path), fs::file_size(path, failure), ending_of(path));
   if (found.known())
-    throw IoError(path + ": is " + std::string(found.is) + "; read are CGNS, PLOT3D and SU2. " +
+    throw IoError(path + ": is " + std::string(found.is) + "; read are CGNS, PLOT3D, SU2 and OpenFOAM. " +
                   std::string(found.remedy));
 }
 
 MeshFormat mesh_format(std::string const& path) {
   if (su2::is_su2(path)) return MeshFormat::su2;
+  if (is_openfoam(path)) return MeshFormat::openfoam;
   refuse_other_format(path);
   return cgns::is_cgns(path) ? MeshFormat::cgns : MeshFormat::plot3d;
 }

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/plot3d/plot3d.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
@@ -40,7 +41,7 @@ Mesh read_without_names(std::string const& path, char const* format, ReadOptions
 MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out) {
   MeshFileFacts out;
   out.format = mesh_format(path);
-  if (out.format == MeshFormat::su2) out.kind = MeshKind::unstructured;
+  if (out.format == MeshFormat::su2 || out.format == MeshFormat::openfoam) out.kind = MeshKind::unstructured;
   if (out.format != MeshFormat::cgns) return out;
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
@@ -56,7 +57,9 @@ MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leav
 }
 
 Mesh read_mesh(std::string const& path, ReadOptions const& options) {
-  if (options.plot3d_format.empty()) refuse_other_format(path);
+  if (options.plot3d_format.empty() && mesh_format(path) == MeshFormat::openfoam)
+    return read_without_names(path, "an OpenFOAM mesh", options,
+                              [](std::string const& p, ReadOptions const&) { return foam::read(p); });
   if (su2::is_su2(path))
     return read_without_names(path, "an SU2 mesh", options,
                               [](std::string const& p, ReadOptions const&) { return su2::read(p); });

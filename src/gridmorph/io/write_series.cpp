@@ -153,8 +153,9 @@ struct SeriesWriter::Impl {
 
 SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh,
                            std::vector<double> const& times) {
-  if (!mesh.is_structured() && !cgns::is_cgns(input))
-    throw IoError(output + ": SU2 files hold one mesh; write one file per step, or use a CGNS mesh");
+  if (MeshFormat const format = mesh_format(input); !mesh.is_structured() && format != MeshFormat::cgns)
+    throw IoError(output + ": " + std::string(to_string(format)) +
+                  " files hold one mesh; write one file per step, or use a CGNS mesh");
   check_input(input, mesh, times.size());
   impl_ = std::make_unique<Impl>(input, output, mesh, times);
 }

@@ -2,6 +2,7 @@
 #include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/finite_check.hpp>
+#include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
@@ -59,10 +60,13 @@ void io::write_morphed_elements(std::string const& input, std::string const& out
   Problems problems;
   io::check_finite(mesh, morphed, "morphed mesh", problems);
   problems.throw_if_any<MeshError>();
-  if (!su2::is_su2(input)) return write_cgns(input, output, mesh, morphed, fields);
+  MeshFormat const format = mesh_format(input);
+  if (format == MeshFormat::cgns) return write_cgns(input, output, mesh, morphed, fields);
   if (!fields.empty())
-    throw IoError(output + ": SU2 files hold no fields; leave out displacement and quality, or use a CGNS mesh");
-  su2::write_morphed(input, output, mesh, in_file_order(mesh, morphed));
+    throw IoError(output + ": " + std::string(to_string(format)) +
+                  " files hold no fields; leave out displacement and quality, or use a CGNS mesh");
+  (format == MeshFormat::su2 ? su2::write_morphed : foam::write_morphed)(input, output, mesh,
+                                                                         in_file_order(mesh, morphed));
 }
 
 }  // namespace gridmorph

@@ -77,8 +77,8 @@ class Ignored {
   void fields() {
     if (use_.format == CaseUse::Format::cgns) return;
     refuse("mesh", "leave_out", "names bases and zones of CGNS files");
-    std::string const why = fmt::format("is true, and {} files have no place for solutions; use a CGNS mesh",
-                                        use_.format == CaseUse::Format::su2 ? "SU2" : "PLOT3D");
+    std::string const why =
+        fmt::format("is true, and {} files have no place for solutions; use a CGNS mesh", to_string(use_.format));
     if (case_.output_options.displacement) refuse("output", "displacement", why);
     if (case_.output_options.quality) refuse("output", "quality", why);
   }

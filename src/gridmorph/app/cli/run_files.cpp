@@ -27,8 +27,10 @@ std::string identity(fs::path const& path) {
 }
 
 /// Why a path cannot be an output, whatever the other files are; empty when it can.
-std::string unwritable(RunFile const& file) {
+std::string unwritable(RunFile const& file, RunFiles const& inputs) {
   std::error_code error;
+  bool const is_folder =
+      file.what == "output" && !inputs.empty() && inputs.front().format == to_string(MeshFormat::openfoam);
   auto const folder = file.path.has_parent_path() ? file.path.parent_path() : fs::path(".");
   if (auto const found = fs::status(folder, error); !fs::exists(found)) {
     if (!file.folder_is_made) return fmt::format("the folder '{}' does not exist; make it first", folder.string());
@@ -36,6 +38,9 @@ std::string unwritable(RunFile const& file) {
     return fmt::format("'{}' is no folder; give another name", folder.string());
   }
   auto const status = fs::status(file.path, error);
+  if (is_folder && fs::exists(status) && !fs::is_directory(status))
+    return "is a file, and a mesh of OpenFOAM is a folder; give another name";
+  if (is_folder) return {};
   if (fs::is_directory(status)) return "is a folder; give a file name";
   if (fs::exists(status) && !fs::is_regular_file(status))
     return "is no ordinary file (a device, a pipe or a socket); give a file name";
@@ -89,7 +94,7 @@ void check_run_files(RunFiles const& inputs, RunFiles const& outputs) {
   Problems problems;
   for (auto const& file : outputs) {
     std::string const name = fmt::format("{} '{}'", file.what, file.path.string());
-    if (auto const why = unwritable(file); !why.empty()) {
+    if (auto const why = unwritable(file, inputs); !why.empty()) {
       problems.add(fmt::format("{}: {}", name, why));
       continue;
     }

@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/finite_check.hpp>
+#include <gridmorph/io/kind_by_name.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/periodic_transform.hpp>
 #include <gridmorph/io/read_file.hpp>
@@ -30,20 +31,6 @@ ElementType element_type(int vtk) {
     case 13: return ElementType::prism;
     default: return ElementType::pyramid;
   }
-}
-
-/// SU2 files do not say what a marker is (the solver's configuration does): the words that people name them by do.
-PatchKind kind_by_name(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  auto const has = [&](std::initializer_list<char const*> words) {
-    return std::any_of(words.begin(), words.end(), [&](char const* w) { return name.find(w) != std::string::npos; });
-  };
-  if (has({"inflow", "inlet"})) return PatchKind::inflow;
-  if (has({"outflow", "outlet"})) return PatchKind::outflow;
-  if (has({"farfield", "far_field"})) return PatchKind::farfield;
-  if (has({"symmetry", "sym_", "sym-"})) return PatchKind::symmetry;
-  if (has({"wall", "airfoil", "aerofoil", "blade", "wing", "hub", "shroud"})) return PatchKind::wall;
-  return PatchKind::other;
 }
 
 class Builder {
@@ -150,7 +137,7 @@ class Builder {
       Patch patch;
       patch.name = m.name;
       patch.zone = z;
-      patch.kind = kind_by_name(m.name);
+      patch.kind = io::kind_by_name(m.name);
       by_name = by_name || patch.kind != PatchKind::other;
       std::vector<Index32> face;
       for (std::size_t e = 0; e < m.vtk.size(); ++e) {

@@ -1,0 +1,149 @@
+#include <gridmorph/boundary/periodic_axis.hpp>
+#include <gridmorph/geometry/rotation.hpp>
+#include <gridmorph/io/foam/foam_cyclics.hpp>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace gridmorph::foam {
+
+namespace {
+
+/// Of the mesh size: points of meshes in text have six digits and more.
+constexpr double tolerance = 1e-5;
+
+using Pairs = std::vector<std::array<Index32, 2>>;
+
+/// The transform that takes the first of each pair onto the second, where one does.
+std::optional<Periodic> transform_of(std::vector<Vec3> const& from, std::vector<Vec3> const& to, double allowed) {
+  Vec3 shift;
+  for (std::size_t n = 0; n < from.size(); ++n) shift += (1 / double(from.size())) * (to[n] - from[n]);
+  auto const fits = [&](RigidTransform const& t) {
+    for (std::size_t n = 0; n < from.size(); ++n)
+      if (distance(t(from[n]), to[n]) > allowed) return false;
+    return true;
+  };
+  if (Periodic const p = periodic_translation(shift); fits(p.declared)) return p;
+  auto const turn = as_turn(fit_rigid_transform(from, to), allowed);
+  if (!turn) return std::nullopt;
+  Periodic const p = periodic_rotation(turn->origin, turn->direction, turn->angle_rad);
+  return fits(p.declared) ? std::optional(p) : std::nullopt;
+}
+
+class Matcher {
+ public:
+  Matcher(CyclicSide const& own, CyclicSide const& other, CsrGraph const& faces, Mesh const& mesh)
+      : own_(own), other_(other), faces_(faces), x_(mesh.coordinates), allowed_(tolerance * mesh.size()) {}
+
+  /// Pairs of nodes and their transform; nothing where the sides do not fit.
+  std::optional<std::pair<Pairs, Periodic>> run() const {
+    if (own_.size != other_.size) return std::nullopt;
+    for (Index k = 0; k < own_.size; ++k)
+      if (own(k).size() != other(k).size()) return std::nullopt;
+    // First nodes of two faces belong together; then they go around in opposite senses.
+    Pairs pairs = paired([](Index) { return std::size_t(0); });
+    auto transform = transform_of(places(pairs, 0), places(pairs, 1), allowed_);
+    if (!transform) {
+      auto const coarse = transform_of(middles(own_), middles(other_), allowed_);
+      if (!coarse) return std::nullopt;
+      pairs = paired([&](Index k) { return nearest(other(k), coarse->declared(x_[own(k)[0]])); });
+      transform = transform_of(places(pairs, 0), places(pairs, 1), allowed_);
+      if (!transform) return std::nullopt;
+    }
+    return std::pair(std::move(pairs), *transform);
+  }
+
+ private:
+  [[nodiscard]] std::span<Index32 const> own(Index k) const { return faces_[own_.start + k]; }
+  [[nodiscard]] std::span<Index32 const> other(Index k) const { return faces_[other_.start + k]; }
+
+  /// `first`: which node of the other side's face k belongs to the first of the own one.
+  template <class First>
+  [[nodiscard]] Pairs paired(First const& first) const {
+    Pairs out;
+    for (Index k = 0; k < own_.size; ++k) {
+      auto const a = own(k), b = other(k);
+      std::size_t const n = a.size(), start = first(k);
+      for (std::size_t v = 0; v < n; ++v) out.push_back({a[v], b[(start + n - v) % n]});
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+  [[nodiscard]] std::vector<Vec3> places(Pairs const& pairs, int side) const {
+    std::vector<Vec3> out;
+    for (auto const& p : pairs) out.push_back(x_[p[std::size_t(side)]]);
+    return out;
+  }
+
+  [[nodiscard]] std::vector<Vec3> middles(CyclicSide const& side) const {
+    std::vector<Vec3> out;
+    for (Index k = 0; k < side.size; ++k) {
+      Vec3 sum;
+      for (Index32 const v : faces_[side.start + k]) sum += x_[v];
+      out.push_back((1 / double(faces_[side.start + k].size())) * sum);
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::size_t nearest(std::span<Index32 const> face, Vec3 const& place) const {
+    auto const at = std::min_element(face.begin(), face.end(), [&](Index32 a, Index32 b) {
+      return distance(x_[a], place) < distance(x_[b], place);
+    });
+    return std::size_t(at - face.begin());
+  }
+
+  CyclicSide const &own_, &other_;
+  CsrGraph const& faces_;
+  Coordinates const& x_;
+  double allowed_;
+};
+
+void add_patch(CyclicSide const& side, CsrGraph const& faces, Mesh& mesh) {
+  Patch patch;
+  patch.name = side.entry->name;
+  patch.bc_type = "cyclic";
+  patch.kind = PatchKind::connection;
+  patch.zone = 0;
+  for (Index f = side.start; f < side.start + side.size; ++f) patch.faces.add(faces[f]);
+  mesh.patches.push_back(std::move(patch));
+}
+
+}  // namespace
+
+void add_cyclics(std::vector<CyclicSide> const& sides, CsrGraph const& faces, Mesh& mesh) {
+  std::map<std::string, CyclicSide const*, std::less<>> by_name;
+  for (CyclicSide const& side : sides) by_name[side.entry->name] = &side;
+  for (CyclicSide const& side : sides) {
+    auto const other = by_name.find((*side.entry)["neighbourPatch"]);
+    if (other == by_name.end() || other->second == &side) {
+      mesh.notes.push_back("cyclic patch '" + side.entry->name + "' has no neighbourPatch; taken as a plain patch");
+      add_patch(side, faces, mesh);
+      continue;
+    }
+    if (other->second->entry < side.entry) continue;  // with the other side
+    auto const match = Matcher(side, *other->second, faces, mesh).run();
+    if (!match) {
+      mesh.notes.push_back("cyclic patches '" + side.entry->name + "' and '" + other->first +
+                           "' do not match node by node; they move apart from one another");
+      add_patch(side, faces, mesh);
+      add_patch(*other->second, faces, mesh);
+      continue;
+    }
+    Connection connection;
+    connection.name = side.entry->name;
+    connection.zone = connection.donor_zone = 0;
+    connection.periodic = match->second;
+    for (auto const& [own, donor] : match->first) {
+      connection.nodes.push_back(own);
+      connection.donor_nodes.push_back(donor);
+    }
+    mesh.connections.push_back(std::move(connection));
+  }
+}
+
+}  // namespace gridmorph::foam

@@ -1,0 +1,387 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/foam/foam_file.hpp>
+#include <gridmorph/io/read_file.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#ifdef GRIDMORPH_WITH_ZLIB
+#include <zlib.h>
+#endif
+
+namespace gridmorph::foam {
+
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+bool ends_word(char c) { return is_blank(c) || std::strchr("(){};\"", c) != nullptr; }
+
+#ifdef GRIDMORPH_WITH_ZLIB
+/// zlib's header and tail are those of gzip.
+constexpr int gzip_window = 15 + 16;
+
+std::string unpacked(std::string const& path, std::string const& bytes) {
+  z_stream stream{};
+  if (inflateInit2(&stream, gzip_window) != Z_OK) throw MachineError(path + ": zlib cannot be started");
+  std::string out;
+  std::vector<char> chunk(std::size_t(1) << 20);
+  std::size_t taken = 0;
+  int state = Z_OK;
+  do {
+    constexpr std::size_t most = std::size_t(1) << 30;
+    std::size_t const give = std::min(most, bytes.size() - taken);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + taken));
+    stream.avail_in = uInt(give);
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+      stream.avail_out = uInt(chunk.size());
+      state = inflate(&stream, Z_NO_FLUSH);
+      out.append(chunk.data(), chunk.size() - stream.avail_out);
+    } while (state == Z_OK && stream.avail_out == 0);
+    taken += give - stream.avail_in;
+    // gzip files may follow one another.
+    if (state == Z_STREAM_END && taken < bytes.size()) {
+      inflateReset(&stream);
+      state = Z_OK;
+      continue;
+    }
+    if (state == Z_BUF_ERROR && taken < bytes.size() && give > 0) state = Z_OK;
+    if (give == 0) break;
+  } while (state == Z_OK && taken < bytes.size());
+  inflateEnd(&stream);
+  if (state != Z_STREAM_END)
+    throw IoError(path + ": is damaged: the packed data end or go wrong after " + std::to_string(out.size()) +
+                  " bytes; write it again");
+  return out;
+}
+#else
+std::string unpacked(std::string const& path, std::string const&) {
+  throw IoError(path + ": is packed by gzip, and this gridmorph was built without zlib; unpack it first");
+}
+#endif
+
+}  // namespace
+
+#ifdef GRIDMORPH_WITH_ZLIB
+std::string packed(std::string const& path, std::string const& bytes) {
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw MachineError(path + ": zlib cannot be started");
+  std::string out;
+  std::vector<char> chunk(std::size_t(1) << 20);
+  std::size_t taken = 0;
+  int state = Z_OK;
+  do {
+    constexpr std::size_t most = std::size_t(1) << 30;
+    std::size_t const give = std::min(most, bytes.size() - taken);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + taken));
+    stream.avail_in = uInt(give);
+    taken += give;
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+      stream.avail_out = uInt(chunk.size());
+      state = deflate(&stream, taken == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
+      out.append(chunk.data(), chunk.size() - stream.avail_out);
+    } while (stream.avail_out == 0);
+  } while (state != Z_STREAM_END);
+  deflateEnd(&stream);
+  return out;
+}
+#else
+std::string packed(std::string const& path, std::string const&) {
+  throw IoError(path + ": is to be packed by gzip, and this gridmorph was built without zlib");
+}
+#endif
+
+bool is_there(std::string const& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_regular_file(path + ".gz", ignored);
+}
+
+std::string_view BoundaryEntry::operator[](std::string_view key) const {
+  auto const found = std::find_if(keys.begin(), keys.end(), [&](auto const& k) { return k.first == key; });
+  return found == keys.end() ? std::string_view() : std::string_view(found->second);
+}
+
+FoamFile::FoamFile(std::string const& path, std::vector<std::string_view> const& classes) : path_(path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path_, ignored) && std::filesystem::exists(path_ + ".gz", ignored)) path_ += ".gz";
+  text_ = io::read_file(path_);
+  packed_ = text_.size() > 1 && text_[0] == '\x1f' && text_[1] == '\x8b';
+  if (packed_) text_ = unpacked(path_, text_);
+  read_header(classes);
+}
+
+void FoamFile::fail(std::string const& what) const {
+  auto const line = 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(std::min(at_, text_.size())), '\n');
+  throw IoError(path_ + (binary_ ? ", byte " + std::to_string(at_) : ":" + std::to_string(line)) + ": " + what);
+}
+
+void FoamFile::skip_blanks() {
+  while (at_ < text_.size()) {
+    if (is_blank(text_[at_])) {
+      ++at_;
+    } else if (text_.compare(at_, 2, "//") == 0) {
+      at_ = std::min(text_.find('\n', at_), text_.size());
+    } else if (text_.compare(at_, 2, "/*") == 0) {
+      auto const end = text_.find("*/", at_ + 2);
+      if (end == std::string::npos) fail("a comment that begins here does not end");
+      at_ = end + 2;
+    } else {
+      return;
+    }
+  }
+}
+
+char FoamFile::peek() {
+  skip_blanks();
+  return at_ < text_.size() ? text_[at_] : '\0';
+}
+
+void FoamFile::expect(char wanted, char const* after) {
+  char const found = peek();
+  if (found != wanted)
+    fail(std::string("'") + wanted + "' has to follow " + after + ", found " +
+         (found == '\0' ? std::string("the end of the file") : "'" + std::string(1, found) + "'"));
+  ++at_;
+}
+
+std::string FoamFile::word() {
+  skip_blanks();
+  if (at_ < text_.size() && text_[at_] == '"') {
+    auto const end = text_.find('"', at_ + 1);
+    if (end == std::string::npos) fail("a string that begins here does not end");
+    std::string out = text_.substr(at_ + 1, end - at_ - 1);
+    at_ = end + 1;
+    return out;
+  }
+  std::size_t const begin = at_;
+  while (at_ < text_.size() && !ends_word(text_[at_])) ++at_;
+  return text_.substr(begin, at_ - begin);
+}
+
+std::string FoamFile::value_of_key() {
+  skip_blanks();
+  std::string out;
+  int depth = 0;
+  while (true) {
+    if (at_ >= text_.size()) fail("a value does not end; ';' is missing");
+    char const c = text_[at_];
+    if (c == ';' && depth == 0) {
+      ++at_;
+      break;
+    }
+    if (c == '}' && depth == 0) fail("';' is missing before '}'");
+    depth += c == '(' || c == '{' ? 1 : c == ')' || c == '}' ? -1 : 0;
+    out += c;
+    ++at_;
+  }
+  while (!out.empty() && is_blank(out.back())) out.pop_back();
+  return out;
+}
+
+void FoamFile::read_header(std::vector<std::string_view> const& classes) {
+  if (word() != "FoamFile") {
+    at_ = 0;
+    fail("is no file of an OpenFOAM mesh: it does not begin with FoamFile");
+  }
+  expect('{', "FoamFile");
+  std::string arch;
+  while (peek() != '}') {
+    std::string const key = word();
+    if (key.empty()) fail("a key of the header is missing");
+    std::string value = value_of_key();
+    if (value.size() > 1 && value.front() == '"') value = value.substr(1, value.size() - 2);
+    if (key == "class") class_ = value;
+    if (key == "format" && value != "ascii" && value != "binary")
+      fail("the format is '" + value + "'; ascii and binary are read");
+    if (key == "format") binary_ = value == "binary";
+    if (key == "arch") arch = value;
+  }
+  expect('}', "the header");
+  if (arch.find("MSB") != std::string::npos && binary_)
+    fail("holds numbers of the other byte order (arch " + arch + "); write it again as ascii (foamFormatConvert)");
+  auto const bytes_of = [&](std::string_view key, int otherwise) {
+    auto const place = arch.find(key);
+    return place == std::string::npos ? otherwise : std::atoi(arch.c_str() + place + key.size()) / 8;
+  };
+  label_bytes_ = bytes_of("label=", label_bytes_);
+  scalar_bytes_ = bytes_of("scalar=", scalar_bytes_);
+  if ((label_bytes_ != 4 && label_bytes_ != 8) || (scalar_bytes_ != 4 && scalar_bytes_ != 8))
+    fail("numbers of " + arch + " are not read; 32 and 64 bits are");
+  if (std::find(classes.begin(), classes.end(), class_) == classes.end())
+    fail("the class is '" + class_ + "', and " + std::string(classes.front()) + " is wanted");
+}
+
+std::int64_t FoamFile::integer(char const* what) {
+  skip_blanks();
+  std::int64_t value = 0;
+  auto const [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+  if (error != std::errc()) fail(std::string(what) + ": a whole number is missing");
+  at_ = std::size_t(end - text_.data());
+  return value;
+}
+
+double FoamFile::number(std::size_t& begin, std::size_t& end) {
+  skip_blanks();
+  double value = 0;
+  begin = at_;
+  auto const [stop, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+  if (error != std::errc() && error != std::errc::result_out_of_range) fail("a coordinate is missing, or no number");
+  at_ = end = std::size_t(stop - text_.data());
+  return value;
+}
+
+Index FoamFile::begin_list(char const* what, Index least_bytes, char& bracket) {
+  std::int64_t const n = integer(what);
+  // Every value takes some bytes, so that a damaged length asks for no more memory than the file is long.
+  bracket = peek();
+  bool const one_value = bracket == '{';
+  if (n < 0 || n > std::numeric_limits<Index32>::max() ||
+      (!one_value && std::uint64_t(n) * std::uint64_t(least_bytes) > text_.size() - at_ + 2))
+    fail(std::string(what) + ": a list of " + std::to_string(n) + " does not fit into the file");
+  if (bracket != '(' && bracket != '{') {
+    if (n == 0) return 0;
+    fail(std::string(what) + ": '(' has to follow the length of a list");
+  }
+  ++at_;
+  return n;
+}
+
+std::int64_t FoamFile::raw_label() {
+  std::int64_t value = 0;
+  if (label_bytes_ == 8) {
+    std::memcpy(&value, text_.data() + at_, sizeof value);
+  } else {
+    std::int32_t four = 0;
+    std::memcpy(&four, text_.data() + at_, sizeof four);
+    value = four;
+  }
+  at_ += std::size_t(label_bytes_);
+  return value;
+}
+
+std::vector<std::int64_t> FoamFile::raw_list(char const* what) {
+  char bracket = 0;
+  Index const n = begin_list(what, binary_ ? label_bytes_ : 2, bracket);
+  std::vector<std::int64_t> out;
+  if (n == 0 && bracket != '(') return out;
+  out.reserve(std::size_t(n));
+  if (bracket == '{') {
+    out.assign(std::size_t(n), integer(what));
+    expect('}', "the value of a list");
+    return out;
+  }
+  for (Index k = 0; k < n; ++k) out.push_back(binary_ ? raw_label() : integer(what));
+  expect(')', "a list");
+  return out;
+}
+
+std::vector<Index32> FoamFile::labels() {
+  auto const all = raw_list("labels");
+  std::vector<Index32> out;
+  out.reserve(all.size());
+  for (auto const v : all) {
+    if (v < -1 || v > std::numeric_limits<Index32>::max()) fail("the label " + std::to_string(v) + " is out of range");
+    out.push_back(Index32(v));
+  }
+  return out;
+}
+
+CsrGraph FoamFile::faces() {
+  CsrGraph out;
+  auto const node = [&](std::int64_t v) {
+    if (v < 0 || v > std::numeric_limits<Index32>::max()) fail("a face has node " + std::to_string(v));
+    return Index32(v);
+  };
+  if (class_ == "faceCompactList") {
+    auto const first = raw_list("places of faces"), nodes = raw_list("nodes of faces");
+    for (std::size_t f = 0; f < first.size(); ++f)
+      if (first[f] < (f == 0 ? 0 : first[f - 1]) || (f + 1 == first.size() && first[f] != std::int64_t(nodes.size())) ||
+          (f == 0 && first[f] != 0))
+        fail("place " + std::to_string(f) + " of the faces, " + std::to_string(first[f]) + ", does not fit the " +
+             std::to_string(nodes.size()) + " nodes that follow");
+    if (!first.empty()) out.first.assign(first.begin(), first.end());
+    out.item.reserve(nodes.size());
+    for (auto const v : nodes) out.item.push_back(node(v));
+    return out;
+  }
+  char bracket = 0;
+  constexpr Index shortest = 8;  // "3(0 1 2)"
+  Index const n = begin_list("faces", binary_ ? 1 : shortest, bracket);
+  if (n == 0 && bracket != '(') return out;
+  if (bracket == '{') fail("faces are listed one by one");
+  std::vector<Index32> face;
+  for (Index f = 0; f < n; ++f) {
+    face.clear();
+    for (auto const v : raw_list("a face")) face.push_back(node(v));
+    out.add(face);
+  }
+  expect(')', "the faces");
+  return out;
+}
+
+Index FoamFile::points(std::function<void(PointText const&)> const& visit) {
+  char bracket = 0;
+  constexpr Index shortest = 7;  // "(0 0 0)"
+  Index const n = begin_list("points", binary_ ? 3 * scalar_bytes_ : shortest, bracket);
+  if (n == 0 && bracket != '(') return 0;
+  if (bracket == '{') fail("points are listed one by one");
+  PointText text;
+  for (text.point = 0; text.point < n; ++text.point) {
+    if (!binary_) expect('(', "a point");
+    for (text.component = 0; text.component < 3; ++text.component) {
+      if (!binary_) {
+        text.value = number(text.begin, text.end);
+      } else {
+        text.begin = at_;
+        text.end = at_ += std::size_t(scalar_bytes_);
+        if (scalar_bytes_ == 8) {
+          std::memcpy(&text.value, text_.data() + text.begin, sizeof text.value);
+        } else {
+          float single = 0;
+          std::memcpy(&single, text_.data() + text.begin, sizeof single);
+          text.value = double(single);
+        }
+      }
+      visit(text);
+    }
+    if (!binary_) expect(')', "the coordinates of a point");
+  }
+  expect(')', "the points");
+  return n;
+}
+
+std::vector<BoundaryEntry> FoamFile::boundary() {
+  // Dictionaries are text in binary files too.
+  binary_ = false;
+  char bracket = 0;
+  constexpr Index shortest = 4;  // "a{}\n"
+  Index const n = begin_list("patches", shortest, bracket);
+  if (n == 0 && bracket != '(') return {};
+  if (bracket == '{') fail("patches are listed one by one");
+  std::vector<BoundaryEntry> out;
+  for (Index p = 0; p < n; ++p) {
+    BoundaryEntry entry;
+    entry.name = word();
+    entry.line = 1 + int(std::count(text_.begin(), text_.begin() + std::ptrdiff_t(at_), '\n'));
+    if (entry.name.empty()) fail("the name of a patch is missing");
+    expect('{', "the name of a patch");
+    while (peek() != '}') {
+      std::string key = word();
+      if (key.empty()) fail("patch '" + entry.name + "': a key is missing");
+      std::string value = value_of_key();
+      entry.keys.emplace_back(std::move(key), std::move(value));
+    }
+    expect('}', "the keys of a patch");
+    out.push_back(std::move(entry));
+  }
+  expect(')', "the patches");
+  return out;
+}
+
+}  // namespace gridmorph::foam

@@ -1,0 +1,83 @@
+// One file of an OpenFOAM mesh (polyMesh): header, lists, dictionaries; as text or binary, packed by gzip or not. Internal to io.
+//
+// Format: OpenFOAM User Guide, "File format" and "Mesh description". Lists stand as N(...), N{value} where all values are alike, in
+// binary files N(bytes); lists of faces in binary files as two lists, places and nodes (faceCompactList).
+#pragma once
+
+#include <gridmorph/core/csr_graph.hpp>
+#include <gridmorph/core/index.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gridmorph::foam {
+
+/// Where the three numbers of a point stand in the text of a file, or its bytes.
+struct PointText {
+  Index point = 0;
+  int component = 0;
+  std::size_t begin = 0, end = 0;
+  double value = 0;
+};
+
+/// A patch of polyMesh/boundary: its keys with their values as text.
+struct BoundaryEntry {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> keys;
+  int line = 0;
+
+  /// Value of a key; empty where it has none.
+  [[nodiscard]] std::string_view operator[](std::string_view key) const;
+};
+
+class FoamFile {
+ public:
+  /// Reads a file, or the packed one of that name with ".gz". Throws IoError when neither is there, for a file without the header
+  /// of OpenFOAM, and for one of another class than `classes` names ("labelList", ...).
+  FoamFile(std::string const& path, std::vector<std::string_view> const& classes);
+
+  [[nodiscard]] std::string const& path() const { return path_; }  ///< with ".gz" where that is what was read
+  [[nodiscard]] std::string const& text() const { return text_; }  ///< unpacked
+  [[nodiscard]] bool is_packed() const { return packed_; }
+  [[nodiscard]] bool is_binary() const { return binary_; }
+  [[nodiscard]] int scalar_bytes() const { return scalar_bytes_; }
+
+  // What follows the header; each throws IoError with the line (text) or the byte (binary) where it is not what it has to be.
+  std::vector<Index32> labels();
+  CsrGraph faces();
+  /// Calls visit for each number, in order. Returns the number of points.
+  Index points(std::function<void(PointText const&)> const& visit);
+  std::vector<BoundaryEntry> boundary();
+
+ private:
+  void read_header(std::vector<std::string_view> const& classes);
+  void skip_blanks();
+  [[nodiscard]] char peek();
+  void expect(char wanted, char const* after);
+  [[nodiscard]] std::string word();
+  [[nodiscard]] std::string value_of_key();
+  std::int64_t integer(char const* what);
+  double number(std::size_t& begin, std::size_t& end);
+  /// Length of a list and its opening bracket.
+  Index begin_list(char const* what, Index least_bytes, char& bracket);
+  [[nodiscard]] std::int64_t raw_label();
+  std::vector<std::int64_t> raw_list(char const* what);
+  [[noreturn]] void fail(std::string const& what) const;
+
+  std::string path_, text_;
+  std::string class_;
+  std::size_t at_ = 0;
+  bool packed_ = false, binary_ = false;
+  int label_bytes_ = 4, scalar_bytes_ = 8;
+};
+
+/// The bytes packed as gzip does. Throws IoError where gridmorph is built without zlib.
+std::string packed(std::string const& path, std::string const& bytes);
+
+/// Whether the file is there, packed or not.
+bool is_there(std::string const& path);
+
+}  // namespace gridmorph::foam

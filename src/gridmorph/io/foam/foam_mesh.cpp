@@ -1,0 +1,237 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/finite_check.hpp>
+#include <gridmorph/io/foam/foam_cyclics.hpp>
+#include <gridmorph/io/foam/foam_file.hpp>
+#include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/kind_by_name.hpp>
+#include <gridmorph/io/polyhedron.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace gridmorph::foam {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool holds_mesh(fs::path const& folder) {
+  return is_there((folder / "faces").string()) && is_there((folder / "points").string());
+}
+
+class Reader {
+ public:
+  Reader(std::string const& path, fs::path folder) : path_(path), folder_(std::move(folder)) {}
+
+  Mesh run() {
+    mesh_.source = path_;
+    mesh_.first_number = 0;
+    mesh_.dimension = 3;
+    read_points();
+    faces_ = file("faces", {"faceList", "faceCompactList"}).faces();
+    owner_ = file("owner", {"labelList"}).labels();
+    neighbour_ = file("neighbour", {"labelList"}).labels();
+    // Old files name no neighbour of faces on the boundary by -1.
+    while (!neighbour_.empty() && neighbour_.back() < 0) neighbour_.pop_back();
+    check();
+    add_cells();
+    add_patches(file("boundary", {"polyBoundaryMesh"}).boundary());
+    Problems problems;
+    io::check_finite(mesh_, mesh_.coordinates, path_, problems);
+    problems.throw_if_any<MeshError>();
+    check_mesh(mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  [[nodiscard]] FoamFile file(char const* name, std::vector<std::string_view> const& classes) const {
+    return {(folder_ / name).string(), classes};
+  }
+
+  void read_points() {
+    std::vector<double> all;
+    FoamFile points = file("points", {"vectorField"});
+    Index const n = points.points([&](PointText const& p) { all.push_back(p.value); });
+    mesh_.add_zone("internalMesh", n);
+    mesh_.zones.back().single_precision = points.is_binary() && points.scalar_bytes() == 4;
+    mesh_.coordinates = Coordinates(n);
+    for (Index p = 0; p < n; ++p)
+      mesh_.coordinates.set(p, {all[std::size_t(3 * p)], all[std::size_t(3 * p) + 1], all[std::size_t(3 * p) + 2]});
+  }
+
+  /// What the lists say of one another.
+  void check() const {
+    std::string const where = folder_.string() + ": ";
+    Problems problems;
+    if (owner_.size() != std::size_t(faces_.size()))
+      problems.add(where + "owner has " + std::to_string(owner_.size()) + " values for " +
+                   std::to_string(faces_.size()) + " faces");
+    if (neighbour_.size() > owner_.size())
+      problems.add(where + "neighbour has " + std::to_string(neighbour_.size()) + " values, more than there are faces");
+    Index const n = mesh_.n_nodes();
+    for (Index f = 0; f < faces_.size() && problems.empty(); ++f) {
+      auto const nodes = faces_[f];
+      if (nodes.size() < 3)
+        problems.add(where + "face " + std::to_string(f) + " has " + std::to_string(nodes.size()) + " nodes");
+      for (Index32 const v : nodes)
+        if (v >= n && problems.empty())
+          problems.add(where + "face " + std::to_string(f) + " has node " + std::to_string(v) + ", and there are " +
+                       std::to_string(n) + " points, counted from 0");
+    }
+    // Every cell has four faces at least, so that damaged labels ask for no memory.
+    auto const most = Index32(faces_.size() / 2 + 1);
+    auto const bad = [&](std::vector<Index32> const& list, char const* name) {
+      auto const at = std::find_if(list.begin(), list.end(), [&](Index32 c) { return c < 0 || c >= most; });
+      if (at != list.end())
+        problems.add(where + name + " of face " + std::to_string(at - list.begin()) + " is cell " +
+                     std::to_string(*at) + ", which " + std::to_string(faces_.size()) + " faces cannot make");
+    };
+    bad(owner_, "owner");
+    bad(neighbour_, "neighbour");
+    problems.throw_if_any<MeshError>();
+  }
+
+  void add_cells() {
+    Index32 last = -1;
+    for (auto const* list : {&owner_, &neighbour_})
+      for (Index32 const c : *list) last = std::max(last, c);
+    // Faces of each cell, ascending; faces that lead into it as -1 - face.
+    std::vector<Index> first(std::size_t(last) + 2, 0);
+    for (auto const* list : {&owner_, &neighbour_})
+      for (Index32 const c : *list) ++first[std::size_t(c) + 1];
+    for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
+    std::vector<Index32> of_cell(std::size_t(first.back()));
+    std::vector<Index> next(first.begin(), first.end() - 1);
+    for (std::size_t f = 0; f < owner_.size(); ++f) {
+      of_cell[std::size_t(next[std::size_t(owner_[f])]++)] = Index32(f);
+      if (f < neighbour_.size()) of_cell[std::size_t(next[std::size_t(neighbour_[f])]++)] = -1 - Index32(f);
+    }
+    io::ElementsByFaces elements(mesh_);
+    for (Index32 c = 0; c <= last; ++c) {
+      for (Index k = first[std::size_t(c)]; k < first[std::size_t(c) + 1]; ++k) {
+        Index32 const f = of_cell[std::size_t(k)];
+        elements.add_face(faces_[f < 0 ? -1 - f : f], f >= 0);
+      }
+      if (elements.n_faces() < 4)
+        throw MeshError(folder_.string() + ": cell " + std::to_string(c) + " has " +
+                        std::to_string(elements.n_faces()) + " faces; a volume needs 4");
+      elements.end_element(c);
+    }
+  }
+
+  /// First face and number of faces of a patch.
+  std::pair<Index, Index> faces_of(BoundaryEntry const& entry, Problems& problems) const {
+    auto const value = [&](char const* key) {
+      std::string const text(entry[key]);
+      char* end = nullptr;
+      long long const n = std::strtoll(text.c_str(), &end, 10);
+      if (text.empty() || *end != '\0' || n < 0 || n > faces_.size())
+        problems.add((folder_ / "boundary").string() + ":" + std::to_string(entry.line) + ": patch '" + entry.name +
+                     "': " + key + " is '" + text + "', and there are " + std::to_string(faces_.size()) + " faces");
+      return Index(std::clamp<long long>(n, 0, faces_.size()));
+    };
+    Index const start = value("startFace"), n = value("nFaces");
+    if (start + n > faces_.size())
+      problems.add((folder_ / "boundary").string() + ":" + std::to_string(entry.line) + ": patch '" + entry.name +
+                   "' ends behind the last of " + std::to_string(faces_.size()) + " faces");
+    return {start, std::min(n, faces_.size() - start)};
+  }
+
+  void add_patches(std::vector<BoundaryEntry> const& entries) {
+    Problems problems;
+    std::vector<CyclicSide> cyclics;
+    for (BoundaryEntry const& entry : entries) {
+      auto const [start, n] = faces_of(entry, problems);
+      if (!problems.empty() || n == 0) continue;
+      std::string const type(entry["type"]);
+      if (type.starts_with("processor"))
+        problems.add(path_ + ": patch '" + entry.name + "' is of type " + type +
+                     ": this is one part of a decomposed mesh; put the parts together (reconstructParMesh)");
+      else if (type == "cyclic")
+        cyclics.push_back({&entry, start, n});
+      else if (type == "empty")
+        add_planes(entry, start, n);
+      else
+        add_patch(entry, type, start, n);
+    }
+    problems.throw_if_any<MeshError>();
+    add_cyclics(cyclics, faces_, mesh_);
+  }
+
+  Patch patch_of(BoundaryEntry const& entry, std::string const& type) {
+    Patch patch;
+    patch.name = entry.name;
+    patch.bc_type = type;
+    patch.zone = 0;
+    patch.kind = type == "wall" ? PatchKind::wall
+                 : type == "symmetryPlane" || type == "symmetry" || type == "wedge" || type == "empty"
+                     ? PatchKind::symmetry
+                 : type == "patch" ? io::kind_by_name(entry.name)
+                                   : PatchKind::connection;
+    // inGroups 2(wall rotor): a group that is not the type is a name for several patches.
+    std::string groups(entry["inGroups"]);
+    std::replace_if(
+        groups.begin(), groups.end(), [](char c) { return c == '(' || c == ')'; }, ' ');
+    std::istringstream words(groups);
+    for (std::string word; words >> word;)
+      if (word != type && word.find_first_not_of("0123456789") != std::string::npos && !word.starts_with("List<"))
+        patch.families.push_back(word);
+    if (!patch.families.empty()) patch.families.insert(patch.families.begin(), patch.name);
+    return patch;
+  }
+
+  void add_patch(BoundaryEntry const& entry, std::string const& type, Index start, Index n) {
+    Patch patch = patch_of(entry, type);
+    for (Index f = start; f < start + n; ++f) patch.faces.add(faces_[f]);
+    mesh_.patches.push_back(std::move(patch));
+  }
+
+  /// The two sides of a mesh one cell thick, which OpenFOAM keeps in one patch: what looks to one side, and what looks to the other.
+  void add_planes(BoundaryEntry const& entry, Index start, Index n) {
+    auto const normal = [&](Index f) {
+      auto const nodes = faces_[f];
+      Vec3 sum;
+      for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
+        sum += cross(mesh_.coordinates[nodes[k]] - mesh_.coordinates[nodes[0]],
+                     mesh_.coordinates[nodes[k + 1]] - mesh_.coordinates[nodes[0]]);
+      return sum;
+    };
+    Vec3 const way = normal(start);
+    Patch sides[2] = {patch_of(entry, "empty"), patch_of(entry, "empty")};
+    for (Index f = start; f < start + n; ++f) sides[dot(way, normal(f)) < 0 ? 1 : 0].faces.add(faces_[f]);
+    for (Patch& side : sides)
+      if (side.faces.size() > 0) mesh_.patches.push_back(std::move(side));
+  }
+
+  std::string const& path_;
+  fs::path folder_;
+  Mesh mesh_;
+  CsrGraph faces_;
+  std::vector<Index32> owner_, neighbour_;
+};
+
+}  // namespace
+
+std::optional<fs::path> poly_mesh(fs::path const& path) {
+  std::error_code ignored;
+  bool const named = path.extension() == ".foam" || path.extension() == ".OpenFOAM";
+  fs::path const folder = named && !fs::is_directory(path, ignored) ? path.parent_path() : path;
+  for (fs::path const& candidate : {folder / "constant" / "polyMesh", folder / "polyMesh", folder})
+    if (holds_mesh(candidate)) return candidate;
+  return std::nullopt;
+}
+
+Mesh read(std::string const& path) {
+  auto const folder = poly_mesh(path);
+  if (!folder)
+    throw IoError(path +
+                  ": holds no mesh of OpenFOAM (constant/polyMesh with points and faces); make it first "
+                  "(blockMesh, snappyHexMesh), or name the folder");
+  return Reader(path, *folder).run();
+}
+
+}  // namespace gridmorph::foam
