@@ -3,6 +3,7 @@
 #include <gridmorph/io/foam/foam_cyclics.hpp>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <string>

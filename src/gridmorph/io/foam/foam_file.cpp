@@ -171,6 +171,13 @@ std::string FoamFile::value_of_key() {
   while (true) {
     if (at_ >= text_.size()) fail("a value does not end; ';' is missing");
     char const c = text_[at_];
+    if (c == '"') {
+      auto const end = text_.find('"', at_ + 1);
+      if (end == std::string::npos) fail("a string that begins here does not end");
+      out.append(text_, at_, end + 1 - at_);
+      at_ = end + 1;
+      continue;
+    }
     if (c == ';' && depth == 0) {
       ++at_;
       break;

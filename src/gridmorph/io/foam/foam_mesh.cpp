@@ -3,13 +3,12 @@
 #include <gridmorph/io/foam/foam_cyclics.hpp>
 #include <gridmorph/io/foam/foam_file.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/foam/foam_plane.hpp>
 #include <gridmorph/io/kind_by_name.hpp>
 #include <gridmorph/io/polyhedron.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <algorithm>
-#include <limits>
-#include <set>
 #include <sstream>
 #include <utility>
 
@@ -39,10 +38,18 @@ class Reader {
     while (!neighbour_.empty() && neighbour_.back() < 0) neighbour_.pop_back();
     check();
     add_cells();
-    add_patches(file("boundary", {"polyBoundaryMesh"}).boundary());
+    auto const boundary = file("boundary", {"polyBoundaryMesh"}).boundary();
+    add_patches(boundary);
     Problems problems;
     io::check_finite(mesh_, mesh_.coordinates, path_, problems);
     problems.throw_if_any<MeshError>();
+    std::string why_not;
+    if (auto const pairs = plane_pairs(boundary, faces_, mesh_.coordinates, mesh_.size(), why_not))
+      mesh_ = upper_plane(mesh_, *pairs, faces_, owner_);
+    else if (!why_not.empty())
+      mesh_.notes.push_back(
+          path_ + ": has " + why_not +
+          ", so that it is morphed as a mesh of volumes; nodes of the two planes may come apart a little");
     check_mesh(mesh_);
     return std::move(mesh_);
   }
@@ -190,7 +197,7 @@ class Reader {
     mesh_.patches.push_back(std::move(patch));
   }
 
-  /// The two sides of a mesh one cell thick, which OpenFOAM keeps in one patch: what looks to one side, and what looks to the other.
+  /// The two sides of a mesh one cell thick, which may be one patch: what looks to one side, and what looks to the other.
   void add_planes(BoundaryEntry const& entry, Index start, Index n) {
     auto const normal = [&](Index f) {
       auto const nodes = faces_[f];

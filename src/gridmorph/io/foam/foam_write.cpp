@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/foam/foam_file.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/foam/foam_plane.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/read_file.hpp>
 
@@ -16,14 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The text of the points with others in their place; what did not change stays byte for byte.
-std::string with_points(FoamFile& file, Mesh const& mesh, Coordinates const& morphed) {
+std::string with_points(FoamFile& file, Coordinates const& morphed) {
   std::string const& text = file.text();
   std::array<double const*, 3> const arrays{morphed.x.data(), morphed.y.data(), morphed.z.data()};
   std::string out;
   out.reserve(text.size() + text.size() / 4);
   std::size_t copied = 0;
   Index const n = file.points([&](PointText const& p) {
-    if (p.point >= mesh.n_nodes()) return;
+    if (p.point >= morphed.size()) return;
     double const value = arrays[std::size_t(p.component)][p.point];
     std::array<char, 32> bytes{};
     std::size_t length = 0;
@@ -40,9 +41,9 @@ std::string with_points(FoamFile& file, Mesh const& mesh, Coordinates const& mor
     out.append(bytes.data(), length);
     copied = p.end;
   });
-  if (n != mesh.n_nodes())
+  if (n != morphed.size())
     throw IoError(file.path() + ": holds " + std::to_string(n) + " points and the mesh has " +
-                  std::to_string(mesh.n_nodes()) + "; give the folder that the mesh was read from");
+                  std::to_string(morphed.size()) + "; give the folder that the mesh was read from");
   out.append(text, copied);
   return file.is_packed() ? packed(file.path(), out) : out;
 }
@@ -54,6 +55,24 @@ bool holds_same_faces(fs::path const& folder, fs::path const& other) {
       return fs::is_regular_file(folder / name, ignored) &&
              io::read_file((folder / name).string()) == io::read_file((other / name).string());
   return false;
+}
+
+/// All points of a plane mesh.
+Coordinates of_both_planes(fs::path const& folder, Mesh const& mesh, Coordinates const& morphed) {
+  std::vector<Vec3> places;
+  FoamFile((folder / "points").string(), {"vectorField"}).points([&](PointText const& p) {
+    if (p.component == 0) places.emplace_back();
+    (p.component == 0 ? places.back().x : p.component == 1 ? places.back().y : places.back().z) = p.value;
+  });
+  Coordinates all(Index(places.size()));
+  for (Index n = 0; n < all.size(); ++n) all.set(n, places[std::size_t(n)]);
+  std::string why_not;
+  auto const pairs = plane_pairs(FoamFile((folder / "boundary").string(), {"polyBoundaryMesh"}).boundary(),
+                                 FoamFile((folder / "faces").string(), {"faceList", "faceCompactList"}).faces(), all,
+                                 mesh.size(), why_not);
+  if (!pairs || Index(pairs->size()) != mesh.n_nodes())
+    throw IoError(folder.string() + ": holds another mesh than the one that was read; give the folder of that one");
+  return both_planes(all, *pairs, morphed);
 }
 
 /// Folders that are made for an output; those that are not kept go again.
@@ -86,7 +105,7 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   auto const from = poly_mesh(input);
   if (!from) throw IoError(input + ": holds no mesh of OpenFOAM any more");
   FoamFile points((*from / "points").string(), {"vectorField"});
-  std::string const text = with_points(points, mesh, morphed);
+  std::string const text = with_points(points, mesh.dimension == 2 ? of_both_planes(*from, mesh, morphed) : morphed);
   // Beside the output's name stands what stood beside the input's.
   std::error_code ignored;
   fs::path below;

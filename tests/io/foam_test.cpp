@@ -1,0 +1,426 @@
+// Meshes of OpenFOAM, made here by a writer of their own: text and binary, packed and not, cyclics, planes, damage.
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+
+#include "support/expect_error.hpp"
+#include "support/random.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gridmorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How a mesh is stored.
+struct Storage {
+  bool binary = false;
+  int label_bits = 32, scalar_bits = 64;
+};
+
+/// Writes lists as OpenFOAM does.
+class FoamWriter {
+ public:
+  FoamWriter(fs::path folder, Storage storage) : folder_(std::move(folder)), storage_(storage) {
+    fs::create_directories(folder_);
+  }
+
+  void labels(char const* name, std::vector<std::int64_t> const& values) const {
+    write(name, "labelList", list(values));
+  }
+  void points(std::vector<Vec3> const& values) const {
+    std::string body = std::to_string(values.size()) + "\n(";
+    for (Vec3 const& p : values) {
+      if (storage_.binary) {
+        for (double const c : {p.x, p.y, p.z}) raw_scalar(c, body);
+      } else {
+        std::array<char, 100> line{};
+        std::snprintf(line.data(), line.size(), "\n(%.17g %.17g %.17g)", p.x, p.y, p.z);
+        body += line.data();
+      }
+    }
+    write("points", "vectorField", body + (storage_.binary ? ")" : "\n)"));
+  }
+  void faces(std::vector<std::vector<std::int64_t>> const& values) const {
+    if (!storage_.binary) {
+      std::string body = std::to_string(values.size()) + "\n(\n";
+      for (auto const& face : values) body += list(face) + "\n";
+      return write("faces", "faceList", body + ")");
+    }
+    std::vector<std::int64_t> first{0}, nodes;
+    for (auto const& face : values) {
+      nodes.insert(nodes.end(), face.begin(), face.end());
+      first.push_back(std::int64_t(nodes.size()));
+    }
+    write("faces", "faceCompactList", list(first) + "\n" + list(nodes));
+  }
+  void boundary(std::string const& body) const {
+    Storage const kept = storage_;
+    write("boundary", "polyBoundaryMesh", body);
+    storage_ = kept;
+  }
+
+ private:
+  void raw_label(std::int64_t v, std::string& out) const {
+    auto const four = std::int32_t(v);
+    storage_.label_bits == 64 ? out.append(reinterpret_cast<char const*>(&v), 8)
+                              : out.append(reinterpret_cast<char const*>(&four), 4);
+  }
+  void raw_scalar(double v, std::string& out) const {
+    auto const single = float(v);
+    storage_.scalar_bits == 64 ? out.append(reinterpret_cast<char const*>(&v), 8)
+                               : out.append(reinterpret_cast<char const*>(&single), 4);
+  }
+  std::string list(std::vector<std::int64_t> const& values) const {
+    std::string out = std::to_string(values.size()) + "(";
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      if (storage_.binary)
+        raw_label(values[n], out);
+      else
+        out += (n > 0 ? " " : "") + std::to_string(values[n]);
+    }
+    return out + ")";
+  }
+  void write(char const* name, char const* of_class, std::string const& body) const {
+    std::ofstream out(folder_ / name, std::ios::binary);
+    out << "/*---- C++ ----*\\\n\\*---- ----*/\nFoamFile\n{\n    version     2.0;\n    format      "
+        << (storage_.binary ? "binary" : "ascii") << ";\n    arch        \"LSB;label=" << storage_.label_bits
+        << ";scalar=" << storage_.scalar_bits << "\";\n    class       " << of_class << ";\n    object      " << name
+        << ";\n}\n// * * * //\n\n"
+        << body << "\n\n// ***** //\n";
+  }
+
+  fs::path folder_;
+  mutable Storage storage_;
+};
+
+/// A box of n[0] x n[1] x n[2] cells, its nodes at place(i, j, k), i fastest; patches x0, x1, y0, ... with `keys`.
+struct FoamBox {
+  Index3 n{3, 2, 2};
+  std::function<Vec3(Index3 const&)> place = [](Index3 const& p) { return Vec3{0.1 * p[0], 0.3 * p[1], 0.7 * p[2]}; };
+  std::map<std::string, std::string> keys;  ///< "type wall;" where nothing else is said
+  std::vector<std::string> patches{"x0", "x1", "y0", "y1", "z0", "z1"};
+
+  void write(fs::path const& folder, Storage storage = {}) const {
+    auto const node = [&](int i, int j, int k) {
+      return std::int64_t(i) + (n[0] + 1) * (j + std::int64_t(n[1] + 1) * k);
+    };
+    auto const cell = [&](Index3 const& c) { return std::int64_t(c[0]) + n[0] * (c[1] + std::int64_t(n[1]) * c[2]); };
+    // The face of a cell at its upper or lower end along an axis, outwards.
+    auto const face = [&](Index3 c, int axis, int side) {
+      c[axis] += side;
+      int const u = (axis + 1) % 3, v = (axis + 2) % 3;
+      std::vector<std::int64_t> out;
+      for (auto const& [a, b] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+        Index3 p = c;
+        p[u] += a;
+        p[v] += b;
+        out.push_back(node(p[0], p[1], p[2]));
+      }
+      if (side == 0) std::reverse(out.begin() + 1, out.end());
+      return out;
+    };
+    std::vector<std::vector<std::int64_t>> faces;
+    std::vector<std::int64_t> owner, neighbour;
+    auto const each_cell = [&](auto&& visit) {
+      Index3 c{};
+      for (c[2] = 0; c[2] < n[2]; ++c[2])
+        for (c[1] = 0; c[1] < n[1]; ++c[1])
+          for (c[0] = 0; c[0] < n[0]; ++c[0]) visit(c);
+    };
+    each_cell([&](Index3 const& c) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (c[axis] + 1 == n[axis]) continue;
+        Index3 next = c;
+        ++next[axis];
+        faces.push_back(face(c, axis, 1));
+        owner.push_back(cell(c));
+        neighbour.push_back(cell(next));
+      }
+    });
+    std::string boundary = std::to_string(patches.size()) + "\n(\n";
+    for (std::string const& name : patches) {
+      std::size_t const start = faces.size();
+      // "xy0": the faces of several sides in one patch.
+      int const side = name.back() - '0';
+      for (char const letter : name.substr(0, name.size() - 1)) {
+        int const axis = letter - 'x';
+        for (int const end : side == 2 ? std::vector<int>{0, 1} : std::vector<int>{side})
+          each_cell([&](Index3 const& c) {
+            if (c[axis] != (end == 0 ? 0 : n[axis] - 1)) return;
+            faces.push_back(face(c, axis, end));
+            owner.push_back(cell(c));
+          });
+      }
+      auto const own = keys.find(name);
+      boundary += name + "\n{\n " + (own == keys.end() ? "type wall; inGroups 1(wall);" : own->second) + "\n nFaces " +
+                  std::to_string(faces.size() - start) + ";\n startFace " + std::to_string(start) + ";\n}\n";
+    }
+    FoamWriter const out(folder, storage);
+    std::vector<Vec3> points;
+    for (int k = 0; k <= n[2]; ++k)
+      for (int j = 0; j <= n[1]; ++j)
+        for (int i = 0; i <= n[0]; ++i) points.push_back(place({i, j, k}));
+    out.points(points);
+    out.faces(faces);
+    out.labels("owner", owner);
+    out.labels("neighbour", neighbour);
+    out.boundary(boundary + ")");
+  }
+};
+
+/// Volume of all hexahedra, by their corners in SIDS order: six tetrahedra each.
+double volume(Mesh const& mesh) {
+  double sum = 0;
+  for (Index e = 0; e < mesh.n_elements(); ++e) {
+    auto const c = mesh.elements.corners(e);
+    EXPECT_EQ(c.size(), 8U);
+    auto const x = [&](int k) { return mesh.coordinates[c[std::size_t(k)]]; };
+    for (auto const& t : {std::array{0, 1, 2, 6}, std::array{0, 2, 3, 6}, std::array{0, 3, 7, 6},
+                          std::array{0, 7, 4, 6}, std::array{0, 4, 5, 6}, std::array{0, 5, 1, 6}})
+      sum += dot(cross(x(t[1]) - x(t[0]), x(t[2]) - x(t[0])), x(t[3]) - x(t[0])) / 6;
+  }
+  return sum;
+}
+
+void expect_equal(Mesh const& a, Mesh const& b, double tolerance) {
+  ASSERT_EQ(a.n_nodes(), b.n_nodes());
+  for (Index n = 0; n < a.n_nodes(); ++n) EXPECT_LE(distance(a.coordinates[n], b.coordinates[n]), tolerance);
+  EXPECT_EQ(a.elements.nodes.item, b.elements.nodes.item);
+  ASSERT_EQ(a.patches.size(), b.patches.size());
+  for (std::size_t p = 0; p < a.patches.size(); ++p) EXPECT_EQ(a.patches[p].faces.item, b.patches[p].faces.item);
+}
+
+TEST(OpenFoam, ABoxIsHexahedraWithItsPatches) {
+  TemporaryFolder const folder;
+  FoamBox box;
+  box.keys["x0"] = "type patch; inGroups 2(rotor fluid);";
+  box.keys["z1"] = "type symmetryPlane;";
+  box.write(folder / "case" / "constant" / "polyMesh");
+  Mesh const mesh = read_mesh((folder / "case").string());
+  EXPECT_EQ(mesh.n_elements(), 12);
+  EXPECT_NEAR(volume(mesh), 0.3 * 0.6 * 1.4, 1e-15);
+  ASSERT_EQ(mesh.patches.size(), 6U);
+  EXPECT_EQ(mesh.patches[0].name, "x0");
+  EXPECT_EQ(mesh.patches[0].families, (std::vector<std::string>{"x0", "rotor", "fluid"}));
+  EXPECT_EQ(mesh.patches[0].faces.size(), 4);
+  EXPECT_EQ(mesh.patches[1].kind, PatchKind::wall);
+  EXPECT_TRUE(mesh.patches[1].families.empty());
+  EXPECT_EQ(mesh.patches[5].kind, PatchKind::symmetry);
+  EXPECT_EQ(look_at_mesh((folder / "case").string()).format, MeshFormat::openfoam);
+  // The folder above polyMesh, polyMesh itself, and ParaView's empty file.
+  std::ofstream((folder / "case" / "case.foam").string());
+  for (char const* path : {"case/constant", "case/constant/polyMesh", "case/case.foam"})
+    expect_equal(mesh, read_mesh((folder / path).string()), 0);
+}
+
+TEST(OpenFoam, TextAndBinaryOfAllSizesAreTheSameMesh) {
+  TemporaryFolder const folder;
+  FoamBox const box;
+  box.write(folder / "text");
+  Mesh const text = read_mesh((folder / "text").string());
+  for (int const labels : {32, 64})
+    for (int const scalars : {32, 64}) {
+      fs::path const path = folder / ("binary" + std::to_string(labels) + std::to_string(scalars));
+      box.write(path, {true, labels, scalars});
+      expect_equal(text, read_mesh(path.string()), scalars == 64 ? 0 : 1e-7);
+    }
+}
+
+class OpenFoamStored : public ::testing::TestWithParam<Storage> {};
+
+TEST_P(OpenFoamStored, OnlyPointsThatMoveChangeAndAllElseIsCopied) {
+  TemporaryFolder const folder;
+  FoamBox const box;
+  fs::path const from = folder / "case" / "constant" / "polyMesh", to = folder / "moved" / "constant" / "polyMesh";
+  box.write(from, GetParam());
+  std::ofstream(from / "cellZones") << "anything";
+  Mesh const mesh = read_mesh((folder / "case").string());
+  Coordinates same(mesh.n_nodes()), moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    same.set(n, mesh.coordinates[n]);
+    moved.set(n, mesh.coordinates[n] + (n % 3 == 0 ? Vec3{1.0 / 3, -2.0 / 7, 1e-9} : Vec3{}));
+  }
+  write_morphed((folder / "case").string(), (folder / "same").string(), mesh, same);
+  for (char const* name : {"points", "faces", "owner", "neighbour", "boundary", "cellZones"})
+    EXPECT_EQ(bytes_of(folder / "same" / "constant" / "polyMesh" / name), bytes_of(from / name)) << name;
+  write_morphed((folder / "case").string(), (folder / "moved").string(), mesh, moved);
+  EXPECT_EQ(bytes_of(to / "faces"), bytes_of(from / "faces"));
+  Mesh const back = read_mesh((folder / "moved").string());
+  bool const single = GetParam().scalar_bits == 32 && GetParam().binary;
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const want = single ? Vec3{float(moved.x(n)), float(moved.y(n)), float(moved.z(n))} : moved[n];
+    EXPECT_EQ(back.coordinates[n], want);
+  }
+  // Once more onto the same output; onto that of another mesh never.
+  write_morphed((folder / "case").string(), (folder / "moved").string(), mesh, same);
+  FoamBox other;
+  other.n = {2, 2, 2};
+  other.write(folder / "other" / "constant" / "polyMesh", GetParam());
+  std::string const before = bytes_of(folder / "other" / "constant" / "polyMesh" / "points");
+  expect_all_in(
+      message_of<IoError>([&] { write_morphed((folder / "case").string(), (folder / "other").string(), mesh, moved); }),
+      {"holds something else"});
+  EXPECT_EQ(bytes_of(folder / "other" / "constant" / "polyMesh" / "points"), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(As, OpenFoamStored,
+                         ::testing::Values(Storage{}, Storage{true, 32, 64}, Storage{true, 64, 32}));
+
+TEST(OpenFoam, PackedFilesAreReadAndStayPacked) {
+  TemporaryFolder const folder;
+  fs::path const plain = folder / "plain", packed = folder / "packed";
+  FoamBox const box;
+  box.write(plain);
+  box.write(packed);
+  if (std::system(("gzip -n " + (packed / "points").string() + " " + (packed / "faces").string()).c_str()) != 0)
+    GTEST_SKIP() << "no gzip here";
+  Mesh const mesh = read_mesh(plain.string());
+  try {
+    expect_equal(mesh, read_mesh(packed.string()), 0);
+  } catch (IoError const& e) {
+    if (std::string(e.what()).find("without zlib") != std::string::npos) GTEST_SKIP() << e.what();
+    throw;
+  }
+  Coordinates moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.1, 0.2, 0.3});
+  write_morphed(packed.string(), (folder / "out").string(), mesh, moved);
+  EXPECT_TRUE(fs::exists(folder / "out" / "points.gz"));
+  EXPECT_FALSE(fs::exists(folder / "out" / "points"));
+  Mesh const back = read_mesh((folder / "out").string());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
+  // Cut off anywhere.
+  std::string const whole = bytes_of(packed / "points.gz");
+  for (std::size_t const keep : {std::size_t(5), std::size_t(20), whole.size() / 2, whole.size() - 1}) {
+    std::ofstream(packed / "points.gz", std::ios::binary) << whole.substr(0, keep);
+    EXPECT_THROW(read_mesh(packed.string()), Error) << keep;
+  }
+}
+
+TEST(OpenFoam, CyclicsAreConnectionsWithTheirTransform) {
+  TemporaryFolder const folder;
+  FoamBox shifted;
+  shifted.keys["z0"] = "type cyclic; neighbourPatch z1;";
+  shifted.keys["z1"] = "type cyclic; neighbourPatch z0;";
+  shifted.write(folder / "shifted");
+  double const pitch = 0.4;
+  FoamBox turned = shifted;
+  turned.place = [=](Index3 const& p) {
+    double const r = 1 + 0.2 * p[1], a = pitch * p[2] / 2.0;
+    return Vec3{0.3 * p[0], r * std::cos(a), r * std::sin(a)};
+  };
+  turned.write(folder / "turned");
+  for (char const* name : {"shifted", "turned"}) {
+    Mesh const mesh = read_mesh((folder / name).string());
+    EXPECT_EQ(mesh.patches.size(), 4U);
+    ASSERT_EQ(mesh.connections.size(), 1U) << name;
+    Connection const& c = mesh.connections.front();
+    EXPECT_EQ(c.nodes.size(), 12U);
+    ASSERT_TRUE(c.periodic);
+    for (std::size_t n = 0; n < c.nodes.size(); ++n)
+      EXPECT_LE(distance(c.periodic->declared(mesh.coordinates[c.nodes[n]]), mesh.coordinates[c.donor_nodes[n]]),
+                1e-14);
+    EXPECT_NEAR(norm(c.periodic->rotation_angle_rad), std::string(name) == "turned" ? pitch : 0, 1e-14);
+  }
+  // Sides that do not fit are patches of their own.
+  FoamBox bent = shifted;
+  bent.place = [](Index3 const& p) { return Vec3{0.1 * p[0] + 0.02 * p[0] * p[0] * p[2], 0.3 * p[1], 0.7 * p[2]}; };
+  bent.write(folder / "bent");
+  Mesh const mesh = read_mesh((folder / "bent").string());
+  EXPECT_TRUE(mesh.connections.empty());
+  EXPECT_EQ(mesh.patches.size(), 6U);
+}
+
+TEST(OpenFoam, AMeshOneCellThickIsAPlaneMeshAndBothPlanesMoveAlike) {
+  TemporaryFolder const folder;
+  FoamBox box;
+  box.n = {3, 2, 1};
+  box.patches = {"x0", "x1", "y0", "y1", "z2"};
+  box.keys["z2"] = "type empty; inGroups List<word> 1(empty);";
+  box.write(folder / "case");
+  Mesh const mesh = read_mesh((folder / "case").string());
+  EXPECT_EQ(mesh.dimension, 2);
+  EXPECT_EQ(mesh.n_nodes(), 12);
+  EXPECT_EQ(mesh.n_elements(), 6);
+  ASSERT_EQ(mesh.patches.size(), 4U);
+  EXPECT_EQ(mesh.patches[0].faces.size(), 2);
+  EXPECT_EQ(mesh.patches[2].faces.size(), 3);
+  Coordinates moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.1 / double(n + 3), 0.01, 0});
+  write_morphed((folder / "case").string(), (folder / "out").string(), mesh, moved);
+  Mesh const back = read_mesh((folder / "out").string());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
+  // Seen as a mesh of volumes, points across the cell have the same x and y still.
+  for (char const* which : {"case", "out"}) {
+    std::string text = bytes_of(folder / which / "boundary");
+    text.replace(text.find("type empty"), 10, "type patch");
+    write_bytes(folder / which / "boundary", text);
+  }
+  Mesh const before = read_mesh((folder / "case").string()), after = read_mesh((folder / "out").string());
+  EXPECT_EQ(after.dimension, 3);
+  ASSERT_EQ(after.n_nodes(), 24);
+  for (Index n = 0; n < 12; ++n) {
+    EXPECT_EQ(after.coordinates.x(n), after.coordinates.x(n + 12));
+    EXPECT_EQ(after.coordinates.y(n), after.coordinates.y(n + 12));
+    EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n));
+  }
+}
+
+TEST(OpenFoam, PartsOfDecomposedMeshesAndCasesWithoutMeshAreRefused) {
+  TemporaryFolder const folder;
+  FoamBox box;
+  box.keys["x1"] = "type processor; myProcNo 0;";
+  box.write(folder / "part");
+  expect_all_in(message_of<MeshError>([&] { read_mesh((folder / "part").string()); }), {"'x1'", "reconstructParMesh"});
+  fs::create_directories(folder / "bare" / "system");
+  expect_all_in(message_of<IoError>([&] { read_mesh((folder / "bare").string()); }), {"without a mesh", "blockMesh"});
+}
+
+TEST(OpenFoam, DamagedFilesAreRefusedAndNothingElseHappens) {
+  TemporaryFolder const folder;
+  for (Storage const storage : {Storage{}, Storage{true, 32, 64}}) {
+    fs::path const path = folder / (storage.binary ? "binary" : "text");
+    FoamBox const box;
+    box.write(path, storage);
+    for (char const* name : {"points", "faces", "owner", "neighbour", "boundary"}) {
+      std::string const whole = bytes_of(path / name);
+      auto const with = [&](std::string const& bytes) {
+        std::ofstream(path / name, std::ios::binary) << bytes;
+        try {
+          (void)read_mesh(path.string());
+        } catch (Error const&) {  // or it is another mesh, which is as good
+        }
+      };
+      for (std::size_t keep = 0; keep < whole.size(); keep += whole.size() / 23 + 1) {
+        std::ofstream(path / name, std::ios::binary) << whole.substr(0, keep);
+        if (keep + 40 < whole.size()) {
+          EXPECT_THROW(read_mesh(path.string()), Error) << name << " " << keep;
+        }
+      }
+      Random random(5);
+      for (int n = 0; n < 60; ++n) {
+        std::string other = whole;
+        for (int k = 0; k < 3; ++k) other[std::size_t(random.below(int(other.size())))] = char(random.below(256));
+        with(other);
+      }
+      with(whole + whole);
+      std::ofstream(path / name, std::ios::binary) << whole;
+    }
+    EXPECT_NO_THROW(read_mesh(path.string()));
+  }
+}
+
+}  // namespace
+}  // namespace gridmorph::test
