@@ -4,70 +4,101 @@
 #include <gridmorph/core/error.hpp>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <set>
+#include <utility>
 
 namespace gridmorph {
 
 namespace {
 
-/// A box of cells while it is looked at: cells.begin <= c < cells.end.
-class Marks {
- public:
-  Marks(Index3 const& cells, std::vector<char> const& inside) : cells_(cells), inside_(inside) {}
+/// Boxes are divided while cells inside fill less than this of them, and a division leaves out at least a share of what they hold:
+/// every box has planes that cut the mesh.
+constexpr double full_enough = 0.7, worth_a_plane = 0.15;
 
-  /// Which layers along each axis hold cells inside.
-  [[nodiscard]] std::array<std::vector<char>, 3> layers(IndexRange const& box) const {
-    std::array<std::vector<char>, 3> out;
-    for (int a = 0; a < 3; ++a) out[std::size_t(a)].assign(std::size_t(box.extent(a)), 0);
-    for (int k = box.begin[2]; k < box.end[2]; ++k)
-      for (int j = box.begin[1]; j < box.end[1]; ++j)
-        for (int i = box.begin[0]; i < box.end[0]; ++i)
-          if (inside_[std::size_t(i + cells_[0] * (j + Index(cells_[1]) * k))] != 0) {
-            out[0][std::size_t(i - box.begin[0])] = 1;
-            out[1][std::size_t(j - box.begin[1])] = 1;
-            out[2][std::size_t(k - box.begin[2])] = 1;
-          }
+/// A box of cells, begin <= c < end; empty where it holds none.
+struct Extent {
+  Index3 begin{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
+  Index3 end{0, 0, 0};
+
+  void include(Extent const& other) {
+    for (int a = 0; a < 3; ++a) {
+      begin[a] = std::min(begin[a], other.begin[a]);
+      end[a] = std::max(end[a], other.end[a]);
+    }
+  }
+  [[nodiscard]] Index volume() const {
+    Index out = 1;
+    for (int a = 0; a < 3; ++a) out *= std::max(0, end[a] - begin[a]);
     return out;
+  }
+};
+
+class BoxesOfCells {
+ public:
+  BoxesOfCells(Index3 const& cells, std::vector<char> const& inside) : cells_(cells), inside_(inside) {}
+
+  std::vector<IndexRange> run() {
+    divide({{0, 0, 0}, cells_});
+    return std::move(out_);
   }
 
  private:
+  /// The box that holds the cells inside, or those of its parts.
+  void divide(Extent const& box) {
+    std::array<std::vector<Extent>, 3> layer;  // along each axis, what each layer holds
+    for (int a = 0; a < 3; ++a) layer[std::size_t(a)].resize(std::size_t(box.end[a] - box.begin[a]));
+    Index held = 0;
+    Extent whole;
+    Index3 c{};
+    for (c[2] = box.begin[2]; c[2] < box.end[2]; ++c[2])
+      for (c[1] = box.begin[1]; c[1] < box.end[1]; ++c[1])
+        for (c[0] = box.begin[0]; c[0] < box.end[0]; ++c[0]) {
+          if (inside_[std::size_t(c[0] + cells_[0] * (c[1] + Index(cells_[1]) * c[2]))] == 0) continue;
+          Extent const one{c, {c[0] + 1, c[1] + 1, c[2] + 1}};
+          for (int a = 0; a < 3; ++a) layer[std::size_t(a)][std::size_t(c[a] - box.begin[a])].include(one);
+          whole.include(one);
+          ++held;
+        }
+    if (held == 0) return;
+    int axis = -1;
+    Extent lower, upper;
+    bool const full = double(held) >= full_enough * double(whole.volume());
+    auto const worth = Index((1 - worth_a_plane) * double(whole.volume()));
+    Index least = std::numeric_limits<Index>::max();
+    for (int a = 0; a < 3; ++a) {
+      auto const& of = layer[std::size_t(a)];
+      std::vector<Extent> above(of.size() + 1);
+      for (std::size_t n = of.size(); n-- > 0;) {
+        above[n] = above[n + 1];
+        above[n].include(of[n]);
+      }
+      Extent below;
+      for (std::size_t n = 0; n + 1 < of.size(); ++n) {
+        below.include(of[n]);
+        if (below.volume() == 0 || above[n + 1].volume() == 0) continue;
+        Index const volume = below.volume() + above[n + 1].volume();
+        bool const gap = below.end[a] < above[n + 1].begin[a];
+        if (volume >= least || (!gap && (full || volume > worth))) continue;
+        least = volume;
+        axis = a;
+        lower = below;
+        upper = above[n + 1];
+      }
+    }
+    if (axis < 0) {
+      out_.push_back({whole.begin, whole.end});
+      return;
+    }
+    divide(lower);
+    divide(upper);
+  }
+
   Index3 cells_;
   std::vector<char> const& inside_;
+  std::vector<IndexRange> out_;
 };
-
-/// Runs of layers that hold cells, [begin, end).
-std::vector<std::array<int, 2>> runs(std::vector<char> const& layers) {
-  std::vector<std::array<int, 2>> out;
-  for (int n = 0; n < int(layers.size()); ++n) {
-    if (layers[std::size_t(n)] == 0) continue;
-    if (out.empty() || out.back()[1] != n) out.push_back({n, n});
-    ++out.back()[1];
-  }
-  return out;
-}
-
-void divide(Marks const& marks, IndexRange const& box, std::vector<IndexRange>& out) {
-  auto const layers = marks.layers(box);
-  bool whole = true;
-  std::array<std::vector<std::array<int, 2>>, 3> held;
-  for (int a = 0; a < 3; ++a) {
-    held[std::size_t(a)] = runs(layers[std::size_t(a)]);
-    if (held[std::size_t(a)].empty()) return;
-    whole = whole && held[std::size_t(a)].size() == 1 &&
-            held[std::size_t(a)][0][1] - held[std::size_t(a)][0][0] == box.extent(a);
-  }
-  if (whole) {
-    out.push_back(box);
-    return;
-  }
-  for (auto const& [k0, k1] : held[2])
-    for (auto const& [j0, j1] : held[1])
-      for (auto const& [i0, i1] : held[0])
-        divide(marks,
-               {{box.begin[0] + i0, box.begin[1] + j0, box.begin[2] + k0},
-                {box.begin[0] + i1, box.begin[1] + j1, box.begin[2] + k1}},
-               out);
-}
 
 Vec3 middle(Mesh const& mesh, Zone const& zone, Index3 const& cell) {
   Vec3 sum;
@@ -200,8 +231,7 @@ class Finder {
 }  // namespace
 
 std::vector<IndexRange> boxes_of_cells(Index3 const& cells, std::vector<char> const& inside) {
-  std::vector<IndexRange> out;
-  divide({cells, inside}, {{0, 0, 0}, cells}, out);
+  std::vector<IndexRange> out = BoxesOfCells(cells, inside).run();
   for (IndexRange& box : out)
     for (int& end : box.end) ++end;
   return out;

@@ -15,6 +15,8 @@ namespace {
 using Request = BoundaryRequests::Request;
 
 std::string requester(Mesh const& mesh, Request const& r) {
+  if (r.patch >= 0 && mesh.patches[std::size_t(r.patch)].kind == PatchKind::region)
+    return "'" + mesh.patches[std::size_t(r.patch)].name + "' (region)";
   return r.patch >= 0 ? describe_patch(mesh, mesh.patches[std::size_t(r.patch)])
                       : "'" + connections_of(mesh)[std::size_t(r.interface)].name + "' (periodic)";
 }
