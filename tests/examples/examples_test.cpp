@@ -355,6 +355,38 @@ TEST_F(Example, WingRedesignChangesChordAlongTheSpanAndLeavesTheRoot) {
   EXPECT_GT(checked, 5);
 }
 
+TEST_F(Example, TipVortexCellsGoAlongWithTheTipAndKeepTheirSpacing) {
+  ASSERT_NO_FATAL_FAILURE(morph("wing_tip_vortex", "mdo_tutorial_000_vol.cgns"));
+  expect_fixed("far");
+  auto const u = [&](Index n) { return after.coordinates[n] - before.coordinates[n]; };
+  Vec3 shift;
+  int count = 0;
+  for_patch("wall", "", [&](Index n) {
+    if (distance(before.coordinates[n], {8.4, 0, 14}) > 0.5) return;
+    shift += u(n);
+    ++count;
+  });
+  ASSERT_GT(count, 10);
+  shift = (1.0 / count) * shift;
+  EXPECT_GT(shift.y, 1.9);
+  Index inside = 0;
+  for (Zone const& zone : before.zones)
+    for (int k = 0; k + 1 < zone.extent[2]; ++k)
+      for (int j = 0; j + 1 < zone.extent[1]; ++j)
+        for (int i = 0; i + 1 < zone.extent[0]; ++i) {
+          Vec3 middle;
+          for (int c = 0; c < 8; ++c)
+            middle += 0.125 * before.coordinates[zone.node({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)})];
+          bool const in =
+              9.5 <= middle.x && middle.x <= 16 && std::abs(middle.y) <= 0.8 && 13.2 <= middle.z && middle.z <= 15;
+          if (!in) continue;
+          ++inside;
+          for (int c = 0; c < 8; ++c)
+            EXPECT_LE(distance(u(zone.node({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)})), shift), 1e-13);
+        }
+  EXPECT_GT(inside, 20);
+}
+
 TEST_F(Example, RotorstatorIsRefusedInterfaceByInterfaceWithoutATolerance) {
   link_meshes();
   std::string const morph_without = "sed '/^matching_tolerance/d' '" GRIDMORPH_EXAMPLES "/rotorstator.toml' >'" +
