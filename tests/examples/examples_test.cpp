@@ -378,7 +378,7 @@ TEST_F(Example, TipVortexCellsGoAlongWithTheTipAndKeepTheirSpacing) {
           for (int c = 0; c < 8; ++c)
             middle += 0.125 * before.coordinates[zone.node({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)})];
           bool const in =
-              9.5 <= middle.x && middle.x <= 16 && std::abs(middle.y) <= 0.8 && 13.2 <= middle.z && middle.z <= 15;
+              10 <= middle.x && middle.x <= 16 && std::abs(middle.y) <= 0.6 && 13.6 <= middle.z && middle.z <= 15;
           if (!in) continue;
           ++inside;
           for (int c = 0; c < 8; ++c)
