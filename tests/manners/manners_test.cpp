@@ -296,13 +296,15 @@ class UnstructuredManners : public ::testing::Test {
  protected:
   static bool in_body(Vec3 const& x) { return x.x > 4 && x.x < 8 && x.y > 4 && x.y < 8 && x.z > 4 && x.z < 8; }
   Mesh mesh = in_two_zones(box_around({12, 12, 12}, in_body), [](Vec3 const& x) { return x.x < 6; });
-  PreparedUnstructured prepared = [this] {
+  [[nodiscard]] PreparedUnstructured prepared_by(NearFieldMethod method) const {
     UnstructuredTopology const topology = make_topology(mesh);
     PlanOptions options;
+    options.elements.method = method;
     options.boundary_layers.push_back({.walls = {"body"}, .extent = BoundaryLayer::Extent::layers, .layers = 1});
     return prepare(mesh, topology, find_face_patches(mesh, topology),
                    motion({rule({"body"}, RigidRule{{}, {1, 0.5, 0}}), rule({"k_min"}, SlipRule{})}), options);
-  }();
+  }
+  PreparedUnstructured prepared = prepared_by(NearFieldMethod::lattice);
   Exec exec;
   Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
@@ -324,20 +326,31 @@ TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
     EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
 }
 
-TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
-  Morpher<Exec> const morpher(exec, prepared.plan, x, {1, true});
-  exec.fence();
+/// Nothing but kernels in any call of a morpher.
+void expect_only_kernels(Morpher<Exec> const& morpher, auto const& calls) {
+  Exec().fence();
   {
     Listener const listener;
-    morpher.displacements(exec, boundary, u);
-    morpher.positions(exec, boundary, u);
-    morpher.velocities(exec, boundary, boundary, u);
-    morpher.displacements(exec, two_in, two_out);
+    calls(morpher);
   }
   EXPECT_EQ(record.allocations, std::vector<std::string>());
   EXPECT_EQ(record.copies, std::vector<std::string>());
   for (auto const& fence : record.fences) EXPECT_TRUE(is_profiling_fence(fence)) << fence;
   EXPECT_FALSE(record.kernels.empty());
+}
+
+TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
+  auto const calls = [&](Morpher<Exec> const& morpher) {
+    morpher.displacements(exec, boundary, u);
+    morpher.positions(exec, boundary, u);
+    morpher.velocities(exec, boundary, boundary, u);
+    morpher.displacements(exec, two_in, two_out);
+  };
+  expect_only_kernels(Morpher<Exec>(exec, prepared.plan, x, {1, true}), calls);
+  auto const layers = prepared_by(NearFieldMethod::layers);
+  expect_only_kernels(Morpher<Exec>(exec, layers.plan, x, {1, true}), calls);
+  for (char const* kernel : {"gridmorph::near::seeds", "gridmorph::near::layers"})
+    EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
 }
 
 TEST_F(UnstructuredManners, StagesAreRegionsOfProfiles) {

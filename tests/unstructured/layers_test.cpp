@@ -75,34 +75,32 @@ std::map<Index32, std::map<Index32, double>> rows_of(InterpolationOperator const
 }
 
 TEST(Layers, RowsAreTheMeansOfNearerNeighbours) {
-  for (Around const& a : cases())
-    for (int const most : {2, 100}) {
-      auto const weight = [&](Index32 n, Index32 m) { return 1 / a.edge(n, m); };
-      auto const found =
-          rows_of(make_layers(a.graph, a.mesh.coordinates, a.seeds, a.wanted, a.distance, weight, most).rows);
-      EXPECT_EQ(found.size(), std::size_t(std::count(a.wanted.begin(), a.wanted.end(), 1)));
-      for (auto const& [node, row] : found) {
-        std::vector<std::pair<double, Index32>> expected;
-        Index32 nearest = -1;
-        for (Index32 const m : a.graph.neighbours[node]) {
-          double const nearer = a.distance[std::size_t(node)] - a.distance[std::size_t(m)];
-          if (nearer >= a.edge(node, m) / 3) expected.emplace_back(weight(node, m), m);
-          if (nearest < 0 || a.distance[std::size_t(m)] < a.distance[std::size_t(nearest)]) nearest = m;
-        }
-        if (expected.empty()) expected.emplace_back(1, nearest);
-        std::sort(expected.rbegin(), expected.rend());
-        if (int(expected.size()) > most) expected.resize(std::size_t(most));
-        ASSERT_EQ(row.size(), expected.size()) << node;
-        double sum = 0, all = 0;
-        for (auto const& [w, m] : expected) sum += w;
-        for (auto const& [w, m] : expected) {
-          ASSERT_TRUE(row.contains(m)) << node << " from " << m;
-          EXPECT_NEAR(row.at(m), w / sum, 1e-6);
-          all += row.at(m);
-        }
-        EXPECT_NEAR(all, 1, 1e-6);
+  for (Around const& a : cases()) {
+    auto const weight = [&](Index32 n, Index32 m) { return 1 / a.edge(n, m); };
+    auto const found = rows_of(make_layers(a.graph, a.mesh.coordinates, a.seeds, a.wanted, a.distance, weight).rows);
+    EXPECT_EQ(found.size(), std::size_t(std::count(a.wanted.begin(), a.wanted.end(), 1)));
+    for (auto const& [node, row] : found) {
+      std::vector<std::pair<double, Index32>> expected;
+      Index32 nearest = -1;
+      for (Index32 const m : a.graph.neighbours[node]) {
+        double const nearer = a.distance[std::size_t(node)] - a.distance[std::size_t(m)];
+        double const s = std::clamp((nearer / a.edge(node, m) - 0.28) / 0.1, 0.0, 1.0);
+        if (s > 0) expected.emplace_back(weight(node, m) * s * s * (3 - 2 * s), m);
+        if (nearest < 0 || a.distance[std::size_t(m)] < a.distance[std::size_t(nearest)]) nearest = m;
       }
+      if (expected.empty()) expected.emplace_back(1, nearest);
+      std::sort(expected.rbegin(), expected.rend());
+      ASSERT_EQ(row.size(), expected.size()) << node;
+      double sum = 0, all = 0;
+      for (auto const& [w, m] : expected) sum += w;
+      for (auto const& [w, m] : expected) {
+        ASSERT_TRUE(row.contains(m)) << node << " from " << m;
+        EXPECT_NEAR(row.at(m), w / sum, 1e-6);
+        all += row.at(m);
+      }
+      EXPECT_NEAR(all, 1, 1e-6);
     }
+  }
 }
 
 TEST(Layers, SourcesLieInLayersBeforeAndOneOfThemInTheLast) {

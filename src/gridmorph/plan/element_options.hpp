@@ -9,6 +9,12 @@ namespace gridmorph {
 
 struct Background;
 
+/// What carries the motion of the walls between the ends of their columns and the wrap.
+enum class NearFieldMethod {
+  lattice,  ///< its average on an even lattice, and from layer to layer what that misses at the columns
+  layers    ///< from layer to layer the motion itself: displacement and turn
+};
+
 /// How much each node of the layers before counts when displacements pass on.
 enum class LayerWeight {
   uniform,           ///< 1
@@ -21,6 +27,7 @@ struct ElementOptions {
   /// Selectors of the walls that drive the near field; empty: every patch with an explicit rule other than `fixed` that is no
   /// inflow, outflow, farfield or symmetry.
   std::vector<std::string> walls;
+  NearFieldMethod method = NearFieldMethod::lattice;
   LayerWeight weight = LayerWeight::inverse_distance;
   double offset = 0;  ///< of the wrap from the moving walls [length]; 0: suggest_offset()
   double motion =

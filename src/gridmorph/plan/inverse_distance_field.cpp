@@ -1,12 +1,12 @@
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
+#include <gridmorph/plan/place_order.hpp>
 
 #include <Kokkos_Core.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 namespace gridmorph {
@@ -27,11 +27,10 @@ class Tree {
   Tree(Coordinates const& x, std::vector<Index32> const& nodes, std::vector<double> const& area)
       : x_(x), nodes_(nodes), area_(area), order_(nodes.size()) {
     std::iota(order_.begin(), order_.end(), Index32(0));
-    // By position: how nodes are numbered must not matter.
-    std::sort(order_.begin(), order_.end(), [&](Index32 a, Index32 b) {
-      Vec3 const p = x_[nodes_[std::size_t(a)]], q = x_[nodes_[std::size_t(b)]];
-      return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-    });
+    PlaceOrder const is_before(x);
+    std::sort(order_.begin(), order_.end(),
+              [&](Index32 a, Index32 b) { return is_before(nodes_[std::size_t(a)], nodes_[std::size_t(b)]); });
+    step_ = is_before.step();
     place_.resize(order_.size());
     for (std::size_t k = 0; k < order_.size(); ++k) place_[std::size_t(order_[k])] = Index32(k);
     if (!nodes.empty()) make(0, Index32(nodes.size()));
@@ -44,6 +43,7 @@ class Tree {
 
  private:
   static constexpr Index32 leaf_size = 4;
+  double step_ = 1;  ///< of PlaceOrder
   static double component(Vec3 const& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
   Index32 make(Index32 begin, Index32 end) {
@@ -64,13 +64,17 @@ class Tree {
     for (Index32 k = begin; k < end; ++k) group.radius = std::max(group.radius, distance(x_[node(k)], group.centre));
     if (end - begin > leaf_size) {
       Vec3 const extent = box.high - box.low;
-      int const axis = extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
+      // Extents that are the same but for round-off: the first axis.
+      double const slack = step_;
+      int const axis = extent.x + slack >= extent.y ? (extent.x + slack >= extent.z ? 0 : 2)
+                                                    : (extent.y + slack >= extent.z ? 1 : 2);
       Index32 const middle = (begin + end) / 2;
       std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                        [&](Index32 a, Index32 b) {
                          double const p = component(x_[nodes_[std::size_t(a)]], axis),
                                       q = component(x_[nodes_[std::size_t(b)]], axis);
-                         return p < q || (p == q && place_[std::size_t(a)] < place_[std::size_t(b)]);
+                         double const s = std::floor(p / step_ + 0.3819), t = std::floor(q / step_ + 0.3819);
+                         return s < t || (s == t && place_[std::size_t(a)] < place_[std::size_t(b)]);
                        });
       group.part[0] = make(begin, middle);
       group.part[1] = make(middle, end);

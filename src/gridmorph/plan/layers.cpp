@@ -1,4 +1,5 @@
 #include <gridmorph/plan/layers.hpp>
+#include <gridmorph/plan/place_order.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +13,19 @@ struct Source {
   Index32 node;
 };
 
-/// The sources of largest weight as a row.
-void add_row(Index32 node, std::vector<Source>& sources, int most_items, InterpolationOperator& rows) {
-  std::sort(sources.begin(), sources.end(), [](Source const& a, Source const& b) {
-    return a.weight > b.weight || (a.weight == b.weight && a.node < b.node);
+/// How much a source counts by how far it is below, over the length of the edge: not at all up to 0.28, whole from 0.38 on. Without a step, so
+/// that round-off in coordinates stays small.
+double share_of_slope(double slope) {
+  double const s = std::clamp((slope - 0.28) / 0.1, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+/// The source of largest weight first: the one that a row keeps in double precision.
+void add_row(Index32 node, PlaceOrder const& is_before, std::vector<Source>& sources, InterpolationOperator& rows) {
+  std::sort(sources.begin(), sources.end(), [&](Source const& a, Source const& b) {
+    double const v = PlaceOrder::rounded(a.weight), w = PlaceOrder::rounded(b.weight);
+    return v > w || (v == w && is_before(a.node, b.node));
   });
-  if (int(sources.size()) > most_items) sources.resize(std::size_t(most_items));
   std::vector<Index32> items;
   std::vector<double> weights;
   for (Source const& s : sources) {
@@ -31,9 +39,10 @@ void add_row(Index32 node, std::vector<Source>& sources, int most_items, Interpo
 
 LayerRows make_layers(NodeGraph const& graph, Coordinates const& coordinates, std::vector<std::uint8_t> const& seeds,
                       std::vector<std::uint8_t> const& wanted, std::vector<double> const& distance,
-                      std::function<double(Index32, Index32)> const& weight, int most_items) {
+                      std::function<double(Index32, Index32)> const& weight) {
   constexpr int never = -1;
   std::size_t const n = std::size_t(graph.size());
+  PlaceOrder const is_before(coordinates);
   std::vector<int> layer(n, never);
   std::vector<Index32> order;
   for (std::size_t k = 0; k < n; ++k) {
@@ -44,7 +53,7 @@ LayerRows make_layers(NodeGraph const& graph, Coordinates const& coordinates, st
   }
   std::sort(order.begin(), order.end(), [&](Index32 a, Index32 b) {
     return distance[std::size_t(a)] < distance[std::size_t(b)] ||
-           (distance[std::size_t(a)] == distance[std::size_t(b)] && a < b);
+           (distance[std::size_t(a)] == distance[std::size_t(b)] && is_before(a, b));
   });
   InterpolationOperator rows;
   std::vector<int> row_layer;
@@ -57,10 +66,13 @@ LayerRows make_layers(NodeGraph const& graph, Coordinates const& coordinates, st
     for (Index32 const m : graph.neighbours[node]) {
       // Nodes that come later in the order have no layer yet.
       if (layer[std::size_t(m)] == never) continue;
-      if (nearest < 0 || distance[std::size_t(m)] < distance[std::size_t(nearest)]) nearest = m;
+      if (nearest < 0 || PlaceOrder::is_less(distance[std::size_t(m)], distance[std::size_t(nearest)]) ||
+          (!PlaceOrder::is_less(distance[std::size_t(nearest)], distance[std::size_t(m)]) && is_before(m, nearest)))
+        nearest = m;
       double const edge = gridmorph::distance(coordinates[node], coordinates[m]);
-      if (distance[std::size_t(m)] > distance[std::size_t(node)] - edge / 3) continue;
-      sources.push_back({weight(node, m), m});
+      double const share = share_of_slope((distance[std::size_t(node)] - distance[std::size_t(m)]) / edge);
+      if (share <= 0) continue;
+      sources.push_back({share * weight(node, m), m});
       highest = std::max(highest, layer[std::size_t(m)]);
     }
     if (sources.empty() && nearest >= 0) {
@@ -71,7 +83,7 @@ LayerRows make_layers(NodeGraph const& graph, Coordinates const& coordinates, st
     layer[std::size_t(node)] = highest + 1;
     last = std::max(last, highest + 1);
     row_layer.push_back(highest + 1);
-    add_row(node, sources, most_items, rows);
+    add_row(node, is_before, sources, rows);
     return true;
   };
   // A node that lies nearest among its neighbours though it is no seed (the straight way to its wall leads through other walls)

@@ -62,10 +62,12 @@ struct UnstructuredPlan {
   CsrGraph one_rings;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see one_rings.hpp
   ColumnPlan columns;
   TurningBodies turns_of_bodies;
-  /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements what it misses.
+  /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements what it misses. By
+  /// NearFieldMethod::layers there is none, and layers carry all of it.
   InverseDistanceField walls;
   LayerRows near;
   std::vector<float> near_fade;  ///< per row of near: share of what the smooth part misses
+  std::vector<float> near_turn;  ///< per row of near, by layers: share of its sources' turns that the node makes
 
   std::optional<Background> background;  ///< absent where the near field is the whole mesh
   std::optional<PreparedMorph> background_morph;

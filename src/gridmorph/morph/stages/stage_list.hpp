@@ -7,6 +7,7 @@
 #include <gridmorph/morph/stages/frozen_shifts.hpp>
 #include <gridmorph/morph/stages/joined_nodes.hpp>
 #include <gridmorph/morph/stages/near_field.hpp>
+#include <gridmorph/morph/stages/near_layers.hpp>
 #include <gridmorph/morph/stages/other_boundaries.hpp>
 #include <gridmorph/morph/stages/skeleton.hpp>
 #include <gridmorph/morph/stages/wall_motion.hpp>
@@ -24,7 +25,8 @@ namespace gridmorph::stages {
 /// Visited by the host, once per stage and call.
 template <class Exec>
 using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, SlipSpread<Exec>, WallMotion<Exec>, TakeTurns<Exec>,
-                           NearField<Exec>, FarField<Exec>, AddTurns<Exec>, OtherBoundaries<Exec>, JoinedNodes<Exec>>;
+                           NearField<Exec>, NearLayers<Exec>, FarField<Exec>, AddTurns<Exec>, OtherBoundaries<Exec>,
+                           JoinedNodes<Exec>>;
 
 template <class Exec>
 struct StageList {
@@ -60,7 +62,10 @@ StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Morph
     turns = std::make_shared<BodyTurnTables<Exec> const>(exec, plan, options.velocity);
     out.stages.emplace_back(TakeTurns<Exec>(turns));
   }
-  out.stages.emplace_back(NearField<Exec>(exec, plan));
+  if (plan.walls.empty())
+    out.stages.emplace_back(NearLayers<Exec>(exec, plan));
+  else
+    out.stages.emplace_back(NearField<Exec>(exec, plan));
   if (plan.background) out.stages.emplace_back(FarField<Exec>(exec, plan, options.velocity));
   if (turns) out.stages.emplace_back(AddTurns<Exec>(turns));
   out.stages.emplace_back(OtherBoundaries<Exec>(exec, plan));

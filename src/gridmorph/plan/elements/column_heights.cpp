@@ -54,8 +54,13 @@ std::vector<double> smooth_heights(NodeGraph const& graph, Columns const& column
 Columns cut(Columns const& columns, std::vector<double> const& height) {
   Columns out;
   out.height = height;
+  // Heights are means of what neighbours have: columns that all end alike must not lose their ends to round-off.
+  constexpr double allowed = 1e-3;
+  std::vector<double> below(height.size(), 0);
   for (std::size_t k = 0; k < columns.node.size(); ++k) {
-    if (columns.above_wall[k] > height[std::size_t(columns.root[k])] * (1 + 1e-9)) continue;
+    std::size_t const root = std::size_t(columns.root[k]);
+    double const above = columns.above_wall[k], layer = above - std::exchange(below[root], above);
+    if (above > height[root] + allowed * layer) continue;
     out.node.push_back(columns.node[k]);
     out.root.push_back(columns.root[k]);
     out.above_wall.push_back(columns.above_wall[k]);

@@ -91,8 +91,8 @@ Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, Nod
         least = std::min(least, h);
         reach = std::min(reach, above_wall[std::size_t(owner(opposite.below[std::size_t(c)]))] + h);
       }
-      if (extent.extent == BoundaryLayer::Extent::block && !(least < 0.5 * shortest[at.face])) continue;
-      if (extent.extent == BoundaryLayer::Extent::thickness && !(reach <= extent.thickness * (1 + 1e-9))) continue;
+      if (extent.extent == BoundaryLayer::Extent::block && !(least < 0.5 * (1 - 1e-6) * shortest[at.face])) continue;
+      if (extent.extent == BoundaryLayer::Extent::thickness && !(reach <= extent.thickness * (1 + 1e-6))) continue;
       visited[std::size_t(at.element)] = 1;
       for (int c = 0; c < opposite.n; ++c) {
         Index32 const below = owner(opposite.below[std::size_t(c)]), above = owner(opposite.above[std::size_t(c)]);

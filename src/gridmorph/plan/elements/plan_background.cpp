@@ -1,10 +1,10 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
+#include <gridmorph/plan/place_order.hpp>
 
 #include <algorithm>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace gridmorph::detail {
@@ -26,11 +26,9 @@ void UnstructuredPlanner::plan_outer_box() {
   for (std::size_t k = 0; k < plan.known.size(); ++k)
     if (!out_.boundary.drives[k]) slots.push_back(Index32(k));
   if (slots.empty()) return;
-  // By position: how nodes are numbered must not matter.
-  std::sort(slots.begin(), slots.end(), [&](Index32 a, Index32 b) {
-    Vec3 const p = mesh_.coordinates[plan.known[std::size_t(a)]], q = mesh_.coordinates[plan.known[std::size_t(b)]];
-    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-  });
+  PlaceOrder const is_before(mesh_.coordinates);
+  std::sort(slots.begin(), slots.end(),
+            [&](Index32 a, Index32 b) { return is_before(plan.known[std::size_t(a)], plan.known[std::size_t(b)]); });
   std::size_t const step = slots.size() / most + 1;
   WrapNodes const wrap = wrap_nodes(*plan.background, *plan.background_morph);
   auto const& nodes = plan.background_morph->plan().boundary_nodes;
@@ -43,7 +41,8 @@ void UnstructuredPlanner::plan_outer_box() {
     Index32 best = -1;
     double nearest = infinity;
     for (std::size_t k = 0; k < slots.size(); k += step)
-      if (double const d = distance(x, mesh_.coordinates[plan.known[std::size_t(slots[k])]]); d < nearest) {
+      if (double const d = distance(x, mesh_.coordinates[plan.known[std::size_t(slots[k])]]);
+          d < nearest * (1 - 1e-6)) {
         nearest = d;
         best = slots[k];
       }

@@ -4,11 +4,28 @@
 #include <gridmorph/plan/elements/column_heights.hpp>
 #include <gridmorph/plan/elements/one_rings.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
+#include <gridmorph/plan/place_order.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace gridmorph::detail {
+
+namespace {
+
+/// By the mean of their corners: a node that several columns reach belongs to the first face, however faces are numbered.
+void sort_by_place(Mesh const& mesh, UnstructuredTopology const& topology, std::vector<Index32>& faces) {
+  std::vector<Vec3> middle(std::size_t(topology.boundary.size()));
+  for (Index32 const f : faces) {
+    auto const corners = topology.boundary.nodes[f];
+    for (Index32 const n : corners) middle[std::size_t(f)] += (1.0 / double(corners.size())) * mesh.coordinates[n];
+  }
+  PlaceOrder const is_before(mesh.coordinates);
+  std::sort(faces.begin(), faces.end(),
+            [&](Index32 a, Index32 b) { return is_before(middle[std::size_t(a)], a, middle[std::size_t(b)], b); });
+}
+
+}  // namespace
 
 void UnstructuredPlanner::find_driving_faces() {
   BoundaryConditions const& b = out_.boundary;
@@ -33,6 +50,7 @@ void UnstructuredPlanner::find_driving_faces() {
     if (p >= 0 && std::binary_search(b.driving_patches.begin(), b.driving_patches.end(), p))
       driving_faces_.push_back(Index32(f));
   }
+  sort_by_place(mesh_, topology_, driving_faces_);
   if (driving_faces_.empty())
     throw MotionError(
         "the moving walls have no faces on the boundary of the elements; their patches list nodes of other places");
@@ -64,10 +82,10 @@ void UnstructuredPlanner::find_standing_columns() {
   std::vector<Index32> faces;
   std::vector<ColumnExtent> extents;
   for (Index f = 0; f < topology_.boundary.size(); ++f)
-    if (std::binary_search(patches.begin(), patches.end(), face_patches_.patch[std::size_t(f)])) {
+    if (std::binary_search(patches.begin(), patches.end(), face_patches_.patch[std::size_t(f)]))
       faces.push_back(Index32(f));
-      extents.push_back(extent_of_face(Index32(f)));
-    }
+  sort_by_place(mesh_, topology_, faces);
+  for (Index32 const f : faces) extents.push_back(extent_of_face(f));
   Mask taken = is_known_;
   for (Index32 const n : columns_.node) taken[std::size_t(n)] = 1;
   standing_ = make_columns(mesh_, topology_, out_.graph, faces, extents, taken);

@@ -3,6 +3,7 @@
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace gridmorph::detail {
@@ -37,7 +38,10 @@ void UnstructuredPlanner::plan_layers() {
   for (std::size_t n = 0; n < seeds.size(); ++n)
     if (seeds[n] || !out_.graph.carries(Index32(n))) wanted[n] = 0;
   plan.near = make_layers(out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
-  plan_smooth_walls();
+  if (options_.elements.method == NearFieldMethod::lattice)
+    plan_smooth_walls();
+  else
+    plan_layer_turns();
   auto& layer = out_.report.layer;
   layer.assign(seeds.size(), -1);
   for (std::size_t n = 0; n < seeds.size(); ++n)
@@ -66,6 +70,25 @@ void UnstructuredPlanner::plan_smooth_walls() {
   for (Index32 const n : plan.near.rows.target) {
     double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);
     plan.near_fade.push_back(float(1 - s * s * (3 - 2 * s)));
+  }
+}
+
+void UnstructuredPlanner::plan_layer_turns() {
+  // Where turns are carried far, nodes between walls that turn differently are pulled apart; where they end at once, the first elements beyond the columns shear.
+  constexpr double reach_by_offset = 0.1;
+  InterpolationOperator const& rows = out_.plan.near.rows;
+  double const reach = reach_by_offset * (out_.report.offset > 0 ? out_.report.offset : out_.report.layer_height);
+  auto const share = [&](Index32 n) {
+    double const d = beyond_column(std::size_t(n));
+    return reach > 0 && std::isfinite(d) ? reach / (reach + d) : 0;
+  };
+  for (Index r = 0; r < rows.size(); ++r) {
+    Index const from = rows.first[std::size_t(r)], to = rows.first[std::size_t(r) + 1];
+    double of_sources = 0;
+    for (Index k = from; k < to; ++k)
+      of_sources += double(rows.weight[std::size_t(k)]) * share(rows.item[std::size_t(k)]);
+    double const own = share(rows.target[std::size_t(r)]);
+    out_.plan.near_turn.push_back(of_sources > 0 ? float(std::min(1.0, own / of_sources)) : 0);
   }
 }
 

@@ -94,6 +94,8 @@ class UnstructuredPlanner {
   void plan_layers();
   /// The smooth part covers the wrap; what it misses fades over a few of its cells.
   void plan_smooth_walls();
+  /// By layers turns fade from the ends of the columns on.
+  void plan_layer_turns();
   /// Distance from the end of the column on the nearest wall node.
   [[nodiscard]] double beyond_column(std::size_t n) const;
 

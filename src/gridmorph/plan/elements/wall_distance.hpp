@@ -13,8 +13,9 @@ struct NearestSource {
 };
 
 /// Each source spreads along the edges of elements, in the order of the number of edges to the nearest one; a node takes the nearest
-/// of the sources that its neighbours have, in two more passes through all nodes too. So the source is the nearest one up to
-/// what a wall in between hides, and up to a cell or so where meshes are very uneven. Serial, deterministic, O(edges).
+/// of the sources that its neighbours have, and again as long as these change. So the source is the nearest one up to
+/// what a wall in between hides, and up to a cell or so where meshes are very uneven. Sources at the same distance go by their place: numbers of nodes do not
+/// matter. Serial, deterministic, O(edges).
 NearestSource nearest_source(Coordinates const& coordinates, NodeGraph const& graph,
                              std::vector<Index32> const& sources);
 

@@ -18,6 +18,8 @@ std::array<double, 3> array_of(Vec3 const& p) { return {p.x, p.y, p.z}; }
 /// Marks the cells that come closer to a wall face than the offset.
 void mark(Mesh const& mesh, std::span<CsrGraph const> walls, Wrap& wrap) {
   std::vector<std::array<double, 3>> p;
+  // Cells as far as the offset are common on even meshes: round-off must not decide.
+  double const reach = wrap.offset * (1 - 1e-6);
   for (CsrGraph const& faces : walls)
     for (Index f = 0; f < faces.size(); ++f) {
       p.clear();
@@ -41,7 +43,7 @@ void mark(Mesh const& mesh, std::span<CsrGraph const> walls, Wrap& wrap) {
         for (int j = first[1]; j <= last[1]; ++j)
           for (int i = first[0]; i <= last[0]; ++i) {
             std::uint8_t& inside = wrap.inside[std::size_t(wrap.cell({i, j, k}))];
-            if (inside == 0 && detail::polygon_meets_box(p, wrap.box({i, j, k}), wrap.offset)) inside = 1;
+            if (inside == 0 && detail::polygon_meets_box(p, wrap.box({i, j, k}), reach)) inside = 1;
           }
     }
 }

@@ -58,14 +58,15 @@ std::vector<Interval> covered(Mesh const& mesh, std::span<CsrGraph const> walls,
 std::vector<Interval> joined(std::vector<Interval> const& intervals, double gap) {
   std::vector<Interval> out;
   for (Interval const& i : intervals)
-    if (!out.empty() && i.low - out.back().high < gap)
+    if (!out.empty() && i.low - out.back().high < gap * (1 - 1e-6))
       out.back().high = i.high;
     else
       out.push_back(i);
   return out;
 }
 
-int parts(double length, double spacing) { return std::max(1, int(std::lround(length / spacing))); }
+/// Lengths of whole and half numbers of cells are common: round-off must not decide.
+int parts(double length, double spacing) { return std::max(1, int(std::lround(length / spacing - 1e-6))); }
 
 /// All planes of one axis.
 std::vector<double> planes_of(std::vector<Interval> intervals, Interval const& domain, double spacing, double margin) {
