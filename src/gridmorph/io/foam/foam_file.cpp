@@ -24,78 +24,66 @@ bool ends_word(char c) { return is_blank(c) || std::strchr("(){};\"", c) != null
 /// zlib's header and tail are those of gzip.
 constexpr int gzip_window = 15 + 16;
 
+/// Hands all bytes to step(last piece), which is inflate or deflate, and gathers what comes out. Returns the state at the end.
+template <class Step>
+int stream_through(z_stream& stream, std::string const& bytes, std::string& out, Step const& step) {
+  constexpr std::size_t largest_piece = std::size_t(1) << 30;
+  std::vector<char> chunk(std::size_t(1) << 20);
+  std::size_t given = 0;
+  int state = Z_OK;
+  do {
+    std::size_t const give = std::min(largest_piece, bytes.size() - given);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + given));
+    stream.avail_in = uInt(give);
+    given += give;
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+      stream.avail_out = uInt(chunk.size());
+      state = step(given == bytes.size());
+      out.append(chunk.data(), chunk.size() - stream.avail_out);
+    } while (state == Z_OK && (stream.avail_out == 0 || stream.avail_in > 0));
+  } while ((state == Z_OK || state == Z_BUF_ERROR) && given < bytes.size());
+  return state;
+}
+
 std::string unpacked(std::string const& path, std::string const& bytes) {
   z_stream stream{};
   if (inflateInit2(&stream, gzip_window) != Z_OK) throw MachineError(path + ": zlib cannot be started");
   std::string out;
-  std::vector<char> chunk(std::size_t(1) << 20);
-  std::size_t taken = 0;
-  int state = Z_OK;
-  do {
-    constexpr std::size_t most = std::size_t(1) << 30;
-    std::size_t const give = std::min(most, bytes.size() - taken);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + taken));
-    stream.avail_in = uInt(give);
-    do {
-      stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
-      stream.avail_out = uInt(chunk.size());
-      state = inflate(&stream, Z_NO_FLUSH);
-      out.append(chunk.data(), chunk.size() - stream.avail_out);
-    } while (state == Z_OK && stream.avail_out == 0);
-    taken += give - stream.avail_in;
-    // gzip files may follow one another.
-    if (state == Z_STREAM_END && taken < bytes.size()) {
-      inflateReset(&stream);
-      state = Z_OK;
-      continue;
-    }
-    if (state == Z_BUF_ERROR && taken < bytes.size() && give > 0) state = Z_OK;
-    if (give == 0) break;
-  } while (state == Z_OK && taken < bytes.size());
+  int const state = stream_through(stream, bytes, out, [&](bool) {
+    int const now = inflate(&stream, Z_NO_FLUSH);
+    if (now != Z_STREAM_END || stream.avail_in == 0) return now;
+    return inflateReset(&stream);  // gzip files may follow one another
+  });
   inflateEnd(&stream);
   if (state != Z_STREAM_END)
     throw IoError(path + ": is damaged: the packed data end or go wrong after " + std::to_string(out.size()) +
                   " bytes; write it again");
   return out;
 }
+
+std::string deflated(std::string const& path, std::string const& bytes) {
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw MachineError(path + ": zlib cannot be started");
+  std::string out;
+  stream_through(stream, bytes, out, [&](bool last) { return deflate(&stream, last ? Z_FINISH : Z_NO_FLUSH); });
+  deflateEnd(&stream);
+  return out;
+}
 #else
 std::string unpacked(std::string const& path, std::string const&) {
   throw IoError(path + ": is packed by gzip, and this gridmorph was built without zlib; unpack it first");
+}
+
+std::string deflated(std::string const& path, std::string const&) {
+  throw IoError(path + ": is to be packed by gzip, and this gridmorph was built without zlib");
 }
 #endif
 
 }  // namespace
 
-#ifdef GRIDMORPH_WITH_ZLIB
-std::string packed(std::string const& path, std::string const& bytes) {
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw MachineError(path + ": zlib cannot be started");
-  std::string out;
-  std::vector<char> chunk(std::size_t(1) << 20);
-  std::size_t taken = 0;
-  int state = Z_OK;
-  do {
-    constexpr std::size_t most = std::size_t(1) << 30;
-    std::size_t const give = std::min(most, bytes.size() - taken);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + taken));
-    stream.avail_in = uInt(give);
-    taken += give;
-    do {
-      stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
-      stream.avail_out = uInt(chunk.size());
-      state = deflate(&stream, taken == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
-      out.append(chunk.data(), chunk.size() - stream.avail_out);
-    } while (stream.avail_out == 0);
-  } while (state != Z_STREAM_END);
-  deflateEnd(&stream);
-  return out;
-}
-#else
-std::string packed(std::string const& path, std::string const&) {
-  throw IoError(path + ": is to be packed by gzip, and this gridmorph was built without zlib");
-}
-#endif
+std::string packed(std::string const& path, std::string const& bytes) { return deflated(path, bytes); }
 
 bool is_there(std::string const& path) {
   std::error_code ignored;
