@@ -14,7 +14,9 @@ struct Example {
   std::vector<std::string> words;
 };
 
-std::vector<Example> const of_unstructured{{"[volume]\nlaw = \"c1\"\n", {"[volume]", "unstructured", "[background]"}},
+std::string const region = "[[region]]\nname = \"wake\"\nzones = \"a\"\n";
+std::vector<Example> const of_unstructured{{region, {"[region]", "boxes of cells"}},
+                                           {"[volume]\nlaw = \"c1\"\n", {"[volume]", "unstructured", "[background]"}},
                                            {"[wheel]\noutput = \"w.cgns\"\n", {"[wheel]"}}};
 std::vector<Example> const of_structured{
     {"[near_field]\noffset = 0.1\n", {"[near_field]", "'m' is structured", "[boundary_layer]"}},
@@ -68,6 +70,7 @@ TEST(IgnoredKeys, OfOtherRunsAreErrors) {
   EXPECT_EQ(check(fields, {.run = Run::wheel}).size(), 1U) << "false says what is the case";
   Example const order{"[volume]\norder = \"prediction\"\n", {}};
   EXPECT_TRUE(reported(check(order, {.run = Run::wheel}), "case.toml:8: [volume] order", {"wheel"}));
+  EXPECT_TRUE(reported(check({region, {}}, {.run = Run::wheel}), "case.toml:7: [region]", {"without regions"}));
   EXPECT_EQ(check(order, {.run = Run::morph}).size(), 0U);
   Example const stages{"[output]\nstages = \"s\"\n", {}};
   EXPECT_TRUE(reported(check(stages, {.unstructured = true, .run = Run::sequence}), "case.toml:8: [output] stages",

@@ -22,6 +22,10 @@ WheelMotion::WheelMotion(Mesh const& sector, Links const& links, WheelRows const
                          std::vector<Motion> const& motions, PlanOptions const& options,
                          std::vector<WheelRowBlades> const& blades)
     : sector_(sector), rows_(rows), blades_(blades), axis_(motions.front().axis) {
+  for (Motion const& motion : motions)
+    if (!motion.regions.empty())
+      throw MotionError("region '" + motion.regions.front().name +
+                        "': passages of a wheel are morphed without regions; remove it");
   std::vector<char> open;
   std::set<int> used;
   for (auto const& row : blades) {

@@ -63,6 +63,7 @@ class Ignored {
 
   void of_wheel() {
     refuse("", "sequence", "is for `gridmorph morph`, and a wheel is made at one time");
+    refuse("", "region", "is for `gridmorph morph`, and passages of a wheel are morphed without regions");
     for (char const* key : {"smooth", "freeze"})
       refuse("guard", key, "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
     if (case_.plan.volume.order == OrderBy::prediction)
