@@ -73,6 +73,39 @@ struct UnstructuredCase {
   }
 };
 
+/// How the velocities of a plan differ from centred differences of its displacements, at most; boundary(t): displacements of its
+/// known nodes at time t. The time is 0.
+struct RateError {
+  double error = 0, largest = 0;  ///< largest difference, largest velocity
+};
+template <class Boundary>
+RateError rate_error(UnstructuredCase const& c, UnstructuredPlan const& plan, Boundary const& boundary) {
+  using Host = UnstructuredCase::Host;
+  Morpher<Host> const morpher(Host(), plan, c.mesh.coordinates, {1, true});
+  auto const view = [](std::vector<Vec3> const& v) {
+    return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(v.data(), v.size());
+  };
+  auto const displacements = [&](std::vector<Vec3> const& at) {
+    Coordinates u(c.mesh.n_nodes());
+    morpher.displacements(Host(), view(at), u);
+    Host().fence();
+    return u;
+  };
+  double const h = 1e-5;
+  std::vector<Vec3> const before = boundary(-h), after = boundary(h), now = boundary(0.0);
+  std::vector<Vec3> rate;
+  for (std::size_t k = 0; k < now.size(); ++k) rate.push_back((0.5 / h) * (after[k] - before[k]));
+  Coordinates const u0 = displacements(before), u1 = displacements(after), v(c.mesh.n_nodes());
+  morpher.velocities(Host(), view(now), view(rate), v);
+  Host().fence();
+  RateError out;
+  for (Index n = 0; n < v.size(); ++n) {
+    out.error = std::max(out.error, norm(v[n] - (0.5 / h) * (u1[n] - u0[n])));
+    out.largest = std::max(out.largest, norm(v[n]));
+  }
+  return out;
+}
+
 inline MotionRule rule_for(std::vector<std::string> patches, Rule rule) {
   return {std::move(patches), std::move(rule), 0, "test"};
 }
