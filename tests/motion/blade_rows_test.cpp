@@ -141,6 +141,29 @@ TEST_P(EveryBladeMesh, FollowTapersToFixedEnds) {
     for (Vec3 const& v : evaluate(motion, follow_number, points_of(mesh, end))) EXPECT_LT(norm(v), 1e-12);
 }
 
+TEST(BladeRow, ARegionUpstreamIsNoEndOfTheRow) {
+  Mesh mesh = row_mesh();
+  auto const sides = std::find_if(mesh.patches.begin(), mesh.patches.end(), [](Patch const& p) {
+    return p.name == "periodic" || (!p.families.empty() && p.families.front() == "periodic");
+  });
+  ASSERT_NE(sides, mesh.patches.end());
+  // The part of a periodic side between the inlet, which is curved, and the leading edge.
+  Patch part{"part", "", PatchKind::region, {}, sides->zone, sides->range, {}, {}};
+  part.range.begin[0] = 6;
+  part.range.end[0] = 12;
+  Zone const& zone = mesh.zones[std::size_t(part.zone)];
+  for (Index3 const& corner : {part.range.begin, Index3{11, part.range.end[1] - 1, 0}})
+    ASSERT_TRUE(mesh.coordinates.x(zone.node(corner)) > -0.5 && mesh.coordinates.x(zone.node(corner)) < -0.1);
+  mesh.patches.push_back(part);
+  BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign()), false));
+  auto const points = points_of(mesh, "periodic");
+  auto const u = evaluate(motion, follow_number, points);
+  double worst = 0;
+  for (std::size_t n = 0; n < points.size(); ++n)
+    worst = std::max(worst, distance(u[n], expected_follow(redesign(), points[n], false)));
+  EXPECT_LT(worst, 5e-6);
+}
+
 TEST_P(EveryBladeMesh, SlideTurnsByTheAngleOfTheNearerEdgeAndKeepsAxialPositionAndRadius) {
   Mesh const mesh = row_mesh(GetParam());
   BoundaryMotion const motion = make(mesh, row_rules(blade_rule(redesign())));

@@ -137,7 +137,7 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
                           std::to_string(middle_) + "; only patches upstream or downstream of it can slide");
       }
     } else if (row_zones_[patch.zone] && (patch.kind != PatchKind::wall && patch.kind != PatchKind::symmetry &&
-                                          patch.kind != PatchKind::degenerate)) {
+                                          patch.kind != PatchKind::degenerate && patch.kind != PatchKind::region)) {
       auto const points = meridional_points(boundary, frame_, {int(p)});
       if (beyond(points, edge)) others.insert(others.end(), points.begin(), points.end());
     }
