@@ -73,6 +73,19 @@ struct UnstructuredCase {
   }
 };
 
+/// Positions of all nodes, planned and morphed on an execution space of the host.
+template <class Exec>
+Coordinates positions_on(Exec const& exec, UnstructuredCase const& c, Motion const& motion,
+                         PlanOptions const& options) {
+  auto const prepared = prepare(exec, c.mesh, c.topology, c.face_patches, motion, options);
+  auto const boundary = prepared.boundary_displacement(c.mesh);
+  Coordinates x(c.mesh.n_nodes());
+  Morpher<Exec> const morpher(exec, prepared.plan, c.mesh.coordinates);
+  morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(boundary.data(), boundary.size()), x);
+  exec.fence();
+  return x;
+}
+
 /// How the velocities of a plan differ from centred differences of its displacements, at most; boundary(t): displacements of its
 /// known nodes at time t. The time is 0.
 struct RateError {

@@ -125,15 +125,7 @@ TEST(NearLayers, HaveTheVelocityOfTheirDifferences) {
 
 TEST(NearLayers, GiveTheSameBitsWithAnyThreads) {
   Case const c = rooted();
-  auto const with = [&](auto const& exec) {
-    auto const prepared = prepare(exec, c.mesh, c.topology, c.face_patches, moves({1, 0, 1}, 0.08), by_layers());
-    auto const boundary = prepared.boundary_displacement(c.mesh);
-    Coordinates x(c.mesh.n_nodes());
-    Morpher<std::decay_t<decltype(exec)>> const morpher(exec, prepared.plan, c.mesh.coordinates);
-    morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(boundary.data(), boundary.size()), x);
-    exec.fence();
-    return x;
-  };
+  auto const with = [&](auto const& exec) { return positions_on(exec, c, moves({1, 0, 1}, 0.08), by_layers()); };
   Coordinates const serial = with(Kokkos::Serial()), host = with(Case::Host());
   for (Index n = 0; n < serial.size(); ++n) ASSERT_EQ(serial[n], host[n]) << n;
 }

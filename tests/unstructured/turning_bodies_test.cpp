@@ -385,15 +385,7 @@ TEST(TurningBody, ThatBendsTooKeepsItsColumnsUprightAndItsElements) {
 
 TEST(TurningBody, GivesTheSameBitsWithAnyThreads) {
   auto const c = c_mesh();
-  auto const with = [&](auto const& exec) {
-    auto const prepared = prepare(exec, c.mesh, c.topology, c.face_patches, pitch(1.7, {0.3, 0.1, 0}), {});
-    auto const boundary = prepared.boundary_displacement(c.mesh);
-    Coordinates x(c.mesh.n_nodes());
-    Morpher<std::decay_t<decltype(exec)>> const morpher(exec, prepared.plan, c.mesh.coordinates);
-    morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(boundary.data(), boundary.size()), x);
-    exec.fence();
-    return x;
-  };
+  auto const with = [&](auto const& exec) { return positions_on(exec, c, pitch(1.7, {0.3, 0.1, 0}), {}); };
   Coordinates const serial = with(Kokkos::Serial()), host = with(Case::Host());
   for (Index n = 0; n < serial.size(); ++n) ASSERT_EQ(serial[n], host[n]) << n;
 }

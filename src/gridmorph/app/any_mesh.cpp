@@ -20,6 +20,18 @@ std::string field_name(Measure measure) {
 
 }  // namespace
 
+void AnyPlan::record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded) {
+  if (!record_) record_.emplace(new_record());
+  record_->add(displacement, plain, guarded);
+}
+
+SmoothingMap const& AnyPlan::freeze_recorded() {
+  frozen_map_ = record_->map();
+  record_.reset();
+  drop_morpher();
+  return *frozen_map_;
+}
+
 CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<Measure const> measures, Index n_cells) {
   CellFields<Kokkos::HostSpace> fields;
   out.clear();

@@ -6,6 +6,7 @@
 #include <gridmorph/app/cli/diagnosis.hpp>
 #include <gridmorph/app/cli/inspect_text.hpp>
 #include <gridmorph/guard/guard.hpp>
+#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/surface/surface_io.hpp>
 #include <gridmorph/io/write_series.hpp>
@@ -21,10 +22,6 @@
 #include <span>
 #include <string>
 #include <vector>
-
-namespace gridmorph {
-struct SmoothingMap;  ///< plan/smoothing_map.hpp
-}
 
 namespace gridmorph::cli {
 
@@ -91,9 +88,9 @@ class AnyPlan {
   /// Remembers where a mesh of a sequence lost its shape: relax() then does the same to all of them, so that they do not jump.
   virtual void freeze(Coordinates const& /*morphed*/) {}
   /// Remembers what became of a displacement that morph() brings to `plain`.
-  virtual void record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded) = 0;
+  void record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded);
   /// From here on morph() does what was recorded, linear in the displacement (SmoothingRecord), and relax() nothing.
-  virtual SmoothingMap const& freeze_recorded() = 0;
+  SmoothingMap const& freeze_recorded();
   /// The same motion in several steps, each planned on the mesh before it; nothing where this plan has but one.
   [[nodiscard]] virtual std::optional<Coordinates> morph_in_steps(
       std::vector<Vec3> const& /*displacement*/, int /*steps*/,
@@ -120,6 +117,18 @@ class AnyPlan {
   /// A line or two above the results of a morph; may be empty.
   [[nodiscard]] virtual std::string headline() const { return {}; }
   [[nodiscard]] virtual MeshForMessages for_messages() const = 0;
+
+ protected:
+  /// Of freeze_recorded(), for the morpher; null before.
+  [[nodiscard]] std::shared_ptr<SmoothingMap const> const& frozen_map() const { return frozen_map_; }
+
+ private:
+  [[nodiscard]] virtual SmoothingRecord new_record() const = 0;
+  /// frozen_map() is another one from here on.
+  virtual void drop_morpher() = 0;
+
+  std::optional<SmoothingRecord> record_;
+  std::shared_ptr<SmoothingMap const> frozen_map_;
 };
 
 /// Room for measures as fields of an output mesh, for measure_quality() to fill.

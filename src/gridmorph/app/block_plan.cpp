@@ -4,12 +4,10 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
-#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/best_order.hpp>
 #include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/report/prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
@@ -54,7 +52,7 @@ class BlockPlan final : public AnyPlan {
     Stopwatch watch;
     // Made once: tables, workspace and line parameters serve every displacement.
     if (!morpher_)
-      morpher_.emplace(exec_, prepared_.plan(), mesh_.coordinates(), MorpherOptions{.smoothing = frozen_map_});
+      morpher_.emplace(exec_, prepared_.plan(), mesh_.coordinates(), MorpherOptions{.smoothing = frozen_map()});
     apply_on_host(*morpher_, displacement, morphed);
     if (times != nullptr) times->push_back({"morph", watch.lap(), true});
   }
@@ -69,7 +67,7 @@ class BlockPlan final : public AnyPlan {
     return out;
   }
 
-  [[nodiscard]] bool guards() const override { return case_file_.guard.smooth && !frozen_map_; }
+  [[nodiscard]] bool guards() const override { return case_file_.guard.smooth && !frozen_map(); }
   [[nodiscard]] RelaxReport relax(Coordinates& morphed) const override {
     ShapeSmoothingReport const report = frozen_ ? smooth_frozen(exec_, prepared_, mesh_.handedness(), morphed, *frozen_)
                                                 : smooth_shapes(exec_, prepared_, mesh_.handedness(), morphed);
@@ -81,17 +79,6 @@ class BlockPlan final : public AnyPlan {
     FrozenSmoothing const lost = lost_shapes(exec_, prepared_, mesh_.handedness(), morphed);
     if (!frozen_) frozen_.emplace();
     frozen_->join(lost);
-  }
-
-  void record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded) override {
-    if (!record_) record_.emplace(prepared_);
-    record_->add(displacement, plain, guarded);
-  }
-  SmoothingMap const& freeze_recorded() override {
-    frozen_map_ = record_->map();
-    record_.reset();
-    morpher_.reset();
-    return *frozen_map_;
   }
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
@@ -170,6 +157,9 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] MeshForMessages for_messages() const override { return cli::for_messages(prepared_.mesh); }
 
  private:
+  [[nodiscard]] SmoothingRecord new_record() const override { return SmoothingRecord(prepared_); }
+  void drop_morpher() override { morpher_.reset(); }
+
   struct StepPrediction {
     Prediction prediction;
     int step = 0;
@@ -202,8 +192,6 @@ class BlockPlan final : public AnyPlan {
   PreparedMorph prepared_;
   BlockMesh mesh_;  ///< with the patches that planning added
   NearCells near_;
-  std::optional<SmoothingRecord> record_;
-  std::shared_ptr<SmoothingMap const> frozen_map_;
   std::optional<Morpher<Exec>> morpher_;
   std::optional<FrozenSmoothing> frozen_;
   bool evaluated_ = false;

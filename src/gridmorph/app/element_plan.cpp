@@ -2,11 +2,9 @@
 #include <gridmorph/app/element_mesh.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
-#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/element_prediction.hpp>
-#include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/report/element_prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
@@ -71,14 +69,14 @@ class ElementPlan final : public AnyPlan {
   void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) override {
     Stopwatch watch;
     if (!morpher_) {
-      morpher_.emplace(Exec(), prepared_.plan, mesh_.coordinates(), MorpherOptions{.smoothing = frozen_map_});
+      morpher_.emplace(Exec(), prepared_.plan, mesh_.coordinates(), MorpherOptions{.smoothing = frozen_map()});
       if (times != nullptr) times->push_back({"upload", watch.lap(), true});
     }
     apply_on_host(*morpher_, displacement, morphed);
     if (times != nullptr) times->push_back({"morph", watch.lap(), true});
   }
 
-  [[nodiscard]] bool guards() const override { return !frozen_map_; }
+  [[nodiscard]] bool guards() const override { return !frozen_map(); }
   RelaxReport relax(Coordinates& morphed) const override {
     return relax_bad_elements(mesh_.mesh, mesh_.topology, prepared_, morphed, {.signs = mesh_.signs});
   }
@@ -92,17 +90,6 @@ class ElementPlan final : public AnyPlan {
     options.relax.signs = mesh_.signs;
     options.progress = progress;
     return gridmorph::morph_in_steps(mesh_.mesh, mesh_.topology, mesh_.face_patches, prepared_, displacement, options);
-  }
-
-  void record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded) override {
-    if (!record_) record_.emplace(prepared_);
-    record_->add(displacement, plain, guarded);
-  }
-  SmoothingMap const& freeze_recorded() override {
-    frozen_map_ = record_->map();
-    record_.reset();
-    morpher_.reset();
-    return *frozen_map_;
   }
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
@@ -221,6 +208,9 @@ class ElementPlan final : public AnyPlan {
   }
 
  private:
+  [[nodiscard]] SmoothingRecord new_record() const override { return SmoothingRecord(prepared_); }
+  void drop_morpher() override { morpher_.reset(); }
+
   static PlanOptions options_of(CaseFile const& case_file) {
     PlanOptions options = case_file.plan;
     if (auto const& own = case_file.background)
@@ -247,8 +237,6 @@ class ElementPlan final : public AnyPlan {
   PlanOptions options_;
   PreparedUnstructured prepared_;
   NearCells near_;
-  std::optional<SmoothingRecord> record_;
-  std::shared_ptr<SmoothingMap const> frozen_map_;
   std::optional<Morpher<Exec>> morpher_;
   double planning_ = 0;
 };

@@ -5,7 +5,6 @@
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
-#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/report/quality_json.hpp>

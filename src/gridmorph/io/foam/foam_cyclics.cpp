@@ -36,7 +36,7 @@ std::optional<Periodic> transform_of(std::vector<Vec3> const& from, std::vector<
 
 class Matcher {
  public:
-  Matcher(CyclicSide const& own, CyclicSide const& other, CsrGraph const& faces, Mesh const& mesh)
+  Matcher(BoundaryEntry const& own, BoundaryEntry const& other, CsrGraph const& faces, Mesh const& mesh)
       : own_(own), other_(other), faces_(faces), x_(mesh.coordinates), allowed_(tolerance * mesh.size()) {}
 
   /// Pairs of nodes and their transform; nothing where the sides do not fit.
@@ -81,7 +81,7 @@ class Matcher {
     return out;
   }
 
-  [[nodiscard]] std::vector<Vec3> middles(CyclicSide const& side) const {
+  [[nodiscard]] std::vector<Vec3> middles(BoundaryEntry const& side) const {
     std::vector<Vec3> out;
     for (Index k = 0; k < side.size; ++k) {
       Vec3 sum;
@@ -98,15 +98,15 @@ class Matcher {
     return std::size_t(at - face.begin());
   }
 
-  CyclicSide const &own_, &other_;
+  BoundaryEntry const &own_, &other_;
   CsrGraph const& faces_;
   Coordinates const& x_;
   double allowed_;
 };
 
-void add_patch(CyclicSide const& side, CsrGraph const& faces, Mesh& mesh) {
+void add_patch(BoundaryEntry const& side, CsrGraph const& faces, Mesh& mesh) {
   Patch patch;
-  patch.name = side.entry->name;
+  patch.name = side.name;
   patch.bc_type = "cyclic";
   patch.kind = PatchKind::connection;
   patch.zone = 0;
@@ -116,27 +116,28 @@ void add_patch(CyclicSide const& side, CsrGraph const& faces, Mesh& mesh) {
 
 }  // namespace
 
-void add_cyclics(std::vector<CyclicSide> const& sides, CsrGraph const& faces, Mesh& mesh) {
-  std::map<std::string, CyclicSide const*, std::less<>> by_name;
-  for (CyclicSide const& side : sides) by_name[side.entry->name] = &side;
-  for (CyclicSide const& side : sides) {
-    auto const other = by_name.find((*side.entry)["neighbourPatch"]);
+void add_cyclics(std::vector<BoundaryEntry const*> const& sides, CsrGraph const& faces, Mesh& mesh) {
+  std::map<std::string, BoundaryEntry const*, std::less<>> by_name;
+  for (BoundaryEntry const* side : sides) by_name[side->name] = side;
+  for (BoundaryEntry const* each : sides) {
+    BoundaryEntry const& side = *each;
+    auto const other = by_name.find(side["neighbourPatch"]);
     if (other == by_name.end() || other->second == &side) {
-      mesh.notes.push_back("cyclic patch '" + side.entry->name + "' has no neighbourPatch; taken as a plain patch");
+      mesh.notes.push_back("cyclic patch '" + side.name + "' has no neighbourPatch; taken as a plain patch");
       add_patch(side, faces, mesh);
       continue;
     }
-    if (other->second->entry < side.entry) continue;  // with the other side
+    if (other->second < &side) continue;  // with the other side
     auto const match = Matcher(side, *other->second, faces, mesh).run();
     if (!match) {
-      mesh.notes.push_back("cyclic patches '" + side.entry->name + "' and '" + other->first +
+      mesh.notes.push_back("cyclic patches '" + side.name + "' and '" + other->first +
                            "' do not match node by node; they move apart from one another");
       add_patch(side, faces, mesh);
       add_patch(*other->second, faces, mesh);
       continue;
     }
     Connection connection;
-    connection.name = side.entry->name;
+    connection.name = side.name;
     connection.zone = connection.donor_zone = 0;
     connection.periodic = match->second;
     for (auto const& [own, donor] : match->first) {

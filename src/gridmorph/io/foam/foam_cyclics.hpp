@@ -8,15 +8,10 @@
 
 namespace gridmorph::foam {
 
-struct CyclicSide {
-  BoundaryEntry const* entry = nullptr;
-  Index start = 0, size = 0;  ///< its faces
-};
-
 /// Adds a connection for each pair of sides that name one another (neighbourPatch). The transform is fitted to the middles of the faces:
 /// a translation where these are one translation apart (1e-6 of the mesh size), else a rotation about rotationAxis and rotationCentre,
 /// or about the line that the faces themselves ask for. Nodes are paired by it. Sides that do not fit become patches of kind
 /// `connection`, and a note says so.
-void add_cyclics(std::vector<CyclicSide> const& sides, CsrGraph const& faces, Mesh& mesh);
+void add_cyclics(std::vector<BoundaryEntry const*> const& sides, CsrGraph const& faces, Mesh& mesh);
 
 }  // namespace gridmorph::foam

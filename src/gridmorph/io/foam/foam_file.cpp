@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -210,6 +211,7 @@ void FoamFile::read_header(std::vector<std::string_view> const& classes) {
     fail("numbers of " + arch + " are not read; 32 and 64 bits are");
   if (std::find(classes.begin(), classes.end(), class_) == classes.end())
     fail("the class is '" + class_ + "', and " + std::string(classes.front()) + " is wanted");
+  body_ = at_;
 }
 
 std::int64_t FoamFile::integer(char const* what) {
@@ -277,6 +279,7 @@ std::vector<std::int64_t> FoamFile::raw_list(char const* what) {
 }
 
 std::vector<Index32> FoamFile::labels() {
+  at_ = body_;
   auto const all = raw_list("labels");
   std::vector<Index32> out;
   out.reserve(all.size());
@@ -288,6 +291,7 @@ std::vector<Index32> FoamFile::labels() {
 }
 
 CsrGraph FoamFile::faces() {
+  at_ = body_;
   CsrGraph out;
   auto const node = [&](std::int64_t v) {
     if (v < 0 || v > std::numeric_limits<Index32>::max()) fail("a face has node " + std::to_string(v));
@@ -321,6 +325,7 @@ CsrGraph FoamFile::faces() {
 }
 
 Index FoamFile::points(std::function<void(PointText const&)> const& visit) {
+  at_ = body_;
   char bracket = 0;
   constexpr Index shortest = 7;  // "(0 0 0)"
   Index const n = begin_list("points", binary_ ? 3 * scalar_bytes_ : shortest, bracket);
@@ -351,7 +356,36 @@ Index FoamFile::points(std::function<void(PointText const&)> const& visit) {
   return n;
 }
 
-std::vector<BoundaryEntry> FoamFile::boundary() {
+Coordinates FoamFile::coordinates() {
+  std::vector<double> all;
+  Coordinates out(points([&](PointText const& p) { all.push_back(p.value); }));
+  for (Index p = 0; p < out.size(); ++p)
+    out.set(p, {all[std::size_t(3 * p)], all[std::size_t(3 * p) + 1], all[std::size_t(3 * p) + 2]});
+  return out;
+}
+
+void FoamFile::find_faces(std::vector<BoundaryEntry>& entries, Index n_faces) const {
+  Problems problems;
+  for (BoundaryEntry& entry : entries) {
+    std::string const where = path_ + ":" + std::to_string(entry.line) + ": patch '" + entry.name + "'";
+    auto const value = [&](char const* key) {
+      std::string const text(entry[key]);
+      char* end = nullptr;
+      long long const n = std::strtoll(text.c_str(), &end, 10);
+      if (text.empty() || *end != '\0' || n < 0 || n > n_faces)
+        problems.add(where + ": " + key + " is '" + text + "', and there are " + std::to_string(n_faces) + " faces");
+      return Index(std::clamp<long long>(n, 0, n_faces));
+    };
+    entry.start = value("startFace");
+    entry.size = value("nFaces");
+    if (entry.start + entry.size > n_faces)
+      problems.add(where + " ends behind the last of " + std::to_string(n_faces) + " faces");
+  }
+  problems.throw_if_any<MeshError>();
+}
+
+std::vector<BoundaryEntry> FoamFile::boundary(Index n_faces) {
+  at_ = body_;
   // Dictionaries are text in binary files too.
   binary_ = false;
   char bracket = 0;
@@ -376,6 +410,7 @@ std::vector<BoundaryEntry> FoamFile::boundary() {
     out.push_back(std::move(entry));
   }
   expect(')', "the patches");
+  find_faces(out, n_faces);
   return out;
 }
 

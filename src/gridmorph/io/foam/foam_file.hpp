@@ -6,6 +6,7 @@
 
 #include <gridmorph/core/csr_graph.hpp>
 #include <gridmorph/core/index.hpp>
+#include <gridmorph/mesh/mesh.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -28,6 +29,7 @@ struct BoundaryEntry {
   std::string name;
   std::vector<std::pair<std::string, std::string>> keys;
   int line = 0;
+  Index start = 0, size = 0;  ///< its faces: startFace, nFaces
 
   /// Value of a key; empty where it has none.
   [[nodiscard]] std::string_view operator[](std::string_view key) const;
@@ -45,14 +47,19 @@ class FoamFile {
   [[nodiscard]] bool is_binary() const { return binary_; }
   [[nodiscard]] int scalar_bytes() const { return scalar_bytes_; }
 
-  // What follows the header; each throws IoError with the line (text) or the byte (binary) where it is not what it has to be.
+  // What follows the header, from its start each time; each throws IoError with the line (text) or the byte (binary) where it is not what
+  // it has to be.
   std::vector<Index32> labels();
   CsrGraph faces();
   /// Calls visit for each number, in order. Returns the number of points.
   Index points(std::function<void(PointText const&)> const& visit);
-  std::vector<BoundaryEntry> boundary();
+  /// All of them.
+  Coordinates coordinates();
+  /// Throws MeshError, too, that lists patches which do not have their faces among the n_faces of the mesh.
+  std::vector<BoundaryEntry> boundary(Index n_faces);
 
  private:
+  void find_faces(std::vector<BoundaryEntry>& entries, Index n_faces) const;
   void read_header(std::vector<std::string_view> const& classes);
   void skip_blanks();
   [[nodiscard]] char peek();
@@ -69,7 +76,7 @@ class FoamFile {
 
   std::string path_, text_;
   std::string class_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 0, body_ = 0;  ///< what is read next, what follows the header
   bool packed_ = false, binary_ = false;
   int label_bytes_ = 4, scalar_bytes_ = 8;
 };

@@ -38,7 +38,7 @@ class Reader {
     while (!neighbour_.empty() && neighbour_.back() < 0) neighbour_.pop_back();
     check();
     add_cells();
-    auto const boundary = file("boundary", {"polyBoundaryMesh"}).boundary();
+    auto const boundary = file("boundary", {"polyBoundaryMesh"}).boundary(faces_.size());
     add_patches(boundary);
     Problems problems;
     io::check_finite(mesh_, mesh_.coordinates, path_, problems);
@@ -60,14 +60,10 @@ class Reader {
   }
 
   void read_points() {
-    std::vector<double> all;
     FoamFile points = file("points", {"vectorField"});
-    Index const n = points.points([&](PointText const& p) { all.push_back(p.value); });
-    mesh_.add_zone("internalMesh", n);
+    mesh_.coordinates = points.coordinates();
+    mesh_.add_zone("internalMesh", mesh_.coordinates.size());
     mesh_.zones.back().single_precision = points.is_binary() && points.scalar_bytes() == 4;
-    mesh_.coordinates = Coordinates(n);
-    for (Index p = 0; p < n; ++p)
-      mesh_.coordinates.set(p, {all[std::size_t(3 * p)], all[std::size_t(3 * p) + 1], all[std::size_t(3 * p) + 2]});
   }
 
   /// What the lists say of one another.
@@ -130,40 +126,21 @@ class Reader {
     }
   }
 
-  /// First face and number of faces of a patch.
-  std::pair<Index, Index> faces_of(BoundaryEntry const& entry, Problems& problems) const {
-    auto const value = [&](char const* key) {
-      std::string const text(entry[key]);
-      char* end = nullptr;
-      long long const n = std::strtoll(text.c_str(), &end, 10);
-      if (text.empty() || *end != '\0' || n < 0 || n > faces_.size())
-        problems.add((folder_ / "boundary").string() + ":" + std::to_string(entry.line) + ": patch '" + entry.name +
-                     "': " + key + " is '" + text + "', and there are " + std::to_string(faces_.size()) + " faces");
-      return Index(std::clamp<long long>(n, 0, faces_.size()));
-    };
-    Index const start = value("startFace"), n = value("nFaces");
-    if (start + n > faces_.size())
-      problems.add((folder_ / "boundary").string() + ":" + std::to_string(entry.line) + ": patch '" + entry.name +
-                   "' ends behind the last of " + std::to_string(faces_.size()) + " faces");
-    return {start, std::min(n, faces_.size() - start)};
-  }
-
   void add_patches(std::vector<BoundaryEntry> const& entries) {
     Problems problems;
-    std::vector<CyclicSide> cyclics;
+    std::vector<BoundaryEntry const*> cyclics;
     for (BoundaryEntry const& entry : entries) {
-      auto const [start, n] = faces_of(entry, problems);
-      if (!problems.empty() || n == 0) continue;
+      if (entry.size == 0) continue;
       std::string const type(entry["type"]);
       if (type.starts_with("processor"))
         problems.add(path_ + ": patch '" + entry.name + "' is of type " + type +
                      ": this is one part of a decomposed mesh; put the parts together (reconstructParMesh)");
       else if (type == "cyclic")
-        cyclics.push_back({&entry, start, n});
+        cyclics.push_back(&entry);
       else if (type == "empty")
-        add_planes(entry, start, n);
+        add_planes(entry);
       else
-        add_patch(entry, type, start, n);
+        add_patch(entry, type);
     }
     problems.throw_if_any<MeshError>();
     add_cyclics(cyclics, faces_, mesh_);
@@ -191,25 +168,18 @@ class Reader {
     return patch;
   }
 
-  void add_patch(BoundaryEntry const& entry, std::string const& type, Index start, Index n) {
+  void add_patch(BoundaryEntry const& entry, std::string const& type) {
     Patch patch = patch_of(entry, type);
-    for (Index f = start; f < start + n; ++f) patch.faces.add(faces_[f]);
+    for (Index k = 0; k < entry.size; ++k) patch.faces.add(faces_[entry.start + k]);
     mesh_.patches.push_back(std::move(patch));
   }
 
   /// The two sides of a mesh one cell thick, which may be one patch: what looks to one side, and what looks to the other.
-  void add_planes(BoundaryEntry const& entry, Index start, Index n) {
-    auto const normal = [&](Index f) {
-      auto const nodes = faces_[f];
-      Vec3 sum;
-      for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
-        sum += cross(mesh_.coordinates[nodes[k]] - mesh_.coordinates[nodes[0]],
-                     mesh_.coordinates[nodes[k + 1]] - mesh_.coordinates[nodes[0]]);
-      return sum;
-    };
-    Vec3 const way = normal(start);
+  void add_planes(BoundaryEntry const& entry) {
+    Vec3 const way = face_normal(faces_[entry.start], mesh_.coordinates);
     Patch sides[2] = {patch_of(entry, "empty"), patch_of(entry, "empty")};
-    for (Index f = start; f < start + n; ++f) sides[dot(way, normal(f)) < 0 ? 1 : 0].faces.add(faces_[f]);
+    for (Index f = entry.start; f < entry.start + entry.size; ++f)
+      sides[dot(way, face_normal(faces_[f], mesh_.coordinates)) < 0 ? 1 : 0].faces.add(faces_[f]);
     for (Patch& side : sides)
       if (side.faces.size() > 0) mesh_.patches.push_back(std::move(side));
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 namespace gridmorph::foam {
@@ -11,17 +10,16 @@ namespace {
 
 constexpr double opposite = 1e-6;  // of the mesh size
 
-double z_of_normal(CsrGraph const& faces, Index f, Coordinates const& x) {
-  auto const nodes = faces[f];
-  double sum = 0;
-  for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
-    sum += cross(x[nodes[k]] - x[nodes[0]], x[nodes[k + 1]] - x[nodes[0]]).z;
-  return sum;
-}
-
 enum Side : char { none, upper, lower };
 
 }  // namespace
+
+Vec3 face_normal(std::span<Index32 const> nodes, Coordinates const& coordinates) {
+  auto const arm = [&](std::size_t k) { return coordinates[nodes[k]] - coordinates[nodes[0]]; };
+  Vec3 sum;
+  for (std::size_t k = 1; k + 1 < nodes.size(); ++k) sum += cross(arm(k), arm(k + 1));
+  return sum;
+}
 
 std::optional<PlanePairs> plane_pairs(std::vector<BoundaryEntry> const& boundary, CsrGraph const& faces,
                                       Coordinates const& coordinates, double size, std::string& why_not) {
@@ -35,13 +33,9 @@ std::optional<PlanePairs> plane_pairs(std::vector<BoundaryEntry> const& boundary
   bool any = false;
   for (BoundaryEntry const& entry : boundary) {
     if (entry["type"] != "empty") continue;
-    auto const value = [&](char const* key) {
-      return std::clamp<Index>(std::atoll(std::string(entry[key]).c_str()), 0, faces.size());
-    };
-    Index const start = value("startFace"), end = std::min(start + value("nFaces"), faces.size());
-    for (Index f = start; f < end; ++f) {
+    for (Index f = entry.start; f < entry.start + entry.size; ++f) {
       any = true;
-      char const own = z_of_normal(faces, f, coordinates) > 0 ? upper : lower;
+      char const own = face_normal(faces[f], coordinates).z > 0 ? upper : lower;
       if (own == upper && faces[f].size() > 4) {
         why_not = "cells with more than four corners";
         return std::nullopt;

@@ -6,10 +6,14 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace gridmorph::foam {
+
+/// Of the fan of triangles from its first node, twice as long as its area.
+Vec3 face_normal(std::span<Index32 const> nodes, Coordinates const& coordinates);
 
 /// Nodes of the upper plane (its faces look along z), ascending, each with the one of the lower plane that an edge joins it with.
 using PlanePairs = std::vector<std::array<Index32, 2>>;

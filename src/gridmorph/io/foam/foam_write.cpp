@@ -58,18 +58,12 @@ bool holds_same_faces(fs::path const& folder, fs::path const& other) {
 }
 
 /// All points of a plane mesh.
-Coordinates of_both_planes(fs::path const& folder, Mesh const& mesh, Coordinates const& morphed) {
-  std::vector<Vec3> places;
-  FoamFile((folder / "points").string(), {"vectorField"}).points([&](PointText const& p) {
-    if (p.component == 0) places.emplace_back();
-    (p.component == 0 ? places.back().x : p.component == 1 ? places.back().y : places.back().z) = p.value;
-  });
-  Coordinates all(Index(places.size()));
-  for (Index n = 0; n < all.size(); ++n) all.set(n, places[std::size_t(n)]);
+Coordinates of_both_planes(fs::path const& folder, FoamFile& points, Mesh const& mesh, Coordinates const& morphed) {
+  Coordinates const all = points.coordinates();
+  CsrGraph const faces = FoamFile((folder / "faces").string(), {"faceList", "faceCompactList"}).faces();
   std::string why_not;
-  auto const pairs = plane_pairs(FoamFile((folder / "boundary").string(), {"polyBoundaryMesh"}).boundary(),
-                                 FoamFile((folder / "faces").string(), {"faceList", "faceCompactList"}).faces(), all,
-                                 mesh.size(), why_not);
+  auto const pairs = plane_pairs(FoamFile((folder / "boundary").string(), {"polyBoundaryMesh"}).boundary(faces.size()),
+                                 faces, all, mesh.size(), why_not);
   if (!pairs || Index(pairs->size()) != mesh.n_nodes())
     throw IoError(folder.string() + ": holds another mesh than the one that was read; give the folder of that one");
   return both_planes(all, *pairs, morphed);
@@ -105,7 +99,8 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   auto const from = poly_mesh(input);
   if (!from) throw IoError(input + ": holds no mesh of OpenFOAM any more");
   FoamFile points((*from / "points").string(), {"vectorField"});
-  std::string const text = with_points(points, mesh.dimension == 2 ? of_both_planes(*from, mesh, morphed) : morphed);
+  std::string const text =
+      with_points(points, mesh.dimension == 2 ? of_both_planes(*from, points, mesh, morphed) : morphed);
   // Beside the output's name stands what stood beside the input's.
   std::error_code ignored;
   fs::path below;

@@ -244,19 +244,12 @@ std::map<int, std::vector<int>> surfaces_of_classes(Topology const& topology,
   for (int c = 0; c < lattice.n_classes(); ++c) {
     int const patch = topology.blocks.patch_of_face()[c];
     if (patch < 0 || surface_of_patch[patch] < 0) continue;
-    for (EntityCopy const& copy : lattice.copies(c)) {
-      Index3 const p = lattice.position(copy.entity);
-      Index3 d{};
-      for (d[2] = -1; d[2] <= 1; ++d[2])
-        for (d[1] = -1; d[1] <= 1; ++d[1])
-          for (d[0] = -1; d[0] <= 1; ++d[0]) {
-            if ((p[0] % 2 == 0 && d[0] != 0) || (p[1] % 2 == 0 && d[1] != 0) || (p[2] % 2 == 0 && d[2] != 0)) continue;
-            auto& list = surfaces_of[lattice.class_of(
-                lattice.entity(lattice.zone_of(copy.entity), {p[0] + d[0], p[1] + d[1], p[2] + d[2]}))];
-            if (std::find(list.begin(), list.end(), surface_of_patch[patch]) == list.end())
-              list.push_back(surface_of_patch[patch]);
-          }
-    }
+    for (EntityCopy const& copy : lattice.copies(c))
+      for_closure(lattice, copy.entity, [&](int entity) {
+        auto& list = surfaces_of[lattice.class_of(entity)];
+        if (std::find(list.begin(), list.end(), surface_of_patch[patch]) == list.end())
+          list.push_back(surface_of_patch[patch]);
+      });
   }
   return surfaces_of;
 }

@@ -116,13 +116,13 @@ InnerRegion read_region(TableReader& table, std::optional<Axis> const& axis) {
   read_sphere(table, all);
   read_annulus(table, axis, all);
   read_nodes(table, out);
-  if (table.has("nodes") && (table.has("box") || table.has("sphere") || table.has("axial") || table.has("radius")))
+  bool const has_shape = table.has("box") || table.has("sphere") || table.has("axial") || table.has("radius");
+  if (table.has("nodes") && has_shape)
     table.problem("nodes",
                   "say which nodes they are, and stand alone beside zones; remove box, sphere, axial and radius");
   if (table.has("nodes") && out.zones.size() != 1)
     table.problem("nodes", "are those of one zone; name it, zones = \"Zone 1\"");
-  if (!table.has("nodes") && all.empty() && out.zones.empty() && table.has("name") && !table.has("box") &&
-      !table.has("sphere") && !table.has("axial") && !table.has("radius"))
+  if (table.has("name") && !table.has("nodes") && !has_shape && out.zones.empty())
     table.problem("name", "is all there is: say where the region lies, by zones, nodes, box, sphere, axial or radius");
   table.finish();
   if (!all.empty())
