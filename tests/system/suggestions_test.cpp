@@ -162,7 +162,7 @@ TEST_F(Suggestions, FilesOfOtherProgramsAreNamed) {
   };
   std::string const zeros(200, '\0');
   for (auto const& other :
-       std::vector<Other>{{"a.msh", "$MeshFormat\n4.1 0 8\n", "Gmsh"},
+       std::vector<Other>{{"a.msh", "$NOD\n3\n", "format 1"},
                           {"b.msh", "(0 \"GAMBIT to Fluent File\")\n(2 3)\n", "Fluent"},
                           {"a.vtk", "# vtk DataFile Version 3.0\nmesh\nASCII\n", "VTK"},
                           {"a.vtu", "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">\n", "VTK"},

@@ -2,6 +2,7 @@
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
 
 #include <algorithm>
@@ -30,7 +31,7 @@ constexpr std::array endings{
     Ending{"hdf", "CGNS"},        Ending{"hdf5", "CGNS"},      Ending{"su2", "SU2"},
     Ending{"p3d", "PLOT3D"},      Ending{"p2d", "PLOT3D"},     Ending{"xyz", "PLOT3D"},
     Ending{"x", "PLOT3D"},        Ending{"g", "PLOT3D"},       Ending{"fmt", "PLOT3D"},
-    Ending{"ufmt", "PLOT3D"},     Ending{"grd", "PLOT3D"},     Ending{"msh", "Gmsh or Fluent"},
+    Ending{"ufmt", "PLOT3D"},     Ending{"grd", "PLOT3D"},     Ending{"msh", "Gmsh"},
     Ending{"cas", "Fluent"},      Ending{"vtk", "VTK"},        Ending{"vtu", "VTK"},
     Ending{"vtp", "VTK"},         Ending{"vts", "VTK"},        Ending{"vtm", "VTK"},
     Ending{"vtmb", "VTK"},        Ending{"vti", "VTK"},        Ending{"vtr", "VTK"},
@@ -70,7 +71,7 @@ struct Foreign {
   [[nodiscard]] bool known() const { return !is.empty(); }
 };
 
-constexpr std::string_view by_gmsh = "Gmsh converts it: gmsh -save FILE -o mesh.su2";
+constexpr std::string_view by_gmsh = "Gmsh converts it: gmsh -save FILE -o mesh.msh";
 constexpr std::string_view by_maker = "export CGNS or SU2 from the program that made it";
 constexpr std::string_view by_paraview =
     "export CGNS or SU2 from the program that made it, or open it in ParaView and save CGNS";
@@ -120,8 +121,6 @@ bool is_fluent(std::string_view text) {
 
 Foreign foreign_text(std::string_view head) {
   auto const text = without_blanks(head);
-  if (text.starts_with("$MeshFormat") || text.starts_with("$NOD") || text.starts_with("$Comments"))
-    return {"a Gmsh mesh", by_gmsh};
   if (text.starts_with("# vtk DataFile")) return {"a VTK file", by_paraview};
   auto const start = text.substr(0, 1024);
   if (has(start, "<VTKFile")) return {"a VTK file (XML)", by_paraview};
@@ -189,6 +188,7 @@ std::string_view to_string(MeshFormat format) {
     case MeshFormat::plot3d: return "PLOT3D";
     case MeshFormat::su2: return "SU2";
     case MeshFormat::openfoam: return "OpenFOAM";
+    case MeshFormat::gmsh: return "Gmsh";
   }
   return "";
 }
@@ -203,13 +203,15 @@ void refuse_other_format(std::string const& path) {
   else if (fs::is_regular_file(status))
     found = foreign(head_of(path), fs::file_size(path, failure), ending_of(path));
   if (found.known())
-    throw IoError(path + ": is " + std::string(found.is) + "; read are CGNS, PLOT3D, SU2 and OpenFOAM. " +
+    throw IoError(path + ": is " + std::string(found.is) + "; read are CGNS, PLOT3D, SU2, OpenFOAM and Gmsh. " +
                   std::string(found.remedy));
 }
 
 MeshFormat mesh_format(std::string const& path) {
   if (su2::is_su2(path)) return MeshFormat::su2;
   if (is_openfoam(path)) return MeshFormat::openfoam;
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored) && gmsh::is_gmsh(head_of(path))) return MeshFormat::gmsh;
   refuse_other_format(path);
   return cgns::is_cgns(path) ? MeshFormat::cgns : MeshFormat::plot3d;
 }

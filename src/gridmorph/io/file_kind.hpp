@@ -7,15 +7,15 @@
 namespace gridmorph {
 
 /// Formats of meshes that are read and written.
-enum class MeshFormat { cgns, plot3d, su2, openfoam };
+enum class MeshFormat { cgns, plot3d, su2, openfoam, gmsh };
 
-/// "CGNS", "PLOT3D", "SU2", "OpenFOAM".
+/// "CGNS", "PLOT3D", "SU2", "OpenFOAM", "Gmsh".
 std::string_view to_string(MeshFormat format);
 
-/// By the first bytes, of a folder by what is in it; what is neither CGNS nor SU2 nor OpenFOAM counts as PLOT3D. Throws IoError as refuse_other_format() does.
+/// By the first bytes, of a folder by what is in it; what is none of the others counts as PLOT3D. Throws IoError as refuse_other_format() does.
 MeshFormat mesh_format(std::string const& path);
 
-/// Throws IoError that names the format of a file or folder of another program (Gmsh, Fluent, VTK, UGRID, Exodus, STL,
+/// Throws IoError that names the format of a file or folder of another program (Fluent, VTK, UGRID, Exodus, STL,
 /// ...) and says how to convert it. What is recognised as nothing of the kind passes. Reads at most 256 kB.
 void refuse_other_format(std::string const& path);
 

@@ -2,6 +2,7 @@
 #include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/plot3d/plot3d.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
@@ -41,7 +42,7 @@ Mesh read_without_names(std::string const& path, char const* format, ReadOptions
 MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out) {
   MeshFileFacts out;
   out.format = mesh_format(path);
-  if (out.format == MeshFormat::su2 || out.format == MeshFormat::openfoam) out.kind = MeshKind::unstructured;
+  if (out.format != MeshFormat::plot3d) out.kind = MeshKind::unstructured;
   if (out.format != MeshFormat::cgns) return out;
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
@@ -57,13 +58,21 @@ MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leav
 }
 
 Mesh read_mesh(std::string const& path, ReadOptions const& options) {
-  if (options.plot3d_format.empty() && mesh_format(path) == MeshFormat::openfoam)
-    return read_without_names(path, "an OpenFOAM mesh", options,
-                              [](std::string const& p, ReadOptions const&) { return foam::read(p); });
-  if (su2::is_su2(path))
-    return read_without_names(path, "an SU2 mesh", options,
-                              [](std::string const& p, ReadOptions const&) { return su2::read(p); });
-  if (!cgns::is_cgns(path)) return read_without_names(path, "a PLOT3D mesh", options, plot3d::read);
+  // A side file that says which variant of PLOT3D a file is knows it better than its first bytes.
+  bool const guess = options.plot3d_format.empty();
+  switch (guess ? mesh_format(path) : cgns::is_cgns(path) ? MeshFormat::cgns : MeshFormat::plot3d) {
+    case MeshFormat::su2:
+      return read_without_names(path, "an SU2 mesh", options,
+                                [](std::string const& p, ReadOptions const&) { return su2::read(p); });
+    case MeshFormat::openfoam:
+      return read_without_names(path, "an OpenFOAM mesh", options,
+                                [](std::string const& p, ReadOptions const&) { return foam::read(p); });
+    case MeshFormat::gmsh:
+      return read_without_names(path, "a Gmsh mesh", options,
+                                [](std::string const& p, ReadOptions const&) { return gmsh::read(p); });
+    case MeshFormat::plot3d: return read_without_names(path, "a PLOT3D mesh", options, plot3d::read);
+    case MeshFormat::cgns: break;
+  }
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();
   return kind_of(file, tree, options.leave_out) == MeshKind::structured ? io::read_blocks(file, tree, options)

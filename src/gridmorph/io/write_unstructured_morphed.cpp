@@ -3,6 +3,7 @@
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
@@ -65,8 +66,15 @@ void io::write_morphed_elements(std::string const& input, std::string const& out
   if (!fields.empty())
     throw IoError(output + ": " + std::string(to_string(format)) +
                   " files hold no fields; leave out displacement and quality, or use a CGNS mesh");
-  (format == MeshFormat::su2 ? su2::write_morphed : foam::write_morphed)(input, output, mesh,
-                                                                         in_file_order(mesh, morphed));
+  Coordinates const ordered = in_file_order(mesh, morphed);
+  switch (format) {
+    case MeshFormat::su2: return su2::write_morphed(input, output, mesh, ordered);
+    case MeshFormat::openfoam: return foam::write_morphed(input, output, mesh, ordered);
+    case MeshFormat::gmsh: return gmsh::write_morphed(input, output, mesh, ordered);
+    case MeshFormat::plot3d:
+    case MeshFormat::cgns: break;
+  }
+  throw IoError(input + ": is not the file that the mesh was read from any more; give that one");
 }
 
 }  // namespace gridmorph

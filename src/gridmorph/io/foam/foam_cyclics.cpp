@@ -1,6 +1,5 @@
-#include <gridmorph/boundary/periodic_axis.hpp>
-#include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/io/foam/foam_cyclics.hpp>
+#include <gridmorph/io/periodic_transform.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,22 +17,6 @@ constexpr double tolerance = 1e-5;
 
 using Pairs = std::vector<std::array<Index32, 2>>;
 
-/// The transform that takes the first of each pair onto the second, where one does.
-std::optional<Periodic> transform_of(std::vector<Vec3> const& from, std::vector<Vec3> const& to, double allowed) {
-  Vec3 shift;
-  for (std::size_t n = 0; n < from.size(); ++n) shift += (1 / double(from.size())) * (to[n] - from[n]);
-  auto const fits = [&](RigidTransform const& t) {
-    for (std::size_t n = 0; n < from.size(); ++n)
-      if (distance(t(from[n]), to[n]) > allowed) return false;
-    return true;
-  };
-  if (Periodic const p = periodic_translation(shift); fits(p.declared)) return p;
-  auto const turn = as_turn(fit_rigid_transform(from, to), allowed);
-  if (!turn) return std::nullopt;
-  Periodic const p = periodic_rotation(turn->origin, turn->direction, turn->angle_rad);
-  return fits(p.declared) ? std::optional(p) : std::nullopt;
-}
-
 class Matcher {
  public:
   Matcher(BoundaryEntry const& own, BoundaryEntry const& other, CsrGraph const& faces, Mesh const& mesh)
@@ -46,12 +29,12 @@ class Matcher {
       if (own(k).size() != other(k).size()) return std::nullopt;
     // First nodes of two faces belong together; then they go around in opposite senses.
     Pairs pairs = paired([](Index) { return std::size_t(0); });
-    auto transform = transform_of(places(pairs, 0), places(pairs, 1), allowed_);
+    auto transform = io::periodic_between(places(pairs, 0), places(pairs, 1), allowed_);
     if (!transform) {
-      auto const coarse = transform_of(middles(own_), middles(other_), allowed_);
+      auto const coarse = io::periodic_between(middles(own_), middles(other_), allowed_);
       if (!coarse) return std::nullopt;
       pairs = paired([&](Index k) { return nearest(other(k), coarse->declared(x_[own(k)[0]])); });
-      transform = transform_of(places(pairs, 0), places(pairs, 1), allowed_);
+      transform = io::periodic_between(places(pairs, 0), places(pairs, 1), allowed_);
       if (!transform) return std::nullopt;
     }
     return std::pair(std::move(pairs), *transform);

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/element_orders.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/kind_by_name.hpp>
 #include <gridmorph/io/output_file.hpp>
@@ -54,7 +55,8 @@ class Builder {
     coordinates();
     io::check_finite(mesh_, mesh_.coordinates, path_, problems);
     problems.throw_if_any<MeshError>();
-    orient_prisms();
+    if (io::orient_prisms(mesh_))
+      mesh_.notes.push_back(path_ + ": the prisms are numbered as VTK does, bottom triangles outwards; taken so");
     for (std::size_t z = 0; z < zones_.size(); ++z) {
       markers(int(z), problems);
       periodic(int(z), problems);
@@ -96,29 +98,6 @@ class Builder {
       for (std::size_t at = 0; at < z.coordinates.size(); at += std::size_t(z.dimension), ++n)
         mesh_.coordinates.set(n,
                               {z.coordinates[at], z.coordinates[at + 1], z.dimension == 3 ? z.coordinates[at + 2] : 0});
-  }
-
-  /// Bottom triangles of prisms point inwards in CGNS and outwards in VTK, whose types SU2 uses; files are seen with either.
-  /// What makes most of the prisms positive is meant.
-  void orient_prisms() {
-    Index balance = 0;
-    auto const& e = mesh_.elements;
-    auto& item = mesh_.elements.nodes.item;
-    for (Index k = 0; k < e.size(); ++k) {
-      if (e.type[std::size_t(k)] != ElementType::prism) continue;
-      auto const n = e.nodes[k];
-      auto const x = [&](int c) { return mesh_.coordinates[n[std::size_t(c)]]; };
-      double const j = dot(cross(x(1) - x(0), x(2) - x(0)), x(3) - x(0));
-      balance += j > 0 ? 1 : -1;
-    }
-    if (balance >= 0) return;
-    for (Index k = 0; k < e.size(); ++k) {
-      if (e.type[std::size_t(k)] != ElementType::prism) continue;
-      Index const first = e.nodes.first[std::size_t(k)];
-      std::swap(item[std::size_t(first + 1)], item[std::size_t(first + 2)]);
-      std::swap(item[std::size_t(first + 4)], item[std::size_t(first + 5)]);
-    }
-    mesh_.notes.push_back(path_ + ": the prisms are numbered as VTK does, bottom triangles outwards; taken so");
   }
 
   /// Node of a marker in the mesh; -1 and a problem where it is none.
