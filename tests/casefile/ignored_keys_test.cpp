@@ -84,6 +84,11 @@ TEST(IgnoredKeys, OfOutputsInFormatsWithoutSolutionsAreErrors) {
     EXPECT_EQ(lines.size(), 2U);
     EXPECT_TRUE(reported(lines, "case.toml:9: [output] quality", {name, "CGNS"}));
   }
+  EXPECT_EQ(check(fields, {.unstructured = true, .format = Format::vtk}).size(), 0U);
+  Example const beside{"[output]\ndisplacement = true\nvtk = \"m.vtu\"\n", {}};
+  EXPECT_EQ(check(beside, {.unstructured = true, .format = Format::su2}).size(), 0U);
+  EXPECT_TRUE(reported(check(beside, {.unstructured = true, .run = Run::sequence}), "case.toml:9: [output] vtk",
+                       {"one morph"}));
   EXPECT_EQ(check(fields, {}).size(), 0U);
 }
 

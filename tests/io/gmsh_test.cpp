@@ -1,5 +1,6 @@
 // Meshes of Gmsh, made here by a writer of their own: versions, text and binary, groups, periodic links, second order, damage.
 #include "io/damage.hpp"
+#include "io/second_order.hpp"
 #include "support/expect_error.hpp"
 #include "support/unstructured_meshes.hpp"
 
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ostream>
 #include <sstream>
 #include <vector>
 
@@ -20,6 +22,7 @@ struct Storage {
   int version = 41;
   bool binary = false, swapped = false;
 };
+void PrintTo(Storage const& s, std::ostream* out) { *out << s.version << (s.binary ? " binary" : " text"); }
 
 /// Elements of one type on one piece of geometry.
 struct Block {
@@ -409,88 +412,60 @@ TEST_P(Gmsh, NodesOfSecondOrderElementsComeInTheOrderOfTheStandard) {
   struct Case {
     ElementType type;
     int msh_type;
-    std::vector<Vec3> corners;
     std::vector<std::vector<int>> amid;  ///< corners that a further node lies amid, in Gmsh's order
   };
-  std::vector<Vec3> const cube{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-  std::vector<Vec3> const prism{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-  std::vector<Vec3> const tetra{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  std::vector<Vec3> const pyramid{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}};
   // Reference manual of Gmsh 4, "Node ordering".
-  std::vector<Case> const cases{{ElementType::tetrahedron, 11, tetra, {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}}},
-                                {ElementType::hexahedron,
-                                 12,
-                                 cube,
-                                 {{0, 1},
-                                  {0, 3},
-                                  {0, 4},
-                                  {1, 2},
-                                  {1, 5},
-                                  {2, 3},
-                                  {2, 6},
-                                  {3, 7},
-                                  {4, 5},
-                                  {4, 7},
-                                  {5, 6},
-                                  {6, 7},
-                                  {0, 1, 2, 3},
-                                  {0, 1, 4, 5},
-                                  {0, 3, 4, 7},
-                                  {1, 2, 5, 6},
-                                  {2, 3, 6, 7},
-                                  {4, 5, 6, 7},
-                                  {0, 1, 2, 3, 4, 5, 6, 7}}},
-                                {ElementType::prism,
-                                 13,
-                                 prism,
-                                 {{0, 1},
-                                  {0, 2},
-                                  {0, 3},
-                                  {1, 2},
-                                  {1, 4},
-                                  {2, 5},
-                                  {3, 4},
-                                  {3, 5},
-                                  {4, 5},
-                                  {0, 1, 3, 4},
-                                  {0, 2, 3, 5},
-                                  {1, 2, 4, 5}}},
-                                {ElementType::pyramid,
-                                 14,
-                                 pyramid,
-                                 {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}, {0, 1, 2, 3}}}};
+  std::vector<Case> const cases{
+      {ElementType::tetrahedron, 11, {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}}},
+      {ElementType::hexahedron,
+       12,
+       {{0, 1},
+        {0, 3},
+        {0, 4},
+        {1, 2},
+        {1, 5},
+        {2, 3},
+        {2, 6},
+        {3, 7},
+        {4, 5},
+        {4, 7},
+        {5, 6},
+        {6, 7},
+        {0, 1, 2, 3},
+        {0, 1, 4, 5},
+        {0, 3, 4, 7},
+        {1, 2, 5, 6},
+        {2, 3, 6, 7},
+        {4, 5, 6, 7},
+        {0, 1, 2, 3, 4, 5, 6, 7}}},
+      {ElementType::prism,
+       13,
+       {{0, 1},
+        {0, 2},
+        {0, 3},
+        {1, 2},
+        {1, 4},
+        {2, 5},
+        {3, 4},
+        {3, 5},
+        {4, 5},
+        {0, 1, 3, 4},
+        {0, 2, 3, 5},
+        {1, 2, 4, 5}}},
+      {ElementType::pyramid, 14, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}, {0, 1, 2, 3}}}};
   for (Case const& one : cases) {
     MshMesh msh;
     auto const add = [&](Vec3 const& p) {
       msh.tags.push_back(std::int64_t(msh.tags.size()) + 1);
       msh.places.push_back(p);
     };
-    for (Vec3 const& p : one.corners) add(p);
-    for (auto const& amid : one.amid) {
-      Vec3 sum;
-      for (int const c : amid) sum += one.corners[std::size_t(c)];
-      add((1 / double(amid.size())) * sum);
-    }
+    for (Vec3 const& p : places_amid(one.type, one.amid)) add(p);
     msh.blocks.push_back({3, 1, one.msh_type, {msh.tags}});
     Mesh const mesh = read(msh);
     ASSERT_EQ(mesh.n_elements(), 1);
     ASSERT_EQ(mesh.elements.type[0], one.type);
-    auto const nodes = mesh.elements.nodes[0];
-    ASSERT_EQ(nodes.size(), msh.tags.size());
-    auto const x = [&](std::size_t k) { return mesh.coordinates[nodes[k]]; };
-    std::size_t const corners = one.corners.size();
-    for (int e = 0; e < n_edges(one.type); ++e)
-      EXPECT_LT(distance(x(corners + std::size_t(e)), 0.5 * (x(std::size_t(edge_corner(one.type, e, 0))) +
-                                                             x(std::size_t(edge_corner(one.type, e, 1))))),
-                1e-15)
-          << to_string(one.type) << " edge " << e;
-    std::size_t next = corners + std::size_t(n_edges(one.type));
-    for (int f = 0; f < n_faces(one.type) && next < nodes.size(); ++f) {
-      if (n_face_corners(one.type, f) != 4) continue;
-      Vec3 sum;
-      for (int c = 0; c < 4; ++c) sum += x(std::size_t(face_corner(one.type, f, c)));
-      EXPECT_LT(distance(x(next++), 0.25 * sum), 1e-15) << to_string(one.type) << " face " << f;
-    }
+    ASSERT_EQ(mesh.elements.nodes[0].size(), msh.tags.size());
+    expect_nodes_amid(mesh);
   }
 }
 

@@ -1,16 +1,23 @@
 #!/usr/bin/python3
-"""What VTK's CGNS reader, which ParaView and pyvista use, shows of meshes that gridmorph wrote: our fields beside the solver's.
+"""What VTK's readers, which ParaView and pyvista use, show of meshes that gridmorph wrote: our fields beside the solver's; and what gridmorph reads of
+files that VTK's writer stores in all its ways.
 
   test_vtk.py GRIDMORPH FOLDER-OF-MESHES
 """
+import itertools
+import json
 import os
 import subprocess
 import sys
 import tempfile
 import unittest
 
-from vtkmodules.util.numpy_support import vtk_to_numpy
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 GRIDMORPH, MESHES = os.path.realpath(sys.argv.pop(1)), os.path.realpath(sys.argv.pop(1))
 
@@ -30,6 +37,24 @@ def zones(path):
         out.append(blocks.GetCurrentDataObject())
         blocks.GoToNextItem()
     return out
+
+
+def grid_of(path):
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def points_of(grid):
+    return vtk_to_numpy(grid.GetPoints().GetData())
+
+
+def volumes(grid):
+    sizes = vtkCellSizeFilter()
+    sizes.SetInputData(grid)
+    sizes.Update()
+    return vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Volume"))
 
 
 def arrays(data):
@@ -85,6 +110,84 @@ class Vtk(unittest.TestCase):
         self.run_gridmorph("demo", "ball", "-e", "60000", "-d", ".")
         old, new = (zones(os.path.join(self.folder.name, name)) for name in ("ball.cgns", "ball_swing.cgns"))
         self.expect_fields(old[:1], new[:1], [])
+
+    def vtk_output(self, mesh, rules):
+        with open(os.path.join(self.folder.name, "case.toml"), "w") as case:
+            case.write(f'[mesh]\ninput = "{mesh}"\noutput = "out{os.path.splitext(mesh)[1]}"\n{rules}'
+                       '[output]\nvtk = "out.vtu"\ndisplacement = true\nquality = true\n')
+        self.run_gridmorph("morph", "case.toml")
+        return grid_of(os.path.join(self.folder.name, "out.vtu"))
+
+    def expect_vtk(self, grid, size_before):
+        cells, points = arrays(grid.GetCellData()), arrays(grid.GetPointData())
+        inside = cells["CellEntityIds"] == 0
+        volume = volumes(grid)
+        self.assertGreater(volume[inside].min(), 0)
+        self.assertAlmostEqual(volume.sum(), size_before, delta=0.2 * size_before)
+        self.assertGreater(abs(points["Displacement"]).max(), 0)
+        self.assertTrue(numpy.isfinite(cells["AspectRatio"][inside]).all())
+        self.assertTrue(numpy.isnan(cells["AspectRatio"][~inside]).all())
+        names = grid.GetFieldData().GetAbstractArray("PatchNames")
+        self.assertEqual(names.GetNumberOfValues(), cells["CellEntityIds"].max())
+        return [names.GetValue(n) for n in range(names.GetNumberOfValues())]
+
+    def test_meshes_of_blocks_are_written_for_viewers(self):
+        self.run_gridmorph("demo", "passage", "-n", "10000", "-m", "rotation", "-d", ".")
+        grid = self.vtk_output("passage.cgns", '[[motion]]\npatches = ["*"]\nrule = "formula"\ndx = "0.001"\n')
+        before = numpy.copy(points_of(grid)) - arrays(grid.GetPointData())["Displacement"]
+        still = grid.NewInstance()
+        still.DeepCopy(grid)
+        still.GetPoints().SetData(numpy_to_vtk(before, deep=True))
+        self.assertIn("hub_lower", self.expect_vtk(grid, volumes(still).sum()))
+
+    def test_meshes_of_elements_are_written_for_viewers_and_read_again(self):
+        self.run_gridmorph("demo", "ball", "-e", "60000", "-d", ".")
+        rope = '[[motion]]\npatches = ["rope"]\nrule = "free"\n'
+        grid = self.vtk_output("ball.cgns", '[[motion]]\npatches = ["ball"]\nrule = "rigid"\ntranslation = [0.02, 0, 0]\n' + rope)
+        self.assertIn("ball", self.expect_vtk(grid, volumes(grid).sum()))
+        done = subprocess.run([GRIDMORPH, "quality", "out.vtu", "--json", "--quiet"], cwd=self.folder.name, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["baseline"]["far_field"]["cells"], int((arrays(grid.GetCellData())["CellEntityIds"] == 0).sum()))
+        # Every way in which VTK stores a grid: the same mesh, morphed alike, all else as it was.
+        moved = None
+        for mode, packed, wide, single, base64, big in itertools.product(("Ascii", "Binary", "Appended"), (False, True), (False, True), (False, True),
+                                                                         (False, True), (False, True)):
+            if (mode == "Ascii" and (packed or wide or base64 or big)) or (mode == "Binary" and (base64 or big)):
+                continue
+            if (single and wide) or (mode == "Appended" and wide != big):
+                continue
+            way = f"{mode} packed {packed} wide {wide} single {single} base64 {base64} big {big}"
+            with self.subTest(way):
+                source = grid.NewInstance()
+                source.DeepCopy(grid)
+                if single:
+                    points = vtkPoints()
+                    points.SetData(numpy_to_vtk(points_of(grid).astype(numpy.float32), deep=True))
+                    source.SetPoints(points)
+                writer = vtkXMLUnstructuredGridWriter()
+                writer.SetInputData(source)
+                writer.SetFileName(os.path.join(self.folder.name, "in.vtu"))
+                getattr(writer, "SetDataModeTo" + mode)()
+                writer.SetCompressorTypeToZLib() if packed else writer.SetCompressorTypeToNone()
+                writer.SetHeaderTypeToUInt64() if wide else writer.SetHeaderTypeToUInt32()
+                writer.SetEncodeAppendedData(base64)
+                writer.SetByteOrderToBigEndian() if big else writer.SetByteOrderToLittleEndian()
+                writer.Write()
+                with open(os.path.join(self.folder.name, "case.toml"), "w") as case:
+                    case.write('[mesh]\ninput = "in.vtu"\noutput = "again.vtu"\n[[motion]]\npatches = ["ball"]\nrule = "rigid"\n'
+                               "translation = [0, 0.02, 0]\n" + rope + "[output]\ndisplacement = true\n")
+                self.run_gridmorph("morph", "case.toml")
+                after = grid_of(os.path.join(self.folder.name, "again.vtu"))
+                shift = points_of(after).astype(float) - points_of(source)
+                if moved is None:
+                    moved = shift
+                    self.assertAlmostEqual(abs(shift).max(), 0.02, delta=1e-9)
+                self.assertLess(abs(shift - moved).max(), 1e-5 if single else 1e-13)
+                self.assertLess(abs(arrays(after.GetPointData())["MorphDisplacement"] - moved).max(), 1e-5 if single else 1e-13)
+                for name, values in arrays(source.GetCellData()).items():
+                    numpy.testing.assert_array_equal(arrays(after.GetCellData())[name], values)
+                numpy.testing.assert_array_equal(vtk_to_numpy(after.GetCells().GetConnectivityArray()),
+                                                 vtk_to_numpy(source.GetCells().GetConnectivityArray()))
 
 
 if __name__ == "__main__":

@@ -176,6 +176,9 @@ class AnyMesh {
   /// The file `input`, which this was read from, with other coordinates: write_morphed(), SeriesWriter.
   virtual void write(std::filesystem::path const& input, std::filesystem::path const& output,
                      Coordinates const& morphed, OutputFields const& fields) const = 0;
+  /// For viewers: write_vtk().
+  virtual void write_vtk(std::filesystem::path const& output, Coordinates const& morphed,
+                         OutputFields const& fields) const = 0;
   [[nodiscard]] virtual SeriesWriter series(std::filesystem::path const& input, std::filesystem::path const& output,
                                             std::vector<double> const& times) const = 0;
 

@@ -39,6 +39,10 @@ class BlockMesh final : public AnyMesh {
              OutputFields const& fields) const override {
     write_morphed(input.string(), output.string(), mesh_, morphed, fields);
   }
+  void write_vtk(std::filesystem::path const& output, Coordinates const& morphed,
+                 OutputFields const& fields) const override {
+    gridmorph::write_vtk(output.string(), mesh_, morphed, fields);
+  }
   [[nodiscard]] SeriesWriter series(std::filesystem::path const& input, std::filesystem::path const& output,
                                     std::vector<double> const& times) const override {
     return {input.string(), output.string(), mesh_, times};

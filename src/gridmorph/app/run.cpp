@@ -284,6 +284,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   RunFiles outputs = outputs_of(case_file.output, options.report);
   if (options.stages)
     for (char const* name : stage_names) outputs.push_back({"stage", *options.stages / name, true});
+  if (options.vtk) outputs.push_back({"VTK file", *options.vtk});
   check_run_files(inputs_of(case_file, file), outputs);
   terminal.expect(file.traits().costs);
   Run run(case_file, file, terminal);
@@ -344,6 +345,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   }
   auto const shortfalls = run.shortfalls_of(run.quality());
   if (written) run.times.push_back({"write", 0, true});
+  std::string const vtk = options.vtk ? fmt::format("wrote {}\n", options.vtk->string()) : std::string();
   std::string stages;
   if (options.stages) stages = fmt::format("wrote wrap and background mesh to {}\n", options.stages->string());
   return conclude({.output = case_file.output,
@@ -361,7 +363,9 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                        [&] {
                          watch.lap();
                          if (written) {
-                           run.mesh().write(case_file.input, case_file.output, run.morphed(), run.fields());
+                           run.mesh().write(case_file.input, case_file.output, run.morphed(),
+                                            holds_fields(file.format) ? run.fields() : OutputFields());
+                           if (options.vtk) run.mesh().write_vtk(*options.vtk, run.morphed(), run.fields());
                            add_time(run.times, "write", watch.lap());
                          }
                          if (options.stages) run.plan().write_stages(*options.stages, run.morphed());
@@ -372,7 +376,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                          return run.head() + (run.plan().headline().empty() ? "" : "\n") +
                                 run.tables(run.quality(), outcome);
                        },
-                   .wrote = fmt::format("\nwrote {}\n", case_file.output.string()),
+                   .wrote = fmt::format("\nwrote {}\n", case_file.output.string()) + vtk,
                    .also_wrote = wrote_report(options.report) + stages,
                    .warnings = terminal.quiet() ? messages_of(shortfalls) : std::vector<std::string>(),
                    .refusal = [&] { return run.refusal_of(case_file.output, file.traits().cells + " are", advice); }},

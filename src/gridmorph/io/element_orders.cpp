@@ -78,6 +78,13 @@ FileShape vtk_shape(std::int64_t type) {
   }
 }
 
+void turn_prism(std::span<Index32> nodes) {
+  // Corners 1 and 2 change places, and with them the edges and faces that lie on them.
+  constexpr std::array<std::array<std::size_t, 2>, 6> swaps{{{1, 2}, {4, 5}, {6, 8}, {10, 11}, {12, 14}, {15, 17}}};
+  for (auto const& [a, b] : swaps)
+    if (b < nodes.size()) std::swap(nodes[a], nodes[b]);
+}
+
 bool orient_prisms(Mesh& mesh) {
   auto const& elements = mesh.elements;
   auto& item = mesh.elements.nodes.item;
@@ -89,14 +96,9 @@ bool orient_prisms(Mesh& mesh) {
     balance += dot(cross(x(1) - x(0), x(2) - x(0)), x(3) - x(0)) > 0 ? 1 : -1;
   }
   if (balance >= 0) return false;
-  // Corners 1 and 2 change places, and with them the edges and faces that lie on them.
-  constexpr std::array<std::array<int, 2>, 6> swaps{{{1, 2}, {4, 5}, {6, 8}, {10, 11}, {12, 14}, {15, 17}}};
-  for (Index e = 0; e < elements.size(); ++e) {
-    if (elements.type[std::size_t(e)] != ElementType::prism) continue;
-    Index const first = elements.nodes.first[std::size_t(e)], size = Index(elements.nodes[e].size());
-    for (auto const& [a, b] : swaps)
-      if (b < size) std::swap(item[std::size_t(first + a)], item[std::size_t(first + b)]);
-  }
+  for (Index e = 0; e < elements.size(); ++e)
+    if (elements.type[std::size_t(e)] == ElementType::prism)
+      turn_prism({item.data() + elements.nodes.first[std::size_t(e)], elements.nodes[e].size()});
   return true;
 }
 

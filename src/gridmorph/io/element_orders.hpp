@@ -24,6 +24,9 @@ FileShape gmsh_shape(std::int64_t type);
 /// By the cell types of VTK (vtkCellType.h and the classes of cells), first and second order.
 FileShape vtk_shape(std::int64_t type);
 
+/// The other way round: nodes of a prism in SIDS order, first or second, with bottom and top seen from the other side.
+void turn_prism(std::span<Index32> nodes);
+
 /// Bottom triangles of prisms point inwards in CGNS; programs that write VTK's cell types do it either way. Turns over all prisms of a mesh
 /// where that makes more of them positive; returns whether it did.
 bool orient_prisms(Mesh& mesh);

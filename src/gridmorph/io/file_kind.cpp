@@ -4,6 +4,8 @@
 #include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
+#include <gridmorph/io/ugrid/ugrid_file.hpp>
+#include <gridmorph/io/vtk/vtk_mesh.hpp>
 
 #include <algorithm>
 #include <array>
@@ -32,10 +34,10 @@ constexpr std::array endings{
     Ending{"p3d", "PLOT3D"},      Ending{"p2d", "PLOT3D"},     Ending{"xyz", "PLOT3D"},
     Ending{"x", "PLOT3D"},        Ending{"g", "PLOT3D"},       Ending{"fmt", "PLOT3D"},
     Ending{"ufmt", "PLOT3D"},     Ending{"grd", "PLOT3D"},     Ending{"msh", "Gmsh"},
-    Ending{"cas", "Fluent"},      Ending{"vtk", "VTK"},        Ending{"vtu", "VTK"},
-    Ending{"vtp", "VTK"},         Ending{"vts", "VTK"},        Ending{"vtm", "VTK"},
-    Ending{"vtmb", "VTK"},        Ending{"vti", "VTK"},        Ending{"vtr", "VTK"},
-    Ending{"pvtu", "VTK"},        Ending{"pvd", "VTK"},        Ending{"vtkhdf", "VTK"},
+    Ending{"cas", "Fluent"},      Ending{"vtk", "legacy VTK"}, Ending{"vtu", "VTK"},
+    Ending{"vtp", "VTK vtp"},     Ending{"vts", "VTK vts"},    Ending{"vtm", "VTK vtm"},
+    Ending{"vtmb", "VTK vtmb"},   Ending{"vti", "VTK vti"},    Ending{"vtr", "VTK vtr"},
+    Ending{"pvtu", "VTK pvtu"},   Ending{"pvd", "VTK pvd"},    Ending{"vtkhdf", "VTK vtkhdf"},
     Ending{"ugrid", "UGRID"},     Ending{"exo", "Exodus"},     Ending{"exoii", "Exodus"},
     Ending{"gen", "Exodus"},      Ending{"nc", "netCDF"},      Ending{"foam", "OpenFOAM"},
     Ending{"stl", "STL"},         Ending{"obj", "OBJ"},        Ending{"ply", "PLY"},
@@ -160,7 +162,6 @@ Foreign foreign(std::string_view head, std::uintmax_t size, std::string const& e
   if (head.starts_with("CDF\x01"sv) || head.starts_with("CDF\x02"sv) || head.starts_with("CDF\x05"sv))
     return foreign_netcdf(head);
   if (head.starts_with("\x89HDF\r\n\x1a\n"sv)) return foreign_hdf5(head);
-  if (ending == "ugrid") return {"a UGRID mesh", by_maker};
   if (auto const text = foreign_text(head); text.known()) return text;
   if (ending == "stl" && is_binary_stl(head, size))
     return {"an STL surface", "it has no volume to morph; use it as file of a rule \"target\""};
@@ -189,6 +190,8 @@ std::string_view to_string(MeshFormat format) {
     case MeshFormat::su2: return "SU2";
     case MeshFormat::openfoam: return "OpenFOAM";
     case MeshFormat::gmsh: return "Gmsh";
+    case MeshFormat::vtk: return "VTK";
+    case MeshFormat::ugrid: return "UGRID";
   }
   return "";
 }
@@ -203,8 +206,8 @@ void refuse_other_format(std::string const& path) {
   else if (fs::is_regular_file(status))
     found = foreign(head_of(path), fs::file_size(path, failure), ending_of(path));
   if (found.known())
-    throw IoError(path + ": is " + std::string(found.is) + "; read are CGNS, PLOT3D, SU2, OpenFOAM and Gmsh. " +
-                  std::string(found.remedy));
+    throw IoError(path + ": is " + std::string(found.is) +
+                  "; read are CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK (.vtu) and UGRID. " + std::string(found.remedy));
 }
 
 MeshFormat mesh_format(std::string const& path) {
@@ -212,6 +215,8 @@ MeshFormat mesh_format(std::string const& path) {
   if (is_openfoam(path)) return MeshFormat::openfoam;
   std::error_code ignored;
   if (fs::is_regular_file(path, ignored) && gmsh::is_gmsh(head_of(path))) return MeshFormat::gmsh;
+  if (fs::is_regular_file(path, ignored) && vtk::is_vtu(head_of(path))) return MeshFormat::vtk;
+  if (fs::is_regular_file(path, ignored) && ugrid::is_ugrid(path)) return MeshFormat::ugrid;
   refuse_other_format(path);
   return cgns::is_cgns(path) ? MeshFormat::cgns : MeshFormat::plot3d;
 }

@@ -7,15 +7,18 @@
 namespace gridmorph {
 
 /// Formats of meshes that are read and written.
-enum class MeshFormat { cgns, plot3d, su2, openfoam, gmsh };
+enum class MeshFormat { cgns, plot3d, su2, openfoam, gmsh, vtk, ugrid };
 
-/// "CGNS", "PLOT3D", "SU2", "OpenFOAM", "Gmsh".
+/// "CGNS", "PLOT3D", "SU2", "OpenFOAM", "Gmsh", "VTK", "UGRID".
 std::string_view to_string(MeshFormat format);
 
-/// By the first bytes, of a folder by what is in it; what is none of the others counts as PLOT3D. Throws IoError as refuse_other_format() does.
+/// Whether files of a format have a place for fields of the nodes and cells.
+constexpr bool holds_fields(MeshFormat format) { return format == MeshFormat::cgns || format == MeshFormat::vtk; }
+
+/// By the first bytes, of UGRID by the ending, of a folder by what is in it; what is none of the others counts as PLOT3D. Throws IoError as refuse_other_format() does.
 MeshFormat mesh_format(std::string const& path);
 
-/// Throws IoError that names the format of a file or folder of another program (Fluent, VTK, UGRID, Exodus, STL,
+/// Throws IoError that names the format of a file or folder of another program (Fluent, Exodus, STL,
 /// ...) and says how to convert it. What is recognised as nothing of the kind passes. Reads at most 256 kB.
 void refuse_other_format(std::string const& path);
 

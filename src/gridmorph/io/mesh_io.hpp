@@ -1,4 +1,4 @@
-// Meshes in and out of files. One small interface; it speaks CGNS (HDF5 and ADF), PLOT3D and SU2.
+// Meshes in and out of files. One small interface; it speaks CGNS (HDF5 and ADF), PLOT3D, SU2, OpenFOAM, Gmsh, VTK and UGRID.
 //
 // What is read, what is refused and what is kept: docs/formats.md. The functions throw IoError (the file cannot be
 // opened, is damaged, or holds something else), MeshError (ranges, donors or coordinates that cannot be used) or
@@ -127,10 +127,16 @@ struct OutputFields {
 void write_mesh(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields,
                 WriteOptions const& options = {});
 
+/// A mesh of either kind, with other coordinates than its own and with fields, as a file of VTK (.vtu) for viewers: the cells in the order of
+/// their file, blocks as hexahedra, then the faces of patches, told apart by the cell array CellEntityIds (0 for cells, 1 for those of the
+/// first patch, ...; names in the array PatchNames). Displacement is one vector field; cell fields of faces are NaN. The file appears
+/// whole or not at all.
+void write_vtk(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields = {});
+
 /// Copies the file that `mesh` was read from and replaces its node coordinates, in the precision they are stored in;
 /// everything else comes through unchanged. Of blocks of a 2-D mesh plane 0 is written. output may be input. The copy is made
-/// beside the output and renamed when complete: on any failure the output is as it was before. PLOT3D and SU2 files have no place for
-/// fields; an SU2 file stays text, byte for byte the same where a coordinate did not change.
+/// beside the output and renamed when complete: on any failure the output is as it was before. PLOT3D, SU2,
+/// OpenFOAM, Gmsh and UGRID files have no place for fields; text stays text, byte for byte the same where a coordinate did not change.
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
                    OutputFields const& fields = {});
 

@@ -6,6 +6,8 @@
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/plot3d/plot3d.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
+#include <gridmorph/io/ugrid/ugrid_file.hpp>
+#include <gridmorph/io/vtk/vtk_mesh.hpp>
 
 #include <set>
 
@@ -70,6 +72,12 @@ Mesh read_mesh(std::string const& path, ReadOptions const& options) {
     case MeshFormat::gmsh:
       return read_without_names(path, "a Gmsh mesh", options,
                                 [](std::string const& p, ReadOptions const&) { return gmsh::read(p); });
+    case MeshFormat::vtk:
+      return read_without_names(path, "a VTK mesh", options,
+                                [](std::string const& p, ReadOptions const&) { return vtk::read(p); });
+    case MeshFormat::ugrid:
+      return read_without_names(path, "a UGRID mesh", options,
+                                [](std::string const& p, ReadOptions const&) { return ugrid::read(p); });
     case MeshFormat::plot3d: return read_without_names(path, "a PLOT3D mesh", options, plot3d::read);
     case MeshFormat::cgns: break;
   }

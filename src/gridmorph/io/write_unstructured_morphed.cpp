@@ -9,7 +9,9 @@
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
+#include <gridmorph/io/ugrid/ugrid_file.hpp>
 #include <gridmorph/io/unstructured_fields.hpp>
+#include <gridmorph/io/vtk/vtk_mesh.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
 #include <array>
@@ -63,14 +65,17 @@ void io::write_morphed_elements(std::string const& input, std::string const& out
   problems.throw_if_any<MeshError>();
   MeshFormat const format = mesh_format(input);
   if (format == MeshFormat::cgns) return write_cgns(input, output, mesh, morphed, fields);
+  if (format == MeshFormat::vtk) return vtk::write_morphed(input, output, mesh, morphed, fields);
   if (!fields.empty())
     throw IoError(output + ": " + std::string(to_string(format)) +
-                  " files hold no fields; leave out displacement and quality, or use a CGNS mesh");
+                  " files hold no fields; leave out displacement and quality, or use a CGNS or VTK mesh");
   Coordinates const ordered = in_file_order(mesh, morphed);
   switch (format) {
     case MeshFormat::su2: return su2::write_morphed(input, output, mesh, ordered);
     case MeshFormat::openfoam: return foam::write_morphed(input, output, mesh, ordered);
     case MeshFormat::gmsh: return gmsh::write_morphed(input, output, mesh, ordered);
+    case MeshFormat::ugrid: return ugrid::write_morphed(input, output, mesh, ordered);
+    case MeshFormat::vtk:
     case MeshFormat::plot3d:
     case MeshFormat::cgns: break;
   }

@@ -76,10 +76,14 @@ class Ignored {
 
   /// What has no place in the format of the output.
   void fields() {
+    if (use_.run != CaseUse::Run::morph)
+      refuse("output", "vtk", "is for one morph; use output = \"step_{step}.vtu\" with a mesh that is a VTK file");
     if (use_.format == CaseUse::Format::cgns) return;
     refuse("mesh", "leave_out", "names bases and zones of CGNS files");
-    std::string const why =
-        fmt::format("is true, and {} files have no place for solutions; use a CGNS mesh", to_string(use_.format));
+    if (use_.format == CaseUse::Format::vtk || case_.output_options.vtk) return;
+    std::string const why = fmt::format(
+        "is true, and {} files have no place for solutions; use vtk = \"mesh.vtu\" beside it, or a CGNS or VTK mesh",
+        to_string(use_.format));
     if (case_.output_options.displacement) refuse("output", "displacement", why);
     if (case_.output_options.quality) refuse("output", "quality", why);
   }

@@ -67,7 +67,7 @@ void add_leave_out(CLI::App& command, CommandLine& out) {
 
 CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
   auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
-  inspect->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D, SU2, OpenFOAM or Gmsh)")->required();
+  inspect->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK or UGRID)")->required();
   inspect->add_option("--side-file", out.side_file,
                       "Patches and interfaces (TOML), instead of the file beside the mesh");
   add_leave_out(*inspect, out);
@@ -86,7 +86,7 @@ CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
 CLI::App* add_surface(CLI::App& app, CommandLine& out) {
   auto* surface = app.add_subcommand(
       "surface", "Write patches of a mesh as facets (STL) or as nodes (CSV, as a rule \"field\" reads them)");
-  surface->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D, SU2, OpenFOAM or Gmsh)")->required();
+  surface->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK or UGRID)")->required();
   surface->add_option("-p,--patches", out.patches, "Patches, named as in case files (blade, type:wall, row1/per*)")
       ->required();
   surface->add_option("-o,--output", out.output, "NAME.stl or NAME.csv")->required();
@@ -138,7 +138,8 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
                  "Look for the order of chains of which the best is predicted, as order in [volume]");
   commands.emplace_back(plan, Command::plan);
   auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
-  quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS, PLOT3D, SU2, OpenFOAM or Gmsh)")->required();
+  quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK or UGRID)")
+      ->required();
   quality->add_option("morphed", out.second, "Morphed mesh");
   add_quality(*quality, out, "full (default) or fast: a verdict in a fraction of the time");
   add_leave_out(*quality, out);

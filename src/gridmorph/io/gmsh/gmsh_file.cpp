@@ -2,6 +2,7 @@
 #include <gridmorph/io/element_orders.hpp>
 #include <gridmorph/io/gmsh/gmsh_file.hpp>
 #include <gridmorph/io/gmsh/tag_places.hpp>
+#include <gridmorph/io/printable.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -329,7 +330,7 @@ class Parser {
     char* end = nullptr;
     double const value = std::strtod(found.c_str(), &end);
     if (end != found.c_str() + found.size())
-      text_.fail("expected an entry of a transform, found '" + found.substr(0, 40) + "'");
+      text_.fail("expected an entry of a transform, found '" + io::printable(found) + "'");
     return value;
   }
 

@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/gmsh/gmsh_text.hpp>
+#include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
 
 #include <algorithm>
@@ -51,7 +52,7 @@ std::int64_t Text::integer_word(char const* what) {
   std::int64_t value = 0;
   auto const [end, failure] = std::from_chars(found.data(), found.data() + found.size(), value);
   if (failure != std::errc() || end != found.data() + found.size())
-    fail_at(at_ - found.size(), "expected " + std::string(what) + ", found '" + std::string(found.substr(0, 40)) + "'");
+    fail_at(at_ - found.size(), "expected " + std::string(what) + ", found '" + io::printable(found) + "'");
   return value;
 }
 
@@ -62,7 +63,7 @@ double Text::real(char const* what) {
   double value = 0;
   auto const [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failure != std::errc() || end != text.data() + text.size())
-    fail_at(at_ - found.size(), "expected " + std::string(what) + ", found '" + std::string(found.substr(0, 40)) + "'");
+    fail_at(at_ - found.size(), "expected " + std::string(what) + ", found '" + io::printable(found) + "'");
   return value;
 }
 
@@ -106,8 +107,7 @@ std::string Text::section() {
   if (at_ >= text_.size()) return {};
   auto const found = word("a section");
   if (found.size() < 2 || found.front() != '$' || found.starts_with("$End"))
-    fail_at(at_ - found.size(), "expected the beginning of a section ($Nodes, ...), found '" +
-                                    std::string(found.substr(0, 40)) +
+    fail_at(at_ - found.size(), "expected the beginning of a section ($Nodes, ...), found '" + io::printable(found) +
                                     "'; there may be more numbers than the section before it says");
   return std::string(found.substr(1));
 }
@@ -115,7 +115,7 @@ std::string Text::section() {
 void Text::end_section(std::string const& name) {
   auto const found = word(("$End" + name).c_str());
   if (found != "$End" + name)
-    fail_at(at_ - found.size(), "expected $End" + name + ", found '" + std::string(found.substr(0, 40)) +
+    fail_at(at_ - found.size(), "expected $End" + name + ", found '" + io::printable(found) +
                                     "'; the section holds more than its counts say, or the file is damaged");
 }
 

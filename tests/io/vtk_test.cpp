@@ -1,0 +1,461 @@
+// Meshes in VTK's XML format, made here by a writer of their own: all ways to store arrays, patches, polyhedra, fields, damage.
+#include "io/damage.hpp"
+#include "io/second_order.hpp"
+#include "support/expect_error.hpp"
+#include "support/unstructured_meshes.hpp"
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ostream>
+#include <vector>
+
+namespace gridmorph::test {
+namespace {
+
+struct Storage {
+  char const* name = "ascii";
+  char const* format = "ascii";  ///< ascii, binary, appended
+  bool base64 = false;           ///< of appended arrays
+  bool wide = false;             ///< UInt64 heads
+  bool single = false, packed = false, swapped = false;
+};
+void PrintTo(Storage const& s, std::ostream* out) { *out << s.name; }
+
+/// Base 64 by its definition: bits in groups of six.
+std::string base64(std::string const& bytes) {
+  std::string const alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  std::vector<bool> bits;
+  for (unsigned char const b : bytes)
+    for (int k = 7; k >= 0; --k) bits.push_back((b >> k & 1) != 0);
+  while (bits.size() % 6 != 0) bits.push_back(false);
+  for (std::size_t n = 0; n < bits.size(); n += 6) {
+    int v = 0;
+    for (std::size_t k = 0; k < 6; ++k) v = 2 * v + (bits[n + k] ? 1 : 0);
+    out += alphabet[std::size_t(v)];
+  }
+  while (out.size() % 4 != 0) out += '=';
+  return out;
+}
+
+/// A zlib stream (RFC 1950) of one stored block.
+std::string stored(std::string const& bytes) {
+  std::string out = "\x78\x01\x01";
+  auto const n = std::uint16_t(bytes.size());
+  for (std::uint16_t const v : {n, std::uint16_t(~n)}) out += {char(v & 255), char(v >> 8)};
+  out += bytes;
+  std::uint32_t a = 1, b = 0;
+  for (unsigned char const c : bytes) {
+    a = (a + c) % 65521;
+    b = (b + a) % 65521;
+  }
+  for (int const v : {int(b >> 8), int(b & 255), int(a >> 8), int(a & 255)}) out += char(v);
+  return out;
+}
+
+struct VtuWriter {
+  Storage how;
+  std::string data = {};
+
+  template <class T>
+  void raw(T value, std::string& out) const {
+    std::array<char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), &value, sizeof(T));
+    if (how.swapped) std::reverse(bytes.begin(), bytes.end());
+    out.append(bytes.data(), bytes.size());
+  }
+  void head(std::uint64_t v, std::string& out) const { how.wide ? raw(v, out) : raw(std::uint32_t(v), out); }
+
+  template <class T>
+  std::string stored_bytes(std::vector<T> const& values, bool as_base64) const {
+    std::string bytes, top;
+    for (T const v : values) raw(v, bytes);
+    if (!how.packed) {
+      head(bytes.size(), top);
+      return as_base64 ? base64(top + bytes) : top + bytes;
+    }
+    std::size_t const block = 64, n = (bytes.size() + block - 1) / block;
+    head(n, top);
+    head(block, top);
+    head(bytes.size() % block, top);
+    std::string body;
+    for (std::size_t k = 0; k < n; ++k) {
+      std::string const one = stored(bytes.substr(k * block, block));
+      head(one.size(), top);
+      body += one;
+    }
+    return as_base64 ? base64(top) + base64(body) : top + body;
+  }
+
+  template <class T>
+  std::string array(std::string const& name, std::string const& type, int components, std::vector<T> const& values) {
+    std::string out = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                      std::to_string(components) + "\" format=\"" + how.format + "\"";
+    if (std::string(how.format) == "appended") {
+      out += " offset=\"" + std::to_string(data.size()) + "\"/>\n";
+      data += stored_bytes(values, how.base64);
+      return out;
+    }
+    out += ">\n  ";
+    if (std::string(how.format) == "binary") {
+      out += stored_bytes(values, true);
+    } else {
+      for (T const v : values) {
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "%.17g ", double(v));
+        out += text.data();
+      }
+    }
+    return out + "\n<InformationKey name=\"RANGE\"><Value index=\"0\">17</Value></InformationKey></DataArray>\n";
+  }
+
+  std::string reals(std::string const& name, int components, std::vector<double> const& values) {
+    return how.single ? array(name, "Float32", components, std::vector<float>(values.begin(), values.end()))
+                      : array(name, "Float64", components, values);
+  }
+
+  /// Cells of a mesh, then faces of its patches with the numbers 10, 20, ... in `markers` (none: without).
+  std::string run(Mesh const& mesh, std::string const& markers, bool with_faces = true) {
+    std::map<ElementType, int> const types{{ElementType::triangle, 5},     {ElementType::quadrilateral, 9},
+                                           {ElementType::tetrahedron, 10}, {ElementType::hexahedron, 12},
+                                           {ElementType::prism, 13},       {ElementType::pyramid, 14},
+                                           {ElementType::polyhedron, 42}};
+    std::vector<std::int32_t> connectivity, offsets, numbers, faces, face_offsets;
+    std::vector<std::uint8_t> type;
+    auto const end = [&](int t, std::span<Index32 const> nodes, int number) {
+      connectivity.insert(connectivity.end(), nodes.begin(), nodes.end());
+      offsets.push_back(int(connectivity.size()));
+      type.push_back(std::uint8_t(t));
+      numbers.push_back(number);
+      face_offsets.push_back(-1);
+    };
+    for (Index e = 0; e < mesh.n_elements(); ++e) {
+      end(types.at(mesh.elements.type[std::size_t(e)]), mesh.elements.nodes[e], 1);
+      if (type.back() != 42) continue;
+      std::array<Index32, max_face_corners> room{};
+      faces.push_back(n_sides(mesh, e));
+      for (int f = 0; f < n_sides(mesh, e); ++f) {
+        auto const nodes = side_nodes(mesh, e, f, room);
+        faces.push_back(int(nodes.size()));
+        faces.insert(faces.end(), nodes.begin(), nodes.end());
+      }
+      face_offsets.back() = int(faces.size());
+    }
+    int number = 0;
+    for (auto const& patch : mesh.patches) {
+      number += 10;
+      for (Index f = 0; f < patch.faces.size() && with_faces; ++f) {
+        std::size_t const n = patch.faces[f].size();
+        end(n == 2 ? 3 : n == 3 ? 5 : 9, patch.faces[f], number);
+      }
+    }
+    std::vector<double> places, pressure;
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      Vec3 const p = mesh.coordinates[n];
+      places.insert(places.end(), {p.x, p.y, p.z});
+      pressure.push_back(double(n));
+    }
+    std::string out = std::string(
+                          "<?xml version=\"1.0\"?>\n<!-- a <comment> -->\n<VTKFile type=\"UnstructuredGrid\" "
+                          "version=\"1.0\" byte_order=\"") +
+                      (how.swapped ? "BigEndian" : "LittleEndian") + "\" header_type=\"" +
+                      (how.wide ? "UInt64" : "UInt32") + "\"" +
+                      (how.packed ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+                      ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(mesh.n_nodes()) +
+                      "\" NumberOfCells=\"" + std::to_string(type.size()) + "\">\n";
+    out += "<Points>\n" + reals("Points", 3, places) + "</Points>\n<PointData Scalars=\"p\">\n" +
+           reals("p", 1, pressure) + "</PointData>\n";
+    if (!markers.empty()) out += "<CellData>\n" + array(markers, "Int32", 1, numbers) + "</CellData>\n";
+    out += "<Cells>\n" + array("connectivity", "Int32", 1, connectivity) + array("offsets", "Int32", 1, offsets) +
+           array("types", "UInt8", 1, type);
+    if (!faces.empty()) out += array("faces", "Int32", 1, faces) + array("faceoffsets", "Int32", 1, face_offsets);
+    out += "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
+    if (std::string(how.format) == "appended")
+      out += std::string("<AppendedData encoding=\"") + (how.base64 ? "base64" : "raw") + "\">\n _" + data +
+             "\n</AppendedData>\n";
+    return out + "</VTKFile>\n";
+  }
+};
+
+Mesh box() { return to_prisms_and_tetrahedra(unit_box({2, 3, 3}), 1); }
+
+class Vtu : public testing::TestWithParam<Storage> {
+ protected:
+  Mesh read(Mesh const& mesh, std::string const& markers = "CellEntityIds") {
+    write_bytes(path_, VtuWriter{GetParam()}.run(mesh, markers));
+    return read_mesh(path_);
+  }
+  /// Arrays packed by zlib need it.
+  void SetUp() override {
+    if (!GetParam().packed) return;
+    try {
+      read(box());
+    } catch (IoError const& e) {
+      if (std::string(e.what()).find("without zlib") == std::string::npos) throw;
+      GTEST_SKIP() << e.what();
+    }
+  }
+  TemporaryFolder folder_;
+  std::string const path_ = folder_.file("mesh.vtu");
+};
+INSTANTIATE_TEST_SUITE_P(As, Vtu,
+                         testing::Values(Storage{}, Storage{"single", "ascii", false, false, true},
+                                         Storage{"binary", "binary"}, Storage{"binary64", "binary", false, true, true},
+                                         Storage{"packed", "binary", false, false, false, true},
+                                         Storage{"raw", "appended", false, true},
+                                         Storage{"rawpacked", "appended", false, true, false, true},
+                                         Storage{"base64", "appended", true},
+                                         Storage{"base64packed", "appended", true, true, true, true},
+                                         Storage{"big", "appended", false, false, false, false, true},
+                                         Storage{"bigpacked", "binary", false, true, false, true, true}),
+                         [](auto const& info) { return std::string(info.param.name); });
+
+TEST_P(Vtu, MeshesAreReadAsTheyAre) {
+  for (Mesh const& want : {box(), to_hexahedra(unit_box({2, 2, 3})), flat_box(4, 3, 1)}) {
+    Mesh const mesh = read(want);
+    EXPECT_EQ(look_at_mesh(path_).format, MeshFormat::vtk);
+    EXPECT_EQ(mesh_kind(path_), MeshKind::unstructured);
+    EXPECT_EQ(mesh.dimension, want.dimension);
+    EXPECT_EQ(mesh.elements.type, want.elements.type);
+    EXPECT_EQ(mesh.elements.nodes.item, want.elements.nodes.item);
+    ASSERT_EQ(mesh.n_nodes(), want.n_nodes());
+    for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(mesh.coordinates[n], want.coordinates[n]);
+    ASSERT_EQ(mesh.patches.size(), want.patches.size());
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+      EXPECT_EQ(mesh.patches[p].name, "CellEntityIds " + std::to_string(10 * (p + 1)));
+      EXPECT_EQ(mesh.patches[p].faces.item, want.patches[p].faces.item);
+    }
+  }
+}
+
+TEST_P(Vtu, OnlyPointsThatMoveChange) {
+  read(box());
+  expect_coordinates_replaced(path_, folder_.file("out.vtu"), GetParam().single);
+}
+
+/// Fields go beside those that are there; everything else reads as before, wherever it has moved to.
+TEST_P(Vtu, FieldsComeBesideWhatIsThere) {
+  Mesh const mesh = read(box());
+  Coordinates moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.01 * double(n % 7), 0, 1.0 / 3});
+  OutputFields fields;
+  fields.displacement = true;
+  fields.cells.push_back({"Size", std::vector<double>(std::size_t(mesh.n_elements()), 0.5)});
+  std::string const out = folder_.file("out.vtu");
+  write_morphed(path_, out, mesh, moved, fields);
+  Mesh const back = read_mesh(out);
+  EXPECT_EQ(back.elements.nodes.item, mesh.elements.nodes.item);
+  ASSERT_EQ(back.patches.size(), mesh.patches.size());
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+    EXPECT_EQ(back.patches[p].faces.item, mesh.patches[p].faces.item);
+  std::string const text = bytes_of(out);
+  expect_all_in(
+      text, {"Name=\"p\"", "Name=\"Displacement\" NumberOfComponents=\"3\"", "Name=\"Size\" NumberOfComponents=\"1\""});
+  // Again onto that: names are taken now.
+  write_morphed(out, out, back, mesh.coordinates, fields);
+  expect_all_in(bytes_of(out), {"Name=\"MorphDisplacement\"", "Name=\"MorphSize\""});
+  read_mesh(out);
+}
+
+TEST_P(Vtu, DamagedFilesGiveAMeshOrAnError) {
+  std::string const whole =
+      VtuWriter{GetParam()}.run(to_prisms_and_tetrahedra(unit_box({1, 1, 2}), 1), "CellEntityIds");
+  std::string const bad = folder_.file("bad.vtu");
+  expect_refused_where_cut(whole, bad, 7, 2);
+  expect_no_harm_where_overwritten(whole, bad, 400);
+}
+
+class VtuRead : public testing::Test {
+ protected:
+  Mesh read(std::string const& text) {
+    write_bytes(path_, text);
+    return read_mesh(path_);
+  }
+  TemporaryFolder folder_;
+  std::string const path_ = folder_.file("mesh.vtu");
+};
+
+TEST_F(VtuRead, FacesWithoutCellsAreThePatchBoundary) {
+  Mesh const bare = read(VtuWriter{}.run(box(), "", false));
+  ASSERT_EQ(bare.patches.size(), 1U);
+  EXPECT_EQ(bare.patches[0].name, "boundary");
+  Index faces = 0;
+  Mesh const all = box();
+  for (auto const& patch : all.patches) faces += patch.faces.size();
+  EXPECT_EQ(bare.patches[0].faces.size(), faces);
+  // Without numbers the faces are one surface; of a part of them the rest is the boundary.
+  EXPECT_EQ(read(VtuWriter{}.run(box(), "")).patches.size(), 1U);
+  Mesh part = box();
+  part.patches.resize(2);
+  Mesh const mixed = read(VtuWriter{}.run(part, "medit:ref"));
+  ASSERT_EQ(mixed.patches.size(), 3U);
+  EXPECT_EQ(mixed.patches[1].name, "medit:ref 20");
+  EXPECT_EQ(mixed.patches[2].name, "boundary");
+}
+
+/// Blocks as hexahedra; names with characters that XML has other uses for.
+TEST_F(VtuRead, WhatIsWrittenIsReadAgain) {
+  for (Mesh mesh : {box(), to_hexahedra(unit_box({2, 2, 2})), flat_box(3, 2, 1), unit_box({2, 3, 2})}) {
+    mesh.patches[0].name = "blade \"<1>\" & more";
+    OutputFields fields;
+    fields.displacement = true;
+    Mesh const want = mesh.is_structured() ? to_hexahedra(mesh) : mesh;
+    fields.cells.push_back({"Size", std::vector<double>(std::size_t(want.n_elements()), 0.5)});
+    write_vtk(path_, mesh, mesh.coordinates, fields);
+    Mesh const back = read_mesh(path_);
+    EXPECT_EQ(back.dimension, want.dimension);
+    EXPECT_EQ(back.elements.type, want.elements.type);
+    EXPECT_EQ(back.elements.nodes.item, want.elements.nodes.item);
+    ASSERT_EQ(back.patches.size(), want.patches.size());
+    for (std::size_t p = 0; p < back.patches.size(); ++p) {
+      EXPECT_EQ(back.patches[p].name, want.patches[p].name);
+      EXPECT_EQ(back.patches[p].faces.item, want.patches[p].faces.item);
+    }
+    for (Index n = 0; n < back.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], want.coordinates[n]);
+    if (mesh.is_structured()) continue;
+    // The same file from a mesh in another order.
+    Mesh scattered = mesh;
+    FileOrder order;
+    for (Index n = 0; n < mesh.n_nodes(); ++n) order.node.push_back(Index32(mesh.n_nodes() - 1 - n));
+    for (Index e = 0; e < mesh.n_elements(); ++e) order.element.push_back(Index32(mesh.n_elements() - 1 - e));
+    reorder(scattered, order);
+    std::string const first = bytes_of(path_);
+    write_vtk(path_, scattered, scattered.coordinates, fields);
+    EXPECT_EQ(bytes_of(path_), first);
+  }
+}
+
+/// In the order of vtkQuadraticTetra, vtkQuadraticPyramid, vtkBiQuadraticQuadraticWedge and vtkTriQuadraticHexahedron; and back.
+TEST_F(VtuRead, NodesOfSecondOrderElementsComeInTheOrderOfTheStandard) {
+  struct Case {
+    ElementType type;
+    int vtk_type;
+    std::vector<std::vector<int>> amid;
+  };
+  std::vector<std::vector<int>> const hexahedron{{0, 1},
+                                                 {1, 2},
+                                                 {2, 3},
+                                                 {3, 0},
+                                                 {4, 5},
+                                                 {5, 6},
+                                                 {6, 7},
+                                                 {7, 4},
+                                                 {0, 4},
+                                                 {1, 5},
+                                                 {2, 6},
+                                                 {3, 7},
+                                                 {0, 3, 4, 7},
+                                                 {1, 2, 5, 6},
+                                                 {0, 1, 4, 5},
+                                                 {2, 3, 6, 7},
+                                                 {0, 1, 2, 3},
+                                                 {4, 5, 6, 7},
+                                                 {0, 1, 2, 3, 4, 5, 6, 7}};
+  std::vector<std::vector<int>> const prism{{0, 1}, {1, 2}, {2, 0}, {3, 4},       {4, 5},       {5, 3},
+                                            {0, 3}, {1, 4}, {2, 5}, {0, 1, 3, 4}, {1, 2, 4, 5}, {0, 2, 3, 5}};
+  auto const first = [](auto const& list, std::size_t n) {
+    return std::vector<std::vector<int>>(list.begin(), list.begin() + std::ptrdiff_t(n));
+  };
+  for (Case const& one :
+       {Case{ElementType::tetrahedron, 24, {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}},
+        Case{ElementType::pyramid, 27, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}}},
+        Case{ElementType::prism, 26, first(prism, 9)}, Case{ElementType::prism, 32, prism},
+        Case{ElementType::hexahedron, 25, first(hexahedron, 12)}, Case{ElementType::hexahedron, 29, hexahedron}}) {
+    std::string points, nodes;
+    auto const places = places_amid(one.type, one.amid);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      points +=
+          std::to_string(places[n].x) + " " + std::to_string(places[n].y) + " " + std::to_string(places[n].z) + " ";
+      nodes += std::to_string(n) + " ";
+    }
+    auto const array = [](std::string const& type, std::string const& name, std::string const& values) {
+      return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+             (name == "Points" ? "3" : "1") + "\" format=\"ascii\">" + values + "</DataArray>";
+    };
+    Mesh const mesh =
+        read("<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"" +
+             std::to_string(places.size()) + "\" NumberOfCells=\"1\"><Points>" + array("Float64", "Points", points) +
+             "</Points><Cells>" + array("Int64", "connectivity", nodes) +
+             array("Int64", "offsets", std::to_string(places.size())) +
+             array("UInt8", "types", std::to_string(one.vtk_type)) + "</Cells></Piece></UnstructuredGrid></VTKFile>");
+    ASSERT_EQ(mesh.elements.type[0], one.type);
+    ASSERT_EQ(mesh.elements.nodes[0].size(), places.size());
+    expect_nodes_amid(mesh);
+    std::string const out = folder_.file("out.vtu");
+    write_vtk(out, mesh, mesh.coordinates);
+    Mesh const back = read_mesh(out);
+    EXPECT_EQ(back.elements.nodes.item, mesh.elements.nodes.item);
+  }
+}
+
+/// A prism of six sides, its faces looking anywhere.
+TEST_F(VtuRead, PolyhedraAreReadWrittenAndTurnedOutwards) {
+  std::string points, ring = "6 0 1 2 3 4 5", top = "6 6 7 8 9 10 11", sides;
+  for (int k = 0; k < 12; ++k)
+    points += std::to_string(std::cos(k * 1.0471975511965976)) + " " +
+              std::to_string(std::sin(k * 1.0471975511965976)) + " " + std::to_string(k / 6) + "\n";
+  for (int k = 0; k < 6; ++k) {
+    int const next = (k + 1) % 6;
+    sides += " 4 " + std::to_string(k) + " " + std::to_string(k % 2 == 0 ? next : k + 6) + " " +
+             std::to_string(next + 6) + " " + std::to_string(k % 2 == 0 ? k + 6 : next);
+  }
+  auto const array = [](std::string const& type, std::string const& name, std::string const& values) {
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+           (name == "Points" ? "3" : "1") + "\" format=\"ascii\">" + values + "</DataArray>\n";
+  };
+  std::string const text =
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"12\" NumberOfCells=\"1\"><Points>" +
+      array("Float64", "Points", points) + "</Points><Cells>" +
+      array("Int64", "connectivity", "0 1 2 3 4 5 6 7 8 9 10 11") + array("Int64", "offsets", "12") +
+      array("UInt8", "types", "42") + array("Int64", "faces", "8 " + ring + " " + top + sides) +
+      array("Int64", "faceoffsets", "45") + "</Cells></Piece></UnstructuredGrid></VTKFile>";
+  Mesh const mesh = read(text);
+  ASSERT_EQ(mesh.elements.type, (std::vector{ElementType::polyhedron}));
+  double volume = 0;
+  for (Index f = 0; f < mesh.polyhedra.faces.size(); ++f) {
+    auto const face = mesh.polyhedra.faces[f];
+    for (std::size_t k = 2; k < face.size(); ++k)
+      volume += dot(mesh.coordinates[face[0]], cross(mesh.coordinates[face[k - 1]], mesh.coordinates[face[k]])) / 6;
+  }
+  EXPECT_NEAR(volume, 1.5 * std::sqrt(3.0), 1e-5);
+  std::string const out = folder_.file("out.vtu");
+  write_vtk(out, mesh, mesh.coordinates);
+  Mesh const back = read_mesh(out);
+  EXPECT_EQ(back.polyhedra.faces.item, mesh.polyhedra.faces.item);
+  std::string const bad = folder_.file("bad.vtu");
+  expect_refused_where_cut(text, bad, 3, 0);
+  expect_no_harm_where_overwritten(text, bad, 1000);
+  expect_no_harm_where_overwritten(bytes_of(out), bad, 400);
+}
+
+TEST_F(VtuRead, ErrorsSayWhereWhatAndWhatToDo) {
+  auto const error = [&](std::string const& what, std::string const& by) {
+    std::string text = VtuWriter{}.run(flat_box(2, 1, 1), "CellEntityIds");
+    auto const at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return message_of<Error>([&] { read(text.replace(at, what.size(), by)); });
+  };
+  expect_all_in(error("NumberOfPoints=\"6\"", "NumberOfPoints=\"7\""),
+                {"mesh.vtu:7", "'Points' holds 18 values", "21 are wanted"});
+  expect_all_in(error("NumberOfPoints=\"6\"", "NumberOfPoints=\"-6\""), {"mesh.vtu:5", "NumberOfPoints=\"-6\""});
+  expect_all_in(error("NumberOfPoints=\"6\"", "NumberOfPoints=\"99999999999999\""),
+                {"more points or cells than can be handled"});
+  expect_all_in(error("format=\"ascii\"", "format=\"octal\""), {"mesh.vtu:7", "'octal'", "ascii, binary and appended"});
+  expect_all_in(error("type=\"Float64\"", "type=\"Float16\""), {"'Float16'", "not read"});
+  expect_all_in(error("header_type=\"UInt32\"", "compressor=\"vtkLZ4DataCompressor\""),
+                {"mesh.vtu:3", "vtkLZ4DataCompressor", "without"});
+  expect_all_in(error("  9 9", "  9 69"), {"type 69", "cells of first and second order"});
+  expect_all_in(error("</Points>", "</Point>"), {"</Points> is expected"});
+  expect_all_in(error("1 0 0", "1 nan 0"), {"not finite numbers"});
+  expect_all_in(error("1 0 0", "1 one 0"), {"mesh.vtu:8", "expected a number, found 'one'"});
+  expect_all_in(error("\"connectivity\"", "\"nodes\""), {"no DataArray 'connectivity'"});
+}
+
+}  // namespace
+}  // namespace gridmorph::test
