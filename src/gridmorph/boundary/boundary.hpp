@@ -43,6 +43,8 @@ class Boundary {
   [[nodiscard]] BoundarySurface const& surface(int patch) const { return surfaces_[std::size_t(patch)]; }
   /// Whether the patches are lines, the sides of a plane mesh.
   [[nodiscard]] bool is_plane() const { return plane_; }
+  /// From the plane of such a mesh to the second places of its nodes.
+  [[nodiscard]] Vec3 const& across() const { return across_; }
 
   /// Positions of the nodes of patches, one after another. Lines come twice, the second time across the plane of the mesh: as
   /// the edges of strips they have planes and profiles.

@@ -1,3 +1,4 @@
+#include <gridmorph/boundary/face_grids.hpp>
 #include <gridmorph/boundary/patch_surface.hpp>
 
 #include <gridmorph/kernels/box_tree.hpp>
@@ -91,6 +92,33 @@ std::vector<GridFacet> PatchSurface::facets() const {
     for (int b = 0; b + 1 < grid.extent[1]; ++b)
       for (int a = 0; a + 1 < grid.extent[0]; ++a)
         add({grid.at(a, b), grid.at(a + 1, b), grid.at(a + 1, b + 1), grid.at(a, b + 1)}, 4, grid.inward);
+  }
+  return out;
+}
+
+std::optional<PatchSurface> PatchSurface::in_grids(Boundary const& boundary) const {
+  PatchSurface out = *this;
+  out.grids.clear();
+  out.gridded = true;
+  for (PatchGrid const& own : grids) {
+    if (own.faces.empty()) {
+      out.grids.push_back(own);
+      continue;
+    }
+    std::vector<Vec3> at;
+    for (int const v : own.vertex) at.push_back(points[std::size_t(v)]);
+    FaceGrids const found = find_face_grids(boundary.surface(own.patch).faces, at);
+    if (found.left_over > 0 || lines) return std::nullopt;
+    for (FaceGrid const& grid : found.grids) {
+      PatchGrid piece;
+      piece.patch = own.patch;
+      piece.extent = grid.extent;
+      for (int const n : grid.point) {
+        piece.vertex.push_back(own.vertex[std::size_t(n)]);
+        piece.nodes.push_back(own.nodes[std::size_t(n)]);
+      }
+      out.grids.push_back(std::move(piece));
+    }
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <gridmorph/geometry/point_numbers.hpp>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace gridmorph {
@@ -38,6 +39,9 @@ struct PatchSurface {
   /// The quadrilaterals; those with two corners in one vertex are triangles, those with fewer are left out. All are
   /// right-handed about normals that point into the mesh.
   [[nodiscard]] std::vector<GridFacet> facets() const;
+  /// The same surface with faces of elements put together into grids (find_face_grids()), several of a patch where it takes them;
+  /// nothing where faces are left over. Cost O(faces, log).
+  [[nodiscard]] std::optional<PatchSurface> in_grids(Boundary const& boundary) const;
   /// Vertices next to one another along grid lines, or along the sides of faces; ascending, none twice.
   [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
 };

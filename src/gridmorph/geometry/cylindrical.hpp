@@ -1,4 +1,5 @@
-// Positions and motions as a machine sees them: along its axis, away from it, and around it.
+// Positions and motions as a machine sees them: along its axis, away from it, and around it; in a linear cascade along the flow,
+// along the span, and along the pitch.
 #pragma once
 
 #include <gridmorph/geometry/axis.hpp>
@@ -14,18 +15,33 @@ struct MeridionalPoint {
   double radius = 0;
 };
 
-/// A displacement in cylindrical components: lengths, and an angle right-handed about the axis.
+/// A displacement in cylindrical components: lengths, and an angle right-handed about the axis (linear cascades: a length along
+/// the pitch).
 struct CylindricalMotion {
   double axial = 0;
   double radial = 0;
   double angle_rad = 0;
 };
 
-/// The frame of a machine's axis.
+/// The frame of a machine's axis, or of a linear cascade: blades side by side along a straight line, what an annulus becomes when its
+/// radius grows without limit. There axial position, radius and angle are the positions along the axis (the way of the flow), along the
+/// span = axis x pitch, and along the pitch, all lengths from the origin.
 class CylindricalFrame {
  public:
   explicit CylindricalFrame(Axis const& axis)
       : origin_(axis.origin), direction_((1 / norm(axis.direction)) * axis.direction) {}
+  /// Of a linear cascade. Precondition: the pitch is across the axis.
+  CylindricalFrame(Axis const& axis, Vec3 const& pitch) : CylindricalFrame(axis) {
+    pitch_ = (1 / norm(pitch)) * pitch;
+    span_ = cross(direction_, pitch_);
+    linear_ = true;
+  }
+
+  /// Whether blades stand along a straight line.
+  [[nodiscard]] bool is_linear() const { return linear_; }
+  /// Linear: units along pitch and span.
+  [[nodiscard]] Vec3 const& pitch() const { return pitch_; }
+  [[nodiscard]] Vec3 const& span() const { return span_; }
 
   [[nodiscard]] Vec3 const& origin() const { return origin_; }
   [[nodiscard]] Vec3 const& direction() const { return direction_; }
@@ -33,12 +49,14 @@ class CylindricalFrame {
   [[nodiscard]] MeridionalPoint meridional(Vec3 const& p) const {
     Vec3 const d = p - origin_;
     double const a = dot(d, direction_);
+    if (linear_) return {a, dot(d, span_)};
     return {a, norm(d - a * direction_)};
   }
 
   /// What displacement u does to point p. Every component is a product with u, so that u = 0 gives exact zeros.
   [[nodiscard]] CylindricalMotion motion(Vec3 const& p, Vec3 const& u) const {
     if (u == Vec3{0, 0, 0}) return {};
+    if (linear_) return {dot(u, direction_), dot(u, span_), dot(u, pitch_)};
     Vec3 const d = p - origin_;
     Vec3 const q = d - dot(d, direction_) * direction_;
     double const axial = dot(u, direction_);
@@ -51,6 +69,7 @@ class CylindricalFrame {
   /// The displacement of p that has these components: the inverse of motion(). Exactly zero for zero components; an
   /// angle alone keeps axial position and radius to round-off.
   [[nodiscard]] Vec3 displacement(Vec3 const& p, CylindricalMotion const& m) const {
+    if (linear_) return m.axial * direction_ + m.radial * span_ + m.angle_rad * pitch_;
     Vec3 const d = p - origin_;
     Vec3 const q = d - dot(d, direction_) * direction_;
     double const s = std::sin(m.angle_rad), half = std::sin(0.5 * m.angle_rad);
@@ -66,6 +85,8 @@ class CylindricalFrame {
  private:
   Vec3 origin_;
   Vec3 direction_;
+  Vec3 pitch_, span_;  ///< linear
+  bool linear_ = false;
 };
 
 }  // namespace gridmorph

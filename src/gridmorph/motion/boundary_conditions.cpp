@@ -109,8 +109,11 @@ class Finder {
         out_.standing_patches.push_back(int(p));
   }
 
-  /// Patches of no kind are walls as far as anyone knows.
+  /// Patches of no kind are walls as far as anyone knows, but for those that their rule makes the ends or sides of a blade row.
   [[nodiscard]] bool is_wall(int p) const {
+    Rule const& rule = rules().patch_rule(p);
+    if (std::holds_alternative<CircumferentialSlideRule>(rule) || std::holds_alternative<FollowRule>(rule))
+      return false;
     PatchKind const kind = mesh_.patches[std::size_t(p)].kind;
     return kind == PatchKind::wall || kind == PatchKind::other;
   }
@@ -141,8 +144,11 @@ class Finder {
       for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
         if (is_explicit(int(p))) visit(rules().patch[p].rule, int(p), -1, out_.nodes_of(int(p)));
       for (std::size_t c = 0; c < mesh_.connections.size(); ++c)
-        if (int const r = rules().interface[c].rule; r >= 0 && mesh_.connections[c].periodic)
+        if (int const r = rules().interface[c].rule; r >= 0 && mesh_.connections[c].periodic) {
+          // On both sides: files may store a connection from one alone, and copies have to move alike.
           visit(r, -1, int(c), mesh_.connections[c].nodes);
+          visit(r, -1, int(c), mesh_.connections[c].donor_nodes);
+        }
     };
     each_explicit([&](int, int p, int, auto const& nodes) {
       bool const driving = p >= 0 && std::binary_search(out_.driving_patches.begin(), out_.driving_patches.end(), p);

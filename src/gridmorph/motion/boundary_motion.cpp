@@ -68,9 +68,8 @@ struct BoundaryMotion::Impl {
       auto const* sections = std::get_if<SectionsRule>(&rules[r].rule);
       if (sections == nullptr) continue;
       try {
-        auto const patches = patches_of(int(r));
-        require_grids(patches);
-        sections_of_rule[r] = std::make_unique<SectionMotion>(*boundary, motion, *sections, patches, *slip, notes);
+        sections_of_rule[r] =
+            std::make_unique<SectionMotion>(*boundary, motion, *sections, patches_of(int(r)), *slip, notes);
       } catch (MotionError const& e) {
         problems.add(label(int(r)) + ": " + e.what());
       }
@@ -134,20 +133,8 @@ struct BoundaryMotion::Impl {
     if (patches.empty()) throw MotionError("of: names no patch");
   }
 
-  /// Sections are found along the grid lines of a blade's patches.
-  void require_grids(std::vector<int> const& patches) const {
-    Mesh const& mesh = boundary->mesh();
-    for (int const p : patches)
-      if (!boundary->surface(p).grid)
-        throw MotionError(
-            "patch " + describe_patch(mesh, mesh.patches[std::size_t(p)]) +
-            " is made of faces of elements; sections of a blade are found along the grid lines of blocks. "
-            "Give the displacement by rigid, formula, field or target");
-  }
-
   RowMotion const& row(std::vector<int> const& blades) {
     if (auto const known = rows.find(blades); known != rows.end()) return known->second;
-    require_grids(blades);
     require_direct(blades);
     auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[p].rule, points, out);
@@ -254,6 +241,11 @@ SlipSurface const* BoundaryMotion::slip_surface(int patch) const {
 bool BoundaryMotion::slides_upstream(int rule, Vec3 const& point) const {
   RowMotion const* row = impl_->row_of_rule[rule];
   return row != nullptr && row->is_upstream(point);
+}
+
+bool BoundaryMotion::gives_way(int rule, int patch) const {
+  RowMotion const* row = impl_->row_of_rule[std::size_t(rule)];
+  return row != nullptr && patch >= 0 && row->gives_way_to(patch);
 }
 
 std::vector<TargetReach> BoundaryMotion::target_reach(Coordinates const& morphed) const {

@@ -18,7 +18,6 @@ namespace gridmorph {
 /// Cost: O(nodes of the patches involved) to construct, O(log n) per point to evaluate.
 class BoundaryMotion {
  public:
-  /// Rules about the sections of a blade (sections, circumferential-slide, follow) need patches of blocks: MotionError otherwise.
   BoundaryMotion(std::shared_ptr<Boundary const> boundary, ResolvedMotion const& motion);
   /// Of a mesh of blocks.
   BoundaryMotion(Mesh const& mesh, ResolvedMotion const& motion);
@@ -50,6 +49,10 @@ class BoundaryMotion {
 
   /// Whether a point lies upstream of the middle of the blade that circumferential-slide rule number r names.
   [[nodiscard]] bool slides_upstream(int rule, Vec3 const& point) const;
+
+  /// Whether what rule number r gives to nodes of a patch is the rule of that patch, seen through sections cut from its facets: the patch's
+  /// own rule says it better.
+  [[nodiscard]] bool gives_way(int rule, int patch) const;
 
   /// How far the nodes of each target rule ended from their target; rules in order, without those that go a share of the way only.
   [[nodiscard]] std::vector<TargetReach> target_reach(Coordinates const& morphed) const;

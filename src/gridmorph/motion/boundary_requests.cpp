@@ -26,6 +26,7 @@ class Evaluation {
   Evaluation(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion)
       : mesh_(mesh),
         boundary_(boundary),
+        rules_(motion),
         motion_(motion.motion()),
         tolerance_(motion_.conformity_tolerance * motion.boundary().size()),
         values_(std::size_t(boundary.n_boundary_nodes)),
@@ -81,12 +82,14 @@ class Evaluation {
   /// Whether the value of `own` gives way to that of `other` without a word.
   [[nodiscard]] bool yields(Request const& own, Request const& other) const {
     if (is_prescribed(own) != is_prescribed(other)) return is_prescribed(own);
+    if (own.rule != other.rule && rules_.gives_way(own.rule, other.patch)) return true;
     return boundary_.defaults_yield && is_default(own) && !is_default(other) &&
            mesh_.zone_of(own.node) != mesh_.zone_of(other.node);
   }
 
   Mesh const& mesh_;
   BoundaryRequests const& boundary_;
+  BoundaryMotion const& rules_;
   ResolvedMotion const& motion_;
   double tolerance_;
   std::vector<Vec3> values_;

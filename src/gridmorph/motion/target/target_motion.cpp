@@ -8,6 +8,7 @@
 #include <gridmorph/motion/target/target_sections.hpp>
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace gridmorph {
@@ -100,7 +101,7 @@ TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& pat
   if (patches.empty()) throw MotionError(name + ": it moves patches only, and names none");
   if (!(surface_.size > 0)) throw MotionError(name + ": the nodes of its patches are one point");
   if (!surface_.gridded) {
-    map_faces(boundary, rule, notes);
+    map_faces(boundary, rule, axis, notes);
     return;
   }
   bool const automatic = rule.mapping == Mapping::automatic;
@@ -123,12 +124,7 @@ TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& pat
                         "); give one of the same size each, or mapping = \"projection\"");
   }
   if (rule.mapping == Mapping::sections || (automatic && !target.sections.empty())) {
-    mapping_ = Mapping::sections;
-    SectionMapping mapped = map_sections(boundary, surface_, rule, axis, name, notes);
-    displacement_ = std::move(mapped.displacement);
-    reached_ = std::move(mapped.mapped);
-    facets_ = std::move(mapped.facets);
-    to_target_ = std::move(mapped.to_target);
+    map_onto_sections(boundary, rule, axis, notes);
     return;
   }
   mapping_ = Mapping::projection;
@@ -138,7 +134,18 @@ TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& pat
 
 TargetMotion::TargetMotion(TargetMotion const& other, double share) : TargetMotion(other) { share_ = share; }
 
-void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, std::vector<std::string>& notes) {
+void TargetMotion::map_onto_sections(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
+                                     std::vector<std::string>& notes) {
+  mapping_ = Mapping::sections;
+  SectionMapping mapped = map_sections(boundary, surface_, rule, axis, name_, notes);
+  displacement_ = std::move(mapped.displacement);
+  reached_ = std::move(mapped.mapped);
+  facets_ = std::move(mapped.facets);
+  to_target_ = std::move(mapped.to_target);
+}
+
+void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
+                             std::vector<std::string>& notes) {
   TargetGeometry const& target = *rule.target;
   for (PatchGrid const& grid : surface_.grids)
     if (grid.faces.empty())
@@ -162,11 +169,17 @@ void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, s
     displacement_ = project_to_profile(surface_, target, name_, notes);
     return;
   }
-  if (rule.mapping == Mapping::sections || !target.sections.empty())
-    throw MotionError(
-        name_ +
-        ": sections need the structured surface of a blade or wing, and this mesh is unstructured; give a "
-        "surface (STL, CGNS), which its nodes are projected to");
+  if (rule.mapping == Mapping::sections || !target.sections.empty()) {
+    std::optional<PatchSurface> grids = surface_.in_grids(boundary);
+    if (!grids)
+      throw MotionError(name_ +
+                        ": sections go to rows of nodes around the blade or wing, and some faces of its patches are no "
+                        "quadrilaterals "
+                        "in rows; give a surface (STL, CGNS), which its nodes are projected to");
+    surface_ = std::move(*grids);
+    map_onto_sections(boundary, rule, axis, notes);
+    return;
+  }
   facets_ = target_facets(target, name_);
   displacement_ = project_to_target(surface_, facets_, rule.crease_angle_deg, name_, notes);
 }

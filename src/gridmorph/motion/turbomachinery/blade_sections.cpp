@@ -133,6 +133,7 @@ std::optional<SpanTable> edge_table(std::vector<std::vector<SpanLine>> const& co
 
 BladeSections::BladeSections(BladeSurface const& blade) {
   std::vector<std::vector<SpanLine>> contours;
+  sliced_ = blade.sliced;
   span_lo_ = -std::numeric_limits<double>::infinity();
   span_hi_ = std::numeric_limits<double>::infinity();
   double lowest = span_hi_, highest = span_lo_;

@@ -31,6 +31,8 @@ class BladeSections {
   /// Chord fraction 0 is the leading edge, 1 the trailing edge; clamped to these.
   [[nodiscard]] CylindricalMotion motion(double span, double chord_fraction) const;
 
+  /// BladeSurface::sliced.
+  [[nodiscard]] bool sliced() const { return sliced_; }
   [[nodiscard]] double first_span() const { return span_lo_; }
   [[nodiscard]] double last_span() const { return span_hi_; }
   /// Smallest leading and largest trailing edge position: the blade's axial range.
@@ -42,6 +44,7 @@ class BladeSections {
 
   [[nodiscard]] Components tabulated(double span, double chord_fraction) const;
 
+  bool sliced_ = false;
   double span_lo_ = 0, span_hi_ = 0;
   int n_sections_ = 0;
   std::vector<Components> motion_;  ///< (n_sections, n_chord), chord fastest

@@ -1,13 +1,16 @@
 #include <gridmorph/motion/turbomachinery/blade_surface.hpp>
 
+#include <gridmorph/boundary/face_grids.hpp>
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/detail/spanwise_lines.hpp>
+#include <gridmorph/motion/turbomachinery/surface_slices.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace gridmorph {
 
@@ -17,56 +20,219 @@ class Stitcher {
  public:
   Stitcher(Boundary const& boundary, std::vector<int> const& patches, BladeInput const& input,
            std::vector<std::string>& notes)
-      : boundary_(boundary), input_(input), notes_(notes), numbers_(1e-7 * box_diagonal(boundary.points(patches))) {
-    for (int p : patches) add_patch(p);
-  }
+      : boundary_(boundary),
+        patches_(patches),
+        input_(input),
+        notes_(notes),
+        numbers_(1e-7 * box_diagonal(boundary.points(patches))) {}
 
   BladeSurface run() {
-    if (lines_.lines().empty())
-      throw MotionError(
-          "no surface grid line of the blade runs spanwise: "
-          "check the axis, and that `of` names its sides");
-    lines_.join_in_span();
-    blade_.lines = lines_.lines();
-    join_around();
+    for (int const p : patches_) add_patch(p);
+    if (!sliced_) stitch();
+    // What looks like grid lines of elements need not run from end to end of the span.
+    if (!sliced_ && !of_blocks_ && !lines_reach()) sliced_ = true;
+    if (sliced_) slice();
+    for (int const p : left_out_)
+      notes_.push_back("patch " + describe_patch(boundary_.mesh(), boundary_.mesh().patches[std::size_t(p)]) +
+                       " has no spanwise grid lines (a tip face?) and is left "
+                       "out of the blade's sections");
     return std::move(blade_);
   }
 
  private:
-  /// One patch as a grid of points: direction 0 varies fastest.
+  /// Points of one patch as a grid: direction 0 varies fastest.
   struct Piece {
     std::array<int, 2> extent{};
     std::vector<Vec3> points;
     std::vector<double> span;
+    std::vector<BladeNode> nodes;
   };
 
-  void add_patch(int p) {
-    Piece piece;
-    piece.extent = boundary_.surface(p).grid.value();
-    piece.points = boundary_.points(p);
-    if (piece.extent[0] < 2 || piece.extent[1] < 2) return;
+  /// All nodes of a patch; of a plane mesh twice, as Boundary::points() has them.
+  Piece nodes_of(int p) {
+    Piece all;
+    all.points = boundary_.points(p);
+    auto const n_own = boundary_.surface(p).nodes.size();
+    std::vector<Vec3> displacement(all.points.size());
+    input_.displacement(p, std::span(all.points).first(n_own), std::span(displacement).first(n_own));
+    for (std::size_t n = n_own; n < all.points.size(); ++n) displacement[n] = displacement[n - n_own];
+    for (std::size_t n = 0; n < all.points.size(); ++n) {
+      FlowPosition const at = input_.position(input_.frame.meridional(all.points[n]));
+      all.nodes.push_back({at.m, at.h, input_.motion(all.points[n], displacement[n]), all.points[n]});
+      all.span.push_back(at.h);
+    }
+    return all;
+  }
 
-    std::vector<Vec3> displacement(piece.points.size());
-    input_.displacement(p, piece.points, displacement);
-    std::vector<BladeNode> nodes;
+  /// The grids that a patch is made of, and whether they are all of it.
+  FaceGrids grids_of(int p, Piece const& all) {
+    BoundarySurface const& own = boundary_.surface(p);
+    if (own.grid) {
+      std::vector<int> every(own.nodes.size());
+      std::iota(every.begin(), every.end(), 0);
+      return {{{*own.grid, std::move(every)}}, 0};
+    }
+    of_blocks_ = false;
+    FaceGrids found = find_face_grids(own.faces, all.points);
+    if (boundary_.is_plane())
+      for (FaceGrid& line : found.grids) {
+        line.extent[1] = 2;
+        for (int n = 0; n < line.extent[0]; ++n)
+          line.point.push_back(line.point[std::size_t(n)] + int(own.nodes.size()));
+      }
+    return found;
+  }
+
+  void add_patch(int p) {
+    Piece const all = nodes_of(p);
+    FaceGrids const found = grids_of(p, all);
+    if (found.left_over > 0 && !is_tip(p, all)) sliced_ = true;
+    bool any = false;
+    for (FaceGrid const& grid : found.grids) {
+      Piece piece;
+      piece.extent = grid.extent;
+      for (int const n : grid.point) {
+        piece.points.push_back(all.points[std::size_t(n)]);
+        piece.span.push_back(all.span[std::size_t(n)]);
+        piece.nodes.push_back(all.nodes[std::size_t(n)]);
+      }
+      any = add_grid(piece) || any;
+    }
+    if (!any && (found.left_over > 0 || std::any_of(found.grids.begin(), found.grids.end(), [](FaceGrid const& g) {
+                   return g.extent[0] > 1 && g.extent[1] > 1;
+                 })))
+      left_out_.push_back(p);
+  }
+
+  /// Whether most of the area of a patch gains less span than 0.3 of its length.
+  bool is_tip(int p, Piece const& all) {
+    double flat = 0, area = 0;
     double height = 0;
-    for (std::size_t n = 0; n < piece.points.size(); ++n) {
-      MeridionalPoint const m = input_.frame.meridional(piece.points[n]);
-      FlowPosition const at = input_.position(m);
-      nodes.push_back({at.m, at.h, input_.motion(piece.points[n], displacement[n]), piece.points[n]});
-      piece.span.push_back(at.h);
-      height += input_.height(m) / double(piece.points.size());
+    for (Vec3 const& x : all.points) height += input_.height(input_.frame.meridional(x)) / double(all.points.size());
+    FacetList const list = boundary_.facets({&p, 1});
+    for (auto const& f : list.facets) {
+      Vec3 const a = list.points[std::size_t(f[0])], b = list.points[std::size_t(f[1])] - a,
+                 c = list.points[std::size_t(f[2])] - a;
+      Vec3 const n = cross(b, c);
+      if (!(norm(n) > 0)) continue;
+      double const h = all.span[std::size_t(f[0])];
+      Vec3 const gradient = (1 / dot(n, n)) * ((all.span[std::size_t(f[1])] - h) * cross(c, n) +
+                                               (all.span[std::size_t(f[2])] - h) * cross(n, b));
+      area += norm(n);
+      constexpr double least = 0.3;
+      if (norm(gradient) * height < least) flat += norm(n);
     }
+    return flat > 0.5 * area;
+  }
+
+  bool add_grid(Piece const& piece) {
+    if (piece.extent[0] < 2 || piece.extent[1] < 2) return false;
+    double height = 0;
+    for (Vec3 const& x : piece.points)
+      height += input_.height(input_.frame.meridional(x)) / double(piece.points.size());
     int const direction = detail::spanwise_direction(
-        piece.extent, [&](int n) { return piece.points[n]; },
-        [&](int a, int b) { return std::abs(piece.span[b] - piece.span[a]) * height; });
-    if (direction < 0) {
-      notes_.push_back("patch " + describe_patch(boundary_.mesh(), boundary_.mesh().patches[p]) +
-                       " has no spanwise grid lines (a tip face?) and is left "
-                       "out of the blade's sections");
-      return;
+        piece.extent, [&](int n) { return piece.points[std::size_t(n)]; },
+        [&](int a, int b) { return std::abs(piece.span[std::size_t(b)] - piece.span[std::size_t(a)]) * height; });
+    if (direction < 0) return false;
+    add_lines(piece, direction, piece.nodes);
+    return true;
+  }
+
+  void stitch() {
+    if (lines_.lines().empty()) {
+      if (!of_blocks_) {
+        sliced_ = true;
+        return;
+      }
+      throw MotionError(
+          "no surface grid line of the blade runs spanwise: "
+          "check the axis, and that `of` names its sides");
     }
-    add_lines(piece, direction, nodes);
+    lines_.join_in_span();
+    blade_.lines = lines_.lines();
+    if (!of_blocks_) {
+      auto const neighbours = lines_.neighbours();
+      sliced_ = std::any_of(neighbours.begin(), neighbours.end(), [](auto const& list) { return list.size() > 2; });
+      if (sliced_) return;
+    }
+    join_around();
+  }
+
+  /// Whether the lines of all contours run along nearly the same span.
+  [[nodiscard]] bool lines_reach() const {
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo, first = -lo, last = lo;
+    for (BladeContour const& contour : blade_.contours)
+      for (int const l : contour.lines) {
+        double const a = blade_.nodes[std::size_t(blade_.lines[std::size_t(l)].front())].span;
+        double const b = blade_.nodes[std::size_t(blade_.lines[std::size_t(l)].back())].span;
+        lo = std::min(lo, a);
+        hi = std::max(hi, b);
+        first = std::max(first, a);
+        last = std::min(last, b);
+      }
+    return last - first > 0.5 * (hi - lo);
+  }
+
+  /// The facets of all patches cut at span fractions.
+  void slice() {
+    blade_ = {};
+    left_out_.clear();
+    PointNumbers numbers(1e-7 * box_diagonal(boundary_.points(patches_)));
+    SliceInput input;
+    std::vector<BladeNode> nodes;
+    for (int const p : patches_) {
+      Piece const all = nodes_of(p);
+      std::vector<int> number;
+      for (std::size_t n = 0; n < all.points.size(); ++n) {
+        number.push_back(numbers.find_or_add(all.points[n], int(nodes.size())));
+        if (number.back() < int(nodes.size())) continue;
+        nodes.push_back(all.nodes[n]);
+        input.points.push_back(all.points[n]);
+      }
+      for (auto const& f : boundary_.facets({&p, 1}).facets) add_triangles(f, number, input);
+    }
+    auto const meridional = [this](Vec3 const& x) { return input_.frame.meridional(x); };
+    input.span = [&](Vec3 const& x) { return input_.position(meridional(x)).h; };
+    input.along = [&](Vec3 const& x) { return input_.along(x); };
+    input.height = [&](Vec3 const& x) { return input_.height(meridional(x)); };
+    for (SlicedContour const& contour : slice_surface(input, notes_)) {
+      BladeContour own{{}, contour.closed};
+      for (auto const& line : contour.lines) {
+        own.lines.push_back(int(blade_.lines.size()));
+        auto& list = blade_.lines.emplace_back();
+        for (SlicePlace const& place : line) {
+          CylindricalMotion motion;
+          for (auto const& [n, w] : place.weights) {
+            motion.axial += w * nodes[std::size_t(n)].motion.axial;
+            motion.radial += w * nodes[std::size_t(n)].motion.radial;
+            motion.angle_rad += w * nodes[std::size_t(n)].motion.angle_rad;
+          }
+          list.push_back(int(blade_.nodes.size()));
+          blade_.nodes.push_back({input_.position(meridional(place.point)).m, place.span, motion, place.point});
+        }
+      }
+      blade_.contours.push_back(std::move(own));
+    }
+    blade_.sliced = true;
+  }
+
+  /// Quadrilaterals are cut along the shorter diagonal.
+  static void add_triangles(std::array<std::int32_t, 4> const& facet, std::vector<int> const& number,
+                            SliceInput& input) {
+    auto const add = [&](int a, int b, int c) {
+      if (a != b && b != c && c != a) input.triangles.push_back({a, b, c});
+    };
+    int const a = number[std::size_t(facet[0])], b = number[std::size_t(facet[1])], c = number[std::size_t(facet[2])];
+    if (facet[3] < 0) return add(a, b, c);
+    int const d = number[std::size_t(facet[3])];
+    auto const x = [&](int n) { return input.points[std::size_t(n)]; };
+    if (distance(x(a), x(c)) <= distance(x(b), x(d))) {
+      add(a, b, c);
+      add(a, c, d);
+    } else {
+      add(a, b, d);
+      add(b, c, d);
+    }
   }
 
   void add_lines(Piece const& piece, int direction, std::vector<BladeNode> const& nodes) {
@@ -118,11 +284,15 @@ class Stitcher {
   }
 
   Boundary const& boundary_;
+  std::vector<int> const& patches_;
   BladeInput const& input_;
   std::vector<std::string>& notes_;
   PointNumbers numbers_;
   BladeSurface blade_;
   detail::SpanwiseLines lines_;
+  std::vector<int> left_out_;  ///< patches without spanwise lines
+  bool of_blocks_ = true;
+  bool sliced_ = false;  ///< by facets, since grid lines do not make up the surface
 };
 
 }  // namespace

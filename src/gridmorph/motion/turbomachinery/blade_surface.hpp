@@ -1,4 +1,4 @@
-// A blade put together from its patches: spanwise grid lines, stitched into contours around the sections.
+// A blade put together from its patches: spanwise lines, stitched into contours around the sections.
 #pragma once
 
 #include <gridmorph/boundary/boundary.hpp>
@@ -29,6 +29,7 @@ struct BladeSurface {
   std::vector<BladeNode> nodes;
   std::vector<std::vector<int>> lines;  ///< nodes from hub to case
   std::vector<BladeContour> contours;
+  bool sliced = false;  ///< lines were made by cutting facets (surface_slices.hpp): they are no lines of nodes
 };
 
 /// What stitch_blade needs to know about nodes.
@@ -37,16 +38,21 @@ struct BladeInput {
   std::function<FlowPosition(MeridionalPoint const&)> position;
   /// Distance from hub to case through a point.
   std::function<double(MeridionalPoint const&)> height;
+  /// Increases along the flow.
+  std::function<double(Vec3 const&)> along;
   /// What the displacement of a point means for those that follow it: the components that are tabulated.
   std::function<CylindricalMotion(Vec3 const& point, Vec3 const& displacement)> motion;
   /// Displacements of the nodes of one patch, in patch_points order.
   std::function<void(int patch, std::span<Vec3 const> points, std::span<Vec3> displacement)> displacement;
 };
 
-/// Stitches the structured ranges of the patches: finds which index direction of each runs spanwise, joins pieces that
+/// Stitches the grids of the patches: finds which direction of each runs spanwise, joins pieces that
 /// were split in span or around the section by their coincident nodes (1e-7 of the blade's size). Pieces that run
-/// nowhere spanwise (tip faces) are left out with a note. Throws MotionError when nothing is left or more than two
-/// surfaces meet in one line. Cost O(nodes log nodes).
+/// nowhere spanwise (tip faces) are left out with a note. Faces of elements are put together into grids first
+/// (find_face_grids()), the lines of a plane mesh with their copies across it; where that leaves faces over, or lines that
+/// do not run along the span together, the facets are cut instead (slice_surface()), and motions are those of their
+/// corners, linear between. Throws MotionError when nothing is left or more than two
+/// surfaces meet in one line. Cost O(nodes log nodes), of cuts O(facets times sections).
 BladeSurface stitch_blade(Boundary const& boundary, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes);
 

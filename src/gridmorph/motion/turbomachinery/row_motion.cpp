@@ -51,8 +51,12 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
   auto const motion = [&](Vec3 const& point, Vec3 const& u) {
     return annulus.components(frame.meridional(point), frame.motion(point, u));
   };
-  BladeInput const input{frame, [&annulus](MeridionalPoint const& p) { return annulus.position(p); },
-                         [&annulus](MeridionalPoint const& p) { return annulus.height(p); }, motion, displacement};
+  BladeInput const input{frame,
+                         [&annulus](MeridionalPoint const& p) { return annulus.position(p); },
+                         [&annulus](MeridionalPoint const& p) { return annulus.height(p); },
+                         [&](Vec3 const& p) { return annulus.along(frame.meridional(p)); },
+                         motion,
+                         displacement};
   BladeSurface surface = stitch_blade(boundary, blades, input, notes);
   if (int const left_out = leave_out_splitters(surface); left_out > 0)
     notes.push_back("blade " + describe_patch(mesh, mesh.patches[blades.front()]) + ": " + std::to_string(left_out) +
@@ -71,7 +75,54 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
   return sections;
 }
 
+/// Directions of the translations among the periodic connections of the zones, none twice; `followers`: of those alone that follow a
+/// blade. Nothing when one of them turns.
+std::optional<std::vector<Vec3>> pitch_directions(Boundary const& boundary, ResolvedMotion const& motion,
+                                                  std::vector<bool> const& in_row, bool followers) {
+  constexpr double no_turn = 1e-9, same = 1e-6;
+  std::vector<Vec3> found;
+  for (AnyConnection const& c : connections_of(boundary.mesh())) {
+    if (!c.periodic || !in_row[std::size_t(c.zone)]) continue;
+    int const r = motion.interface[std::size_t(c.number)].rule;
+    if (followers && !(r >= 0 && std::holds_alternative<FollowRule>(motion.rules[std::size_t(r)].rule))) continue;
+    RigidTransform const t = boundary.transform(c.number);
+    double turned = 0;
+    for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+      turned = std::max(turned, norm(t.rotation * e - e));
+    if (turned > no_turn) return std::nullopt;
+    if (!(norm(t.translation) > 0)) continue;
+    Vec3 const d = (1 / norm(t.translation)) * t.translation;
+    if (std::none_of(found.begin(), found.end(), [&](Vec3 const& other) { return norm(cross(d, other)) < same; }))
+      found.push_back(d);
+  }
+  return found;
+}
+
 }  // namespace
+
+CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades) {
+  std::vector<bool> const in_row = zones_of_row(boundary, blades);
+  auto directions = pitch_directions(boundary, motion, in_row, false);
+  if (directions && directions->size() > 1) directions = pitch_directions(boundary, motion, in_row, true);
+  CylindricalFrame const about_axis(motion.axis);
+  if (!directions || directions->empty()) return about_axis;
+  if (directions->size() > 1)
+    throw MotionError(
+        "the periodic sides of the row are apart in several directions; let the rule follow name those between blades");
+  // Which way it counts shall not depend on which side the file names first.
+  Vec3 pitch = directions->front();
+  Vec3 const size{std::abs(pitch.x), std::abs(pitch.y), std::abs(pitch.z)};
+  double const largest = size.x >= size.y && size.x >= size.z ? pitch.x : (size.y >= size.z ? pitch.y : pitch.z);
+  if (largest < 0) pitch = -pitch;
+  constexpr double across = 1e-3;
+  if (std::abs(dot(pitch, about_axis.direction())) > across)
+    throw MotionError(
+        "the periodic sides of the row are apart by a translation, so that it is a linear cascade, but not across the "
+        "axis; give "
+        "[mesh] an axis along the flow, across the pitch (" +
+        std::to_string(pitch.x) + ", " + std::to_string(pitch.y) + ", " + std::to_string(pitch.z) + ")");
+  return {motion.axis, pitch - dot(pitch, about_axis.direction()) * about_axis.direction()};
+}
 
 Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
                        std::vector<int> const& blades) {
@@ -83,7 +134,8 @@ Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, C
 RowMotion::RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
                      SlipSurfaces const& surfaces, PatchDisplacement const& displacement,
                      std::vector<std::string>& notes)
-    : frame_(motion.axis),
+    : blades_(blades),
+      frame_(frame_of_row(boundary, motion, blades)),
       row_zones_(zones_of_row(boundary, blades)),
       annulus_(surfaces, surfaces_of_row(boundary, surfaces, row_zones_), meridional_points(boundary, frame_, blades),
                [&] { return walls_of_row(boundary, surfaces, row_zones_, frame_); }),
@@ -207,6 +259,10 @@ CylindricalMotion RowMotion::follow_motion(FlowPosition const& at) const {
   if (at.m < leading) return taper(inlet_, at, leading, 0);
   if (at.m > trailing) return taper(exit_, at, trailing, 1);
   return sections_.motion(at.h, (at.m - leading) / (trailing - leading));
+}
+
+bool RowMotion::gives_way_to(int patch) const {
+  return sections_.sliced() && std::binary_search(blades_.begin(), blades_.end(), patch);
 }
 
 bool RowMotion::is_upstream(Vec3 const& point) const { return annulus_.position(frame_.meridional(point)).m < middle_; }

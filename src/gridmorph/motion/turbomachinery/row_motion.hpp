@@ -15,6 +15,12 @@
 
 namespace gridmorph {
 
+/// Of the row that holds the blades: about the axis, or that of a linear cascade where its periodic connections are translations
+/// across the axis (one direction; where there are several, that of the connections which follow a blade), towards the
+/// positive side of the coordinate that changes most. Throws MotionError when
+/// a translation runs along the axis or their directions differ.
+CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades);
+
 /// Hub, case and the coordinates between them of the row that holds the blades. Keeps pointers to `surfaces`.
 Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
                        std::vector<int> const& blades);
@@ -33,6 +39,9 @@ class RowMotion {
 
   /// Inlet and exit: turned by the angle of the leading edge (upstream of mid-chord) or trailing edge at this span.
   [[nodiscard]] Vec3 slide(Vec3 const& point) const;
+  /// Whether a patch is of the blade, and its sections were cut from facets: then nodes of the blade have their motion from the blade's own
+  /// rule, which the sections meet but for the facets.
+  [[nodiscard]] bool gives_way_to(int patch) const;
   /// Before mid-chord, along the flow.
   [[nodiscard]] bool is_upstream(Vec3 const& point) const;
   /// Periodics: mid-camber motion between the edges, linear taper along the flow path to the ends of the row. Between
@@ -62,6 +71,7 @@ class RowMotion {
   /// Components of the motion (see Annulus::components).
   [[nodiscard]] CylindricalMotion follow_motion(FlowPosition const& at) const;
 
+  std::vector<int> blades_;  ///< ascending
   CylindricalFrame frame_;
   std::vector<bool> row_zones_;
   Annulus annulus_;

@@ -24,8 +24,11 @@ Vec3 across(Vec3 const& direction) {
 
 /// Stitching looks at no motion here.
 BladeInput geometry_only(CylindricalFrame const& frame, std::function<FlowPosition(MeridionalPoint const&)> position,
-                         double height) {
-  return {frame, std::move(position), [height](MeridionalPoint const&) { return height; },
+                         double height, std::function<double(Vec3 const&)> along) {
+  return {frame,
+          std::move(position),
+          [height](MeridionalPoint const&) { return height; },
+          std::move(along),
           [](Vec3 const&, Vec3 const&) { return CylindricalMotion{}; },
           [](int, std::span<Vec3 const>, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }};
 }
@@ -37,23 +40,33 @@ class BladeFrame final : public SectionFrame {
         annulus_(std::move(annulus)),
         first_(across(frame.direction())),
         second_(cross(frame.direction(), first_)) {
-    for (Vec3 const& p : points) height_ += annulus_.height(frame_.meridional(p)) / double(points.size());
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    for (Vec3 const& p : points) {
+      height_ += annulus_.height(frame_.meridional(p)) / double(points.size());
+      double const x = dot(p, frame_.direction());
+      lo = std::min(lo, x);
+      hi = std::max(hi, x);
+    }
+    chord_ = hi - lo;
   }
 
   [[nodiscard]] SectionPoint at(Vec3 const& point) const override {
     MeridionalPoint const m = frame_.meridional(point);
     Vec3 const d = point - frame_.origin();
     FlowPosition const at = annulus_.position(m);
+    if (frame_.is_linear()) return {at.h, at.m, dot(d, frame_.pitch()), 1};
     return {at.h, at.m, std::atan2(dot(d, second_), dot(d, first_)), m.radius};
   }
   [[nodiscard]] Vec3 displacement(Vec3 const& point, double ds, double dt) const override {
     return frame_.displacement(point, annulus_.motion(frame_.meridional(point), {ds, 0, dt}));
   }
   [[nodiscard]] double height() const override { return height_; }
-  [[nodiscard]] double period() const override { return 2 * std::numbers::pi; }
+  [[nodiscard]] double period() const override { return frame_.is_linear() ? 0 : 2 * std::numbers::pi; }
+  [[nodiscard]] double scale_of_t() const override { return frame_.is_linear() ? chord_ : period(); }
   [[nodiscard]] BladeInput stitching() const override {
     return geometry_only(
-        frame_, [this](MeridionalPoint const& m) { return annulus_.position(m); }, height_);
+        frame_, [this](MeridionalPoint const& m) { return annulus_.position(m); }, height_,
+        [this](Vec3 const& p) { return annulus_.along(frame_.meridional(p)); });
   }
 
  private:
@@ -61,6 +74,7 @@ class BladeFrame final : public SectionFrame {
   Annulus annulus_;
   Vec3 first_, second_;  ///< with the axis, right-handed; angles count from the first towards the second
   double height_ = 0;
+  double chord_ = 0;  ///< extent along the axis
 };
 
 class WingFrame final : public SectionFrame {
@@ -87,11 +101,11 @@ class WingFrame final : public SectionFrame {
   [[nodiscard]] BladeInput stitching() const override {
     // The position along an axis that runs spanwise is all that stitching asks for.
     return geometry_only(
-        CylindricalFrame({{0, 0, 0}, span_}),
+        CylindricalFrame(Axis{{0, 0, 0}, span_}),
         [this](MeridionalPoint const& m) {
           return FlowPosition{0, (m.axial - lo_) / (hi_ - lo_)};
         },
-        hi_ - lo_);
+        hi_ - lo_, [this](Vec3 const& p) { return dot(p, streamwise_); });
   }
 
  private:
@@ -112,6 +126,7 @@ Vec3 longest_extent(std::vector<Vec3> const& points) {
 }
 
 Vec3 span_direction(Boundary const& boundary, std::vector<int> const& patches, std::vector<Vec3> const& points) {
+  if (boundary.is_plane()) return unit(boundary.across());
   auto const& all = boundary.mesh().patches;
   for (int q = 0; q < int(all.size()); ++q) {
     if (all[std::size_t(q)].kind != PatchKind::symmetry) continue;
@@ -127,9 +142,9 @@ Vec3 span_direction(Boundary const& boundary, std::vector<int> const& patches, s
 
 }  // namespace
 
-std::unique_ptr<SectionFrame> blade_frame(Boundary const& boundary, Axis const& axis, SlipSurfaces const& surfaces,
-                                          std::vector<int> const& blades) {
-  CylindricalFrame const frame(axis);
+std::unique_ptr<SectionFrame> blade_frame(Boundary const& boundary, ResolvedMotion const& motion,
+                                          SlipSurfaces const& surfaces, std::vector<int> const& blades) {
+  CylindricalFrame const frame = frame_of_row(boundary, motion, blades);
   return std::make_unique<BladeFrame>(frame, annulus_of_row(boundary, surfaces, frame, blades),
                                       boundary.points(blades));
 }

@@ -30,16 +30,19 @@ class SectionFrame {
   [[nodiscard]] virtual double height() const = 0;
   /// What t is periodic in; 0 when it is not.
   [[nodiscard]] virtual double period() const = 0;
+  /// The angle or length of t that tells two lines apart.
+  [[nodiscard]] virtual double scale_of_t() const { return period(); }
   /// How stitch_blade sees span.
   [[nodiscard]] virtual BladeInput stitching() const = 0;
 };
 
-/// Sections at constant span fraction between hub and case: s is the axial position, t the angle about the axis.
-std::unique_ptr<SectionFrame> blade_frame(Boundary const& boundary, Axis const& axis, SlipSurfaces const& surfaces,
-                                          std::vector<int> const& blades);
+/// Sections at constant span fraction between hub and case: s is the axial position, t the angle about the axis, or the position
+/// along the pitch of a linear cascade.
+std::unique_ptr<SectionFrame> blade_frame(Boundary const& boundary, ResolvedMotion const& motion,
+                                          SlipSurfaces const& surfaces, std::vector<int> const& blades);
 
 /// Plane sections across the span direction of a wing: s along the flow, t = span x s. The span direction is the rule's;
-/// without one the normal of the symmetry plane the wing stands on, without that its longest extent. Throws MotionError
+/// without one the normal of a plane mesh, else of the symmetry plane the wing stands on, without that its longest extent. Throws MotionError
 /// when the flow runs along the span.
 std::unique_ptr<SectionFrame> wing_frame(Boundary const& boundary, SectionsRule const& rule,
                                          std::vector<int> const& patches);

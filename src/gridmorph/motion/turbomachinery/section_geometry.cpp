@@ -279,6 +279,7 @@ std::vector<SectionGeometry::Line> lines_of(SectionFrame const& frame, BladeSurf
     SectionGeometry::Line line;
     for (int n : surface.lines[l]) {
       SectionPoint p = frame.at(surface.nodes[n].point);
+      p.span = surface.nodes[n].span;
       if (!line.span.empty() && !(p.span > line.span.back() + 1e-9)) continue;
       if (period > 0 && !(line.span.empty() && lines.empty())) {
         double const before = line.span.empty() ? lines.back().place.front()[1] : line.place.back()[1];
@@ -305,7 +306,8 @@ SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<Secti
   upstream_first(one);
   upstream_first(other);
   SectionGeometry::Outline outline;
-  if (double const period = frame.period(); period > 0) {
+  if (double const scale = frame.scale_of_t(); scale > 0) {
+    double const period = frame.period();
     // The edge whose two lines keep their distance in t is one line and its image.
     struct Distance {
       double mean = 0, spread = inf;
@@ -319,7 +321,7 @@ SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<Secti
         Sample const pa = place_at(a, h), pb = place_at(b, h);
         double d = pb[1] - pa[1];
         if (k == 0) first = d;
-        d = first + std::remainder(d - first, period);
+        if (period > 0) d = first + std::remainder(d - first, period);
         // An image lies at the same place along the flow.
         double const off = std::abs(pb[0] - pa[0]);
         least = std::min(least, d - off);
@@ -330,11 +332,11 @@ SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<Secti
     };
     Distance const leading = apart(one.front(), other.front()), trailing = apart(one.back(), other.back());
     Distance const& image = leading.spread <= trailing.spread ? leading : trailing;
-    if (!(image.spread < 1e-6 * period))
+    if (!(image.spread < 1e-6 * scale))
       throw MotionError(
           "its two open sides share neither leading nor trailing edge, nor lie a pitch apart (distances vary by " +
           to_text(image.spread, 4) + "); name the two sides of one blade row, or each blade in a rule of its own");
-    if (std::abs(image.mean) > 1e-9) outline.shift = image.mean;
+    if (std::abs(image.mean) > 1e-9 * (period > 0 ? 1 : scale)) outline.shift = image.mean;
     for (auto& line : other)
       for (auto& p : line.place) p[1] -= outline.shift;
   }

@@ -103,7 +103,7 @@ SectionMotion::SectionMotion(Boundary const& boundary, ResolvedMotion const& mot
                              std::vector<int> const& patches, SlipSurfaces const& surfaces,
                              std::vector<std::string>& notes)
     : rule_(rule),
-      frame_(rule.sections == SectionsRule::Sections::blade ? blade_frame(boundary, motion.axis, surfaces, patches)
+      frame_(rule.sections == SectionsRule::Sections::blade ? blade_frame(boundary, motion, surfaces, patches)
                                                             : wing_frame(boundary, rule, patches)),
       blades_(find_sections(boundary, *frame_, patches, notes)),
       trim_(boundary, *frame_, patches, surfaces),

@@ -1,0 +1,173 @@
+// Blade rows as blocks and as hexahedra: rules about sections find the same blades in both, and give the same displacements.
+#include "support/unstructured_case.hpp"
+#include "support/unstructured_meshes.hpp"
+
+#include "../io/io_support.hpp"
+
+#include <generators/passage.hpp>
+#include <generators/passage_motion.hpp>
+#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/mesh/as_hexahedra.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gridmorph::test {
+namespace {
+
+/// A mesh of blocks, and rules for it.
+struct Row {
+  Mesh blocks;
+  Motion motion;
+  std::vector<std::string> layers;  ///< walls with boundary layers
+};
+
+Row of_example(std::string const& case_file, std::string const& mesh) {
+  std::string const path = shared_mesh(mesh);
+  if (path.empty()) return {};
+  return {read_mesh(path), read_case_file(std::string(GRIDMORPH_EXAMPLES "/") + case_file).motion, {}};
+}
+
+Row passage(bool sections) {
+  PassageOptions options;
+  options.nodes = 20'000;
+  Row row{make_passage(options), {}, {}};
+  if (sections) {
+    SectionsRule rule;
+    rule.chord = {{{0.15, -0.1}, {0.5, 0.1}, {0.9, -0.1}}};
+    rule.twist_rad = {{{0, 0.05}, {1, -0.1}}};
+    row.motion.rules = {{{"blade"}, rule, 0, "blade"}};
+  } else {
+    row.motion.rules = {
+        {{"blade"},
+         FunctionRule{"turned sections",
+                      [options, motion = rotated_sections()](std::span<Vec3 const> points, std::span<Vec3> out) {
+                        std::transform(points.begin(), points.end(), out.begin(),
+                                       [&](Vec3 const& p) { return passage_displacement(options, motion, p); });
+                      }},
+         0,
+         "blade"}};
+  }
+  row.motion.rules.push_back({{"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}, 0, "ends"});
+  row.motion.rules.push_back({{"type:periodic"}, FollowRule{{"blade"}}, 0, "periodics"});
+  row.motion.rules.push_back({{"hub", "case"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, "walls"});
+  return row;
+}
+
+struct Named {
+  std::string name;
+  Row (*make)();
+};
+void PrintTo(Named const& n, std::ostream* out) { *out << n.name; }
+
+class BothRows : public testing::TestWithParam<Named> {
+ protected:
+  void SetUp() override {
+    row_ = GetParam().make();
+    if (row_.blocks.zones.empty()) GTEST_SKIP() << "its mesh is not there; a stand-in is tested";
+  }
+  Row row_;
+};
+INSTANTIATE_TEST_SUITE_P(
+    Meshes, BothRows,
+    testing::Values(
+        Named{"stage_redesign", [] { return of_example("stage_redesign.toml", "axial_turbine_stage_H.cgns"); }},
+        Named{"turbine_stage", [] { return of_example("turbine_stage.toml", "axial_turbine_stage_H.cgns"); }},
+        Named{"kaplan_redesign", [] { return of_example("kaplan_redesign.toml", "axialTurbine_7blk.cgns"); }},
+        Named{"kaplan_7_blocks", [] { return of_example("kaplan_7_blocks.toml", "axialTurbine_7blk.cgns"); }},
+        Named{"kaplan_stand_in", [] { return of_example("kaplan_redesign.toml", "water_turbine.cgns"); }},
+        Named{"passage", [] { return passage(false); }}, Named{"passage_sections", [] { return passage(true); }}),
+    [](auto const& info) { return info.param.name; });
+
+/// Displacements that each rule of the motion gives to the nodes of its patches and periodic connections, as numbers of nodes.
+std::vector<std::map<Index, Vec3>> displacements(Boundary const& boundary, BoundaryMotion const& motion,
+                                                 std::size_t n_rules) {
+  ResolvedMotion const& resolved = motion.motion();
+  std::vector<std::set<Index>> nodes(n_rules);
+  for (std::size_t p = 0; p < resolved.patch.size(); ++p)
+    if (auto const r = std::size_t(resolved.patch[p].rule); r < n_rules) {
+      auto const& own = boundary.surface(int(p)).nodes;
+      nodes[r].insert(own.begin(), own.end());
+    }
+  for (AnyConnection const& c : connections_of(boundary.mesh()))
+    if (int const r = resolved.interface[std::size_t(c.number)].rule; c.periodic && r >= 0 && r < int(n_rules))
+      for (auto const& [own, donor] : boundary.pairs(c.number)) nodes[std::size_t(r)].insert(own);
+  std::vector<std::map<Index, Vec3>> out(n_rules);
+  for (std::size_t r = 0; r < n_rules; ++r) {
+    if (!motion.is_explicit(int(r))) continue;
+    std::vector<Vec3> points, u(nodes[r].size());
+    for (Index const n : nodes[r]) points.push_back(boundary.mesh().coordinates[n]);
+    motion.displacement(int(r), points, u);
+    std::size_t at = 0;
+    for (Index const n : nodes[r]) out[r][n] = u[at++];
+  }
+  return out;
+}
+
+TEST_P(BothRows, RulesGiveTheSameDisplacements) {
+  UnstructuredCase const hexahedra(as_hexahedra(row_.blocks));
+  Boundary const of_blocks(row_.blocks);
+  auto const of_elements = std::make_shared<Boundary const>(hexahedra.mesh, hexahedra.topology, hexahedra.face_patches);
+  BoundaryMotion const blocks(row_.blocks, resolve(row_.blocks, row_.motion));
+  BoundaryMotion const elements(of_elements, resolve(hexahedra.mesh, row_.motion));
+  auto const a = displacements(of_blocks, blocks, row_.motion.rules.size());
+  auto const b = displacements(*of_elements, elements, row_.motion.rules.size());
+  double largest = 0, apart = 0;
+  std::size_t compared = 0;
+  for (std::size_t r = 0; r < a.size(); ++r) {
+    ASSERT_EQ(a[r].size(), b[r].size()) << r;
+    for (auto const& [n, u] : a[r]) {
+      largest = std::max(largest, norm(u));
+      apart = std::max(apart, distance(u, b[r].at(n)));
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 500u);
+  EXPECT_GT(largest, 0);
+  EXPECT_LT(apart, 1e-12 * largest);
+}
+
+// Faces cut into triangles have no grid lines: sections are cut from facets, and off by what a facet is off the blade.
+TEST_P(BothRows, FacetsGiveNearlyTheSameDisplacements) {
+  Mesh split = to_prisms_and_tetrahedra(row_.blocks, 0);
+  split.connections = as_hexahedra(row_.blocks).connections;
+  UnstructuredCase const tetrahedra(std::move(split));
+  Boundary const of_blocks(row_.blocks);
+  auto const of_elements =
+      std::make_shared<Boundary const>(tetrahedra.mesh, tetrahedra.topology, tetrahedra.face_patches);
+  BoundaryMotion const blocks(row_.blocks, resolve(row_.blocks, row_.motion));
+  BoundaryMotion const elements(of_elements, resolve(tetrahedra.mesh, row_.motion));
+  auto const a = displacements(of_blocks, blocks, row_.motion.rules.size());
+  auto const b = displacements(*of_elements, elements, row_.motion.rules.size());
+  for (auto const& note : blocks.notes()) std::cout << note << "\n";
+  for (auto const& note : elements.notes()) std::cout << note << "\n";
+  for (std::size_t r = 0; r < a.size(); ++r) {
+    ASSERT_EQ(a[r].size(), b[r].size()) << r;
+    double largest = 0, apart = 0;
+    for (auto const& [n, u] : a[r]) {
+      largest = std::max(largest, norm(u));
+      if (distance(u, b[r].at(n)) > apart) {
+        apart = distance(u, b[r].at(n));
+        std::cout << apart << " at " << row_.blocks.coordinates[n].x << " " << row_.blocks.coordinates[n].y << " "
+                  << row_.blocks.coordinates[n].z << " r "
+                  << std::hypot(row_.blocks.coordinates[n].x, row_.blocks.coordinates[n].y) << "\n";
+      }
+    }
+    std::cout << r << " largest " << largest << " apart " << apart / largest << "\n";
+    EXPECT_LE(apart, 0.02 * largest) << r;
+  }
+}
+
+}  // namespace
+}  // namespace gridmorph::test
