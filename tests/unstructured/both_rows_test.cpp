@@ -1,4 +1,5 @@
 // Blade rows as blocks and as hexahedra: rules about sections find the same blades in both, and give the same displacements.
+#include "support/cascade.hpp"
 #include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
 
@@ -8,6 +9,7 @@
 #include <generators/passage_motion.hpp>
 #include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/motion/boundary_motion.hpp>
@@ -15,7 +17,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <iostream>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <set>
@@ -30,13 +32,16 @@ namespace {
 struct Row {
   Mesh blocks;
   Motion motion;
-  std::vector<std::string> layers;  ///< walls with boundary layers
+  PlanOptions plan;
 };
 
 Row of_example(std::string const& case_file, std::string const& mesh) {
   std::string const path = shared_mesh(mesh);
   if (path.empty()) return {};
-  return {read_mesh(path), read_case_file(std::string(GRIDMORPH_EXAMPLES "/") + case_file).motion, {}};
+  CaseFile const file = read_case_file(std::string(GRIDMORPH_EXAMPLES "/") + case_file);
+  PlanOptions options;  // the blocks' own say how far the near field goes in layers
+  options.boundary_layers = file.plan.boundary_layers;
+  return {read_mesh(path), file.motion, options};
 }
 
 Row passage(bool sections) {
@@ -65,6 +70,18 @@ Row passage(bool sections) {
   return row;
 }
 
+Row linear_cascade() {
+  Row row{cascade(), {}, {}};
+  SectionsRule rule;
+  rule.stagger_rad = {{{0, 0.05}, {1, -0.1}}};
+  rule.lean = {{{0, 0}, {0.5, 0.03}, {1, 0.01}}};
+  row.motion.rules = {{{"blade"}, rule, 0, "blade"},
+                      {{"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}, 0, "ends"},
+                      {{"type:periodic"}, FollowRule{{"blade"}}, 0, "sides"},
+                      {{"hub", "case"}, SlipRule{.surface = SlipRule::Surface::plane}, 0, "walls"}};
+  return row;
+}
+
 struct Named {
   std::string name;
   Row (*make)();
@@ -87,7 +104,8 @@ INSTANTIATE_TEST_SUITE_P(
         Named{"kaplan_redesign", [] { return of_example("kaplan_redesign.toml", "axialTurbine_7blk.cgns"); }},
         Named{"kaplan_7_blocks", [] { return of_example("kaplan_7_blocks.toml", "axialTurbine_7blk.cgns"); }},
         Named{"kaplan_stand_in", [] { return of_example("kaplan_redesign.toml", "water_turbine.cgns"); }},
-        Named{"passage", [] { return passage(false); }}, Named{"passage_sections", [] { return passage(true); }}),
+        Named{"passage", [] { return passage(false); }}, Named{"linear_cascade", linear_cascade},
+        Named{"passage_sections", [] { return passage(true); }}),
     [](auto const& info) { return info.param.name; });
 
 /// Displacements that each rule of the motion gives to the nodes of its patches and periodic connections, as numbers of nodes.
@@ -138,6 +156,65 @@ TEST_P(BothRows, RulesGiveTheSameDisplacements) {
   EXPECT_LT(apart, 1e-12 * largest);
 }
 
+/// Own nodes of a connection onto the donor's.
+RigidTransform fit_of(Coordinates const& x, Connection const& c) {
+  std::vector<Vec3> from, to;
+  for (std::size_t n = 0; n < c.nodes.size(); ++n) {
+    from.push_back(x[c.nodes[n]]);
+    to.push_back(x[c.donor_nodes[n]]);
+  }
+  return fit_rigid_transform(from, to);
+}
+
+/// Distance of the nodes of patches that slip from their surfaces: the change from the baseline, at most.
+double off_walls(UnstructuredCase const& c, UnstructuredMorphed const& m) {
+  double worst = 0;
+  BoundaryMotion const& motion = *m.prepared.boundary.motion;
+  for (std::size_t p = 0; p < c.mesh.patches.size(); ++p)
+    if (SlipSurface const* surface = motion.slip_surface(int(p)))
+      for (Index const n : motion.boundary().surface(int(p)).nodes) {
+        auto const off = [&](Vec3 const& x) { return distance(x, surface->view().project(x)); };
+        worst = std::max(worst, std::abs(off(m.x[n]) - off(c.mesh.coordinates[n])));
+      }
+  return worst;
+}
+
+TEST_P(BothRows, HexahedraMorphWithTheirRow) {
+  UnstructuredCase const hexahedra(as_hexahedra(row_.blocks));
+  UnstructuredMorphed const morphed = hexahedra.guarded_morph(row_.motion, row_.plan);
+  EXPECT_EQ(hexahedra.largest_miss(morphed), 0);
+  EXPECT_EQ(hexahedra.inverted(morphed.x), 0);
+  double const size = hexahedra.mesh.size();
+  EXPECT_LT(off_walls(hexahedra, morphed), 1e-10 * size);
+  // Both sides of every periodic connection have moved alike.
+  double apart = 0, before = 0;
+  for (auto const& c : hexahedra.mesh.connections) {
+    RigidTransform const there = c.periodic ? fit_of(hexahedra.mesh.coordinates, c) : RigidTransform{};
+    for (std::size_t n = 0; n < c.nodes.size(); ++n) {
+      before = std::max(before, distance(there(hexahedra.mesh.coordinates[c.nodes[n]]),
+                                         hexahedra.mesh.coordinates[c.donor_nodes[n]]));
+      Vec3 const own = morphed.x[c.nodes[n]] - hexahedra.mesh.coordinates[c.nodes[n]];
+      Vec3 const other = morphed.x[c.donor_nodes[n]] - hexahedra.mesh.coordinates[c.donor_nodes[n]];
+      apart = std::max(apart, distance(there.rotation * own, other));
+    }
+  }
+  EXPECT_LT(apart, 1e-12 * size + 2 * before);
+}
+
+TEST_P(BothRows, ABladeThatDoesNotMoveMovesNothing) {
+  UnstructuredCase const hexahedra(as_hexahedra(row_.blocks));
+  Motion still = row_.motion;
+  for (MotionRule& rule : still.rules) {
+    if (std::holds_alternative<SectionsRule>(rule.rule)) rule.rule = SectionsRule{};
+    if (auto* function = std::get_if<FunctionRule>(&rule.rule))
+      function->function = [](std::span<Vec3 const>, std::span<Vec3> out) {
+        std::fill(out.begin(), out.end(), Vec3{});
+      };
+  }
+  UnstructuredMorphed const morphed = hexahedra.morph(still, row_.plan);
+  for (Index n = 0; n < hexahedra.mesh.n_nodes(); ++n) ASSERT_EQ(morphed.x[n], hexahedra.mesh.coordinates[n]) << n;
+}
+
 // Faces cut into triangles have no grid lines: sections are cut from facets, and off by what a facet is off the blade.
 TEST_P(BothRows, FacetsGiveNearlyTheSameDisplacements) {
   Mesh split = to_prisms_and_tetrahedra(row_.blocks, 0);
@@ -150,21 +227,13 @@ TEST_P(BothRows, FacetsGiveNearlyTheSameDisplacements) {
   BoundaryMotion const elements(of_elements, resolve(tetrahedra.mesh, row_.motion));
   auto const a = displacements(of_blocks, blocks, row_.motion.rules.size());
   auto const b = displacements(*of_elements, elements, row_.motion.rules.size());
-  for (auto const& note : blocks.notes()) std::cout << note << "\n";
-  for (auto const& note : elements.notes()) std::cout << note << "\n";
   for (std::size_t r = 0; r < a.size(); ++r) {
     ASSERT_EQ(a[r].size(), b[r].size()) << r;
     double largest = 0, apart = 0;
     for (auto const& [n, u] : a[r]) {
       largest = std::max(largest, norm(u));
-      if (distance(u, b[r].at(n)) > apart) {
-        apart = distance(u, b[r].at(n));
-        std::cout << apart << " at " << row_.blocks.coordinates[n].x << " " << row_.blocks.coordinates[n].y << " "
-                  << row_.blocks.coordinates[n].z << " r "
-                  << std::hypot(row_.blocks.coordinates[n].x, row_.blocks.coordinates[n].y) << "\n";
-      }
+      apart = std::max(apart, distance(u, b[r].at(n)));
     }
-    std::cout << r << " largest " << largest << " apart " << apart / largest << "\n";
     EXPECT_LE(apart, 0.02 * largest) << r;
   }
 }

@@ -37,7 +37,8 @@ class ElementPlan final : public AnyPlan {
     for (auto const& problem : mesh.face_patches.problems) problems.add(problem);
     problems.throw_if_any<MeshError>();
     Stopwatch watch;
-    NodeGraph graph = make_node_graph(mesh.mesh, mesh.topology.elements_of_nodes);
+    NodeGraph graph =
+        make_node_graph(mesh.mesh, mesh.topology.elements_of_nodes, row_of_nodes(mesh.mesh, case_file.motion));
     bool const any = case_file.sequence || options_.elements.motion >= 0;
     auto boundary =
         boundary_conditions(mesh.mesh, mesh.topology, mesh.face_patches, graph, case_file.motion,

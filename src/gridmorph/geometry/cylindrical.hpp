@@ -25,7 +25,7 @@ struct CylindricalMotion {
 
 /// The frame of a machine's axis, or of a linear cascade: blades side by side along a straight line, what an annulus becomes when its
 /// radius grows without limit. There axial position, radius and angle are the positions along the axis (the way of the flow), along the
-/// span = axis x pitch, and along the pitch, all lengths from the origin.
+/// span = pitch x axis, and along the pitch, all lengths from the origin.
 class CylindricalFrame {
  public:
   explicit CylindricalFrame(Axis const& axis)
@@ -33,7 +33,7 @@ class CylindricalFrame {
   /// Of a linear cascade. Precondition: the pitch is across the axis.
   CylindricalFrame(Axis const& axis, Vec3 const& pitch) : CylindricalFrame(axis) {
     pitch_ = (1 / norm(pitch)) * pitch;
-    span_ = cross(direction_, pitch_);
+    span_ = cross(pitch_, direction_);
     linear_ = true;
   }
 

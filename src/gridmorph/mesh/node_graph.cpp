@@ -13,8 +13,11 @@ namespace {
 
 class GraphMaker {
  public:
-  GraphMaker(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes)
-      : host_(host), mesh_(mesh), elements_of_nodes_(elements_of_nodes), owner_(nodes_at_one_place(host, mesh)) {
+  GraphMaker(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes, std::span<int const> groups)
+      : host_(host),
+        mesh_(mesh),
+        elements_of_nodes_(elements_of_nodes),
+        owner_(nodes_at_one_place(host, mesh, groups)) {
     for (Index32 n = 0; n < Index32(owner_.size()); ++n)
       if (owner_[std::size_t(n)] != n) others_.push_back({owner_[std::size_t(n)], n});
     std::sort(others_.begin(), others_.end());
@@ -110,8 +113,9 @@ class GraphMaker {
 
 }  // namespace
 
-NodeGraph make_node_graph(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes) {
-  return GraphMaker(host, mesh, elements_of_nodes).run();
+NodeGraph make_node_graph(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes,
+                          std::span<int const> groups) {
+  return GraphMaker(host, mesh, elements_of_nodes, groups).run();
 }
 
 }  // namespace gridmorph

@@ -4,6 +4,7 @@
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
+#include <span>
 #include <vector>
 
 namespace gridmorph {
@@ -19,10 +20,12 @@ struct NodeGraph {
 };
 
 /// Edges of polyhedra are those of their faces. The lists are those of UnstructuredTopology. Cost O(corners of all
-/// elements).
-NodeGraph make_node_graph(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes);
-inline NodeGraph make_node_graph(Mesh const& mesh, CsrGraph const& elements_of_nodes) {
-  return make_node_graph(HostInstance(), mesh, elements_of_nodes);
+/// elements). `groups`: as for nodes_at_one_place().
+NodeGraph make_node_graph(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes,
+                          std::span<int const> groups = {});
+inline NodeGraph make_node_graph(Mesh const& mesh, CsrGraph const& elements_of_nodes,
+                                 std::span<int const> groups = {}) {
+  return make_node_graph(HostInstance(), mesh, elements_of_nodes, groups);
 }
 
 }  // namespace gridmorph

@@ -59,7 +59,7 @@ std::vector<Index> open_nodes(Mesh const& mesh) {
 
 }  // namespace
 
-std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& mesh) {
+std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& mesh, std::span<int const> groups) {
   DisjointSets<Index32> sets(coincident_nodes(mesh));
   if (mesh.zones.size() < 2) return sets.roots();
   bool const single =
@@ -67,7 +67,8 @@ std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& me
   auto const pairs = coincident_pairs(
       mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of(n); },
       coincidence_tolerance(extent_of(host, mesh.coordinates).size(), single));
-  for (auto const& [a, b] : pairs) sets.join(Index32(a), Index32(b));
+  for (auto const& [a, b] : pairs)
+    if (groups.empty() || groups[std::size_t(a)] == groups[std::size_t(b)]) sets.join(Index32(a), Index32(b));
   return sets.roots();
 }
 
@@ -75,7 +76,8 @@ std::string describe(Mesh const& mesh, TouchingPatches const& pair) {
   return "patches " + describe_patch(mesh, mesh.patches[std::size_t(pair.patch)]) + " and " +
          describe_patch(mesh, mesh.patches[std::size_t(pair.other)]) + " coincide in all of their " +
          std::to_string(pair.nodes.size()) + " nodes, but no connection joins them; " +
-         (pair.one ? "their nodes move as one, and a rule for one of them holds for both"
+         (pair.one ? "their nodes move as one, and a rule for one of them holds for both, unless one of them slides "
+                     "with a blade row"
                    : "give both the same motion");
 }
 

@@ -4,6 +4,7 @@
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,9 @@ std::vector<TouchingPatches> undeclared_connections(Mesh const& mesh, double tol
 
 /// For each node the smallest number among the nodes that are one with it: those that coincident_nodes() declares, and nodes of
 /// patches of different zones closer than 1e-8 of the mesh size (1e-6 where a zone is in single precision). Nodes of connections that do not
-/// match node to node (sliding planes, overset) are left as they are declared. n log n in the nodes of patches.
-std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& mesh);
+/// match node to node (sliding planes, overset) are left as they are declared, and so are nodes of different `groups` (one number per
+/// node; empty: all alike), as the two sides of a mixing plane between blade rows. n log n in the nodes of patches.
+std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& mesh, std::span<int const> groups = {});
 inline std::vector<Index32> nodes_at_one_place(Mesh const& mesh) { return nodes_at_one_place(HostInstance(), mesh); }
 
 /// "patches 'a' (BC ...) and 'b' (BC ...) coincide in 2261 nodes, but no connection joins them: ..."

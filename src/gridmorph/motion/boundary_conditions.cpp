@@ -273,6 +273,29 @@ class Finder {
 
 }  // namespace
 
+std::vector<int> row_of_nodes(Mesh const& mesh, Motion const& motion) {
+  std::vector<int> out;
+  std::vector<std::vector<int>> blades;
+  for (MotionRule const& rule : motion.rules) {
+    auto const* slide = std::get_if<CircumferentialSlideRule>(&rule.rule);
+    if (slide == nullptr) continue;
+    std::vector<int> of, patches;
+    try {
+      of = select_patches(mesh, slide->of);
+      patches = select_patches(mesh, rule.patches);
+    } catch (MotionError const&) {
+      continue;  // resolve() says what is wrong, with all other problems
+    }
+    auto const known = std::find(blades.begin(), blades.end(), of);
+    int const row = int(known - blades.begin()) + 1;
+    if (known == blades.end()) blades.push_back(of);
+    if (out.empty()) out.assign(std::size_t(mesh.n_nodes()), 0);
+    for (int const p : patches)
+      for (Index32 const n : patch_nodes(mesh.patches[std::size_t(p)])) out[std::size_t(n)] = row;
+  }
+  return out;
+}
+
 BoundaryConditions boundary_conditions(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                                        Motion const& motion, std::vector<std::string> const& walls,

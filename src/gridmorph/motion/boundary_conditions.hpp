@@ -49,6 +49,10 @@ enum class Displacements {
   any            ///< others to come: every rule but `fixed` moves its walls
 };
 
+/// For every node 0, or the number of the blade row with which a circumferential-slide rule lets it slide: both sides of a mixing plane
+/// between rows may have the same nodes and move apart (nodes_at_one_place()). Empty where no rule slides.
+std::vector<int> row_of_nodes(Mesh const& mesh, Motion const& motion);
+
 /// Resolves the rules and finds what each boundary node is. `walls`: selectors of the walls that drive the near field; empty:
 /// every patch that moves and is no inflow, outflow, farfield or symmetry. Where no rule displaces anything now, all that could do.
 /// Throws MotionError when no wall moves, and the errors of resolve() and BoundaryMotion.

@@ -222,11 +222,26 @@ class Slicer {
     return t;
   }
 
+  /// Where a corner of a facet lies at the span itself several edges have the same point: one is kept.
+  static void thin_out(Polyline& line, double same) {
+    std::size_t kept = 1;
+    for (std::size_t n = 1; n < line.points.size(); ++n) {
+      bool const again = distance(line.points[n], line.points[kept - 1]) <= same ||
+                         (line.closed && distance(line.points[n], line.points.front()) <= same);
+      if (again) continue;
+      line.points[kept] = line.points[n];
+      line.edges[kept++] = line.edges[n];
+    }
+    line.points.resize(kept);
+    line.edges.resize(kept);
+  }
+
   /// Joins pieces over gaps, nearest ends first, and takes the one that reaches farthest.
   static Polyline longest(std::vector<Polyline> pieces) {
     Polyline all;
     for (Polyline const& p : pieces) all.points.insert(all.points.end(), p.points.begin(), p.points.end());
     double const limit = widest_gap * all.extent();
+    for (Polyline& p : pieces) thin_out(p, 1e-9 * all.extent());
     auto const end = [](Polyline const& p, bool last) { return last ? p.points.back() : p.points.front(); };
     for (;;) {
       double least = limit;
@@ -255,7 +270,9 @@ class Slicer {
     }
     auto const most = std::max_element(pieces.begin(), pieces.end(),
                                        [](Polyline const& a, Polyline const& b) { return a.extent() < b.extent(); });
-    return most == pieces.end() ? Polyline{} : std::move(*most);
+    if (most == pieces.end()) return {};
+    most->closed = most->closed || distance(most->points.front(), most->points.back()) < limit;
+    return std::move(*most);
   }
 
   SliceInput const& input_;

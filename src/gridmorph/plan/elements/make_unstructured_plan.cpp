@@ -100,7 +100,7 @@ PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, Unstruc
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
   Stopwatch watch;
-  NodeGraph graph = make_node_graph(host, mesh, topology.elements_of_nodes);
+  NodeGraph graph = make_node_graph(host, mesh, topology.elements_of_nodes, row_of_nodes(mesh, motion));
   BoundaryConditions boundary =
       boundary_conditions(host, mesh, topology, face_patches, graph, motion, options.elements.walls,
                           options.elements.motion >= 0 ? Displacements::any : Displacements::of_the_rules);
