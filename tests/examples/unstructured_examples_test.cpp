@@ -121,5 +121,31 @@ TEST_F(UnstructuredExample, TurbineBladeTurnsRigidlyAndPeriodicSidesMoveAsOne) {
     for (Index32 const n : nodes_of(end)) EXPECT_TRUE(displacement(n) == Vec3()) << end;
 }
 
+TEST_F(UnstructuredExample, TheRowOfATurbineBladeGoesAlongWithIt) {
+  ASSERT_NO_FATAL_FAILURE(run("vki_cascade", "mesh_vki_turbine.su2", "vki_cascade_morphed.su2"));
+  // The chord is the longest distance on the blade.
+  auto const chord = [&](Coordinates const& x) {
+    double longest = 0;
+    for (Index32 const a : nodes_of("airfoil"))
+      for (Index32 const b : nodes_of("airfoil")) longest = std::max(longest, distance(x[a], x[b]));
+    return longest;
+  };
+  EXPECT_NEAR(chord(moved) / chord(mesh.coordinates), 0.95, 1e-3);
+  std::vector<double> slid;
+  for (auto const* end : {"inflow", "outflow"}) {
+    Vec3 const first = displacement(nodes_of(end).front());
+    slid.push_back(first.y);
+    for (Index32 const n : nodes_of(end)) {
+      EXPECT_EQ(displacement(n).x, 0) << end;
+      EXPECT_NEAR(displacement(n).y, first.y, 1e-16) << end;
+    }
+  }
+  // The blade turns about mid chord: its edges go opposite ways.
+  EXPECT_LT(slid[0] * slid[1], 0);
+  for (auto const& connection : mesh.connections)
+    for (std::size_t k = 0; k < connection.nodes.size(); ++k)
+      EXPECT_LT(distance(displacement(connection.nodes[k]), displacement(connection.donor_nodes[k])), 1e-15);
+}
+
 }  // namespace
 }  // namespace gridmorph::testing

@@ -69,7 +69,9 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
                   " closed and " + std::to_string(std::ptrdiff_t(surface.contours.size()) - closed) +
                   " open contours; span fractions " + std::to_string(sections.first_span()) + " to " +
                   std::to_string(sections.last_span()) +
-                  (annulus.has_walls() ? " between hub and case" : " of its own radii") +
+                  (annulus.has_walls() ? " between hub and case"
+                   : frame.is_linear() ? " of its own extent, in a linear cascade"
+                                       : " of its own radii") +
                   (annulus.turns() ? ", along the flow path " : ", axial ") + std::to_string(sections.most_upstream()) +
                   " to " + std::to_string(sections.most_downstream()));
   return sections;

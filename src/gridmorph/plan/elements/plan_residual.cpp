@@ -78,6 +78,9 @@ std::vector<double> UnstructuredPlanner::areas(std::vector<Index32> const& nodes
   Mask is_periodic = mask();
   for (auto const& image : out_.boundary.images)
     is_periodic[std::size_t(image.node)] = is_periodic[std::size_t(image.owner)] = 1;
+  auto const paired = periodic_nodes(mesh_);
+  for (std::size_t n = 0; n < paired.size(); ++n)
+    if (paired[n] != 0) is_periodic[std::size_t(owner(Index32(n)))] = 1;
   for (Index f = 0; f < topology_.boundary.size(); ++f) {
     auto const face = topology_.boundary.nodes[f];
     // Between two zones there is no boundary.

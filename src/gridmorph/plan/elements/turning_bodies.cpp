@@ -1,4 +1,5 @@
 #include <gridmorph/core/disjoint_sets.hpp>
+#include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 
 #include <algorithm>
@@ -94,13 +95,18 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
   for (Index32 const f : driving_faces)
     out.bodies[std::size_t(body_of[std::size_t(nodes_of(f).front())])].faces.push_back(f);
   NodeKinds const kinds(mesh.n_nodes(), boundary);
+  // Those of periodic connections that a rule moves are given, and no less a boundary than those that move freely.
+  std::vector<std::uint8_t> paired = periodic_nodes(mesh);
+  for (std::size_t n = 0; n < paired.size(); ++n)
+    if (paired[n] != 0) paired[std::size_t(graph.representative[n])] = 1;
   for (Index f = 0; f < topology.boundary.size(); ++f) {
     if (of_wall[std::size_t(f)] != 0) continue;
     nodes_of(f);
-    bool const between_zones = face_patches.patch[std::size_t(f)] == BoundaryFacePatches::connection &&
-                               !std::all_of(nodes.begin(), nodes.end(), [&](Index32 n) {
-                                 return kinds.kind[std::size_t(n)] == NodeKinds::periodic;
-                               });
+    bool const between_zones =
+        face_patches.patch[std::size_t(f)] == BoundaryFacePatches::connection &&
+        !std::all_of(nodes.begin(), nodes.end(), [&](Index32 n) {
+          return kinds.kind[std::size_t(n)] == NodeKinds::periodic || paired[std::size_t(n)] != 0;
+        });
     if (between_zones) continue;
     OtherFace const face(nodes, kinds, boundary);
     bool const slips = face.kind == OtherFace::Kind::slipping;
