@@ -199,7 +199,7 @@ TEST_P(BothRows, HexahedraMorphWithTheirRow) {
       apart = std::max(apart, distance(there.rotation * own, other));
     }
   }
-  // The sides of its blades have a formula each, and these agree to ten digits.
+  // The formulas of the two sides of its blades are 72 degrees apart, the sides of the mesh to ten digits.
   double const alike = GetParam().name == "kaplan_7_blocks" ? 1e-10 : 1e-12;
   EXPECT_LT(apart, alike * size + 2 * before);
 }
