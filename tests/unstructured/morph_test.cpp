@@ -171,12 +171,6 @@ TEST(UnstructuredMorph, AroundARigidWallTheNearFieldIsTheSameRigidMotion) {
   EXPECT_GT(seen, 100);
 }
 
-TEST(UnstructuredMorph, RulesThatNeedABladeAreRefused) {
-  Case const c(box_with_body(9));
-  EXPECT_THROW((void)c.morph(body_moves(SectionsRule{})), MotionError);
-  EXPECT_THROW((void)c.morph(body_moves(FixedRule{})), MotionError);  // no wall moves
-}
-
 TEST(UnstructuredMorph, RulesThatDisagreeOnCommonNodesAreNamed) {
   Mesh const mesh = test::to_prisms_and_tetrahedra(test::unit_box({6, 6, 6}), 2);
   Case const c(mesh);
