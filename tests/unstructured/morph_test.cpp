@@ -171,6 +171,11 @@ TEST(UnstructuredMorph, AroundARigidWallTheNearFieldIsTheSameRigidMotion) {
   EXPECT_GT(seen, 100);
 }
 
+TEST(UnstructuredMorph, AMotionOfNoWallIsRefused) {
+  Case const c(box_with_body(9));
+  EXPECT_THROW((void)c.morph(body_moves(FixedRule{})), MotionError);
+}
+
 TEST(UnstructuredMorph, RulesThatDisagreeOnCommonNodesAreNamed) {
   Mesh const mesh = test::to_prisms_and_tetrahedra(test::unit_box({6, 6, 6}), 2);
   Case const c(mesh);
