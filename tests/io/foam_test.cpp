@@ -1,6 +1,7 @@
 // Meshes of OpenFOAM, made here by a writer of their own: text and binary, packed and not, cyclics, planes, damage.
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include "support/expect_error.hpp"
@@ -306,6 +307,74 @@ TEST(OpenFoam, PackedFilesAreReadAndStayPacked) {
   for (std::size_t const keep : {std::size_t(5), std::size_t(20), whole.size() / 2, whole.size() - 1}) {
     std::ofstream(packed / "points.gz", std::ios::binary) << whole.substr(0, keep);
     EXPECT_THROW(read_mesh(packed.string()), Error) << keep;
+  }
+}
+
+/// Points of a later time with the mesh in constant, by the name of the time or as the latest one.
+TEST(OpenFoam, TimesHavePointsOfTheirOwn) {
+  TemporaryFolder const folder;
+  FoamBox const box;
+  box.write(folder / "case" / "constant" / "polyMesh");
+  for (auto const& [time, factor] : {std::pair("0.5", 2.0), std::pair("10", 3.0), std::pair("2e-1", 4.0)}) {
+    FoamBox other = box;
+    other.place = [&, f = factor](Index3 const& p) { return f * box.place(p); };
+    other.write(folder / "other");
+    fs::create_directories(folder / "case" / time / "polyMesh");
+    fs::copy_file(folder / "other" / "points", folder / "case" / time / "polyMesh" / "points");
+    fs::remove_all(folder / "other");
+  }
+  fs::create_directories(folder / "case" / "100");  // a time without points
+  Mesh const first = read_mesh((folder / "case").string());
+  for (auto const& [time, factor] : {std::pair("0.5", 2.0), std::pair("2e-1", 4.0), std::pair("latestTime", 3.0)}) {
+    std::string const path = (folder / "case" / time).string();
+    EXPECT_EQ(look_at_mesh(path).format, MeshFormat::openfoam);
+    Mesh const mesh = read_mesh(path);
+    EXPECT_EQ(mesh.elements.nodes.item, first.elements.nodes.item);
+    for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(mesh.coordinates[n], factor * first.coordinates[n]);
+    // The output is a case that begins there.
+    std::string const out = (folder / ("out" + std::string(time))).string();
+    write_morphed(path, out, mesh, mesh.coordinates);
+    expect_equal(read_mesh(out), mesh, 0);
+  }
+  EXPECT_THROW(read_mesh((folder / "case" / "100").string()), Error);
+}
+
+TEST(OpenFoam, SeriesAreFoldersOfTimes) {
+  TemporaryFolder const folder;
+  for (bool const flat : {false, true}) {
+    FoamBox box;
+    if (flat) {
+      box.n = {3, 2, 1};
+      box.keys["z0"] = box.keys["z1"] = "type empty;";
+    }
+    std::string const input = (folder / (flat ? "flat" : "case")).string(), output = input + "_out";
+    box.write(fs::path(input) / "constant" / "polyMesh");
+    Mesh const mesh = read_mesh(input);
+    EXPECT_EQ(mesh.dimension, flat ? 2 : 3);
+    auto const at = [&](double t) {
+      Coordinates moved(mesh.n_nodes());
+      for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + t * Vec3{1.0 / 3, 0.1, 0});
+      return moved;
+    };
+    {
+      SeriesWriter unfinished(input, output, mesh, {0, 0.25});
+      unfinished.add(at(0));
+    }
+    EXPECT_FALSE(fs::exists(output));
+    SeriesWriter series(input, output, mesh, {0, 0.25, 1e-5 + 1});
+    for (double const t : {0.0, 0.25, 1e-5 + 1}) series.add(at(t));
+    EXPECT_THROW(series.add(at(2)), MeshError);
+    series.commit();
+    expect_equal(read_mesh(output), mesh, 0);
+    for (auto const& [name, t] : {std::pair("0", 0.0), std::pair("0.25", 0.25), std::pair("1.00001", 1e-5 + 1),
+                                  std::pair("latestTime", 1e-5 + 1)}) {
+      Mesh const step = read_mesh(output + "/" + name);
+      Coordinates const want = at(t);
+      for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(step.coordinates[n], want[n]) << name;
+    }
+    EXPECT_EQ(bytes_of(fs::path(output) / "0" / "polyMesh" / "points"),
+              bytes_of(fs::path(input) / "constant" / "polyMesh" / "points"));
+    expect_all_in(message_of<IoError>([&] { SeriesWriter(input, input + "_again", mesh, {1, 1}); }), {"two times"});
   }
 }
 

@@ -6,8 +6,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
+#include <utility>
 
 namespace gridmorph::testing {
 namespace {
@@ -347,6 +350,101 @@ TEST_F(UnstructuredRun, DamagedFilesNameTheLine) {
   std::string const whole = text("0.5");
   write("cut.su2", whole.substr(0, whole.find("0.5 1\n1 1")));
   expect_bad_input(gridmorph("inspect cut.su2"), {"cut.su2:", "the file ends after 7 of 9 points"});
+}
+
+/// A case of OpenFOAM: a row of cubes along x, its lower side the patch `floor`, all else `rest`.
+class FoamRun : public CommandTest {
+ protected:
+  static constexpr int n = 6;  // cubes
+
+  void SetUp() override {
+    CommandTest::SetUp();
+    std::filesystem::create_directories(path("case/constant/polyMesh"));
+    auto const node = [](int i, int k) { return 4 * i + k; };
+    std::string points = fmt::format("{}\n(\n", 4 * (n + 1)), faces, owner, neighbour;
+    for (int i = 0; i <= n; ++i)
+      for (auto const& [y, z] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)})
+        points += fmt::format("({} {} {})\n", i, y, z);
+    int n_faces = 0;
+    auto const face = [&](std::array<int, 4> const& f, int cell) {
+      faces += fmt::format("4({} {} {} {})\n", f[0], f[1], f[2], f[3]);
+      owner += fmt::format("{} ", cell);
+      ++n_faces;
+    };
+    for (int i = 1; i < n; ++i) {
+      face({node(i, 0), node(i, 1), node(i, 2), node(i, 3)}, i - 1);
+      neighbour += fmt::format("{} ", i);
+    }
+    auto const side = [&](int a, int b) {
+      for (int i = 0; i < n; ++i) face({node(i, b), node(i, a), node(i + 1, a), node(i + 1, b)}, i);
+    };
+    side(1, 0);  // z = 0
+    int const rest = n_faces;
+    side(2, 1);
+    side(3, 2);
+    side(0, 3);
+    face({node(0, 3), node(0, 2), node(0, 1), node(0, 0)}, 0);
+    face({node(n, 0), node(n, 1), node(n, 2), node(n, 3)}, n - 1);
+    file("points", "vectorField", points + ")");
+    file("faces", "faceList", fmt::format("{}\n(\n{})", n_faces, faces));
+    file("owner", "labelList", fmt::format("{}({})", n_faces, owner));
+    file("neighbour", "labelList", fmt::format("{}({})", n - 1, neighbour));
+    file(
+        "boundary", "polyBoundaryMesh",
+        fmt::format(
+            "2\n(\nfloor {{ type wall; nFaces {}; startFace {}; }}\nrest {{ type patch; nFaces {}; startFace {}; }}\n)",
+            n, n - 1, n_faces - rest, rest));
+  }
+  void file(std::string const& name, std::string const& of_class, std::string const& body) const {
+    write("case/constant/polyMesh/" + name,
+          "FoamFile { version 2.0; format ascii; class " + of_class + "; object " + name + "; }\n" + body + "\n");
+  }
+  [[nodiscard]] Outcome sequence(std::string const& output, double size) const {
+    write("case.toml", fmt::format("[mesh]\ninput = \"case\"\n[sequence]\ntimes = [0, 0.5, 1]\noutput = "
+                                   "\"{}\"\n[[motion]]\npatches = [\"*\"]\nrule = \"formula\"\n"
+                                   "dx = \"-{} * t * x\"\n",
+                                   output, size));
+    return gridmorph("morph case.toml");
+  }
+};
+
+TEST_F(FoamRun, SequencesAreCasesOrFoldersOfTimes) {
+  ASSERT_EQ(sequence("step_{step}", 0.01).status, 0);
+  ASSERT_EQ(sequence("series", 0.01).status, 0);
+  auto const x = [&](std::string const& name) { return read_mesh(path(name).string()).coordinates; };
+  auto const before = x("case");
+  for (auto const& [step, time, t] : {std::tuple("step_1", "series/0", 0.0), std::tuple("step_2", "series/0.5", 0.5),
+                                      std::tuple("step_3", "series/latestTime", 1.0)}) {
+    auto const alone = x(step), together = x(time);
+    for (Index k = 0; k < before.size(); ++k) {
+      EXPECT_EQ(alone[k], together[k]) << step;
+      EXPECT_NEAR(alone.x(k), (1 - 0.01 * t) * before.x(k), 1e-14);
+    }
+  }
+  // Where cells would be inverted nothing is left behind.
+  EXPECT_EQ(sequence("bad_{step}", 3).status, 4);
+  EXPECT_EQ(sequence("bad", 3).status, 4);
+  for (char const* name : {"bad", "bad_1", "bad_2", "bad_3"}) EXPECT_FALSE(std::filesystem::exists(path(name))) << name;
+}
+
+/// Fields of a mesh without a place for them go into the file for viewers.
+TEST_F(FoamRun, TheMeshForViewersHasTheFields) {
+  std::string const head =
+      "[mesh]\ninput = \"case\"\noutput = \"out\"\n[[motion]]\npatches = [\"*\"]\nrule = \"formula\"\ndy = "
+      "\"0.1\"\n[output]\ndisplacement = true\n";
+  write("without.toml", head);
+  expect_bad_input(gridmorph("morph without.toml"), {"displacement", "OpenFOAM", "vtk = "});
+  write("wrong.toml", head + "vtk = \"out.cgns\"\n");
+  expect_bad_input(gridmorph("morph wrong.toml"), {"out.cgns", "CGNS", "VTK"});
+  write("with.toml", head + "vtk = \"out.vtu\"\n");
+  Outcome const run = gridmorph("morph with.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("wrote out.vtu"), std::string::npos) << run.out;
+  EXPECT_NE(contents(path("out.vtu")).find("Name=\"Displacement\""), std::string::npos);
+  Mesh const mesh = read_mesh(path("out.vtu").string());
+  ASSERT_EQ(mesh.patches.size(), 2U);
+  EXPECT_EQ(mesh.patches[0].name, "floor");
+  EXPECT_EQ(mesh.n_elements(), n);
 }
 
 }  // namespace

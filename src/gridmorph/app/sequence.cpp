@@ -123,12 +123,12 @@ void check_sequence_outputs(CaseFile const& case_file, MeshSource const& file) {
         fmt::format("{}: [output] displacement and quality need one file per step; write output = "
                     "\"step_{{step}}.cgns\" in [sequence]",
                     case_file.source.string()));
-  if (!one_file_per_step(options) && file.format != MeshFormat::cgns)
-    throw ConfigError(
-        fmt::format("{}: a series in one file is for CGNS meshes, and '{}' is {}; write one file per step, output = "
-                    "\"step_{{step}}{}\" in [sequence]",
-                    case_file.source.string(), case_file.input.string(), to_string(file.format),
-                    case_file.input.extension().string()));
+  if (!one_file_per_step(options) && !holds_series(file.format))
+    throw ConfigError(fmt::format(
+        "{}: a series in one output is for CGNS and OpenFOAM meshes, and '{}' is {}; write one file per step, output = "
+        "\"step_{{step}}{}\" in [sequence]",
+        case_file.source.string(), case_file.input.string(), to_string(file.format),
+        case_file.input.extension().string()));
   RunFiles outputs;
   for (int step = 0; step < files; ++step) outputs.push_back({"output", step_path(options, step)});
   if (auto const& report = case_file.output_options.report) outputs.push_back({"report", *report});

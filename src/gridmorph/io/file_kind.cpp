@@ -171,7 +171,8 @@ Foreign foreign(std::string_view head, std::uintmax_t size, std::string const& e
 /// A folder, or an empty file in it that stands for it, as ParaView wants it.
 bool is_openfoam(fs::path const& path) {
   std::error_code ignored;
-  return (fs::is_directory(path, ignored) || ending_of(path.string()) == "foam") && foam::poly_mesh(path).has_value();
+  bool const named = ending_of(path.string()) == "foam" || path.filename() == "latestTime";
+  return (fs::is_directory(path, ignored) || named) && foam::poly_mesh(path).has_value();
 }
 
 Foreign foreign_folder(fs::path const& path) {

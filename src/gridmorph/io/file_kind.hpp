@@ -15,6 +15,9 @@ std::string_view to_string(MeshFormat format);
 /// Whether files of a format have a place for fields of the nodes and cells.
 constexpr bool holds_fields(MeshFormat format) { return format == MeshFormat::cgns || format == MeshFormat::vtk; }
 
+/// Whether a series of meshes over time goes into one output of a format.
+constexpr bool holds_series(MeshFormat format) { return format == MeshFormat::cgns || format == MeshFormat::openfoam; }
+
 /// By the first bytes, of UGRID by the ending, of a folder by what is in it; what is none of the others counts as PLOT3D. Throws IoError as refuse_other_format() does.
 MeshFormat mesh_format(std::string const& path);
 

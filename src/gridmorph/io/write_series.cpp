@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/finite_check.hpp>
+#include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
@@ -12,6 +13,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace gridmorph {
 
@@ -56,10 +58,46 @@ void check_input(std::string const& input, Mesh const& mesh, std::size_t steps) 
 
 }  // namespace
 
+/// What a series is written into.
 struct SeriesWriter::Impl {
+  Impl(std::string output, Mesh const& m, std::size_t n) : name(std::move(output)), mesh(m), steps(n) {
+    if (steps == 0) throw MeshError(name + ": a series needs at least one step");
+  }
+  virtual ~Impl() = default;
+
+  void add(Coordinates const& morphed) {
+    if (written == steps)
+      throw MeshError(name + ": more steps than the " + std::to_string(steps) + " times of the series");
+    if (morphed.size() != mesh.n_nodes())
+      throw MeshError("the array of morphed coordinates has " + std::to_string(morphed.size()) +
+                      " values, but the mesh asks for " + std::to_string(mesh.n_nodes()));
+    Problems problems;
+    io::check_finite(mesh, morphed, "step " + std::to_string(written + 1) + " of the series", problems);
+    problems.throw_if_any<MeshError>();
+    write_step(mesh.is_structured() ? morphed : in_file_order(mesh, morphed));
+    ++written;
+  }
+  void finish() {
+    if (written < steps)
+      throw MeshError(name + ": " + std::to_string(written) + " of " + std::to_string(steps) +
+                      " steps of the series were written");
+    put_in_place();
+  }
+
+  std::string name;
   Mesh const& mesh;
   std::size_t steps;
   std::size_t written = 0;
+
+ private:
+  virtual void write_step(Coordinates const& ordered) = 0;
+  virtual void put_in_place() = 0;
+};
+
+namespace {
+
+/// One CGNS file.
+struct CgnsSeries final : SeriesWriter::Impl {
   io::OutputFile target;
   std::optional<cgns::File> file;
   cgns::Node tree;
@@ -67,9 +105,8 @@ struct SeriesWriter::Impl {
   std::vector<double> plane;
   std::vector<float> single;
 
-  Impl(std::string const& input, std::string const& output, Mesh const& m, std::vector<double> const& times)
-      : mesh(m), steps(times.size()), target(output) {
-    if (times.empty()) throw MeshError(output + ": a series needs at least one step");
+  CgnsSeries(std::string const& input, std::string const& output, Mesh const& m, std::vector<double> const& times)
+      : Impl(output, m, times.size()), target(output) {
     target.copy_from(input);
     target.reserve(bytes_needed());
     file.emplace(target.path(), cgns::File::Mode::modify);
@@ -111,18 +148,8 @@ struct SeriesWriter::Impl {
     }
   }
 
-  void add(Coordinates const& morphed) {
-    if (written == steps)
-      throw MeshError(target.path() + ": more steps than the " + std::to_string(steps) + " times of the series");
-    if (morphed.size() != mesh.n_nodes())
-      throw MeshError("the array of morphed coordinates has " + std::to_string(morphed.size()) +
-                      " values, but the mesh asks for " + std::to_string(mesh.n_nodes()));
-    Problems problems;
-    std::string const where = "step " + std::to_string(written + 1) + " of the series";
-    io::check_finite(mesh, morphed, where, problems);
-    problems.throw_if_any<MeshError>();
+  void write_step(Coordinates const& ordered) override {
     bool const blocks = mesh.is_structured();
-    Coordinates const ordered = blocks ? morphed : in_file_order(mesh, morphed);
     auto const arrays = io::components(ordered);
     for (std::size_t z = 0; z < layout.zones.size(); ++z) {
       auto const& place = layout.zones[z];
@@ -138,7 +165,13 @@ struct SeriesWriter::Impl {
           put(source);
       }
     }
-    ++written;
+  }
+
+  void put_in_place() override {
+    file->close();
+    file.reset();
+    cgns::check_file(target.path());
+    target.commit();
   }
 
   void write(double grid, cgns::ZoneLayout const& place, int c, std::vector<Index> const& sizes, double const* values) {
@@ -151,13 +184,30 @@ struct SeriesWriter::Impl {
   }
 };
 
+/// Folders of times in a case of OpenFOAM.
+struct FoamSeries final : SeriesWriter::Impl {
+  foam::TimeFolders folders;
+
+  FoamSeries(std::string const& input, std::string const& output, Mesh const& m, std::vector<double> const& times)
+      : Impl(output, m, times.size()), folders(input, output, m, times) {}
+  void write_step(Coordinates const& ordered) override { folders.add(ordered); }
+  void put_in_place() override { folders.commit(); }
+};
+
+}  // namespace
+
 SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh,
                            std::vector<double> const& times) {
-  if (MeshFormat const format = mesh_format(input); !mesh.is_structured() && format != MeshFormat::cgns)
+  MeshFormat const format = mesh_format(input);
+  if (!mesh.is_structured() && !holds_series(format))
     throw IoError(output + ": " + std::string(to_string(format)) +
                   " files hold one mesh; write one file per step, or use a CGNS mesh");
+  if (format == MeshFormat::openfoam) {
+    impl_ = std::make_unique<FoamSeries>(input, output, mesh, times);
+    return;
+  }
   check_input(input, mesh, times.size());
-  impl_ = std::make_unique<Impl>(input, output, mesh, times);
+  impl_ = std::make_unique<CgnsSeries>(input, output, mesh, times);
 }
 
 SeriesWriter::~SeriesWriter() = default;
@@ -165,14 +215,6 @@ SeriesWriter::SeriesWriter(SeriesWriter&&) noexcept = default;
 
 void SeriesWriter::add(Coordinates const& morphed) { impl_->add(morphed); }
 
-void SeriesWriter::commit() {
-  if (impl_->written < impl_->steps)
-    throw MeshError(impl_->target.path() + ": " + std::to_string(impl_->written) + " of " +
-                    std::to_string(impl_->steps) + " steps of the series were written");
-  impl_->file->close();
-  impl_->file.reset();
-  cgns::check_file(impl_->target.path());
-  impl_->target.commit();
-}
+void SeriesWriter::commit() { impl_->finish(); }
 
 }  // namespace gridmorph

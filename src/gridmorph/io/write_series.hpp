@@ -1,4 +1,4 @@
-// Meshes over time in one CGNS file.
+// Meshes over time in one CGNS file, or in one case of OpenFOAM.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
@@ -17,12 +17,15 @@ namespace gridmorph {
 /// unchanged. Precision is that of the zone's coordinates; of a 2-D mesh
 /// plane 0 is written. The file appears whole on commit(), or not at all.
 ///
+/// A mesh of OpenFOAM becomes a case: the mesh in constant/polyMesh, and its points at each time in `<time>/polyMesh`; in a mesh one cell thick both
+/// planes move. Each file appears whole, and what was made is taken away again where commit() is not reached.
+///
 /// Memory: nothing that grows with the number of steps. While one is open, no other function of the library may read or
 /// write CGNS files from another thread.
 class SeriesWriter {
  public:
   /// `times`: of all steps, ascending. `output` may not be the input. Throws IoError when the input is not the file of the
-  /// mesh, holds a series of several steps, or is no CGNS file; MachineError when there is no room for all steps.
+  /// mesh, holds a series of several steps, or is no CGNS file or mesh of OpenFOAM; MachineError when there is no room for all steps.
   SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh, std::vector<double> const& times);
   ~SeriesWriter();
   SeriesWriter(SeriesWriter&&) noexcept;
@@ -34,8 +37,9 @@ class SeriesWriter {
   /// Puts the file in place. Throws MeshError when steps are missing.
   void commit();
 
+  struct Impl;  ///< internal
+
  private:
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace gridmorph::cli {
 
@@ -33,9 +34,15 @@ std::filesystem::path step_path(SequenceOptions const& options, int step) {
   return options.output.parent_path() / name;
 }
 
-StepFiles::StepFiles(CaseFile const& case_file, AnyMesh const& mesh) : case_file_(case_file), mesh_(mesh) {
+StepFiles::StepFiles(CaseFile const& case_file, AnyMesh const& mesh)
+    : case_file_(case_file), mesh_(mesh), format_(mesh_format(case_file.input.string())) {
   auto const& options = *case_file.sequence;
   if (!one_file_per_step(options)) series_.emplace(mesh.series(case_file.input, options.output, times_of(options)));
+}
+
+StepFiles::~StepFiles() {
+  std::error_code ignored;
+  for (auto const& folder : folders_) std::filesystem::remove_all(folder, ignored);
 }
 
 void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
@@ -43,11 +50,20 @@ void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
     series_->add(morphed);
     return;
   }
+  if (format_ == MeshFormat::openfoam) {
+    auto const folder = step_path(*case_file_.sequence, steps_++);
+    std::error_code ignored;
+    bool const is_new = !std::filesystem::exists(folder, ignored);
+    mesh_.write(case_file_.input, folder, morphed, fields);
+    if (is_new) folders_.push_back(folder);
+    return;
+  }
   auto const& file = files_.emplace_back(step_path(*case_file_.sequence, int(files_.size())).string());
   mesh_.write(case_file_.input, file.path(), morphed, fields);
 }
 
 void StepFiles::commit() {
+  folders_.clear();
   if (series_) {
     series_->commit();
     return;

@@ -25,6 +25,7 @@ class StepFiles {
   StepFiles(CaseFile const& case_file, AnyMesh const& mesh);
   StepFiles(StepFiles const&) = delete;
   StepFiles& operator=(StepFiles const&) = delete;
+  ~StepFiles();
 
   /// Writes the next step beside its place. Fields only with one file per step.
   void add(Coordinates const& morphed, OutputFields const& fields);
@@ -35,7 +36,11 @@ class StepFiles {
  private:
   CaseFile const& case_file_;
   AnyMesh const& mesh_;
+  MeshFormat format_;
+  int steps_ = 0;                     ///< folders written
   std::deque<io::OutputFile> files_;  ///< of the steps so far
+  std::vector<std::filesystem::path>
+      folders_;  ///< of the steps so far, where each is a mesh of OpenFOAM; emptied once they are to stay
   std::optional<SeriesWriter> series_;
 };
 

@@ -9,6 +9,7 @@
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <sstream>
 #include <utility>
 
@@ -22,9 +23,32 @@ bool holds_mesh(fs::path const& folder) {
   return is_there((folder / "faces").string()) && is_there((folder / "points").string());
 }
 
+constexpr char const* latest_time = "latestTime";
+
+/// The number that is a folder's name.
+std::optional<double> time_of(fs::path const& folder) {
+  std::string const name = folder.filename().string();
+  double value = 0;
+  auto const [end, failure] = std::from_chars(name.data(), name.data() + name.size(), value);
+  return failure != std::errc() || end != name.data() + name.size() ? std::nullopt : std::optional(value);
+}
+
+/// The folder of the latest time that has points of a mesh.
+std::optional<fs::path> latest_points(fs::path const& of_case) {
+  std::optional<fs::path> out;
+  std::error_code failure;
+  for (fs::directory_iterator entry(of_case, failure), end; !failure && entry != end; entry.increment(failure)) {
+    auto const time = time_of(entry->path());
+    if (time && is_there((entry->path() / "polyMesh" / "points").string()) && (!out || *time > *time_of(*out)))
+      out = entry->path();
+  }
+  return out;
+}
+
 class Reader {
  public:
-  Reader(std::string const& path, fs::path folder) : path_(path), folder_(std::move(folder)) {}
+  Reader(std::string const& path, Folders const& folders)
+      : path_(path), folder_(folders.mesh), points_(folders.points) {}
 
   Mesh run() {
     mesh_.source = path_;
@@ -50,6 +74,8 @@ class Reader {
       mesh_.notes.push_back(
           path_ + ": has " + why_not +
           ", so that it is morphed as a mesh of volumes; nodes of the two planes may come apart a little");
+    if (is_there((folder_ / "cellZones").string()))
+      mesh_.notes.push_back(path_ + ": cellZones are left alone: elements are morphed whatever zone they are in");
     check_mesh(mesh_);
     return std::move(mesh_);
   }
@@ -60,7 +86,7 @@ class Reader {
   }
 
   void read_points() {
-    FoamFile points = file("points", {"vectorField"});
+    FoamFile points((points_ / "points").string(), {"vectorField"});
     mesh_.coordinates = points.coordinates();
     mesh_.add_zone("internalMesh", mesh_.coordinates.size());
     mesh_.zones.back().single_precision = points.is_binary() && points.scalar_bytes() == 4;
@@ -185,7 +211,7 @@ class Reader {
   }
 
   std::string const& path_;
-  fs::path folder_;
+  fs::path folder_, points_;
   Mesh mesh_;
   CsrGraph faces_;
   std::vector<Index32> owner_, neighbour_;
@@ -193,22 +219,30 @@ class Reader {
 
 }  // namespace
 
-std::optional<fs::path> poly_mesh(fs::path const& path) {
+std::optional<Folders> poly_mesh(fs::path const& path) {
   std::error_code ignored;
   bool const named = path.extension() == ".foam" || path.extension() == ".OpenFOAM";
-  fs::path const folder = named && !fs::is_directory(path, ignored) ? path.parent_path() : path;
+  fs::path folder = named && !fs::is_directory(path, ignored) ? path.parent_path() : path;
+  if (folder.filename().empty()) folder = folder.parent_path();
+  if (folder.filename() == latest_time && !fs::exists(folder, ignored)) {
+    fs::path const of_case = folder.parent_path().empty() ? fs::path(".") : folder.parent_path();
+    folder = latest_points(of_case).value_or(of_case);
+  }
   for (fs::path const& candidate : {folder / "constant" / "polyMesh", folder / "polyMesh", folder})
-    if (holds_mesh(candidate)) return candidate;
+    if (holds_mesh(candidate)) return Folders{candidate, candidate};
+  fs::path const constant = folder.parent_path() / "constant" / "polyMesh";
+  if (time_of(folder) && is_there((folder / "polyMesh" / "points").string()) && holds_mesh(constant))
+    return Folders{constant, folder / "polyMesh"};
   return std::nullopt;
 }
 
 Mesh read(std::string const& path) {
-  auto const folder = poly_mesh(path);
-  if (!folder)
+  auto const folders = poly_mesh(path);
+  if (!folders)
     throw IoError(path +
                   ": holds no mesh of OpenFOAM (constant/polyMesh with points and faces); make it first "
                   "(blockMesh, snappyHexMesh), or name the folder");
-  return Reader(path, *folder).run();
+  return Reader(path, *folders).run();
 }
 
 }  // namespace gridmorph::foam

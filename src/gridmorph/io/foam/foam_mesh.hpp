@@ -4,14 +4,22 @@
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace gridmorph::foam {
 
-/// The polyMesh folder that a path stands for: a case, a folder above polyMesh, polyMesh itself, an empty file case.foam in a case.
+/// Where the files of a mesh are: all but the points, and the points, which may be those of a later time.
+struct Folders {
+  std::filesystem::path mesh, points;
+};
+
+/// The polyMesh folders that a path stands for: a case, a folder above polyMesh, polyMesh itself, an empty file case.foam in a case; the folder of a
+/// time of a case, `case/0.5`, or its latest one, `case/latestTime`: its points with the mesh in constant, where it has no mesh of its own.
 /// Nothing where there is none.
-std::optional<std::filesystem::path> poly_mesh(std::filesystem::path const& path);
+std::optional<Folders> poly_mesh(std::filesystem::path const& path);
 
 /// Reads the mesh of a path as poly_mesh() takes it. Cells with the faces of a usual shape become one, the others polyhedra. Patches keep
 /// their names, and their type as BC type; groups beside that of the type are families. Matching cyclics become connections; planes of
@@ -21,5 +29,24 @@ Mesh read(std::string const& path);
 /// Copies the polyMesh folder of `input` to that of `output`, which is made and must not hold another mesh, and replaces the points that
 /// changed, in their format and precision; text reads back to the same bits. points go into place last.
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed);
+
+/// A case with a mesh that moves: constant/polyMesh as it is in `input`, and for each time a folder `<time>/polyMesh` with its points.
+class TimeFolders {
+ public:
+  /// Copies the mesh. Throws IoError, also for times that have one name.
+  TimeFolders(std::string const& input, std::string const& output, Mesh const& mesh, std::vector<double> const& times);
+  ~TimeFolders();
+  TimeFolders(TimeFolders const&) = delete;
+  TimeFolders& operator=(TimeFolders const&) = delete;
+
+  /// The next time. `morphed`: in the order of the file.
+  void add(Coordinates const& morphed);
+  /// From here on what was written stays.
+  void commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace gridmorph::foam

@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 namespace gridmorph::foam {
 
@@ -95,29 +96,30 @@ class MadeFolders {
 
 }  // namespace
 
-void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed) {
-  auto const from = poly_mesh(input);
-  if (!from) throw IoError(input + ": holds no mesh of OpenFOAM any more");
-  FoamFile points((*from / "points").string(), {"vectorField"});
-  std::string const text =
-      with_points(points, mesh.dimension == 2 ? of_both_planes(*from, points, mesh, morphed) : morphed);
-  // Beside the output's name stands what stood beside the input's.
+namespace {
+
+/// Where a mesh lies below the folder by which it is named.
+fs::path place_below(fs::path const& mesh, std::string const& input) {
   std::error_code ignored;
-  fs::path below;
   for (fs::path const& part : {fs::path("constant") / "polyMesh", fs::path("polyMesh")})
-    if (below.empty() && from->string().ends_with(part.string()) && !fs::equivalent(*from, input, ignored))
-      below = part;
-  fs::path const folder = below.empty() ? fs::path(output) : fs::path(output) / below;
-  std::string const points_name = fs::path(points.path()).filename().string();
-  bool const in_place = fs::exists(folder, ignored) && fs::equivalent(folder, *from, ignored);
+    if (mesh.string().ends_with(part.string()) && !fs::equivalent(mesh, input, ignored)) return part;
+  return {};
+}
+
+/// All files of a mesh but its points, which are that text.
+void write_mesh_folder(std::string const& input, Folders const& from, fs::path const& folder,
+                       std::string const& points_name, std::string const& text) {
+  std::error_code ignored;
+  bool const in_place = fs::exists(folder, ignored) && fs::equivalent(folder, from.mesh, ignored);
   MadeFolders made(folder);
   if (!in_place) {
-    if (!made.is_new() && !fs::is_empty(folder, ignored) && !holds_same_faces(folder, *from))
+    if (!made.is_new() && !fs::is_empty(folder, ignored) && !holds_same_faces(folder, from.mesh))
       throw IoError(folder.string() + ": is there and holds something else than the mesh of " + input +
                     "; give another name, or remove it");
-    for (fs::directory_entry const& entry : fs::directory_iterator(*from)) {
-      if (!entry.is_regular_file() || entry.path().filename() == points_name) continue;
-      io::OutputFile copy((folder / entry.path().filename()).string());
+    for (fs::directory_entry const& entry : fs::directory_iterator(from.mesh)) {
+      std::string const name = entry.path().filename().string();
+      if (!entry.is_regular_file() || name == "points" || name == "points.gz") continue;
+      io::OutputFile copy((folder / name).string());
       copy.copy_from(entry.path().string());
       copy.commit();
     }
@@ -127,5 +129,86 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   target.commit();
   made.keep();
 }
+
+std::string file_name(FoamFile const& file) { return fs::path(file.path()).filename().string(); }
+
+std::string time_name(double time) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), time).ptr};
+}
+
+}  // namespace
+
+void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed) {
+  auto const from = poly_mesh(input);
+  if (!from) throw IoError(input + ": holds no mesh of OpenFOAM any more");
+  FoamFile points((from->points / "points").string(), {"vectorField"});
+  std::string const text =
+      with_points(points, mesh.dimension == 2 ? of_both_planes(from->mesh, points, mesh, morphed) : morphed);
+  write_mesh_folder(input, *from, fs::path(output) / place_below(from->mesh, input), file_name(points), text);
+}
+
+struct TimeFolders::State {
+  std::string input;
+  fs::path output;
+  Folders from;
+  Mesh const& mesh;
+  FoamFile points;
+  std::vector<double> times;
+  std::size_t written = 0;
+  std::vector<fs::path> made;  ///< folders that were not there before
+  bool kept = false;
+
+  State(std::string in, std::string const& out, Mesh const& m, std::vector<double> t, Folders f)
+      : input(std::move(in)),
+        output(out),
+        from(std::move(f)),
+        mesh(m),
+        points((from.points / "points").string(), {"vectorField"}),
+        times(std::move(t)) {}
+  ~State() {
+    std::error_code ignored;
+    if (!kept)
+      for (fs::path const& p : made) fs::remove_all(p, ignored);
+  }
+
+  void make(fs::path const& folder) {
+    std::error_code failure;
+    for (fs::path p = folder; !p.empty() && !fs::exists(p, failure); p = p.parent_path()) made.push_back(p);
+    fs::create_directories(folder, failure);
+    if (failure) throw MachineError(folder.string() + ": cannot be made: " + failure.message());
+  }
+};
+
+TimeFolders::TimeFolders(std::string const& input, std::string const& output, Mesh const& mesh,
+                         std::vector<double> const& times) {
+  auto from = poly_mesh(input);
+  if (!from) throw IoError(input + ": holds no mesh of OpenFOAM any more");
+  for (std::size_t n = 1; n < times.size(); ++n)
+    if (time_name(times[n]) == time_name(times[n - 1]))
+      throw IoError(output + ": two times of the series are " + time_name(times[n]) + "; their folders would be one");
+  state_ = std::make_unique<State>(input, output, mesh, times, *from);
+  fs::path const folder = state_->output / "constant" / "polyMesh";
+  std::error_code ignored;
+  for (fs::path p = folder; !p.empty() && !fs::exists(p, ignored); p = p.parent_path()) state_->made.push_back(p);
+  write_mesh_folder(input, *from, folder, file_name(state_->points),
+                    with_points(state_->points, state_->points.coordinates()));
+}
+
+TimeFolders::~TimeFolders() = default;
+
+void TimeFolders::add(Coordinates const& morphed) {
+  State& s = *state_;
+  fs::path const folder = s.output / time_name(s.times.at(s.written)) / "polyMesh";
+  s.make(folder);
+  std::string text =
+      with_points(s.points, s.mesh.dimension == 2 ? of_both_planes(s.from.mesh, s.points, s.mesh, morphed) : morphed);
+  io::OutputFile target((folder / file_name(s.points)).string());
+  target.write(text);
+  target.commit();
+  ++s.written;
+}
+
+void TimeFolders::commit() { state_->kept = true; }
 
 }  // namespace gridmorph::foam
