@@ -241,6 +241,72 @@ TEST_P(BothRows, FacetsGiveNearlyTheSameDisplacements) {
   }
 }
 
+/// A mesh of hexahedra with all its zones in one, coincident nodes one node, the patches of a family one patch: as programs for
+/// unstructured meshes store what was made of blocks. `number`: per node of the mesh its node there.
+Mesh in_one_zone(Mesh const& mesh, std::vector<Index32>& number) {
+  Mesh out;
+  out.source = mesh.source + " in one zone";
+  PointNumbers places(1e-9 * mesh.size());
+  std::vector<Vec3> points;
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    number.push_back(Index32(places.find_or_add(mesh.coordinates[n], int(points.size()))));
+    if (number.back() == Index32(points.size())) points.push_back(mesh.coordinates[n]);
+  }
+  out.add_zone("all", Index(points.size()));
+  out.coordinates = Coordinates(Index(points.size()));
+  for (std::size_t n = 0; n < points.size(); ++n) out.coordinates.set(Index(n), points[n]);
+  std::vector<Index32> corners;
+  auto const renumbered = [&](auto const& nodes) {
+    corners.clear();
+    for (Index32 const n : nodes) corners.push_back(number[std::size_t(n)]);
+    return std::span<Index32 const>(corners);
+  };
+  for (Index e = 0; e < mesh.elements.size(); ++e)
+    out.add_element(ElementType::hexahedron, renumbered(mesh.elements.corners(e)));
+  std::map<std::string, int> families;
+  for (Patch const& patch : mesh.patches) {
+    std::string const& family = patch.families.front();
+    auto const [at, fresh] = families.try_emplace(family, int(out.patches.size()));
+    if (fresh) {
+      out.patches.push_back({family, patch.bc_type, patch.kind, {family}, 0, {}, {}, {}});
+    }
+    for (Index f = 0; f < patch.faces.size(); ++f)
+      out.patches[std::size_t(at->second)].faces.add(renumbered(patch.faces[f]));
+  }
+  for (Connection const& c : mesh.connections) {
+    if (!c.periodic) continue;
+    Connection own = c;
+    own.zone = own.donor_zone = 0;
+    for (auto* list : {&own.nodes, &own.donor_nodes})
+      for (Index32& n : *list) n = number[std::size_t(n)];
+    out.connections.push_back(std::move(own));
+  }
+  return out;
+}
+
+TEST(BothRows, AreTheSameInOneZone) {
+  for (bool const sections : {false, true}) {
+    Row const row = passage(sections);
+    Mesh const hexahedra = as_hexahedra(row.blocks);
+    std::vector<Index32> number;
+    UnstructuredCase const one(in_one_zone(hexahedra, number));
+    Boundary const of_blocks(row.blocks);
+    auto const of_one = std::make_shared<Boundary const>(one.mesh, one.topology, one.face_patches);
+    auto const a =
+        displacements(of_blocks, BoundaryMotion(row.blocks, resolve(row.blocks, row.motion)), row.motion.rules.size());
+    BoundaryMotion const motion(of_one, resolve(one.mesh, row.motion));
+    auto const b = displacements(*of_one, motion, row.motion.rules.size());
+    for (std::size_t r = 0; r < a.size(); ++r) {
+      double largest = 0, apart = 0;
+      for (auto const& [n, u] : a[r]) {
+        largest = std::max(largest, norm(u));
+        apart = std::max(apart, distance(u, b[r].at(number[std::size_t(n)])));
+      }
+      EXPECT_LE(apart, 1e-12 * largest) << r;
+    }
+  }
+}
+
 // Sections of the blade as it shall be: its rows of nodes, moved. Nodes go where they went, in both kinds of mesh.
 TEST(BothRows, GoToTheSectionsOfATarget) {
   PassageOptions options;

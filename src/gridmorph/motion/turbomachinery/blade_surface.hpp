@@ -52,7 +52,7 @@ struct BladeInput {
 /// (find_face_grids()), the lines of a plane mesh with their copies across it; where that leaves faces over, or lines that
 /// do not run along the span together, the facets are cut instead (slice_surface()), and motions are those of their
 /// corners, linear between. Throws MotionError when nothing is left or more than two
-/// surfaces meet in one line. Cost O(nodes log nodes), of cuts O(facets times sections).
+/// surfaces meet in one line. Cost O(nodes log nodes), of cuts as slice_surface().
 BladeSurface stitch_blade(Boundary const& boundary, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes);
 

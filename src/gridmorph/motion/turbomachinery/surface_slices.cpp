@@ -58,6 +58,13 @@ struct Anchors {
   [[nodiscard]] bool alike(Anchors const& other) const { return at.size() == other.at.size() && base == other.base; }
 };
 
+/// Triangles of one part of the surface, by the lower end of their span.
+struct Triangles {
+  std::vector<int> list;
+  std::vector<double> low;  ///< per member of the list, ascending
+  double rise = 0;          ///< the most span that one of them takes up
+};
+
 class Slicer {
  public:
   explicit Slicer(SliceInput const& input) : input_(input) {
@@ -75,7 +82,7 @@ class Slicer {
   }
 
   /// Triangles that hang together.
-  [[nodiscard]] std::vector<std::vector<int>> parts() const {
+  [[nodiscard]] std::vector<Triangles> parts() const {
     DisjointSets<int> sets(triangles_.size());
     std::vector<int> first(edges_.size(), -1);
     for (int t = 0; t < int(triangles_.size()); ++t)
@@ -87,32 +94,42 @@ class Slicer {
       }
     std::map<int, std::vector<int>> out;
     for (int t = 0; t < int(triangles_.size()); ++t) out[sets.root(t)].push_back(t);
-    std::vector<std::vector<int>> list;
-    for (auto& [root, part] : out) list.push_back(std::move(part));
+    std::vector<Triangles> list;
+    for (auto& [root, part] : out) {
+      std::stable_sort(part.begin(), part.end(), [&](int a, int b) { return range(a).first < range(b).first; });
+      Triangles& own = list.emplace_back();
+      for (int const t : part) {
+        auto const [lo, hi] = range(t);
+        own.low.push_back(lo);
+        own.rise = std::max(own.rise, hi - lo);
+      }
+      own.list = std::move(part);
+    }
     return list;
   }
 
-  [[nodiscard]] std::pair<double, double> range(std::vector<int> const& part) const {
-    double lo = inf, hi = -inf;
-    for (int const t : part)
-      for (int const v : triangles_[std::size_t(t)]) {
-        lo = std::min(lo, span_[std::size_t(v)]);
-        hi = std::max(hi, span_[std::size_t(v)]);
-      }
-    return {lo, hi};
+  /// Span of one triangle.
+  [[nodiscard]] std::pair<double, double> range(int t) const {
+    auto const& [a, b, c] = triangles_[std::size_t(t)];
+    return std::minmax({span_[std::size_t(a)], span_[std::size_t(b)], span_[std::size_t(c)]});
+  }
+  [[nodiscard]] std::pair<double, double> range(Triangles const& part) const {
+    double hi = -inf;
+    for (int const t : part.list) hi = std::max(hi, range(t).second);
+    return {part.low.front(), hi};
   }
   /// Mean span that a triangle takes up.
-  [[nodiscard]] double step(std::vector<int> const& part) const {
+  [[nodiscard]] double step(Triangles const& part) const {
     double sum = 0;
-    for (int const t : part) {
-      auto const [lo, hi] = range({t});
+    for (int const t : part.list) {
+      auto const [lo, hi] = range(t);
       sum += hi - lo;
     }
-    return sum / double(part.size());
+    return sum / double(part.list.size());
   }
 
   /// The contour of a part at a span fraction, without points where it has none. `upper`: points at it are above it.
-  [[nodiscard]] Polyline cut(std::vector<int> const& part, double h, bool upper) const {
+  [[nodiscard]] Polyline cut(Triangles const& part, double h, bool upper) const {
     std::unordered_map<int, std::array<int, 2>> beside;
     auto const join = [&](int a, int b) {
       auto& list = beside.try_emplace(a, std::array{-1, -1}).first->second;
@@ -122,7 +139,10 @@ class Slicer {
         list[1] = b;
     };
     std::vector<int> order;  // of the part, so that nothing depends on the table
-    for (int const t : part) {
+    auto const begin = std::lower_bound(part.low.begin(), part.low.end(), h - part.rise);
+    auto const end = std::upper_bound(part.low.begin(), part.low.end(), h);
+    for (auto at = begin; at != end; ++at) {
+      int const t = part.list[std::size_t(at - part.low.begin())];
       std::array<int, 2> crossed{-1, -1};
       int n = 0;
       for (int const e : edges_of_[std::size_t(t)])
@@ -285,7 +305,7 @@ class Slicer {
 /// One part of the surface, and how its sections are made alike.
 class Part {
  public:
-  Part(Slicer const& slicer, SliceInput const& input, std::vector<int> triangles)
+  Part(Slicer const& slicer, SliceInput const& input, Triangles triangles)
       : slicer_(slicer), input_(input), triangles_(std::move(triangles)) {
     auto const [lo, hi] = slicer.range(triangles_);
     middle = 0.5 * (lo + hi);
@@ -527,7 +547,7 @@ class Part {
 
   Slicer const& slicer_;
   SliceInput const& input_;
-  std::vector<int> triangles_;
+  Triangles triangles_;
   Polyline reference_;   ///< at mid span
   bool around_ = false;  ///< it goes around the blade: closed, or its ends lie together
 };

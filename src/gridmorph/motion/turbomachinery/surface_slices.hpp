@@ -43,7 +43,7 @@ struct SliceInput {
 /// pieces of a contour with gaps of less than a tenth of the chord between them (holes in the surface) are one. So do parts that lie inside
 /// another's contour, or have less than half of its span (inner walls of a squealer). The span fractions are those where all parts have
 /// whole sections. `notes` says how many parts were passed over. Throws MotionError when no part has sections.
-/// Cost O(facets times sections).
+/// Cost O(facets log), and of each section the facets beside it.
 std::vector<SlicedContour> slice_surface(SliceInput const& input, std::vector<std::string>& notes);
 
 }  // namespace gridmorph
