@@ -106,6 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
         Named{"kaplan_7_blocks", [] { return of_example("kaplan_7_blocks.toml", "axialTurbine_7blk.cgns"); }},
         Named{"kaplan_stand_in", [] { return of_example("kaplan_redesign.toml", "water_turbine.cgns"); }},
         Named{"passage", [] { return passage(false); }}, Named{"linear_cascade", linear_cascade},
+        Named{"wing_redesign", [] { return of_example("wing_redesign.toml", "mdo_tutorial_000_vol.cgns"); }},
         Named{"passage_sections", [] { return passage(true); }}),
     [](auto const& info) { return info.param.name; });
 
@@ -238,6 +239,34 @@ TEST_P(BothRows, FacetsGiveNearlyTheSameDisplacements) {
       apart = std::max(apart, distance(u, b[r].at(n)));
     }
     EXPECT_LE(apart, 0.02 * largest) << r;
+  }
+}
+
+// The blade turns about the axis: inlet, outlet and periodic sides turn with it, as hexahedra and as tetrahedra.
+TEST(BothRows, TurnAsAWholeWithTheirBlade) {
+  Row row = passage(false);
+  RigidTransform const turn = rotation_about({0, 0, 0}, {1, 0, 0}, 0.1);
+  row.motion.rules[0].rule = FunctionRule{"turn", [turn](std::span<Vec3 const> points, std::span<Vec3> out) {
+                                            for (std::size_t n = 0; n < points.size(); ++n)
+                                              out[n] = turn(points[n]) - points[n];
+                                          }};
+  Mesh split = to_prisms_and_tetrahedra(row.blocks, 0);
+  split.connections = as_hexahedra(row.blocks).connections;
+  for (Mesh const& mesh : {as_hexahedra(row.blocks), split}) {
+    UnstructuredCase const c(mesh);
+    auto const boundary = std::make_shared<Boundary const>(c.mesh, c.topology, c.face_patches);
+    BoundaryMotion const motion(boundary, resolve(c.mesh, row.motion));
+    auto const all = displacements(*boundary, motion, row.motion.rules.size());
+    double worst = 0;
+    std::size_t compared = 0;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (auto const& [n, u] : all[r]) {
+        Vec3 const p = c.mesh.coordinates[n];
+        worst = std::max(worst, distance(u, turn(p) - p));
+        ++compared;
+      }
+    EXPECT_GT(compared, 1000u);
+    EXPECT_LT(worst, 1e-13);
   }
 }
 

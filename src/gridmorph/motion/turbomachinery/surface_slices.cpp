@@ -347,30 +347,25 @@ class Part {
   }
 
   [[nodiscard]] SlicedContour contour(std::vector<double> const& levels) const {
-    struct Section {
-      double span;
-      Polyline line;
-      Anchors anchors;
-    };
     std::vector<Section> sections;
-    for (double const h : levels) {
-      Polyline line = oriented(slicer_.cut(triangles_, h, h > middle));
-      if (line.size() < 3 || line.closed != reference_.closed) continue;
-      Anchors at = anchors(line);
-      sections.push_back({h, std::move(line), std::move(at)});
-    }
+    for (double const h : levels)
+      if (auto section = section_at(h)) sections.push_back(std::move(*section));
     // Sections with other edges than most have are left out: their points would be others.
     auto const votes = [&](Anchors const& own) {
       return std::count_if(sections.begin(), sections.end(), [&](Section const& s) { return s.anchors.alike(own); });
     };
-    Anchors const* most = nullptr;
+    Anchors const* favourite = nullptr;
     for (Section const& s : sections)
-      if (most == nullptr || votes(s.anchors) > votes(*most)) most = &s.anchors;
+      if (favourite == nullptr || votes(s.anchors) > votes(*favourite)) favourite = &s.anchors;
     SlicedContour out;
     out.closed = reference_.closed;
-    if (most == nullptr) return out;
+    if (favourite == nullptr) return out;
+    Anchors const most = *favourite;
+    std::erase_if(sections, [&](Section const& s) { return !s.anchors.alike(most); });
+    if (auto first = nearer(sections.front().span, levels.front(), most))
+      sections.insert(sections.begin(), std::move(*first));
+    if (auto last = nearer(sections.back().span, levels.back(), most)) sections.push_back(std::move(*last));
     for (Section const& s : sections) {
-      if (!s.anchors.alike(*most)) continue;
       auto const places = resample(s.line, s.anchors, s.span);
       out.lines.resize(places.size());
       for (std::size_t n = 0; n < places.size(); ++n) out.lines[n].push_back(places[n]);
@@ -379,6 +374,37 @@ class Part {
   }
 
  private:
+  struct Section {
+    double span;
+    Polyline line;
+    Anchors anchors;
+  };
+
+  [[nodiscard]] std::optional<Section> section_at(double h) const {
+    Polyline line = oriented(slicer_.cut(triangles_, h, h > middle));
+    if (line.size() < 3 || line.closed != reference_.closed) return std::nullopt;
+    Anchors at = anchors(line);
+    return Section{h, std::move(line), std::move(at)};
+  }
+
+  /// Between a section and the end of the span, where those are others, the last one that is alike: halves of the stretch.
+  [[nodiscard]] std::optional<Section> nearer(double span, double end, Anchors const& alike) const {
+    constexpr int halvings = 10;
+    std::optional<Section> out;
+    double bad = end;
+    for (int n = 0; n < halvings && span != end; ++n) {
+      double const h = 0.5 * (span + bad);
+      auto section = section_at(h);
+      if (section && section->anchors.alike(alike)) {
+        span = h;
+        out = std::move(section);
+      } else {
+        bad = h;
+      }
+    }
+    return out;
+  }
+
   /// Whether a section follows another one closely along the span, or one of them is cut off.
   [[nodiscard]] static bool alike(Polyline const& line, Polyline const& other) {
     double const size = line.extent(), before = other.extent();
