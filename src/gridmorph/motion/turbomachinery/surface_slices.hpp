@@ -1,35 +1,17 @@
 // Sections of a blade whose surface has no grid lines: its facets cut at constant span fractions.
 #pragma once
 
-#include <gridmorph/kernels/vec3.hpp>
+#include <gridmorph/motion/turbomachinery/facet_cuts.hpp>
 
-#include <array>
-#include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace gridmorph {
-
-/// A place on the surface: a weighted mean of its points. Its span is that of its section, which places inside facets are a little off.
-struct SlicePlace {
-  std::vector<std::pair<int, double>> weights;
-  Vec3 point;
-  double span = 0;
-};
 
 /// One contour along the span: lines of places from its lower to its upper end, in their order around the sections.
 struct SlicedContour {
   std::vector<std::vector<SlicePlace>> lines;
   bool closed = false;
-};
-
-struct SliceInput {
-  std::vector<Vec3> points;
-  std::vector<std::array<int, 3>> triangles;
-  std::function<double(Vec3 const&)> span;    ///< span fraction
-  std::function<double(Vec3 const&)> along;   ///< increases along the flow
-  std::function<double(Vec3 const&)> height;  ///< length of the span through a point
 };
 
 /// Cuts the facets of blades at evenly spaced span fractions (17 to 129, two for each facet along the span) and gives every section

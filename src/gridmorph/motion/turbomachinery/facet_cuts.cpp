@@ -1,0 +1,262 @@
+#include <gridmorph/core/disjoint_sets.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/turbomachinery/facet_cuts.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <unordered_map>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double widest_gap = 0.1;  ///< of the extent: between pieces of a contour
+constexpr double least_rise = 0.3;  ///< span gained over length, of facets that have sections
+
+/// Where a corner of a facet lies at the span itself several edges have the same point: one is kept.
+void thin_out(CutLine& line, double same) {
+  std::size_t kept = 1;
+  for (std::size_t n = 1; n < line.points.size(); ++n) {
+    bool const again = distance(line.points[n], line.points[kept - 1]) <= same ||
+                       (line.closed && distance(line.points[n], line.points.front()) <= same);
+    if (again) continue;
+    line.points[kept] = line.points[n];
+    line.edges[kept++] = line.edges[n];
+  }
+  line.points.resize(kept);
+  line.edges.resize(kept);
+}
+
+/// Joins pieces over gaps, nearest ends first, and takes the one that reaches farthest.
+CutLine longest(std::vector<CutLine> pieces) {
+  CutLine all;
+  for (CutLine const& p : pieces) all.points.insert(all.points.end(), p.points.begin(), p.points.end());
+  double const limit = widest_gap * all.extent();
+  for (CutLine& p : pieces) thin_out(p, 1e-9 * all.extent());
+  auto const end = [](CutLine const& p, bool last) { return last ? p.points.back() : p.points.front(); };
+  for (;;) {
+    double least = limit;
+    std::size_t best_a = 0, best_b = 0;
+    bool last_a = false, last_b = false;
+    for (std::size_t a = 0; a < pieces.size(); ++a)
+      for (std::size_t b = a + 1; b < pieces.size(); ++b) {
+        if (pieces[a].closed || pieces[b].closed) continue;
+        for (bool const la : {false, true})
+          for (bool const lb : {false, true})
+            if (double const d = distance(end(pieces[a], la), end(pieces[b], lb)); d < least) {
+              least = d;
+              best_a = a;
+              best_b = b;
+              last_a = la;
+              last_b = lb;
+            }
+      }
+    if (best_b == 0) break;
+    CutLine &one = pieces[best_a], &other = pieces[best_b];
+    if (!last_a) one.reverse();
+    if (last_b) other.reverse();
+    one.edges.insert(one.edges.end(), other.edges.begin(), other.edges.end());
+    one.points.insert(one.points.end(), other.points.begin(), other.points.end());
+    pieces.erase(pieces.begin() + std::ptrdiff_t(best_b));
+  }
+  auto const most = std::max_element(pieces.begin(), pieces.end(),
+                                     [](CutLine const& a, CutLine const& b) { return a.extent() < b.extent(); });
+  if (most == pieces.end()) return {};
+  most->closed = most->closed || distance(most->points.front(), most->points.back()) < limit;
+  return std::move(*most);
+}
+
+}  // namespace
+
+double CutLine::extent() const {
+  Vec3 low{inf, inf, inf}, high = -1.0 * low;
+  for (Vec3 const& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return points.empty() ? 0 : norm(high - low);
+}
+
+Vec3 CutLine::area() const {
+  Vec3 sum;
+  for (std::size_t n = 1; n + 1 < points.size(); ++n)
+    sum += cross(points[n] - points.front(), points[n + 1] - points.front());
+  return sum;
+}
+
+void CutLine::reverse() {
+  std::reverse(edges.begin(), edges.end());
+  std::reverse(points.begin(), points.end());
+}
+
+FacetCuts::FacetCuts(SliceInput const& input) : input_(input) {
+  for (Vec3 const& p : input.points) span_.push_back(input.span(p));
+  // Ends of the span are whole lines of nodes but for round-off.
+  auto const [low, high] = std::minmax_element(span_.begin(), span_.end());
+  double const same = 1e-9 * (*high - *low);
+  double const lo = std::abs(*low) <= same ? 0 : *low, hi = std::abs(*high - 1) <= same ? 1 : *high;
+  for (double& f : span_) f = f - lo <= same ? lo : hi - f <= same ? hi : f;
+  for (auto const& t : input.triangles)
+    if (rises(t)) triangles_.push_back(t);
+  if (triangles_.empty())
+    throw MotionError("no part of the blade's surface runs spanwise: check the axis, and that `of` names its sides");
+  find_edges();
+}
+
+std::vector<SurfacePart> FacetCuts::parts() const {
+  DisjointSets<int> sets(triangles_.size());
+  std::vector<int> first(edges_.size(), -1);
+  for (int t = 0; t < int(triangles_.size()); ++t)
+    for (int const e : edges_of_[std::size_t(t)]) {
+      if (first[std::size_t(e)] < 0)
+        first[std::size_t(e)] = t;
+      else
+        sets.join(first[std::size_t(e)], t);
+    }
+  std::map<int, std::vector<int>> out;
+  for (int t = 0; t < int(triangles_.size()); ++t) out[sets.root(t)].push_back(t);
+  std::vector<SurfacePart> list;
+  for (auto& [root, part] : out) {
+    std::stable_sort(part.begin(), part.end(), [&](int a, int b) { return range(a).first < range(b).first; });
+    SurfacePart& own = list.emplace_back();
+    for (int const t : part) {
+      auto const [lo, hi] = range(t);
+      own.low.push_back(lo);
+      own.rise = std::max(own.rise, hi - lo);
+    }
+    own.triangles = std::move(part);
+  }
+  return list;
+}
+
+std::pair<double, double> FacetCuts::range(int t) const {
+  auto const& [a, b, c] = triangles_[std::size_t(t)];
+  return std::minmax({span_[std::size_t(a)], span_[std::size_t(b)], span_[std::size_t(c)]});
+}
+
+std::pair<double, double> FacetCuts::range(SurfacePart const& part) const {
+  double hi = -inf;
+  for (int const t : part.triangles) hi = std::max(hi, range(t).second);
+  return {part.low.front(), hi};
+}
+
+double FacetCuts::step(SurfacePart const& part) const {
+  double sum = 0;
+  for (int const t : part.triangles) {
+    auto const [lo, hi] = range(t);
+    sum += hi - lo;
+  }
+  return sum / double(part.triangles.size());
+}
+
+CutLine FacetCuts::cut(SurfacePart const& part, double h, bool upper) const {
+  std::unordered_map<int, std::array<int, 2>> beside;
+  auto const join = [&](int a, int b) {
+    auto& list = beside.try_emplace(a, std::array{-1, -1}).first->second;
+    if (list[0] < 0)
+      list[0] = b;
+    else if (list[1] < 0)
+      list[1] = b;
+  };
+  std::vector<int> order;  // of the part, so that nothing depends on the table
+  auto const begin = std::lower_bound(part.low.begin(), part.low.end(), h - part.rise);
+  auto const end = std::upper_bound(part.low.begin(), part.low.end(), h);
+  for (auto at = begin; at != end; ++at) {
+    int const t = part.triangles[std::size_t(at - part.low.begin())];
+    std::array<int, 2> crossed{-1, -1};
+    int n = 0;
+    for (int const e : edges_of_[std::size_t(t)])
+      if (above(edges_[std::size_t(e)][0], h, upper) != above(edges_[std::size_t(e)][1], h, upper) && n < 2)
+        crossed[std::size_t(n++)] = e;
+    if (n < 2) continue;
+    join(crossed[0], crossed[1]);
+    join(crossed[1], crossed[0]);
+    order.push_back(crossed[0]);
+    order.push_back(crossed[1]);
+  }
+  std::unordered_map<int, char> used;
+  std::vector<CutLine> pieces;
+  auto const walk = [&](int start, bool closed) {
+    CutLine line;
+    line.closed = closed;
+    for (int at = start; at >= 0;) {
+      used[at] = 1;
+      line.edges.push_back(at);
+      line.points.push_back(between(at, linear_fraction(at, h)));
+      int following = -1;
+      for (int const e : beside.at(at))
+        if (e >= 0 && following < 0 && !used.contains(e)) following = e;
+      at = following;
+    }
+    pieces.push_back(std::move(line));
+  };
+  for (int const e : order)
+    if (beside.at(e)[1] < 0 && !used.contains(e)) walk(e, false);
+  for (int const e : order)
+    if (!used.contains(e)) walk(e, true);
+  return longest(std::move(pieces));
+}
+
+SlicePlace FacetCuts::place(int e, double h) const {
+  auto const [a, b] = edges_[std::size_t(e)];
+  double const t = fraction(e, h);
+  return {{{a, 1 - t}, {b, t}}, between(e, t), h};
+}
+
+/// By the length of the gradient of span in it, in lengths per length.
+bool FacetCuts::rises(std::array<int, 3> const& t) const {
+  Vec3 const a = input_.points[std::size_t(t[0])], b = input_.points[std::size_t(t[1])] - a,
+             c = input_.points[std::size_t(t[2])] - a;
+  Vec3 const n = cross(b, c);
+  double const area2 = dot(n, n);
+  if (!(area2 > 0)) return false;
+  double const fb = span_[std::size_t(t[1])] - span_[std::size_t(t[0])],
+               fc = span_[std::size_t(t[2])] - span_[std::size_t(t[0])];
+  Vec3 const gradient = (1 / area2) * (fb * cross(c, n) + fc * cross(n, b));
+  return norm(gradient) * input_.height(a + (1.0 / 3) * (b + c)) > least_rise;
+}
+
+void FacetCuts::find_edges() {
+  std::map<std::pair<int, int>, int> number;
+  for (auto const& t : triangles_) {
+    auto& own = edges_of_.emplace_back();
+    for (int s = 0; s < 3; ++s) {
+      std::pair<int, int> const ends = std::minmax(t[std::size_t(s)], t[std::size_t((s + 1) % 3)]);
+      auto const [at, fresh] = number.try_emplace(ends, int(edges_.size()));
+      if (fresh) edges_.push_back({ends.first, ends.second});
+      own[std::size_t(s)] = at->second;
+    }
+  }
+}
+
+double FacetCuts::linear_fraction(int e, double h) const {
+  auto const [a, b] = edges_[std::size_t(e)];
+  double const fa = span_[std::size_t(a)], fb = span_[std::size_t(b)];
+  return fb != fa ? std::clamp((h - fa) / (fb - fa), 0.0, 1.0) : 0.0;
+}
+
+Vec3 FacetCuts::between(int e, double t) const {
+  auto const [a, b] = edges_[std::size_t(e)];
+  return (1 - t) * input_.points[std::size_t(a)] + t * input_.points[std::size_t(b)];
+}
+
+double FacetCuts::fraction(int e, double h) const {
+  auto const [a, b] = edges_[std::size_t(e)];
+  double lo = 0, hi = 1, f_lo = span_[std::size_t(a)] - h, f_hi = span_[std::size_t(b)] - h;
+  double t = linear_fraction(e, h);
+  if (f_lo == 0 || f_hi == 0 || (f_lo < 0) == (f_hi < 0)) return t;
+  constexpr int steps = 3;
+  for (int n = 0; n < steps; ++n) {
+    double const f = input_.span(between(e, t)) - h;
+    if (f == 0) break;
+    ((f < 0) == (f_lo < 0) ? lo : hi) = t;
+    ((f < 0) == (f_lo < 0) ? f_lo : f_hi) = f;
+    t = lo + (hi - lo) * (-f_lo) / (f_hi - f_lo);
+  }
+  return t;
+}
+
+}  // namespace gridmorph
