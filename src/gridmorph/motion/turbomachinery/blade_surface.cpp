@@ -104,23 +104,22 @@ class Stitcher {
       left_out_.push_back(p);
   }
 
-  /// Whether most of the area of a patch gains less span than 0.3 of its length.
+  /// Whether most of the area of a patch gains no span.
   bool is_tip(int p, Piece const& all) {
     double flat = 0, area = 0;
     double height = 0;
     for (Vec3 const& x : all.points) height += input_.height(input_.frame.meridional(x)) / double(all.points.size());
     FacetList const list = boundary_.facets({&p, 1});
     for (auto const& f : list.facets) {
-      Vec3 const a = list.points[std::size_t(f[0])], b = list.points[std::size_t(f[1])] - a,
-                 c = list.points[std::size_t(f[2])] - a;
-      Vec3 const n = cross(b, c);
-      if (!(norm(n) > 0)) continue;
-      double const h = all.span[std::size_t(f[0])];
-      Vec3 const gradient = (1 / dot(n, n)) * ((all.span[std::size_t(f[1])] - h) * cross(c, n) +
-                                               (all.span[std::size_t(f[2])] - h) * cross(n, b));
-      area += norm(n);
-      constexpr double least = 0.3;
-      if (norm(gradient) * height < least) flat += norm(n);
+      std::array<Vec3, 3> x;
+      std::array<double, 3> span{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        x[k] = list.points[std::size_t(f[k])];
+        span[k] = all.span[std::size_t(f[k])];
+      }
+      double const own = norm(cross(x[1] - x[0], x[2] - x[0]));
+      area += own;
+      if (gradient_in(x, span) * height < least_span_gain) flat += own;
     }
     return flat > 0.5 * area;
   }

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double widest_gap = 0.1;  ///< of the extent: between pieces of a contour
-constexpr double least_rise = 0.3;  ///< span gained over length, of facets that have sections
 
 /// Where a corner of a facet lies at the span itself several edges have the same point: one is kept.
 void thin_out(CutLine& line, double same) {
@@ -70,6 +69,13 @@ CutLine longest(std::vector<CutLine> pieces) {
 }
 
 }  // namespace
+
+double gradient_in(std::array<Vec3, 3> const& corners, std::array<double, 3> const& values) {
+  Vec3 const b = corners[1] - corners[0], c = corners[2] - corners[0], n = cross(b, c);
+  double const area2 = dot(n, n);
+  if (!(area2 > 0)) return 0;
+  return norm((1 / area2) * ((values[1] - values[0]) * cross(c, n) + (values[2] - values[0]) * cross(n, b)));
+}
 
 double CutLine::extent() const {
   Vec3 low{inf, inf, inf}, high = -1.0 * low;
@@ -206,17 +212,11 @@ SlicePlace FacetCuts::place(int e, double h) const {
   return {{{a, 1 - t}, {b, t}}, between(e, t), h};
 }
 
-/// By the length of the gradient of span in it, in lengths per length.
 bool FacetCuts::rises(std::array<int, 3> const& t) const {
-  Vec3 const a = input_.points[std::size_t(t[0])], b = input_.points[std::size_t(t[1])] - a,
-             c = input_.points[std::size_t(t[2])] - a;
-  Vec3 const n = cross(b, c);
-  double const area2 = dot(n, n);
-  if (!(area2 > 0)) return false;
-  double const fb = span_[std::size_t(t[1])] - span_[std::size_t(t[0])],
-               fc = span_[std::size_t(t[2])] - span_[std::size_t(t[0])];
-  Vec3 const gradient = (1 / area2) * (fb * cross(c, n) + fc * cross(n, b));
-  return norm(gradient) * input_.height(a + (1.0 / 3) * (b + c)) > least_rise;
+  auto const at = [&](int k) { return input_.points[std::size_t(t[std::size_t(k)])]; };
+  auto const span = [&](int k) { return span_[std::size_t(t[std::size_t(k)])]; };
+  Vec3 const middle = (1.0 / 3) * (at(0) + at(1) + at(2));
+  return gradient_in({at(0), at(1), at(2)}, {span(0), span(1), span(2)}) * input_.height(middle) > least_span_gain;
 }
 
 void FacetCuts::find_edges() {

@@ -20,6 +20,11 @@ struct SliceInput {
   std::function<double(Vec3 const&)> height;  ///< length of the span through a point
 };
 
+/// Span that facets with a part in sections gain at least, over their length: tip faces gain less.
+inline constexpr double least_span_gain = 0.3;
+/// Length of the gradient of the values at its corners in a triangle; 0 where it has no area.
+double gradient_in(std::array<Vec3, 3> const& corners, std::array<double, 3> const& values);
+
 /// A place on the surface: a weighted mean of its points. Its span is that of its section, which places inside facets are a little off.
 struct SlicePlace {
   std::vector<std::pair<int, double>> weights;
@@ -48,7 +53,7 @@ struct SurfacePart {
   double rise = 0;          ///< the most span that one of them takes up
 };
 
-/// Triangles that gain span (0.3 of their length or more) with their edges. Keeps a reference to its input.
+/// Triangles that gain span (least_span_gain) with their edges. Keeps a reference to its input.
 class FacetCuts {
  public:
   /// Ends of the span are whole lines of nodes but for round-off: spans within 1e-9 of the whole of them are theirs. Throws MotionError when no
