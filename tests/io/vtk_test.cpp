@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <ostream>
 #include <vector>
@@ -394,6 +395,25 @@ TEST_F(VtuRead, NodesOfSecondOrderElementsComeInTheOrderOfTheStandard) {
   }
 }
 
+/// Boundary conditions of CGNS files may list nodes: the faces between them are written.
+TEST_F(VtuRead, PatchesOfNodesAreWrittenAsTheirFaces) {
+  Mesh mesh = box();
+  for (std::size_t const p : {std::size_t(1), std::size_t(3)}) {
+    mesh.patches[p].nodes = patch_nodes(mesh.patches[p]);
+    mesh.patches[p].faces = {};
+  }
+  write_vtk(path_, mesh, mesh.coordinates);
+  Mesh const back = read_mesh(path_), want = box();
+  ASSERT_EQ(back.patches.size(), want.patches.size());
+  for (auto const& patch : want.patches) {
+    auto const same =
+        std::find_if(back.patches.begin(), back.patches.end(), [&](Patch const& b) { return b.name == patch.name; });
+    ASSERT_NE(same, back.patches.end()) << patch.name;
+    EXPECT_EQ(same->faces.size(), patch.faces.size());
+    EXPECT_EQ(patch_nodes(*same), patch_nodes(patch));
+  }
+}
+
 /// A prism of six sides, its faces looking anywhere.
 TEST_F(VtuRead, PolyhedraAreReadWrittenAndTurnedOutwards) {
   std::string points, ring = "6 0 1 2 3 4 5", top = "6 6 7 8 9 10 11", sides;
@@ -432,6 +452,139 @@ TEST_F(VtuRead, PolyhedraAreReadWrittenAndTurnedOutwards) {
   expect_refused_where_cut(text, bad, 3, 0);
   expect_no_harm_where_overwritten(text, bad, 1000);
   expect_no_harm_where_overwritten(bytes_of(out), bad, 400);
+}
+
+/// Two boxes side by side in files of their own, and the planes around them as surfaces in single precision.
+class Vtm : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_ / "in");
+    Mesh left = to_hexahedra(unit_box({2, 2, 2})), right = to_hexahedra(unit_box({2, 2, 2}));
+    for (Mesh* m : {&left, &right})
+      for (Index n = 0; n < m->n_nodes(); ++n)
+        m->coordinates.set(n, 1.0 / 3 * (m->coordinates[n] + Vec3{m == &right ? 2.0 : 0, 0, 0}));
+    write_bytes(folder_ / "in" / "left.vtu", VtuWriter{Storage{"raw", "appended", false, true}}.run(left, "", false));
+    write_bytes(folder_ / "in" / "right.vtu", VtuWriter{Storage{"ascii"}}.run(right, "", false));
+    // The floor of both boxes, and the end of the right one.
+    write_bytes(folder_ / "in" / "floor.vtp", surface(4, 2, [](int i, int j) { return Vec3{i / 3.0, j / 3.0, 0}; }));
+    write_bytes(folder_ / "in" / "outlet.vtp", surface(2, 2, [](int i, int j) {
+                  return Vec3{4 / 3.0, i / 3.0, j / 3.0};
+                }));
+    write_bytes(path_, text_);
+  }
+  template <class Place>
+  static std::string surface(int ni, int nj, Place const& place) {
+    VtuWriter writer{Storage{"single", "ascii", false, false, true}};
+    std::vector<double> points;
+    std::vector<std::int32_t> nodes, ends;
+    for (int j = 0; j <= nj; ++j)
+      for (int i = 0; i <= ni; ++i)
+        for (double const c : {place(i, j).x, place(i, j).y, place(i, j).z}) points.push_back(c);
+    for (int j = 0; j < nj; ++j)
+      for (int i = 0; i < ni; ++i) {
+        int const n = i + (ni + 1) * j;
+        nodes.insert(nodes.end(), {n, n + 1, n + ni + 2, n + ni + 1});
+        ends.push_back(int(nodes.size()));
+      }
+    std::string out =
+        "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+        "header_type=\"UInt32\"><PolyData><Piece NumberOfPoints=\"" +
+        std::to_string(points.size() / 3) + "\" NumberOfPolys=\"" + std::to_string(ends.size()) + "\"><Points>";
+    out += writer.reals("Points", 3, points) + "</Points><Polys>" + writer.array("connectivity", "Int32", 1, nodes);
+    return out + writer.array("offsets", "Int32", 1, ends) + "</Polys></Piece></PolyData></VTKFile>\n";
+  }
+  TemporaryFolder folder_;
+  std::string const path_ = folder_.file("mesh.vtm");
+  std::string const text_ =
+      "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n<vtkMultiBlockDataSet>\n<Block index=\"0\" "
+      "name=\"volumes\">\n"
+      "<DataSet index=\"0\" name=\"left\" file=\"in/left.vtu\"/>\n<DataSet index=\"1\" name=\"right\" "
+      "file=\"in/right.vtu\"/>\n</Block>\n"
+      "<Block index=\"1\">\n<DataSet index=\"0\" name=\"floor\" file=\"in/floor.vtp\"/>\n<DataSet index=\"1\" "
+      "name=\"outlet\" file=\"in/outlet.vtp\"/>\n"
+      "<DataSet index=\"2\" name=\"empty\"/>\n</Block>\n</vtkMultiBlockDataSet>\n</VTKFile>\n";
+};
+
+TEST_F(Vtm, BlocksOfVolumesAreZonesAndSurfacesTheirPatches) {
+  auto const facts = look_at_mesh(path_);
+  EXPECT_EQ(facts.format, MeshFormat::vtk);
+  EXPECT_EQ(facts.kind, MeshKind::unstructured);
+  EXPECT_EQ(facts.linked.size(), 4U);
+  Mesh const mesh = read_mesh(path_);
+  ASSERT_EQ(mesh.zones.size(), 2U);
+  EXPECT_EQ(mesh.zones[1].name, "volumes/right");
+  EXPECT_EQ(mesh.n_elements(), 16);
+  EXPECT_EQ(mesh.n_nodes(), 54);
+  ASSERT_EQ(mesh.patches.size(), 5U);
+  std::vector<std::string> const names{"floor", "floor", "outlet", "boundary", "boundary"};
+  std::vector<int> const zones{0, 1, 1, 0, 1};
+  std::vector<Index> const faces{4, 4, 4, 20, 16};
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    EXPECT_EQ(mesh.patches[p].name, names[p]);
+    EXPECT_EQ(mesh.patches[p].zone, zones[p]);
+    EXPECT_EQ(mesh.patches[p].faces.size(), faces[p]);
+  }
+  EXPECT_EQ(mesh.patches[2].kind, PatchKind::outflow);
+}
+
+TEST_F(Vtm, SurfacesMoveWithTheNodesThatLieThere) {
+  Mesh const mesh = read_mesh(path_);
+  std::string const out = folder_.file("out.vtm");
+  write_morphed(path_, out, mesh, mesh.coordinates);
+  std::vector<std::string> const files{"left.vtu", "right.vtu", "floor.vtp", "outlet.vtp"};
+  auto const written = [&](std::size_t k) {
+    return folder_ / "out" / ("out_" + std::to_string(k) + (k < 2 ? ".vtu" : ".vtp"));
+  };
+  for (std::size_t k = 0; k < files.size(); ++k)
+    EXPECT_EQ(bytes_of(written(k)), bytes_of(folder_ / "in" / files[k])) << files[k];
+  Coordinates moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const p = mesh.coordinates[n];
+    moved.set(n, p + Vec3{0.1 * p.x, 0.2, -0.3 * p.y});
+  }
+  OutputFields fields;
+  fields.displacement = true;
+  fields.cells.push_back({"Number", {}});
+  for (Index e = 0; e < mesh.n_elements(); ++e) fields.cells.back().values.push_back(double(e));
+  write_morphed(path_, out, mesh, moved, fields);
+  Mesh const back = read_mesh(out);
+  ASSERT_EQ(back.n_nodes(), mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
+  ASSERT_EQ(back.patches.size(), mesh.patches.size());
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+    EXPECT_EQ(back.patches[p].faces.item, mesh.patches[p].faces.item);
+  expect_all_in(bytes_of(written(1)), {"Name=\"Displacement\"", "Name=\"Number\"", "15"});
+  expect_all_in(message_of<IoError>([&] { write_morphed(path_, folder_.file("out.vtu"), mesh, moved); }),
+                {"ending .vtm"});
+  std::string const left = (folder_ / "in" / "left.vtu").string();
+  Mesh const alone = read_mesh(left);
+  expect_all_in(message_of<IoError>([&] { write_morphed(left, out, alone, alone.coordinates); }), {"ending .vtu"});
+}
+
+TEST_F(Vtm, DamagedFilesGiveAMeshOrAnError) {
+  std::string const bad = folder_.file("bad.vtm");
+  expect_refused_where_cut(text_, bad, 3, 2);
+  for (unsigned seed = 0; seed < 300; ++seed) {  // names of files among what is damaged, which errors name
+    std::mt19937 random(seed);
+    std::string damaged = text_;
+    damaged[random() % damaged.size()] = char(random());
+    write_bytes(bad, damaged);
+    try {
+      if (mesh_kind(bad) == MeshKind::unstructured) read_mesh(bad);
+    } catch (Error const& e) {
+      EXPECT_FALSE(std::string(e.what()).empty());
+    }
+  }
+  for (char const* file : {"floor.vtp", "left.vtu"}) {
+    std::string const whole = bytes_of(folder_ / "in" / file);
+    for (std::size_t length = 0; length + 2 < whole.size(); length += 41) {
+      write_bytes(folder_ / "in" / file, whole.substr(0, length));
+      EXPECT_THROW(read_mesh(path_), Error) << file << " " << length;
+    }
+    write_bytes(folder_ / "in" / file, whole);
+  }
+  std::filesystem::remove(folder_ / "in" / "outlet.vtp");
+  expect_all_in(message_of<IoError>([&] { read_mesh(path_); }), {"outlet.vtp", "no such file"});
 }
 
 TEST_F(VtuRead, ErrorsSayWhereWhatAndWhatToDo) {

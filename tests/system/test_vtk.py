@@ -15,9 +15,13 @@ import unittest
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.vtkFiltersCore import vtkThreshold
+from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+from vtkmodules.vtkIOXML import (vtkXMLMultiBlockDataReader, vtkXMLMultiBlockDataWriter, vtkXMLUnstructuredGridReader,
+                                 vtkXMLUnstructuredGridWriter)
 
 GRIDMORPH, MESHES = os.path.realpath(sys.argv.pop(1)), os.path.realpath(sys.argv.pop(1))
 
@@ -188,6 +192,47 @@ class Vtk(unittest.TestCase):
                     numpy.testing.assert_array_equal(arrays(after.GetCellData())[name], values)
                 numpy.testing.assert_array_equal(vtk_to_numpy(after.GetCells().GetConnectivityArray()),
                                                  vtk_to_numpy(source.GetCells().GetConnectivityArray()))
+
+    def test_meshes_in_several_files_are_morphed_together(self):
+        self.run_gridmorph("demo", "passage", "-n", "10000", "-m", "rotation", "-d", ".")
+        grid = self.vtk_output("passage.cgns", '[[motion]]\npatches = ["*"]\nrule = "formula"\ndx = "0.001"\n')
+        ids = arrays(grid.GetCellData())["CellEntityIds"]
+        names = ["volume"] + [grid.GetFieldData().GetAbstractArray("PatchNames").GetValue(n) for n in range(ids.max())]
+        blocks = vtkMultiBlockDataSet()
+        for number, name in enumerate(names):
+            cells = vtkThreshold()
+            cells.SetInputData(grid)
+            cells.SetInputArrayToProcess(0, 0, 0, 1, "CellEntityIds")
+            cells.SetLowerThreshold(number)
+            cells.SetUpperThreshold(number)
+            cells.Update()
+            part = cells.GetOutput()
+            if number % 2 == 1:  # as polygons, others as grids
+                surface = vtkGeometryFilter()
+                surface.SetInputData(part)
+                surface.Update()
+                part = surface.GetOutput()
+            blocks.SetBlock(number, part)
+            blocks.GetMetaData(number).Set(blocks.NAME(), name)
+        writer = vtkXMLMultiBlockDataWriter()
+        writer.SetInputData(blocks)
+        writer.SetFileName(os.path.join(self.folder.name, "in.vtm"))
+        writer.Write()
+        with open(os.path.join(self.folder.name, "case.toml"), "w") as case:
+            case.write('[mesh]\ninput = "in.vtm"\n[sequence]\ntimes = [0, 1]\noutput = "moved_{step}.vtm"\n[[motion]]\npatches = ["*"]\nrule = "formula"\n'
+                       'dx = "t * 0.002"\ndy = "t * 0.001"\n[output]\ndisplacement = true\n')
+        self.run_gridmorph("morph", "case.toml")
+        reader = vtkXMLMultiBlockDataReader()
+        reader.SetFileName(os.path.join(self.folder.name, "moved_2.vtm"))
+        reader.Update()
+        moved = reader.GetOutput()
+        self.assertEqual(moved.GetNumberOfBlocks(), len(names))
+        for number, name in enumerate(names):
+            self.assertEqual(moved.GetMetaData(number).Get(moved.NAME()), name)
+            shift = points_of(moved.GetBlock(number)) - points_of(blocks.GetBlock(number))
+            self.assertLess(abs(shift - [0.002, 0.001, 0]).max(), 1e-6)
+        self.assertLess(abs(arrays(moved.GetBlock(0).GetPointData())["MorphDisplacement"] - [0.002, 0.001, 0]).max(), 1e-12)
+        self.assertAlmostEqual(volumes(moved.GetBlock(0)).sum(), volumes(blocks.GetBlock(0)).sum(), delta=1e-12)
 
 
 if __name__ == "__main__":

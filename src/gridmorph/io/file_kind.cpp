@@ -3,8 +3,10 @@
 #include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/gmsh/gmsh_mesh.hpp>
+#include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/ugrid/ugrid_file.hpp>
+#include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include <cctype>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <initializer_list>
 
 namespace gridmorph {
@@ -20,8 +21,6 @@ namespace gridmorph {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t head_size = 256 << 10;
 
 struct Ending {
   std::string_view ending, format;
@@ -35,7 +34,7 @@ constexpr std::array endings{
     Ending{"x", "PLOT3D"},        Ending{"g", "PLOT3D"},       Ending{"fmt", "PLOT3D"},
     Ending{"ufmt", "PLOT3D"},     Ending{"grd", "PLOT3D"},     Ending{"msh", "Gmsh"},
     Ending{"cas", "Fluent"},      Ending{"vtk", "legacy VTK"}, Ending{"vtu", "VTK"},
-    Ending{"vtp", "VTK vtp"},     Ending{"vts", "VTK vts"},    Ending{"vtm", "VTK vtm"},
+    Ending{"vtp", "VTK vtp"},     Ending{"vts", "VTK vts"},    Ending{"vtm", "VTK"},
     Ending{"vtmb", "VTK vtmb"},   Ending{"vti", "VTK vti"},    Ending{"vtr", "VTK vtr"},
     Ending{"pvtu", "VTK pvtu"},   Ending{"pvd", "VTK pvd"},    Ending{"vtkhdf", "VTK vtkhdf"},
     Ending{"ugrid", "UGRID"},     Ending{"exo", "Exodus"},     Ending{"exoii", "Exodus"},
@@ -56,14 +55,6 @@ std::string ending_of(std::string_view path) {
   auto const dot = name.find_last_of('.');
   std::string out(dot == std::string_view::npos ? std::string_view() : name.substr(dot + 1));
   std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return out;
-}
-
-std::string head_of(std::string const& path) {
-  std::string out(head_size, '\0');
-  std::ifstream in(path, std::ios::binary);
-  in.read(out.data(), std::streamsize(out.size()));
-  out.resize(std::size_t(std::max<std::streamsize>(in.gcount(), 0)));
   return out;
 }
 
@@ -205,18 +196,22 @@ void refuse_other_format(std::string const& path) {
   if (fs::is_directory(status))
     found = foreign_folder(path);
   else if (fs::is_regular_file(status))
-    found = foreign(head_of(path), fs::file_size(path, failure), ending_of(path));
+    found = foreign(io::read_head(path), fs::file_size(path, failure), ending_of(path));
   if (found.known())
     throw IoError(path + ": is " + std::string(found.is) +
-                  "; read are CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK (.vtu) and UGRID. " + std::string(found.remedy));
+                  "; read are CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK (.vtu, .vtm) and UGRID. " +
+                  std::string(found.remedy));
 }
 
 MeshFormat mesh_format(std::string const& path) {
   if (su2::is_su2(path)) return MeshFormat::su2;
   if (is_openfoam(path)) return MeshFormat::openfoam;
   std::error_code ignored;
-  if (fs::is_regular_file(path, ignored) && gmsh::is_gmsh(head_of(path))) return MeshFormat::gmsh;
-  if (fs::is_regular_file(path, ignored) && vtk::is_vtu(head_of(path))) return MeshFormat::vtk;
+  if (fs::is_regular_file(path, ignored)) {
+    std::string const head = io::read_head(path);
+    if (gmsh::is_gmsh(head)) return MeshFormat::gmsh;
+    if (vtk::is_vtu(head) || vtk::is_blocks(head)) return MeshFormat::vtk;
+  }
   if (fs::is_regular_file(path, ignored) && ugrid::is_ugrid(path)) return MeshFormat::ugrid;
   refuse_other_format(path);
   return cgns::is_cgns(path) ? MeshFormat::cgns : MeshFormat::plot3d;

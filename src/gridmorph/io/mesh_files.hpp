@@ -15,7 +15,7 @@ Mesh read_elements(cgns::File const& file, cgns::Node const& tree, ReadOptions c
 
 void write_blocks(std::string const& path, Mesh const& mesh, WriteOptions const& options);
 
-/// CGNS and PLOT3D; CGNS and SU2.
+/// CGNS and PLOT3D; all formats of elements.
 void write_morphed_blocks(std::string const& input, std::string const& output, Mesh const& mesh,
                           Coordinates const& morphed, OutputFields const& fields);
 void write_morphed_elements(std::string const& input, std::string const& output, Mesh const& mesh,

@@ -28,7 +28,7 @@ struct MeshFileFacts {
   MeshFormat format = MeshFormat::cgns;
   MeshKind kind = MeshKind::structured;
   std::vector<std::string>
-      linked;  ///< other files that links of a CGNS file lead to, as far as they are there; ascending
+      linked;  ///< other files that links of a CGNS file lead to, or a multi-block file of VTK names, as far as they are there
 };
 
 /// Opens a CGNS file once and reads its tree. Throws IoError as read_mesh() does. `leave_out`: as in ReadOptions.

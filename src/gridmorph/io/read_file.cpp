@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/read_file.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -26,6 +27,15 @@ std::string read_file(std::string const& path) {
     text.append(chunk.data(), std::size_t(file.gcount()));
   if (file.bad()) throw IoError(path + ": cannot be read to its end: " + std::strerror(errno));
   return text;
+}
+
+std::string read_head(std::string const& path) {
+  constexpr std::size_t head_size = 256 << 10;
+  std::string out(head_size, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(out.data(), std::streamsize(out.size()));
+  out.resize(std::size_t(std::max<std::streamsize>(in.gcount(), 0)));
+  return out;
 }
 
 }  // namespace gridmorph::io

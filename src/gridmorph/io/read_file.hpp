@@ -8,4 +8,7 @@ namespace gridmorph::io {
 /// All bytes of an ordinary file (a pipe would block for ever). Throws IoError beginning with the path.
 std::string read_file(std::string const& path);
 
+/// The first 256 kB of a file; what cannot be read is empty.
+std::string read_head(std::string const& path);
+
 }  // namespace gridmorph::io

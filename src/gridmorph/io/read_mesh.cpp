@@ -5,8 +5,10 @@
 #include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/plot3d/plot3d.hpp>
+#include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/ugrid/ugrid_file.hpp>
+#include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 
 #include <set>
@@ -45,6 +47,8 @@ MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> con
   MeshFileFacts out;
   out.format = mesh_format(path);
   if (out.format != MeshFormat::plot3d) out.kind = MeshKind::unstructured;
+  if (out.format == MeshFormat::vtk && vtk::is_blocks(io::read_head(path)))
+    for (auto const& file : vtk::files_of_blocks(path)) out.linked.push_back(file.string());
   if (out.format != MeshFormat::cgns) return out;
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();

@@ -1,3 +1,4 @@
+#include <gridmorph/io/blanks.hpp>
 #include <gridmorph/io/replaced_text.hpp>
 
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace gridmorph::io {
 
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool ends_word(char c) { return is_blank(c) || c == '<'; }
 
 }  // namespace

@@ -50,12 +50,14 @@ void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
     series_->add(morphed);
     return;
   }
-  if (format_ == MeshFormat::openfoam) {
+  // What takes several files is written where it belongs.
+  if (format_ == MeshFormat::openfoam || case_file_.sequence->output.extension() == ".vtm") {
     auto const folder = step_path(*case_file_.sequence, steps_++);
     std::error_code ignored;
-    bool const is_new = !std::filesystem::exists(folder, ignored);
+    auto const beside = format_ == MeshFormat::openfoam ? folder : std::filesystem::path(folder).replace_extension();
+    for (auto const& p : {folder, beside})
+      if (!std::filesystem::exists(p, ignored)) folders_.push_back(p);
     mesh_.write(case_file_.input, folder, morphed, fields);
-    if (is_new) folders_.push_back(folder);
     return;
   }
   auto const& file = files_.emplace_back(step_path(*case_file_.sequence, int(files_.size())).string());

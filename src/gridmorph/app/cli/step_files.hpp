@@ -40,7 +40,7 @@ class StepFiles {
   int steps_ = 0;                     ///< folders written
   std::deque<io::OutputFile> files_;  ///< of the steps so far
   std::vector<std::filesystem::path>
-      folders_;  ///< of the steps so far, where each is a mesh of OpenFOAM; emptied once they are to stay
+      folders_;  ///< of the steps so far, where each takes several files; emptied once they are to stay
   std::optional<SeriesWriter> series_;
 };
 

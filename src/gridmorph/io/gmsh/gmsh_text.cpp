@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/blanks.hpp>
 #include <gridmorph/io/gmsh/gmsh_text.hpp>
 #include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
@@ -7,12 +8,6 @@
 #include <charconv>
 
 namespace gridmorph::gmsh {
-
-namespace {
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-}  // namespace
 
 Text::Text(std::string const& path) : path_(path), text_(io::read_file(path)) { read_format(); }
 
@@ -29,13 +24,13 @@ void Text::ends(char const* what) const {
 }
 
 void Text::skip_blanks() {
-  while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+  while (at_ < text_.size() && io::is_blank(text_[at_])) ++at_;
 }
 
 std::string_view Text::word(char const* what) {
   skip_blanks();
   std::size_t const begin = at_;
-  while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
+  while (at_ < text_.size() && !io::is_blank(text_[at_])) ++at_;
   if (begin == at_) ends(what);
   return std::string_view(text_).substr(begin, at_ - begin);
 }

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/blanks.hpp>
 #include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/ugrid/ugrid_bytes.hpp>
@@ -22,8 +23,6 @@ constexpr std::array<Storage, 10> storages{{{"b8", false, true, false, 8, 4},
                                             {"lr4", false, false, true, 4, 4},
                                             {"b8l", false, true, false, 8, 8},
                                             {"lb8l", false, false, false, 8, 8}}};
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 }  // namespace
 
@@ -59,9 +58,9 @@ T Bytes::raw(char const* what) {
 }
 
 std::string_view Bytes::word(char const* what) {
-  while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+  while (at_ < text_.size() && io::is_blank(text_[at_])) ++at_;
   std::size_t const begin = at_;
-  while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
+  while (at_ < text_.size() && !io::is_blank(text_[at_])) ++at_;
   if (begin == at_) fail("the file ends where " + std::string(what) + " has to follow; get a whole copy of it");
   return std::string_view(text_).substr(begin, at_ - begin);
 }

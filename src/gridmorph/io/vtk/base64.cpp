@@ -1,3 +1,4 @@
+#include <gridmorph/io/blanks.hpp>
 #include <gridmorph/io/vtk/base64.hpp>
 
 #include <algorithm>
@@ -16,8 +17,6 @@ std::array<std::int8_t, 256> values() {
   for (std::size_t n = 0; n < alphabet.size(); ++n) out[static_cast<unsigned char>(alphabet[n])] = std::int8_t(n);
   return out;
 }
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 }  // namespace
 
@@ -43,7 +42,7 @@ std::optional<std::string> Base64Reader::read(std::size_t n) {
     std::uint32_t group = 0;
     int characters = 0, padding = 0;
     while (characters + padding < 4) {
-      while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+      while (at_ < text_.size() && io::is_blank(text_[at_])) ++at_;
       if (at_ >= text_.size()) return std::nullopt;
       char const c = text_[at_++];
       int const v = value[static_cast<unsigned char>(c)];

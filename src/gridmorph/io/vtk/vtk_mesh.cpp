@@ -4,6 +4,9 @@
 #include <gridmorph/io/kind_by_name.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/polyhedron.hpp>
+#include <gridmorph/io/read_file.hpp>
+#include <gridmorph/io/vtk/blocks.hpp>
+#include <gridmorph/io/vtk/grid_mesh.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 #include <gridmorph/io/vtk/vtu_file.hpp>
 #include <gridmorph/mesh/file_order.hpp>
@@ -17,8 +20,6 @@
 namespace gridmorph::vtk {
 
 namespace {
-
-constexpr std::uint8_t polygon = 7, polyhedron = 42, strip = 6;
 
 /// Number in the mesh of each point; -1 for those that no cell of its dimension uses.
 std::vector<Index32> mesh_nodes(Grid const& grid, int dimension, Index& n_nodes) {
@@ -56,7 +57,6 @@ class Builder {
     if (io::orient_prisms(mesh_)) note("the prisms are numbered with bottom triangles outwards, as VTK says; taken so");
     patches();
     check_mesh(mesh_);
-    rest_of_boundary();
     notes();
     return std::move(mesh_);
   }
@@ -79,7 +79,7 @@ class Builder {
         continue;
       }
       if (dimension_of_cell(type) != mesh_.dimension) continue;
-      if (type == polygon || type == strip)
+      if (type == polygon || type == triangle_strip)
         throw MeshError(file_.path() + ": cell " + std::to_string(c) +
                         " is a polygon or a strip; plane meshes are of triangles and quadrilaterals");
       auto const shape = io::vtk_shape(type);
@@ -125,7 +125,7 @@ class Builder {
     std::vector<Index32> face;
     for (Index c = 0; c < grid_.n_cells; ++c) {
       std::uint8_t const type = grid_.type[std::size_t(c)];
-      if (dimension_of_cell(type) != mesh_.dimension - 1 || type == strip) continue;
+      if (dimension_of_cell(type) != mesh_.dimension - 1 || type == triangle_strip) continue;
       auto const corners = io::vtk_shape(type).corners;
       auto const order = io::vtk_shape(type).order;
       auto const nodes = grid_.nodes[c];
@@ -153,17 +153,6 @@ class Builder {
     if (!known.empty())
       note(markers ? "surfaces are told apart by the cell array '" + markers->array + "'"
                    : "surfaces are one patch: there is no cell array that numbers them (docs/formats.md lists names)");
-  }
-
-  void rest_of_boundary() {
-    auto const topology = make_topology(mesh_);
-    auto const of_face = find_face_patches(mesh_, topology);
-    Patch rest;
-    rest.zone = 0;
-    rest.name = "boundary";
-    for (Index f = 0; f < topology.boundary.size(); ++f)
-      if (of_face.patch[std::size_t(f)] < 0) rest.faces.add(topology.boundary.nodes[f]);
-    if (rest.faces.size() > 0) mesh_.patches.push_back(std::move(rest));
   }
 
   void notes() {
@@ -214,8 +203,10 @@ class FieldEdits {
   std::string prefix_, text_;
 };
 
-void add_fields(XmlFile const& file, Grid const& grid, std::vector<Index32> const& number, Mesh const& mesh,
-                Coordinates const& ordered, OutputFields const& fields, std::vector<Edit>& edits) {
+/// Coordinates and fields in the order of the file.
+void add_fields(XmlFile const& file, Grid const& grid, std::vector<Index32> const& number, int dimension,
+                Coordinates const& before, Coordinates const& after, OutputFields const& fields,
+                std::vector<Edit>& edits) {
   FieldEdits points(file, grid, "PointData"), cells(file, grid, "CellData");
   std::vector<std::string> names;
   if (fields.displacement) names.emplace_back("Displacement");
@@ -226,27 +217,26 @@ void add_fields(XmlFile const& file, Grid const& grid, std::vector<Index32> cons
   cells.expect(names);
   if (fields.displacement) {
     std::vector<double> values(3 * number.size(), 0.0);
-    Coordinates const before = in_file_order(mesh, mesh.coordinates);
     for (std::size_t n = 0; n < number.size(); ++n) {
       if (number[n] < 0) continue;
-      Vec3 const d = ordered[number[n]] - before[number[n]];
+      Vec3 const d = after[number[n]] - before[number[n]];
       std::copy_n(&d.x, 3, values.begin() + std::ptrdiff_t(3 * n));
     }
     points.add("Displacement", 3, values);
   }
   double const none = std::numeric_limits<double>::quiet_NaN();
   for (auto const& field : fields.nodes) {
-    auto const own = in_file_order(mesh.file_order.node, field.values);
+    auto const& own = field.values;
     std::vector<double> values(number.size(), none);
     for (std::size_t n = 0; n < number.size(); ++n)
       if (number[n] >= 0) values[n] = own[std::size_t(number[n])];
     points.add(field.name, 1, values);
   }
   for (auto const& field : fields.cells) {
-    auto const own = in_file_order(mesh.file_order.element, field.values);
+    auto const& own = field.values;
     std::vector<double> values(std::size_t(grid.n_cells), none);
     for (std::size_t c = 0, e = 0; c < values.size(); ++c)
-      if (dimension_of_cell(grid.type[c]) == mesh.dimension) values[c] = own[e++];
+      if (dimension_of_cell(grid.type[c]) == dimension) values[c] = own[e++];
     cells.add(field.name, 1, values);
   }
   points.append_to(edits);
@@ -265,33 +255,64 @@ bool is_vtu(std::string_view head) {
          tag.find("'UnstructuredGrid'") != std::string_view::npos;
 }
 
-Mesh read(std::string const& path) {
-  XmlFile const file(path, {"UnstructuredGrid"});
-  Grid const grid = read_grid(file);
-  return Builder(file, grid).run();
+Mesh mesh_of(XmlFile const& file, Grid const& grid) { return Builder(file, grid).run(); }
+
+void add_rest_of_boundary(Mesh& mesh) {
+  auto const topology = make_topology(mesh);
+  auto const of_face = find_face_patches(mesh, topology);
+  std::vector<Patch> rest(mesh.zones.size());
+  for (Index f = 0; f < topology.boundary.size(); ++f) {
+    auto const nodes = topology.boundary.nodes[f];
+    if (of_face.patch[std::size_t(f)] < 0) rest[std::size_t(mesh.zone_of(nodes[0]))].faces.add(nodes);
+  }
+  for (std::size_t z = 0; z < rest.size(); ++z) {
+    if (rest[z].faces.size() == 0) continue;
+    rest[z].zone = int(z);
+    rest[z].name = "boundary";
+    mesh.patches.push_back(std::move(rest[z]));
+  }
 }
 
-void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
-                   OutputFields const& fields) {
-  XmlFile const file(input, {"UnstructuredGrid"});
+std::string morphed_text(XmlFile const& file, int dimension, Index n_elements, Coordinates const& before,
+                         Coordinates const& after, OutputFields const& fields) {
   Grid const grid = read_grid(file);
-  Index n_nodes = 0, n_elements = 0;
-  auto const number = mesh_nodes(grid, mesh.dimension, n_nodes);
-  for (std::uint8_t const type : grid.type) n_elements += dimension_of_cell(type) == mesh.dimension ? 1 : 0;
-  if (n_nodes != mesh.n_nodes() || n_elements != mesh.n_elements() || dimension_of(grid) != mesh.dimension)
-    throw IoError(input + ": holds another mesh than the one that was read; give the file of that one");
-  Coordinates const ordered = in_file_order(mesh, morphed);
+  Index n_nodes = 0, n_cells = 0;
+  auto const number = mesh_nodes(grid, dimension, n_nodes);
+  for (std::uint8_t const type : grid.type) n_cells += dimension_of_cell(type) == dimension ? 1 : 0;
+  if (n_nodes != after.size() || n_cells != n_elements)
+    throw IoError(file.path() + ": holds another mesh than the one that was read; give the file of that one");
   std::vector<double> places = grid.coordinates;
   for (std::size_t n = 0; n < number.size(); ++n) {
     if (number[n] < 0) continue;
-    Vec3 const to = ordered[number[n]];
+    Vec3 const to = after[number[n]];
     std::copy_n(&to.x, 3, places.begin() + std::ptrdiff_t(3 * n));
   }
   std::vector<Edit> edits;
   file.replace(*grid.points, places, edits);
-  add_fields(file, grid, number, mesh, ordered, fields, edits);
+  add_fields(file, grid, number, dimension, before, after, fields, edits);
+  return file.edited(std::move(edits));
+}
+
+Mesh read(std::string const& path) {
+  if (is_blocks(io::read_head(path))) return read_blocks(path);
+  XmlFile const file(path, {"UnstructuredGrid"});
+  Mesh mesh = mesh_of(file, read_grid(file));
+  add_rest_of_boundary(mesh);
+  return mesh;
+}
+
+void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
+                   OutputFields const& fields) {
+  if (is_blocks(io::read_head(input))) return write_morphed_blocks(input, output, mesh, morphed, fields);
+  if (output.ends_with(".vtm"))
+    throw IoError(output + ": is written as " + input + " is, an unstructured grid; give it the ending .vtu");
+  OutputFields ordered = fields;
+  for (auto& field : ordered.nodes) field.values = in_file_order(mesh.file_order.node, field.values);
+  for (auto& field : ordered.cells) field.values = in_file_order(mesh.file_order.element, field.values);
+  std::string const text = morphed_text(XmlFile(input, {"UnstructuredGrid"}), mesh.dimension, mesh.n_elements(),
+                                        in_file_order(mesh, mesh.coordinates), in_file_order(mesh, morphed), ordered);
   io::OutputFile target(output);
-  target.write(file.edited(std::move(edits)));
+  target.write(text);
   target.commit();
 }
 

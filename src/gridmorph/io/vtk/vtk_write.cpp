@@ -6,7 +6,7 @@
 #include <gridmorph/io/vtk/vtu_file.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/mesh/file_order.hpp>
-#include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,9 +17,9 @@
 
 namespace gridmorph {
 
-namespace {
+namespace vtk {
 
-constexpr std::uint8_t polygon = 7, polyhedron = 42;
+namespace {
 
 /// VTK's cell type of an element; 0 where it has none.
 std::uint8_t vtk_type(ElementType type, std::size_t nodes) {
@@ -33,12 +33,6 @@ std::uint8_t vtk_type(ElementType type, std::size_t nodes) {
 
 std::uint8_t face_type(std::size_t corners) { return corners == 2 ? 3 : corners == 3 ? 5 : corners == 4 ? 9 : polygon; }
 
-std::string quoted(std::string const& text) {
-  std::string out;
-  for (char const c : text) out += c == '"' ? "&quot;" : c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
-
 /// One piece: tags first, then all arrays as they are in memory, each with the number of its bytes before it.
 class Writer {
  public:
@@ -47,14 +41,15 @@ class Writer {
     marker_.assign(type_.size(), 0);
     for (auto const& zone : mesh.zones)
       zone_.insert(zone_.end(), std::size_t(zone.n_elements), std::int32_t(&zone - mesh.zones.data()) + 1);
-    for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-      auto const& patch = mesh.patches[p];
-      for (Index f = 0; f < patch.faces.size(); ++f) {
-        auto const nodes = patch.faces[f];
-        end_cell(face_type(nodes.size()), nodes);
-        marker_.push_back(std::int32_t(p) + 1);
-        zone_.push_back(patch.zone + 1);
-      }
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+      for (Index f = 0; f < mesh.patches[p].faces.size(); ++f) face(mesh.patches[p].faces[f], p);
+    // Patches that list nodes have the faces between these.
+    if (std::any_of(mesh.patches.begin(), mesh.patches.end(), lists_nodes)) {
+      auto const topology = make_topology(mesh);
+      auto const of_face = find_face_patches(mesh, topology);
+      for (Index f = 0; f < topology.boundary.size(); ++f)
+        if (int const p = of_face.patch[std::size_t(f)]; p >= 0 && lists_nodes(mesh.patches[std::size_t(p)]))
+          face(topology.boundary.nodes[f], std::size_t(p));
     }
   }
 
@@ -91,6 +86,14 @@ class Writer {
   }
 
  private:
+  static bool lists_nodes(Patch const& patch) { return patch.faces.size() == 0 && !patch.nodes.empty(); }
+
+  void face(std::span<Index32 const> nodes, std::size_t patch) {
+    end_cell(face_type(nodes.size()), nodes);
+    marker_.push_back(std::int32_t(patch) + 1);
+    zone_.push_back(mesh_.patches[patch].zone + 1);
+  }
+
   void element(Index e, std::string const& path) {
     auto const nodes = mesh_.elements.nodes[e];
     ElementType const type = mesh_.elements.type[std::size_t(e)];
@@ -109,9 +112,9 @@ class Writer {
     faces_.push_back(n);
     std::array<Index32, max_face_corners> room{};
     for (int f = 0; f < n; ++f) {
-      auto const face = side_nodes(mesh_, e, f, room);
-      faces_.push_back(std::int64_t(face.size()));
-      faces_.insert(faces_.end(), face.begin(), face.end());
+      auto const nodes_of_side = side_nodes(mesh_, e, f, room);
+      faces_.push_back(std::int64_t(nodes_of_side.size()));
+      faces_.insert(faces_.end(), nodes_of_side.begin(), nodes_of_side.end());
     }
     faces_end_.back() = std::int64_t(faces_.size());
   }
@@ -155,7 +158,7 @@ class Writer {
                                  : std::is_same_v<T, std::int64_t> ? "Int64"
                                  : std::is_same_v<T, std::int32_t> ? "Int32"
                                                                    : "UInt8";
-    tags_ += std::string("<DataArray type=\"") + type + "\" Name=\"" + quoted(name) + "\" NumberOfComponents=\"" +
+    tags_ += std::string("<DataArray type=\"") + type + "\" Name=\"" + vtk::escaped(name) + "\" NumberOfComponents=\"" +
              std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(data_.size()) + "\"/>\n";
     std::uint64_t const bytes = values.size() * sizeof(T);
     data_.append(reinterpret_cast<char const*>(&bytes), sizeof bytes);
@@ -177,14 +180,16 @@ void write_elements(std::string const& path, Mesh const& mesh, Coordinates const
 
 }  // namespace
 
+}  // namespace vtk
+
 void write_vtk(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields) {
   if (mesh.is_structured()) {
     Mesh const hexahedra = as_hexahedra(mesh);
     io::check_fields(hexahedra.n_nodes(), hexahedra.n_elements(), mesh.coordinates, morphed, fields);
-    return write_elements(path, hexahedra, morphed, fields);
+    return vtk::write_elements(path, hexahedra, morphed, fields);
   }
   io::check_fields(mesh.n_nodes(), mesh.n_elements(), mesh.coordinates, morphed, fields);
-  if (mesh.file_order.node.empty()) return write_elements(path, mesh, morphed, fields);
+  if (mesh.file_order.node.empty()) return vtk::write_elements(path, mesh, morphed, fields);
   // Fields still come in the mesh's own order.
   Mesh ordered = in_file_order(mesh);
   Coordinates const places = in_file_order(mesh, morphed);
@@ -192,7 +197,7 @@ void write_vtk(std::string const& path, Mesh const& mesh, Coordinates const& mor
   for (auto& field : in_order.nodes) field.values = in_file_order(mesh.file_order.node, field.values);
   for (auto& field : in_order.cells) field.values = in_file_order(mesh.file_order.element, field.values);
   ordered.file_order = {};
-  write_elements(path, ordered, places, in_order);
+  vtk::write_elements(path, ordered, places, in_order);
 }
 
 }  // namespace gridmorph

@@ -10,8 +10,6 @@ namespace gridmorph::vtk {
 
 namespace {
 
-constexpr int polygon = 7, polyhedron = 42, vertices = 2, line = 4, strip = 6;
-
 /// Cell arrays that number boundaries: of VTK and its users, Gmsh, pygmsh and meshio, SU2, MEDIT, FEniCS, OpenFOAM, STAR-CCM+.
 constexpr std::array<std::string_view, 16> marker_arrays{
     "CellEntityIds", "gmsh:physical", "cell_tags",  "BoundaryId",      "BoundaryIds", "boundary_id",
@@ -63,9 +61,9 @@ void check_faces(XmlFile const& file, Tag const& cells, Grid const& grid) {
 
 int dimension_of_cell(std::uint8_t type) {
   if (type == polyhedron) return 3;
-  if (type == polygon || type == strip) return 2;
-  if (type == line) return 1;
-  if (type == vertices || type == 0) return 0;
+  if (type == polygon || type == triangle_strip) return 2;
+  if (type == poly_line) return 1;
+  if (type == poly_vertex || type == 0) return 0;
   return io::vtk_shape(type).dimension;
 }
 

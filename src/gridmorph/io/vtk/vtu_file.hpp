@@ -11,6 +11,9 @@
 
 namespace gridmorph::vtk {
 
+/// Cell types without a fixed number of nodes (vtkCellType.h).
+inline constexpr std::uint8_t poly_vertex = 2, poly_line = 4, triangle_strip = 6, polygon = 7, polyhedron = 42;
+
 /// The one Piece of a file that has cells.
 struct Grid {
   Tag const* piece = nullptr;

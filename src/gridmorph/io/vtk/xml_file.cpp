@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/blanks.hpp>
 #include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/replaced_text.hpp>
@@ -21,8 +22,6 @@ namespace gridmorph::vtk {
 namespace {
 
 constexpr std::size_t block_bytes = 32768;  // VTK's own
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 void swap_bytes(std::string& bytes, std::size_t size) {
   for (std::size_t at = 0; at + size <= bytes.size(); at += size)
@@ -186,8 +185,8 @@ XmlFile::Bytes XmlFile::bytes(Tag const& array) const {
     auto const text = inline_text(array);
     begin = std::size_t(text.data() - text_.data());
     end = begin + text.size();
-    while (begin < end && is_blank(text_[begin])) ++begin;
-    while (end > begin && is_blank(text_[end - 1])) --end;
+    while (begin < end && io::is_blank(text_[begin])) ++begin;
+    while (end > begin && io::is_blank(text_[end - 1])) --end;
   }
   auto const within = std::string_view(text_).substr(0, end);
   Base64Reader reader(within, begin);
@@ -242,10 +241,10 @@ std::vector<T> XmlFile::words(Tag const& array) const {
   auto const text = inline_text(array);
   char const *at = text.data(), *const end = at + text.size();
   while (true) {
-    while (at < end && is_blank(*at)) ++at;
+    while (at < end && io::is_blank(*at)) ++at;
     if (at == end) return out;
     char const* stop = at;
-    while (stop < end && !is_blank(*stop)) ++stop;
+    while (stop < end && !io::is_blank(*stop)) ++stop;
     T value{};
     auto const [read_to, failure] = std::from_chars(*at == '+' ? at + 1 : at, stop, value);
     if (failure != std::errc() || read_to != stop)
@@ -333,9 +332,9 @@ void XmlFile::replace(Tag const& array, std::span<double const> values, std::vec
     bool const single = type(array) == "Float32";
     std::size_t at = std::size_t(text.data() - text_.data());
     for (std::size_t n = 0; n < values.size(); ++n) {
-      while (is_blank(text_[at])) ++at;
+      while (io::is_blank(text_[at])) ++at;
       std::size_t end = at;
-      while (end < text_.size() && !is_blank(text_[end]) && text_[end] != '<') ++end;
+      while (end < text_.size() && !io::is_blank(text_[end]) && text_[end] != '<') ++end;
       double const to = single ? double(float(values[n])) : values[n];
       if (std::bit_cast<std::uint64_t>(to) != std::bit_cast<std::uint64_t>(before[n])) {
         std::array<char, 32> digits{};

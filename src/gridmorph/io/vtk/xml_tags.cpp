@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/blanks.hpp>
 #include <gridmorph/io/vtk/xml_tags.hpp>
 
 #include <algorithm>
@@ -10,8 +11,6 @@ namespace gridmorph::vtk {
 namespace {
 
 constexpr int deepest = 64;
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 class Parser {
  public:
@@ -50,14 +49,14 @@ class Parser {
   }
 
   void blanks() {
-    while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+    while (at_ < text_.size() && io::is_blank(text_[at_])) ++at_;
     if (at_ >= text_.size()) fail("the file ends inside a tag; get a whole copy of it");
   }
 
   std::string name() {
     std::size_t const begin = at_;
-    while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '>' && text_[at_] != '/' && text_[at_] != '=' &&
-           text_[at_] != '<')
+    while (at_ < text_.size() && !io::is_blank(text_[at_]) && text_[at_] != '>' && text_[at_] != '/' &&
+           text_[at_] != '=' && text_[at_] != '<')
       ++at_;
     if (begin == at_) fail("a name is missing in a tag");
     return std::string(text_.substr(begin, at_ - begin));
@@ -123,7 +122,7 @@ class Parser {
         continue;
       }
       if (!follows(end) || at_ + end.size() >= text_.size() ||
-          (text_[at_ + end.size()] != '>' && !is_blank(text_[at_ + end.size()])))
+          (text_[at_ + end.size()] != '>' && !io::is_blank(text_[at_ + end.size()])))
         fail("</" + out.name + "> is expected here");
       out.inside_end = at_;
       skip_to(">", "a tag");
@@ -156,6 +155,12 @@ Tag const* Tag::child(std::string_view wanted) const {
 }
 
 Tag parse_tags(std::string const& path, std::string_view text) { return Parser(path, text).run(); }
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (char const c : text) out += c == '"' ? "&quot;" : c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
 
 void fail_at(std::string const& path, std::string_view text, std::size_t at, std::string const& what) {
   auto const line = 1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(std::min(at, text.size())), '\n');

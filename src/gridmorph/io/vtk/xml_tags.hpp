@@ -35,6 +35,9 @@ struct Tag {
 /// The outermost tag. What is inside AppendedData is not looked at. Throws IoError with the line.
 Tag parse_tags(std::string const& path, std::string_view text);
 
+/// A text as the value of an attribute.
+std::string escaped(std::string_view text);
+
 /// "path:line: what" at a byte of a text.
 [[noreturn]] void fail_at(std::string const& path, std::string_view text, std::size_t at, std::string const& what);
 
