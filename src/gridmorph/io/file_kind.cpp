@@ -65,9 +65,10 @@ struct Foreign {
 };
 
 constexpr std::string_view by_gmsh = "Gmsh converts it: gmsh -save FILE -o mesh.msh";
-constexpr std::string_view by_maker = "export CGNS or SU2 from the program that made it";
+constexpr std::string_view by_maker = "export CGNS from the program that made it";
 constexpr std::string_view by_paraview =
-    "export CGNS or SU2 from the program that made it, or open it in ParaView and save CGNS";
+    "open it in ParaView and save a .vtu file, convert it with scripts/convert-mesh, or export CGNS from the program "
+    "that made it";
 constexpr std::string_view unpack = "unpack it first";
 
 bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
@@ -118,7 +119,7 @@ Foreign foreign_text(std::string_view head) {
   auto const start = text.substr(0, 1024);
   if (has(start, "<VTKFile")) return {"a VTK file (XML)", by_paraview};
   if (has(start, "<Xdmf")) return {"an XDMF file", by_paraview};
-  if (is_fluent(text)) return {"a Fluent mesh", "export CGNS from Fluent, or open it in ParaView and save CGNS"};
+  if (is_fluent(text)) return {"a Fluent mesh", "export CGNS from Fluent, or open it in ParaView and save a .vtu file"};
   if (has(text.substr(0, 4096), "FoamFile"))
     return {"one file of an OpenFOAM case", "name the folder of the case, or its constant/polyMesh"};
   if (text.starts_with("solid") && (has(start, "facet") || has(start, "endsolid")))
