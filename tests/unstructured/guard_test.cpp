@@ -1,6 +1,7 @@
 // Smoothing where elements came out bad: what it repairs, what it must leave alone, and that it counts right although it
 // measures only around the nodes that it moves.
 #include "support/random.hpp"
+#include "support/made_bodies.hpp"
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/guard/guard.hpp>
@@ -105,12 +106,24 @@ TEST(Guard, WhatIsHeldStays) {
   }
 }
 
-/// Boxes of hexahedra, or of prisms and tetrahedra, whose free nodes are thrown about by up to so much of an edge.
-class TangledElements : public testing::TestWithParam<std::tuple<bool, double>> {};
+enum class Cells { hexahedra, prisms_and_tetrahedra, polyhedra };
+
+Mesh box_of(Cells kind) {
+  Mesh const box = unit_box({7, 7, 7});
+  switch (kind) {
+    case Cells::hexahedra: return to_hexahedra(box);
+    case Cells::prisms_and_tetrahedra: return to_prisms_and_tetrahedra(box, 2);
+    case Cells::polyhedra: return as_polyhedra(to_hexahedra(box));
+  }
+  return {};
+}
+
+/// Boxes whose free nodes are thrown about by up to so much of an edge.
+class TangledElements : public testing::TestWithParam<std::tuple<Cells, double>> {};
 
 TEST_P(TangledElements, ComeHome) {
-  auto const [hexahedra, amplitude] = GetParam();
-  Mesh const mesh = hexahedra ? to_hexahedra(unit_box({7, 7, 7})) : to_prisms_and_tetrahedra(unit_box({7, 7, 7}), 2);
+  auto const [kind, amplitude] = GetParam();
+  Mesh const mesh = box_of(kind);
   UnstructuredTopology const topology = make_topology(mesh);
   BoundaryFacePatches const face_patches = find_face_patches(mesh, topology);
   Motion motion;
@@ -148,7 +161,9 @@ TEST_P(TangledElements, ComeHome) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Boxes, TangledElements, testing::Combine(testing::Bool(), testing::Values(0.6, 0.9)));
+INSTANTIATE_TEST_SUITE_P(Boxes, TangledElements,
+                         testing::Combine(testing::Values(Cells::hexahedra, Cells::prisms_and_tetrahedra, Cells::polyhedra),
+                                          testing::Values(0.6, 0.9)));
 
 }  // namespace
 }  // namespace gridmorph::test

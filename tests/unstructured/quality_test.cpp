@@ -365,6 +365,7 @@ TEST(UnstructuredQuality, FieldsAreTheValuesBehindTheReport) {
   Input input;
   input.coordinates = views(after);
   input.baseline = views(p.mesh.coordinates);
+  input.faces = true;
   std::vector<Measure> all;
   for (std::size_t m = 0; m < n_measures; ++m) all.push_back(Measure(m));
   auto const fields = cell_fields(Exec(), p.mesh, p.topology, input, all);

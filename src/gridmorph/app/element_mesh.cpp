@@ -3,6 +3,7 @@
 #include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/quality/certificate.hpp>
@@ -69,6 +70,7 @@ QualityReport ElementMesh::measure(QualityWanted const& wanted) const {
   input.signs = signs;
   input.limits = wanted.limits;
   input.fast = wanted.fast;
+  input.faces = has_faces_of_its_own();
   if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, element_fields, mesh.n_elements());
   Kokkos::DefaultHostExecutionSpace const exec;
   QualityReport report = measure_quality(exec, mesh, topology, face_patches, input);
@@ -102,6 +104,10 @@ Coordinates ElementMesh::coordinates_of(std::filesystem::path const& path,
 
 void ElementMesh::match(MatchOptions const& /*options*/) {
   throw MeshError(mesh.source + ": is an unstructured mesh; --match and --write-side-file are for structured ones");
+}
+
+bool ElementMesh::has_faces_of_its_own() const {
+  return mesh.polyhedra.element.size() > 0 || mesh_format(mesh.source) == MeshFormat::openfoam;
 }
 
 PatchesAsSurface ElementMesh::surface(std::vector<std::string> const& selectors, bool as_facets, int split) const {

@@ -53,6 +53,10 @@ class ElementMesh final : public AnyMesh {
     return {input.string(), output.string(), mesh, times};
   }
   [[nodiscard]] std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const override;
+
+ private:
+  /// Whether its solvers work by faces, so that the quality of faces is worth its time: polyhedra, or a file of OpenFOAM.
+  [[nodiscard]] bool has_faces_of_its_own() const;
 };
 
 /// What AnyPlan::write_stages() of such a mesh may put into its folder.

@@ -26,7 +26,8 @@ class Relaxation {
         prepared_(prepared),
         x_(morphed),
         options_(options),
-        signs_(detail::signs_of({}, mesh, topology.sides, options.signs)) {}
+        signs_(detail::signs_of({}, mesh, topology.sides, options.signs)),
+        tables_(detail::element_tables(Kokkos::DefaultHostExecutionSpace(), mesh)) {}
 
   RelaxReport run() {
     RelaxReport report;
@@ -65,19 +66,9 @@ class Relaxation {
   }
 
  private:
-  [[nodiscard]] kernels::ElementCorners corners(Index32 e, Coordinates const& x) const {
-    kernels::ElementCorners c;
-    auto const nodes = mesh_.elements.corners(e);
-    for (std::size_t k = 0; k < nodes.size(); ++k) c.at[k] = x[nodes[k]];
-    return c;
-  }
-  [[nodiscard]] double determinant(Index32 e, double sign, Coordinates const& x) const {
-    return element_determinant(mesh_.elements.type[std::size_t(e)], corners(e, x), sign, prepared_.plan.plane_normal);
-  }
   /// Inside out somewhere, by the certificate.
   [[nodiscard]] bool negative(Index32 e, double sign, Coordinates const& x) const {
-    return kernels::jacobian_sign(mesh_.elements.type[std::size_t(e)], corners(e, x), sign,
-                                  prepared_.plan.plane_normal) >= kernels::JacobianSign::negative;
+    return tables_.jacobian_sign(views(x), e, sign) >= kernels::JacobianSign::negative;
   }
 
   enum class State : std::uint8_t { sound, bad, inverted };
@@ -91,12 +82,11 @@ class Relaxation {
   };
 
   [[nodiscard]] State state(Index32 e) const {
-    if (mesh_.elements.type[std::size_t(e)] == ElementType::polyhedron) return State::sound;
-    double const sign = signs_[std::size_t(e)], now = determinant(e, sign, x_);
+    double const sign = signs_[std::size_t(e)], now = tables_.determinant(views(x_), e, sign);
     if (now > doubtful_determinant) return State::sound;  // no determinant is above 1
     if (negative(e, sign, x_) && !negative(e, sign, mesh_.coordinates)) return State::inverted;
     if (now > options_.share) return State::sound;
-    double const before = determinant(e, sign, mesh_.coordinates);
+    double const before = tables_.determinant(views(mesh_.coordinates), e, sign);
     bool const is_bad = before > 0 ? !(now > options_.share * before) : before == 0 && now < 0;
     return is_bad ? State::bad : State::sound;
   }
@@ -162,8 +152,8 @@ class Relaxation {
     return found;
   }
 
-  /// In space, and where all elements have corners that say what shape is.
-  [[nodiscard]] bool by_shape() const { return mesh_.dimension == 3 && mesh_.polyhedra.element.size() == 0; }
+  /// In space.
+  [[nodiscard]] bool by_shape() const { return mesh_.dimension == 3; }
 
   void smooth_shapes(std::vector<Index32> const& nodes, int sweeps) {
     UnstructuredPlan const& plan = prepared_.plan;
@@ -241,6 +231,7 @@ class Relaxation {
   Coordinates& x_;
   RelaxOptions const& options_;
   std::vector<signed char> signs_;
+  detail::ElementTables<Kokkos::HostSpace> tables_;
   std::vector<std::uint8_t> held_;
 };
 

@@ -27,7 +27,7 @@ struct RelaxReport {
 /// baseline's is zero), or the certificate finds it inside out, nodes around move so that the sum of the relative shapes f
 /// (kernels/relative_shape.hpp) of all corners around becomes smaller: coloured Gauss-Seidel sweeps, a step per node that does not let the sum over its
 /// corners grow. Nodes on boundaries that are held and in columns stay. While elements are inverted, the next round has twice the rings and sweeps. A round that leaves
-/// more inverted elements, or as many and more bad ones, is taken back; those after it, and all in 2-D and where there are polyhedra, smooth displacements: each becomes the value, at its
+/// more inverted elements, or as many and more bad ones, is taken back; those after it, and all in 2-D, smooth displacements: each becomes the value, at its
 /// node, of the affine function that fits its neighbours' best (weights 1 / length of the edge), in Jacobi sweeps, half as many
 /// after each round that is taken back. Explicit, the same bits for any number of threads. Cost: the determinants of all elements once, per round those around the nodes that
 /// move; 1 kB and a few microseconds per sweep and node that moves.

@@ -100,8 +100,7 @@ ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUn
     auto const x = views(mesh.coordinates), y = views(displaced);
     detail::for_all(exec, "gridmorph::predict::relative_displacement", n, [&](Index e) {
       if (!sample.has_shape(e)) return;
-      relative[std::size_t(e)] =
-          kernels::element_relative_displacement(tables.type(e), tables.corners(x, e), tables.corners(y, e));
+      relative[std::size_t(e)] = tables.relative_displacement(x, y, e);
       at_end[std::size_t(e)] = sample.in_columns(e) == 1 ? 1 : 0;
     });
     for (Index e = 0; e < n; e += out.every) sample.add(e);
@@ -121,7 +120,7 @@ ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUn
       Index const e = looked_at[std::size_t(k)];
       double const sign = signs[std::size_t(e)];
       auto const of = [&](auto const& at) {
-        return kernels::element_measures(tables.type(e), tables.corners(at, e), sign, tables.plane_normal);
+        return tables.measures(at, e, sign);
       };
       measures[std::size_t(k)] = {of(x), of(y)};
     });

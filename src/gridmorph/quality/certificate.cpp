@@ -124,11 +124,7 @@ Certificate certify(Exec const& exec, Mesh const& mesh, UnstructuredTopology con
       KOKKOS_LAMBDA(kernels::RowOfCells const& row, ChunkCertificate& certificate) {
         for (int n = 0; n < row.count; ++n) {
           Index const e = first_element(row.zone) + row.i + n;
-          ElementType const type = elements.type(e);
-          if (type == ElementType::polyhedron) continue;
-          auto const sign_in = [&](auto const& x) {
-            return kernels::jacobian_sign(type, elements.corners(x, e), signs(e), elements.plane_normal);
-          };
+          auto const sign_in = [&](auto const& x) { return elements.jacobian_sign(x, e, signs(e)); };
           certificate.take(sign_in(coordinates), e,
                            [&] { return against_baseline ? sign_in(baseline) : JacobianSign::positive; });
         }

@@ -3,7 +3,8 @@
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/cell_chunks.hpp>
-#include <gridmorph/kernels/element_quality.hpp>
+#include <gridmorph/kernels/jacobian_bounds.hpp>
+#include <gridmorph/kernels/polyhedron_quality.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 #include <gridmorph/quality/detail/zone_cells.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
@@ -24,40 +25,134 @@ PackedPoints<typename Exec::memory_space> pack(Exec const& exec, CoordinateViews
   return points;
 }
 
+KOKKOS_INLINE_FUNCTION Vec3 point(kernels::PackedPoint const& p) { return {p.x, p.y, p.z}; }
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION Vec3 point_at(PackedPoints<MemorySpace> const& points, Index32 node) {
+  return point(points(node));
+}
+/// For few elements: x, y and z come from three places.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION Vec3 point_at(CoordinateViews<MemorySpace> const& c, Index32 node) {
+  return {c.x(node), c.y(node), c.z(node)};
+}
+KOKKOS_INLINE_FUNCTION Vec3 point_at(kernels::VectorArray const& x, Index32 node) { return x[node]; }
+
+/// The faces of polyhedra.
+template <class MemorySpace>
+struct PolyhedronTables {
+  Kokkos::View<Index32 const*, MemorySpace> element;   ///< ascending
+  Kokkos::View<Index const*, MemorySpace> first_face;  ///< (polyhedra + 1)
+  CsrViews<MemorySpace> faces;
+
+  /// Of the polyhedron that element e is. Cost: a bisection.
+  KOKKOS_INLINE_FUNCTION Index number_of(Index e) const {
+    Index begin = 0, end = Index(element.extent(0));
+    while (begin + 1 < end) {
+      Index const middle = (begin + end) / 2;
+      (element(middle) <= e ? begin : end) = middle;
+    }
+    return begin;
+  }
+};
+
+/// One of them as polyhedron_quality.hpp asks for it. Points: anything with point_at().
+template <class MemorySpace, class Points>
+struct PolyhedronAt {
+  PolyhedronTables<MemorySpace> const& tables;
+  Points const& points;
+  Index first, count;
+
+  KOKKOS_INLINE_FUNCTION int n_faces() const { return int(count); }
+  KOKKOS_INLINE_FUNCTION int n_corners(int face) const {
+    return int(tables.faces.first(first + face + 1) - tables.faces.first(first + face));
+  }
+  KOKKOS_INLINE_FUNCTION Vec3 at(int face, int corner) const {
+    return point_at(points, tables.faces.item(tables.faces.first(first + face) + corner));
+  }
+};
+
+/// An element of any other type in the same way; in 2-D its sides have two corners.
+struct FacesAt {
+  ElementType type;
+  kernels::ElementCorners corners;
+
+  KOKKOS_INLINE_FUNCTION int n_faces() const { return gridmorph::n_faces(type); }
+  KOKKOS_INLINE_FUNCTION int n_corners(int face) const { return n_face_corners(type, face); }
+  KOKKOS_INLINE_FUNCTION Vec3 at(int face, int corner) const { return corners.at[face_corner(type, face, corner)]; }
+};
+
+/// Elements of all types, measured at any coordinates that have a point_at().
 template <class MemorySpace>
 struct ElementTables {
   ElementViews<MemorySpace> elements;
+  PolyhedronTables<MemorySpace> polyhedra;
   Vec3 plane_normal;
 
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
-  KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners(PackedPoints<MemorySpace> const& points, Index e) const {
-    return gather(e, [&](Index32 node) {
-      kernels::PackedPoint const p = points(node);
-      return Vec3{p.x, p.y, p.z};
-    });
+  template <class Points>
+  KOKKOS_INLINE_FUNCTION PolyhedronAt<MemorySpace, Points> polyhedron(Points const& points, Index e) const {
+    Index const p = polyhedra.number_of(e), first = polyhedra.first_face(p);
+    return {polyhedra, points, first, polyhedra.first_face(p + 1) - first};
   }
-  /// For few elements: x, y and z come from three places.
-  KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners(CoordinateViews<MemorySpace> const& c, Index e) const {
-    return gather(e, [&](Index32 node) { return Vec3{c.x(node), c.y(node), c.z(node)}; });
+  /// f(faces) with a PolyhedronAt or a FacesAt.
+  template <class Points, class Function>
+  KOKKOS_INLINE_FUNCTION auto with_faces(Points const& points, Index e, Function const& f) const {
+    ElementType const t = type(e);
+    if (t == ElementType::polyhedron) return f(polyhedron(points, e));
+    return f(FacesAt{t, corners(points, e)});
   }
-  KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners(kernels::VectorArray const& x, Index e) const {
-    return gather(e, [&](Index32 node) { return x[node]; });
+  /// All measures of element e; sign: -1 where it is numbered inside out.
+  template <class Points>
+  KOKKOS_INLINE_FUNCTION kernels::CellMeasures measures(Points const& points, Index e, double sign) const {
+    ElementType const t = type(e);
+    if (t == ElementType::polyhedron) return kernels::polyhedron_measures(polyhedron(points, e), sign);
+    return element_measures(t, corners(points, e), sign, plane_normal);
+  }
+  template <class Points>
+  KOKKOS_INLINE_FUNCTION double determinant(Points const& points, Index e, double sign) const {
+    ElementType const t = type(e);
+    if (t == ElementType::polyhedron) return kernels::polyhedron_determinant(polyhedron(points, e), sign);
+    return element_determinant(t, corners(points, e), sign, plane_normal);
+  }
+  template <class Points>
+  KOKKOS_INLINE_FUNCTION double volume(Points const& points, Index e) const {
+    ElementType const t = type(e);
+    if (t == ElementType::polyhedron) return kernels::polyhedron::centre_of(polyhedron(points, e)).volume;
+    return element_volume(t, corners(points, e), 1, plane_normal);
+  }
+  /// Where its Jacobian is positive; of a polyhedron, whether all of its pyramids are.
+  template <class Points>
+  KOKKOS_INLINE_FUNCTION kernels::JacobianSign jacobian_sign(Points const& points, Index e, double sign) const {
+    ElementType const t = type(e);
+    if (t == ElementType::polyhedron) return kernels::polyhedron_sign(polyhedron(points, e), sign);
+    return kernels::jacobian_sign(t, corners(points, e), sign, plane_normal);
+  }
+  /// From one place to another.
+  template <class From, class To>
+  KOKKOS_INLINE_FUNCTION double relative_displacement(From const& from, To const& to, Index e) const {
+    ElementType const t = type(e);
+    if (t == ElementType::polyhedron)
+      return kernels::polyhedron_relative_displacement(polyhedron(from, e), polyhedron(to, e));
+    return element_relative_displacement(t, corners(from, e), corners(to, e));
   }
 
- private:
-  template <class PointOf>
-  KOKKOS_INLINE_FUNCTION kernels::ElementCorners gather(Index e, PointOf const& point) const {
+  template <class Points>
+  KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners(Points const& points, Index e) const {
     kernels::ElementCorners out;
     Index const first = elements.first(e);
     int const n = n_corners(elements.type(e));
-    for (int k = 0; k < n; ++k) out.at[k] = point(elements.node(first + k));
+    for (int k = 0; k < n; ++k) out.at[k] = point_at(points, elements.node(first + k));
     return out;
   }
 };
 
 template <class Exec>
 ElementTables<typename Exec::memory_space> element_tables(Exec const& exec, Mesh const& mesh) {
-  return {views(exec, mesh.elements), plane_normal(mesh)};
+  Polyhedra const& p = mesh.polyhedra;
+  return {views(exec, mesh.elements),
+          {view_of(exec, p.element, "gridmorph::Polyhedra::element"),
+           view_of(exec, p.first_face, "gridmorph::Polyhedra::first_face"), views(exec, p.faces)},
+          plane_normal(mesh)};
 }
 
 /// Elements zone after zone in chunks of cells_per_chunk; box_extent[0] counts those of the zone.
@@ -83,12 +178,11 @@ inline std::vector<Index> first_elements(Mesh const& mesh) {
 
 /// Largest volume ratio of element e to its neighbours; 1 without any, unbounded unless all volumes are positive.
 template <class VolumeView, class MemorySpace>
-KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, ElementViews<MemorySpace> const& elements,
-                                          CsrViews<MemorySpace> const& neighbours, Index e) {
+KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, CsrViews<MemorySpace> const& neighbours,
+                                          Index e) {
   double least = volumes(e), largest = least;
   for (Index n = neighbours.first(e); n < neighbours.first(e + 1); ++n) {
     Index32 const other = neighbours.item(n);
-    if (elements.type(other) == ElementType::polyhedron) continue;
     least = kernels::smaller(least, volumes(other));
     largest = kernels::larger(largest, volumes(other));
   }

@@ -13,6 +13,8 @@ std::string_view to_string(Measure measure) {
     case Measure::volume: return "volume";
     case Measure::volume_ratio: return "volume_ratio";
     case Measure::relative_displacement: return "relative_displacement";
+    case Measure::non_orthogonality_deg: return "non_orthogonality_deg";
+    case Measure::face_skewness: return "face_skewness";
     case Measure::count: break;
   }
   return "unknown";

@@ -29,6 +29,8 @@ enum class Measure {
   volume,
   volume_ratio,           ///< largest volume ratio (>= 1) to a face neighbour, across 1-to-1 interfaces too
   relative_displacement,  ///< paper, section 3.2: largest relative displacement / mean edge length, worst direction
+  non_orthogonality_deg,  ///< elements, on request: largest angle between face normals and lines between centres
+  face_skewness,          ///< elements, on request: largest distance of face centres from these lines / size of the face
   count
 };
 
@@ -40,7 +42,7 @@ std::string_view to_string(Measure measure);
 /// Whether the worst cell is the one with the largest value (aspect ratio, skewness, ratios) or with the smallest one.
 KOKKOS_INLINE_FUNCTION constexpr bool larger_is_worse(Measure m) {
   return m == Measure::aspect_ratio || m == Measure::equiangle_skewness || m == Measure::volume_ratio ||
-         m == Measure::relative_displacement;
+         m == Measure::relative_displacement || m == Measure::non_orthogonality_deg || m == Measure::face_skewness;
 }
 
 /// Statistics of one measure over one region.
@@ -128,7 +130,7 @@ struct WallGroup {
 
 /// Cells by the sign of their Jacobian, taken everywhere in them (kernels/jacobian_bounds.hpp).
 struct Certificate {
-  Index cells = 0;      ///< that were looked at: all but polyhedra
+  Index cells = 0;      ///< that were looked at
   Index zero = 0;       ///< negative nowhere, but somewhere zero, as far as coordinates can tell: collapsed, flat
   Index negative = 0;   ///< somewhere inside out, or with a corner that is no number
   Index undecided = 0;  ///< too close to zero to tell; none in any mesh so far
@@ -184,7 +186,7 @@ std::vector<WallFace> wall_faces(Mesh const& mesh, std::span<int const> patches)
 std::vector<Index> first_cells(Mesh const& mesh);
 
 /// Values in single cells, written on the way: (n_cells) for each measure that is wanted, empty Views for the others.
-/// Zero for polyhedra; the relative displacement is left alone where there is no baseline.
+/// The relative displacement is left alone where there is no baseline.
 template <class MemorySpace>
 struct CellFields {
   Kokkos::View<double*, MemorySpace> of[n_measures];

@@ -2,6 +2,7 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/quality/detail/face_quality.hpp>
 #include <gridmorph/quality/detail/fast_quality.hpp>
 #include <gridmorph/quality/detail/judge_cells.hpp>
 #include <gridmorph/quality/detail/wall_columns.hpp>
@@ -21,9 +22,7 @@ std::vector<signed char> volume_signs(HostInstance const& host, Mesh const& mesh
     auto const tables = detail::element_tables(exec, mesh);
     auto const coordinates = detail::pack(exec, views(mesh.coordinates), mesh.n_nodes());
     detail::for_all(exec, "gridmorph::volume_signs", mesh.n_elements(), [&](Index e) {
-      ElementType const type = tables.type(e);
-      if (type == ElementType::polyhedron) return;
-      double const v = element_volume(type, tables.corners(coordinates, e), 1, tables.plane_normal);
+      double const v = tables.volume(coordinates, e);
       sign[std::size_t(e)] = v > 0 ? 1 : v < 0 ? -1 : 0;
     });
   });
@@ -80,6 +79,44 @@ void check_sizes(Mesh const& mesh, UnstructuredQualityInput<MemorySpace> const& 
     refuse_shorter(input.fields.of[m].extent(0), "field of " + std::string(to_string(Measure(m))));
 }
 
+/// Adds non-orthogonality and face skewness to the sums of the chunks.
+template <class Exec, class Chunks, class FirstElement>
+void measure_faces(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
+                   UnstructuredQualityInput<typename Exec::memory_space> const& input,
+                   detail::ElementTables<typename Exec::memory_space> const& tables,
+                   detail::PackedPoints<typename Exec::memory_space> const& points, Chunks const& chunks,
+                   FirstElement const& first_element, std::vector<detail::PartialSums>& out) {
+  using MemorySpace = typename Exec::memory_space;
+  auto const centres = detail::element_centres(exec, tables, points, mesh.dimension == 3);
+  detail::SideTables<MemorySpace> const sides{
+      detail::view_of(exec, topology.sides.first, "gridmorph::quality::first_side"),
+      detail::view_of(exec, topology.sides.neighbour, "gridmorph::quality::neighbour")};
+  auto const near_field = input.near_field;
+  auto const angles = input.fields.of[int(Measure::non_orthogonality_deg)],
+             skewnesses = input.fields.of[int(Measure::face_skewness)];
+  Kokkos::View<detail::FaceSums*, MemorySpace> const sums(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::face_sums"), out.size());
+  kernels::visit_chunks(
+      exec, "gridmorph::measure_quality::faces", chunks, sums,
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::FaceSums& s) {
+        for (int n = 0; n < row.count; ++n) {
+          Index const e = first_element(row.zone) + row.i + n;
+          detail::FaceQuality const q = detail::face_quality(tables, sides, points, centres, e);
+          if (angles.extent(0) > 0) angles(e) = q.non_orthogonality_deg;
+          if (skewnesses.extent(0) > 0) skewnesses(e) = q.skewness;
+          int const region = near_field.extent(0) > 0 && near_field(e) != 0 ? 0 : 1;
+          s.non_orthogonality_deg[region].template add<1>(&q.non_orthogonality_deg, 1, e, true);
+          s.skewness[region].template add<1>(&q.skewness, 1, e, true);
+        }
+      });
+  auto const sums_h = detail::download(exec, sums);
+  for (std::size_t c = 0; c < out.size(); ++c)
+    for (int r = 0; r < 2; ++r) {
+      out[c].region[r].measure[int(Measure::non_orthogonality_deg)] = sums_h(c).non_orthogonality_deg[r];
+      out[c].region[r].measure[int(Measure::face_skewness)] = sums_h(c).skewness[r];
+    }
+}
+
 /// Measures and sums of all elements, chunk after chunk of detail::element_chunks().
 template <class Exec>
 std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& mesh,
@@ -116,15 +153,8 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
           auto const keep = [&](Measure measure, double value) {
             if (fields.of[int(measure)].extent(0) > 0) fields.of[int(measure)](e) = value;
           };
-          ElementType const type = tables.type(e);
-          if (type == ElementType::polyhedron) {
-            if (!fast) volumes(e) = 0;
-            for (int m = 0; m < int(n_measures); ++m) keep(Measure(m), 0);
-            continue;
-          }
           double const sign = signs(e);
-          kernels::ElementCorners const now = tables.corners(coordinates, e);
-          kernels::CellMeasures const m = element_measures(type, now, sign, tables.plane_normal);
+          kernels::CellMeasures const m = tables.measures(coordinates, e, sign);
           auto& region = s.region[has_near_field && near_field(e) != 0 ? 0 : 1];
           auto const add = [&](Measure measure, double value) {
             region.template add<1>(measure, &value, 1, e);
@@ -137,8 +167,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
           detail::count_state(region, m.smallest_corner_jacobian);
           if (against_baseline &&
               screen.may_fall(m.determinant_3x3x3, m.minimum_angle_deg, m.equiangle_skewness, m.collapsed))
-            detail::judge(region, limits,
-                          element_measures(type, tables.corners(original, e), sign, tables.plane_normal), m, e);
+            detail::judge(region, limits, tables.measures(original, e, sign), m, e);
           if (fast) continue;
           volumes(e) = m.volume;
           add(Measure::aspect_ratio, m.aspect_ratio);
@@ -146,7 +175,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
           add(Measure::equiangle_skewness, m.equiangle_skewness);
           add(Measure::volume, m.volume);
           if (against_baseline)
-            add(Measure::relative_displacement, element_relative_displacement(type, tables.corners(baseline, e), now));
+            add(Measure::relative_displacement, tables.relative_displacement(baseline, coordinates, e));
         }
       });
   auto const sums_on_host = [&] {
@@ -166,8 +195,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
       KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::VolumeRatios& s) {
         for (int n = 0; n < row.count; ++n) {
           Index const e = first_element(row.zone) + row.i + n;
-          if (tables.type(e) == ElementType::polyhedron) continue;
-          double const ratio = detail::worst_ratio(all_volumes, tables.elements, neighbours, e);
+          double const ratio = detail::worst_ratio(all_volumes, neighbours, e);
           if (ratio_field.extent(0) > 0) ratio_field(e) = ratio;
           s.region[has_near_field && near_field(e) != 0 ? 0 : 1].template add<1>(
               &ratio, 1, e, larger_is_worse(Measure::volume_ratio));
@@ -177,6 +205,10 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
   std::vector<detail::PartialSums> out = sums_on_host();
   for (std::size_t k = 0; k < table.size(); ++k)
     for (int r = 0; r < 2; ++r) out[k].region[r].measure[int(Measure::volume_ratio)] = ratios_h(k).region[r];
+  auto const asked_for = [&](Measure m) { return input.fields.of[int(m)].extent(0) > 0; };
+  if (input.faces || asked_for(Measure::non_orthogonality_deg) || asked_for(Measure::face_skewness))
+    measure_faces(exec, mesh, topology, input, tables, detail::PackedPoints<MemorySpace>(coordinates), chunks,
+                  first_element, out);
   return out;
 }
 

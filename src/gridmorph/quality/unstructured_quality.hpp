@@ -1,7 +1,7 @@
 // Quality of unstructured meshes: the measures, the report and the guarantees of quality.hpp, for elements of all types.
 //
-// Formulas are written beside the device functions in gridmorph/kernels/element_quality.hpp. Hexahedra give the same numbers
-// as the cells of a structured mesh. Polyhedra are not measured.
+// Formulas are written beside the device functions in gridmorph/kernels/element_quality.hpp, those of polyhedra in polyhedron_quality.hpp.
+// Hexahedra give the same numbers as the cells of a structured mesh.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -26,13 +26,15 @@ struct UnstructuredQualityInput {
   CellFields<MemorySpace> fields;
   CellLimits limits = {};  ///< what elements are judged by against the baseline
   bool fast = false;       ///< only a verdict: half the time and no memory per element; no fields
+  /// Non-orthogonality and face skewness too, which solvers that work by faces ask for; not where `fast`. A third more time, 32 bytes per element.
+  bool faces = false;
 };
 
-/// (n_elements) Signs of the elements' volumes in SIDS order, 0 for polyhedra: all that their numbering decides. Host, parallel.
+/// (n_elements) Signs of the elements' volumes in SIDS order, of polyhedra with their faces as they point. Host, parallel.
 std::vector<signed char> volume_signs(HostInstance const& host, Mesh const& mesh);
 inline std::vector<signed char> volume_signs(Mesh const& mesh) { return volume_signs(HostInstance(), mesh); }
 
-/// (n_elements) +1, or -1 for elements that are numbered inside out; 0 for polyhedra. Whether two neighbours are numbered alike
+/// (n_elements) +1, or -1 for elements that are numbered inside out. Whether two neighbours are numbered alike
 /// follows from the side that they share: seen from one and from the other it must be named in opposite ways. So the signs of
 /// elements that hang together are known but for one, which is that of most of their volumes. An element that is inverted
 /// among elements numbered like it is told from one that is numbered the other way and sound (hybrid meshes whose triangles run
@@ -66,7 +68,7 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTo
                               BoundaryFacePatches const& face_patches,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input);
 
-/// Values of the given measures in every element, (n_elements) each, in the order asked for; zero for polyhedra.
+/// Values of the given measures in every element, (n_elements) each, in the order asked for.
 template <class Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,

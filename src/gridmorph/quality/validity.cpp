@@ -14,7 +14,7 @@ std::vector<int> handedness_of(HostInstance const& host, Mesh const& mesh) {
   return host.visit([&](auto const& exec) { return zone_handedness(exec, mesh, views(mesh.coordinates)); });
 }
 
-/// Of elements; polyhedra are not looked at.
+/// Of elements.
 template <class MemorySpace>
 struct ElementDeterminant {
   detail::ElementTables<MemorySpace> elements;
@@ -22,9 +22,7 @@ struct ElementDeterminant {
   kernels::VectorArray x;
 
   KOKKOS_INLINE_FUNCTION double operator()(Index e) const {
-    ElementType const type = elements.type(e);
-    if (type == ElementType::polyhedron) return 1;
-    return element_determinant(type, elements.corners(x, e), signs(e), elements.plane_normal);
+    return elements.determinant(x, e, signs(e));
   }
 };
 

@@ -30,7 +30,7 @@ class ValidityCheck {
 
   /// The baseline, in the mesh's own coordinates, says which zones are left-handed.
   ValidityCheck(ExecutionSpace const& exec, Mesh const& mesh);
-  /// ... and which elements are numbered inside out. Polyhedra are not looked at.
+  /// ... and which elements are numbered inside out.
   ValidityCheck(ExecutionSpace const& exec, Mesh const& mesh, UnstructuredTopology const& topology);
 
   /// x (n_nodes): Views of any layout. The result stands when what is enqueued has run, until the next call.

@@ -40,6 +40,8 @@ MeasureText text_of(Measure measure) {
           "relative displacement",
           "per grid direction the largest |u_p - u_q| over the 4 edges pq of a cell along it, divided by their mean "
           "baseline length (u: displacement of a node); the largest of the three directions"};
+    case Measure::non_orthogonality_deg: return {"non-orthogonality [deg]", ""};
+    case Measure::face_skewness: return {"face skewness", ""};
     case Measure::count: break;
   }
   return {"unknown", ""};
@@ -51,20 +53,20 @@ std::string_view element_formula(Measure measure) {
     case Measure::determinant_2x2x2:
       return "hexahedra, prisms, pyramids, quadrilaterals: smallest / largest Jacobian determinant over the corners "
              "(pyramids: of the base, without the factor that vanishes at the apex); tetrahedra: sqrt(2) J / largest "
-             "product of the 3 edge lengths of a corner; triangles: 2/sqrt(3) J / largest product of 2; best 1, "
-             "negative "
-             "when any J is negative, never below -1";
+             "product of the 3 edge lengths of a corner; triangles: 2/sqrt(3) J / largest product of 2; polyhedra: smallest "
+             "S . d / (A |d|) over the faces, S and A vector and size of a face's area, d from the element's centre to that of the "
+             "face; best 1, negative when any J or S . d is negative, never below -1";
     case Measure::determinant_3x3x3:
-      return "the same over the corners and the points half way between them; for tetrahedra and triangles equal to "
-             "determinant_2x2x2";
+      return "the same over the corners and the points half way between them; for tetrahedra, triangles and polyhedra "
+             "equal to determinant_2x2x2";
     case Measure::minimum_angle_deg:
       return "smallest angle between the two edges in the corners of the faces, in degrees; best 60 in triangles, 90 "
-             "in "
-             "quadrilaterals";
+             "in quadrilaterals";
     case Measure::equiangle_skewness:
       return "max((amax - a) / (180 - a), (a - amin) / a) over the face angles in degrees, a = 60 in triangles, 90 in "
-             "quadrilaterals; best 0, worst 1";
-    case Measure::volume: return "integral of the Jacobian determinant, in length units cubed; in 2-D the area";
+             "quadrilaterals, 180 - 360 / n in faces with n corners; best 0, worst 1";
+    case Measure::volume: return "integral of the Jacobian determinant, of polyhedra the sum of the pyramids from their centre to their faces, "
+             "in length units cubed; in 2-D the area";
     case Measure::volume_ratio:
       return "largest of larger / smaller volume of an element and each neighbour across a side, through connections "
              "too; "
@@ -73,7 +75,14 @@ std::string_view element_formula(Measure measure) {
       return "for each set of edges that run along one direction of the element (a tetrahedron's edges each alone) the "
              "largest |u_p - u_q| over its edges pq, divided by their mean baseline length (u: displacement of a "
              "node); "
-             "the largest of them";
+             "the largest of them; of a polyhedron all edges together";
+    case Measure::non_orthogonality_deg:
+      return "largest angle over the inner faces of an element between the normal of the face and the line between the "
+             "centres of the elements on both sides, in degrees, as OpenFOAM's checkMesh measures it; best 0";
+    case Measure::face_skewness:
+      return "largest distance over the faces of an element from where the line between the centres on both sides "
+             "crosses the face to the face's centre, against the reach of the face in that direction, as OpenFOAM's "
+             "checkMesh measures it; best 0";
     case Measure::count: break;
   }
   return "";

@@ -10,6 +10,10 @@ namespace gridmorph::detail {
 
 namespace {
 
+void edges(ElementCorner const& corner, Coordinates const& x, Vec3 (&edge)[3]) {
+  for (std::size_t d = 0; d < 3; ++d) edge[d] = x[corner.node[d + 1]] - x[corner.node[0]];
+}
+
 using Ends = std::array<std::int8_t, 3>;
 
 /// The corners at the other ends of the edges of a corner.
@@ -59,16 +63,37 @@ ElementShapes::ElementShapes(Mesh const& mesh, UnstructuredTopology const& topol
   colour();
 }
 
-std::array<Index32, 4> ElementShapes::nodes_of(ElementCorner const& c) const {
-  auto const nodes = mesh_.elements.corners(c.element);
-  Ends const ends = ends_of(mesh_.elements.type[std::size_t(c.element)], c.corner);
-  return {Index32(nodes[std::size_t(c.corner)]), Index32(nodes[std::size_t(ends[0])]),
-          Index32(nodes[std::size_t(ends[1])]), Index32(nodes[std::size_t(ends[2])])};
+void ElementShapes::add_corners(Index32 element) {
+  ElementType const type = mesh_.elements.type[std::size_t(element)];
+  if (type == ElementType::polyhedron) return add_corners_of_polyhedron(element);
+  auto const nodes = mesh_.elements.corners(element);
+  for (int c = 0; c < n_shape_corners(type); ++c) {
+    Ends const ends = ends_of(type, c);
+    corners_.push_back({element,
+                        {nodes[std::size_t(c)], nodes[std::size_t(ends[0])], nodes[std::size_t(ends[1])],
+                         nodes[std::size_t(ends[2])]}});
+  }
 }
 
-void ElementShapes::edges(ElementCorner const& corner, Coordinates const& x, Vec3 (&edge)[3]) const {
-  auto const n = nodes_of(corner);
-  for (std::size_t d = 0; d < 3; ++d) edge[d] = x[n[d + 1]] - x[n[0]];
+void ElementShapes::add_corners_of_polyhedron(Index32 element) {
+  std::vector<std::pair<Index32, Index32>> ends;  // node, the one at the other end of an edge
+  std::array<Index32, max_face_corners> unused;
+  for (int f = 0; f < n_sides(mesh_, element); ++f) {
+    auto const face = side_nodes(mesh_, element, f, unused);
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      Index32 const a = face[k], b = face[(k + 1) % face.size()];
+      ends.emplace_back(a, b);
+      ends.emplace_back(b, a);
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (std::size_t begin = 0, end; begin < ends.size(); begin = end) {
+    for (end = begin; end < ends.size() && ends[end].first == ends[begin].first; ++end) {}
+    if (end - begin == 3)
+      corners_.push_back(
+          {element, {ends[begin].first, ends[begin].second, ends[begin + 1].second, ends[begin + 2].second}});
+  }
 }
 
 void ElementShapes::find_corners(UnstructuredTopology const& topology) {
@@ -81,8 +106,7 @@ void ElementShapes::find_corners(UnstructuredTopology const& topology) {
   elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
   std::vector<Index> first{0};  // corner of each of them
   for (Index32 const e : elements) {
-    for (int c = 0; c < n_shape_corners(mesh_.elements.type[std::size_t(e)]); ++c)
-      corners_.push_back({e, std::int8_t(c)});
+    add_corners(e);
     first.push_back(Index(corners_.size()));
   }
   for (ElementCorner const& corner : corners_) {
@@ -98,7 +122,7 @@ void ElementShapes::find_corners(UnstructuredTopology const& topology) {
       for (Index32 const e : topology.elements_of_nodes[node]) {
         auto const at = std::size_t(std::lower_bound(elements.begin(), elements.end(), e) - elements.begin());
         for (Index c = first[at]; c < first[at + 1]; ++c) {
-          auto const of_corner = nodes_of(corners_[std::size_t(c)]);
+          auto const& of_corner = corners_[std::size_t(c)].node;
           unsigned roles = 0;
           for (unsigned k = 0; k < 4; ++k) roles |= of_corner[k] == node ? 1u << k : 0u;
           if (roles != 0 && baseline_[std::size_t(c)].inverse_det != 0)

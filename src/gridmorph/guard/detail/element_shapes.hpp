@@ -12,11 +12,11 @@
 
 namespace gridmorph::detail {
 
-/// Corner `corner` of an element with three edges, and the corners at the other ends of these. Tetrahedra have one (their F is the same
-/// everywhere), prisms 6, hexahedra 8, pyramids the 4 of the base.
+/// A corner of an element with three edges: its node and those at the other ends of the edges. Tetrahedra have one (their F is the same
+/// everywhere), prisms 6, hexahedra 8, pyramids the 4 of the base, polyhedra those where three faces meet.
 struct ElementCorner {
   Index32 element;
-  std::int8_t corner;
+  std::array<Index32, 4> node;
 };
 
 /// Free nodes with all corners that change with them; the baseline of these. Built in the order of the nodes; colours are greedy in that order.
@@ -35,8 +35,8 @@ class ElementShapes {
     std::uint8_t roles;  ///< bit 0: the corner's own node; bit 1 + d: the end of its edge d
   };
 
-  [[nodiscard]] std::array<Index32, 4> nodes_of(ElementCorner const& corner) const;
-  void edges(ElementCorner const& corner, Coordinates const& x, Vec3 (&edge)[3]) const;
+  void add_corners(Index32 element);
+  void add_corners_of_polyhedron(Index32 element);
   void find_corners(UnstructuredTopology const& topology);
   void colour();
   [[nodiscard]] double smallest_volume(Coordinates const& x) const;

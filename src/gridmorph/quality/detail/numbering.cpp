@@ -33,19 +33,14 @@ class Numbering {
         fill(zone, -1);
       else
         for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e)
-          if (sign_[std::size_t(e)] == 0 && !is_polyhedron(e)) follow(e);
+          if (sign_[std::size_t(e)] == 0) follow(e);
     }
     return std::move(sign_);
   }
 
  private:
-  [[nodiscard]] bool is_polyhedron(Index e) const {
-    return mesh_.elements.type[std::size_t(e)] == ElementType::polyhedron;
-  }
-
   void fill(Zone const& zone, signed char sign) {
-    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e)
-      if (!is_polyhedron(e)) sign_[std::size_t(e)] = sign;
+    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) sign_[std::size_t(e)] = sign;
   }
 
   /// How element e names its side s against how its neighbour does.
@@ -69,7 +64,7 @@ class Numbering {
       auto const neighbours = sides_.of(e);
       for (int s = 0; s < int(neighbours.size()); ++s) {
         Index32 const n = neighbours[std::size_t(s)];
-        if (n < 0 || sign_[std::size_t(n)] != 0 || is_polyhedron(n)) continue;
+        if (n < 0 || sign_[std::size_t(n)] != 0) continue;
         int const same = across(e, s, n);
         if (same == 0) continue;
         sign_[std::size_t(n)] = static_cast<signed char>(same * sign_[std::size_t(e)]);

@@ -1,0 +1,86 @@
+// Non-orthogonality and face skewness of elements, from their centres (kernels/face_geometry.hpp); internal to the quality part.
+#pragma once
+
+#include <gridmorph/quality/detail/partial_sums.hpp>
+#include <gridmorph/quality/element_tables.hpp>
+
+namespace gridmorph::detail {
+
+/// The worst faces of one element.
+struct FaceQuality {
+  double non_orthogonality_deg = 0, skewness = 0;
+};
+
+/// Of both regions of one chunk.
+struct FaceSums {
+  PartialMeasure non_orthogonality_deg[2], skewness[2];
+
+  KOKKOS_INLINE_FUNCTION void join(FaceSums const& other) {
+    for (int r = 0; r < 2; ++r) {
+      non_orthogonality_deg[r].join(other.non_orthogonality_deg[r], true);
+      skewness[r].join(other.skewness[r], true);
+    }
+  }
+};
+
+/// What is behind each side, in the order of the sides; negative: nothing that has a centre on this side of a connection.
+template <class MemorySpace>
+struct SideTables {
+  Kokkos::View<Index const*, MemorySpace> first;
+  Kokkos::View<Index32 const*, MemorySpace> neighbour;
+};
+
+/// (n_elements) centres.
+template <class Exec>
+Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> element_centres(
+    Exec const& exec, ElementTables<typename Exec::memory_space> const& tables,
+    PackedPoints<typename Exec::memory_space> const& points, bool solid) {
+  Index const n = tables.elements.size();
+  Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> const centres(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::centres"), std::size_t(n));
+  Kokkos::parallel_for(
+      "gridmorph::measure_quality::centres", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n),
+      KOKKOS_LAMBDA(Index const e) {
+        Vec3 const c = tables.with_faces(points, e, [&](auto const& faces) {
+          auto const face = [&](int f) {
+            return kernels::face_geometry(
+                faces.n_corners(f), [&](int k) { return faces.at(f, k); }, tables.plane_normal);
+          };
+          return kernels::element_centre(faces.n_faces(), face, solid).at;
+        });
+        centres(e) = {c.x, c.y, c.z};
+      });
+  return centres;
+}
+
+/// Of element e; boundary faces and connections have no line between centres, but a skewness.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION FaceQuality face_quality(ElementTables<MemorySpace> const& tables,
+                                                SideTables<MemorySpace> const& sides,
+                                                PackedPoints<MemorySpace> const& points,
+                                                Kokkos::View<kernels::PackedPoint*, MemorySpace> const& centres,
+                                                Index e) {
+  return tables.with_faces(points, e, [&](auto const& faces) {
+    FaceQuality worst;
+    Vec3 const own = point(centres(e));
+    for (int f = 0; f < faces.n_faces(); ++f) {
+      int const n = faces.n_corners(f);
+      auto const at = [&](int k) { return faces.at(f, k); };
+      kernels::FaceGeometry const face = kernels::face_geometry(n, at, tables.plane_normal);
+      double const square = dot(face.area, face.area);
+      if (!(square > 0)) continue;  // a side that is a line or a point
+      Index32 const other = sides.neighbour(sides.first(e) + f);
+      bool const inside = other >= 0;
+      Vec3 const d =
+          inside ? point(centres(other)) - own : (dot(face.area, face.centre - own) / square) * face.area;
+      if (inside)
+        worst.non_orthogonality_deg =
+            kernels::larger(worst.non_orthogonality_deg, kernels::non_orthogonality_deg(face, own, own + d));
+      worst.skewness =
+          kernels::larger(worst.skewness, kernels::face_skewness(face, own, d, inside ? 0.2 : 0.4, n, at));
+    }
+    return worst;
+  });
+}
+
+}  // namespace gridmorph::detail

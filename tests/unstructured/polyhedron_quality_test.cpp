@@ -1,0 +1,280 @@
+// Polyhedra measured: one by one against known solids, as meshes against the same elements by their types, and faces against what
+// is known of sheared and stepped boxes. The guard on them.
+#include "quality/test_meshes.hpp"
+#include "support/made_bodies.hpp"
+#include "support/unstructured_meshes.hpp"
+
+#include <gridmorph/geometry/rigid_transform.hpp>
+#include <gridmorph/kernels/polyhedron_quality.hpp>
+#include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/quality/validity.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gridmorph::test {
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+using Input = UnstructuredQualityInput<Kokkos::HostSpace>;
+using kernels::CellMeasures;
+
+struct Solid {
+  std::vector<Vec3> point;
+  std::vector<std::vector<int>> face;
+
+  [[nodiscard]] int n_faces() const { return int(face.size()); }
+  [[nodiscard]] int n_corners(int f) const { return int(face[std::size_t(f)].size()); }
+  [[nodiscard]] Vec3 at(int f, int k) const { return point[std::size_t(face[std::size_t(f)][std::size_t(k)])]; }
+
+  /// Adds the face through all points of a plane, in order around its outward normal.
+  void add_face(Vec3 const& normal, double height) {
+    std::vector<int> on;
+    Vec3 middle;
+    for (int p = 0; p < int(point.size()); ++p)
+      if (std::abs(dot(point[std::size_t(p)], normal) - height) < 1e-12) {
+        on.push_back(p);
+        middle += point[std::size_t(p)];
+      }
+    middle = (1.0 / double(on.size())) * middle;
+    Vec3 const u = point[std::size_t(on[0])] - middle, v = cross(normal, u);
+    auto const angle = [&](int p) {
+      Vec3 const d = point[std::size_t(p)] - middle;
+      return std::atan2(dot(d, v) / norm(v), dot(d, u) / norm(u));
+    };
+    std::sort(on.begin(), on.end(), [&](int a, int b) { return angle(a) < angle(b); });
+    face.push_back(on);
+  }
+};
+
+/// Eight hexagons and six squares; edges of sqrt(2), volume 32.
+Solid truncated_octahedron() {
+  Solid s;
+  for (int zero = 0; zero < 3; ++zero)
+    for (int longest = 1; longest <= 2; ++longest)
+      for (int sign = 0; sign < 4; ++sign) {
+        double x[3] = {0, 0, 0};
+        int const a = (zero + 1) % 3, b = (zero + 2) % 3;
+        x[a] = (sign & 1 ? -1 : 1) * (longest == 1 ? 2 : 1);
+        x[b] = (sign & 2 ? -1 : 1) * (longest == 1 ? 1 : 2);
+        s.point.push_back({x[0], x[1], x[2]});
+      }
+  for (int axis = 0; axis < 3; ++axis)
+    for (double const side : {-1.0, 1.0}) {
+      double n[3] = {0, 0, 0};
+      n[axis] = side;
+      s.add_face({n[0], n[1], n[2]}, 2);
+    }
+  for (int octant = 0; octant < 8; ++octant)
+    s.add_face({octant & 1 ? -1.0 : 1.0, octant & 2 ? -1.0 : 1.0, octant & 4 ? -1.0 : 1.0}, 3);
+  return s;
+}
+
+TEST(PolyhedronQuality, OfARegularSolid) {
+  for (double const scale : {1e-6, 1.0, 1e5}) {
+    Solid s = truncated_octahedron();
+    for (Vec3& p : s.point) p = scale * p + Vec3{3, -2, 1};
+    CellMeasures const m = kernels::polyhedron_measures(s, 1);
+    double const tolerance = scale < 1 ? 1e-6 : 1e-12;
+    EXPECT_NEAR(m.volume / (32 * scale * scale * scale), 1, tolerance);
+    EXPECT_NEAR(m.determinant_3x3x3, 1, tolerance);
+    EXPECT_NEAR(m.minimum_angle_deg, 90, 1e4 * tolerance);
+    EXPECT_NEAR(m.equiangle_skewness, 0, 1e4 * tolerance);
+    EXPECT_NEAR(m.aspect_ratio, 1, 100 * tolerance);
+    EXPECT_FALSE(m.collapsed);
+    EXPECT_EQ(kernels::polyhedron_sign(s, 1), kernels::JacobianSign::positive);
+    EXPECT_EQ(kernels::polyhedron_sign(s, -1), kernels::JacobianSign::negative);
+    Solid inside_out = s;
+    for (auto& face : inside_out.face) std::reverse(face.begin(), face.end());
+    EXPECT_NEAR(kernels::polyhedron_measures(inside_out, -1).determinant_3x3x3, m.determinant_3x3x3, 1e-15);
+    EXPECT_NEAR(kernels::polyhedron_measures(inside_out, 1).determinant_3x3x3, -1, tolerance);
+  }
+}
+
+TEST(PolyhedronQuality, TurnedAndStretched) {
+  Solid const s = truncated_octahedron();
+  Solid moved = s;
+  Mat3 const turn = rotation_matrix({1, 2, -1}, 1.1);
+  for (Vec3& p : moved.point) p = turn * p;
+  CellMeasures const a = kernels::polyhedron_measures(s, 1), b = kernels::polyhedron_measures(moved, 1);
+  EXPECT_NEAR(a.volume, b.volume, 1e-12);
+  EXPECT_NEAR(a.determinant_3x3x3, b.determinant_3x3x3, 1e-12);
+  EXPECT_NEAR(a.minimum_angle_deg, b.minimum_angle_deg, 1e-9);
+  // A turn by 1.1 about the origin, largest where points are farthest from the axis: |u_p - u_q| = |(R - I)(p - q)|.
+  double largest = 0;
+  for (std::size_t f = 0; f < s.face.size(); ++f)
+    for (int k = 0; k < s.n_corners(int(f)); ++k) {
+      Vec3 const e = s.at(int(f), (k + 1) % s.n_corners(int(f))) - s.at(int(f), k);
+      largest = std::max(largest, norm(turn * e - e));
+    }
+  EXPECT_NEAR(kernels::polyhedron_relative_displacement(s, moved), largest / std::sqrt(2.0), 1e-12);
+  for (Vec3& p : moved.point) p = {10 * p.x, 10 * p.y, 0.001 * p.z};
+  EXPECT_GT(kernels::polyhedron_measures(moved, 1).determinant_3x3x3, 0);
+}
+
+TEST(PolyhedronQuality, APointPulledThroughTheOppositeFaceInverts) {
+  Solid s = truncated_octahedron();
+  s.point[0] = -3.0 * s.point[0];
+  CellMeasures const m = kernels::polyhedron_measures(s, 1);
+  EXPECT_LT(m.smallest_corner_jacobian, 0);
+  EXPECT_LT(m.determinant_3x3x3, 0);
+  EXPECT_EQ(kernels::polyhedron_sign(s, 1), kernels::JacobianSign::negative);
+  s.point[0].x = std::nan("");
+  EXPECT_EQ(kernels::polyhedron_measures(s, 1).minimum_angle_deg, 0);
+  EXPECT_EQ(kernels::polyhedron_determinant(s, 1), -1);
+  EXPECT_EQ(kernels::polyhedron_sign(s, 1), kernels::JacobianSign::negative);
+}
+
+TEST(PolyhedronQuality, ADentInAFaceIsMoreThanHalfATurn) {
+  Solid prism;  // an arrow head: corners of 30, 300, 30 and 0 < 30 degrees
+  double const h = std::tan(std::numbers::pi / 12);
+  for (double const z : {0.0, 1.0})
+    for (Vec3 const& p : {Vec3{-1, 0, 0}, Vec3{0, h, 0}, Vec3{1, 0, 0}, Vec3{0, 2, 0}}) prism.point.push_back({p.x, p.y, z});
+  prism.face = {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  for (auto& face : prism.face) std::reverse(face.begin(), face.end());
+  CellMeasures m = kernels::polyhedron_measures(prism, 1);
+  if (m.volume < 0) m = kernels::polyhedron_measures(prism, -1);
+  EXPECT_NEAR(m.volume, 2 - h, 1e-12);
+  EXPECT_EQ(m.equiangle_skewness, 1);  // 210 degrees against 90
+}
+
+/// The same elements, once by type and once by faces.
+struct Twice {
+  explicit Twice(Mesh m) : mesh(std::move(m)), polyhedra(as_polyhedra(mesh)) {
+    topology = make_topology(mesh);
+    of_polyhedra = make_topology(polyhedra);
+  }
+  [[nodiscard]] QualityReport measure(bool as_polyhedra, Input const& input) const {
+    Mesh const& m = as_polyhedra ? polyhedra : mesh;
+    auto const& t = as_polyhedra ? of_polyhedra : topology;
+    return measure_quality(Exec(), m, t, find_face_patches(m, t), input);
+  }
+  Mesh mesh, polyhedra;
+  UnstructuredTopology topology, of_polyhedra;
+};
+
+Coordinates moved_by(Mesh const& mesh, std::function<Vec3(Vec3 const&)> const& to) {
+  Coordinates x(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) x.set(n, to(mesh.coordinates[n]));
+  return x;
+}
+
+TEST(PolyhedronQuality, OfPlaneFacedHexahedraIsThatOfHexahedra) {
+  Twice const both(to_hexahedra(one_zone({6, 5, 4}, [](Index3 const& p) {
+    return Vec3{0.3 * p[0] + 0.1 * p[1], 0.2 * p[1], 0.01 * p[2] * (1 + 0.3 * p[2])};
+  })));
+  auto const x = moved_by(both.mesh, [](Vec3 const& p) { return Vec3{p.x + 0.2 * p.y, p.y, 1.5 * p.z}; });
+  Input input;
+  input.coordinates = views(x);
+  input.baseline = views(both.mesh.coordinates);
+  input.faces = true;
+  auto const a = both.measure(false, input).far_field, b = both.measure(true, input).far_field;
+  EXPECT_EQ(a.cells, b.cells);
+  EXPECT_EQ(b.inverted, 0);
+  for (Measure const m : {Measure::volume, Measure::volume_ratio, Measure::aspect_ratio, Measure::minimum_angle_deg,
+                          Measure::equiangle_skewness, Measure::non_orthogonality_deg, Measure::face_skewness}) {
+    SCOPED_TRACE(to_string(m));
+    EXPECT_NEAR(a[m].min, b[m].min, 1e-11 * (1 + a[m].min));
+    EXPECT_NEAR(a[m].mean, b[m].mean, 1e-11 * (1 + a[m].mean));
+    EXPECT_NEAR(a[m].max, b[m].max, 1e-11 * (1 + a[m].max));
+  }
+}
+
+TEST(PolyhedronQuality, TheSameElementsAreInverted) {
+  Twice const both(to_prisms_and_tetrahedra(unit_box({5, 5, 5}), 2));
+  auto const x = moved_by(both.mesh, [](Vec3 const& p) {
+    return p + Vec3{0.8 * std::sin(5 * p.y), 0, 0.9 * std::sin(3 * p.x) * std::sin(4 * p.z)};
+  });
+  Input input;
+  input.coordinates = views(x);
+  input.baseline = views(both.mesh.coordinates);
+  auto const a = both.measure(false, input).far_field, b = both.measure(true, input).far_field;
+  ASSERT_GT(a.inverted, 0);
+  // Tetrahedra are inverted or not whatever they are taken for; prisms are looked at in other points.
+  EXPECT_GT(b.newly_inverted, a.inverted / 2);
+  EXPECT_LT(b.newly_inverted, 2 * a.inverted);
+  auto const certificate = certify(Exec(), both.polyhedra, both.of_polyhedra, {views(x), input.baseline, {}, {}});
+  EXPECT_EQ(certificate.broken.cells, b.newly_inverted);
+  ValidityCheck<Exec> const check(Exec(), both.polyhedra, both.of_polyhedra);
+  auto const valid = check(Exec(), ConstVectorView<Kokkos::HostSpace>(x.x, x.y, x.z));
+  Kokkos::fence();
+  EXPECT_EQ(valid().inverted, b.inverted);
+  EXPECT_EQ(valid().smallest_determinant, b[Measure::determinant_3x3x3].min);
+}
+
+TEST(FaceQuality, OfAShearedBoxIsItsShear) {
+  // Lattice cells have their centres in line: no skewness inside, and angles of the shear between lines and faces.
+  Mesh const mesh = to_hexahedra(one_zone({6, 6, 6}, [](Index3 const& p) {
+    return Vec3{p[0] + 0.5 * p[1], double(p[1]), double(p[2])};
+  }));
+  auto const topology = make_topology(mesh);
+  Input input;
+  input.coordinates = views(mesh.coordinates);
+  input.faces = true;
+  auto const r = measure_quality(Exec(), mesh, topology, find_face_patches(mesh, topology), input).far_field;
+  double const shear = std::atan(0.5) * 180 / std::numbers::pi;
+  EXPECT_NEAR(r[Measure::non_orthogonality_deg].min, shear, 1e-10);
+  EXPECT_NEAR(r[Measure::non_orthogonality_deg].max, shear, 1e-10);
+  // On the boundary the line goes straight: it misses the middle of the face by half a step of the shear, 0.25, where the face reaches 0.5.
+  EXPECT_NEAR(r[Measure::face_skewness].max, 0.5, 1e-10);
+  EXPECT_NEAR(r[Measure::face_skewness].min, 0, 1e-10);
+}
+
+TEST(FaceQuality, OfATrapezoidMeetsThePlainFormula) {
+  // Two quadrilaterals side by side in 2-D, one of them a trapezoid.
+  Mesh const mesh = flat_box(2, 1, 1);
+  ASSERT_EQ(mesh.dimension, 2);
+  Coordinates x(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const p = mesh.coordinates[n];
+    x.set(n, {p.x, p.y * (1 + p.x), p.z});
+  }
+  auto const topology = make_topology(mesh);
+  Input input;
+  input.coordinates = views(x);
+  input.faces = true;
+  auto const found = cell_fields(Exec(), mesh, topology, input,
+                                 std::array{Measure::non_orthogonality_deg, Measure::face_skewness});
+  auto const polygon = [&](Index e) {
+    std::vector<Vec3> corners;
+    for (Index32 const n : mesh.elements.corners(e)) corners.push_back(x[n]);
+    return corners;
+  };
+  auto const centroid = [&](Index e) {  // the shoelace formula
+    auto const c = polygon(e);
+    double area = 0;
+    Vec3 sum;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      Vec3 const &p = c[k], &q = c[(k + 1) % c.size()];
+      double const w = p.x * q.y - q.x * p.y;
+      area += w;
+      sum += w * (p + q);
+    }
+    return (1 / (3 * area)) * sum;
+  };
+  for (Index e = 0; e < mesh.n_elements(); ++e) {
+    auto const c = polygon(e);
+    auto const neighbours = topology.sides.of(e);
+    double angle = 0, skewness = 0;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      Vec3 const &p = c[k], &q = c[(k + 1) % c.size()];
+      Vec3 const f = 0.5 * (p + q), s{q.y - p.y, p.x - q.x, 0}, own = centroid(e);
+      bool const inside = neighbours[k] >= 0;
+      Vec3 const d = inside ? centroid(neighbours[k]) - own : (dot(f - own, s) / dot(s, s)) * s;
+      Vec3 const miss = (f - own) - (dot(s, f - own) / dot(s, d)) * d;
+      if (inside) angle = std::max(angle, std::acos(dot(s, d) / norm(s) / norm(d)) * 180 / std::numbers::pi);
+      if (norm(miss) < 1e-12) continue;
+      double const reach = std::max((inside ? 0.2 : 0.4) * norm(d), std::abs(dot(miss, p - f)) / norm(miss));
+      skewness = std::max(skewness, norm(miss) / reach);
+    }
+    EXPECT_NEAR(found[0](std::size_t(e)), angle, 1e-10);
+    EXPECT_NEAR(found[1](std::size_t(e)), skewness, 1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace gridmorph::test
