@@ -149,7 +149,7 @@ TEST_P(TangledElements, ComeHome) {
   };
   RelaxReport report;
   Coordinates const x = relaxed(report);
-  EXPECT_GT(report.inverted_before, 20);
+  EXPECT_GT(report.inverted_before, kind == Cells::polyhedra ? 1 : 20);  // by pyramids fewer are inside out
   EXPECT_EQ(report.inverted_before,
             certify(Exec(), mesh, topology, {views(tangled), views(mesh.coordinates)}).broken.cells);
   EXPECT_EQ(report.inverted_after, 0);

@@ -98,7 +98,7 @@ TEST(PolyhedronQuality, OfARegularSolid) {
 TEST(PolyhedronQuality, TurnedAndStretched) {
   Solid const s = truncated_octahedron();
   Solid moved = s;
-  Mat3 const turn = rotation_matrix({1, 2, -1}, 1.1);
+  Mat3 const turn = rotation_matrix((1 / std::sqrt(6.0)) * Vec3{1, 2, -1}, 1.1);
   for (Vec3& p : moved.point) p = turn * p;
   CellMeasures const a = kernels::polyhedron_measures(s, 1), b = kernels::polyhedron_measures(moved, 1);
   EXPECT_NEAR(a.volume, b.volume, 1e-12);
@@ -187,7 +187,7 @@ TEST(PolyhedronQuality, OfPlaneFacedHexahedraIsThatOfHexahedra) {
 TEST(PolyhedronQuality, TheSameElementsAreInverted) {
   Twice const both(to_prisms_and_tetrahedra(unit_box({5, 5, 5}), 2));
   auto const x = moved_by(both.mesh, [](Vec3 const& p) {
-    return p + Vec3{0.8 * std::sin(5 * p.y), 0, 0.9 * std::sin(3 * p.x) * std::sin(4 * p.z)};
+    return p + Vec3{1.6 * std::sin(5 * p.y), 0, 1.9 * std::sin(3 * p.x) * std::sin(4 * p.z)};
   });
   Input input;
   input.coordinates = views(x);

@@ -9,7 +9,9 @@
 //                  are flat and across the lines from the centre, whatever the lengths, as determinants of hexahedra are
 //   aspect ratio   longest / shortest edge
 //   angles         between the edges in each corner of each face, above 180 degrees where a face has a dent
-//   skewness       max((amax - a) / (180 - a), (a - amin) / a), a = 180 - 360 / n degrees in faces with n corners; not above 1
+//   skewness       (a - amin) / a, a = 180 - 360 / n degrees in faces with n corners; of triangles and quadrilaterals the larger of that and
+//                  (amax - a) / (180 - a), of others of that and (amax - 180) / 180: nodes of finer neighbours amid an edge are no
+//                  fault of a face. Not above 1
 //   relative       largest |u_p - u_q| over the edges pq / their mean baseline length
 //   displacement
 //
@@ -89,7 +91,8 @@ KOKKOS_INLINE_FUNCTION void add_angles(Points const& p, int face, double limit, 
     double const inner = degrees * arc_cosine(dot(u, v) / compat::math::sqrt(uu * vv));
     double const angle = dot(cross(u, v), area) < 0 && inner < 179 ? 360 - inner : inner;
     smallest = smaller(smallest, angle);
-    skewness = larger(skewness, larger((angle - ideal) / (180 - ideal), (ideal - angle) / ideal));
+    double const above = n > 4 ? (angle - 180) / 180 : (angle - ideal) / (180 - ideal);
+    skewness = larger(skewness, larger(above, (ideal - angle) / ideal));
   }
 }
 

@@ -64,7 +64,8 @@ std::string_view element_formula(Measure measure) {
              "in quadrilaterals";
     case Measure::equiangle_skewness:
       return "max((amax - a) / (180 - a), (a - amin) / a) over the face angles in degrees, a = 60 in triangles, 90 in "
-             "quadrilaterals, 180 - 360 / n in faces with n corners; best 0, worst 1";
+             "quadrilaterals, 180 - 360 / n in faces of polyhedra with n corners, where for n > 4 angles count as too large "
+             "above 180 alone; best 0, worst 1";
     case Measure::volume: return "integral of the Jacobian determinant, of polyhedra the sum of the pyramids from their centre to their faces, "
              "in length units cubed; in 2-D the area";
     case Measure::volume_ratio:

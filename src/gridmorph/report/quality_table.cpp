@@ -135,7 +135,8 @@ void worst_cells(std::string& out, QualityReport const& report, std::string_view
   out += fmt::format("\nWorst cells, {}\n", state);
   auto const region = [&](std::string_view name, QualityRegion const& r) {
     for (Measure const m : {Measure::determinant_3x3x3, Measure::minimum_angle_deg, Measure::aspect_ratio,
-                            Measure::volume_ratio, Measure::relative_displacement}) {
+                            Measure::volume_ratio, Measure::non_orthogonality_deg, Measure::face_skewness,
+                            Measure::relative_displacement}) {
       MeasureStatistics const& s = r[m];
       if (s.worst_zone < 0) continue;
       out += fmt::format("{:<11}{:<24}{:>10}  {}\n", name, text_of(m).title, format_value(s.worst),
@@ -169,6 +170,8 @@ std::string format_table(QualityReport const& baseline, std::optional<QualityRep
   measure_row(out, list, Measure::equiangle_skewness, "max", &MeasureStatistics::max);
   measure_row(out, list, Measure::volume, "min", &MeasureStatistics::min);
   measure_row(out, list, Measure::volume_ratio, "max", &MeasureStatistics::max);
+  measure_row(out, list, Measure::non_orthogonality_deg, "max", &MeasureStatistics::max);
+  measure_row(out, list, Measure::face_skewness, "max", &MeasureStatistics::max);
   if (morphed && morphed->against_baseline && !morphed->fast)
     measure_row(out, list, Measure::relative_displacement, "max", &MeasureStatistics::max);
   if (morphed && morphed->certificate) out += certificate_text(*morphed);
