@@ -121,29 +121,48 @@ Mesh in_two_zones(Mesh const& mesh, std::function<bool(Vec3 const&)> const& firs
   return out;
 }
 
-Mesh second_order(Mesh const& tetrahedra) {
-  constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-  std::map<std::pair<Index32, Index32>, Index32> middle;
+Mesh second_order(Mesh const& mesh, bool all_nodes, std::function<Vec3(Vec3 const&)> const& to) {
+  std::map<std::vector<Index32>, Index32> middle;  // of the corners around it, ascending
   std::vector<Vec3> points;
-  for (Index n = 0; n < tetrahedra.n_nodes(); ++n) points.push_back(tetrahedra.coordinates[n]);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
   std::vector<std::vector<Index32>> nodes;
-  for (Index e = 0; e < tetrahedra.n_elements(); ++e) {
-    auto const corners = tetrahedra.elements.corners(e);
+  for (Index e = 0; e < mesh.n_elements(); ++e) {
+    ElementType const type = mesh.elements.type[std::size_t(e)];
+    auto const corners = mesh.elements.corners(e);
     auto& list = nodes.emplace_back(corners.begin(), corners.end());
-    for (auto const& edge : edges) {
-      std::pair<Index32, Index32> const ends = std::minmax(corners[edge[0]], corners[edge[1]]);
-      auto const [at, fresh] = middle.try_emplace(ends, Index32(points.size()));
-      if (fresh) points.push_back(0.5 * (points[std::size_t(ends.first)] + points[std::size_t(ends.second)]));
+    auto const add_amid = [&](std::vector<Index32> around) {
+      std::sort(around.begin(), around.end());
+      auto const [at, fresh] = middle.try_emplace(around, Index32(points.size()));
+      if (fresh) {
+        Vec3 sum;
+        for (Index32 const n : around) sum += points[std::size_t(n)];
+        points.push_back((1.0 / double(around.size())) * sum);
+      }
       list.push_back(at->second);
+    };
+    for (int k = 0; k < n_edges(type); ++k)
+      add_amid({corners[std::size_t(edge_corner(type, k, 0))], corners[std::size_t(edge_corner(type, k, 1))]});
+    if (!all_nodes) continue;
+    if (is_surface(type)) {
+      if (type == ElementType::quadrilateral) add_amid({corners.begin(), corners.end()});
+      continue;
     }
+    for (int f = 0; f < n_faces(type); ++f) {
+      std::array<Index32, max_face_corners> room;
+      auto const face = side_nodes(mesh, e, f, room);
+      if (face.size() == 4) add_amid({face.begin(), face.end()});
+    }
+    if (type == ElementType::hexahedron) add_amid({corners.begin(), corners.end()});
   }
   Mesh out;
-  out.source = tetrahedra.source;
+  out.source = mesh.source;
+  out.dimension = mesh.dimension;
   out.add_zone("zone", Index(points.size()));
-  for (auto const& list : nodes) out.add_element(ElementType::tetrahedron, list);
-  out.patches = tetrahedra.patches;
+  for (Index e = 0; e < mesh.n_elements(); ++e)
+    out.add_element(mesh.elements.type[std::size_t(e)], nodes[std::size_t(e)]);
+  out.patches = mesh.patches;
   out.coordinates = Coordinates(Index(points.size()));
-  for (std::size_t n = 0; n < points.size(); ++n) out.coordinates.set(Index(n), points[n]);
+  for (std::size_t n = 0; n < points.size(); ++n) out.coordinates.set(Index(n), to ? to(points[n]) : points[n]);
   return out;
 }
 

@@ -17,8 +17,9 @@ Mesh part_of(Mesh const& mesh, std::function<bool(Vec3 const& centre)> const& ke
 /// them, which a connection and its counterpart list.
 Mesh in_two_zones(Mesh const& mesh, std::function<bool(Vec3 const& centre)> const& first);
 
-/// Tetrahedra of second order: with a node in the middle of each edge.
-Mesh second_order(Mesh const& tetrahedra);
+/// The same elements of second order: with a node in the middle of each edge and, where wanted, of each quadrilateral face and hexahedron. `to` then
+/// moves all nodes, so that edges are curved as it curves them.
+Mesh second_order(Mesh const& mesh, bool all_nodes = false, std::function<Vec3(Vec3 const&)> const& to = {});
 
 /// The same elements as polyhedra, their faces listed one by one.
 Mesh as_polyhedra(Mesh const& mesh);

@@ -1,7 +1,7 @@
 // Smoothing where elements came out bad: what it repairs, what it must leave alone, and that it counts right although it
 // measures only around the nodes that it moves.
-#include "support/random.hpp"
 #include "support/made_bodies.hpp"
+#include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/guard/guard.hpp>
@@ -162,7 +162,8 @@ TEST_P(TangledElements, ComeHome) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, TangledElements,
-                         testing::Combine(testing::Values(Cells::hexahedra, Cells::prisms_and_tetrahedra, Cells::polyhedra),
+                         testing::Combine(testing::Values(Cells::hexahedra, Cells::prisms_and_tetrahedra,
+                                                          Cells::polyhedra),
                                           testing::Values(0.6, 0.9)));
 
 }  // namespace

@@ -133,7 +133,8 @@ TEST(PolyhedronQuality, ADentInAFaceIsMoreThanHalfATurn) {
   Solid prism;  // an arrow head: corners of 30, 300, 30 and 0 < 30 degrees
   double const h = std::tan(std::numbers::pi / 12);
   for (double const z : {0.0, 1.0})
-    for (Vec3 const& p : {Vec3{-1, 0, 0}, Vec3{0, h, 0}, Vec3{1, 0, 0}, Vec3{0, 2, 0}}) prism.point.push_back({p.x, p.y, z});
+    for (Vec3 const& p : {Vec3{-1, 0, 0}, Vec3{0, h, 0}, Vec3{1, 0, 0}, Vec3{0, 2, 0}})
+      prism.point.push_back({p.x, p.y, z});
   prism.face = {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
   for (auto& face : prism.face) std::reverse(face.begin(), face.end());
   CellMeasures m = kernels::polyhedron_measures(prism, 1);
@@ -237,8 +238,8 @@ TEST(FaceQuality, OfATrapezoidMeetsThePlainFormula) {
   Input input;
   input.coordinates = views(x);
   input.faces = true;
-  auto const found = cell_fields(Exec(), mesh, topology, input,
-                                 std::array{Measure::non_orthogonality_deg, Measure::face_skewness});
+  auto const found =
+      cell_fields(Exec(), mesh, topology, input, std::array{Measure::non_orthogonality_deg, Measure::face_skewness});
   auto const polygon = [&](Index e) {
     std::vector<Vec3> corners;
     for (Index32 const n : mesh.elements.corners(e)) corners.push_back(x[n]);

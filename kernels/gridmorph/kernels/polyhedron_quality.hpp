@@ -36,12 +36,14 @@ struct Pyramids {
 /// p: n_faces(), n_corners(face), at(face, corner).
 template <class Points>
 KOKKOS_INLINE_FUNCTION FaceGeometry face_of(Points const& p, int face) {
-  return face_geometry(p.n_corners(face), [&](int k) { return p.at(face, k); }, Vec3{});
+  return face_geometry(
+      p.n_corners(face), [&](int k) { return p.at(face, k); }, Vec3{});
 }
 
 template <class Points>
 KOKKOS_INLINE_FUNCTION ElementCentre centre_of(Points const& p) {
-  return element_centre(p.n_faces(), [&](int f) { return face_of(p, f); }, true);
+  return element_centre(
+      p.n_faces(), [&](int f) { return face_of(p, f); }, true);
 }
 
 /// sign: -1 where faces point inwards.

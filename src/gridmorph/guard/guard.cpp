@@ -40,15 +40,20 @@ class Relaxation {
     bool shapes = by_shape();
     for (; report.rounds < options_.rounds && !now.bad.empty(); ++report.rounds) {
       std::vector<Index32> const nodes = nodes_around(now.bad, rings);
+      std::vector<Index> const middles = middles_of(nodes);
       std::vector<Vec3> before;
       for (Index32 const n : nodes) before.push_back(x_[n]);
+      for (Index const row : middles) before.push_back(x_[prepared_.plan.middle.target[std::size_t(row)]]);
       if (shapes)
         smooth_shapes(nodes, sweeps);
       else
         smooth(nodes, sweeps);
-      Judged after = judge(touched(nodes, now.bad));
+      follow(middles);
+      Judged after = judge(touched(nodes, middles, now.bad));
       if (after.worse_than(now)) {
         for (std::size_t k = 0; k < nodes.size(); ++k) x_.set(nodes[k], before[k]);
+        for (std::size_t m = 0; m < middles.size(); ++m)
+          x_.set(prepared_.plan.middle.target[std::size_t(middles[m])], before[nodes.size() + m]);
         copy_coincident();
         if (std::exchange(shapes, false)) continue;
         if ((sweeps /= 2) == 0) break;
@@ -109,8 +114,13 @@ class Relaxation {
   }
 
   /// Elements that change when `nodes` move, and those that were bad; ascending.
-  [[nodiscard]] std::vector<Index32> touched(std::vector<Index32> const& nodes, std::vector<Index32> const& bad) const {
+  [[nodiscard]] std::vector<Index32> touched(std::vector<Index32> const& nodes, std::vector<Index> const& middles,
+                                             std::vector<Index32> const& bad) const {
     std::vector<Index32> found = bad;
+    for (Index const row : middles) {
+      auto const around = elements_of_middle_[row];
+      found.insert(found.end(), around.begin(), around.end());
+    }
     auto const add = [&](Index32 n) {
       auto const around = topology_.elements_of_nodes[n];
       found.insert(found.end(), around.begin(), around.end());
@@ -130,6 +140,72 @@ class Relaxation {
     for (auto const* list : {&plan.known, &plan.residual_nodes, &plan.columns.node})
       for (Index32 const n : *list) held_[std::size_t(n)] = 1;
     for (Index32 const n : plan.middle.target) held_[std::size_t(n)] = 1;
+    find_middles();
+  }
+
+  /// Rows of further nodes that are not on a boundary, by the corners that they follow; the elements around each row's node.
+  void find_middles() {
+    UnstructuredPlan const& plan = prepared_.plan;
+    if (plan.middle.size() == 0) return;
+    std::vector<std::uint8_t> on_boundary(std::size_t(mesh_.n_nodes()), 0);
+    for (Index32 const n : plan.middle_boundary.node) on_boundary[std::size_t(n)] = 1;
+    for (PeriodicImage const& image : plan.images)
+      on_boundary[std::size_t(image.node)] = on_boundary[std::size_t(image.owner)] = 1;
+    std::vector<std::pair<Index32, Index32>> followed, holders;  // corner, row; row, element
+    std::vector<Index32> row_of(std::size_t(mesh_.n_nodes()), -1);
+    for (Index r = 0; r < plan.middle.size(); ++r) {
+      row_of[std::size_t(plan.middle.target[std::size_t(r)])] = Index32(r);
+      if (on_boundary[std::size_t(plan.middle.target[std::size_t(r)])] != 0) continue;
+      for (Index k = plan.middle.first[std::size_t(r)]; k < plan.middle.first[std::size_t(r) + 1]; ++k)
+        followed.emplace_back(plan.middle.item[std::size_t(k)], Index32(r));
+    }
+    for (Index e = 0; e < mesh_.n_elements(); ++e)
+      for (Index32 const n : mesh_.elements.nodes[e].subspan(mesh_.elements.corners(e).size()))
+        if (Index32 const r = row_of[std::size_t(prepared_.graph.representative[std::size_t(n)])]; r >= 0)
+          holders.emplace_back(r, Index32(e));
+    middles_of_node_ = lists(followed, mesh_.n_nodes());
+    elements_of_middle_ = lists(holders, plan.middle.size());
+  }
+
+  static CsrGraph lists(std::vector<std::pair<Index32, Index32>>& pairs, Index count) {
+    std::sort(pairs.begin(), pairs.end());
+    CsrGraph out;
+    std::vector<Index32> row;
+    std::size_t at = 0;
+    for (Index n = 0; n < count; ++n) {
+      row.clear();
+      for (; at < pairs.size() && pairs[at].first == n; ++at) row.push_back(pairs[at].second);
+      out.add(row);
+    }
+    return out;
+  }
+
+  /// Rows of further nodes that follow any of `nodes`; ascending.
+  [[nodiscard]] std::vector<Index> middles_of(std::vector<Index32> const& nodes) const {
+    std::vector<Index> out;
+    if (middles_of_node_.size() == 0) return out;
+    for (Index32 const n : nodes)
+      for (Index32 const row : middles_of_node_[n]) out.push_back(row);
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+  /// Further nodes follow their corners as in the morph.
+  void follow(std::vector<Index> const& middles) {
+    InterpolationOperator const& rows = prepared_.plan.middle;
+    Coordinates const& x = mesh_.coordinates;
+    auto const displacement = [&](Index32 n) { return x_[n] - x[n]; };
+    for (Index const r : middles) {
+      Index const first = rows.first[std::size_t(r)];
+      Vec3 const base = displacement(rows.item[std::size_t(first)]);
+      Vec3 sum;
+      for (Index k = first + 1; k < rows.first[std::size_t(r) + 1]; ++k)
+        sum += double(rows.weight[std::size_t(k)]) * (displacement(rows.item[std::size_t(k)]) - base);
+      Index32 const n = rows.target[std::size_t(r)];
+      x_.set(n, x[n] + (base + sum));
+    }
+    if (!middles.empty()) copy_coincident();
   }
 
   std::vector<Index32> nodes_around(std::vector<Index32> const& bad, int rings) const {
@@ -233,6 +309,8 @@ class Relaxation {
   std::vector<signed char> signs_;
   detail::ElementTables<Kokkos::HostSpace> tables_;
   std::vector<std::uint8_t> held_;
+  CsrGraph middles_of_node_;     ///< rows of UnstructuredPlan::middle that follow each node
+  CsrGraph elements_of_middle_;  ///< per row
 };
 
 }  // namespace

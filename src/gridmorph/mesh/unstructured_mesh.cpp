@@ -53,6 +53,29 @@ std::span<Index32 const> side_nodes(Mesh const& mesh, Index element, int side,
   return {room.data(), kept};
 }
 
+std::vector<Index32> side_middles(Mesh const& mesh, Index element, int side) {
+  std::vector<Index32> out;
+  ElementType const type = mesh.elements.type[std::size_t(element)];
+  auto const nodes = mesh.elements.nodes[element];
+  int const corners = int(mesh.elements.corners(element).size());
+  if (type == ElementType::polyhedron || int(nodes.size()) == corners) return out;
+  auto const on_side = [&](int corner) {
+    for (int c = 0; c < n_face_corners(type, side); ++c)
+      if (face_corner(type, side, c) == corner) return true;
+    return false;
+  };
+  auto const take = [&](int place) {
+    if (std::size_t(place) < nodes.size()) out.push_back(nodes[std::size_t(place)]);
+  };
+  for (int e = 0; e < n_edges(type); ++e)
+    if (on_side(edge_corner(type, e, 0)) && on_side(edge_corner(type, e, 1))) take(corners + e);
+  if (is_surface(type) || n_face_corners(type, side) != 4) return out;
+  int squares_before = 0;
+  for (int f = 0; f < side; ++f) squares_before += n_face_corners(type, f) == 4 ? 1 : 0;
+  take(corners + n_edges(type) + squares_before);
+  return out;
+}
+
 std::vector<Index32> patch_nodes(Patch const& patch) {
   std::vector<Index32> nodes = patch.faces.size() > 0 ? patch.faces.item : patch.nodes;
   std::sort(nodes.begin(), nodes.end());

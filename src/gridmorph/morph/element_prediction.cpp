@@ -119,9 +119,7 @@ ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUn
     detail::for_all(exec, "gridmorph::predict::measures", Index(looked_at.size()), [&](Index k) {
       Index const e = looked_at[std::size_t(k)];
       double const sign = signs[std::size_t(e)];
-      auto const of = [&](auto const& at) {
-        return tables.measures(at, e, sign);
-      };
+      auto const of = [&](auto const& at) { return tables.measures(at, e, sign); };
       measures[std::size_t(k)] = {of(x), of(y)};
     });
   });

@@ -102,7 +102,14 @@ struct UnstructuredPlan {
   std::vector<float> detail_fade;  ///< per row of residual_detail, share of the residual included
 
   std::vector<Index32> copies, copied;  ///< nodes that coincide with a representative, and that
-  InterpolationOperator middle;         ///< further nodes of second-order elements: means of the corners around them
+  InterpolationOperator middle;         ///< further nodes of second-order elements: by the corners around them
+  /// Those of them on boundaries, once `middle` has moved them: `known` slots or -1, slip surfaces where not known, and who moves as one.
+  struct MiddleBoundary {
+    std::vector<Index32> node, slot;
+    CsrGraph surfaces;
+    std::vector<Index32> image_owners;
+    CsrGraph images_of_owner;  ///< entries of `images`
+  } middle_boundary;
 };
 
 /// What was found on the way, for reports and pictures.

@@ -3,7 +3,7 @@
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/cell_chunks.hpp>
-#include <gridmorph/kernels/jacobian_bounds.hpp>
+#include <gridmorph/kernels/curved_element.hpp>
 #include <gridmorph/kernels/polyhedron_quality.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 #include <gridmorph/quality/detail/zone_cells.hpp>
@@ -101,17 +101,32 @@ struct ElementTables {
     if (t == ElementType::polyhedron) return f(polyhedron(points, e));
     return f(FacesAt{t, corners(points, e)});
   }
+  KOKKOS_INLINE_FUNCTION bool is_curved(Index e) const {
+    return kernels::is_second_order(type(e), elements.first(e + 1) - elements.first(e));
+  }
+  /// Of an element of second order, with all nodes that such an element may have.
+  template <class Points>
+  KOKKOS_INLINE_FUNCTION kernels::CurvedElement curved(Points const& points, Index e) const {
+    kernels::CurvedElement out{type(e), {}};
+    Index const first = elements.first(e), n = elements.first(e + 1) - first;
+    for (Index k = 0; k < n; ++k) out.at[k] = point_at(points, elements.node(first + k));
+    if (n < kernels::n_curved_nodes(out.type)) kernels::curved::complete(out);
+    return out;
+  }
   /// All measures of element e; sign: -1 where it is numbered inside out.
   template <class Points>
   KOKKOS_INLINE_FUNCTION kernels::CellMeasures measures(Points const& points, Index e, double sign) const {
     ElementType const t = type(e);
     if (t == ElementType::polyhedron) return kernels::polyhedron_measures(polyhedron(points, e), sign);
+    if (is_curved(e)) return kernels::curved_measures(curved(points, e), corners(points, e), sign, plane_normal);
     return element_measures(t, corners(points, e), sign, plane_normal);
   }
   template <class Points>
   KOKKOS_INLINE_FUNCTION double determinant(Points const& points, Index e, double sign) const {
     ElementType const t = type(e);
     if (t == ElementType::polyhedron) return kernels::polyhedron_determinant(polyhedron(points, e), sign);
+    if (is_curved(e))
+      return kernels::curved_measures(curved(points, e), corners(points, e), sign, plane_normal).determinant_3x3x3;
     return element_determinant(t, corners(points, e), sign, plane_normal);
   }
   template <class Points>
@@ -125,6 +140,7 @@ struct ElementTables {
   KOKKOS_INLINE_FUNCTION kernels::JacobianSign jacobian_sign(Points const& points, Index e, double sign) const {
     ElementType const t = type(e);
     if (t == ElementType::polyhedron) return kernels::polyhedron_sign(polyhedron(points, e), sign);
+    if (is_curved(e)) return kernels::curved_sign(curved(points, e), corners(points, e), sign, plane_normal);
     return kernels::jacobian_sign(t, corners(points, e), sign, plane_normal);
   }
   /// From one place to another.
@@ -178,8 +194,7 @@ inline std::vector<Index> first_elements(Mesh const& mesh) {
 
 /// Largest volume ratio of element e to its neighbours; 1 without any, unbounded unless all volumes are positive.
 template <class VolumeView, class MemorySpace>
-KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, CsrViews<MemorySpace> const& neighbours,
-                                          Index e) {
+KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, CsrViews<MemorySpace> const& neighbours, Index e) {
   double least = volumes(e), largest = least;
   for (Index n = neighbours.first(e); n < neighbours.first(e + 1); ++n) {
     Index32 const other = neighbours.item(n);

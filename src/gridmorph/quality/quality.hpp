@@ -30,7 +30,7 @@ enum class Measure {
   volume_ratio,           ///< largest volume ratio (>= 1) to a face neighbour, across 1-to-1 interfaces too
   relative_displacement,  ///< paper, section 3.2: largest relative displacement / mean edge length, worst direction
   non_orthogonality_deg,  ///< elements, on request: largest angle between face normals and lines between centres
-  face_skewness,          ///< elements, on request: largest distance of face centres from these lines / size of the face
+  face_skewness,  ///< elements, on request: largest distance of face centres from these lines / size of the face
   count
 };
 

@@ -21,9 +21,7 @@ struct ElementDeterminant {
   Kokkos::View<signed char*, MemorySpace> signs;
   kernels::VectorArray x;
 
-  KOKKOS_INLINE_FUNCTION double operator()(Index e) const {
-    return elements.determinant(x, e, signs(e));
-  }
+  KOKKOS_INLINE_FUNCTION double operator()(Index e) const { return elements.determinant(x, e, signs(e)); }
 };
 
 }  // namespace

@@ -40,8 +40,8 @@ MeasureText text_of(Measure measure) {
           "relative displacement",
           "per grid direction the largest |u_p - u_q| over the 4 edges pq of a cell along it, divided by their mean "
           "baseline length (u: displacement of a node); the largest of the three directions"};
-    case Measure::non_orthogonality_deg: return {"non-orthogonality [deg]", ""};
-    case Measure::face_skewness: return {"face skewness", ""};
+    case Measure::non_orthogonality_deg: return {"non-orthogonality [deg]", "of elements alone, in degrees; best 0"};
+    case Measure::face_skewness: return {"face skewness", "of elements alone; best 0"};
     case Measure::count: break;
   }
   return {"unknown", ""};
@@ -53,8 +53,10 @@ std::string_view element_formula(Measure measure) {
     case Measure::determinant_2x2x2:
       return "hexahedra, prisms, pyramids, quadrilaterals: smallest / largest Jacobian determinant over the corners "
              "(pyramids: of the base, without the factor that vanishes at the apex); tetrahedra: sqrt(2) J / largest "
-             "product of the 3 edge lengths of a corner; triangles: 2/sqrt(3) J / largest product of 2; polyhedra: smallest "
-             "S . d / (A |d|) over the faces, S and A vector and size of a face's area, d from the element's centre to that of the "
+             "product of the 3 edge lengths of a corner; triangles: 2/sqrt(3) J / largest product of 2; polyhedra: "
+             "smallest "
+             "S . d / (A |d|) over the faces, S and A vector and size of a face's area, d from the element's centre to "
+             "that of the "
              "face; best 1, negative when any J or S . d is negative, never below -1";
     case Measure::determinant_3x3x3:
       return "the same over the corners and the points half way between them; for tetrahedra, triangles and polyhedra "
@@ -64,9 +66,12 @@ std::string_view element_formula(Measure measure) {
              "in quadrilaterals";
     case Measure::equiangle_skewness:
       return "max((amax - a) / (180 - a), (a - amin) / a) over the face angles in degrees, a = 60 in triangles, 90 in "
-             "quadrilaterals, 180 - 360 / n in faces of polyhedra with n corners, where for n > 4 angles count as too large "
+             "quadrilaterals, 180 - 360 / n in faces of polyhedra with n corners, where for n > 4 angles count as too "
+             "large "
              "above 180 alone; best 0, worst 1";
-    case Measure::volume: return "integral of the Jacobian determinant, of polyhedra the sum of the pyramids from their centre to their faces, "
+    case Measure::volume:
+      return "integral of the Jacobian determinant, of polyhedra the sum of the pyramids from their centre to their "
+             "faces, "
              "in length units cubed; in 2-D the area";
     case Measure::volume_ratio:
       return "largest of larger / smaller volume of an element and each neighbour across a side, through connections "

@@ -134,9 +134,9 @@ void wall_groups(std::string& out, QualityReport const& baseline, std::optional<
 void worst_cells(std::string& out, QualityReport const& report, std::string_view state) {
   out += fmt::format("\nWorst cells, {}\n", state);
   auto const region = [&](std::string_view name, QualityRegion const& r) {
-    for (Measure const m : {Measure::determinant_3x3x3, Measure::minimum_angle_deg, Measure::aspect_ratio,
-                            Measure::volume_ratio, Measure::non_orthogonality_deg, Measure::face_skewness,
-                            Measure::relative_displacement}) {
+    for (Measure const m :
+         {Measure::determinant_3x3x3, Measure::minimum_angle_deg, Measure::aspect_ratio, Measure::volume_ratio,
+          Measure::non_orthogonality_deg, Measure::face_skewness, Measure::relative_displacement}) {
       MeasureStatistics const& s = r[m];
       if (s.worst_zone < 0) continue;
       out += fmt::format("{:<11}{:<24}{:>10}  {}\n", name, text_of(m).title, format_value(s.worst),

@@ -89,7 +89,8 @@ void ElementShapes::add_corners_of_polyhedron(Index32 element) {
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (std::size_t begin = 0, end; begin < ends.size(); begin = end) {
-    for (end = begin; end < ends.size() && ends[end].first == ends[begin].first; ++end) {}
+    for (end = begin; end < ends.size() && ends[end].first == ends[begin].first; ++end) {
+    }
     if (end - begin == 3)
       corners_.push_back(
           {element, {ends[begin].first, ends[begin].second, ends[begin + 1].second, ends[begin + 2].second}});

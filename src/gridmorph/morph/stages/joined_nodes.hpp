@@ -1,14 +1,16 @@
 // Last stage of an unstructured morph: nodes between corners, and nodes that coincide with another.
 #pragma once
 
+#include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/kernels/interpolation_rows.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
+#include <gridmorph/kernels/slip_nodes.hpp>
+#include <gridmorph/morph/stages/periodic_table.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 namespace gridmorph::stages {
 
-/// Linear.
 template <class Exec>
 class JoinedNodes {
  public:
@@ -17,18 +19,48 @@ class JoinedNodes {
   JoinedNodes(Exec const& exec, UnstructuredPlan const& plan)
       : middle_(upload(exec, plan.middle, name("middle"))),
         copies_(upload(exec, plan.copies, name("copies"))),
-        copied_(upload(exec, plan.copied, name("copied"))) {}
+        copied_(upload(exec, plan.copied, name("copied"))) {
+    auto const& at = plan.middle_boundary;
+    if (at.surfaces.item.size() > 0) surfaces_ = SlipSurfaceTable<Memory>(exec, plan.surfaces);
+    boundary_ = {upload(exec, at.node, name("boundary")), upload(exec, at.slot, name("slot")),
+                 upload(exec, at.surfaces.first, name("surfaces::first")),
+                 upload(exec, at.surfaces.item, name("surfaces::item")), surfaces_.surfaces};
+    if (!at.image_owners.empty()) periodic_ = periodic_table(exec, plan, at.image_owners, at.images_of_owner);
+  }
 
-  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
-    kernels::interpolate("gridmorph::middle", exec, middle_, f.u.data(), f.u.data());
-    kernels::launch("gridmorph::copies", exec, kernels::CopyListed<Memory>{copies_, copied_, f.u.data()});
+  void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    follow_corners(exec, f);
+    kernels::launch("gridmorph::middle::boundary", exec,
+                    kernels::AskNodes<Memory, false>{boundary_, f.boundary, {}, x, f.u.data(), nullptr});
+    join(exec, f);
+  }
+
+  /// Slip surfaces are not linear: see slip_edge.hpp.
+  void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
+    follow_corners(exec, f);
+    follow_corners(exec, r);
+    kernels::launch("gridmorph::middle::boundary", exec,
+                    kernels::AskNodes<Memory, true>{boundary_, f.boundary, r.boundary, x, f.u.data(), r.u.data()});
+    join(exec, f);
+    join(exec, r);
   }
 
  private:
   using Memory = typename Exec::memory_space;
   static std::string name(char const* what) { return region + "::" + what; }
 
+  void follow_corners(Exec const& exec, StageField<Exec> const& f) const {
+    kernels::interpolate("gridmorph::middle", exec, middle_, f.u.data(), f.u.data());
+  }
+  void join(Exec const& exec, StageField<Exec> const& f) const {
+    kernels::launch("gridmorph::middle::periodic", exec, kernels::PeriodicMean<Memory>{periodic_, f.u.data()});
+    kernels::launch("gridmorph::copies", exec, kernels::CopyListed<Memory>{copies_, copied_, f.u.data()});
+  }
+
   kernels::InterpolationTable<Memory> middle_;
+  SlipSurfaceTable<Memory> surfaces_;
+  kernels::SlipNodeTable<Memory> boundary_;
+  kernels::PeriodicTable<Memory> periodic_;
   List<Exec, Index32> copies_, copied_;
 };
 

@@ -3,8 +3,8 @@
 
 #include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
-#include <gridmorph/kernels/periodic_mean.hpp>
 #include <gridmorph/kernels/slip_nodes.hpp>
+#include <gridmorph/morph/stages/periodic_table.hpp>
 #include <gridmorph/morph/stages/smooth_field.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -22,7 +22,7 @@ class OtherBoundaries {
         nodes_{upload(exec, plan.residual_nodes, name("node")), upload(exec, plan.residual_slot, name("slot")),
                upload(exec, plan.residual_surfaces.first, name("surfaces::first")),
                upload(exec, plan.residual_surfaces.item, name("surfaces::item")), surfaces_.surfaces},
-        periodic_(periodic_table(exec, plan)),
+        periodic_(periodic_table(exec, plan, plan.image_owners, plan.images_of_owner)),
         residual_(exec, plan.residual, name("residual")),
         lacked_(room_for<Vec3>(exec, plan.residual_nodes.size(), name("lacked"))),
         fade_(upload(exec, plan.fade, name("fade"))),
@@ -88,27 +88,6 @@ class OtherBoundaries {
     List<Exec, Index32> node_;
     List<Exec, float> fade_, detail_fade_;
   };
-
-  static kernels::PeriodicTable<Memory> periodic_table(Exec const& exec, UnstructuredPlan const& plan) {
-    std::vector<Index32> nodes;
-    std::vector<std::int32_t> rotations;
-    for (PeriodicImage const& image : plan.images) {
-      nodes.push_back(image.node);
-      rotations.push_back(image.rotation);
-    }
-    std::vector<std::uint8_t> is_known(std::size_t(plan.n_nodes), 0), owner_known;
-    for (Index32 const n : plan.known) is_known[std::size_t(n)] = 1;
-    for (Index32 const n : plan.image_owners) owner_known.push_back(is_known[std::size_t(n)]);
-    kernels::PeriodicTable<Memory> const table{upload(exec, plan.image_owners, name("periodic::owner")),
-                                               upload(exec, owner_known, name("periodic::owner_known")),
-                                               upload(exec, plan.images_of_owner.first, name("periodic::first")),
-                                               upload(exec, plan.images_of_owner.item, name("periodic::image")),
-                                               upload(exec, nodes, name("periodic::node")),
-                                               upload(exec, rotations, name("periodic::rotation")),
-                                               upload(exec, plan.rotations, name("periodic::rotations"))};
-    compat::fence(exec, "gridmorph::OtherBoundaries (host tables may go)");
-    return table;
-  }
 
   /// What is asked for holds; what the field so far lacked of it spreads.
   void take(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {

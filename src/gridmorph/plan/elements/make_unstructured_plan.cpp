@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
-#include <gridmorph/plan/elements/corner_means.hpp>
+#include <gridmorph/plan/elements/middle_rows.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
@@ -46,10 +46,12 @@ void UnstructuredPlanner::take_boundary() {
   plan.surfaces = b.motion->slip_surfaces();
   plan.images = b.images;
   plan.rotations = b.rotations;
-  is_known_ = drives_ = is_other_ = mask();
+  plan.middle = middle_rows(mesh_, out_.graph);
+  is_known_ = drives_ = is_other_ = is_middle_ = mask();
+  for (Index32 const n : plan.middle.target) is_middle_[std::size_t(n)] = 1;
   for (std::size_t k = 0; k < b.known.size(); ++k) {
     is_known_[std::size_t(b.known[k])] = 1;
-    if (b.drives[k]) {
+    if (b.drives[k] && !is_middle_[std::size_t(b.known[k])]) {
       drives_[std::size_t(b.known[k])] = 1;
       plan.driving.push_back(b.known[k]);
       plan.driving_slots.push_back(Index32(k));
@@ -60,7 +62,6 @@ void UnstructuredPlanner::take_boundary() {
       plan.copies.push_back(n);
       plan.copied.push_back(o);
     }
-  plan.middle = corner_means(mesh_, out_.graph);
   if (!out_.displacement && options_.elements.motion < 0) out_.displacement = evaluate(mesh_, b);
   reach_ = rest_reach_ = out_.displacement ? largest_norm(*out_.displacement) : options_.elements.motion;
 }
@@ -71,6 +72,7 @@ void UnstructuredPlanner::measure_distances() {
     if (!b.drives[k]) is_other_[std::size_t(b.known[k])] = 1;
   for (Index32 const n : b.slip_nodes) is_other_[std::size_t(n)] = 1;
   for (auto const& image : b.images) is_other_[std::size_t(image.node)] = is_other_[std::size_t(image.owner)] = 1;
+  for (Index32 const n : out_.plan.middle.target) is_other_[std::size_t(n)] = 0;
   std::vector<Index32> walls, others;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
     if (drives_[std::size_t(n)]) {

@@ -10,6 +10,7 @@ namespace gridmorph::detail {
 void UnstructuredPlanner::plan_residual() {
   UnstructuredPlan& plan = out_.plan;
   plan_other_nodes();
+  plan_middle_nodes();
   plan.fade.assign(is_other_.size(), 0);
   for (std::size_t n = 0; n < is_other_.size(); ++n)
     if (out_.graph.carries(Index32(n)) && !drives_[n] && !is_other_[n]) plan.fade[n] = float(fade(n, from_other_));
@@ -140,16 +141,41 @@ void UnstructuredPlanner::plan_other_nodes() {
                                    ? b.slip_surfaces[slip[std::size_t(standing_.node[k])]]
                                    : std::span<Index32 const>{});
   }
+  group_images(false, plan.image_owners, plan.images_of_owner);
+}
+
+void UnstructuredPlanner::group_images(bool middle, std::vector<Index32>& owners, CsrGraph& images_of_owner) const {
+  auto const& all = out_.boundary.images;
   std::vector<std::pair<Index32, Index32>> by_owner;
-  for (std::size_t k = 0; k < b.images.size(); ++k) by_owner.emplace_back(b.images[k].owner, Index32(k));
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if ((is_middle_[std::size_t(all[k].owner)] != 0) == middle) by_owner.emplace_back(all[k].owner, Index32(k));
   std::sort(by_owner.begin(), by_owner.end());
   for (std::size_t k = 0; k < by_owner.size();) {
     std::vector<Index32> images;
     Index32 const o = by_owner[k].first;
     for (; k < by_owner.size() && by_owner[k].first == o; ++k) images.push_back(by_owner[k].second);
-    plan.image_owners.push_back(o);
-    plan.images_of_owner.add(images);
+    owners.push_back(o);
+    images_of_owner.add(images);
   }
+}
+
+void UnstructuredPlanner::plan_middle_nodes() {
+  if (out_.plan.middle.size() == 0) return;
+  BoundaryConditions const& b = out_.boundary;
+  auto& at = out_.plan.middle_boundary;
+  for (std::size_t k = 0; k < b.known.size(); ++k) {
+    if (is_middle_[std::size_t(b.known[k])] == 0) continue;
+    at.node.push_back(b.known[k]);
+    at.slot.push_back(Index32(k));
+    at.surfaces.add({});
+  }
+  for (std::size_t k = 0; k < b.slip_nodes.size(); ++k) {
+    if (is_middle_[std::size_t(b.slip_nodes[k])] == 0) continue;
+    at.node.push_back(b.slip_nodes[k]);
+    at.slot.push_back(-1);
+    at.surfaces.add(b.slip_surfaces[Index(k)]);
+  }
+  group_images(true, at.image_owners, at.images_of_owner);
 }
 
 std::function<double(Index32, Index32)> UnstructuredPlanner::inverse_distance() const {

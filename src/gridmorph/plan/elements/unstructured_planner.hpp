@@ -115,6 +115,10 @@ class UnstructuredPlanner {
   [[nodiscard]] double fade(std::size_t n, NearestSource const& from) const;
   std::function<double(Index32, Index32)> inverse_distance() const;
   void plan_other_nodes();
+  /// What boundaries ask of further nodes of second-order elements.
+  void plan_middle_nodes();
+  /// Entries of BoundaryConditions::images by their owners, of further nodes or of all others.
+  void group_images(bool middle, std::vector<Index32>& owners, CsrGraph& images_of_owner) const;
   /// What boundaries with a rule ask for, at nodes that slide or have images.
   void plan_start();
 
@@ -130,6 +134,7 @@ class UnstructuredPlanner {
   std::vector<double> body_sizes_;
   Columns columns_, standing_;
   Mask is_known_, drives_, is_other_, near_;
+  Mask is_middle_;  ///< further nodes of second-order elements, which have no part in what follows
   NearestSource from_wall_, from_other_;
   NearestSource from_given_;  ///< boundaries beyond the moving walls that a rule displaces, and their columns
   double gap_ = infinity;     ///< smallest one between moving walls and other boundaries

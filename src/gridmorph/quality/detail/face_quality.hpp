@@ -71,13 +71,11 @@ KOKKOS_INLINE_FUNCTION FaceQuality face_quality(ElementTables<MemorySpace> const
       if (!(square > 0)) continue;  // a side that is a line or a point
       Index32 const other = sides.neighbour(sides.first(e) + f);
       bool const inside = other >= 0;
-      Vec3 const d =
-          inside ? point(centres(other)) - own : (dot(face.area, face.centre - own) / square) * face.area;
+      Vec3 const d = inside ? point(centres(other)) - own : (dot(face.area, face.centre - own) / square) * face.area;
       if (inside)
         worst.non_orthogonality_deg =
             kernels::larger(worst.non_orthogonality_deg, kernels::non_orthogonality_deg(face, own, own + d));
-      worst.skewness =
-          kernels::larger(worst.skewness, kernels::face_skewness(face, own, d, inside ? 0.2 : 0.4, n, at));
+      worst.skewness = kernels::larger(worst.skewness, kernels::face_skewness(face, own, d, inside ? 0.2 : 0.4, n, at));
     }
     return worst;
   });
