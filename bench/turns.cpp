@@ -14,6 +14,7 @@
 // Writes lines of comma separated values: case, amount (degrees, diameters or chords), method, smallest scaled Jacobian, inverted elements.
 // Scaled Jacobian: determinant of the edges at a corner over the product of their lengths, the smallest over all corners of all elements.
 // scripts/plot-turns draws them. --small: meshes of a few thousand elements and two amounts each, which the tests run.
+#include "scaled_jacobian.hpp"
 #include "thin_plate.hpp"
 
 #include <generators/airfoil.hpp>
@@ -36,50 +37,6 @@ namespace gridmorph::bench {
 namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
-
-/// The corners beside each corner of an element, two (2-D) or three, right-handed.
-std::vector<std::array<int, 4>> corner_stars(ElementType type) {
-  switch (type) {
-    case ElementType::triangle: return {{0, 1, 2, -1}, {1, 2, 0, -1}, {2, 0, 1, -1}};
-    case ElementType::quadrilateral: return {{0, 1, 3, -1}, {1, 2, 0, -1}, {2, 3, 1, -1}, {3, 0, 2, -1}};
-    case ElementType::tetrahedron: return {{0, 1, 2, 3}, {1, 2, 0, 3}, {2, 0, 1, 3}, {3, 0, 2, 1}};
-    case ElementType::prism:
-      return {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}};
-    default: return {};
-  }
-}
-
-struct Verdict {
-  double smallest = 1;
-  Index inverted = 0;
-};
-
-/// Elements that are numbered the other way round are as good as others.
-Verdict judge(Mesh const& mesh, Coordinates const& x) {
-  std::map<ElementType, std::vector<std::array<int, 4>>> stars;
-  auto const corners = [&](Index e, Coordinates const& at, auto const& look) {
-    auto const nodes = mesh.elements.corners(e);
-    ElementType const type = mesh.elements.type[std::size_t(e)];
-    auto const [found, fresh] = stars.try_emplace(type);
-    if (fresh) found->second = corner_stars(type);
-    for (auto const& star : found->second) {
-      Vec3 const p = at[nodes[std::size_t(star[0])]];
-      auto const edge = [&](int k) { return at[nodes[std::size_t(star[std::size_t(k)])]] - p; };
-      Vec3 const a = edge(1), b = edge(2);
-      look(star[3] < 0 ? cross(a, b).z / (norm(a) * norm(b))
-                       : dot(cross(a, b), edge(3)) / (norm(a) * norm(b) * norm(edge(3))));
-    }
-  };
-  Verdict out;
-  for (Index e = 0; e < mesh.n_elements(); ++e) {
-    double before = 0, least = 1;
-    corners(e, mesh.coordinates, [&](double s) { before += s; });
-    corners(e, x, [&](double s) { least = std::min(least, before < 0 ? -s : s); });
-    out.smallest = std::min(out.smallest, least);
-    out.inverted += least <= 0 ? 1 : 0;
-  }
-  return out;
-}
 
 struct Body {
   std::string patch;
