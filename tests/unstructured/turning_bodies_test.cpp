@@ -11,6 +11,7 @@
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/plan/elements/facet_distance.hpp>
+#include <gridmorph/plan/elements/surroundings.hpp>
 #include <gridmorph/plan/elements/turn_share.hpp>
 
 #include <gtest/gtest.h>
@@ -133,6 +134,57 @@ TEST(TurnShare, OfTwoBodiesIsLessBetweenThem) {
   EXPECT_EQ(at_one, (std::array{1.0, 0.0}));
   EXPECT_DOUBLE_EQ(between[0], 0.4);
   EXPECT_DOUBLE_EQ(between[1], 0.4);
+}
+
+TEST(TurnShare, InSightIsOneAtTheBodyAndNoneAtOthers) {
+  EXPECT_EQ(turn_share_in_sight(HUGE_VAL, 3), 1);
+  EXPECT_EQ(turn_share_in_sight(3, HUGE_VAL), 0);
+  EXPECT_EQ(turn_share_in_sight(0, 1), 0);
+  EXPECT_DOUBLE_EQ(turn_share_in_sight(2, 2), 0.5);
+  for (double q = 0.01; q < 1; q += 0.01)
+    EXPECT_GT(turn_share_in_sight(q, 1 - q), turn_share_in_sight(q - 0.01, 1.01 - q)) << q;
+  EXPECT_EQ(narrowness(2, 1), 1);
+  EXPECT_EQ(narrowness(6, 1), 0);
+  EXPECT_EQ(narrowness(HUGE_VAL, 1), 0);
+}
+
+/// Two lines of width 2 w at heights 0 and 1; the closeness of the lower one at a place between them is known.
+struct Lines {
+  static constexpr double w = 5;
+  static constexpr int n = 60;
+  Coordinates x{2 * (n + 1)};
+  std::vector<CsrGraph> edges{2};
+
+  Lines() {
+    for (int line = 0; line < 2; ++line)
+      for (int i = 0; i <= n; ++i) {
+        Index32 const at = i + (n + 1) * line;
+        x.set(at, {w * (2.0 * i / n - 1), double(line), 0});
+        if (i < n) edges[std::size_t(line)].add(std::array{at, at + 1});
+      }
+  }
+  /// C d / pi at height h over u.
+  static double exact(double u, double h) {
+    return (std::atan((w - u) / h) + std::atan((w + u) / h)) / std::numbers::pi;
+  }
+};
+
+TEST(Surroundings, AreAnglesOfLines) {
+  Lines const lines;
+  std::vector<FacetDistance> from;
+  for (CsrGraph const& edges : lines.edges) from.emplace_back(lines.x, edges);
+  Surroundings const around({}, lines.x, lines.edges, from, {0, 0.5, 0}, 1);
+  std::array<double, 2> seen{}, beside{};
+  for (double const u : {0.0, 0.7, -1.9})
+    for (double h = 0.05; h < 1; h += 0.05) {
+      around({u, h, 0}, seen);
+      // Beside a line, closer than its sources are to one another, it is as blurred as they are.
+      auto const blur = [](double height) { return height < 0.3 ? 0.2 : 0.1; };
+      EXPECT_NEAR(seen[0], Lines::exact(u, h), blur(h)) << u << ' ' << h;
+      EXPECT_NEAR(seen[1], Lines::exact(u, 1 - h), blur(1 - h)) << u << ' ' << h;
+      around({u + 1e-9, h + 1e-9, 0}, beside);
+      EXPECT_NEAR(seen[0], beside[0], 1e-7) << "no jumps";
+    }
 }
 
 TEST(ShiftShare, FallsFromTheBodyToTheOthersAlmostEvenly) {

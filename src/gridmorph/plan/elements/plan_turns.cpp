@@ -1,12 +1,14 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/plan/elements/facet_distance.hpp>
+#include <gridmorph/plan/elements/surroundings.hpp>
 #include <gridmorph/plan/elements/turn_share.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -96,10 +98,11 @@ void UnstructuredPlanner::add_other_boundaries() {
     for (Index32 const n : body.nodes) of_body[std::size_t(n)] = 1;
   std::vector<Index32> nodes;
   for (std::size_t k = 0; k < out_.plan.known.size(); ++k) {
-    if (of_body[std::size_t(out_.plan.known[k])] != 0) continue;
+    Index32 const n = out_.plan.known[k];
+    if (of_body[std::size_t(n)] != 0 || is_middle_[std::size_t(n)] != 0) continue;
     if (nodes.size() % chunk_size == 0) all.first.push_back(Index(all.slot.size()));
     all.slot.push_back(Index32(k));
-    nodes.push_back(out_.plan.known[k]);
+    nodes.push_back(n);
   }
   auto const area = areas(nodes);
   double const sum = std::accumulate(area.begin(), area.end(), 0.0);
@@ -148,6 +151,7 @@ std::pair<double, double> UnstructuredPlanner::reach_beyond_turns() const {
   }
   double largest = 0, largest_rest = 0;
   for (Index32 const n : plan.known) {
+    if (is_middle_[std::size_t(n)] != 0) continue;
     largest = std::max(largest, norm(u[std::size_t(n)]));
     largest_rest = std::max(largest_rest, norm(rest[std::size_t(n)]));
   }
@@ -218,11 +222,14 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
     for (Index32 const n : resting.faces[f])
       groups[g].layer = std::max({groups[g].layer, standing_.height[std::size_t(n)], columns_.height[std::size_t(n)]});
   }
+  std::vector<CsrGraph> faces_of;
   std::vector<FacetDistance> from;
-  std::vector<double> layer;
-  for (Group const& g : groups) {
+  std::vector<double> layer, columns;  // with the first cells where there are no columns; these alone
+  for (Group& g : groups) {
     from.emplace_back(mesh_.coordinates, g.faces);
     layer.push_back(g.layer);
+    columns.push_back(g.layer);
+    faces_of.push_back(std::move(g.faces));
   }
   for (WallBody const& body : bodies) {
     CsrGraph faces;
@@ -238,11 +245,28 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
     from.emplace_back(mesh_.coordinates, faces);
     // Without columns the first cells turn with the wall, about as high as its faces are long.
     layer.push_back(highest > 0 ? highest : edges / double(n_edges));
+    columns.push_back(highest);
+    faces_of.push_back(std::move(faces));
+  }
+  auto const turns_with = [&](std::size_t b, std::size_t k) {
+    return k == groups.size() + b || (k < groups.size() && turns_along(bodies[b], groups[k].surface));
+  };
+  // In space, around corners, it falls off too fast: cubes in boxes fare better by distances.
+  std::vector<std::optional<Surroundings>> around(bodies.size());
+  for (std::size_t b = 0; b < bodies.size() && mesh_.dimension == 2; ++b) {
+    double gap = infinity;
+    std::vector<int> start(from.size(), 0);
+    for (Index32 const n : bodies[b].nodes)
+      for (std::size_t k = 0; k < from.size(); ++k)
+        if (!turns_with(b, k)) gap = std::min(gap, from[k](mesh_.coordinates[n], start[k]));
+    if (narrowness(gap, body_sizes_[b]) > 0)
+      around[b].emplace(host_, mesh_.coordinates, faces_of, from, out_.plan.turns_of_bodies.centre[b], body_sizes_[b]);
   }
   constexpr std::size_t at_once = 512;
   for_all_parts(host_, "gridmorph::turn_shares", Index((n_nodes + at_once - 1) / at_once), [&](Index part) {
     std::vector<int> start(from.size(), 0);
     std::vector<double> distance(from.size()), turn(bodies.size()), shift(bodies.size()), beyond(bodies.size());
+    std::vector<double> ways(bodies.size()), seen(from.size());
     std::size_t const end = std::min(n_nodes, std::size_t(part + 1) * at_once);
     for (std::size_t n = std::size_t(part) * at_once; n < end; ++n) {
       if (settled[n] == Settled::all) continue;
@@ -250,13 +274,27 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
       for (std::size_t b = 0; b < bodies.size(); ++b) {
         TurnDistances at{distance[groups.size() + b], infinity, layer[groups.size() + b], 0, body_sizes_[b]};
         for (std::size_t k = 0; k < from.size(); ++k) {
-          if (k == groups.size() + b || (k < groups.size() && turns_along(bodies[b], groups[k].surface))) continue;
+          if (turns_with(b, k)) continue;
           at.others = std::min(at.others, distance[k]);
           at.other_layer = std::max(at.other_layer, layer[k]);
         }
         turn[b] = turn_share(at);
+        ways[b] = at.body + at.others;
       }
       share_between(turn);
+      for (std::size_t b = 0; b < bodies.size(); ++b) {
+        double const narrow = around[b] ? narrowness(ways[b], body_sizes_[b]) : 0;
+        if (!(narrow > 0)) continue;
+        (*around[b])(mesh_.coordinates[Index(n)], seen);
+        auto const closeness = [&](std::size_t k) {
+          double const d = distance[k] - std::min(columns[k], ways[b] / 3);
+          return d > 0 ? seen[k] / d : infinity;
+        };
+        double others = 0;
+        for (std::size_t k = 0; k < from.size(); ++k)
+          if (!turns_with(b, k) && !from[k].empty()) others += closeness(k);
+        turn[b] += narrow * (turn_share_in_sight(closeness(groups.size() + b), others) - turn[b]);
+      }
       // As columns count for turns.
       double nearest = distance[given];
       for (std::size_t b = 0; b < bodies.size(); ++b) {

@@ -32,6 +32,19 @@ void share_between(std::span<double> turn_shares) {
   for (double& f : turn_shares) f *= all / (1 - given_up * f);
 }
 
+double turn_share_in_sight(double body, double others) {
+  constexpr double smooth = 0.38;
+  if (std::isinf(body)) return 1;
+  if (std::isinf(others) || !(body > 0)) return 0;
+  double const q = body / (body + others);
+  return q + smooth * (q * q * (3 - 2 * q) - q);
+}
+
+double narrowness(double way, double size) {
+  double const t = std::clamp((way / size - 3) / 3, 0.0, 1.0);
+  return 1 - t * t * (3 - 2 * t);
+}
+
 void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, double from_others,
                   std::span<double> shares) {
   constexpr double cubic = 0.1;

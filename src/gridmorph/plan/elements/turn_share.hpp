@@ -31,6 +31,17 @@ double turn_share(TurnDistances const& at);
 /// what lies between two of them, where both would add up to more than either wall moves. 0.4 by measurement on squares that turn beside one another.
 void share_between(std::span<double> turn_shares);
 
+/// In narrow surroundings of plane meshes, where the way W is less than 6 S, what a place sees on all sides decides, not what is nearest (surroundings.hpp):
+///
+///   f = k h + (1 - k) f_log,   h = 0.62 q + 0.38 (3 q^2 - 2 q^3),   q = C_b / (C_b + sum of the C of all that does not turn with the body)
+///   k = 1 - 3 t^2 + 2 t^3,   t = (W / S - 3) / 3, between 0 and 1
+///
+/// f_log what the functions above make of it. With C = c / e, c from the lattice and e the exact distance beyond the columns, so that f is 1 and 0 where it has to be. 0.38, 3 and 6 by measurement on
+/// squares that turn beside a wall, beside one another and in boxes. closeness: c_b / e_b and the sum of the others'; infinite where e is zero.
+double turn_share_in_sight(double body, double others);
+/// k: how much of f is that.
+double narrowness(double way, double size);
+
 /// How much of each body's shift a place makes:
 ///
 ///   s_b = 1 - 0.9 t - 0.1 (3 t^2 - 2 t^3),   t = g_b / (g_b + D),   1 / D = 1 / d + sum over the other bodies k of 1 / g_k
