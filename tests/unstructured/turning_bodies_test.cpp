@@ -146,6 +146,9 @@ TEST(TurnShare, InSightIsOneAtTheBodyAndNoneAtOthers) {
   EXPECT_EQ(narrowness(2, 1), 1);
   EXPECT_EQ(narrowness(6, 1), 0);
   EXPECT_EQ(narrowness(HUGE_VAL, 1), 0);
+  EXPECT_EQ(compactness(2 * std::numbers::pi, 1), 1) << "a circle";
+  EXPECT_EQ(compactness(8 * std::sqrt(0.5), 1), 1) << "a square";
+  EXPECT_EQ(compactness(4.2, 1), 0) << "a blade";
 }
 
 /// Two lines of width 2 w at heights 0 and 1; the closeness of the lower one at a place between them is known.

@@ -225,6 +225,7 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
   std::vector<CsrGraph> faces_of;
   std::vector<FacetDistance> from;
   std::vector<double> layer, columns;  // with the first cells where there are no columns; these alone
+  std::vector<double> compact;         // of bodies in a plane
   for (Group& g : groups) {
     from.emplace_back(mesh_.coordinates, g.faces);
     layer.push_back(g.layer);
@@ -246,6 +247,7 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
     // Without columns the first cells turn with the wall, about as high as its faces are long.
     layer.push_back(highest > 0 ? highest : edges / double(n_edges));
     columns.push_back(highest);
+    compact.push_back(mesh_.dimension == 2 ? compactness(0.5 * edges, body_sizes_[compact.size()]) : 0);
     faces_of.push_back(std::move(faces));
   }
   auto const turns_with = [&](std::size_t b, std::size_t k) {
@@ -253,7 +255,8 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
   };
   // In space, around corners, it falls off too fast: cubes in boxes fare better by distances.
   std::vector<std::optional<Surroundings>> around(bodies.size());
-  for (std::size_t b = 0; b < bodies.size() && mesh_.dimension == 2; ++b) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!(compact[b] > 0)) continue;
     double gap = infinity;
     std::vector<int> start(from.size(), 0);
     for (Index32 const n : bodies[b].nodes)
@@ -283,7 +286,7 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
       }
       share_between(turn);
       for (std::size_t b = 0; b < bodies.size(); ++b) {
-        double const narrow = around[b] ? narrowness(ways[b], body_sizes_[b]) : 0;
+        double const narrow = around[b] ? compact[b] * narrowness(ways[b], body_sizes_[b]) : 0;
         if (!(narrow > 0)) continue;
         (*around[b])(mesh_.coordinates[Index(n)], seen);
         auto const closeness = [&](std::size_t k) {

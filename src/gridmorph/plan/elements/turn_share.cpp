@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace gridmorph {
 namespace {
@@ -43,6 +44,10 @@ double turn_share_in_sight(double body, double others) {
 double narrowness(double way, double size) {
   double const t = std::clamp((way / size - 3) / 3, 0.0, 1.0);
   return 1 - t * t * (3 - 2 * t);
+}
+
+double compactness(double perimeter, double size) {
+  return std::clamp((perimeter / (2 * std::numbers::pi * size) - 0.7) / 0.15, 0.0, 1.0);
 }
 
 void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, double from_others,

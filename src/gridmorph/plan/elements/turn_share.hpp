@@ -39,8 +39,11 @@ void share_between(std::span<double> turn_shares);
 /// f_log what the functions above make of it. With C = c / e, c from the lattice and e the exact distance beyond the columns, so that f is 1 and 0 where it has to be. 0.38, 3 and 6 by measurement on
 /// squares that turn beside a wall, beside one another and in boxes. closeness: c_b / e_b and the sum of the others'; infinite where e is zero.
 double turn_share_in_sight(double body, double others);
-/// k: how much of f is that.
+/// k: how much of f is that, times
 double narrowness(double way, double size);
+/// (P / (2 pi S) - 0.7) / 0.15 between 0 and 1, P the perimeter of the body: 1 of circles and squares, 0 of blades (0.64 and somewhat more), whose ends, which move most, little of them is in sight of:
+/// a blade in a cascade is better off by distances from 12 degrees on.
+double compactness(double perimeter, double size);
 
 /// How much of each body's shift a place makes:
 ///
