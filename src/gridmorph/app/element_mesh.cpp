@@ -36,7 +36,8 @@ KindTraits const& ElementMesh::traits() {
 
 ElementMesh::ElementMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
                          std::vector<std::string> const& leave_out)
-    : mesh(load_mesh(path, side_file, leave_out)) {
+    : mesh(load_mesh(path, side_file, leave_out)),
+      by_faces_(mesh.polyhedra.element.size() > 0 || mesh_format(mesh.source) == MeshFormat::openfoam) {
   if (is_scattered(mesh)) reorder(mesh, order_by_position(mesh));
   topology = make_topology(mesh);
   face_patches = find_face_patches(mesh, topology);
@@ -70,7 +71,7 @@ QualityReport ElementMesh::measure(QualityWanted const& wanted) const {
   input.signs = signs;
   input.limits = wanted.limits;
   input.fast = wanted.fast;
-  input.faces = has_faces_of_its_own();
+  input.faces = by_faces_;
   if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, element_fields, mesh.n_elements());
   Kokkos::DefaultHostExecutionSpace const exec;
   QualityReport report = measure_quality(exec, mesh, topology, face_patches, input);
@@ -104,10 +105,6 @@ Coordinates ElementMesh::coordinates_of(std::filesystem::path const& path,
 
 void ElementMesh::match(MatchOptions const& /*options*/) {
   throw MeshError(mesh.source + ": is an unstructured mesh; --match and --write-side-file are for structured ones");
-}
-
-bool ElementMesh::has_faces_of_its_own() const {
-  return mesh.polyhedra.element.size() > 0 || mesh_format(mesh.source) == MeshFormat::openfoam;
 }
 
 PatchesAsSurface ElementMesh::surface(std::vector<std::string> const& selectors, bool as_facets, int split) const {

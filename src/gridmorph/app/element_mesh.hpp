@@ -56,7 +56,7 @@ class ElementMesh final : public AnyMesh {
 
  private:
   /// Whether its solvers work by faces, so that the quality of faces is worth its time: polyhedra, or a file of OpenFOAM.
-  [[nodiscard]] bool has_faces_of_its_own() const;
+  bool by_faces_;
 };
 
 /// What AnyPlan::write_stages() of such a mesh may put into its folder.

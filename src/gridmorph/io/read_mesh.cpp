@@ -12,6 +12,7 @@
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 
 #include <set>
+#include <type_traits>
 
 namespace gridmorph {
 
@@ -34,11 +35,14 @@ void collect_linked(cgns::Node const& node, std::set<std::string>& files) {
 }
 
 /// Files of one mesh, without names for parts of it.
-Mesh read_without_names(std::string const& path, char const* format, ReadOptions const& options,
-                        Mesh (*read)(std::string const& path, ReadOptions const& options)) {
+template <class Read>
+Mesh read_without_names(std::string const& path, char const* format, ReadOptions const& options, Read const& read) {
   if (!options.leave_out.empty())
     throw IoError(path + ": leave_out is for CGNS files, which name bases and zones; remove it for " + format);
-  return read(path, options);
+  if constexpr (std::is_invocable_v<Read, std::string const&>)
+    return read(path);
+  else
+    return read(path, options);
 }
 
 }  // namespace
@@ -67,21 +71,11 @@ Mesh read_mesh(std::string const& path, ReadOptions const& options) {
   // A side file that says which variant of PLOT3D a file is knows it better than its first bytes.
   bool const guess = options.plot3d_format.empty();
   switch (guess ? mesh_format(path) : cgns::is_cgns(path) ? MeshFormat::cgns : MeshFormat::plot3d) {
-    case MeshFormat::su2:
-      return read_without_names(path, "an SU2 mesh", options,
-                                [](std::string const& p, ReadOptions const&) { return su2::read(p); });
-    case MeshFormat::openfoam:
-      return read_without_names(path, "an OpenFOAM mesh", options,
-                                [](std::string const& p, ReadOptions const&) { return foam::read(p); });
-    case MeshFormat::gmsh:
-      return read_without_names(path, "a Gmsh mesh", options,
-                                [](std::string const& p, ReadOptions const&) { return gmsh::read(p); });
-    case MeshFormat::vtk:
-      return read_without_names(path, "a VTK mesh", options,
-                                [](std::string const& p, ReadOptions const&) { return vtk::read(p); });
-    case MeshFormat::ugrid:
-      return read_without_names(path, "a UGRID mesh", options,
-                                [](std::string const& p, ReadOptions const&) { return ugrid::read(p); });
+    case MeshFormat::su2: return read_without_names(path, "an SU2 mesh", options, su2::read);
+    case MeshFormat::openfoam: return read_without_names(path, "an OpenFOAM mesh", options, foam::read);
+    case MeshFormat::gmsh: return read_without_names(path, "a Gmsh mesh", options, gmsh::read);
+    case MeshFormat::vtk: return read_without_names(path, "a VTK mesh", options, vtk::read);
+    case MeshFormat::ugrid: return read_without_names(path, "a UGRID mesh", options, ugrid::read);
     case MeshFormat::plot3d: return read_without_names(path, "a PLOT3D mesh", options, plot3d::read);
     case MeshFormat::cgns: break;
   }

@@ -7,6 +7,7 @@
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/periodic_transform.hpp>
 #include <gridmorph/io/replaced_text.hpp>
+#include <gridmorph/io/used_nodes.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <algorithm>
@@ -31,14 +32,9 @@ int dimension_of(File const& file) {
 
 /// Number in the mesh of each node of the file; -1 for those that no element of its dimension uses (centres of circles, ...).
 std::vector<Index32> mesh_nodes(File const& file, int dimension, Index& n_nodes) {
-  std::vector<Index32> number(file.tag.size(), -1);
-  for (Index e = 0; e < file.nodes.size(); ++e)
-    if (file.groups[std::size_t(file.group[std::size_t(e)])].dimension == dimension)
-      for (Index32 const n : file.nodes[e]) number[std::size_t(n)] = 0;
-  n_nodes = 0;
-  for (Index32& n : number)
-    if (n == 0) n = Index32(n_nodes++);
-  return number;
+  return io::used_nodes(
+      file.nodes, file.tag.size(),
+      [&](Index e) { return file.groups[std::size_t(file.group[std::size_t(e)])].dimension == dimension; }, n_nodes);
 }
 
 class Builder {

@@ -3,6 +3,7 @@
 #include <gridmorph/io/gmsh/gmsh_text.hpp>
 #include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
+#include <gridmorph/io/real_text.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -54,12 +55,9 @@ std::int64_t Text::integer_word(char const* what) {
 double Text::real(char const* what) {
   if (format_.binary) return raw<double>(what);
   auto const found = word(what);
-  auto const text = found.starts_with('+') ? found.substr(1) : found;
-  double value = 0;
-  auto const [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc() || end != text.data() + text.size())
-    fail_at(at_ - found.size(), "expected " + std::string(what) + ", found '" + io::printable(found) + "'");
-  return value;
+  auto const value = io::real_of(found);
+  if (!value) fail_at(at_ - found.size(), "expected " + std::string(what) + ", found '" + io::printable(found) + "'");
+  return *value;
 }
 
 void Text::skip_real(char const* what) {

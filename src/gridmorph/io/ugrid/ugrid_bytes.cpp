@@ -2,6 +2,7 @@
 #include <gridmorph/io/blanks.hpp>
 #include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
+#include <gridmorph/io/real_text.hpp>
 #include <gridmorph/io/ugrid/ugrid_bytes.hpp>
 
 #include <algorithm>
@@ -79,12 +80,9 @@ std::int64_t Bytes::integer(char const* what) {
 double Bytes::real(char const* what) {
   if (!storage_.text) return storage_.real_bytes == 8 ? raw<double>(what) : double(raw<float>(what));
   auto const found = word(what);
-  auto const text = found.starts_with('+') ? found.substr(1) : found;
-  double value = 0;
-  auto const [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc() || end != text.data() + text.size())
-    fail_at(at_ - found.size(), "expected " + std::string(what) + ", found '" + io::printable(found) + "'");
-  return value;
+  auto const value = io::real_of(found);
+  if (!value) fail_at(at_ - found.size(), "expected " + std::string(what) + ", found '" + io::printable(found) + "'");
+  return *value;
 }
 
 void Bytes::expect(std::uint64_t integers, std::uint64_t reals) const {

@@ -5,6 +5,7 @@
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/polyhedron.hpp>
 #include <gridmorph/io/read_file.hpp>
+#include <gridmorph/io/used_nodes.hpp>
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
@@ -23,14 +24,9 @@ namespace {
 
 /// Number in the mesh of each point; -1 for those that no cell of its dimension uses.
 std::vector<Index32> mesh_nodes(Grid const& grid, int dimension, Index& n_nodes) {
-  std::vector<Index32> number(std::size_t(grid.n_points), -1);
-  for (Index c = 0; c < grid.n_cells; ++c)
-    if (dimension_of_cell(grid.type[std::size_t(c)]) == dimension)
-      for (Index32 const n : grid.nodes[c]) number[std::size_t(n)] = 0;
-  n_nodes = 0;
-  for (Index32& n : number)
-    if (n == 0) n = Index32(n_nodes++);
-  return number;
+  return io::used_nodes(
+      grid.nodes, std::size_t(grid.n_points),
+      [&](Index e) { return dimension_of_cell(grid.type[std::size_t(e)]) == dimension; }, n_nodes);
 }
 
 class Builder {
