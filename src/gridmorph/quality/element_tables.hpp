@@ -6,6 +6,7 @@
 #include <gridmorph/kernels/curved_element.hpp>
 #include <gridmorph/kernels/polyhedron_quality.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
+#include <gridmorph/mesh/polyhedron_views.hpp>
 #include <gridmorph/quality/detail/zone_cells.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
@@ -37,28 +38,10 @@ KOKKOS_INLINE_FUNCTION Vec3 point_at(CoordinateViews<MemorySpace> const& c, Inde
 }
 KOKKOS_INLINE_FUNCTION Vec3 point_at(kernels::VectorArray const& x, Index32 node) { return x[node]; }
 
-/// The faces of polyhedra.
-template <class MemorySpace>
-struct PolyhedronTables {
-  Kokkos::View<Index32 const*, MemorySpace> element;   ///< ascending
-  Kokkos::View<Index const*, MemorySpace> first_face;  ///< (polyhedra + 1)
-  CsrViews<MemorySpace> faces;
-
-  /// Of the polyhedron that element e is. Cost: a bisection.
-  KOKKOS_INLINE_FUNCTION Index number_of(Index e) const {
-    Index begin = 0, end = Index(element.extent(0));
-    while (begin + 1 < end) {
-      Index const middle = (begin + end) / 2;
-      (element(middle) <= e ? begin : end) = middle;
-    }
-    return begin;
-  }
-};
-
-/// One of them as polyhedron_quality.hpp asks for it. Points: anything with point_at().
+/// A polyhedron as polyhedron_quality.hpp asks for it. Points: anything with point_at().
 template <class MemorySpace, class Points>
 struct PolyhedronAt {
-  PolyhedronTables<MemorySpace> const& tables;
+  PolyhedronViews<MemorySpace> const& tables;
   Points const& points;
   Index first, count;
 
@@ -85,7 +68,7 @@ struct FacesAt {
 template <class MemorySpace>
 struct ElementTables {
   ElementViews<MemorySpace> elements;
-  PolyhedronTables<MemorySpace> polyhedra;
+  PolyhedronViews<MemorySpace> polyhedra;
   Vec3 plane_normal;
 
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
@@ -164,11 +147,7 @@ struct ElementTables {
 
 template <class Exec>
 ElementTables<typename Exec::memory_space> element_tables(Exec const& exec, Mesh const& mesh) {
-  Polyhedra const& p = mesh.polyhedra;
-  return {views(exec, mesh.elements),
-          {view_of(exec, p.element, "gridmorph::Polyhedra::element"),
-           view_of(exec, p.first_face, "gridmorph::Polyhedra::first_face"), views(exec, p.faces)},
-          plane_normal(mesh)};
+  return {views(exec, mesh.elements), views(exec, mesh.polyhedra), plane_normal(mesh)};
 }
 
 /// Elements zone after zone in chunks of cells_per_chunk; box_extent[0] counts those of the zone.

@@ -173,9 +173,7 @@ LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, Mesh co
   t.x = in_space(exec, mesh.coordinates.x);
   t.y = in_space(exec, mesh.coordinates.y);
   t.z = in_space(exec, mesh.coordinates.z);
-  t.polyhedron = view_of(exec, mesh.polyhedra.element, "gridmorph::ElementLocator::polyhedron");
-  t.polyhedron_face = view_of(exec, mesh.polyhedra.first_face, "gridmorph::ElementLocator::polyhedron_face");
-  t.polyhedron_faces = views(exec, mesh.polyhedra.faces);
+  t.polyhedra = views(exec, mesh.polyhedra);
 
   MeshExtent const box = extent_of(host_instance(exec), mesh.coordinates);
   Vec3 const size = box.high - box.low;

@@ -15,6 +15,7 @@
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/mesh/polyhedron_views.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/plan/interpolation_operator.hpp>
 
@@ -37,10 +38,8 @@ namespace detail {
 template <class MemorySpace>
 struct LocatorTables {
   ElementViews<MemorySpace> elements;
-  Kokkos::View<double const*, MemorySpace> x, y, z;         ///< (n_nodes)
-  Kokkos::View<Index32 const*, MemorySpace> polyhedron;     ///< elements that are polyhedra, ascending
-  Kokkos::View<Index const*, MemorySpace> polyhedron_face;  ///< (polyhedra + 1) first face of each
-  CsrViews<MemorySpace> polyhedron_faces;
+  Kokkos::View<double const*, MemorySpace> x, y, z;  ///< (n_nodes)
+  PolyhedronViews<MemorySpace> polyhedra;
   Kokkos::View<Index32*, MemorySpace> element;           ///< (candidates) in tree order
   Kokkos::View<kernels::BoxGroup*, MemorySpace> groups;  ///< of the tree
   kernels::BoxTreeView tree;

@@ -21,20 +21,6 @@ KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners_at(LocatorTables<MemorySp
   return c;
 }
 
-/// Place of an element in the list of polyhedra.
-template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION Index polyhedron_number(LocatorTables<MemorySpace> const& t, Index32 element) {
-  Index begin = 0, end = Index(t.polyhedron.extent(0));
-  while (begin + 1 < end) {
-    Index const middle = (begin + end) / 2;
-    if (t.polyhedron(middle) <= element)
-      begin = middle;
-    else
-      end = middle;
-  }
-  return begin;
-}
-
 /// Calls visit(part, corners) for the tetrahedra of a polyhedron until it says true: mean of the nodes, mean of the face, and
 /// the two ends of an edge.
 template <class MemorySpace, class Visit>
@@ -43,16 +29,16 @@ KOKKOS_INLINE_FUNCTION void for_each_part(LocatorTables<MemorySpace> const& t, I
   Index const begin = t.elements.first(element), end = t.elements.first(element + 1);
   for (Index n = begin; n < end; ++n) c.at[0] += node_at(t, t.elements.node(n));
   c.at[0] = (1.0 / double(end - begin)) * c.at[0];
-  Index const polyhedron = polyhedron_number(t, element);
+  Index const polyhedron = t.polyhedra.number_of(element);
   Index32 part = 0;
-  for (Index f = t.polyhedron_face(polyhedron); f < t.polyhedron_face(polyhedron + 1); ++f) {
-    Index const first = t.polyhedron_faces.first(f), last = t.polyhedron_faces.first(f + 1);
+  for (Index f = t.polyhedra.first_face(polyhedron); f < t.polyhedra.first_face(polyhedron + 1); ++f) {
+    Index const first = t.polyhedra.faces.first(f), last = t.polyhedra.faces.first(f + 1);
     c.at[1] = {};
-    for (Index n = first; n < last; ++n) c.at[1] += node_at(t, t.polyhedron_faces.item(n));
+    for (Index n = first; n < last; ++n) c.at[1] += node_at(t, t.polyhedra.faces.item(n));
     c.at[1] = (1.0 / double(last - first)) * c.at[1];
     for (Index n = first; n < last; ++n, ++part) {
-      c.at[2] = node_at(t, t.polyhedron_faces.item(n));
-      c.at[3] = node_at(t, t.polyhedron_faces.item(n + 1 < last ? n + 1 : first));
+      c.at[2] = node_at(t, t.polyhedra.faces.item(n));
+      c.at[3] = node_at(t, t.polyhedra.faces.item(n + 1 < last ? n + 1 : first));
       if (visit(part, c)) return;
     }
   }
