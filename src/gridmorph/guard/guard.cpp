@@ -25,6 +25,8 @@ class Relaxation {
         topology_(topology),
         prepared_(prepared),
         x_(morphed),
+        now_(views(morphed)),
+        baseline_(views(mesh.coordinates)),
         options_(options),
         signs_(detail::signs_of({}, mesh, topology.sides, options.signs)),
         tables_(detail::element_tables(Kokkos::DefaultHostExecutionSpace(), mesh)) {}
@@ -72,8 +74,8 @@ class Relaxation {
 
  private:
   /// Inside out somewhere, by the certificate.
-  [[nodiscard]] bool negative(Index32 e, double sign, Coordinates const& x) const {
-    return tables_.jacobian_sign(views(x), e, sign) >= kernels::JacobianSign::negative;
+  [[nodiscard]] bool negative(Index32 e, double sign, CoordinateViews<Kokkos::HostSpace> const& x) const {
+    return tables_.jacobian_sign(x, e, sign) >= kernels::JacobianSign::negative;
   }
 
   enum class State : std::uint8_t { sound, bad, inverted };
@@ -87,11 +89,11 @@ class Relaxation {
   };
 
   [[nodiscard]] State state(Index32 e) const {
-    double const sign = signs_[std::size_t(e)], now = tables_.determinant(views(x_), e, sign);
+    double const sign = signs_[std::size_t(e)], now = tables_.determinant(now_, e, sign);
     if (now > doubtful_determinant) return State::sound;  // no determinant is above 1
-    if (negative(e, sign, x_) && !negative(e, sign, mesh_.coordinates)) return State::inverted;
+    if (negative(e, sign, now_) && !negative(e, sign, baseline_)) return State::inverted;
     if (now > options_.share) return State::sound;
-    double const before = tables_.determinant(views(mesh_.coordinates), e, sign);
+    double const before = tables_.determinant(baseline_, e, sign);
     bool const is_bad = before > 0 ? !(now > options_.share * before) : before == 0 && now < 0;
     return is_bad ? State::bad : State::sound;
   }
@@ -305,6 +307,8 @@ class Relaxation {
   UnstructuredTopology const& topology_;
   PreparedUnstructured const& prepared_;
   Coordinates& x_;
+  CoordinateViews<Kokkos::HostSpace> now_,
+      baseline_;  ///< x_ and the mesh's: counting who shares them costs more than a determinant
   RelaxOptions const& options_;
   std::vector<signed char> signs_;
   detail::ElementTables<Kokkos::HostSpace> tables_;

@@ -3,13 +3,36 @@
 #include <gridmorph/mesh/undeclared_connections.hpp>
 
 #include <algorithm>
+#include <array>
 #include <compare>
+#include <cstdint>
 #include <iterator>
 #include <numeric>
 
 namespace gridmorph {
 
 namespace {
+
+/// The other ends of the edges at a node, most of them once: as long as a place of the table has only one of them.
+class Ends {
+ public:
+  std::vector<Index32> list;
+
+  void begin(Index32 node) {
+    list.clear();
+    own_ = std::uint64_t(node + 1) << 32;
+  }
+  void add(Index32 end) {
+    std::uint64_t& place = last_[std::size_t(end) % last_.size()];
+    if (place == (own_ | std::uint64_t(end))) return;
+    place = own_ | std::uint64_t(end);
+    list.push_back(end);
+  }
+
+ private:
+  std::uint64_t own_ = 0;
+  std::array<std::uint64_t, 512> last_{};  ///< node and end last seen there
+};
 
 class GraphMaker {
  public:
@@ -31,11 +54,11 @@ class GraphMaker {
     constexpr Index part = 4096;
     std::vector<std::vector<Index32>> found(std::size_t((n + part - 1) / part));
     detail::for_all_parts(host_, "gridmorph::node_graph::find", Index(found.size()), [&](Index p) {
-      std::vector<Index32> ends;
+      Ends ends;
       for (Index node = p * part; node < std::min(n, (p + 1) * part); ++node) {
         neighbours(Index32(node), ends);
-        lists.first[std::size_t(node) + 1] = std::ssize(ends);
-        found[std::size_t(p)].insert(found[std::size_t(p)].end(), ends.begin(), ends.end());
+        lists.first[std::size_t(node) + 1] = std::ssize(ends.list);
+        found[std::size_t(p)].insert(found[std::size_t(p)].end(), ends.list.begin(), ends.list.end());
       }
     });
     std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
@@ -54,25 +77,21 @@ class GraphMaker {
   };
 
   /// Neighbours of a representative, ascending; none of another node.
-  void neighbours(Index32 node, std::vector<Index32>& ends) const {
-    ends.clear();
+  void neighbours(Index32 node, Ends& ends) const {
+    ends.begin(node);
     if (owner_[std::size_t(node)] != node) return;
     add_ends(node, node, ends);
     for (auto at = std::lower_bound(others_.begin(), others_.end(), Other{node, 0});
          at != others_.end() && at->owner == node; ++at)
       add_ends(at->node, node, ends);
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    std::sort(ends.list.begin(), ends.list.end());
+    ends.list.erase(std::unique(ends.list.begin(), ends.list.end()), ends.list.end());
   }
 
-  /// Owners of the other ends of all edges at a node; most of them once.
-  void add_ends(Index32 node, Index32 own, std::vector<Index32>& ends) const {
+  /// Owners of the other ends of all edges at a node.
+  void add_ends(Index32 node, Index32 own, Ends& ends) const {
     auto const add = [&](Index32 end) {
-      Index32 const other = owner_[std::size_t(end)];
-      // Lists are short as a rule; where they are long, the sort removes what stands there twice.
-      constexpr std::size_t short_list = 48;
-      if (other != own && (ends.size() > short_list || std::find(ends.begin(), ends.end(), other) == ends.end()))
-        ends.push_back(other);
+      if (Index32 const other = owner_[std::size_t(end)]; other != own) ends.add(other);
     };
     for (Index32 const e : elements_of_nodes_[node]) {
       ElementType const type = mesh_.elements.type[std::size_t(e)];

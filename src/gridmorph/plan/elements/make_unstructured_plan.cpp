@@ -1,5 +1,4 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
 #include <gridmorph/plan/elements/middle_rows.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
@@ -83,11 +82,8 @@ void UnstructuredPlanner::measure_distances() {
       others.push_back(n);
     }
   }
-  // Each is serial; side by side they take half the time.
-  for_all_parts(host_, "gridmorph::nearest_source", 2, [&](Index which) {
-    (which == 0 ? from_wall_ : from_other_) =
-        nearest_source(mesh_.coordinates, out_.graph, which == 0 ? walls : others);
-  });
+  from_wall_ = nearest_source(host_, mesh_.coordinates, out_.graph, walls);
+  from_other_ = nearest_source(host_, mesh_.coordinates, out_.graph, others);
   // A wall that ends on another boundary has no gap to it.
   for (Index32 const n : walls) gap_ = std::min(gap_, from_other_.distance[std::size_t(n)]);
 }

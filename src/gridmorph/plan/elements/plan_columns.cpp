@@ -1,6 +1,5 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/plan/elements/column_heights.hpp>
 #include <gridmorph/plan/elements/one_rings.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
@@ -106,10 +105,8 @@ void UnstructuredPlanner::find_standing_columns() {
   }
   // What is free to slide begins where these end.
   bool const sliding = given.size() < others.size() && !given.empty();
-  for_all_parts(host_, "gridmorph::nearest_source", 2, [&](Index which) {
-    if (which == 0 && standing_.size() > 0) from_other_ = nearest_source(mesh_.coordinates, out_.graph, others);
-    if (which == 1 && sliding) from_given_ = nearest_source(mesh_.coordinates, out_.graph, given);
-  });
+  if (standing_.size() > 0) from_other_ = nearest_source(host_, mesh_.coordinates, out_.graph, others);
+  if (sliding) from_given_ = nearest_source(host_, mesh_.coordinates, out_.graph, given);
 }
 
 std::vector<double> UnstructuredPlanner::most_heights() const {
