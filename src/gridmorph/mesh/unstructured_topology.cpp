@@ -4,6 +4,7 @@
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <tuple>
 
 namespace gridmorph {
@@ -78,6 +79,22 @@ inline int sort_side(ElementType type, Index32 const* node, int side, std::array
   return n;
 }
 
+/// The sides of a tetrahedron that names no node twice, sorted without branches.
+template <class Put>
+void put_tetrahedron(Index32 const* node, Index32 e, Put const& put) {
+  for (int s = 0; s < 4; ++s) {
+    Index32 const a = node[face_corner(ElementType::tetrahedron, s, 0)],
+                  b = node[face_corner(ElementType::tetrahedron, s, 1)],
+                  c = node[face_corner(ElementType::tetrahedron, s, 2)];
+    Index32 const low = std::min(a, b), high = std::max(a, b);
+    put(std::min(low, c), KeyedSide{{std::max(low, std::min(high, c)), std::max(high, c), -1}, e, s, 3});
+  }
+}
+
+bool names_twice(Index32 const* n) {
+  return n[0] == n[1] || n[0] == n[2] || n[0] == n[3] || n[1] == n[2] || n[1] == n[3] || n[2] == n[3];
+}
+
 template <class Put>
 void put_polyhedron(Mesh const& mesh, Index e, Put const& put) {
   std::array<Index32, max_face_corners> room, smallest;
@@ -100,6 +117,27 @@ Index32 behind(Mesh const& mesh, KeyedSide const& own, std::span<KeyedSide const
     found = other.element;
   }
   return found;
+}
+
+/// take(sides that are alike, in their order) for at most `most` sides.
+template <std::size_t most, class Take>
+void for_each_alike(std::span<KeyedSide const> sides, Take const& take) {
+  std::array<std::uint64_t, most> key;
+  for (std::size_t k = 0; k < sides.size(); ++k)
+    key[k] = std::uint64_t(std::uint32_t(sides[k].nodes[0])) << 32 | std::uint32_t(sides[k].nodes[1]);
+  std::array<bool, most> done{};
+  std::array<KeyedSide, most> alike;
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    if (done[k]) continue;
+    std::size_t n = 0;
+    alike[n++] = sides[k];
+    for (std::size_t m = k + 1; m < sides.size(); ++m)
+      if (key[m] == key[k] && sides[m].alike(sides[k])) {
+        done[m] = true;
+        alike[n++] = sides[m];
+      }
+    take({alike.data(), n});
+  }
 }
 
 BoundaryFaces boundary_faces(Mesh const& mesh, ElementSides const& sides) {
@@ -159,6 +197,7 @@ ElementSides element_sides(HostInstance const& host, Mesh const& mesh) {
         ElementType const type = mesh.elements.type[std::size_t(e)];
         if (type == ElementType::polyhedron) return put_polyhedron(mesh, e, put);
         Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(e)];
+        if (type == ElementType::tetrahedron && !names_twice(node)) return put_tetrahedron(node, Index32(e), put);
         for (int s = 0; s < n_faces(type); ++s) {
           std::array<Index32, max_face_corners> sorted{-1, -1, -1, -1};
           int const corners = sort_side(type, node, s, sorted);
@@ -166,12 +205,18 @@ ElementSides element_sides(HostInstance const& host, Mesh const& mesh) {
             put(sorted[0], KeyedSide{{sorted[1], sorted[2], sorted[3]}, Index32(e), Index32(s), Index32(corners)});
         }
       });
+  auto const take = [&](std::span<KeyedSide const> alike) {
+    for (KeyedSide const& own : alike)
+      out.neighbour[std::size_t(out.first[std::size_t(own.element)] + own.side)] = behind(mesh, own, alike);
+  };
   buckets.for_each_key([&](Index32, Index, std::span<KeyedSide> sides) {
+    // Around most nodes a search for the other one of a pair is quicker than a sort.
+    constexpr std::size_t few = 64;
+    if (sides.size() <= few) return for_each_alike<few>(sides, take);
     std::sort(sides.begin(), sides.end());
     for (auto begin = sides.begin(); begin != sides.end();) {
       auto const end = std::find_if_not(begin, sides.end(), [&](KeyedSide const& s) { return s.alike(*begin); });
-      for (KeyedSide const& own : std::span(begin, end))
-        out.neighbour[std::size_t(out.first[std::size_t(own.element)] + own.side)] = behind(mesh, own, {begin, end});
+      take({begin, end});
       begin = end;
     }
   });

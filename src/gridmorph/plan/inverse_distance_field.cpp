@@ -1,5 +1,6 @@
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
+#include <gridmorph/plan/make_rows.hpp>
 #include <gridmorph/plan/place_order.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -108,9 +109,9 @@ kernels::UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dime
 
 }  // namespace
 
-InverseDistanceField make_scatter_lattice(Coordinates const& coordinates, std::vector<Index32> const& nodes,
-                                          std::vector<double> const& area, int dimension, Vec3 const& low,
-                                          Vec3 const& high, Index most_nodes) {
+InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates const& coordinates,
+                                          std::vector<Index32> const& nodes, std::vector<double> const& area,
+                                          int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes) {
   InverseDistanceField out;
   if (nodes.empty()) return out;
   Tree const tree(coordinates, nodes, area);
@@ -144,30 +145,34 @@ InverseDistanceField make_scatter_lattice(Coordinates const& coordinates, std::v
   double const nearest = 0.05 * out.shape.spacing;
   // About a half, but no ratio of lengths in a lattice: round-off would break such ties.
   constexpr double opening = 0.4917;
-  std::vector<Index32> open;
-  for (Index32 n = 0; n < Index32(out.shape.size()); ++n) {
-    Vec3 const x = out.shape.position(n);
-    items.clear();
-    weights.clear();
-    open.assign(1, 0);
-    while (!open.empty()) {
-      Index32 const g = open.back();
-      open.pop_back();
-      Group const& group = tree.groups[std::size_t(g)];
-      double const d = std::max(distance(x, group.centre), nearest);
-      if (group.part[0] >= 0 && group.radius > opening * d) {
-        open.push_back(group.part[1]);
-        open.push_back(group.part[0]);
-        continue;
-      }
-      items.push_back(g);
-      weights.push_back(group.area / (dimension == 2 ? d * d * d : d * d * d * d));
-    }
-    // Lengths may be tiny: only ratios of weights count.
-    double const largest = *std::max_element(weights.begin(), weights.end());
-    for (double& w : weights) w /= largest;
-    out.lattice.add(n, items, weights);
-  }
+  struct Room {
+    std::vector<Index32> open, items;
+    std::vector<double> weights;
+  };
+  out.lattice = make_rows(host, "gridmorph::make_scatter_lattice", out.shape.size(),
+                          [&, room = Room()](Index n, InterpolationOperator& rows) mutable {
+                            Vec3 const x = out.shape.position(n);
+                            room.items.clear();
+                            room.weights.clear();
+                            room.open.assign(1, 0);
+                            while (!room.open.empty()) {
+                              Index32 const g = room.open.back();
+                              room.open.pop_back();
+                              Group const& group = tree.groups[std::size_t(g)];
+                              double const d = std::max(distance(x, group.centre), nearest);
+                              if (group.part[0] >= 0 && group.radius > opening * d) {
+                                room.open.push_back(group.part[1]);
+                                room.open.push_back(group.part[0]);
+                                continue;
+                              }
+                              room.items.push_back(g);
+                              room.weights.push_back(group.area / (dimension == 2 ? d * d * d : d * d * d * d));
+                            }
+                            // Lengths may be tiny: only ratios of weights count.
+                            double const largest = *std::max_element(room.weights.begin(), room.weights.end());
+                            for (double& w : room.weights) w /= largest;
+                            rows.add(Index32(n), room.items, room.weights);
+                          });
   return out;
 }
 

@@ -31,9 +31,14 @@ struct InverseDistanceField {
 };
 
 /// Over the box from low to high. nodes: boundary nodes; area: the share of each, positive. At most `most_nodes` lattice nodes.
-/// Cost O(n log n) in the nodes and in the lattice's nodes.
-InverseDistanceField make_scatter_lattice(Coordinates const& coordinates, std::vector<Index32> const& nodes,
-                                          std::vector<double> const& area, int dimension, Vec3 const& low,
-                                          Vec3 const& high, Index most_nodes = 100'000);
+/// Cost O(n log n) in the nodes and in the lattice's nodes; the latter on all threads of the instance, whose number does not matter.
+InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates const& coordinates,
+                                          std::vector<Index32> const& nodes, std::vector<double> const& area,
+                                          int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes = 100'000);
+inline InverseDistanceField make_scatter_lattice(Coordinates const& coordinates, std::vector<Index32> const& nodes,
+                                                 std::vector<double> const& area, int dimension, Vec3 const& low,
+                                                 Vec3 const& high, Index most_nodes = 100'000) {
+  return make_scatter_lattice(HostInstance(), coordinates, nodes, area, dimension, low, high, most_nodes);
+}
 
 }  // namespace gridmorph

@@ -1,8 +1,16 @@
+#include <gridmorph/core/sort_keys.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/plan/layers.hpp>
+#include <gridmorph/plan/make_rows.hpp>
 #include <gridmorph/plan/place_order.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <utility>
 
 namespace gridmorph {
 
@@ -26,89 +34,124 @@ void add_row(Index32 node, PlaceOrder const& is_before, std::vector<Source>& sou
     double const v = PlaceOrder::rounded(a.weight), w = PlaceOrder::rounded(b.weight);
     return v > w || (v == w && is_before(a.node, b.node));
   });
-  std::vector<Index32> items;
-  std::vector<double> weights;
+  double sum = 0;
+  for (Source const& s : sources) sum += s.weight;
+  rows.target.push_back(node);
   for (Source const& s : sources) {
-    items.push_back(s.node);
-    weights.push_back(s.weight);
+    rows.item.push_back(s.node);
+    rows.weight.push_back(float(s.weight / sum));
   }
-  rows.add(node, items, weights);
+  rows.first.push_back(Index(rows.item.size()));
+}
+
+/// A number that grows with `a`.
+std::uint64_t sort_key(double a) {
+  constexpr std::uint64_t sign = std::uint64_t(1) << 63;
+  auto const bits = std::bit_cast<std::uint64_t>(a + 0.0);  // zeros have one sign
+  return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
+/// By distance, then by place.
+std::vector<Index32> sorted(HostInstance const& host, std::vector<Index32> const& nodes,
+                            std::vector<double> const& distance, PlaceOrder const& is_before) {
+  std::vector<Index32> out(nodes.size());
+  host.visit([&](auto const& exec) {
+    detail::KeyedIndices<Kokkos::HostSpace> const list(nodes.size(), "gridmorph::make_layers");
+    detail::for_all(host, "gridmorph::make_layers::keys", std::ssize(nodes), [&](Index k) {
+      list.number(k) = nodes[std::size_t(k)];
+      list.key(k) = sort_key(distance[std::size_t(nodes[std::size_t(k)])]);
+    });
+    auto const by_key = detail::sort_keys(exec, list);
+    compat::fence(exec, "gridmorph::make_layers (read by the host)");
+    std::copy_n(by_key.number.data(), nodes.size(), out.begin());
+    for (std::size_t begin = 0, end; begin < out.size(); begin = end) {
+      for (end = begin + 1; end < out.size() && by_key.key(end) == by_key.key(begin); ++end) {
+      }
+      if (end - begin > 1) std::sort(out.begin() + std::ptrdiff_t(begin), out.begin() + std::ptrdiff_t(end), is_before);
+    }
+  });
+  return out;
+}
+
+/// When nodes get their rows.
+struct Turns {
+  static constexpr Index32 never = std::numeric_limits<Index32>::max();
+  std::vector<Index32> node;  ///< one after another
+  std::vector<Index32> of;    ///< (n_nodes) 0: a seed; 1 + place in `node`
+};
+
+/// Nodes from near to far, each when a neighbour has had its turn: one that lies nearest among its neighbours though it is no seed (the straight
+/// way to its wall leads through other walls) waits for them.
+Turns take_turns(NodeGraph const& graph, std::vector<std::uint8_t> const& seeds, std::vector<Index32> order) {
+  Turns out;
+  out.of.resize(seeds.size());
+  for (std::size_t n = 0; n < seeds.size(); ++n) out.of[n] = seeds[n] != 0 ? 0 : Turns::never;
+  out.node.reserve(order.size());
+  while (!order.empty()) {
+    std::vector<Index32> waiting;
+    for (Index32 const node : order) {
+      auto const around = graph.neighbours[node];
+      if (std::any_of(around.begin(), around.end(),
+                      [&](Index32 m) { return out.of[std::size_t(m)] != Turns::never; })) {
+        out.node.push_back(node);
+        out.of[std::size_t(node)] = Index32(out.node.size());
+      } else {
+        waiting.push_back(node);
+      }
+    }
+    if (waiting.size() == order.size()) break;
+    order = std::move(waiting);
+  }
+  return out;
 }
 
 }  // namespace
 
-LayerRows make_layers(NodeGraph const& graph, Coordinates const& coordinates, std::vector<std::uint8_t> const& seeds,
-                      std::vector<std::uint8_t> const& wanted, std::vector<double> const& distance,
-                      std::function<double(Index32, Index32)> const& weight) {
-  constexpr int never = -1;
-  std::size_t const n = std::size_t(graph.size());
+LayerRows make_layers(HostInstance const& host, NodeGraph const& graph, Coordinates const& coordinates,
+                      std::vector<std::uint8_t> const& seeds, std::vector<std::uint8_t> const& wanted,
+                      std::vector<double> const& distance, std::function<double(Index32, Index32)> const& weight) {
   PlaceOrder const is_before(coordinates);
-  std::vector<int> layer(n, never);
-  std::vector<Index32> order;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (seeds[k])
-      layer[k] = 0;
-    else if (wanted[k] && std::isfinite(distance[k]))
-      order.push_back(Index32(k));
-  }
-  std::sort(order.begin(), order.end(), [&](Index32 a, Index32 b) {
-    return distance[std::size_t(a)] < distance[std::size_t(b)] ||
-           (distance[std::size_t(a)] == distance[std::size_t(b)] && is_before(a, b));
-  });
-  InterpolationOperator rows;
-  std::vector<int> row_layer;
-  std::vector<Source> sources;
-  int last = 0;
-  auto const try_node = [&](Index32 node) {
+  std::vector<Index32> nodes;
+  for (std::size_t n = 0; n < std::size_t(graph.size()); ++n)
+    if (!seeds[n] && wanted[n] && std::isfinite(distance[n])) nodes.push_back(Index32(n));
+  Turns const turns = take_turns(graph, seeds, sorted(host, nodes, distance, is_before));
+  // From neighbours that had their turn before.
+  auto const make = [&, sources = std::vector<Source>()](Index k, InterpolationOperator& out) mutable {
+    Index32 const node = turns.node[std::size_t(k)];
     sources.clear();
-    int highest = 0;
     Index32 nearest = -1;
     for (Index32 const m : graph.neighbours[node]) {
-      // Nodes that come later in the order have no layer yet.
-      if (layer[std::size_t(m)] == never) continue;
+      if (turns.of[std::size_t(m)] > k) continue;
       if (nearest < 0 || PlaceOrder::is_less(distance[std::size_t(m)], distance[std::size_t(nearest)]) ||
           (!PlaceOrder::is_less(distance[std::size_t(nearest)], distance[std::size_t(m)]) && is_before(m, nearest)))
         nearest = m;
       double const edge = gridmorph::distance(coordinates[node], coordinates[m]);
       double const share = share_of_slope((distance[std::size_t(node)] - distance[std::size_t(m)]) / edge);
-      if (share <= 0) continue;
-      sources.push_back({share * weight(node, m), m});
-      highest = std::max(highest, layer[std::size_t(m)]);
+      if (share > 0) sources.push_back({share * weight(node, m), m});
     }
-    if (sources.empty() && nearest >= 0) {
-      sources.push_back({1, nearest});
-      highest = layer[std::size_t(nearest)];
-    }
-    if (sources.empty()) return false;
-    layer[std::size_t(node)] = highest + 1;
-    last = std::max(last, highest + 1);
-    row_layer.push_back(highest + 1);
-    add_row(node, is_before, sources, rows);
-    return true;
+    if (sources.empty()) sources.push_back({1, nearest});
+    add_row(node, is_before, sources, out);
   };
-  // A node that lies nearest among its neighbours though it is no seed (the straight way to its wall leads through other walls)
-  // waits for them.
-  while (!order.empty()) {
-    std::vector<Index32> waiting;
-    for (Index32 const node : order)
-      if (!try_node(node)) waiting.push_back(node);
-    if (waiting.size() == order.size()) break;
-    order = std::move(waiting);
+  InterpolationOperator const rows = make_rows(host, "gridmorph::make_layers::rows", std::ssize(turns.node), make);
+  // A row's layer follows the highest one of its sources, whose rows come before it.
+  std::vector<int> layer(seeds.size(), 0);
+  std::vector<Index> count{0};
+  for (Index r = 0; r < rows.size(); ++r) {
+    int highest = 0;
+    for (Index k = rows.first[std::size_t(r)]; k < rows.first[std::size_t(r) + 1]; ++k)
+      highest = std::max(highest, layer[std::size_t(rows.item[std::size_t(k)])]);
+    layer[std::size_t(rows.target[std::size_t(r)])] = highest + 1;
+    if (highest + 1 == std::ssize(count)) count.push_back(0);
+    ++count[std::size_t(highest) + 1];
   }
-  // Rows layer by layer, each in the order of distance.
-  std::vector<std::vector<Index>> rows_of(std::size_t(last) + 1);
-  for (Index r = 0; r < rows.size(); ++r) rows_of[std::size_t(row_layer[std::size_t(r)])].push_back(r);
   LayerRows out;
-  for (int l = 1; l <= last; ++l) {
-    for (Index const r : rows_of[std::size_t(l)]) {
-      out.rows.target.push_back(rows.target[std::size_t(r)]);
-      auto const from = rows.first[std::size_t(r)], to = rows.first[std::size_t(r) + 1];
-      out.rows.item.insert(out.rows.item.end(), rows.item.begin() + from, rows.item.begin() + to);
-      out.rows.weight.insert(out.rows.weight.end(), rows.weight.begin() + from, rows.weight.begin() + to);
-      out.rows.first.push_back(Index(out.rows.item.size()));
-    }
-    out.level.push_back(out.rows.size());
-  }
+  out.level.resize(count.size());
+  std::partial_sum(count.begin(), count.end(), out.level.begin());
+  // Rows layer by layer, each in the order of distance.
+  std::vector<Index> next(out.level.begin(), out.level.end()), order(std::size_t(rows.size()));
+  for (Index r = 0; r < rows.size(); ++r)
+    order[std::size_t(next[std::size_t(layer[std::size_t(rows.target[std::size_t(r)])]) - 1]++)] = r;
+  out.rows = gathered(host, rows, order);
   return out;
 }
 

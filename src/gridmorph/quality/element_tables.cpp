@@ -1,23 +1,15 @@
 #include <gridmorph/quality/element_tables.hpp>
 
+#include <algorithm>
+
 namespace gridmorph::detail {
 
-CsrGraph neighbour_lists(Mesh const& mesh, UnstructuredTopology const& topology) {
-  CsrGraph out;
-  Index const n = mesh.n_elements();
-  auto const& across = topology.boundary.across;
-  std::size_t face = 0;  // boundary faces are in the order of elements and sides
-  out.first.reserve(std::size_t(n) + 1);
-  out.item.reserve(topology.sides.neighbour.size());
-  for (Index e = 0; e < n; ++e) {
-    for (Index32 const other : topology.sides.of(e)) {
-      if (other >= 0) out.item.push_back(other);
-      if (other != ElementSides::boundary) continue;
-      if (across[face] >= 0) out.item.push_back(across[face]);
-      ++face;
-    }
-    out.first.push_back(Index(out.item.size()));
-  }
+std::vector<Index32> neighbours_across(UnstructuredTopology const& topology) {
+  auto const& [nodes, element, side, across] = topology.boundary;
+  if (std::none_of(across.begin(), across.end(), [](Index32 e) { return e >= 0; })) return {};
+  std::vector<Index32> out = topology.sides.neighbour;
+  for (std::size_t f = 0; f < across.size(); ++f)
+    if (across[f] >= 0) out[std::size_t(topology.sides.first[std::size_t(element[f])] + side[f])] = across[f];
   return out;
 }
 

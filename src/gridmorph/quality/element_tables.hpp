@@ -171,12 +171,13 @@ inline std::vector<Index> first_elements(Mesh const& mesh) {
   return first;
 }
 
-/// Largest volume ratio of element e to its neighbours; 1 without any, unbounded unless all volumes are positive.
+/// Largest volume ratio of element e to its neighbours (those not below 0); 1 without any, unbounded unless all volumes are positive.
 template <class VolumeView, class MemorySpace>
 KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, CsrViews<MemorySpace> const& neighbours, Index e) {
   double least = volumes(e), largest = least;
   for (Index n = neighbours.first(e); n < neighbours.first(e + 1); ++n) {
     Index32 const other = neighbours.item(n);
+    if (other < 0) continue;
     least = kernels::smaller(least, volumes(other));
     largest = kernels::larger(largest, volumes(other));
   }
@@ -185,8 +186,8 @@ KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, CsrViews<Me
   return kernels::larger(largest / own, own / least);
 }
 
-/// Elements on the other side of each side of each element, through connections too, where there is one.
-CsrGraph neighbour_lists(Mesh const& mesh, UnstructuredTopology const& topology);
+/// What is on the other side of each side of each element as ElementSides has it, but through connections too; empty where none leads to an element.
+std::vector<Index32> neighbours_across(UnstructuredTopology const& topology);
 
 /// `known` where it has an entry per element, else numbering_signs().
 std::vector<signed char> signs_of(HostInstance const& host, Mesh const& mesh, ElementSides const& sides,

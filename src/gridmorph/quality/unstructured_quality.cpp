@@ -184,8 +184,10 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
   };
   if (fast) return sums_on_host();
 
-  CsrGraph const neighbours_h = detail::neighbour_lists(mesh, topology);
-  auto const neighbours = views(exec, neighbours_h);
+  std::vector<Index32> const across = detail::neighbours_across(topology);
+  CsrViews<MemorySpace> const neighbours{
+      detail::view_of(exec, topology.sides.first, "gridmorph::quality::first_side"),
+      detail::view_of(exec, across.empty() ? topology.sides.neighbour : across, "gridmorph::quality::neighbour")};
   Kokkos::View<double const*, MemorySpace> const all_volumes = volumes;
   Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());

@@ -2,48 +2,57 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
 
 namespace gridmorph {
 
 namespace {
 
-/// The side of an element opposite to one of its sides, corner by corner along the edges that join them.
+/// The side of an element opposite to one of its sides, corner by corner along the edges that join them: corners of the element.
 struct Opposite {
-  int side = -1;
+  int side = -1;  ///< -1 where there is none: tetrahedra, pyramids, the quadrilateral sides of prisms, polyhedra
   int n = 0;
-  std::array<Index32, 4> below{}, above{};
+  std::array<std::int8_t, 4> below{}, above{};
 };
 
-/// side -1 where there is none: tetrahedra, pyramids, the quadrilateral sides of prisms, polyhedra.
-Opposite opposite_side(Mesh const& mesh, Index e, int side) {
+Opposite find_opposite(ElementType type, int side) {
   Opposite out;
-  ElementType const type = mesh.elements.type[std::size_t(e)];
-  bool const prism = type == ElementType::prism, hexahedron = type == ElementType::hexahedron;
-  if (!prism && !hexahedron && type != ElementType::quadrilateral) return out;
-  auto const nodes = mesh.elements.corners(e);
-  std::array<Index32, max_face_corners> room;
-  auto const own = side_nodes(mesh, e, side, room);
-  int const corners = type == ElementType::quadrilateral ? 2 : prism ? 3 : 4;
-  if (int(own.size()) != corners) return out;
-  for (int c = 0; c < corners; ++c) {
-    out.below[std::size_t(c)] = own[std::size_t(c)];
+  int const corners = type == ElementType::quadrilateral ? 2 : type == ElementType::prism ? 3 : 4;
+  if (n_face_corners(type, side) != corners) return out;
+  out.n = corners;
+  auto const is_of = [&](std::array<std::int8_t, 4> const& list, int corner) {
+    return std::find(list.begin(), list.begin() + corners, std::int8_t(corner)) != list.begin() + corners;
+  };
+  for (int c = 0; c < corners; ++c) out.below[std::size_t(c)] = std::int8_t(face_corner(type, side, c));
+  for (int c = 0; c < corners; ++c)
     // The one edge of this corner that leaves the side.
     for (int k = 0; k < n_edges(type); ++k) {
-      Index32 const a = nodes[std::size_t(edge_corner(type, k, 0))], b = nodes[std::size_t(edge_corner(type, k, 1))];
-      Index32 const other = a == own[std::size_t(c)] ? b : b == own[std::size_t(c)] ? a : -1;
-      if (other >= 0 && std::find(own.begin(), own.end(), other) == own.end()) out.above[std::size_t(c)] = other;
+      int const a = edge_corner(type, k, 0), b = edge_corner(type, k, 1), own = out.below[std::size_t(c)];
+      int const other = a == own ? b : b == own ? a : -1;
+      if (other >= 0 && !is_of(out.below, other)) out.above[std::size_t(c)] = std::int8_t(other);
     }
+  for (int s = 0; s < n_faces(type); ++s) {
+    bool same = n_face_corners(type, s) == corners;
+    for (int c = 0; same && c < corners; ++c) same = is_of(out.above, face_corner(type, s, c));
+    if (same) out.side = s;
   }
-  for (int s = 0; s < n_sides(mesh, e); ++s) {
-    auto const there = side_nodes(mesh, e, s, room);
-    if (int(there.size()) == corners && std::all_of(there.begin(), there.end(), [&](Index32 n) {
-          return std::find(out.above.begin(), out.above.begin() + corners, n) != out.above.begin() + corners;
-        }))
-      out.side = s;
-  }
-  out.n = corners;
   return out;
+}
+
+/// From tables that are made once.
+Opposite const& opposite_side(ElementType type, int side) {
+  constexpr std::array types{ElementType::quadrilateral, ElementType::prism, ElementType::hexahedron};
+  constexpr std::size_t most_sides = 6;
+  static auto const tables = [&] {
+    std::array<std::array<Opposite, most_sides>, types.size()> out{};
+    for (std::size_t t = 0; t < types.size(); ++t)
+      for (int s = 0; s < n_faces(types[t]); ++s) out[t][std::size_t(s)] = find_opposite(types[t], s);
+    return out;
+  }();
+  static Opposite const none;
+  auto const at = std::find(types.begin(), types.end(), type);
+  return at == types.end() ? none : tables[std::size_t(at - types.begin())][std::size_t(side)];
 }
 
 /// A face from which a column may go on.
@@ -82,20 +91,26 @@ Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, Nod
       ColumnExtent const& extent = extents[at.face];
       if (extent.extent == BoundaryLayer::Extent::layers && layer >= extent.layers) continue;
       if (visited[std::size_t(at.element)]) continue;
-      Opposite const opposite = opposite_side(mesh, at.element, at.side);
+      Opposite const& opposite = opposite_side(mesh.elements.type[std::size_t(at.element)], at.side);
       if (opposite.side < 0) continue;
+      auto const nodes = mesh.elements.corners(at.element);
+      std::array<Index32, 4> nodes_below{}, nodes_above{};
+      for (std::size_t c = 0; c < std::size_t(opposite.n); ++c) {
+        nodes_below[c] = nodes[std::size_t(opposite.below[c])];
+        nodes_above[c] = nodes[std::size_t(opposite.above[c])];
+      }
       double least = std::numeric_limits<double>::infinity(), reach = least;
       for (int c = 0; c < opposite.n; ++c) {
-        double const h = distance(mesh.coordinates[opposite.below[std::size_t(c)]],
-                                  mesh.coordinates[opposite.above[std::size_t(c)]]);
+        double const h =
+            distance(mesh.coordinates[nodes_below[std::size_t(c)]], mesh.coordinates[nodes_above[std::size_t(c)]]);
         least = std::min(least, h);
-        reach = std::min(reach, above_wall[std::size_t(owner(opposite.below[std::size_t(c)]))] + h);
+        reach = std::min(reach, above_wall[std::size_t(owner(nodes_below[std::size_t(c)]))] + h);
       }
       if (extent.extent == BoundaryLayer::Extent::block && !(least < 0.5 * (1 - 1e-6) * shortest[at.face])) continue;
       if (extent.extent == BoundaryLayer::Extent::thickness && !(reach <= extent.thickness * (1 + 1e-6))) continue;
       visited[std::size_t(at.element)] = 1;
       for (int c = 0; c < opposite.n; ++c) {
-        Index32 const below = owner(opposite.below[std::size_t(c)]), above = owner(opposite.above[std::size_t(c)]);
+        Index32 const below = owner(nodes_below[std::size_t(c)]), above = owner(nodes_above[std::size_t(c)]);
         if (root[std::size_t(above)] >= 0 || is_known[std::size_t(above)] || root[std::size_t(below)] < 0) continue;
         root[std::size_t(above)] = root[std::size_t(below)];
         double const h = above_wall[std::size_t(below)] + distance(mesh.coordinates[below], mesh.coordinates[above]);
@@ -113,8 +128,8 @@ Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, Nod
         if (topology.sides.of(behind)[std::size_t(s)] != at.element) continue;
         auto const there = side_nodes(mesh, behind, s, room);
         bool const same = int(there.size()) == opposite.n && std::all_of(there.begin(), there.end(), [&](Index32 n) {
-                            return std::find(opposite.above.begin(), opposite.above.begin() + opposite.n, n) !=
-                                   opposite.above.begin() + opposite.n;
+                            return std::find(nodes_above.begin(), nodes_above.begin() + opposite.n, n) !=
+                                   nodes_above.begin() + opposite.n;
                           });
         if (same) next.push_back({behind, s, at.face});
       }

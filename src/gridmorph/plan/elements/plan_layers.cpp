@@ -37,7 +37,7 @@ void UnstructuredPlanner::plan_layers() {
   Mask wanted = near_;
   for (std::size_t n = 0; n < seeds.size(); ++n)
     if (seeds[n] || !out_.graph.carries(Index32(n))) wanted[n] = 0;
-  plan.near = make_layers(out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
+  plan.near = make_layers(host_, out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
   if (options_.elements.method == NearFieldMethod::lattice)
     plan_smooth_walls();
   else
@@ -64,8 +64,8 @@ void UnstructuredPlanner::plan_smooth_walls() {
   Box box;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
     if (near_[std::size_t(n)]) box.include(mesh_.coordinates[n]);
-  plan.walls =
-      make_scatter_lattice(mesh_.coordinates, plan.driving, areas(plan.driving), mesh_.dimension, box.low, box.high);
+  plan.walls = make_scatter_lattice(host_, mesh_.coordinates, plan.driving, areas(plan.driving), mesh_.dimension,
+                                    box.low, box.high);
   double const reach = 4 * plan.walls.shape.spacing;
   for (Index32 const n : plan.near.rows.target) {
     double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);

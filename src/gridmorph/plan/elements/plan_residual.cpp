@@ -1,3 +1,4 @@
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
@@ -12,8 +13,10 @@ void UnstructuredPlanner::plan_residual() {
   plan_other_nodes();
   plan_middle_nodes();
   plan.fade.assign(is_other_.size(), 0);
-  for (std::size_t n = 0; n < is_other_.size(); ++n)
+  for_all(host_, "gridmorph::fade", mesh_.n_nodes(), [&](Index at) {
+    auto const n = std::size_t(at);
     if (out_.graph.carries(Index32(n)) && !drives_[n] && !is_other_[n]) plan.fade[n] = float(fade(n, from_other_));
+  });
   // Columns are as rigid as their walls ask for.
   for (Index32 const n : columns_.node) plan.fade[std::size_t(n)] = 0;
   plan_start();
@@ -21,14 +24,14 @@ void UnstructuredPlanner::plan_residual() {
   std::vector<Index32> const boundary(plan.residual_nodes.begin(),
                                       plan.residual_nodes.end() - std::ptrdiff_t(standing_.node.size()));
   plan.residual =
-      make_scatter_lattice(mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low, box.high);
+      make_scatter_lattice(host_, mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low, box.high);
   if (plan.residual.empty()) return;
   double const reach = 2 * plan.residual.shape.spacing;
   Mask wanted = mask();
   for (std::size_t n = 0; n < wanted.size(); ++n)
     wanted[n] = plan.fade[n] != 0 && from_other_.distance[n] < reach ? 1 : 0;
   plan.residual_detail =
-      make_layers(out_.graph, mesh_.coordinates, is_other_, wanted, from_other_.distance, inverse_distance());
+      make_layers(host_, out_.graph, mesh_.coordinates, is_other_, wanted, from_other_.distance, inverse_distance());
   for (Index32 const n : plan.residual_detail.rows.target) {
     double const s = from_other_.distance[std::size_t(n)] / reach;
     plan.detail_fade.push_back(float(plan.fade[std::size_t(n)] * (1 - s * s * (3 - 2 * s))));
@@ -56,7 +59,7 @@ void UnstructuredPlanner::plan_start() {
   std::vector<Index32> const boundary(start.given.begin(), start.given.begin() + n_boundary);
   // It is needed on surfaces alone, and what it misses passes along them.
   constexpr Index most_nodes = 20'000;
-  start.residual = make_scatter_lattice(mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low,
+  start.residual = make_scatter_lattice(host_, mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low,
                                         box.high, most_nodes);
   double const reach = 2 * start.residual.shape.spacing;
   std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
@@ -66,7 +69,8 @@ void UnstructuredPlanner::plan_start() {
     start.fade[k] = drives_[std::size_t(n)] ? 0 : float(fade(std::size_t(n), from_given_));
     if (!(from_given_.distance[std::size_t(n)] < reach)) wanted[std::size_t(n)] = 0;
   }
-  start.detail = make_layers(out_.graph, mesh_.coordinates, seeds, wanted, from_given_.distance, inverse_distance());
+  start.detail =
+      make_layers(host_, out_.graph, mesh_.coordinates, seeds, wanted, from_given_.distance, inverse_distance());
   for (Index32 const n : start.detail.rows.target) {
     double const s = from_given_.distance[std::size_t(n)] / reach;
     std::size_t const k = std::size_t(place[std::size_t(n)]);
