@@ -15,7 +15,8 @@ class NearField {
   static inline std::string const region = "gridmorph::NearField";
 
   NearField(Exec const& exec, UnstructuredPlan const& plan)
-      : seeds_{upload(exec, plan.driving, name("driving")), upload(exec, plan.columns.node, name("columns"))},
+      : seeds_{upload_sources(exec, plan.driving, plan.near, plan.n_nodes, name("driving")),
+               upload_sources(exec, plan.columns.node, plan.near, plan.n_nodes, name("columns"))},
         walls_(exec, plan.walls, name("walls")),
         layers_(upload(exec, plan.near, name("layers"))),
         fade_(upload(exec, plan.near_fade, name("fade"))) {}
@@ -35,7 +36,7 @@ class NearField {
   using Memory = typename Exec::memory_space;
   static std::string name(char const* what) { return region + "::" + what; }
 
-  List<Exec, Index32> seeds_[2];  ///< on moving walls and in their columns
+  List<Exec, Index32> seeds_[2];  ///< on moving walls and at the ends of their columns, where layers begin
   SmoothField<Exec, kernels::AffineMotion> walls_;
   kernels::LayerTable<Memory> layers_;
   List<Exec, float> fade_;

@@ -27,6 +27,8 @@ class OtherBoundaries {
         lacked_(room_for<Vec3>(exec, plan.residual_nodes.size(), name("lacked"))),
         fade_(upload(exec, plan.fade, name("fade"))),
         detail_(upload(exec, plan.residual_detail, name("detail"))),
+        detail_begins_(
+            upload_sources(exec, plan.residual_nodes, plan.residual_detail, plan.n_nodes, name("detail_begins"))),
         detail_fade_(upload(exec, plan.detail_fade, name("detail_fade"))) {}
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
@@ -99,7 +101,7 @@ class OtherBoundaries {
     residual_.enqueue(exec, lacked_.data());
     launch("gridmorph::residual", exec, kernels::AddField<Memory>{fade_, residual_.field(), x, f.u.data()});
     launch("gridmorph::residual::missing", exec,
-           kernels::FieldMisses<Memory>{nodes_.node, residual_.field(), x, f.work.data(), f.work.data()});
+           kernels::FieldMisses<Memory>{detail_begins_, residual_.field(), x, f.work.data(), f.work.data()});
     kernels::interpolate_layers("gridmorph::residual::layers", exec, detail_, f.work.data());
     launch("gridmorph::residual::detail", exec,
            kernels::AddShare<Memory>{detail_.rows.target, detail_fade_, f.work.data(), f.u.data()});
@@ -113,6 +115,7 @@ class OtherBoundaries {
   List<Exec, Vec3> lacked_;
   List<Exec, float> fade_;
   kernels::LayerTable<Memory> detail_;
+  List<Exec, Index32> detail_begins_;  ///< boundary nodes that it reads
   List<Exec, float> detail_fade_;
 };
 

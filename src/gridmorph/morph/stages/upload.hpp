@@ -5,12 +5,14 @@
 #include <gridmorph/core/csr_graph.hpp>
 #include <gridmorph/core/enqueue_copy.hpp>
 #include <gridmorph/kernels/inverse_distance.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/plan/interpolation_operator.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
 #include <gridmorph/plan/layers.hpp>
 
 #include <Kokkos_Core.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -41,6 +43,20 @@ template <class Exec>
 kernels::LayerTable<typename Exec::memory_space> upload(Exec const& exec, LayerRows const& layers,
                                                         std::string const& label) {
   return {upload(exec, layers.rows, label), layers.level};
+}
+
+/// Those of `nodes` that rows read: of boundary layers only the ends of columns. Fences.
+template <class Exec>
+List<Exec, Index32> upload_sources(Exec const& exec, std::vector<Index32> const& nodes, LayerRows const& layers,
+                                   Index n_nodes, std::string const& label) {
+  std::vector<std::uint8_t> read(std::size_t(n_nodes), 0);
+  for (Index32 const n : layers.rows.item) read[std::size_t(n)] = 1;
+  std::vector<Index32> sources;
+  for (Index32 const n : nodes)
+    if (read[std::size_t(n)] != 0) sources.push_back(n);
+  auto const out = upload(exec, sources, label);
+  compat::fence(exec, "gridmorph::upload_sources (host tables may go)");
+  return out;
 }
 
 template <class Exec>
