@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -118,21 +119,20 @@ class Relaxation {
   /// Elements that change when `nodes` move, and those that were bad; ascending.
   [[nodiscard]] std::vector<Index32> touched(std::vector<Index32> const& nodes, std::vector<Index> const& middles,
                                              std::vector<Index32> const& bad) const {
-    std::vector<Index32> found = bad;
-    for (Index const row : middles) {
-      auto const around = elements_of_middle_[row];
-      found.insert(found.end(), around.begin(), around.end());
-    }
-    auto const add = [&](Index32 n) {
-      auto const around = topology_.elements_of_nodes[n];
-      found.insert(found.end(), around.begin(), around.end());
+    std::vector<std::uint8_t> seen(std::size_t(mesh_.n_elements()), 0);
+    std::vector<Index32> found;
+    auto const add_all = [&](std::span<Index32 const> elements) {
+      for (Index32 const e : elements)
+        if (std::exchange(seen[std::size_t(e)], std::uint8_t(1)) == 0) found.push_back(e);
     };
+    auto const add = [&](Index32 n) { add_all(topology_.elements_of_nodes[n]); };
+    add_all(bad);
+    for (Index const row : middles) add_all(elements_of_middle_[row]);
     for (Index32 const n : nodes) add(n);
     UnstructuredPlan const& plan = prepared_.plan;
     for (std::size_t k = 0; k < plan.copies.size(); ++k)
       if (std::binary_search(nodes.begin(), nodes.end(), plan.copied[k])) add(plan.copies[k]);
     std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
   }
 

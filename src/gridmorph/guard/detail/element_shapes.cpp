@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace gridmorph::detail {
 
@@ -98,16 +99,19 @@ void ElementShapes::add_corners_of_polyhedron(Index32 element) {
 }
 
 void ElementShapes::find_corners(UnstructuredTopology const& topology) {
-  std::vector<Index32> elements;
-  for (Index32 const n : nodes_) {
-    auto const around = topology.elements_of_nodes[n];
-    elements.insert(elements.end(), around.begin(), around.end());
-  }
+  std::vector<Index32> elements, place(std::size_t(mesh_.n_elements()), -1);
+  for (Index32 const n : nodes_)
+    for (Index32 const e : topology.elements_of_nodes[n])
+      if (place[std::size_t(e)] < 0) {
+        place[std::size_t(e)] = 0;
+        elements.push_back(e);
+      }
   std::sort(elements.begin(), elements.end());
-  elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
   std::vector<Index> first{0};  // corner of each of them
-  for (Index32 const e : elements) {
-    add_corners(e);
+  for (std::size_t at = 0; at < elements.size(); ++at) {
+    place[std::size_t(elements[at])] = Index32(at);
+    add_corners(elements[at]);
+    element_of_corner_.resize(corners_.size(), Index32(at));
     first.push_back(Index(corners_.size()));
   }
   for (ElementCorner const& corner : corners_) {
@@ -121,7 +125,7 @@ void ElementShapes::find_corners(UnstructuredTopology const& topology) {
     for (Index m = first_node_[p]; m < first_node_[p + 1]; ++m) {
       Index32 const node = nodes_[std::size_t(m)];
       for (Index32 const e : topology.elements_of_nodes[node]) {
-        auto const at = std::size_t(std::lower_bound(elements.begin(), elements.end(), e) - elements.begin());
+        auto const at = std::size_t(place[std::size_t(e)]);
         for (Index c = first[at]; c < first[at + 1]; ++c) {
           auto const& of_corner = corners_[std::size_t(c)].node;
           unsigned roles = 0;
@@ -144,24 +148,28 @@ void ElementShapes::find_corners(UnstructuredTopology const& topology) {
 }
 
 void ElementShapes::colour() {
-  std::vector<std::pair<Index32, Index32>> users;  // (corner's element, point)
   std::size_t const n_points = first_node_.size() - 1;
-  for (std::size_t p = 0; p < n_points; ++p)
+  // Elements that a point changes, each once: those of its corners stand side by side.
+  auto const for_each_element = [&](std::size_t p, auto const& visit) {
+    Index32 last = -1;
     for (Index c = first_change_[p]; c < first_change_[p + 1]; ++c)
-      users.emplace_back(corners_[std::size_t(changes_[std::size_t(c)].corner)].element, Index32(p));
-  std::sort(users.begin(), users.end());
-  users.erase(std::unique(users.begin(), users.end()), users.end());
+      if (Index32 const e = element_of_corner_[std::size_t(changes_[std::size_t(c)].corner)]; e != last)
+        visit(std::size_t(last = e));
+  };
+  std::size_t const n_elements = element_of_corner_.empty() ? 0 : std::size_t(element_of_corner_.back()) + 1;
+  std::vector<Index> first(n_elements + 1, 0);
+  for (std::size_t p = 0; p < n_points; ++p) for_each_element(p, [&](std::size_t e) { ++first[e + 1]; });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Index32> users(std::size_t(first.back()));
+  std::vector<Index> next(first.begin(), first.end() - 1);
+  for (std::size_t p = 0; p < n_points; ++p)
+    for_each_element(p, [&](std::size_t e) { users[std::size_t(next[e]++)] = Index32(p); });
   std::vector<Index32> colour(n_points, -1), taken_by;
   for (std::size_t p = 0; p < n_points; ++p) {
-    Index32 last = -1;
-    for (Index c = first_change_[p]; c < first_change_[p + 1]; ++c) {
-      Index32 const e = corners_[std::size_t(changes_[std::size_t(c)].corner)].element;
-      if (e == last) continue;
-      last = e;
-      for (auto user = std::lower_bound(users.begin(), users.end(), std::pair(e, Index32(-1)));
-           user != users.end() && user->first == e; ++user)
-        if (Index32 const k = colour[std::size_t(user->second)]; k >= 0) taken_by[std::size_t(k)] = Index32(p);
-    }
+    for_each_element(p, [&](std::size_t e) {
+      for (Index u = first[e]; u < first[e + 1]; ++u)
+        if (Index32 const k = colour[std::size_t(users[std::size_t(u)])]; k >= 0) taken_by[std::size_t(k)] = Index32(p);
+    });
     std::size_t free = 0;
     while (free < taken_by.size() && taken_by[free] == Index32(p)) ++free;
     if (free == taken_by.size()) {

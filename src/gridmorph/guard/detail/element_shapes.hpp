@@ -48,6 +48,7 @@ class ElementShapes {
   std::vector<Index32> nodes_;  ///< per point: itself and what coincides with it
   std::vector<Change> changes_;
   std::vector<ElementCorner> corners_;
+  std::vector<Index32> element_of_corner_;  ///< counted from 0 in the order of corners_
   std::vector<kernels::BaselineCorner> baseline_;
   std::vector<std::vector<Index32>> colours_;
 };

@@ -58,7 +58,7 @@ void make_shape_step(std::vector<kernels::CornerChange> const& corners, Vec3 con
 /// move(point, room for its corners) for all points of a colour, which do not see one another.
 template <class Move>
 void sweep_colour(HostInstance const& host, char const* label, std::vector<Index32> const& colour, Move const& move) {
-  constexpr Index part = 64, few_parts = 4;  // points that one core takes at a time; what one core does alone
+  constexpr Index part = 32, few_parts = 2;  // points that one core takes at a time; what one core does alone
   Index const count = Index(colour.size()), parts = (count + part - 1) / part;
   auto const move_part = [&](Index n) {
     std::vector<kernels::CornerChange> corners;

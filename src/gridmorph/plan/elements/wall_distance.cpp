@@ -102,7 +102,7 @@ class Spreading {
   /// What list(k, out) adds for 0 <= k < count, part by part side by side.
   template <class Item, class List>
   std::vector<Item> gather(char const* label, Index count, List const& list) {
-    constexpr Index part = 1024;
+    constexpr Index part = 256;
     std::vector<std::vector<Item>> lists(std::size_t((count + part - 1) / part));
     auto const one = [&](Index p) {
       for (Index k = p * part; k < std::min(count, (p + 1) * part); ++k) list(k, lists[std::size_t(p)]);
