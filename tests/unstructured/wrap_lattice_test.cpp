@@ -14,7 +14,9 @@ namespace {
 constexpr LatticeBox domain{{0, 0, 0}, {9, 9, 9}};
 
 Wrap lattice_of(Bodies const& bodies, WrapOptions const& options, int dimension = 3) {
-  return detail::make_lattice(bodies.in_domain({0, 0, 0}, {9, 9, 9}, dimension), bodies.walls, domain, options);
+  Mesh const mesh = bodies.in_domain({0, 0, 0}, {9, 9, 9}, dimension);
+  auto const reach = detail::reaches_of(mesh.coordinates, {}, bodies.walls, options.offset);
+  return detail::make_lattice(mesh, mesh.coordinates, bodies.walls, reach, domain, options);
 }
 
 void expect_planes(std::vector<double> const& found, std::vector<double> const& expected) {

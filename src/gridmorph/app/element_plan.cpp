@@ -170,7 +170,8 @@ class ElementPlan final : public AnyPlan {
          {{"near", r.regions.n_near}, {"partially_wrapped", r.regions.n_partial}, {"far", r.regions.n_far}}},
         {"layers", p.near.n_layers()},
         {"background",
-         {{"zones", p.background ? p.background->mesh.zones.size() : 0},
+         {{"shape", shape()},
+          {"zones", p.background ? p.background->mesh.zones.size() : 0},
           {"nodes", p.background ? p.background->mesh.n_nodes() : 0}}},
         {"wrap_nodes", r.wrap_nodes},
         {"wrap_nodes_outside", r.wrap_outside},
@@ -199,8 +200,9 @@ class ElementPlan final : public AnyPlan {
         r.layer_height, r.regions.n_near, r.regions.n_partial, r.regions.n_far, p.near.n_layers());
     if (p.background)
       text += fmt::format(
-          "background mesh: {} zones, {} nodes; {} on the wrap; {} nodes of the mesh take their displacement from it\n",
-          p.background->mesh.zones.size(), p.background->mesh.n_nodes(), r.wrap_nodes, r.far_nodes);
+          "background mesh: {}, {} zones, {} nodes; {} on the wrap; {} nodes of the mesh take their displacement from "
+          "it\n",
+          shape(), p.background->mesh.zones.size(), p.background->mesh.n_nodes(), r.wrap_nodes, r.far_nodes);
     return text;
   }
 
@@ -209,6 +211,26 @@ class ElementPlan final : public AnyPlan {
   }
 
  private:
+  /// What the background mesh fills.
+  [[nodiscard]] std::string shape() const {
+    auto const& r = prepared_.report;
+    if (!r.wrap) return "read from a file";
+    if (r.wrap->tube) return "O-type around a tube";
+    std::string text = r.wrap->domain.chart.name();
+    int sliding = 0, along = 0;
+    for (int axis = 0; axis < r.wrap->dimension; ++axis)
+      for (int const side : {0, 1}) {
+        auto const is = r.wrap->domain.side[std::size_t(axis)][std::size_t(side)];
+        bool const slides = r.wrap->slides(axis, side);
+        sliding += slides ? 1 : 0;
+        bool const reached = r.wrap->reaches[std::size_t(axis)][std::size_t(side)];
+        along += !slides && is != ChartedDomain::Side::open && (is != ChartedDomain::Side::stands || reached) ? 1 : 0;
+      }
+    for (auto const& [count, what] : {std::pair(sliding, "on which nodes slide"), std::pair(along, "that go along")})
+      if (count > 0) text += fmt::format(", {} {} {}", count, count == 1 ? "side" : "sides", what);
+    return text;
+  }
+
   [[nodiscard]] SmoothingRecord new_record() const override { return SmoothingRecord(prepared_); }
   void drop_morpher() override { morpher_.reset(); }
 

@@ -13,17 +13,26 @@ namespace {
 /// Makes the zones of a tensor grid with boxes left out, and joins and closes their faces.
 class LatticeMesh {
  public:
-  LatticeMesh(FineLattice& lattice, int dimension) : lattice_(lattice), dimension_(dimension) {}
+  LatticeMesh(FineLattice& lattice, Wrap const& wrap) : lattice_(lattice), wrap_(wrap), dimension_(wrap.dimension) {}
 
   Mesh run() {
     mesh_.source = "background mesh";
     mesh_.families = {"wrap", "outer"};
     if (dimension_ == 2) mesh_.families.emplace_back("sides");
+    for_sides([&](std::string const& family, int, int) { mesh_.families.push_back(family); });
     for_slabs([&](Index3 const& s) { add_zone(s); });
     for_slabs([&](Index3 const& s) { add_faces(s); });
     mesh_.coordinates = Coordinates(mesh_.n_nodes());
     for_slabs([&](Index3 const& s) { set_coordinates(s); });
     return std::move(mesh_);
+  }
+
+  /// Sides that are not outer ones: their families.
+  template <class Function>
+  void for_sides(Function const& f) const {
+    for (int axis = 0; axis < dimension_; ++axis)
+      for (int const side : {0, 1})
+        if (moves_along(axis, side)) f(side_family(axis, side), axis, side);
   }
 
  private:
@@ -33,6 +42,13 @@ class LatticeMesh {
       for (int j = 0; j < lattice_.slabs(1); ++j)
         for (int i = 0; i < lattice_.slabs(0); ++i) f(Index3{i, j, k});
   }
+  /// Whether nodes slide on a side or go along: also where the wrap reaches one that stands, for the reason that Wrap::slides() has.
+  [[nodiscard]] bool moves_along(int axis, int side) const {
+    auto const a = std::size_t(axis), which = std::size_t(side);
+    auto const is = wrap_.domain.side[a][which];
+    return is != ChartedDomain::Side::open && (is != ChartedDomain::Side::stands || wrap_.reaches[a][which]);
+  }
+  static std::string side_family(int axis, int side) { return "side " + std::string(face_name(axis, side)); }
   [[nodiscard]] int cut(std::size_t axis, int slab) const { return lattice_.cut[axis][std::size_t(slab)]; }
 
   void add_zone(Index3 const& s) {
@@ -54,10 +70,12 @@ class LatticeMesh {
         Index3 beyond = s;
         beyond[a] += 2 * side - 1;
         if (beyond[a] < 0 || beyond[a] == lattice_.slabs(axis)) {
-          if (axis < dimension_)
-            add_patch("outer", "BCFarfield", PatchKind::farfield, zone, axis, side, range);
-          else
+          if (axis >= dimension_)
             add_patch("sides", "BCSymmetryPlane", PatchKind::symmetry, zone, axis, side, range);
+          else if (moves_along(axis, side))
+            add_patch(side_family(axis, side), "BCSymmetryPlane", PatchKind::symmetry, zone, axis, side, range);
+          else
+            add_patch("outer", "BCFarfield", PatchKind::farfield, zone, axis, side, range);
           continue;
         }
         int const donor = lattice_.zone[std::size_t(lattice_.box(beyond))];
@@ -68,10 +86,9 @@ class LatticeMesh {
       }
   }
 
-  void add_patch(char const* family, char const* bc_type, PatchKind kind, int zone, int axis, int side,
+  void add_patch(std::string const& family, char const* bc_type, PatchKind kind, int zone, int axis, int side,
                  IndexRange const& range) {
-    mesh_.patches.push_back(
-        {std::string(family) + " " + std::string(face_name(axis, side)), bc_type, kind, {family}, zone, range});
+    mesh_.patches.push_back({family + " " + std::string(face_name(axis, side)), bc_type, kind, {family}, zone, range});
   }
 
   void add_interface(int zone, int donor, int axis, int side, IndexRange const& range) {
@@ -97,13 +114,42 @@ class LatticeMesh {
     for (int k = 0; k < zone.extent[2]; ++k)
       for (int j = 0; j < zone.extent[1]; ++j)
         for (int i = 0; i < zone.extent[0]; ++i)
-          mesh_.coordinates.set(zone.node({i, j, k}), {plane(0, i), plane(1, j), plane(2, k)});
+          mesh_.coordinates.set(zone.node({i, j, k}), lattice_.chart.place({plane(0, i), plane(1, j), plane(2, k)}));
   }
 
   FineLattice& lattice_;
+  Wrap const& wrap_;
   int dimension_;
   Mesh mesh_;
 };
+
+/// How nodes slide on a side of a chart at a place there.
+SlipRule sliding(Chart const& chart, int axis, LatticeBox const& box, int side) {
+  SlipRule rule;
+  bool const limited = bool(chart.limits[std::size_t(axis)]), turned = chart.frame == Chart::Frame::cylindrical,
+             disc = chart.frame == Chart::Frame::disc;
+  auto const a = std::size_t(axis);
+  double const at = side == 0 ? box.low[a] : box.high[a];
+  bool const rim = disc && axis < 2 && std::abs(at) > 0.5 * chart.radius;
+  if ((turned && axis == 1) || rim) {
+    rule.surface = SlipRule::Surface::revolution;
+  } else if (limited) {
+    rule.surface = SlipRule::Surface::baseline;
+  } else {
+    std::array<double, 3> on{};
+    for (std::size_t a = 0; a < 3; ++a) on[a] = 0.5 * (box.low[a] + box.high[a]);
+    on[a] = at;
+    Vec3 const p = chart.place({on[0], on[1], on[2]});
+    Vec3 normal{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+    if (turned) {
+      Vec3 const d = p - chart.origin, r = d - dot(d, chart.axis) * chart.axis;
+      normal = axis == 0 ? chart.axis : (1 / norm(r)) * cross(chart.axis, r);
+    }
+    if (disc) normal = axis == 0 ? chart.zero : axis == 1 ? chart.quarter : chart.axis;
+    rule.plane = {p, normal};
+  }
+  return rule;
+}
 
 /// Nodes between two planes of the lattice, spacings near `low` and `high` at its ends (0: any).
 std::vector<double> nodes_between(double a, double b, double low, double high, int cells, double growth) {
@@ -132,14 +178,17 @@ struct FinePlanes {
   std::vector<int> coarse;
 };
 
-FinePlanes refine(std::vector<double> const& coarse, double spacing, int cells, double growth) {
+FinePlanes refine(std::vector<double> const& coarse, std::array<bool, 2> const& reaches, double spacing, int cells,
+                  double growth) {
   FinePlanes out;
   out.planes.push_back(coarse.front());
   out.coarse.push_back(0);
   int const n = int(coarse.size()) - 1;
   auto size = [&](int i) { return coarse[std::size_t(i) + 1] - coarse[std::size_t(i)]; };
   // Outermost intervals, and those between walls far apart.
-  auto stretched = [&](int i) { return n > 1 && (i == 0 || i == n - 1 || size(i) > 1.6 * spacing); };
+  auto stretched = [&](int i) {
+    return n > 1 && ((i == 0 && !reaches[0]) || (i == n - 1 && !reaches[1]) || size(i) > 1.6 * spacing);
+  };
   for (int i = 0; i < n; ++i) {
     double const low = stretched(i) && i > 0 ? size(i - 1) / cells : 0;
     double const high = stretched(i) && i < n - 1 ? size(i + 1) / cells : 0;
@@ -181,7 +230,8 @@ Background make_background(Wrap const& wrap, int cells, double growth) {
   std::array<std::vector<int>, 3> first_cell;  // of each slab
   for (int axis = 0; axis < 3; ++axis) {
     auto const a = std::size_t(axis);
-    FinePlanes const fine = refine(wrap.planes[a], wrap.spacing, axis < wrap.dimension ? cells : 1, growth);
+    FinePlanes const fine =
+        refine(wrap.planes[a], wrap.reaches[a], wrap.spacing, axis < wrap.dimension ? cells : 1, growth);
     lattice.planes[a] = fine.planes;
     for (int p = 0; p <= wrap.cells(axis); ++p)
       if (p == 0 || p == wrap.cells(axis) || !alike(wrap, axis, p)) {
@@ -198,7 +248,27 @@ Background make_background(Wrap const& wrap, int cells, double growth) {
                                                first_cell[2][std::size_t(k)]})
                                    ? -1
                                    : 0);
-  out.mesh = LatticeMesh(lattice, wrap.dimension).run();
+  lattice.chart = wrap.domain.chart;
+  LatticeMesh blocks(lattice, wrap);
+  LatticeBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.low[a] = wrap.planes[a].front();
+    box.high[a] = wrap.planes[a].back();
+  }
+  out.mesh = blocks.run();
+  auto const has = [&](std::string const& family) {
+    return std::any_of(out.mesh.patches.begin(), out.mesh.patches.end(),
+                       [&](Patch const& patch) { return patch.families.front() == family; });
+  };
+  // The wrap may cover all of a side.
+  blocks.for_sides([&](std::string const& family, int axis, int side) {
+    if (!has(family)) return;
+    if (wrap.slides(axis, side))
+      out.sides.push_back({family, sliding(lattice.chart, axis, box, side)});
+    else
+      out.sides.push_back({family, FreeRule{}});
+  });
+  if (!has("outer")) out.outer.clear();
   return out;
 }
 
@@ -223,6 +293,10 @@ PreparedMorph prepare_background(HostInstance const& host, Background const& bac
   if (!background.outer.empty()) motion.rules.push_back({background.outer, FixedRule{}, 1, "background mesh"});
   if (background.dimension == 2 && background.lattice)
     motion.rules.push_back({{"sides"}, FreeRule{}, 2, "background mesh"});
+  for (Background::Side const& side : background.sides)
+    motion.rules.push_back({{side.family}, side.rule, 2, "background mesh"});
+  if (background.lattice && background.lattice->chart.frame != Chart::Frame::straight)
+    motion.axis = {background.lattice->chart.origin, background.lattice->chart.axis};
   PlanOptions options;
   options.volume.law = volume.law;
   options.volume.own_law = volume.own_law;

@@ -41,11 +41,12 @@ bool triangle_meets_box(std::array<Point, 3> const& t, Point const& half) {
 
 }  // namespace
 
-bool polygon_meets_box(std::span<std::array<double, 3> const> corners, LatticeBox const& box, double offset) {
+bool polygon_meets_box(std::span<std::array<double, 3> const> corners, LatticeBox const& box,
+                       std::array<double, 3> const& offset) {
   Point half{}, centre{};
   for (std::size_t a = 0; a < 3; ++a) {
     centre[a] = 0.5 * (box.low[a] + box.high[a]);
-    half[a] = 0.5 * (box.high[a] - box.low[a]) + offset;
+    half[a] = 0.5 * (box.high[a] - box.low[a]) + offset[a];
   }
   auto about_centre = [&](Point const& p) { return Point{p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]}; };
   std::size_t const last = corners.size() - 1;

@@ -20,8 +20,9 @@ Classification classify(HostInstance const& host, Mesh const& mesh, AnyWrap cons
   inside.resize(std::size_t(mesh.n_nodes()));
   out.near.assign(std::size_t(mesh.n_nodes()), 0);
   out.element.resize(std::size_t(mesh.n_elements()));
+  Coordinates const coordinates = wrap.domain.chart.mapped(host, mesh.coordinates);
   detail::for_all(host, "gridmorph::classify::nodes", mesh.n_nodes(),
-                  [&](Index n) { inside[std::size_t(n)] = std::uint8_t(wrap.contains(mesh.coordinates[n])); });
+                  [&](Index n) { inside[std::size_t(n)] = std::uint8_t(wrap.holds(coordinates[n])); });
   detail::for_all(host, "gridmorph::classify::elements", mesh.n_elements(), [&](Index e) {
     auto const corners = mesh.elements.corners(e);
     Region& region = out.element[std::size_t(e)];
@@ -30,7 +31,7 @@ Classification classify(HostInstance const& host, Mesh const& mesh, AnyWrap cons
     } else {
       LatticeBox box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
       for (Index32 const n : corners) {
-        Vec3 const p = mesh.coordinates[n];
+        Vec3 const p = coordinates[n];
         std::array<double, 3> const x{p.x, p.y, p.z};
         for (std::size_t a = 0; a < 3; ++a) {
           box.low[a] = std::min(box.low[a], x[a]);

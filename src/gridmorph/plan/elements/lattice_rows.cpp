@@ -26,7 +26,8 @@ class Locator {
   Locator(Background const& background) : lattice_(*background.lattice), dimension_(background.dimension) {}
 
   [[nodiscard]] Place operator()(Vec3 const& point) const {
-    std::array<double, 3> x{point.x, point.y, point.z};
+    Vec3 const q = lattice_.chart(point);
+    std::array<double, 3> x{q.x, q.y, q.z};
     if (dimension_ == 2) x[2] = lattice_.planes[2].front();
     Index3 slab{};
     for (std::size_t a = 0; a < 3; ++a) slab[a] = lattice_.slab[a][std::size_t(cell(a, x[a]))];

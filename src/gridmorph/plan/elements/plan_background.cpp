@@ -4,6 +4,8 @@
 #include <gridmorph/plan/place_order.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -21,7 +23,7 @@ void UnstructuredPlanner::plan_background() {
 void UnstructuredPlanner::plan_outer_box() {
   UnstructuredPlan& plan = out_.plan;
   // Any choice is made good by the residual, so a few thousand places to choose from are enough.
-  constexpr std::size_t most = 2000;
+  constexpr std::size_t most = 2000, count = 6;
   std::vector<Index32> slots;
   for (std::size_t k = 0; k < plan.known.size(); ++k)
     if (!out_.boundary.drives[k]) slots.push_back(Index32(k));
@@ -38,16 +40,38 @@ void UnstructuredPlanner::plan_outer_box() {
     if (is_wrap[b]) continue;
     Vec3 x = plan.background->mesh.coordinates[nodes[b]];
     if (mesh_.dimension == 2) x.z = 0;
-    Index32 best = -1;
-    double nearest = infinity;
-    for (std::size_t k = 0; k < slots.size(); k += step)
-      if (double const d = distance(x, mesh_.coordinates[plan.known[std::size_t(slots[k])]]);
-          d < nearest * (1 - 1e-6)) {
-        nearest = d;
-        best = slots[k];
+    // The nearest ones, by how much nearer they are than the first that is left out (R. Franke, G. Nielson 1980).
+    std::array<std::pair<double, Index32>, count + 1> nearest;
+    nearest.fill({infinity, -1});
+    for (std::size_t k = 0; k < slots.size(); k += step) {
+      double const d = distance(x, mesh_.coordinates[plan.known[std::size_t(slots[k])]]);
+      if (!(d < nearest.back().first * (1 - 1e-6))) continue;
+      std::size_t at = nearest.size() - 1;
+      for (; at > 0 && d < nearest[at - 1].first * (1 - 1e-6); --at) nearest[at] = nearest[at - 1];
+      nearest[at] = {d, slots[k]};
+    }
+    std::array<Index32, count> slot{};
+    std::array<double, count> weight{};
+    std::size_t used = 0;
+    double sum = 0;
+    for (; used < count && nearest[used].second >= 0; ++used) {
+      auto const [d, s] = nearest[used];
+      slot[used] = s;
+      double const beyond = nearest.back().first;
+      double const share = std::isfinite(beyond) ? 1e-6 + (beyond - d) / beyond : 1;
+      weight[used] = d > 0 ? share * share / (d * d) : infinity;
+      if (used > 0 && !(weight[used] > 0)) break;
+      if (!std::isfinite(weight[used])) {
+        slot[0] = s;
+        weight[0] = 1;
+        used = 1;
+        sum = 1;
+        break;
       }
-    double const one = 1;
-    plan.outer.add(Index32(b), {&best, 1}, {&one, 1});
+      sum += weight[used];
+    }
+    for (std::size_t k = 0; k < used; ++k) weight[k] /= sum;
+    plan.outer.add(Index32(b), std::span(slot).first(used), std::span(weight).first(used));
   }
 }
 
@@ -79,8 +103,10 @@ void UnstructuredPlanner::project_wrap() {
   plan.wrap = interpolation_rows(host_, mesh_, found, wrap.boundary_node);
   for (Index32& n : plan.wrap.item) n = owner(n);
   out_.report.wrap_nodes = Index(wrap.position.size());
+  // On a boundary, but for round-off and the way that trimmed ends of the wrap go beyond it.
+  double const on_boundary = out_.report.wrap ? 1e-3 * out_.report.wrap->offset : 0;
   for (Location const& where : found)
-    if (where.distance > 0) {
+    if (where.distance > on_boundary) {
       ++out_.report.wrap_outside;
       out_.report.wrap_distance = std::max(out_.report.wrap_distance, where.distance);
     }

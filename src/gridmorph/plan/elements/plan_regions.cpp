@@ -52,6 +52,7 @@ void UnstructuredPlanner::classify_by_wrap() {
   wrap.offset = out_.report.offset;
   wrap.resolution = options_.elements.resolution;
   wrap.tube = options_.elements.tube;
+  wrap.domain = find_domain();
   out_.report.wrap = make_wrap(host_, mesh_, {&faces, 1}, wrap);
   if (std::string const& note = out_.report.wrap->note; !note.empty())
     out_.notes.push_back("the wrap is made of lattice cells: " + note);

@@ -92,11 +92,7 @@ std::vector<double> UnstructuredPlanner::areas(std::vector<Index32> const& nodes
     if (face_patches_.patch[std::size_t(f)] == BoundaryFacePatches::connection &&
         std::none_of(face.begin(), face.end(), [&](Index32 n) { return is_periodic[std::size_t(owner(n))] != 0; }))
       continue;
-    Vec3 const a = mesh_.coordinates[face[0]];
-    double size = 0;
-    if (mesh_.dimension == 2) size = distance(a, mesh_.coordinates[face[1]]);
-    for (std::size_t k = 1; mesh_.dimension == 3 && k + 1 < face.size(); ++k)
-      size += 0.5 * norm(cross(mesh_.coordinates[face[k]] - a, mesh_.coordinates[face[k + 1]] - a));
+    double const size = boundary_face_size(f);
     for (Index32 const n : face) area[std::size_t(owner(n))] += size / double(face.size());
   }
   double sum = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/plan/elements/chart.hpp>
 
 #include <array>
 #include <optional>
@@ -11,11 +12,6 @@
 #include <vector>
 
 namespace gridmorph {
-
-/// A box along the axes.
-struct LatticeBox {
-  std::array<double, 3> low{}, high{};
-};
 
 /// Sections lie in planes across the axis. Between two of them the tube is ruled: the points of their rings are joined by
 /// straight lines, neighbouring lines by bilinear faces. Both ends are flat.

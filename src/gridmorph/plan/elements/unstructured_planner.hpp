@@ -1,5 +1,5 @@
 // The steps from an unstructured mesh to its plan, one file per step: make_unstructured_plan.cpp, then plan_columns.cpp, plan_turns.cpp,
-// plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
+// plan_domain.cpp, plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -80,6 +80,11 @@ class UnstructuredPlanner {
   enum Settled : std::uint8_t { nothing, turns, all };
   /// Of all nodes that are not settled, by their distances.
   void share_turns(Mask const& settled);
+
+  // plan_domain.cpp
+  /// The chart of wrap and background, and what nodes do on the sides that the mesh ends on.
+  [[nodiscard]] ChartedDomain find_domain() const;
+  [[nodiscard]] double boundary_face_size(Index face) const;
 
   // plan_regions.cpp
   double offset();

@@ -16,28 +16,33 @@ namespace {
 std::array<double, 3> array_of(Vec3 const& p) { return {p.x, p.y, p.z}; }
 
 /// Marks the cells that come closer to a wall face than the offset.
-void mark(Mesh const& mesh, std::span<CsrGraph const> walls, Wrap& wrap) {
+void mark(Coordinates const& coordinates, std::span<CsrGraph const> walls, detail::Reaches const& reaches, Wrap& wrap) {
   std::vector<std::array<double, 3>> p;
   // Cells as far as the offset are common on even meshes: round-off must not decide.
-  double const reach = wrap.offset * (1 - 1e-6);
+  std::size_t face = 0;
   for (CsrGraph const& faces : walls)
     for (Index f = 0; f < faces.size(); ++f) {
       p.clear();
+      auto const& offset = reaches[face++];
+      std::array<double, 3> reach{};
+      for (std::size_t a = 0; a < 3; ++a) reach[a] = offset[a] * (1 - 1e-6);
       LatticeBox box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
       for (Index32 const n : faces[f]) {
-        p.push_back(array_of(mesh.coordinates[n]));
+        p.push_back(array_of(coordinates[n]));
         if (wrap.dimension == 2) p.back()[2] = 0;
         for (std::size_t a = 0; a < 3; ++a) {
-          box.low[a] = std::min(box.low[a], p.back()[a] - wrap.offset);
-          box.high[a] = std::max(box.high[a], p.back()[a] + wrap.offset);
+          box.low[a] = std::min(box.low[a], p.back()[a] - offset[a]);
+          box.high[a] = std::max(box.high[a], p.back()[a] + offset[a]);
         }
       }
       Index3 first{}, last{};
       for (int a = 0; a < 3; ++a) {
         // The outermost cells stay free.
-        int const rim = a < wrap.dimension ? 1 : 0, end = wrap.cells(a) - 1 - rim;
-        first[std::size_t(a)] = std::clamp(wrap.interval(a, box.low[std::size_t(a)]), rim, end);
-        last[std::size_t(a)] = std::clamp(wrap.interval(a, box.high[std::size_t(a)]), rim, end);
+        auto const s = std::size_t(a);
+        int const begin = a < wrap.dimension && !wrap.reaches[s][0] ? 1 : 0,
+                  end = wrap.cells(a) - (a < wrap.dimension && !wrap.reaches[s][1] ? 2 : 1);
+        first[s] = std::clamp(wrap.interval(a, box.low[s]), begin, end);
+        last[s] = std::clamp(wrap.interval(a, box.high[s]), begin, end);
       }
       for (int k = first[2]; k <= last[2]; ++k)
         for (int j = first[1]; j <= last[1]; ++j)
@@ -98,8 +103,8 @@ int Wrap::interval(int axis, double coordinate) const {
   return int(above - p.begin()) - 1;
 }
 
-Index3 Wrap::find(Vec3 const& point) const {
-  return {interval(0, point.x), interval(1, point.y), dimension == 2 ? 0 : interval(2, point.z)};
+Index3 Wrap::find(Vec3 const& q) const {
+  return {interval(0, q.x), interval(1, q.y), dimension == 2 ? 0 : interval(2, q.z)};
 }
 
 bool Wrap::meets(LatticeBox const& box) const {
@@ -133,11 +138,14 @@ Wrap make_wrap(HostInstance const& host, Mesh const& mesh, std::span<CsrGraph co
   for (CsrGraph const& list : walls) faces += list.size();
   if (faces == 0) throw MeshError("there is nothing to wrap: the moving walls have no faces");
 
-  MeshExtent const domain = extent_of(host, mesh.coordinates);
+  auto const box_of = [&](Coordinates const& coordinates) {
+    MeshExtent const extent = extent_of(host, coordinates);
+    return LatticeBox{array_of(extent.low), array_of(extent.high)};
+  };
   std::string note;
   if (options.tube)
     if (auto tube = fit_tube(mesh, walls, options.offset, note)) {
-      Wrap wrap = around(std::move(*tube), {array_of(domain.low), array_of(domain.high)}, options);
+      Wrap wrap = around(std::move(*tube), box_of(mesh.coordinates), options);
       try {
         (void)make_background(wrap);
         return wrap;
@@ -145,9 +153,18 @@ Wrap make_wrap(HostInstance const& host, Mesh const& mesh, std::span<CsrGraph co
         note = e.what();
       }
     }
-  Wrap wrap = detail::make_lattice(mesh, walls, {array_of(domain.low), array_of(domain.high)}, options);
-  mark(mesh, walls, wrap);
-  detail::fill(mesh, {array_of(domain.low), array_of(domain.high)}, wrap);
+  ChartedDomain const domain = options.domain.value_or(ChartedDomain{});
+  Coordinates const coordinates = domain.chart.mapped(host, mesh.coordinates);
+  detail::Reaches const reach = detail::reaches_of(mesh.coordinates, domain.chart, walls, options.offset);
+  LatticeBox box = box_of(coordinates);
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (domain.ends(int(a), 0)) box.low[a] = domain.box.low[a];
+    if (domain.ends(int(a), 1)) box.high[a] = domain.box.high[a];
+  }
+  Wrap wrap = detail::make_lattice(mesh, coordinates, walls, reach, box, options);
+  wrap.domain = domain;
+  mark(coordinates, walls, reach, wrap);
+  detail::fill(coordinates, box, wrap);
   add_up(wrap);
   wrap.note = std::move(note);
   return wrap;

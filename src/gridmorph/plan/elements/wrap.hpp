@@ -7,6 +7,7 @@
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/plan/elements/chart.hpp>
 #include <gridmorph/plan/elements/tube.hpp>
 
 #include <array>
@@ -27,6 +28,9 @@ struct WrapOptions {
   /// A tube around walls that are long rather than wide, where one fits and the mesh around it is sound; else (see Wrap::note)
   /// cells of the lattice. Best for walls oblique to the axes: a swept wing, a diagonal rod.
   bool tube = false;
+  /// The chart that the lattice is made in, and the sides that end with the mesh: the wrap goes up to these and never beyond. Absent: x,
+  /// y and z, all sides open. A tube takes no notice of it.
+  std::optional<ChartedDomain> domain{};
 };
 
 struct Wrap {
@@ -34,11 +38,14 @@ struct Wrap {
   double offset = 0;                          ///< WrapOptions::offset
   double spacing = 0;                         ///< largest size of a cell around the walls
   double layer = 0;                           ///< smallest
+  ChartedDomain domain;                       ///< planes and boxes are in the coordinates of its chart
   std::array<std::vector<double>, 3> planes;  ///< of the lattice, the outer box included, ascending
-  std::vector<std::uint8_t> inside;           ///< per cell, i fastest; never in the outermost cells (of x and y in 2-D)
-  std::optional<Tube> tube;       ///< the wrap, instead of cells: then the lattice is one cell, the outer box
-  std::string note;               ///< why it is not the tube that was asked for
-  std::vector<std::int32_t> sum;  ///< inside cells below each lattice node: what meets() looks up
+  /// Per side, low and high: whether its outermost cells are cells as any other, since the wrap reaches the end of the mesh there.
+  std::array<std::array<bool, 2>, 3> reaches{};
+  std::vector<std::uint8_t> inside;  ///< per cell, i fastest; else never in the outermost cells (of x and y in 2-D)
+  std::optional<Tube> tube;          ///< the wrap, instead of cells: then the lattice is one cell, the outer box
+  std::string note;                  ///< why it is not the tube that was asked for
+  std::vector<std::int32_t> sum;     ///< inside cells below each lattice node: what meets() looks up
 
   [[nodiscard]] int cells(int axis) const { return int(planes[std::size_t(axis)].size()) - 1; }
   [[nodiscard]] Index n_cells() const { return Index(cells(0)) * cells(1) * cells(2); }
@@ -46,14 +53,35 @@ struct Wrap {
   [[nodiscard]] Index3 index(Index cell) const {
     return {int(cell % cells(0)), int(cell / cells(0) % cells(1)), int(cell / (Index(cells(0)) * cells(1)))};
   }
-  [[nodiscard]] bool is_inside(Index3 const& c) const { return inside[std::size_t(cell(c))] != 0; }
+  /// False for what is no cell.
+  [[nodiscard]] bool is_inside(Index3 const& c) const {
+    for (int a = 0; a < 3; ++a)
+      if (c[std::size_t(a)] < 0 || c[std::size_t(a)] >= cells(a)) return false;
+    return inside[std::size_t(cell(c))] != 0;
+  }
+  /// Whether a cell is one of the outermost, which stay free.
+  [[nodiscard]] bool is_outermost(Index3 const& c) const {
+    for (std::size_t a = 0; a < std::size_t(dimension); ++a)
+      if ((c[a] == 0 && !reaches[a][0]) || (c[a] == cells(int(a)) - 1 && !reaches[a][1])) return true;
+    return false;
+  }
+  /// Whether nodes of a background slide on a side. Where the wrap reaches it they go along: beside them the near field is not on the surface yet either, what takes
+  /// it there is the residual of the boundaries, and where one of the two stops short of that elements between them lose shape.
+  [[nodiscard]] bool slides(int axis, int which) const {
+    auto const a = std::size_t(axis), s = std::size_t(which);
+    return domain.side[a][s] == ChartedDomain::Side::slips && !reaches[a][s];
+  }
   [[nodiscard]] LatticeBox box(Index3 const& c) const;
   /// The interval of an axis that holds a coordinate, by bisection; the first or last one beyond the ends.
   [[nodiscard]] int interval(int axis, double coordinate) const;
-  /// The cell that holds a point; beyond the outer box one of the outermost. In 2-D z is not looked at.
-  [[nodiscard]] Index3 find(Vec3 const& point) const;
-  [[nodiscard]] bool contains(Vec3 const& point) const { return tube ? tube->contains(point) : is_inside(find(point)); }
-  /// Whether any point of a box is in the wrap, as contains() has it; of a tube see Tube::meets. Constant cost beyond the
+  /// The cell that holds a point of the chart; beyond the outer box one of the outermost. In 2-D z is not looked at.
+  [[nodiscard]] Index3 find(Vec3 const& coordinates) const;
+  /// Of chart coordinates.
+  [[nodiscard]] bool holds(Vec3 const& coordinates) const {
+    return tube ? tube->contains(coordinates) : is_inside(find(coordinates));
+  }
+  [[nodiscard]] bool contains(Vec3 const& point) const { return holds(domain.chart(point)); }
+  /// Whether any point of a box of the chart is in the wrap, as holds() has it; of a tube see Tube::meets. Constant cost beyond the
   /// bisection.
   [[nodiscard]] bool meets(LatticeBox const& box) const;
   [[nodiscard]] Index n_inside() const { return sum.empty() ? 0 : sum.back(); }
@@ -63,7 +91,7 @@ struct Wrap {
 /// wall than the offset (along each axis, so at most sqrt(3) times the offset in the cells' corners); then gaps of one cell
 /// are closed, enclosed hollows filled, and cells that touch only along an edge or at a corner joined by their neighbours.
 /// Lattice: even spacing where there are walls, offset included; single intervals between walls far apart and out to
-/// the outer box. Throws MeshError without walls, MotionError without a positive offset. Cost: linear in faces and cells.
+/// the outer box. Where the mesh ends on a side of WrapOptions::domain within half a cell, cells go on to that side. Throws MeshError without walls, MotionError without a positive offset. Cost: linear in faces and cells.
 Wrap make_wrap(HostInstance const& host, Mesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options);
 
 /// What the offset of the wrap depends on; lengths, 0 where unknown.

@@ -7,7 +7,8 @@ namespace {
 
 class Filler {
  public:
-  Filler(Mesh const& mesh, LatticeBox const& domain, Wrap& wrap) : mesh_(mesh), wrap_(wrap) {
+  Filler(Coordinates const& coordinates, LatticeBox const& domain, Wrap& wrap)
+      : coordinates_(coordinates), wrap_(wrap) {
     for (int a = 0; a < 3; ++a) {
       auto const s = std::size_t(a);
       first_[s] = a < wrap.dimension ? wrap.interval(a, domain.low[s]) : 0;
@@ -25,13 +26,14 @@ class Filler {
   }
 
  private:
-  [[nodiscard]] bool outermost(Index3 const& c) const {
-    for (int a = 0; a < wrap_.dimension; ++a)
-      if (c[std::size_t(a)] == 0 || c[std::size_t(a)] == wrap_.cells(a) - 1) return true;
-    return false;
+  /// Ends of the mesh that the wrap reaches count as wrapped: what is left between them and the wrap is a gap or a dent too.
+  [[nodiscard]] bool wrapped(Index3 const& c) const {
+    for (std::size_t a = 0; a < std::size_t(wrap_.dimension); ++a)
+      if ((c[a] < 0 && wrap_.reaches[a][0]) || (c[a] >= wrap_.cells(int(a)) && wrap_.reaches[a][1])) return true;
+    return wrap_.is_inside(c);
   }
   bool add(Index3 const& c) {
-    if (outermost(c) || wrap_.is_inside(c)) return false;
+    if (wrap_.is_outermost(c) || wrap_.is_inside(c)) return false;
     wrap_.inside[std::size_t(wrap_.cell(c))] = 1;
     return true;
   }
@@ -45,10 +47,9 @@ class Filler {
     std::vector<Index3> gaps;
     for (Index n = 0; n < wrap_.n_cells(); ++n) {
       Index3 const c = wrap_.index(n);
-      if (outermost(c) || wrap_.is_inside(c)) continue;
+      if (wrap_.is_outermost(c) || wrap_.is_inside(c)) continue;
       for (int a = 0; a < wrap_.dimension; ++a)
-        if (wrap_.is_inside(shifted(c, a, -1)) && wrap_.is_inside(shifted(c, a, 1)) &&
-            size(c, a) < 1.6 * wrap_.spacing) {
+        if (wrapped(shifted(c, a, -1)) && wrapped(shifted(c, a, 1)) && size(c, a) < 1.6 * wrap_.spacing) {
           gaps.push_back(c);
           break;
         }
@@ -69,10 +70,10 @@ class Filler {
       dents.clear();
       for (Index n = 0; n < wrap_.n_cells(); ++n) {
         Index3 const c = wrap_.index(n);
-        if (outermost(c) || wrap_.is_inside(c)) continue;
+        if (wrap_.is_outermost(c) || wrap_.is_inside(c)) continue;
         int sides = 0;
         for (int a = 0; a < wrap_.dimension; ++a)
-          sides += int(wrap_.is_inside(shifted(c, a, -1))) + int(wrap_.is_inside(shifted(c, a, 1)));
+          sides += int(wrapped(shifted(c, a, -1))) + int(wrapped(shifted(c, a, 1)));
         if (sides > wrap_.dimension) dents.push_back(c);
       }
       for (Index3 const& c : dents) changed = add(c) || changed;
@@ -135,7 +136,7 @@ class Filler {
       while (!stack.empty()) {
         Index3 const c = wrap_.index(stack.back());
         stack.pop_back();
-        if (outermost(c)) open.back() = 1;
+        if (wrap_.is_outermost(c)) open.back() = 1;
         for (int a = 0; a < wrap_.dimension; ++a)
           for (int const by : {-1, 1}) {
             auto const s = std::size_t(a);
@@ -169,21 +170,23 @@ class Filler {
   void find_nodes(std::vector<int> const& part, std::vector<char> const& at_limit, std::vector<char>& open) const {
     Index missing = 0;
     for (std::size_t p = 0; p < open.size(); ++p) missing += at_limit[p] != 0 && open[p] == 0 ? 1 : 0;
-    for (Index n = 0; n < mesh_.n_nodes() && missing > 0; ++n) {
-      int const p = part[std::size_t(wrap_.cell(wrap_.find(mesh_.coordinates[n])))];
+    for (Index n = 0; n < coordinates_.size() && missing > 0; ++n) {
+      int const p = part[std::size_t(wrap_.cell(wrap_.find(coordinates_[n])))];
       if (p < 0 || at_limit[std::size_t(p)] == 0 || open[std::size_t(p)] != 0) continue;
       open[std::size_t(p)] = 1;
       --missing;
     }
   }
 
-  Mesh const& mesh_;
+  Coordinates const& coordinates_;
   Wrap& wrap_;
   Index3 first_{}, last_{};  ///< cells that the box of the mesh meets
 };
 
 }  // namespace
 
-void fill(Mesh const& mesh, LatticeBox const& domain, Wrap& wrap) { Filler(mesh, domain, wrap).run(); }
+void fill(Coordinates const& coordinates, LatticeBox const& domain, Wrap& wrap) {
+  Filler(coordinates, domain, wrap).run();
+}
 
 }  // namespace gridmorph::detail

@@ -59,8 +59,8 @@ Mesh wrap_mesh(Wrap const& wrap) {
     Index32& n = number[std::size_t(i + ni * (j + nj * k))];
     if (n < 0) {
       n = Index32(points.size());
-      points.push_back({wrap.planes[0][std::size_t(i)], wrap.planes[1][std::size_t(j)],
-                        flat ? 0.0 : wrap.planes[2][std::size_t(k)]});
+      points.push_back(wrap.domain.chart.place({wrap.planes[0][std::size_t(i)], wrap.planes[1][std::size_t(j)],
+                                                flat ? 0.0 : wrap.planes[2][std::size_t(k)]}));
     }
     return n;
   };

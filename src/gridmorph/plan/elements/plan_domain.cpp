@@ -1,0 +1,61 @@
+#include <gridmorph/plan/elements/fit_domain.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+
+#include <array>
+
+namespace gridmorph::detail {
+
+ChartedDomain UnstructuredPlanner::find_domain() const {
+  BoundaryConditions const& b = out_.boundary;
+  Mask moves(std::size_t(topology_.boundary.size()), 0);
+  for (Index32 const f : driving_faces_) moves[std::size_t(f)] = 1;
+  std::vector<Axis> axes{b.motion->motion().axis};
+  for (SlipSurface const& s : b.motion->slip_surfaces())
+    if (s.kind == SlipKind::revolution || s.kind == SlipKind::meridional) axes.push_back({s.origin, s.direction});
+  FittedDomain fitted = fit_domain(host_, mesh_, topology_.boundary, moves, axes);
+
+  // What most of a side does, by area.
+  enum What : std::uint8_t { nothing, stands, slips, is_image };
+  std::vector<std::uint8_t> what(std::size_t(mesh_.n_nodes()), nothing);
+  for (Index32 const n : b.slip_nodes) what[std::size_t(n)] = slips;
+  for (auto const& image : b.images) what[std::size_t(image.node)] = what[std::size_t(image.owner)] = is_image;
+  for (Index32 const n : b.known) what[std::size_t(n)] = stands;
+  std::array<std::array<double, 4>, 6> area{};
+  for (Index f = 0; f < topology_.boundary.size(); ++f) {
+    int const side = fitted.side_of_face[std::size_t(f)];
+    if (side < 0 || moves[std::size_t(f)] != 0) continue;
+    auto const face = topology_.boundary.nodes[f];
+    std::array<int, 4> count{};
+    for (Index32 const n : face) ++count[what[std::size_t(owner(n))]];
+    // Edges and corners belong to several sides, and stand where one of them does.
+    std::size_t const kind = count[slips] > 0      ? slips
+                             : count[is_image] > 0 ? is_image
+                             : count[stands] > 0   ? stands
+                                                   : nothing;
+    area[std::size_t(side)][kind] += boundary_face_size(f);
+  }
+  using Side = ChartedDomain::Side;
+  for (std::size_t s = 0; s < 6; ++s) {
+    Side& side = fitted.domain.side[s / 2][s % 2];
+    auto const& a = area[s];
+    if (side == Side::open) continue;
+    double const most = std::max(a[stands], a[nothing]);
+    if (a[slips] > most && a[slips] >= a[is_image])
+      side = Side::slips;
+    else if (a[is_image] > most)
+      side = Side::free;
+  }
+  return std::move(fitted.domain);
+}
+
+double UnstructuredPlanner::boundary_face_size(Index face) const {
+  auto const nodes = topology_.boundary.nodes[face];
+  Vec3 const a = mesh_.coordinates[nodes[0]];
+  if (mesh_.dimension == 2) return distance(a, mesh_.coordinates[nodes[1]]);
+  double size = 0;
+  for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
+    size += 0.5 * norm(cross(mesh_.coordinates[nodes[k]] - a, mesh_.coordinates[nodes[k + 1]] - a));
+  return size;
+}
+
+}  // namespace gridmorph::detail
