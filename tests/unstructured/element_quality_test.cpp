@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -145,6 +146,31 @@ TEST(ElementQuality, SkewTetrahedronHasTheScaledJacobianOfItsWorstCorner) {
     EXPECT_NEAR(element_measures(ElementType::tetrahedron, c, 1, up).determinant_2x2x2, std::sqrt(2.0) * h / product,
                 1e-14);
     EXPECT_NEAR(element_measures(ElementType::tetrahedron, c, 1, up).aspect_ratio, std::sqrt(2.0) / h, 1e-12);
+  }
+}
+
+TEST(ElementQuality, AnglesOfATetrahedronAreThoseOfItsFourTriangles) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> shift(-0.9, 0.9);
+  for (int n = 0; n < 200; ++n) {
+    auto points = regular_tetrahedron;
+    for (auto& p : points) p += Vec3{shift(random), shift(random), shift(random)};
+    if (n % 4 == 0) points[std::size_t(n) / 4 % 4] = points[(std::size_t(n) / 4 + 1) % 4];  // an edge without length
+    double smallest = 180, largest = 0;
+    for (std::size_t at = 0; at < 4; ++at)
+      for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = 0; b < a; ++b) {
+          if (a == at || b == at) continue;
+          Vec3 const u = points[a] - points[at], v = points[b] - points[at];
+          if (norm(u) == 0 || norm(v) == 0) continue;
+          double const angle =
+              std::acos(std::clamp(dot(u, v) / (norm(u) * norm(v)), -1.0, 1.0)) * 180 / std::acos(-1.0);
+          smallest = std::min(smallest, angle);
+          largest = std::max(largest, angle);
+        }
+    CellMeasures const m = element_measures(ElementType::tetrahedron, corners(points), 1, up);
+    EXPECT_NEAR(m.minimum_angle_deg, smallest, 1e-5) << n;
+    EXPECT_NEAR(m.equiangle_skewness, std::max((largest - 60) / 120, (60 - smallest) / 60), 1e-7) << n;
   }
 }
 

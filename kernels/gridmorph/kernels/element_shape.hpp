@@ -52,7 +52,7 @@ KOKKOS_INLINE_FUNCTION constexpr bool is_surface(ElementType type) {
 }
 
 /// Corner at end 0 or 1 of an edge.
-KOKKOS_INLINE_FUNCTION constexpr int edge_corner(ElementType type, int edge, int end) {
+KOKKOS_FORCEINLINE_FUNCTION constexpr int edge_corner(ElementType type, int edge, int end) {
   constexpr std::int8_t corner[n_element_types - 1][max_edges][2] = {
       {{0, 1}, {1, 2}, {2, 0}},
       {{0, 1}, {1, 2}, {2, 3}, {3, 0}},
@@ -75,14 +75,14 @@ KOKKOS_INLINE_FUNCTION constexpr int edge_direction(ElementType type, int edge) 
   return direction[int(type)][edge];
 }
 
-KOKKOS_INLINE_FUNCTION constexpr int n_face_corners(ElementType type, int face) {
+KOKKOS_FORCEINLINE_FUNCTION constexpr int n_face_corners(ElementType type, int face) {
   constexpr std::int8_t n[n_element_types - 1][max_faces] = {{2, 2, 2},       {2, 2, 2, 2},    {3, 3, 3, 3},
                                                              {4, 3, 3, 3, 3}, {4, 4, 4, 3, 3}, {4, 4, 4, 4, 4, 4}};
   return n[int(type)][face];
 }
 
 /// Corner number `at` of a side, in the order that makes its normal point outwards.
-KOKKOS_INLINE_FUNCTION constexpr int face_corner(ElementType type, int face, int at) {
+KOKKOS_FORCEINLINE_FUNCTION constexpr int face_corner(ElementType type, int face, int at) {
   constexpr std::int8_t corner[n_element_types - 1][max_faces][max_face_corners] = {
       {{0, 1}, {1, 2}, {2, 0}},
       {{0, 1}, {1, 2}, {2, 3}, {3, 0}},
