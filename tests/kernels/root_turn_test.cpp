@@ -110,6 +110,48 @@ TEST(RootTurn, KeepsLinesOffTheFacesOfAnEdgeAsWellAsNoTurnWould) {
   EXPECT_GT(limited, 20) << "there is something to keep";
 }
 
+TEST(RootTurn, IsThatOfAWallOfElementsWithTheSameColumns) {
+  Random random(5);
+  int limited = 0;
+  for (int n = 0; n < 200; ++n) {
+    Corner corner(random);
+    Arrays x(4);
+    std::vector<Vec3> u, rate;
+    for (int k = 0; k < 4; ++k) {
+      if (k > 0) x.field().set(k, corner.arm[std::size_t(k - 1)]);
+      corner.u.field().set(k, 0.3 * (k == 0 ? 1 : norm(corner.arm[std::size_t(k - 1)])) * random.vector(1));
+      corner.rate.field().set(k, 0.1 * random.vector(1));
+      u.push_back(corner.u.read()[k]);
+      rate.push_back(corner.rate.read()[k]);
+    }
+    Vec3 const up = (1 / std::sqrt(3.0)) * Vec3{1, 1, 1};
+    kernels::WallTable<Host> table{view<std::int32_t>({0}),
+                                   view<Index>({0, 6}),
+                                   view<std::int32_t>({1, 2, 2, 3, 3, 1}),
+                                   view<std::uint8_t>({1}),
+                                   false,
+                                   {0, 0, 1},
+                                   view<Index>({0, 1}),
+                                   view<Vec3>({corner.line})};
+    Vec3 found, found_rate;
+    kernels::WallTurn<Host, Vec3>{table, {x.read()}, {x.read(), u.data()}, &found}(0);
+    kernels::WallTurn<Host, DualVec3>{table, {x.read()}, {x.read(), u.data(), rate.data()}, &found_rate}(0);
+    EXPECT_LT(distance(found, corner.found()), 1e-12) << n;
+    EXPECT_LT(distance(found_rate, corner.rate_found()), 1e-9 * (1 + norm(found_rate))) << n;
+    // Of two columns the one that allows less decides.
+    table.first_line = view<Index>({0, 2});
+    table.lines = view<Vec3>({up, corner.line});
+    Vec3 both;
+    kernels::WallTurn<Host, Vec3>{table, {x.read()}, {x.read(), u.data()}, &both}(0);
+    EXPECT_LE(norm(both), norm(found) + 1e-15) << n;
+    table.first_line = view<Index>({0, 0});
+    Vec3 free;
+    kernels::WallTurn<Host, Vec3>{table, {x.read()}, {x.read(), u.data()}, &free}(0);
+    limited += norm(found) < 0.999 * norm(free) ? 1 : 0;
+  }
+  EXPECT_GT(limited, 20);
+}
+
 TEST(RootTurn, HasTheRateThatDifferencesHaveAtEdges) {
   Random random(3);
   int far_off = 0;

@@ -15,6 +15,7 @@
 // Cost: surfaces; per root about 300 flops and its neighbours read from cache.
 #pragma once
 
+#include <gridmorph/kernels/kept_height.hpp>
 #include <gridmorph/kernels/slip_surface.hpp>
 #include <gridmorph/kernels/wall_turn.hpp>
 
@@ -129,7 +130,10 @@ struct RawRootTurn {
     if (!(size > 0)) return swing;
     V const axis = (1 / size) * moved;
     V const turn = turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after));
-    return dot(root.line, root.line) > 0 ? share_that_keeps_heights(root, turn, before, after) * turn : turn;
+    if (!(dot(root.line, root.line) > 0)) return turn;
+    auto const face_before = [&](Index k) { return cross(before(2 * k), before(2 * k + 1)); };
+    auto const face_after = [&](Index k) { return cross(after(2 * k), after(2 * k + 1)); };
+    return share_that_keeps_height(root.line, turn, root.n_neighbours / 2, face_before, face_after) * turn;
   }
   /// Normals of faces that lie on one another, all towards the side of the first.
   template <class Before, class After>
@@ -142,33 +146,6 @@ struct RawRootTurn {
       normal = normal + side * face;
       moved = moved + side * cross(after(k), after(k + 1));
     }
-  }
-  /// With h(f) the height of the line's first node above a face after a share f of the turn, over that before: the largest f with
-  /// h(f) >= min(k, h(0)) for all faces, h taken as linear. k is 1/2 where the line stands half way between a face and its normal, and
-  /// 0.99 where it leans to the face.
-  template <class Before, class After>
-  KOKKOS_INLINE_FUNCTION static auto share_that_keeps_heights(Root const& root, V const& turn, Before const& before,
-                                                              After const& after) {
-    using Scalar = std::decay_t<decltype(dot(turn, turn))>;
-    V const line{root.line}, change = turned_by(turn, line);
-    Scalar share{1};
-    for (Index k = 0; k < root.n_neighbours; k += 2) {
-      V const face = cross(before(k), before(k + 1)), moved = cross(after(k), after(k + 1));
-      auto const height = dot(face, line), size = norm(moved);
-      bool const above = height > 0.05 * norm(value_of(face)) && size > 0;
-      if (!above) continue;
-      auto const unit = norm(face) / (size * height), stays = unit * dot(moved, line);
-      double const sine = value_of(height / norm(face)), keep = 1.2 - 1.4 * sine * sine;
-      auto const loss = -unit * dot(moved, change), room = stays - Scalar{keep < 0.99 ? keep : 0.99};
-      if (!((loss - room) > 0)) continue;
-      if (room > 0) {
-        auto const most = room / loss;
-        if ((share - most) > 0) share = most;
-      } else if (loss > 0) {
-        return Scalar{};
-      }
-    }
-    return share;
   }
 };
 

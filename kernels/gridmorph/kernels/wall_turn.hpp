@@ -18,6 +18,7 @@
 
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/inverse_distance.hpp>
+#include <gridmorph/kernels/kept_height.hpp>
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/rotation.hpp>
 
@@ -80,16 +81,22 @@ struct WallTable {
   Kokkos::View<std::uint8_t const*, MemorySpace> turns;   ///< (n_walls) whether its rotation is followed
   bool flat = false;                                      ///< 2-D
   Vec3 across;                                            ///< the plane's normal
+  /// First edges of the columns on each node, unit, as the wall's normals: first_line(r) on; none of any where empty.
+  Kokkos::View<Index const*, MemorySpace> first_line;
+  Kokkos::View<Vec3 const*, MemorySpace> lines;
 
+  /// Of one of the faces around node r, `pair` the number of its first neighbour; x: the node there.
+  template <class V>
+  KOKKOS_INLINE_FUNCTION V face(Index pair, V const& x, Positions<V> const& at) const {
+    V const a = at[around(pair)], b = at[around(pair + 1)];
+    return flat ? cross(b - a, V{across}) : cross(a - x, b - x);
+  }
   /// Weighted by area.
   template <class V>
   KOKKOS_INLINE_FUNCTION V normal(Index r, Positions<V> const& at) const {
     V const x = at[node(r)];
     V sum{};
-    for (Index k = first(r); k < first(r + 1); k += 2) {
-      V const a = at[around(k)], b = at[around(k + 1)];
-      sum = sum + (flat ? cross(b - a, V{across}) : cross(a - x, b - x));
-    }
+    for (Index k = first(r); k < first(r + 1); k += 2) sum = sum + face(k, x, at);
     return sum;
   }
 };
@@ -111,6 +118,27 @@ struct WallTurn {
 
  private:
   KOKKOS_INLINE_FUNCTION V turn_at(Index r) const {
+    V const turn = turn_of_faces(r);
+    if (wall.lines.extent(0) == 0) return turn;
+    V const x = baseline[wall.node(r)], y = moved[wall.node(r)];
+    Index const first = wall.first(r), n_faces = (wall.first(r + 1) - first) / 2;
+    V kept = turn;
+    auto least = norm(turn);
+    for (Index k = wall.first_line(r); k < wall.first_line(r + 1); ++k) {
+      V const limited =
+          share_that_keeps_height(
+              wall.lines(k), turn, n_faces, [&](Index f) { return wall.face(first + 2 * f, x, baseline); },
+              [&](Index f) { return wall.face(first + 2 * f, y, moved); }) *
+          turn;
+      auto const size = norm(limited);
+      if (!((least - size) > 0)) continue;
+      kept = limited;
+      least = size;
+    }
+    return kept;
+  }
+
+  KOKKOS_INLINE_FUNCTION V turn_of_faces(Index r) const {
     V const after = wall.normal(r, moved);
     V const before = wall.normal(r, baseline);
     if (wall.flat) return settled(turn_between(before, after, wall.across));

@@ -60,6 +60,9 @@ struct UnstructuredPlan {
   std::vector<Index32> driving_slots;  ///< where they are in `known`
   std::vector<std::uint8_t> turns;     ///< (driving) whether the rotation of the wall there is followed
   CsrGraph one_rings;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see one_rings.hpp
+  /// Per driving node the first edges of the columns on it, unit, on the side to which the wall's normals look: those of node r from first_line[r] on.
+  std::vector<Index> first_line;
+  std::vector<Vec3> lines;
   ColumnPlan columns;
   TurningBodies turns_of_bodies;
   /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements what it misses. By

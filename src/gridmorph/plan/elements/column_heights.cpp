@@ -63,6 +63,7 @@ Columns cut(Columns const& columns, std::vector<double> const& height) {
     if (above > height[root] + allowed * layer) continue;
     out.node.push_back(columns.node[k]);
     out.root.push_back(columns.root[k]);
+    out.below.push_back(columns.below[k]);
     out.above_wall.push_back(columns.above_wall[k]);
   }
   return out;

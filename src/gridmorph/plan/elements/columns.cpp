@@ -119,6 +119,7 @@ Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, Nod
         height = std::max(height, h);
         out.node.push_back(above);
         out.root.push_back(root[std::size_t(above)]);
+        out.below.push_back(below);
       }
       Index32 const behind = topology.sides.of(at.element)[std::size_t(opposite.side)];
       if (behind < 0) continue;

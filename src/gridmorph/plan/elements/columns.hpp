@@ -11,7 +11,8 @@ namespace gridmorph {
 struct Columns {
   /// Nodes above walls, layer by layer, each in one column; walls themselves are not listed.
   std::vector<Index32> node;
-  std::vector<Index32> root;       ///< the wall node below
+  std::vector<Index32> root;       ///< the wall node at the foot
+  std::vector<Index32> below;      ///< the node beneath: of the wall, or one listed before
   std::vector<double> above_wall;  ///< length of the column up to the node
   std::vector<double> height;      ///< (n_nodes) of the mesh: of the column on a wall node, 0 where there is none
 

@@ -61,6 +61,7 @@ void UnstructuredPlanner::find_columns() {
   std::vector<ColumnExtent> extents;
   for (Index32 const f : driving_faces_) extents.push_back(extent_of_face(f));
   columns_ = make_columns(mesh_, topology_, out_.graph, driving_faces_, extents, is_known_);
+  find_wall_lines();
   out_.report.n_columns = std::count_if(columns_.height.begin(), columns_.height.end(), [](double h) { return h > 0; });
   columns_ = cut(columns_, smooth_heights(out_.graph, columns_, most_heights()));
   for (double const h : columns_.height) out_.report.layer_height = std::max(out_.report.layer_height, h);
@@ -135,6 +136,29 @@ void UnstructuredPlanner::plan_one_rings() {
   for (Index32 const n : plan.driving)
     plan.turns.push_back(mode[std::size_t(n)] == BoundaryLayer::Mode::translate ? 0 : 1);
   plan.one_rings = wall_one_rings(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
+}
+
+void UnstructuredPlanner::find_wall_lines() {
+  UnstructuredPlan& plan = out_.plan;
+  auto const& x = mesh_.coordinates;
+  std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
+  for (std::size_t k = 0; k < plan.driving.size(); ++k) place[std::size_t(plan.driving[k])] = Index32(k);
+  auto const normal = wall_normals(mesh_, topology_, out_.graph, driving_faces_);
+  std::vector<std::vector<Vec3>> lines(plan.driving.size());
+  for (std::size_t k = 0; k < columns_.node.size(); ++k) {
+    Index32 const root = columns_.root[k];
+    if (columns_.below[k] != root) continue;
+    Vec3 const line = x[columns_.node[k]] - x[root];
+    double const length = norm(line);
+    if (!(length > 0)) continue;
+    double const side = dot(line, normal[std::size_t(root)]) < 0 ? -1 : 1;
+    lines[std::size_t(place[std::size_t(root)])].push_back((side / length) * line);
+  }
+  plan.first_line.assign(1, 0);
+  for (auto const& of_node : lines) {
+    plan.lines.insert(plan.lines.end(), of_node.begin(), of_node.end());
+    plan.first_line.push_back(Index(plan.lines.size()));
+  }
 }
 
 void UnstructuredPlanner::plan_columns() {

@@ -121,8 +121,14 @@ std::pair<double, double> UnstructuredPlanner::reach_beyond_turns() const {
     using T = typename std::decay_t<decltype(list)>::value_type;
     return Kokkos::View<T const*, Host>(list.data(), list.size());
   };
-  kernels::WallTable<Host> const walls{view(plan.driving), view(plan.one_rings.first), view(plan.one_rings.item),
-                                       view(plan.turns),   plan.dimension == 2,        plan.plane_normal};
+  kernels::WallTable<Host> const walls{view(plan.driving),
+                                       view(plan.one_rings.first),
+                                       view(plan.one_rings.item),
+                                       view(plan.turns),
+                                       plan.dimension == 2,
+                                       plan.plane_normal,
+                                       {},
+                                       {}};
   auto const& c = mesh_.coordinates;
   kernels::Field<double const> const x{c.x.data(), c.y.data(), c.z.data()};
   std::vector<Vec3> turn(plan.driving.size());

@@ -55,6 +55,8 @@ class UnstructuredPlanner {
   void find_columns();
   /// Columns are as long as a user says; otherwise they leave room in gaps.
   [[nodiscard]] std::vector<double> most_heights() const;
+  /// Directions of the columns on driving nodes, before columns are cut.
+  void find_wall_lines();
   void plan_columns();
   /// Columns of walls that stand: they are held in place, as far as moving walls leave room.
   void find_standing_columns();
