@@ -164,7 +164,9 @@ struct Wall {
              view(pairs),
              view<std::uint8_t>({1}),
              flat,
-             {0, 0, 1}};
+             {0, 0, 1},
+             {},
+             {}};
   }
   void turn(Vec3 const& by, Vec3 const& shift) {
     for (int n = 0; n < 9; ++n) u[n] = shift + matrix_of(by) * x.read()[n] - x.read()[n];

@@ -1,4 +1,5 @@
 // Bodies that turn as a whole: the rotation that their walls make, how it fades, and what large turns leave of meshes.
+#include "kernels/tables.hpp"
 #include "support/made_bodies.hpp"
 #include "support/random.hpp"
 #include "support/reduced.hpp"
@@ -331,6 +332,33 @@ TEST(TurningBody, ASphereShiftsByMostOfTheWayToAnOuterOneTwentyDiametersAway) {
       EXPECT_GT(c.quality(m.x)[Measure::minimum_angle_deg].min, 0.6 * before);
     }
   }
+}
+
+TEST(TurningBody, ItsImageTurnsInTheFrameOfTheImage) {
+  Random random(8);
+  Vec3 const centre = random.vector(2), axis = random.vector(1), at = random.vector(3);
+  RigidTransform const move = rotation_about(random.vector(1), random.vector(1), 0.7);
+  double const angle = 0.9, f = 0.4;
+  std::vector<kernels::BodyImage> const images{{0, {}, {}}, {0, move.rotation, move.translation}};
+  std::vector<double> const share{0, f}, shift_share{0};
+  std::vector<Vec3> const centres{centre}, shift{{}};
+  kernels::Quaternion<Vec3> const half = kernels::quaternion_of_half(std::tan(angle / 4) / norm(axis) * axis);
+  Coordinates x(1);
+  x.set(0, at);
+  kernels::BodyTurnField<Kokkos::HostSpace, Vec3> const field{view(share),
+                                                              view(shift_share),
+                                                              view(images),
+                                                              view(centres),
+                                                              &half,
+                                                              nullptr,
+                                                              shift.data(),
+                                                              nullptr,
+                                                              {x.x.data(), x.y.data(), x.z.data()}};
+  // Around the image's centre, about the image's axis; the share is exact at 0 and 1 and to 2 degrees between.
+  auto const turned = rotation_about(move(centre), move.rotation * axis, f * angle);
+  EXPECT_LT(distance(at + field(0), turned(at)), 0.03 * distance(at, move(centre)));
+  EXPECT_NEAR(distance(at + field(0), move(centre)), distance(at, move(centre)), 1e-13) << "nothing shrinks";
+  EXPECT_NEAR(dot(field(0), move.rotation * axis), 0, 1e-13);
 }
 
 TEST(TurningBody, LeavesAShiftThatAllBoundariesShareToTheRest) {

@@ -21,6 +21,8 @@
 // times the whole one to 2 degrees over half a turn, nothing shrinks, and a node costs no trigonometry. Half a turn has one axis for all
 // nodes (settled()).
 //
+// Behind periodic connections a body comes again as images: image k, moved by x' = Q x + t, adds Q (R_b(f_k) - I)(Q^T (x - t) - c_b) with a share of its own.
+//
 // Cost per wall node: 24 bytes of tables and 120 of its motion read, 24 flops. Per node: 16 bytes of shares for each body, 24 of coordinates
 // and 48 of displacements, about 76 flops where the shares are not zero.
 #pragma once
@@ -243,13 +245,22 @@ struct ShiftBodies {
   }
 };
 
+/// A body itself, or as it comes again: place and what it does there by x' = rotation x + translation.
+struct BodyImage {
+  std::int32_t body;
+  Mat3 rotation;
+  Vec3 translation;
+};
+
 /// What the turns and shifts of all bodies add to a node, and to the motion around a body's walls.
 template <class MemorySpace, class V>
 struct BodyTurnField {
-  Kokkos::View<double const*, MemorySpace> share, shift_share;  ///< (n_bodies, n_nodes)
-  Kokkos::View<Vec3 const*, MemorySpace> centre;                ///< (n_bodies)
-  Quaternion<Vec3> const *half, *half_rate;                     ///< (n_bodies)
-  Vec3 const *shift, *shift_rate;                               ///< (n_bodies)
+  Kokkos::View<double const*, MemorySpace> share;        ///< (n_images, n_nodes)
+  Kokkos::View<double const*, MemorySpace> shift_share;  ///< (n_bodies, n_nodes)
+  Kokkos::View<BodyImage const*, MemorySpace> images;    ///< first the bodies themselves
+  Kokkos::View<Vec3 const*, MemorySpace> centre;         ///< (n_bodies)
+  Quaternion<Vec3> const *half, *half_rate;              ///< (n_bodies)
+  Vec3 const *shift, *shift_rate;                        ///< (n_bodies)
   Field<double const> x;
 
   /// R y - y of the share f of body b's rotation.
@@ -262,15 +273,24 @@ struct BodyTurnField {
   }
   KOKKOS_INLINE_FUNCTION V operator()(Index n) const {
     V sum{};
-    Index const n_bodies = Index(centre.extent(0)), n_nodes = Index(share.extent(0)) / n_bodies;
+    Index const n_bodies = Index(centre.extent(0)), n_nodes = Index(shift_share.extent(0)) / n_bodies;
     for (Index b = 0; b < n_bodies; ++b) {
       if (double const f = share(b * n_nodes + n); f != 0) sum = sum + turned(b, f, x[n] - centre(b));
       if (double const s = shift_share(b * n_nodes + n); s != 0) sum = sum + s * shift_of_body(b);
     }
+    for (Index k = n_bodies; k < Index(images.extent(0)); ++k)
+      if (double const f = share(k * n_nodes + n); f != 0) sum = sum + turned_by_image(images(k), f, x[n]);
     return sum;
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION V turned_by_image(BodyImage const& image, double f, Vec3 const& at) const {
+    V const own = turned(image.body, f, transpose(image.rotation) * (at - image.translation) - centre(image.body));
+    if constexpr (has_rate<V>)
+      return {image.rotation * own.value, image.rotation * own.rate};
+    else
+      return image.rotation * own;
+  }
   KOKKOS_INLINE_FUNCTION V shift_of_body(Index b) const {
     if constexpr (has_rate<V>)
       return {shift[b], shift_rate[b]};

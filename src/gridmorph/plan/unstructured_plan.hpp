@@ -44,8 +44,10 @@ struct TurningBodies {
   std::vector<Index> first_chunk;        ///< of each body, of the others, and the end
   std::vector<Index32> body_of_driving;  ///< (UnstructuredPlan::driving) -1: none
   std::vector<Index32> rigid;            ///< nodes of the bodies' walls and of the columns on them
-  std::vector<double> share;  ///< (bodies, n_nodes) of the body's turn that a node makes, plan/elements/turn_share.hpp
-  std::vector<double> shift_share;  ///< likewise, of its shift
+  std::vector<kernels::BodyImage>
+      images;                 ///< first the bodies themselves, then as they come again behind free periodic connections
+  std::vector<double> share;  ///< (images, n_nodes) of the image's turn that a node makes, plan/elements/turn_share.hpp
+  std::vector<double> shift_share;  ///< (bodies, n_nodes) of the body's shift
 
   [[nodiscard]] Index size() const { return Index(centre.size()); }
 };
@@ -82,7 +84,9 @@ struct UnstructuredPlan {
   /// them the nodes of columns on walls that stand, which ask for what their wall does.
   std::vector<Index32> residual_nodes;
   std::vector<Index32> residual_slot;  ///< in `known`, or -1
-  CsrGraph residual_surfaces;          ///< slip surfaces, where not known
+  /// Nodes of columns on walls that slip, the last of `residual_nodes`: they ask for what their wall node does.
+  std::vector<Index32> sliding, sliding_root;
+  CsrGraph residual_surfaces;  ///< slip surfaces, where not known
   /// Nodes of `residual_nodes` that slide or have images begin with the field so far and what the residual of those with a slot adds there:
   /// beside a wall that stands they stand.
   struct Start {

@@ -20,6 +20,7 @@ struct BodyTurnTables {
   List<Exec, Index32> known, driving, body_of_driving, rigid;
   kernels::BodyWalls<Memory> walls;
   List<Exec, double> share, shift_share;
+  List<Exec, kernels::BodyImage> images;
   List<Exec, Vec3> centre;
   List<Exec, kernels::VectorMoments> sum, sum_rate;
   List<Exec, kernels::Quaternion<Vec3>> half, half_rate;
@@ -39,6 +40,7 @@ struct BodyTurnTables {
               plan.turns_of_bodies.first_chunk[std::size_t(plan.turns_of_bodies.size())]},
         share(upload(exec, plan.turns_of_bodies.share, name("share"))),
         shift_share(upload(exec, plan.turns_of_bodies.shift_share, name("shift_share"))),
+        images(upload(exec, plan.turns_of_bodies.images, name("images"))),
         centre(upload(exec, plan.turns_of_bodies.centre, name("centre"))),
         sum(room_for<kernels::VectorMoments>(exec, std::size_t(walls.n_wall_chunks), name("sum"))),
         sum_rate(room_for<kernels::VectorMoments>(exec, with_rate ? sum.extent(0) : 0, name("sum_rate"))),
@@ -50,7 +52,7 @@ struct BodyTurnTables {
 
   template <class V>
   [[nodiscard]] kernels::BodyTurnField<Memory, V> field(Baseline const& x) const {
-    return {share, shift_share, centre, half.data(), half_rate.data(), shift.data(), shift_rate.data(), x};
+    return {share, shift_share, images, centre, half.data(), half_rate.data(), shift.data(), shift_rate.data(), x};
   }
   [[nodiscard]] List<Exec, Index32 const> wall_slots() const {
     return Kokkos::subview(walls.slot, std::pair<std::size_t, std::size_t>(0, walls.wall.extent(0)));

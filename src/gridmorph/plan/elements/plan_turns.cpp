@@ -1,14 +1,11 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
-#include <gridmorph/plan/elements/facet_distance.hpp>
-#include <gridmorph/plan/elements/surroundings.hpp>
-#include <gridmorph/plan/elements/turn_share.hpp>
+#include <gridmorph/plan/elements/periodic_moves.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <tuple>
 
@@ -39,6 +36,7 @@ void UnstructuredPlanner::find_turning_bodies() {
       wall_bodies_.resting.faces.add(topology_.boundary.nodes[f]);
       wall_bodies_.resting.slides_on.push_back(-1);
       wall_bodies_.resting.given.push_back(1);
+      wall_bodies_.resting.periodic.push_back(0);
     }
   };
   for (WallBody const& body : wall_bodies_.bodies) {
@@ -179,7 +177,11 @@ void UnstructuredPlanner::plan_turns() {
       body_of[std::size_t(columns_.node[k])] = b;
       all.rigid.push_back(columns_.node[k]);
     }
-  all.share.assign(n_bodies * n_nodes, 0);
+  // Beyond three passages what turns is out of sight, on meshes whose sides go along with the flow too.
+  moves_ = periodic_moves(host_, mesh_, out_.graph, out_.boundary, 3);
+  for (RigidTransform const& move : moves_)
+    for (std::size_t b = 0; b < n_bodies; ++b) all.images.push_back({Index32(b), move.rotation, move.translation});
+  all.share.assign(all.images.size() * n_nodes, 0);
   all.shift_share.assign(n_bodies * n_nodes, 0);
   Mask settled = mask();
   for (std::size_t n = 0; n < n_nodes; ++n)
@@ -191,136 +193,12 @@ void UnstructuredPlanner::plan_turns() {
     if (!out_.graph.carries(Index32(n)) || out_.graph.neighbours[Index32(n)].empty() || is_known_[n])
       settled[n] = Settled::all;
   for (Index32 const n : standing_.node) settled[std::size_t(n)] = Settled::all;
-  for (auto const& image : out_.boundary.images)
-    for (Index32 const n : {image.node, image.owner})
-      settled[std::size_t(n)] = std::max<std::uint8_t>(settled[std::size_t(n)], Settled::turns);
+  // Where no image turns behind them periodic boundaries do not turn.
+  if (moves_.size() == 1)
+    for (auto const& image : out_.boundary.images)
+      for (Index32 const n : {image.node, image.owner})
+        settled[std::size_t(n)] = std::max<std::uint8_t>(settled[std::size_t(n)], Settled::turns);
   share_turns(settled);
-}
-
-void UnstructuredPlanner::share_turns(Mask const& settled) {
-  std::vector<double>&share = out_.plan.turns_of_bodies.share, &shift_share = out_.plan.turns_of_bodies.shift_share;
-  auto const& bodies = wall_bodies_.bodies;
-  auto const& surfaces = out_.plan.surfaces;
-  std::size_t const n_nodes = std::size_t(mesh_.n_nodes());
-  /// Faces that turn with some bodies, or with none.
-  struct Group {
-    Index32 surface = -1;
-    CsrGraph faces;
-    double layer = 0;
-  };
-  auto const turns_along = [&](WallBody const& body, Index32 surface) {
-    return surface >= 0 && mesh_.dimension == 3 && surfaces[std::size_t(surface)].kind == SlipSurface::Kind::plane &&
-           dot(body.axis, body.axis) > 0 && are_parallel(surfaces[std::size_t(surface)].direction, body.axis);
-  };
-  // What a rule displaces; what no body turns along.
-  constexpr std::size_t given = 0, crosswise = 1;
-  std::vector<Group> groups(2);
-  RestingFaces const& resting = wall_bodies_.resting;
-  for (Index f = 0; f < resting.faces.size(); ++f) {
-    Index32 const s = resting.slides_on[std::size_t(f)];
-    bool const own = std::any_of(bodies.begin(), bodies.end(), [&](WallBody const& b) { return turns_along(b, s); });
-    std::size_t g = resting.given[std::size_t(f)] != 0 ? given : crosswise;
-    if (own) {
-      for (g = 2; g < groups.size() && groups[g].surface != s;) ++g;
-      if (g == groups.size()) groups.push_back({s, {}, 0});
-    }
-    groups[g].faces.add(resting.faces[f]);
-    for (Index32 const n : resting.faces[f])
-      groups[g].layer = std::max({groups[g].layer, standing_.height[std::size_t(n)], columns_.height[std::size_t(n)]});
-  }
-  std::vector<CsrGraph> faces_of;
-  std::vector<FacetDistance> from;
-  std::vector<double> layer, columns;  // with the first cells where there are no columns; these alone
-  std::vector<double> compact;         // of bodies in a plane
-  for (Group& g : groups) {
-    from.emplace_back(mesh_.coordinates, g.faces);
-    layer.push_back(g.layer);
-    columns.push_back(g.layer);
-    faces_of.push_back(std::move(g.faces));
-  }
-  for (WallBody const& body : bodies) {
-    CsrGraph faces;
-    double highest = 0, edges = 0;
-    Index n_edges = 0;
-    for (Index32 const f : body.faces) {
-      auto const face = topology_.boundary.nodes[f];
-      faces.add(face);
-      for (std::size_t k = 0; k < face.size(); ++k, ++n_edges)
-        edges += gridmorph::distance(mesh_.coordinates[face[k]], mesh_.coordinates[face[(k + 1) % face.size()]]);
-    }
-    for (Index32 const n : body.nodes) highest = std::max(highest, columns_.height[std::size_t(n)]);
-    from.emplace_back(mesh_.coordinates, faces);
-    // Without columns the first cells turn with the wall, about as high as its faces are long.
-    layer.push_back(highest > 0 ? highest : edges / double(n_edges));
-    columns.push_back(highest);
-    compact.push_back(mesh_.dimension == 2 ? compactness(0.5 * edges, body_sizes_[compact.size()]) : 0);
-    faces_of.push_back(std::move(faces));
-  }
-  auto const turns_with = [&](std::size_t b, std::size_t k) {
-    return k == groups.size() + b || (k < groups.size() && turns_along(bodies[b], groups[k].surface));
-  };
-  // In space, around corners, it falls off too fast: cubes in boxes fare better by distances.
-  std::vector<std::optional<Surroundings>> around(bodies.size());
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (!(compact[b] > 0)) continue;
-    double gap = infinity;
-    std::vector<int> start(from.size(), 0);
-    for (Index32 const n : bodies[b].nodes)
-      for (std::size_t k = 0; k < from.size(); ++k)
-        if (!turns_with(b, k)) gap = std::min(gap, from[k](mesh_.coordinates[n], start[k]));
-    if (narrowness(gap, body_sizes_[b]) > 0)
-      around[b].emplace(host_, mesh_.coordinates, faces_of, from, out_.plan.turns_of_bodies.centre[b], body_sizes_[b]);
-  }
-  constexpr std::size_t at_once = 512;
-  for_all_parts(host_, "gridmorph::turn_shares", Index((n_nodes + at_once - 1) / at_once), [&](Index part) {
-    std::vector<int> start(from.size(), 0);
-    std::vector<double> distance(from.size()), turn(bodies.size()), shift(bodies.size()), beyond(bodies.size());
-    std::vector<double> ways(bodies.size()), seen(from.size());
-    std::size_t const end = std::min(n_nodes, std::size_t(part + 1) * at_once);
-    for (std::size_t n = std::size_t(part) * at_once; n < end; ++n) {
-      if (settled[n] == Settled::all) continue;
-      for (std::size_t k = 0; k < from.size(); ++k) distance[k] = from[k](mesh_.coordinates[Index(n)], start[k]);
-      for (std::size_t b = 0; b < bodies.size(); ++b) {
-        TurnDistances at{distance[groups.size() + b], infinity, layer[groups.size() + b], 0, body_sizes_[b]};
-        for (std::size_t k = 0; k < from.size(); ++k) {
-          if (turns_with(b, k)) continue;
-          at.others = std::min(at.others, distance[k]);
-          at.other_layer = std::max(at.other_layer, layer[k]);
-        }
-        turn[b] = turn_share(at);
-        ways[b] = at.body + at.others;
-      }
-      share_between(turn);
-      for (std::size_t b = 0; b < bodies.size(); ++b) {
-        double const narrow = around[b] ? compact[b] * narrowness(ways[b], body_sizes_[b]) : 0;
-        if (!(narrow > 0)) continue;
-        (*around[b])(mesh_.coordinates[Index(n)], seen);
-        auto const closeness = [&](std::size_t k) {
-          double const d = distance[k] - std::min(columns[k], ways[b] / 3);
-          return d > 0 ? seen[k] / d : infinity;
-        };
-        double others = 0;
-        for (std::size_t k = 0; k < from.size(); ++k)
-          if (!turns_with(b, k) && !from[k].empty()) others += closeness(k);
-        turn[b] += narrow * (turn_share_in_sight(closeness(groups.size() + b), others) - turn[b]);
-      }
-      // As columns count for turns.
-      double nearest = distance[given];
-      for (std::size_t b = 0; b < bodies.size(); ++b) {
-        double others = distance[given];
-        for (std::size_t k = 0; k < bodies.size(); ++k)
-          if (k != b) others = std::min(others, distance[groups.size() + k]);
-        double const d = distance[groups.size() + b], way = d + others;
-        beyond[b] = std::max(0.0, d - std::min(layer[groups.size() + b], way / 3));
-        nearest = std::min(nearest, distance[given] - std::min(layer[given], (d + distance[given]) / 3));
-      }
-      shift_shares(beyond, body_sizes_, std::max(0.0, nearest), shift);
-      for (std::size_t b = 0; b < bodies.size(); ++b) {
-        if (settled[n] == Settled::nothing) share[b * n_nodes + n] = turn[b];
-        shift_share[b * n_nodes + n] = shift[b];
-      }
-    }
-  });
 }
 
 }  // namespace gridmorph::detail

@@ -114,6 +114,11 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
       out.resting.faces.add(nodes);
       out.resting.slides_on.push_back(slips ? face.surface : -1);
       out.resting.given.push_back(face.given ? 1 : 0);
+      bool const periodic =
+          std::all_of(nodes.begin(), nodes.end(), [&](Index32 n) { return paired[std::size_t(n)] != 0; }) &&
+          std::any_of(nodes.begin(), nodes.end(),
+                      [&](Index32 n) { return kinds.kind[std::size_t(n)] == NodeKinds::periodic; });
+      out.resting.periodic.push_back(periodic ? 1 : 0);
     }
     for (Index32 const n : nodes) {
       if (body_of[std::size_t(n)] < 0) continue;

@@ -20,9 +20,10 @@ struct WallBody {
 
 /// Boundary faces that do not move with the driving walls.
 struct RestingFaces {
-  CsrGraph faces;                   ///< given, periodic, slipping; representatives
-  std::vector<Index32> slides_on;   ///< per face: number of the slip surface, -1: given or periodic
-  std::vector<std::uint8_t> given;  ///< per face: whether all its nodes are displaced by a rule
+  CsrGraph faces;                      ///< given, periodic, slipping; representatives
+  std::vector<Index32> slides_on;      ///< per face: number of the slip surface, -1: given or periodic
+  std::vector<std::uint8_t> given;     ///< per face: whether all its nodes are displaced by a rule
+  std::vector<std::uint8_t> periodic;  ///< per face: whether it is of a free periodic connection
 };
 
 struct WallBodies {

@@ -1,5 +1,5 @@
 // The steps from an unstructured mesh to its plan, one file per step: make_unstructured_plan.cpp, then plan_columns.cpp, plan_turns.cpp,
-// plan_domain.cpp, plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
+// share_turns.cpp, plan_domain.cpp, plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -58,8 +58,11 @@ class UnstructuredPlanner {
   /// Directions of the columns on driving nodes, before columns are cut.
   void find_wall_lines();
   void plan_columns();
-  /// Columns of walls that stand: they are held in place, as far as moving walls leave room.
-  void find_standing_columns();
+  /// Columns of walls that stand: they are held in place, as far as moving walls leave room. Then those of walls that slip: they go along.
+  void find_other_columns();
+  /// No higher than leaves room where moving walls come nearer by `motion`.
+  [[nodiscard]] Columns columns_on(std::vector<int> const& patches, Mask const& taken, double motion) const;
+  [[nodiscard]] Index n_held() const { return standing_.size() + sliding_.size(); }
   /// The extent that a user gave the boundary layer on a face's patch, or the default one.
   [[nodiscard]] ColumnExtent extent_of_face(Index32 face) const;
 
@@ -80,7 +83,8 @@ class UnstructuredPlanner {
   void plan_turns();
   /// What nodes have their shares whatever their distances are: those of turns, or all.
   enum Settled : std::uint8_t { nothing, turns, all };
-  /// Of all nodes that are not settled, by their distances.
+  // share_turns.cpp
+  /// Of all nodes that are not settled.
   void share_turns(Mask const& settled);
 
   // plan_domain.cpp
@@ -139,7 +143,8 @@ class UnstructuredPlanner {
   std::vector<Index32> driving_faces_;
   WallBodies wall_bodies_;  ///< those that turn, and what does not turn with them
   std::vector<double> body_sizes_;
-  Columns columns_, standing_;
+  std::vector<RigidTransform> moves_;  ///< to the images of bodies, see periodic_moves()
+  Columns columns_, standing_, sliding_;
   Mask is_known_, drives_, is_other_, near_;
   Mask is_middle_;  ///< further nodes of second-order elements, which have no part in what follows
   NearestSource from_wall_, from_other_;

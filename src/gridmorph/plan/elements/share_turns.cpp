@@ -1,0 +1,291 @@
+// What share of each body's turn and shift a node makes: by its distances, and in narrow surroundings of plane meshes by what it sees.
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/plan/elements/facet_distance.hpp>
+#include <gridmorph/plan/elements/surroundings.hpp>
+#include <gridmorph/plan/elements/turn_share.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+namespace gridmorph::detail {
+
+namespace {
+
+/// Boundary faces that are a body's, or turn with some bodies, or with none.
+struct FaceGroup {
+  Index32 surface = -1;  ///< slip surface that they lie on, where a body turns along it
+  CsrGraph faces;
+  double layer = 0;    ///< what stays with them: columns, and the first cells of bodies without any
+  double columns = 0;  ///< columns alone
+};
+
+// What a rule displaces; what no body turns along.
+constexpr std::size_t given = 0, crosswise = 1;
+
+/// What places are measured against.
+struct Boundaries {
+  HostInstance const& host;
+  Mesh const& mesh;
+  BoundaryFaces const& faces;
+  std::vector<WallBody> const& bodies;
+  std::vector<Vec3> const& centre;
+  std::vector<double> const& size;  ///< of bodies
+  std::vector<RigidTransform> const& moves;
+  RestingFaces const& resting;
+  std::vector<SlipSurface> const& surfaces;
+  std::vector<double> const &column_height, &standing_height;
+};
+
+class Places {
+ public:
+  explicit Places(Boundaries const& b);
+
+  /// For one thread.
+  struct Room {
+    std::vector<int> start;
+    std::vector<double> distance;  ///< (moves, groups) of the place that each move takes to the node
+    std::vector<double> nearest;   ///< per group: of all moves
+    std::vector<double> turn;      ///< per image: share
+    std::vector<double> shift;     ///< per body: share
+    std::vector<double> seen, closeness, parts, beyond;
+  };
+  [[nodiscard]] Room room() const;
+  /// room.turn and room.shift at a place.
+  void shares(Vec3 const& x, Room& room) const;
+
+ private:
+  void add_resting_faces();
+  void add_bodies();
+  void look_around(std::size_t body, double edges);
+  [[nodiscard]] bool turns_along(std::size_t body, Index32 surface) const;
+  [[nodiscard]] bool turns_with(std::size_t body, std::size_t group) const {
+    return group == first_body_ + body || (group < first_body_ && turns_along(body, groups_[group].surface));
+  }
+  [[nodiscard]] double& distance(Room& room, std::size_t move, std::size_t group) const {
+    return room.distance[move * groups_.size() + group];
+  }
+  [[nodiscard]] TurnDistances distances(Room& room, std::size_t image) const;
+  void turns_in_sight(Vec3 const& x, std::size_t body, Room& room) const;
+  void shifts(Room& room) const;
+
+  Boundaries b_;
+  std::vector<RigidTransform> back_;  ///< per move
+  bool images_shift_alike_ = true;    ///< no move turns
+  std::vector<FaceGroup> groups_;
+  std::size_t first_body_ = 0;
+  std::vector<FacetDistance> from_;  ///< per group
+  std::vector<double> in_sight_;     ///< per body: how much what is in sight has a say in narrow surroundings
+  std::vector<std::optional<Surroundings>> around_;
+};
+
+Places::Places(Boundaries const& b) : b_(b) {
+  for (RigidTransform const& move : b_.moves) {
+    back_.push_back(move.inverse());
+    for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+      images_shift_alike_ = images_shift_alike_ && gridmorph::distance(move.rotation * e, e) < 1e-9;
+  }
+  add_resting_faces();
+  first_body_ = groups_.size();
+  add_bodies();
+}
+
+bool Places::turns_along(std::size_t body, Index32 surface) const {
+  Vec3 const axis = b_.bodies[body].axis;
+  return surface >= 0 && b_.mesh.dimension == 3 && b_.surfaces[std::size_t(surface)].kind == SlipSurface::Kind::plane &&
+         dot(axis, axis) > 0 && are_parallel(b_.surfaces[std::size_t(surface)].direction, axis);
+}
+
+void Places::add_resting_faces() {
+  groups_.resize(2);
+  for (Index f = 0; f < b_.resting.faces.size(); ++f) {
+    // Images turn behind them.
+    if (b_.moves.size() > 1 && b_.resting.periodic[std::size_t(f)] != 0) continue;
+    Index32 const s = b_.resting.slides_on[std::size_t(f)];
+    bool own = false;
+    for (std::size_t b = 0; b < b_.bodies.size(); ++b) own = own || turns_along(b, s);
+    std::size_t g = b_.resting.given[std::size_t(f)] != 0 ? given : crosswise;
+    if (own) {
+      for (g = 2; g < groups_.size() && groups_[g].surface != s;) ++g;
+      if (g == groups_.size()) groups_.emplace_back().surface = s;
+    }
+    groups_[g].faces.add(b_.resting.faces[f]);
+    for (Index32 const n : b_.resting.faces[f])
+      groups_[g].layer =
+          std::max({groups_[g].layer, b_.standing_height[std::size_t(n)], b_.column_height[std::size_t(n)]});
+    groups_[g].columns = groups_[g].layer;
+  }
+  for (FaceGroup const& g : groups_) from_.emplace_back(b_.mesh.coordinates, g.faces);
+}
+
+void Places::add_bodies() {
+  std::vector<double> edges;
+  for (WallBody const& body : b_.bodies) {
+    FaceGroup& g = groups_.emplace_back();
+    edges.push_back(0);
+    Index n_edges = 0;
+    for (Index32 const f : body.faces) {
+      auto const face = b_.faces.nodes[f];
+      g.faces.add(face);
+      for (std::size_t k = 0; k < face.size(); ++k, ++n_edges)
+        edges.back() +=
+            gridmorph::distance(b_.mesh.coordinates[face[k]], b_.mesh.coordinates[face[(k + 1) % face.size()]]);
+    }
+    for (Index32 const n : body.nodes) g.columns = std::max(g.columns, b_.column_height[std::size_t(n)]);
+    // Without columns the first cells turn with the wall, about as high as its faces are long.
+    g.layer = g.columns > 0 ? g.columns : edges.back() / double(n_edges);
+    from_.emplace_back(b_.mesh.coordinates, g.faces);
+  }
+  for (std::size_t b = 0; b < b_.bodies.size(); ++b) look_around(b, edges[b]);
+}
+
+void Places::look_around(std::size_t body, double edges) {
+  in_sight_.push_back(0);
+  around_.emplace_back();
+  // In space, around corners, it falls off too fast: cubes in boxes fare better by distances.
+  if (b_.mesh.dimension == 3) return;
+  bool const has_images = b_.moves.size() > 1;
+  in_sight_[body] = has_images ? 1 : compactness(0.5 * edges, b_.size[body]);
+  if (!(in_sight_[body] > 0)) return;
+  double gap = infinity;
+  std::vector<int> start(from_.size(), 0);
+  for (Index32 const n : b_.bodies[body].nodes)
+    for (std::size_t k = 0; k < from_.size(); ++k)
+      if (!turns_with(body, k)) gap = std::min(gap, from_[k](b_.mesh.coordinates[n], start[k]));
+  if (!has_images && !(narrowness(gap, b_.size[body]) > 0)) return;
+  std::vector<CsrGraph> walls;
+  for (FaceGroup const& g : groups_) walls.push_back(g.faces);
+  around_[body].emplace(b_.host, b_.mesh.coordinates, walls, from_, b_.centre[body], b_.size[body]);
+}
+
+Places::Room Places::room() const {
+  std::size_t const n = groups_.size() * b_.moves.size();
+  Room out;
+  out.start.assign(n, 0);
+  out.distance.resize(n);
+  out.nearest.resize(groups_.size());
+  out.turn.resize(b_.bodies.size() * b_.moves.size());
+  out.shift.resize(b_.bodies.size());
+  out.seen.resize(groups_.size());
+  out.closeness.resize(n);
+  out.parts.resize(b_.moves.size());
+  out.beyond.resize(b_.bodies.size());
+  return out;
+}
+
+void Places::shares(Vec3 const& x, Room& room) const {
+  std::fill(room.nearest.begin(), room.nearest.end(), infinity);
+  for (std::size_t m = 0; m < back_.size(); ++m) {
+    Vec3 const y = m == 0 ? x : back_[m](x);
+    for (std::size_t k = 0; k < groups_.size(); ++k) {
+      double const d = distance(room, m, k) = from_[k](y, room.start[m * groups_.size() + k]);
+      room.nearest[k] = std::min(room.nearest[k], d);
+    }
+  }
+  for (std::size_t e = 0; e < room.turn.size(); ++e) room.turn[e] = turn_share(distances(room, e));
+  share_between(room.turn);
+  for (std::size_t b = 0; b < b_.bodies.size(); ++b)
+    if (around_[b]) turns_in_sight(x, b, room);
+  shifts(room);
+}
+
+TurnDistances Places::distances(Room& room, std::size_t image) const {
+  std::size_t const move = image / b_.bodies.size(), body = image % b_.bodies.size();
+  TurnDistances at{distance(room, move, first_body_ + body), infinity, groups_[first_body_ + body].layer, 0,
+                   b_.size[body]};
+  auto const is_beside = [&](double d, std::size_t group) {
+    at.others = std::min(at.others, d);
+    at.other_layer = std::max(at.other_layer, groups_[group].layer);
+  };
+  for (std::size_t k = 0; k < first_body_; ++k)
+    if (!turns_with(body, k)) is_beside(room.nearest[k], k);
+  for (std::size_t m = 0; m < b_.moves.size(); ++m)
+    for (std::size_t b = 0; b < b_.bodies.size(); ++b)
+      if (m != move || b != body) is_beside(distance(room, m, first_body_ + b), first_body_ + b);
+  return at;
+}
+
+void Places::turns_in_sight(Vec3 const& x, std::size_t body, Room& room) const {
+  std::size_t const n_bodies = b_.bodies.size(), n_groups = groups_.size(), own = first_body_ + body;
+  std::size_t home = 0;
+  for (std::size_t m = 1; m < b_.moves.size(); ++m)
+    if (distance(room, m, own) < distance(room, home, own)) home = m;
+  TurnDistances const at = distances(room, home * n_bodies + body);
+  double const way = at.body + at.others, narrow = in_sight_[body] * narrowness(way, b_.size[body]);
+  if (!(narrow > 0)) return;
+  // Images much farther than the nearest one do not count: they are listed up to some passage only.
+  auto const counts = [&](std::size_t move, std::size_t group) {
+    if (b_.moves.size() == 1 || group < first_body_) return 1.0;
+    double const pitch = gridmorph::distance(b_.moves[1](b_.centre[body]), b_.centre[body]);
+    double const t = (distance(room, move, group) - room.nearest[group]) / (1.5 * pitch);
+    return t < 1 ? (1 - t * t) * (1 - t * t) : 0.0;
+  };
+  double beside = 0, all = 0;
+  for (std::size_t m = 0; m < b_.moves.size(); ++m) {
+    (*around_[body])(m == 0 ? x : back_[m](x), room.seen);
+    for (std::size_t k = 0; k < n_groups; ++k) {
+      if ((turns_with(body, k) && k != own) || groups_[k].faces.size() == 0) continue;
+      double const d = distance(room, m, k), e = d - std::min(groups_[k].columns, way / 3);
+      double const closeness = e > 0 ? counts(m, k) * room.seen[k] / e : infinity;
+      room.closeness[m * n_groups + k] = closeness;
+      (k == own ? all : beside) += closeness;
+    }
+  }
+  double const together = turn_share_in_sight(all, beside);
+  double sum = 0;
+  std::vector<double>& parts = room.parts;
+  for (std::size_t m = 0; m < b_.moves.size(); ++m) {
+    double rest = 0;
+    for (std::size_t k = 0; k < b_.moves.size(); ++k)
+      if (k != m) rest += room.closeness[k * n_groups + own];
+    double const c = room.closeness[m * n_groups + own];
+    sum += parts[m] = b_.moves.size() == 1 ? 1 : c > 0 ? turn_share_in_sight(c, rest) : 0;
+  }
+  for (std::size_t m = 0; m < b_.moves.size(); ++m) {
+    double& share = room.turn[m * n_bodies + body];
+    share += narrow * (together * (sum > 0 ? parts[m] / sum : 0) - share);
+  }
+}
+
+void Places::shifts(Room& room) const {
+  auto const from_body = [&](std::size_t b) {
+    return images_shift_alike_ ? room.nearest[first_body_ + b] : distance(room, 0, first_body_ + b);
+  };
+  // As columns count for turns.
+  double const from_given = room.nearest[given];
+  double nearest = from_given;
+  for (std::size_t b = 0; b < b_.bodies.size(); ++b) {
+    double others = from_given;
+    for (std::size_t k = 0; k < b_.bodies.size(); ++k)
+      if (k != b) others = std::min(others, from_body(k));
+    double const d = from_body(b), way = d + others;
+    room.beyond[b] = std::max(0.0, d - std::min(groups_[first_body_ + b].layer, way / 3));
+    nearest = std::min(nearest, from_given - std::min(groups_[given].layer, (d + from_given) / 3));
+  }
+  shift_shares(room.beyond, b_.size, std::max(0.0, nearest), room.shift);
+}
+
+}  // namespace
+
+void UnstructuredPlanner::share_turns(Mask const& settled) {
+  TurningBodies& all = out_.plan.turns_of_bodies;
+  std::size_t const n_nodes = std::size_t(mesh_.n_nodes());
+  Places const places({host_, mesh_, topology_.boundary, wall_bodies_.bodies, all.centre, body_sizes_, moves_,
+                       wall_bodies_.resting, out_.plan.surfaces, columns_.height, standing_.height});
+  constexpr std::size_t at_once = 512;
+  for_all_parts(host_, "gridmorph::turn_shares", Index((n_nodes + at_once - 1) / at_once), [&](Index part) {
+    Places::Room room = places.room();
+    std::size_t const end = std::min(n_nodes, std::size_t(part + 1) * at_once);
+    for (std::size_t n = std::size_t(part) * at_once; n < end; ++n) {
+      if (settled[n] == Settled::all) continue;
+      places.shares(mesh_.coordinates[Index(n)], room);
+      if (settled[n] == Settled::nothing)
+        for (std::size_t e = 0; e < room.turn.size(); ++e) all.share[e * n_nodes + n] = room.turn[e];
+      for (std::size_t b = 0; b < room.shift.size(); ++b) all.shift_share[b * n_nodes + n] = room.shift[b];
+    }
+  });
+}
+
+}  // namespace gridmorph::detail
