@@ -114,8 +114,8 @@ INSTANTIATE_TEST_SUITE_P(Meshes, Numbering, testing::Values(rooted_body, cascade
 TEST_P(Numbering, DoesNotMatter) {
   Bent const bent = GetParam()();
   unsigned seed = 5;
-  // Weights are kept in single precision; on the coil 1e-4 is left.
-  double const round_off = GetParam() == coil ? 1e-3 : 1e-8;
+  // Weights are kept in single precision.
+  constexpr double round_off = 1e-8;
   for (auto const method : {NearFieldMethod::lattice, NearFieldMethod::layers})
     EXPECT_LT(difference(bent, by(method), seed++), round_off) << int(method);
   for (auto const weight : {LayerWeight::uniform, LayerWeight::quality, LayerWeight::curvature})
@@ -145,10 +145,10 @@ double trembling(Bent const& bent, PlanOptions const& options, double noise, uns
   return largest / motion;
 }
 
-/// What is reached so far: 1e-6 by layers but on the coil, whose two zones touch, and by the lattice on the cascade. Elsewhere groups of walls, lattice cells or columns that
-/// round-off decides about still change what a node does by these shares of the motion.
+/// What is reached so far. By the lattice on the made body lattice cells that round-off decides about still change what a node does by this share of the motion. (On the coil it was 0.2 when round-off
+/// decided whose faces of a wall between two zones were taken.)
 double reached(Bent (*mesh)(), NearFieldMethod method) {
-  if (mesh == coil) return 0.5;
+  if (mesh == coil) return 1e-8;
   return mesh == rooted_body && method == NearFieldMethod::lattice ? 0.05 : 1e-6;
 }
 
@@ -191,9 +191,9 @@ TEST_P(Numbering, NorDoesTheUnitOfLength) {
   Bent const bent = GetParam()();
   for (auto const method : {NearFieldMethod::lattice, NearFieldMethod::layers})
     for (double const scale : {0.1, 3.0, 1e3})
-      // On the cascade another grouping of its walls.
+      // On the cascade another grouping of its walls, on the coil a row or two.
       EXPECT_LT(scaling(bent, by(method), scale),
-                std::max(reached(GetParam(), method), GetParam() == cascade ? 1e-3 : 0))
+                std::max(reached(GetParam(), method), GetParam() == cascade ? 1e-3 : 1e-5))
           << int(method) << ' ' << scale;
 }
 

@@ -2,6 +2,8 @@
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -10,8 +12,9 @@ namespace gridmorph::detail {
 
 namespace {
 
-/// The faces without those that have the nodes of one before: the other side of a wall between zones, whose normal is the opposite.
-std::vector<Index32> one_sided(UnstructuredTopology const& topology, NodeGraph const& graph,
+/// The faces without those that have the nodes of another in a zone before theirs: the other side of a wall between zones, whose normal is the opposite. Were
+/// it left to places, which are the same, normals of either zone would cancel around a node.
+std::vector<Index32> one_sided(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                                std::vector<Index32> const& faces) {
   auto const owner = [&](Index32 n) { return graph.representative[std::size_t(n)]; };
   bool const joined = std::any_of(faces.begin(), faces.end(), [&](Index32 f) {
@@ -19,14 +22,24 @@ std::vector<Index32> one_sided(UnstructuredTopology const& topology, NodeGraph c
     return std::any_of(face.begin(), face.end(), [&](Index32 n) { return owner(n) != n; });
   });
   if (!joined) return faces;
-  std::set<std::vector<Index32>> seen;
-  std::vector<Index32> out;
+  auto const zone_of = [&](Index32 f) {
+    Index const e = topology.boundary.element[std::size_t(f)];
+    auto const next = std::upper_bound(mesh.zones.begin(), mesh.zones.end(), e,
+                                       [](Index a, Zone const& zone) { return a < zone.first_element; });
+    return next - mesh.zones.begin();
+  };
+  std::map<std::vector<Index32>, Index32> kept;  // by their nodes
   for (Index32 const f : faces) {
     std::vector<Index32> owners;
     for (Index32 const n : topology.boundary.nodes[f]) owners.push_back(owner(n));
     std::sort(owners.begin(), owners.end());
-    if (seen.insert(std::move(owners)).second) out.push_back(f);
+    auto const [at, fresh] = kept.try_emplace(std::move(owners), f);
+    if (!fresh && zone_of(f) < zone_of(at->second)) at->second = f;
   }
+  std::set<Index32> remain;
+  for (auto const& [owners, f] : kept) remain.insert(f);
+  std::vector<Index32> out;
+  std::copy_if(faces.begin(), faces.end(), std::back_inserter(out), [&](Index32 f) { return remain.contains(f); });
   return out;
 }
 
@@ -50,7 +63,7 @@ void for_each_corner(Mesh const& mesh, UnstructuredTopology const& topology, Nod
 
 CsrGraph wall_one_rings(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                         std::vector<Index32> const& all_faces, std::vector<Index32> const& roots) {
-  std::vector<Index32> const faces = one_sided(topology, graph, all_faces);
+  std::vector<Index32> const faces = one_sided(mesh, topology, graph, all_faces);
   std::vector<Index32> place(std::size_t(mesh.n_nodes()), -1);
   for (std::size_t r = 0; r < roots.size(); ++r) place[std::size_t(roots[r])] = Index32(r);
   CsrGraph one_rings;
@@ -72,7 +85,7 @@ CsrGraph wall_one_rings(Mesh const& mesh, UnstructuredTopology const& topology, 
 
 std::vector<Vec3> wall_normals(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                                std::vector<Index32> const& all_faces) {
-  std::vector<Index32> const faces = one_sided(topology, graph, all_faces);
+  std::vector<Index32> const faces = one_sided(mesh, topology, graph, all_faces);
   std::vector<Vec3> normal(std::size_t(mesh.n_nodes()));
   Vec3 const across = plane_normal(mesh);
   for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32 a, Index32 b) {
