@@ -27,6 +27,7 @@ struct Channel {
       if (x.y == 0 || x.y > height(x.x)) continue;
       columns.node.push_back(n);
       columns.root.push_back(at(x.x, 0));
+      columns.below.push_back(at(x.x, x.y - 1));
       columns.above_wall.push_back(x.y);
     }
   }

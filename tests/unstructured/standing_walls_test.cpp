@@ -185,5 +185,36 @@ TEST(StandingWall, HoldsNodesThatSlipBesideIt) {
   }
 }
 
+TEST(SlidingWall, TakesItsBoundaryLayerAlong) {
+  Mesh mesh = test::box_around(
+      {14, 12, 10}, [](Vec3 const& p) { return std::abs(p.x - 7) < 2 && std::abs(p.y - 6) < 2 && p.z > 4 && p.z < 7; });
+  for (auto& patch : mesh.patches) patch.kind = patch.name == "k_min" ? PatchKind::wall : patch.kind;
+  Case const c(mesh);
+  Motion const motion = motion_of({rule_for({"body"}, translation({0.7, 0.3, 0})), rule_for({"k_min"}, SlipRule{})});
+  PlanOptions options;
+  options.boundary_layers.push_back({.walls = {"k_min"}, .extent = BoundaryLayer::Extent::layers, .layers = 2});
+  auto const m = c.morph(motion, options);
+  auto const displacement = [&](Index32 n) { return m.x[n] - c.mesh.coordinates[n]; };
+  double slides = 0;
+  std::map<std::pair<double, double>, Index32> wall;
+  for (Index32 const n : c.nodes_of("k_min")) {
+    Vec3 const x = c.mesh.coordinates[n];
+    wall[{x.x, x.y}] = n;
+    slides = std::max(slides, norm(displacement(n)));
+    EXPECT_EQ(m.x[n].z, 0) << n;
+  }
+  EXPECT_GT(slides, 0.1);
+  auto const& plan = m.prepared.plan;
+  // But for those on the other sides of the box.
+  EXPECT_GT(plan.sliding.size(), 130u);
+  for (std::size_t k = 0; k < plan.sliding.size(); ++k) {
+    Vec3 const x = c.mesh.coordinates[plan.sliding[k]];
+    ASSERT_EQ(plan.sliding_root[k], (wall.at({x.x, x.y})));
+    EXPECT_LE(x.z, 2);
+    EXPECT_LT(distance(displacement(plan.sliding[k]), displacement(plan.sliding_root[k])), 1e-14) << k;
+  }
+  EXPECT_EQ(c.inverted(m.x), 0);
+}
+
 }  // namespace
 }  // namespace gridmorph

@@ -107,6 +107,9 @@ class Finder {
       if (moves[p] == 0 && is_wall(int(p)) && is_explicit(int(p)) &&
           !std::binary_search(out_.driving_patches.begin(), out_.driving_patches.end(), int(p)))
         out_.standing_patches.push_back(int(p));
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+      if (is_wall(int(p)) && std::holds_alternative<SlipRule>(rules().patch_rule(int(p))))
+        out_.sliding_patches.push_back(int(p));
   }
 
   /// Patches of no kind are walls as far as anyone knows, but for those that their rule makes the ends or sides of a blade row.

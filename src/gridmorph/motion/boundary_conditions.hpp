@@ -37,6 +37,7 @@ struct BoundaryConditions {
   std::vector<Mat3> rotations;
 
   std::vector<int> driving_patches;   ///< numbers of the patches that move walls, ascending
+  std::vector<int> sliding_patches;   ///< of walls, and patches of no kind, whose nodes slip, ascending
   std::vector<int> standing_patches;  ///< of walls, and patches of no kind, that their rule holds in place, ascending
   std::vector<std::string> notes;
 

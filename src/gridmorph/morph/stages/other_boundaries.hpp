@@ -22,6 +22,8 @@ class OtherBoundaries {
         nodes_{upload(exec, plan.residual_nodes, name("node")), upload(exec, plan.residual_slot, name("slot")),
                upload(exec, plan.residual_surfaces.first, name("surfaces::first")),
                upload(exec, plan.residual_surfaces.item, name("surfaces::item")), surfaces_.surfaces},
+        sliding_(upload(exec, plan.sliding, name("sliding"))),
+        sliding_root_(upload(exec, plan.sliding_root, name("sliding_root"))),
         periodic_(periodic_table(exec, plan, plan.image_owners, plan.images_of_owner)),
         residual_(exec, plan.residual, name("residual")),
         lacked_(room_for<Vec3>(exec, plan.residual_nodes.size(), name("lacked"))),
@@ -95,6 +97,10 @@ class OtherBoundaries {
   void take(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
     launch("gridmorph::periodic", exec, kernels::PeriodicMean<Memory>{periodic_, f.work.data()});
+    if (sliding_.extent(0) > 0) {
+      launch("gridmorph::sliding_columns", exec, kernels::CopyListed<Memory>{sliding_, sliding_root_, f.work.data()});
+      launch("gridmorph::periodic", exec, kernels::PeriodicMean<Memory>{periodic_, f.work.data()});
+    }
     launch("gridmorph::residual_nodes::take", exec,
            kernels::TakeAsked<Memory>{nodes_.node, f.u.data(), f.work.data(), lacked_.data()});
     if (residual_.empty()) return;
@@ -110,6 +116,7 @@ class OtherBoundaries {
   Start start_;
   SlipSurfaceTable<Memory> surfaces_;
   kernels::SlipNodeTable<Memory> nodes_;
+  List<Exec, Index32> sliding_, sliding_root_;
   kernels::PeriodicTable<Memory> periodic_;
   SmoothField<Exec, Vec3> residual_;
   List<Exec, Vec3> lacked_;

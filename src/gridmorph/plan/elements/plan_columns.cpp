@@ -39,7 +39,8 @@ void UnstructuredPlanner::find_driving_faces() {
                           "; give each wall one");
       own = int(l);
       if (!std::binary_search(b.driving_patches.begin(), b.driving_patches.end(), p) &&
-          !std::binary_search(b.standing_patches.begin(), b.standing_patches.end(), p))
+          !std::binary_search(b.standing_patches.begin(), b.standing_patches.end(), p) &&
+          !std::binary_search(b.sliding_patches.begin(), b.sliding_patches.end(), p))
         out_.notes.push_back("patch " + describe_patch(mesh_, mesh_.patches[std::size_t(p)]) +
                              " has a boundary layer but drives no near field; its columns are not held");
     }
@@ -66,7 +67,7 @@ void UnstructuredPlanner::find_columns() {
   columns_ = cut(columns_, smooth_heights(out_.graph, columns_, most_heights()));
   for (double const h : columns_.height) out_.report.layer_height = std::max(out_.report.layer_height, h);
   plan_columns();
-  find_standing_columns();
+  find_other_columns();
   plan_turns();
 }
 
@@ -77,8 +78,7 @@ ColumnExtent UnstructuredPlanner::extent_of_face(Index32 face) const {
   return {layer.extent, layer.layers, layer.thickness};
 }
 
-void UnstructuredPlanner::find_standing_columns() {
-  auto const& patches = out_.boundary.standing_patches;
+Columns UnstructuredPlanner::columns_on(std::vector<int> const& patches, Mask const& taken, double motion) const {
   std::vector<Index32> faces;
   std::vector<ColumnExtent> extents;
   for (Index f = 0; f < topology_.boundary.size(); ++f)
@@ -86,15 +86,25 @@ void UnstructuredPlanner::find_standing_columns() {
       faces.push_back(Index32(f));
   sort_by_place(mesh_, topology_, faces);
   for (Index32 const f : faces) extents.push_back(extent_of_face(f));
-  Mask taken = is_known_;
-  for (Index32 const n : columns_.node) taken[std::size_t(n)] = 1;
-  standing_ = make_columns(mesh_, topology_, out_.graph, faces, extents, taken);
-  // Where a moving wall ends on one that stands, and across gaps, what stands gives way.
+  Columns const whole = make_columns(mesh_, topology_, out_.graph, faces, extents, taken);
+  // Where a moving wall ends on one that does not move with it, and across gaps, what does not move gives way.
   std::vector<double> most(std::size_t(mesh_.n_nodes()), infinity);
   for (std::size_t n = 0; n < most.size(); ++n)
-    if (standing_.height[n] > 0 && std::isfinite(from_wall_.distance[n]))
-      most[n] = room_in_gap(from_wall_.distance[n], reach_);
-  standing_ = cut(standing_, smooth_heights(out_.graph, standing_, most));
+    if (whole.height[n] > 0 && std::isfinite(from_wall_.distance[n]))
+      most[n] = room_in_gap(from_wall_.distance[n], motion);
+  return cut(whole, smooth_heights(out_.graph, whole, most));
+}
+
+void UnstructuredPlanner::find_other_columns() {
+  Mask taken = is_known_;
+  for (Index32 const n : columns_.node) taken[std::size_t(n)] = 1;
+  standing_ = columns_on(out_.boundary.standing_patches, taken, reach_);
+  for (Index32 const n : standing_.node) taken[std::size_t(n)] = 1;
+  // On another surface too a node has its own way to slip.
+  for (Index32 const n : out_.boundary.slip_nodes) taken[std::size_t(n)] = 1;
+  // They follow the motion, as far as their wall does.
+  sliding_ = columns_on(out_.boundary.sliding_patches, taken, 0);
+  for (Index32 const n : sliding_.node) is_other_[std::size_t(n)] = 1;
   std::vector<Index32> others, given;
   for (Index32 const n : standing_.node) is_other_[std::size_t(n)] = 1;
   Mask stands = mask();
@@ -106,7 +116,7 @@ void UnstructuredPlanner::find_standing_columns() {
   }
   // What is free to slide begins where these end.
   bool const sliding = given.size() < others.size() && !given.empty();
-  if (standing_.size() > 0) from_other_ = nearest_source(host_, mesh_.coordinates, out_.graph, others);
+  if (n_held() > 0) from_other_ = nearest_source(host_, mesh_.coordinates, out_.graph, others);
   if (sliding) from_given_ = nearest_source(host_, mesh_.coordinates, out_.graph, given);
 }
 

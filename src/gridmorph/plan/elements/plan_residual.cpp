@@ -21,8 +21,7 @@ void UnstructuredPlanner::plan_residual() {
   for (Index32 const n : columns_.node) plan.fade[std::size_t(n)] = 0;
   plan_start();
   MeshExtent const box = extent_of(host_, mesh_.coordinates);
-  std::vector<Index32> const boundary(plan.residual_nodes.begin(),
-                                      plan.residual_nodes.end() - std::ptrdiff_t(standing_.node.size()));
+  std::vector<Index32> const boundary(plan.residual_nodes.begin(), plan.residual_nodes.end() - n_held());
   plan.residual =
       make_scatter_lattice(host_, mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low, box.high);
   if (plan.residual.empty()) return;
@@ -45,12 +44,13 @@ void UnstructuredPlanner::plan_start() {
   Index n_boundary = 0;
   for (std::size_t k = 0; k < plan.residual_nodes.size(); ++k) {
     Index32 const n = plan.residual_nodes[k];
+    if (k + plan.sliding.size() >= plan.residual_nodes.size()) break;
     bool const given = plan.residual_slot[k] >= 0;
     (given ? start.given : start.node).push_back(n);
     (given ? seeds : wanted)[std::size_t(n)] = 1;
     if (!given) continue;
     start.given_slot.push_back(plan.residual_slot[k]);
-    n_boundary += k + standing_.node.size() < plan.residual_nodes.size() ? 1 : 0;
+    n_boundary += k + std::size_t(n_held()) < plan.residual_nodes.size() ? 1 : 0;
   }
   start.fade.assign(start.node.size(), 0);
   start.detail_fade.assign(start.node.size(), 0);
@@ -122,10 +122,11 @@ void UnstructuredPlanner::plan_other_nodes() {
   std::vector<Index32> slot(std::size_t(mesh_.n_nodes()), -1), slip(std::size_t(mesh_.n_nodes()), -1);
   for (std::size_t k = 0; k < b.known.size(); ++k) slot[std::size_t(b.known[k])] = Index32(k);
   for (std::size_t k = 0; k < b.slip_nodes.size(); ++k) slip[std::size_t(b.slip_nodes[k])] = Index32(k);
-  Mask stands = mask();
-  for (Index32 const n : standing_.node) stands[std::size_t(n)] = 1;
+  Mask in_column = mask();
+  for (auto const* columns : {&standing_, &sliding_})
+    for (Index32 const n : columns->node) in_column[std::size_t(n)] = 1;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
-    if (!is_other_[std::size_t(n)] || stands[std::size_t(n)]) continue;
+    if (!is_other_[std::size_t(n)] || in_column[std::size_t(n)]) continue;
     plan.residual_nodes.push_back(n);
     plan.residual_slot.push_back(slot[std::size_t(n)]);
     if (slip[std::size_t(n)] >= 0) {
@@ -140,6 +141,13 @@ void UnstructuredPlanner::plan_other_nodes() {
     plan.residual_surfaces.add(slip[std::size_t(standing_.node[k])] >= 0
                                    ? b.slip_surfaces[slip[std::size_t(standing_.node[k])]]
                                    : std::span<Index32 const>{});
+  }
+  for (std::size_t k = 0; k < sliding_.node.size(); ++k) {
+    plan.residual_nodes.push_back(sliding_.node[k]);
+    plan.residual_slot.push_back(-1);
+    plan.residual_surfaces.add({});
+    plan.sliding.push_back(sliding_.node[k]);
+    plan.sliding_root.push_back(sliding_.root[k]);
   }
   group_images(false, plan.image_owners, plan.images_of_owner);
 }
