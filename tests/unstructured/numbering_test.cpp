@@ -191,9 +191,9 @@ TEST_P(Numbering, NorDoesTheUnitOfLength) {
   Bent const bent = GetParam()();
   for (auto const method : {NearFieldMethod::lattice, NearFieldMethod::layers})
     for (double const scale : {0.1, 3.0, 1e3})
-      // On the cascade another grouping of its walls, on the coil a row or two.
+      // On the cascade another grouping of its walls, on the coil other places of a few nodes of the wrap.
       EXPECT_LT(scaling(bent, by(method), scale),
-                std::max(reached(GetParam(), method), GetParam() == cascade ? 1e-3 : 1e-5))
+                std::max(reached(GetParam(), method), GetParam() == cascade ? 1e-3 : 1e-4))
           << int(method) << ' ' << scale;
 }
 
