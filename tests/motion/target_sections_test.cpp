@@ -232,7 +232,8 @@ struct Cascade {
       if (p[2] == nk - 1) return place(side(p[0], h, false), 1);
       return place((1 - w) * side(p[0], h, true) + w * side(p[0], h, false), w);
     });
-    std::optional<Periodic> const copy = flat ? translation({0, pitch, 0}) : rotation({0, 0, 0}, {1, 0, 0}, -pitch);
+    std::optional<Periodic> const copy =
+        flat ? periodic_translation({0, pitch, 0}) : rotation({0, 0, 0}, {1, 0, 0}, -pitch);
     for (auto const& [lo, hi] : {std::pair(0, before + 1), std::pair(before + along, ni)}) {
       IndexRange const own{{lo, 0, 0}, {hi, nj, 1}}, other{{lo, 0, nk - 1}, {hi, nj, nk}};
       if (periodic) builder.join(zone, own, zone, other, {}, copy);

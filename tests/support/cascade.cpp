@@ -38,8 +38,8 @@ Mesh cascade(double radius) {
   };
   build.patch("blade", PatchKind::wall, zone, part(lower, before, before + along));
   build.patch("blade", PatchKind::wall, zone, part(upper, before, before + along));
-  Periodic const pitch =
-      radius == 0 ? translation({0, 0, cascade_pitch}) : rotation({0, 0, 0}, {1, 0, 0}, cascade_pitch / radius);
+  Periodic const pitch = radius == 0 ? periodic_translation({0, 0, cascade_pitch})
+                                     : rotation({0, 0, 0}, {1, 0, 0}, cascade_pitch / radius);
   for (int const first : {0, before + along}) {
     int const last = first == 0 ? before : before + along + behind;
     build.join(zone, part(lower, first, last), zone, part(upper, first, last), {}, pitch);

@@ -67,8 +67,6 @@ Periodic rotation(Vec3 const& center, Vec3 const& unit_axis, double angle_rad) {
   return {center, angle_rad * unit_axis, {}, rotation_about(center, unit_axis, angle_rad)};
 }
 
-Periodic translation(Vec3 const& t) { return {{}, {}, t, {{}, t}}; }
-
 namespace {
 
 /// Common nodes of two boxes; nothing unless they share a face part, at least one cell wide both ways.

@@ -246,8 +246,8 @@ Mesh translational(int directions, unsigned seed) {
     double const wave = std::sin(two_pi * (q.y + q.z));
     return 2 * q.x * Vec3{1, 0.1, 0} + q.y * along_v + q.z * along_w + 0.05 * wave * Vec3{1, 1, -1};
   };
-  b.wrap[2] = {Wrap::Kind::periodic, translation(-along_w)};
-  if (directions == 2) b.wrap[1] = {Wrap::Kind::periodic, translation(-along_v)};
+  b.wrap[2] = {Wrap::Kind::periodic, periodic_translation(-along_w)};
+  if (directions == 2) b.wrap[1] = {Wrap::Kind::periodic, periodic_translation(-along_v)};
   b.family = {"bottom", "top", directions == 2 ? "" : "side", directions == 2 ? "" : "side", "", ""};
   return make(b);
 }

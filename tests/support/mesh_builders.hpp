@@ -73,7 +73,6 @@ struct Bricks {
 Mesh make(Bricks const& bricks);
 
 Periodic rotation(Vec3 const& center, Vec3 const& unit_axis, double angle_rad);
-Periodic translation(Vec3 const& t);
 
 /// One zone; straight: a uniform 2 x 1 x 1.2 box, otherwise sheared, curved and distorted.
 enum class Shape { straight, curved };
