@@ -24,6 +24,13 @@ void sort_by_place(Mesh const& mesh, UnstructuredTopology const& topology, std::
             [&](Index32 a, Index32 b) { return is_before(middle[std::size_t(a)], a, middle[std::size_t(b)], b); });
 }
 
+/// Per node of the mesh its place in a list, -1: not in it.
+std::vector<Index32> places_of_nodes(std::vector<Index32> const& list, Index n_nodes) {
+  std::vector<Index32> place(std::size_t(n_nodes), -1);
+  for (std::size_t k = 0; k < list.size(); ++k) place[std::size_t(list[k])] = Index32(k);
+  return place;
+}
+
 }  // namespace
 
 void UnstructuredPlanner::find_driving_faces() {
@@ -151,8 +158,7 @@ void UnstructuredPlanner::plan_one_rings() {
 void UnstructuredPlanner::find_wall_lines() {
   UnstructuredPlan& plan = out_.plan;
   auto const& x = mesh_.coordinates;
-  std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
-  for (std::size_t k = 0; k < plan.driving.size(); ++k) place[std::size_t(plan.driving[k])] = Index32(k);
+  std::vector<Index32> const place = places_of_nodes(plan.driving, mesh_.n_nodes());
   auto const normal = wall_normals(mesh_, topology_, out_.graph, driving_faces_);
   std::vector<std::vector<Vec3>> lines(plan.driving.size());
   for (std::size_t k = 0; k < columns_.node.size(); ++k) {
@@ -175,8 +181,7 @@ void UnstructuredPlanner::plan_columns() {
   using Mode = BoundaryLayer::Mode;
   auto const mode = modes_of_walls();
   UnstructuredPlan& plan = out_.plan;
-  std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
-  for (std::size_t k = 0; k < plan.driving.size(); ++k) place[std::size_t(plan.driving[k])] = Index32(k);
+  std::vector<Index32> const place = places_of_nodes(plan.driving, mesh_.n_nodes());
   for (std::size_t k = 0; k < columns_.node.size(); ++k) {
     Index32 const root = columns_.root[k];
     double const s = std::min(1.0, columns_.above_wall[k] / columns_.height[std::size_t(root)]);
