@@ -36,11 +36,7 @@ class Boundary {
         corners.push_back(k);
       }
       corners_.add(corners);
-      double size = dimension_ == 2 ? distance(mesh.coordinates[face[0]], mesh.coordinates[face[1]]) : 0;
-      for (std::size_t k = 1; dimension_ == 3 && k + 1 < face.size(); ++k)
-        size += 0.5 * norm(cross(mesh.coordinates[face[k]] - mesh.coordinates[face[0]],
-                                 mesh.coordinates[face[k + 1]] - mesh.coordinates[face[0]]));
-      area_.push_back(size);
+      area_.push_back(boundary_face_size(mesh, faces, f));
     }
   }
 
@@ -369,6 +365,16 @@ class Boundary {
 };
 
 }  // namespace
+
+double boundary_face_size(Mesh const& mesh, BoundaryFaces const& faces, Index face) {
+  auto const nodes = faces.nodes[face];
+  Vec3 const a = mesh.coordinates[nodes[0]];
+  if (mesh.dimension == 2) return distance(a, mesh.coordinates[nodes[1]]);
+  double size = 0;
+  for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
+    size += 0.5 * norm(cross(mesh.coordinates[nodes[k]] - a, mesh.coordinates[nodes[k + 1]] - a));
+  return size;
+}
 
 FittedDomain fit_domain(HostInstance const& host, Mesh const& mesh, BoundaryFaces const& faces,
                         std::span<std::uint8_t const> moving, std::span<Axis const> axes) {

@@ -13,6 +13,9 @@
 
 namespace gridmorph::detail {
 
+/// Area of a boundary face, as triangles around its first corner; in 2-D the length of an edge.
+double boundary_face_size(Mesh const& mesh, BoundaryFaces const& faces, Index face);
+
 /// A chart with the share of the outer boundary's area that lies on its sides, to 2 % of their distance.
 struct FittedDomain {
   ChartedDomain domain;  ///< sides the mesh ends on `stand`

@@ -32,7 +32,7 @@ ChartedDomain UnstructuredPlanner::find_domain() const {
                              : count[is_image] > 0 ? is_image
                              : count[stands] > 0   ? stands
                                                    : nothing;
-    area[std::size_t(side)][kind] += boundary_face_size(f);
+    area[std::size_t(side)][kind] += boundary_face_size(mesh_, topology_.boundary, f);
   }
   using Side = ChartedDomain::Side;
   for (std::size_t s = 0; s < 6; ++s) {
@@ -46,16 +46,6 @@ ChartedDomain UnstructuredPlanner::find_domain() const {
       side = Side::free;
   }
   return std::move(fitted.domain);
-}
-
-double UnstructuredPlanner::boundary_face_size(Index face) const {
-  auto const nodes = topology_.boundary.nodes[face];
-  Vec3 const a = mesh_.coordinates[nodes[0]];
-  if (mesh_.dimension == 2) return distance(a, mesh_.coordinates[nodes[1]]);
-  double size = 0;
-  for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
-    size += 0.5 * norm(cross(mesh_.coordinates[nodes[k]] - a, mesh_.coordinates[nodes[k + 1]] - a));
-  return size;
 }
 
 }  // namespace gridmorph::detail

@@ -1,5 +1,6 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/plan/elements/fit_domain.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>
@@ -92,7 +93,7 @@ std::vector<double> UnstructuredPlanner::areas(std::vector<Index32> const& nodes
     if (face_patches_.patch[std::size_t(f)] == BoundaryFacePatches::connection &&
         std::none_of(face.begin(), face.end(), [&](Index32 n) { return is_periodic[std::size_t(owner(n))] != 0; }))
       continue;
-    double const size = boundary_face_size(f);
+    double const size = boundary_face_size(mesh_, topology_.boundary, f);
     for (Index32 const n : face) area[std::size_t(owner(n))] += size / double(face.size());
   }
   double sum = 0;

@@ -90,7 +90,6 @@ class UnstructuredPlanner {
   // plan_domain.cpp
   /// The chart of wrap and background, and what nodes do on the sides that the mesh ends on.
   [[nodiscard]] ChartedDomain find_domain() const;
-  [[nodiscard]] double boundary_face_size(Index face) const;
 
   // plan_regions.cpp
   double offset();
