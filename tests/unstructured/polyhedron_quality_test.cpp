@@ -277,5 +277,90 @@ TEST(FaceQuality, OfATrapezoidMeetsThePlainFormula) {
   }
 }
 
+std::vector<double> faces_of(Mesh const& mesh, Coordinates const& x, Measure measure) {
+  Input input;
+  input.coordinates = views(x);
+  auto const field = cell_fields(Exec(), mesh, make_topology(mesh), input, std::array{measure})[0];
+  return {field.data(), field.data() + field.extent(0)};
+}
+
+constexpr int per_period = 4, n_periods = 3;
+
+/// A disturbed sector of a ring or length of a channel, `periods` of them one after the other along k.
+Mesh periods(int periods, RigidTransform const& to_next) {
+  std::vector<RigidTransform> to(1, RigidTransform{});
+  for (int p = 0; p < periods; ++p) to.push_back(to.back().then(to_next));
+  return one_zone({5, 4, periods * per_period + 1}, [&](Index3 const& p) {
+    double const share = double(p[2] % per_period) / per_period, i = p[0], j = p[1];
+    Vec3 const here{0.1 * i + 0.01 * std::sin(7 * share + 5 * j), 1 + 0.2 * j + 0.02 * std::cos(3 * i + 4 * share),
+                    0.03 * std::sin(2 * i + 3 * j)};
+    Vec3 const next = to_next(here);
+    Vec3 const within = to_next.rotation.m[1][1] < 1
+                            ? rotation_about({0, 0, 0}, {1, 0, 0}, share * std::numbers::pi / 6)(here)
+                            : here + share * (next - here);
+    return to[std::size_t(p[2] / per_period)](within);
+  });
+}
+
+/// One of them, its sides paired; `from_donors`: the connection starts at the far one.
+void close_around(Mesh& mesh, RigidTransform const& to_next, bool from_donors) {
+  Connection c;
+  c.name = "sides";
+  c.zone = c.donor_zone = 0;
+  c.periodic = Periodic{};
+  c.periodic->declared = from_donors ? to_next.inverse() : to_next;
+  Index const layer = mesh.n_nodes() / (per_period + 1);
+  for (Index n = 0; n < layer; ++n) {
+    c.nodes.push_back(Index32(n));
+    c.donor_nodes.push_back(Index32(per_period * layer + n));
+  }
+  if (from_donors) std::swap(c.nodes, c.donor_nodes);
+  mesh.connections.push_back(std::move(c));
+}
+
+TEST(FaceQuality, BehindPeriodicSidesIsTheNextPeriod) {
+  RigidTransform const along{Mat3{}, {0.03, 0.02, 0.7}},
+      around = rotation_about({0, 0, 0}, {1, 0, 0}, std::numbers::pi / 6);
+  for (auto const& to_next : {along, around})
+    for (bool const from_donors : {false, true})
+      for (int const form : {0, 1, 2}) {
+        SCOPED_TRACE(form);
+        auto const of_form = [&](Mesh const& blocks) {
+          Mesh const elements = form == 1 ? to_prisms_and_tetrahedra(blocks, 0) : to_hexahedra(blocks);
+          return form == 2 ? as_polyhedra(elements) : elements;
+        };
+        Mesh const many = of_form(periods(n_periods, to_next));
+        Mesh one = of_form(periods(1, to_next));
+        Index const n = one.n_elements();
+        ASSERT_EQ(many.n_elements(), n_periods * n);
+        auto const open = faces_of(one, one.coordinates, Measure::non_orthogonality_deg);
+        close_around(one, to_next, from_donors);
+        for (Measure const measure : {Measure::non_orthogonality_deg, Measure::face_skewness}) {
+          auto const all = faces_of(many, many.coordinates, measure), found = faces_of(one, one.coordinates, measure);
+          for (Index e = 0; e < n; ++e) ASSERT_NEAR(found[std::size_t(e)], all[std::size_t(n + e)], 1e-9) << e;
+          // Wherever the mesh as a whole has gone.
+          auto const shifted = faces_of(one, moved_by(one, [](Vec3 const& p) { return p + Vec3{1, -2, 3}; }), measure);
+          for (Index e = 0; e < n; ++e) ASSERT_NEAR(found[std::size_t(e)], shifted[std::size_t(e)], 1e-9) << e;
+        }
+        EXPECT_NE(open, faces_of(one, one.coordinates, Measure::non_orthogonality_deg));
+      }
+}
+
+TEST(FaceQuality, OfTwoZonesIsThatOfOne) {
+  Mesh const zones = to_hexahedra(two_zones({}, true));
+  Mesh const whole = to_hexahedra(one_zone({9, 6, 5}, [](Index3 const& p) {
+    return wavy({0.1 * p[0] * (1 + 0.15 * p[0]), 0.2 * p[1], 0.15 * p[2] * (1 + 0.1 * p[2])}, 0.04);
+  }));
+  for (Measure const measure : {Measure::non_orthogonality_deg, Measure::face_skewness}) {
+    auto const parts = faces_of(zones, zones.coordinates, measure), all = faces_of(whole, whole.coordinates, measure);
+    ASSERT_EQ(parts.size(), all.size());
+    for (std::size_t e = 0; e < all.size(); ++e) {
+      int const i = int(e % 8), row = int(e / 8);  // the first three of each row are the first zone's
+      std::size_t const there = i < 3 ? std::size_t(3 * row + i) : std::size_t(3 * 20 + 5 * row + (i - 3));
+      EXPECT_NEAR(parts[there], all[e], 1e-10) << e;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gridmorph::test

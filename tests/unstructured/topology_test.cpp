@@ -172,9 +172,12 @@ TEST(UnstructuredTopology, ConnectionsLeadToTheElementBehind) {
     // The only neighbours across the cut have a face whose four nodes coincide.
     int across = 0;
     for (Index f = 0; f < topology.boundary.size(); ++f) {
-      Index32 const other = topology.boundary.across[std::size_t(f)];
-      if (other < 0) continue;
+      Index32 const behind = topology.boundary.across[std::size_t(f)];
+      if (behind < 0) continue;
       ++across;
+      EXPECT_EQ(topology.boundary.across[std::size_t(behind)], f);
+      EXPECT_EQ(topology.boundary.connection[std::size_t(f)] ^ 1, topology.boundary.connection[std::size_t(behind)]);
+      Index32 const other = topology.boundary.element[std::size_t(behind)];
       EXPECT_NE(mesh.zone_of_element(other), mesh.zone_of_element(topology.boundary.element[std::size_t(f)]));
       for (Index32 const n : topology.boundary.nodes[f]) {
         auto const corners = mesh.elements.corners(other);

@@ -153,14 +153,16 @@ BoundaryFaces boundary_faces(Mesh const& mesh, ElementSides const& sides) {
     }
   }
   out.across.assign(out.element.size(), -1);
+  out.connection.assign(out.element.size(), -1);
   return out;
 }
 
-/// Finds the elements behind connections: a face whose nodes are all paired, with a face of the donors there.
+/// Finds the faces behind connections: a face whose nodes are all paired, with a face of the donors there.
 void cross_connections(Mesh const& mesh, UnstructuredTopology& topology) {
   std::vector<Index32> donor(std::size_t(mesh.n_nodes()), -1);
-  for (auto const& c : mesh.connections)
+  for (std::size_t number = 0; number < mesh.connections.size(); ++number)
     for (int const way : {0, 1}) {
+      auto const& c = mesh.connections[number];
       auto const& own = way == 0 ? c.nodes : c.donor_nodes;
       auto const& other = way == 0 ? c.donor_nodes : c.nodes;
       for (std::size_t n = 0; n < own.size(); ++n) donor[std::size_t(own[n])] = other[n];
@@ -173,7 +175,9 @@ void cross_connections(Mesh const& mesh, UnstructuredTopology& topology) {
           for (Index32 const n : topology.boundary.nodes[face]) image.push_back(donor[std::size_t(n)]);
           if (contains(image, -1)) continue;
           Index32 const there = find_boundary_face(topology, image);
-          if (there >= 0 && there != face) across = topology.boundary.element[std::size_t(there)];
+          if (there < 0 || there == face) continue;
+          across = there;
+          topology.boundary.connection[std::size_t(face)] = Index32(2 * number) + way;
         }
       for (Index32 const node : own) donor[std::size_t(node)] = -1;
     }

@@ -38,7 +38,9 @@ struct BoundaryFaces {
   CsrGraph nodes;                ///< corner nodes
   std::vector<Index32> element;  ///< the one they belong to
   std::vector<Index32> side;     ///< which of its sides
-  std::vector<Index32> across;   ///< the element behind a connection, periodic ones too; -1: none
+  std::vector<Index32> across;   ///< the face behind a connection, periodic ones too; -1: none
+  /// The connection: 2 c where the face has nodes of Mesh::connections[c], 2 c + 1 where it has donor nodes of it; -1: none.
+  std::vector<Index32> connection;
   [[nodiscard]] Index size() const { return nodes.size(); }
 };
 

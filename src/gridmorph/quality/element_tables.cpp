@@ -5,11 +5,34 @@
 namespace gridmorph::detail {
 
 std::vector<Index32> neighbours_across(UnstructuredTopology const& topology) {
-  auto const& [nodes, element, side, across] = topology.boundary;
-  if (std::none_of(across.begin(), across.end(), [](Index32 e) { return e >= 0; })) return {};
+  auto const& [nodes, element, side, across, connection] = topology.boundary;
+  if (std::none_of(across.begin(), across.end(), [](Index32 f) { return f >= 0; })) return {};
   std::vector<Index32> out = topology.sides.neighbour;
   for (std::size_t f = 0; f < across.size(); ++f)
-    if (across[f] >= 0) out[std::size_t(topology.sides.first[std::size_t(element[f])] + side[f])] = across[f];
+    if (across[f] >= 0)
+      out[std::size_t(topology.sides.first[std::size_t(element[f])] + side[f])] = element[std::size_t(across[f])];
+  return out;
+}
+
+LinkedSides linked_sides(Mesh const& mesh, UnstructuredTopology const& topology) {
+  auto const& [nodes, element, side, across, connection] = topology.boundary;
+  LinkedSides out;
+  auto const side_of = [&](std::size_t f) {
+    return std::size_t(topology.sides.first[std::size_t(element[f])] + side[f]);
+  };
+  for (std::size_t f = 0; f < across.size(); ++f) {
+    if (across[f] < 0) continue;
+    if (out.links.empty()) out.neighbour = topology.sides.neighbour;
+    auto const there = std::size_t(across[f]);
+    SideLink link{element[there], side[there], {}};
+    auto const& c = mesh.connections[std::size_t(connection[f] / 2)];
+    if (c.periodic) {
+      Mat3 const& to_donor = c.periodic->declared.rotation;
+      link.turn = connection[f] % 2 == 0 ? transpose(to_donor) : to_donor;
+    }
+    out.neighbour[side_of(f)] = first_link - Index32(out.links.size());
+    out.links.push_back(link);
+  }
   return out;
 }
 

@@ -189,6 +189,20 @@ KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, CsrViews<Me
 /// What is on the other side of each side of each element as ElementSides has it, but through connections too; empty where none leads to an element.
 std::vector<Index32> neighbours_across(UnstructuredTopology const& topology);
 
+/// What is behind a side that a connection leads from.
+struct SideLink {
+  Index32 element = -1, side = -1;
+  Mat3 turn;  ///< of directions there into those here
+};
+/// ElementSides::neighbour where link k leads from a side: first_link - k.
+inline constexpr Index32 first_link = -4;
+
+struct LinkedSides {
+  std::vector<Index32> neighbour;  ///< as ElementSides has it, but for links; empty where there are none
+  std::vector<SideLink> links;     ///< in the order of the boundary faces
+};
+LinkedSides linked_sides(Mesh const& mesh, UnstructuredTopology const& topology);
+
 /// `known` where it has an entry per element, else numbering_signs().
 std::vector<signed char> signs_of(HostInstance const& host, Mesh const& mesh, ElementSides const& sides,
                                   std::vector<signed char> const& known);

@@ -88,9 +88,12 @@ void measure_faces(Exec const& exec, Mesh const& mesh, UnstructuredTopology cons
                    FirstElement const& first_element, std::vector<detail::PartialSums>& out) {
   using MemorySpace = typename Exec::memory_space;
   auto const centres = detail::element_centres(exec, tables, points, mesh.dimension == 3);
+  detail::LinkedSides const linked = detail::linked_sides(mesh, topology);
   detail::SideTables<MemorySpace> const sides{
       detail::view_of(exec, topology.sides.first, "gridmorph::quality::first_side"),
-      detail::view_of(exec, topology.sides.neighbour, "gridmorph::quality::neighbour")};
+      detail::view_of(exec, linked.links.empty() ? topology.sides.neighbour : linked.neighbour,
+                      "gridmorph::quality::neighbour"),
+      detail::upload(exec, "gridmorph::quality::links", linked.links)};
   auto const near_field = input.near_field;
   auto const angles = input.fields.of[int(Measure::non_orthogonality_deg)],
              skewnesses = input.fields.of[int(Measure::face_skewness)];

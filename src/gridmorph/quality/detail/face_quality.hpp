@@ -23,12 +23,23 @@ struct FaceSums {
   }
 };
 
-/// What is behind each side, in the order of the sides; negative: nothing that has a centre on this side of a connection.
+/// What is behind each side, in the order of the sides: LinkedSides.
 template <class MemorySpace>
 struct SideTables {
   Kokkos::View<Index const*, MemorySpace> first;
   Kokkos::View<Index32 const*, MemorySpace> neighbour;
+  Kokkos::View<SideLink const*, MemorySpace> links;
 };
+
+/// Of side `side` of element e.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION kernels::FaceGeometry face_of(ElementTables<MemorySpace> const& tables,
+                                                     PackedPoints<MemorySpace> const& points, Index e, int side) {
+  return tables.with_faces(points, e, [&](auto const& faces) {
+    return kernels::face_geometry(
+        faces.n_corners(side), [&](int k) { return faces.at(side, k); }, tables.plane_normal);
+  });
+}
 
 /// (n_elements) centres.
 template <class Exec>
@@ -53,7 +64,8 @@ Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> element_centres
   return centres;
 }
 
-/// Of element e; boundary faces and connections have no line between centres, but a skewness.
+/// Of element e; boundary faces have no line between centres, but a skewness. Behind a connection the neighbour lies as far from the face there as
+/// its image does from the one here, whatever became of the two sides: d = (f - x) + turn (y - f'), f' the centre of the face there.
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION FaceQuality face_quality(ElementTables<MemorySpace> const& tables,
                                                 SideTables<MemorySpace> const& sides,
@@ -70,8 +82,17 @@ KOKKOS_INLINE_FUNCTION FaceQuality face_quality(ElementTables<MemorySpace> const
       double const square = dot(face.area, face.area);
       if (!(square > 0)) continue;  // a side that is a line or a point
       Index32 const other = sides.neighbour(sides.first(e) + f);
-      bool const inside = other >= 0;
-      Vec3 const d = inside ? point(centres(other)) - own : (dot(face.area, face.centre - own) / square) * face.area;
+      bool const inside = other >= 0 || other <= first_link;
+      Vec3 d;
+      if (other >= 0) {
+        d = point(centres(other)) - own;
+      } else if (inside) {
+        SideLink const& link = sides.links(first_link - other);
+        Vec3 const there = face_of(tables, points, link.element, link.side).centre;
+        d = (face.centre - own) + link.turn * (point(centres(link.element)) - there);
+      } else {
+        d = (dot(face.area, face.centre - own) / square) * face.area;
+      }
       if (inside)
         worst.non_orthogonality_deg =
             kernels::larger(worst.non_orthogonality_deg, kernels::non_orthogonality_deg(face, own, own + d));
