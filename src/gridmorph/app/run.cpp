@@ -293,6 +293,9 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   if (relaxed.before > 0)
     guarded.push_back(fmt::format("{} {}; displacements around them are smoothed in {} rounds, {} are left",
                                   relaxed.before, run.mesh().kind().lost, relaxed.rounds, relaxed.after));
+  if (relaxed.middles > 0)
+    guarded.push_back(
+        fmt::format("{} nodes between corners are pulled where they alone broke elements", relaxed.middles));
   terminal.progress("measuring quality");
   Stopwatch watch;
   run.measure_baseline();

@@ -1,5 +1,6 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/guard/detail/element_shapes.hpp>
+#include <gridmorph/guard/detail/middle_nodes.hpp>
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -39,6 +41,7 @@ class Relaxation {
     report.inverted_before = report.inverted_after = now.inverted;
     if (now.bad.empty()) return report;
     find_held();
+    pull_middles(now);
     int sweeps = options_.sweeps, rings = options_.rings;
     bool shapes = by_shape();
     for (; report.rounds < options_.rounds && !now.bad.empty(); ++report.rounds) {
@@ -70,6 +73,10 @@ class Relaxation {
         sweeps *= 2;
       }
     }
+    pull_middles(now);
+    report.after = Index(now.bad.size());
+    report.inverted_after = now.inverted;
+    report.middles = std::count(pulled_.begin(), pulled_.end(), 1);
     return report;
   }
 
@@ -193,6 +200,34 @@ class Relaxation {
     return out;
   }
 
+  /// Pulls nodes between corners where elements are broken by them alone; from here on they keep what that added when they follow their corners.
+  void pull_middles(Judged& now) {
+    InterpolationOperator const& rows = prepared_.plan.middle;
+    if (rows.size() == 0 || now.bad.empty()) return;
+    if (!middle_nodes_) middle_nodes_.emplace(mesh_, prepared_, tables_, signs_);
+    Coordinates before(mesh_.n_nodes());
+    Kokkos::deep_copy(before.x, x_.x);
+    Kokkos::deep_copy(before.y, x_.y);
+    Kokkos::deep_copy(before.z, x_.z);
+    std::vector<Index> const moved = middle_nodes_->pull(now.bad, options_.share, x_);
+    if (moved.empty()) return;
+    Judged after = judge(touched({}, moved, now.bad));
+    if (after.worse_than(now)) {
+      Kokkos::deep_copy(x_.x, before.x);
+      Kokkos::deep_copy(x_.y, before.y);
+      Kokkos::deep_copy(x_.z, before.z);
+      return;
+    }
+    now = std::move(after);
+    pull_.resize(std::size_t(rows.size()));
+    pulled_.resize(std::size_t(rows.size()), 0);
+    for (Index const r : moved) {
+      Index32 const n = rows.target[std::size_t(r)];
+      pulled_[std::size_t(r)] = 1;
+      pull_[std::size_t(r)] += x_[n] - before[n];
+    }
+  }
+
   /// Further nodes follow their corners as in the morph.
   void follow(std::vector<Index> const& middles) {
     InterpolationOperator const& rows = prepared_.plan.middle;
@@ -206,6 +241,7 @@ class Relaxation {
         sum += double(rows.weight[std::size_t(k)]) * (displacement(rows.item[std::size_t(k)]) - base);
       Index32 const n = rows.target[std::size_t(r)];
       x_.set(n, x[n] + (base + sum));
+      if (!pull_.empty()) x_.set(n, x_[n] + pull_[std::size_t(r)]);
     }
     if (!middles.empty()) copy_coincident();
   }
@@ -315,6 +351,9 @@ class Relaxation {
   std::vector<std::uint8_t> held_;
   CsrGraph middles_of_node_;     ///< rows of UnstructuredPlan::middle that follow each node
   CsrGraph elements_of_middle_;  ///< per row
+  std::optional<detail::MiddleNodes> middle_nodes_;
+  std::vector<Vec3> pull_;            ///< per row, what pulling added; empty where nothing was
+  std::vector<std::uint8_t> pulled_;  ///< per row
 };
 
 }  // namespace
