@@ -74,7 +74,8 @@ struct WriteOptions {
 /// file that the mesh came from. Polyhedra are refused. Blocks beside elements are written as elements too.
 void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options = {});
 
-/// Writes a mesh as write_mesh does, but zone by zone: for meshes of blocks that never are in memory as a whole. The file appears with
+/// Writes a mesh as write_mesh does, but zone by zone: for meshes that never are in memory as a whole. Zones of elements may share nodes and
+/// elements, which are then the same in each of them. The file appears with
 /// commit(), or not at all. While a writer is alive, no other file may fail to be written (see MachineError above).
 class MeshFileWriter {
  public:

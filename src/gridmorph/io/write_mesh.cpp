@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_families.hpp>
 #include <gridmorph/io/cgns/cgns_file.hpp>
+#include <gridmorph/io/element_zones.hpp>
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/output_file.hpp>
 
@@ -9,6 +10,7 @@
 #include <map>
 #include <set>
 #include <utility>
+#include <variant>
 
 namespace gridmorph {
 
@@ -213,7 +215,7 @@ struct MeshFileWriter::State {
   Mesh const& mesh;
   io::OutputFile target;
   cgns::File file;
-  MeshWriter writer;
+  std::variant<MeshWriter, io::ElementZoneWriter> writer;
   std::vector<char> written;
 
   State(std::string const& p, Mesh const& m, WriteOptions const& options)
@@ -221,15 +223,20 @@ struct MeshFileWriter::State {
         mesh(m),
         target(p),
         file(reserved(target, m), cgns::File::Mode::create, options.format),
-        writer(file, m, options),
+        writer(writer_of(file, m, options)),
         written(m.zones.size(), 0) {
-    writer.begin();
+    std::visit([](auto& w) { w.begin(); }, writer);
   }
 
  private:
   static std::string const& reserved(io::OutputFile const& target, Mesh const& mesh) {
-    target.reserve(bytes_needed(mesh));
+    target.reserve(mesh.is_structured() ? bytes_needed(mesh) : io::bytes_of_elements(mesh));
     return target.path();
+  }
+  static std::variant<MeshWriter, io::ElementZoneWriter> writer_of(cgns::File& file, Mesh const& mesh,
+                                                                   WriteOptions const& options) {
+    if (mesh.is_structured()) return MeshWriter(file, mesh, options);
+    return io::ElementZoneWriter(file, mesh, options);
   }
 };
 
@@ -244,7 +251,7 @@ MeshFileWriter::~MeshFileWriter() = default;
 void MeshFileWriter::write_zone(int zone, double const* x, double const* y, double const* z) {
   if (std::exchange(state_->written.at(zone), 1) != 0)
     throw MeshError(state_->path + ": zone '" + state_->mesh.zones[zone].name + "' is written twice");
-  state_->writer.zone(zone, {x, y, z});
+  std::visit([&](auto& writer) { writer.zone(zone, {x, y, z}); }, state_->writer);
 }
 
 void MeshFileWriter::commit() {

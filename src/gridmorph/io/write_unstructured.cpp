@@ -1,255 +1,22 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/cgns/cgns_file.hpp>
-#include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/element_zones.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/unstructured_fields.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
-#include <algorithm>
-#include <array>
-#include <map>
-#include <set>
-
 namespace gridmorph {
 
 namespace {
 
-constexpr float library_version = 4.0F;
-constexpr std::size_t longest_name = 32;
-constexpr std::int32_t mixed = 20;
-
-std::string unique_name(std::set<std::string>& taken, std::string const& wanted) {
-  std::string name = wanted.substr(0, longest_name);
-  for (int n = 2; !taken.insert(name).second; ++n) {
-    std::string const suffix = "_" + std::to_string(n);
-    name = wanted.substr(0, longest_name - suffix.size()) + suffix;
+void write_zones(cgns::File& file, Mesh const& mesh, Coordinates const& x, WriteOptions const& options) {
+  io::ElementZoneWriter writer(file, mesh, options);
+  writer.begin();
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+    Index const first = mesh.zones[z].first_node;
+    writer.zone(int(z), {x.x.data() + first, x.y.data() + first, x.z.data() + first});
   }
-  return name;
-}
-
-/// ElementType_t of a list of nodes; 0 for those that this writer does not know.
-std::int32_t cgns_type(ElementType type, std::size_t nodes) {
-  switch (type) {
-    case ElementType::triangle: return nodes == 3 ? 5 : nodes == 6 ? 6 : 0;
-    case ElementType::quadrilateral: return nodes == 4 ? 7 : nodes == 8 ? 8 : nodes == 9 ? 9 : 0;
-    case ElementType::tetrahedron: return nodes == 4 ? 10 : nodes == 10 ? 11 : 0;
-    case ElementType::pyramid: return nodes == 5 ? 12 : nodes == 13 ? 21 : nodes == 14 ? 13 : 0;
-    case ElementType::prism: return nodes == 6 ? 14 : nodes == 15 ? 15 : nodes == 18 ? 16 : 0;
-    case ElementType::hexahedron: return nodes == 8 ? 17 : nodes == 20 ? 18 : nodes == 27 ? 19 : 0;
-    case ElementType::polyhedron: return 0;
-  }
-  return 0;
-}
-
-std::int32_t face_type(std::size_t corners) { return corners == 2 ? 3 : corners == 3 ? 5 : corners == 4 ? 7 : 0; }
-
-std::string bc_type_of(Patch const& patch) {
-  if (patch.kind == PatchKind::connection) return "UserDefined";
-  if (!patch.bc_type.empty()) return patch.bc_type;
-  switch (patch.kind) {
-    case PatchKind::wall: return "BCWall";
-    case PatchKind::inflow: return "BCInflow";
-    case PatchKind::outflow: return "BCOutflow";
-    case PatchKind::symmetry: return "BCSymmetryPlane";
-    case PatchKind::farfield: return "BCFarfield";
-    default: return "UserDefined";
-  }
-}
-
-class Writer {
- public:
-  Writer(cgns::File& file, Mesh const& mesh, Coordinates const& x, WriteOptions const& options)
-      : file_(file), mesh_(mesh), x_(x), options_(options) {}
-
-  void run() {
-    file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &library_version);
-    for (std::size_t z = 0; z < mesh_.zones.size(); ++z) zone(int(z));
-  }
-
- private:
-  static std::pair<std::string, std::string> split(std::string const& zone_name) {
-    auto const slash = zone_name.find('/');
-    if (slash == std::string::npos) return {"Base", zone_name};
-    return {zone_name.substr(0, slash), zone_name.substr(slash + 1)};
-  }
-
-  double base(std::string const& name) {
-    if (auto const known = bases_.find(name); known != bases_.end()) return known->second;
-    std::array<std::int32_t, 2> const dimensions{mesh_.dimension, 3};
-    double const id = file_.create(file_.root(), name, "CGNSBase_t", "I4", {2}, dimensions.data());
-    bases_.emplace(name, id);
-    std::set<std::string> families(mesh_.families.begin(), mesh_.families.end());
-    for (auto const& patch : mesh_.patches) families.insert(patch.families.begin(), patch.families.end());
-    for (auto const& family : families)
-      if (family.find('/') == std::string::npos) file_.create(id, family, "Family_t");
-    return id;
-  }
-
-  void zone(int z) {
-    auto const& zone = mesh_.zones[std::size_t(z)];
-    auto const [base_name, zone_name] = split(zone.name);
-    std::array<std::int32_t, 3> const sizes{std::int32_t(zone.size()), std::int32_t(zone.n_elements), 0};
-    double const id = file_.create(base(base_name), zone_name, "Zone_t", "I4", {1, 3}, sizes.data());
-    file_.create_text(id, "ZoneType", "ZoneType_t", "Unstructured");
-    coordinates(zone, id);
-    std::set<std::string> sections{"ZoneType", "GridCoordinates", "ZoneBC", "ZoneGridConnectivity"};
-    Index next = elements(zone, id, sections);
-    boundary(z, id, next, sections);
-    connections(z, id);
-  }
-
-  void coordinates(Zone const& zone, double zone_id) {
-    double const grid = file_.create(zone_id, "GridCoordinates", "GridCoordinates_t");
-    std::array<double const*, 3> const arrays{x_.x.data(), x_.y.data(), x_.z.data()};
-    static constexpr std::array names{"CoordinateX", "CoordinateY", "CoordinateZ"};
-    for (std::size_t c = 0; c < 3; ++c) {
-      double const* source = arrays[c] + zone.first_node;
-      if (zone.single_precision) {
-        std::vector<float> const rounded(source, source + zone.size());
-        file_.create(grid, names[c], "DataArray_t", "R4", {zone.size()}, rounded.data());
-      } else {
-        file_.create(grid, names[c], "DataArray_t", "R8", {zone.size()}, source);
-      }
-    }
-  }
-
-  /// One section: `types` of its elements and their 1-based nodes, one after another. MIXED unless all types are equal.
-  void section(double zone_id, std::string const& name, Index first, std::vector<std::int32_t> const& types,
-               std::vector<Index> const& start, std::vector<std::int32_t> const& nodes) {
-    bool const uniform = std::all_of(types.begin(), types.end(), [&](std::int32_t t) { return t == types.front(); });
-    std::array<std::int32_t, 2> const type{uniform ? types.front() : mixed, 0};
-    double const id = file_.create(zone_id, name, "Elements_t", "I4", {2}, type.data());
-    std::array<std::int32_t, 2> const range{std::int32_t(first), std::int32_t(first + Index(types.size()) - 1)};
-    file_.create(id, "ElementRange", "IndexRange_t", "I4", {2}, range.data());
-    if (uniform) {
-      file_.create(id, "ElementConnectivity", "DataArray_t", "I4", {Index(nodes.size())}, nodes.data());
-      return;
-    }
-    std::vector<std::int32_t> list, offsets{0};
-    for (std::size_t e = 0; e < types.size(); ++e) {
-      list.push_back(types[e]);
-      list.insert(list.end(), nodes.begin() + start[e], nodes.begin() + start[e + 1]);
-      offsets.push_back(std::int32_t(list.size()));
-    }
-    file_.create(id, "ElementStartOffset", "DataArray_t", "I4", {Index(offsets.size())}, offsets.data());
-    file_.create(id, "ElementConnectivity", "DataArray_t", "I4", {Index(list.size())}, list.data());
-  }
-
-  /// Returns the next element number.
-  Index elements(Zone const& zone, double zone_id, std::set<std::string>& taken) {
-    std::vector<std::int32_t> types, nodes;
-    std::vector<Index> start{0};
-    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
-      auto const list = mesh_.elements.nodes[e];
-      types.push_back(cgns_type(mesh_.elements.type[std::size_t(e)], list.size()));
-      if (types.back() == 0)
-        throw IoError(mesh_.source + ": " + describe_element(mesh_, e) + " of " + std::to_string(list.size()) +
-                      " nodes cannot be written");
-      for (Index32 const n : list) nodes.push_back(std::int32_t(n - zone.first_node + 1));
-      start.push_back(Index(nodes.size()));
-    }
-    if (!types.empty()) section(zone_id, unique_name(taken, "Elements"), 1, types, start, nodes);
-    return zone.n_elements + 1;
-  }
-
-  void family_names(double parent, std::vector<std::string> const& families) {
-    for (std::size_t f = 0; f < families.size(); ++f)
-      if (f == 0)
-        file_.create_text(parent, "FamilyName", "FamilyName_t", families[f]);
-      else
-        file_.create_text(parent, "AdditionalFamilyName" + std::to_string(f), "AdditionalFamilyName_t", families[f]);
-  }
-
-  void boundary(int z, double zone_id, Index next, std::set<std::string>& sections) {
-    auto const& zone = mesh_.zones[std::size_t(z)];
-    double zone_bc = 0;
-    std::set<std::string> taken;
-    for (auto const& patch : mesh_.patches) {
-      if (patch.zone != z) continue;
-      if (taken.empty()) zone_bc = file_.create(zone_id, "ZoneBC", "ZoneBC_t");
-      double const id = file_.create_text(zone_bc, unique_name(taken, patch.name), "BC_t", bc_type_of(patch));
-      if (patch.faces.size() > 0) {
-        std::vector<std::int32_t> types, nodes;
-        for (Index f = 0; f < patch.faces.size(); ++f) {
-          types.push_back(face_type(patch.faces[f].size()));
-          if (types.back() == 0)
-            throw IoError(mesh_.source + ": patch " + describe_patch(mesh_, patch) + " has faces of " +
-                          std::to_string(patch.faces[f].size()) + " corners, which cannot be written");
-        }
-        for (Index32 const n : patch.faces.item) nodes.push_back(std::int32_t(n - zone.first_node + 1));
-        section(zone_id, unique_name(sections, patch.name), next, types, patch.faces.first, nodes);
-        std::array<std::int32_t, 2> const range{std::int32_t(next), std::int32_t(next + patch.faces.size() - 1)};
-        next += patch.faces.size();
-        if (options_.boundary_nodes) {
-          points(id, "PointList", patch_nodes(patch), zone);
-        } else {
-          file_.create_text(id, "GridLocation", "GridLocation_t", mesh_.dimension == 3 ? "FaceCenter" : "EdgeCenter");
-          file_.create(id, "PointRange", "IndexRange_t", "I4", {1, 2}, range.data());
-        }
-      } else {
-        points(id, "PointList", patch.nodes, zone);
-      }
-      family_names(id, patch.families);
-    }
-  }
-
-  void points(double parent, char const* name, std::vector<Index32> const& nodes, Zone const& zone) {
-    std::vector<std::int32_t> list;
-    for (Index32 const n : nodes) list.push_back(std::int32_t(n - zone.first_node + 1));
-    file_.create(parent, name, "IndexArray_t", "I4", {1, Index(list.size())}, list.data());
-  }
-
-  void connections(int z, double zone_id) {
-    double connectivity = 0;
-    std::set<std::string> taken;
-    for (auto const& c : mesh_.connections) {
-      if (c.zone != z) continue;
-      if (taken.empty()) connectivity = file_.create(zone_id, "ZoneGridConnectivity", "ZoneGridConnectivity_t");
-      auto const& donor = mesh_.zones[std::size_t(c.donor_zone)];
-      auto const [own_base, own_name] = split(mesh_.zones[std::size_t(z)].name);
-      auto const [donor_base, donor_name] = split(donor.name);
-      double const id = file_.create_text(connectivity, unique_name(taken, c.name), "GridConnectivity_t",
-                                          own_base == donor_base ? donor_name : donor_base + "/" + donor_name);
-      file_.create_text(id, "GridConnectivityType", "GridConnectivityType_t", "Abutting1to1");
-      points(id, "PointList", c.nodes, mesh_.zones[std::size_t(z)]);
-      points(id, "PointListDonor", c.donor_nodes, donor);
-      family_names(id, c.families);
-      if (c.periodic) periodic(id, *c.periodic);
-    }
-  }
-
-  void periodic(double connection, Periodic const& p) {
-    double const property = file_.create(connection, "GridConnectivityProperty", "GridConnectivityProperty_t");
-    double const id = file_.create(property, "Periodic", "Periodic_t");
-    auto const vector = [&](char const* name, Vec3 const& v) {
-      std::array<float, 3> const values{float(v.x), float(v.y), float(v.z)};
-      file_.create(id, name, "DataArray_t", "R4", {3}, values.data());
-    };
-    vector("RotationCenter", p.rotation_center);
-    vector("RotationAngle", p.rotation_angle_rad);
-    vector("Translation", p.translation);
-  }
-
-  cgns::File& file_;
-  Mesh const& mesh_;
-  Coordinates x_;
-  WriteOptions options_;
-  std::map<std::string, double> bases_;
-};
-
-std::uint64_t bytes_needed(Mesh const& mesh) {
-  std::uint64_t nodes = 16 + 3 * mesh.families.size() + 12 * mesh.zones.size() + 12 * mesh.connections.size();
-  std::uint64_t numbers = mesh.elements.nodes.item.size() + 2 * std::uint64_t(mesh.n_elements());
-  for (auto const& patch : mesh.patches) {
-    nodes += 10 + 3 * patch.families.size();
-    numbers += patch.faces.item.size() + 2 * std::uint64_t(patch.faces.size()) + patch.nodes.size();
-    numbers += patch.faces.item.size();  // its nodes, where they are listed too
-  }
-  for (auto const& c : mesh.connections) numbers += 2 * c.nodes.size();
-  return cgns::File::bytes_per_node * nodes + sizeof(std::int32_t) * numbers +
-         3 * sizeof(double) * std::uint64_t(mesh.n_nodes());
 }
 
 }  // namespace
@@ -262,14 +29,14 @@ void write_mesh(std::string const& path, Mesh const& mesh, Coordinates const& mo
                     std::to_string(morphed.size()));
   io::check_fields(mesh.n_nodes(), mesh.n_elements(), mesh.coordinates, morphed, fields);
   io::OutputFile target(path);
-  target.reserve(bytes_needed(mesh) +
+  target.reserve(io::bytes_of_elements(mesh) +
                  io::bytes_of_fields(fields, mesh.zones.size(), mesh.n_nodes(), mesh.n_elements()));
   {
     cgns::File file(target.path(), cgns::File::Mode::create, options.format);
     if (mesh.file_order.node.empty())
-      Writer(file, mesh, morphed, options).run();
+      write_zones(file, mesh, morphed, options);
     else
-      Writer(file, in_file_order(mesh), in_file_order(mesh, morphed), options).run();
+      write_zones(file, in_file_order(mesh), in_file_order(mesh, morphed), options);
     file.close();
   }
   if (!fields.empty()) {

@@ -1,0 +1,51 @@
+// Zones of elements, one by one into a CGNS file. Internal to io.
+#pragma once
+
+#include <gridmorph/io/cgns/cgns_file.hpp>
+#include <gridmorph/io/mesh_io.hpp>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::io {
+
+/// Writes the zones of a mesh with their elements, patches and connections. Nodes, elements, faces and connections of a zone are numbered
+/// from its first node and first element on; zones may share them, as the copies of a passage in a wheel do.
+class ElementZoneWriter {
+ public:
+  /// The mesh, in the order of its file and without coordinates, must outlive the writer.
+  ElementZoneWriter(cgns::File& file, Mesh const& mesh, WriteOptions const& options);
+
+  void begin();
+  /// values: x, y, z of this zone's nodes. Throws IoError for elements and faces that cannot be written.
+  void zone(int z, std::array<double const*, 3> const& values);
+
+ private:
+  double base(std::string const& name);
+  void coordinates(Zone const& zone, double zone_id, std::array<double const*, 3> const& values);
+  /// One section: `types` of its elements and their 1-based nodes, one after another. MIXED unless all types are equal.
+  void section(double zone_id, std::string const& name, Index first, std::vector<std::int32_t> const& types,
+               std::vector<Index> const& start, std::vector<std::int32_t> const& nodes);
+  /// Returns the next element number.
+  Index elements(Zone const& zone, double zone_id, std::set<std::string>& taken);
+  void family_names(double parent, std::vector<std::string> const& families);
+  void boundary(int z, double zone_id, Index next, std::set<std::string>& sections);
+  void points(double parent, char const* name, std::vector<Index32> const& nodes, Zone const& zone);
+  void connections(int z, double zone_id);
+  void periodic(double connection, Periodic const& p);
+
+  cgns::File& file_;
+  Mesh const& mesh_;
+  WriteOptions options_;
+  std::map<std::string, double> bases_;
+};
+
+/// More than the file will take.
+std::uint64_t bytes_of_elements(Mesh const& mesh);
+
+}  // namespace gridmorph::io
