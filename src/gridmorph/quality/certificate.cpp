@@ -69,6 +69,12 @@ Kokkos::View<ChunkCertificate*, typename Exec::memory_space> results(Exec const&
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::certify::of_chunk"), n_chunks);
 }
 
+/// Those of the zones that are looked at.
+std::vector<kernels::CellChunk> of_zones(std::vector<kernels::CellChunk> table, std::vector<int> const& zones) {
+  if (!zones.empty()) std::erase_if(table, [&](auto const& chunk) { return !std::ranges::count(zones, chunk.zone); });
+  return table;
+}
+
 }  // namespace
 
 template <class Exec>
@@ -78,9 +84,7 @@ Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typenam
   auto const coordinates = input.coordinates, baseline = against_baseline ? input.baseline : input.coordinates;
   std::vector<int> const handedness =
       input.handedness.size() == mesh.zones.size() ? input.handedness : zone_handedness(exec, mesh, baseline);
-  std::vector<kernels::CellChunk> table = detail::chunks_of(mesh);
-  if (!input.zones.empty())
-    std::erase_if(table, [&](auto const& chunk) { return !std::ranges::count(input.zones, chunk.zone); });
+  std::vector<kernels::CellChunk> const table = of_zones(detail::chunks_of(mesh), input.zones);
   auto const zones = detail::upload(exec, "gridmorph::certify::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::certify::chunks", table);
   auto const of_chunk = results(exec, table.size());
@@ -112,7 +116,7 @@ Certificate certify(Exec const& exec, Mesh const& mesh, UnstructuredTopology con
                     CertificateInput<typename Exec::memory_space> const& input) {
   bool const against_baseline = check_sizes(mesh, input);
   auto const coordinates = input.coordinates, baseline = against_baseline ? input.baseline : input.coordinates;
-  std::vector<kernels::CellChunk> const table = detail::element_chunks(mesh);
+  std::vector<kernels::CellChunk> const table = of_zones(detail::element_chunks(mesh), input.zones);
   auto const elements = detail::element_tables(exec, mesh);
   auto const first_element = detail::upload(exec, "gridmorph::certify::zones", detail::first_elements(mesh));
   auto const signs = detail::upload(exec, "gridmorph::certify::signs",

@@ -15,7 +15,7 @@ struct CertificateInput {
   CoordinateViews<MemorySpace> baseline;  ///< left empty: every cell that is inside out counts as new
   std::vector<int> handedness = {};       ///< blocks: zone_handedness(); left empty, it is found again
   std::vector<signed char> signs = {};    ///< elements: numbering_signs(); left empty, they are found again
-  std::vector<int> zones = {};            ///< blocks: the zones that are looked at; left empty, all are
+  std::vector<int> zones = {};            ///< that are looked at; left empty, all are
 };
 
 /// Looks at every cell; fences. Deterministic. Cost per cell: 260 to 710 flops and its corners read once in blocks, about 1000 flops in elements;
