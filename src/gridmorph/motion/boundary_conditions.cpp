@@ -12,6 +12,36 @@ namespace gridmorph {
 
 namespace {
 
+/// Patches whose nodes are all paired by periodic connections (SU2 markers are, always) would be fixed by default, against what
+/// the connection says: those that no rule names get the rule `free` instead, after all others.
+Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vector<std::string>& notes) {
+  if (motion.strict) return motion;
+  Mesh const& mesh = boundary.mesh();
+  std::vector<std::uint8_t> named(mesh.patches.size(), 0);
+  for (auto const& rule : motion.rules)
+    for (auto const& selector : rule.patches) {
+      if (selector == "type:periodic") continue;
+      try {
+        for (int const p : select(mesh, selector).patches) named[std::size_t(p)] = 1;
+      } catch (MotionError const&) {
+        return motion;  // resolve() says what is wrong, with all other problems
+      }
+    }
+  std::vector<std::uint8_t> const paired = periodic_nodes(mesh);
+  std::vector<std::string> free;
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    auto const& nodes = boundary.surface(int(p)).nodes;
+    if (named[p] != 0 || mesh.patches[p].kind != PatchKind::other || nodes.empty()) continue;
+    if (!std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[std::size_t(n)] != 0; })) continue;
+    auto const& families = mesh.patches[p].families;
+    free.push_back(families.empty() ? mesh.patches[p].name : families.front());
+  }
+  if (free.empty()) return motion;
+  notes.push_back("patches " + quote_list(free) + ": periodic, and no rule names them; default: free");
+  motion.rules.push_back({free, FreeRule{}, 0, "default of periodic patches"});
+  return motion;
+}
+
 class Finder {
  public:
   Finder(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
@@ -28,7 +58,7 @@ class Finder {
                         "' is in a mesh of elements, and regions are boxes of "
                         "cells of structured meshes; remove it");
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
-    ResolvedMotion const resolved = resolve(mesh_, with_periodic_patches(*boundary, motion));
+    ResolvedMotion const resolved = resolve(mesh_, with_periodic_patches(*boundary, motion, out_.notes));
     out_.notes.insert(out_.notes.end(), resolved.notes.begin(), resolved.notes.end());
     out_.motion = std::make_shared<BoundaryMotion const>(boundary, resolved);
     out_.notes.insert(out_.notes.end(), out_.motion->notes().begin(), out_.motion->notes().end());
@@ -41,35 +71,6 @@ class Finder {
 
  private:
   Index32 owner(Index n) const { return graph_.representative[std::size_t(n)]; }
-
-  /// Patches whose nodes are all paired by periodic connections (SU2 markers are, always) would be fixed by default, against what
-  /// the connection says: those that no rule names get the rule `free` instead, after all others.
-  Motion with_periodic_patches(Boundary const& boundary, Motion motion) {
-    if (motion.strict) return motion;
-    std::vector<std::uint8_t> named(mesh_.patches.size(), 0);
-    for (auto const& rule : motion.rules)
-      for (auto const& selector : rule.patches) {
-        if (selector == "type:periodic") continue;
-        try {
-          for (int const p : select(mesh_, selector).patches) named[std::size_t(p)] = 1;
-        } catch (MotionError const&) {
-          return motion;  // resolve() says what is wrong, with all other problems
-        }
-      }
-    std::vector<std::uint8_t> const paired = periodic_nodes(mesh_);
-    std::vector<std::string> free;
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
-      auto const& nodes = boundary.surface(int(p)).nodes;
-      if (named[p] != 0 || mesh_.patches[p].kind != PatchKind::other || nodes.empty()) continue;
-      if (!std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[std::size_t(n)] != 0; })) continue;
-      auto const& families = mesh_.patches[p].families;
-      free.push_back(families.empty() ? mesh_.patches[p].name : families.front());
-    }
-    if (free.empty()) return motion;
-    out_.notes.push_back("patches " + quote_list(free) + ": periodic, and no rule names them; default: free");
-    motion.rules.push_back({free, FreeRule{}, 0, "default of periodic patches"});
-    return motion;
-  }
 
   [[nodiscard]] ResolvedMotion const& rules() const { return out_.motion->motion(); }
   [[nodiscard]] bool is_explicit(int patch) const {
@@ -304,6 +305,13 @@ BoundaryConditions boundary_conditions(HostInstance const& host, Mesh const& mes
                                        Motion const& motion, std::vector<std::string> const& walls,
                                        Displacements displacements) {
   return Finder(host, mesh, topology, face_patches, graph).run(motion, walls, displacements);
+}
+
+std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& boundary, Motion const& motion) {
+  auto const surfaces = boundary.motion->shared_boundary();
+  std::vector<std::string> said;  // with the notes of the first motion
+  return std::make_shared<BoundaryMotion const>(
+      surfaces, resolve(surfaces->mesh(), with_periodic_patches(*surfaces, motion, said)));
 }
 
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary) {

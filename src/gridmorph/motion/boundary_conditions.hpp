@@ -68,6 +68,9 @@ inline BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopo
   return boundary_conditions(HostInstance(), mesh, topology, face_patches, graph, motion, walls, displacements);
 }
 
+/// Another motion with the same rules for the same patches, on the same boundary. Throws the errors of resolve() and BoundaryMotion.
+std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& boundary, Motion const& motion);
+
 /// Displacement of every known node. Throws MotionError as evaluate() of BoundaryRequests does.
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary);
 /// The same by another motion: one with the same rules for the same patches, whose displacements alone differ.

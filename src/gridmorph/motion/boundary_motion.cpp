@@ -228,6 +228,7 @@ BoundaryMotion BoundaryMotion::with(Motion const& motion) const {
 }
 
 Boundary const& BoundaryMotion::boundary() const { return *impl_->boundary; }
+std::shared_ptr<Boundary const> const& BoundaryMotion::shared_boundary() const { return impl_->boundary; }
 ResolvedMotion const& BoundaryMotion::motion() const { return impl_->motion; }
 
 std::vector<SlipSurface> const& BoundaryMotion::slip_surfaces() const { return impl_->slip->surfaces; }

@@ -30,6 +30,7 @@ class BoundaryMotion {
   [[nodiscard]] BoundaryMotion with(Motion const& motion) const;
 
   [[nodiscard]] Boundary const& boundary() const;
+  [[nodiscard]] std::shared_ptr<Boundary const> const& shared_boundary() const;
   [[nodiscard]] ResolvedMotion const& motion() const;
 
   /// Whether rule number r (in ResolvedMotion::rules) fixes displacements before the volume stage (fixed, rigid,
