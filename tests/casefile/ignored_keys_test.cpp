@@ -16,8 +16,7 @@ struct Example {
 
 std::string const region = "[[region]]\nname = \"wake\"\nzones = \"a\"\n";
 std::vector<Example> const of_unstructured{{region, {"[region]", "boxes of cells"}},
-                                           {"[volume]\nlaw = \"c1\"\n", {"[volume]", "unstructured", "[background]"}},
-                                           {"[wheel]\noutput = \"w.cgns\"\n", {"[wheel]"}}};
+                                           {"[volume]\nlaw = \"c1\"\n", {"[volume]", "unstructured", "[background]"}}};
 std::vector<Example> const of_structured{
     {"[near_field]\noffset = 0.1\n", {"[near_field]", "'m' is structured", "[boundary_layer]"}},
     {"[background]\ncells = 4\n", {"[background]", "[volume]"}},
@@ -72,6 +71,15 @@ TEST(IgnoredKeys, OfOtherRunsAreErrors) {
   EXPECT_TRUE(reported(check(order, {.run = Run::wheel}), "case.toml:8: [volume] order", {"wheel"}));
   EXPECT_TRUE(reported(check({region, {}}, {.run = Run::wheel}), "case.toml:7: [region]", {"without regions"}));
   EXPECT_EQ(check(order, {.run = Run::morph}).size(), 0U);
+  for (bool const unstructured : {false, true}) {
+    Example const wheel{"[wheel]\noutput = \"w.cgns\"\n", {}};
+    EXPECT_EQ(check(wheel, {.unstructured = unstructured, .run = Run::wheel}).size(), 0U);
+    for (std::string const key : {"freeze = true", "steps = 2"}) {
+      auto const lines = check({"[guard]\n" + key + "\n", {}}, {.unstructured = unstructured, .run = Run::wheel});
+      ASSERT_EQ(lines.size(), 1U) << key;
+      EXPECT_TRUE(reported(lines, "case.toml:8: [guard]", {"no effect"})) << key;
+    }
+  }
   Example const stages{"[output]\nstages = \"s\"\n", {}};
   EXPECT_TRUE(reported(check(stages, {.unstructured = true, .run = Run::sequence}), "case.toml:8: [output] stages",
                        {"sequence"}));

@@ -1,6 +1,7 @@
 // Wheels of meshes of others: H meshes, whose blades stand on the periodic sides.
 #include "support/expect_error.hpp"
 #include "support/shared_mesh.hpp"
+#include "wheel/element_wheel_file.hpp"
 #include "wheel/wheel_run.hpp"
 
 namespace gridmorph::test {
@@ -14,6 +15,25 @@ class RealWheel : public WheelTest {
     if (path.empty()) return false;
     std::filesystem::create_symlink(path, folder / (as.empty() ? mesh : as));
     return true;
+  }
+  /// The same wheel of its passage as hexahedra, which may fall short of the limits of quality.
+  [[nodiscard]] ElementWheelFile as_elements(std::string const& mesh, std::string const& case_file,
+                                             std::string const& keys) const {
+    write_mesh(folder.file("elements.cgns"), as_hexahedra(read_mesh(folder.file(mesh))));
+    std::string rules = text(case_file);
+    rules.replace(rules.find(mesh), mesh.size(), "elements.cgns");
+    folder.write("elements.toml", rules + "\n[wheel]\noutput = \"element_wheel.cgns\"\n" + keys);
+    EXPECT_LE(gridmorph("wheel elements.toml"), 1) << text("out") << text("err");
+    return ElementWheelFile(folder.file("element_wheel.cgns"));
+  }
+  static void expect_closed(ElementWheelFile const& wheel) {
+    EXPECT_EQ(wheel.n_periodic(), 0);
+    wheel.expect_same_bits();
+    FaceCount const faces = wheel.count_faces();
+    EXPECT_EQ(faces.open, 0);
+    EXPECT_EQ(faces.ends, 0);
+    EXPECT_EQ(faces.claimed, 0);
+    EXPECT_GT(faces.seams, 0);
   }
   /// Passages of the wheel of a zone, from the angle of its periodic interface.
   static int wheel_of(Mesh const& mesh, int zone) {
@@ -109,6 +129,27 @@ TEST_F(RealWheel, TurbineStageMakesBothWheels) {
   wheel.expect_watertight();
 }
 
+TEST_F(RealWheel, TurbineStageOfElementsMovesItsBoundariesAsTheBlocks) {
+  use("axial_turbine_stage_H.cgns");
+  folder.write("stage.toml", stage);
+  // By elements the thin cells at the leading edges bear less than by blocks.
+  std::string const keys = R"([[wheel.row]]
+zones    = "row1"
+passages = 4
+factors  = [0.3, 0.15, 0, -0.3]
+[[wheel.row]]
+zones    = "row2"
+passages = 3
+factors  = [0.3]
+)";
+  WheelFile const of_blocks = wheel("stage.toml", keys);
+  ElementWheelFile const of_elements = as_elements("axial_turbine_stage_H.cgns", "stage.toml", keys);
+  of_elements.expect_same_bits();
+  EXPECT_EQ(of_elements.n_periodic(), of_blocks.n_periodic());
+  expect_same_boundaries(read_mesh(folder.file("axial_turbine_stage_H.cgns")), {"HUB", "SHROUD"}, of_blocks,
+                         of_elements, true);
+}
+
 class KaplanWheel : public RealWheel, public ::testing::WithParamInterface<char const*> {};
 INSTANTIATE_TEST_SUITE_P(Meshes, KaplanWheel, ::testing::Values("water_turbine.cgns", "axialTurbine_7blk.cgns"),
                          [](auto const& info) { return info.index == 0 ? "stand_in" : "of_others"; });
@@ -123,6 +164,10 @@ TEST_P(KaplanWheel, OfSevenZonesClosesWithDifferentBlades) {
   equal.expect_watertight();
   WheelFile const mixed = wheel("kaplan.toml", "factors = [1, 0.9, 0.5, 0.7, 1.1]\n");
   mixed.expect_watertight();
+  ElementWheelFile const of_elements =
+      as_elements("water_turbine.cgns", "kaplan.toml", "factors = [1, 0.9, 0.5, 0.7, 1.1]\n");
+  expect_closed(of_elements);
+  expect_same_boundaries(read_mesh(folder.file("water_turbine.cgns")), {"HUB", "SHROUD"}, mixed, of_elements, true);
 }
 
 }  // namespace

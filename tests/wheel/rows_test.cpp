@@ -48,8 +48,8 @@ Mesh passage(int blades) {
 TEST(WheelRows, CountThePassagesOfTheWheel) {
   for (int const blades : {7, 36, 41}) {
     Mesh mesh = passage(blades);
-    Links const links = connect_and_check(mesh, {});
-    WheelRows const rows = find_rows(mesh, links, Axis{}, {});
+    PassageLinks const links = passage_links(mesh, connect_and_check(mesh, {}), {});
+    WheelRows const rows = find_rows(mesh, links, Axis{});
     ASSERT_EQ(rows.rows.size(), 1U);
     EXPECT_EQ(rows.rows[0].passages, blades);
     EXPECT_EQ(rows.rows[0].zones.size(), mesh.zones.size());
@@ -58,22 +58,22 @@ TEST(WheelRows, CountThePassagesOfTheWheel) {
 
 TEST(WheelRows, AreRefusedAboutAnotherAxis) {
   Mesh mesh = passage(36);
-  Links const links = connect_and_check(mesh, {});
+  PassageLinks const links = passage_links(mesh, connect_and_check(mesh, {}), {});
   expect_all_in(message_of<MeshError>([&] {
-                  find_rows(mesh, links, Axis{{0, 0, 0}, {0, 1, 0}}, {});
+                  find_rows(mesh, links, Axis{{0, 0, 0}, {0, 1, 0}});
                 }),
                 {"periodic", "does not turn about the axis"});
   expect_all_in(message_of<MeshError>([&] {
-                  find_rows(mesh, links, Axis{{0, 0.01, 0}, {1, 0, 0}}, {});
+                  find_rows(mesh, links, Axis{{0, 0.01, 0}, {1, 0, 0}});
                 }),
                 {"360 / 36", "check the axis"});
 }
 
 TEST(WheelRows, SharedNodesCoincideInTheWheel) {
   Mesh mesh = passage(5);
-  Links const links = connect_and_check(mesh, {});
-  WheelRows const rows = find_rows(mesh, links, Axis{}, {});
-  SharedNodes const shared(mesh, links, rows, true);
+  PassageLinks const links = passage_links(mesh, connect_and_check(mesh, {}), {});
+  WheelRows const rows = find_rows(mesh, links, Axis{});
+  SharedNodes const shared(links, rows, true);
   std::vector<Vec3> where(shared.n_groups());
   std::vector<char> seen(shared.n_groups(), 0);
   int across = 0;
@@ -92,8 +92,8 @@ TEST(WheelRows, SharedNodesCoincideInTheWheel) {
 TEST(WheelMeshes, RefuseNamesThatGetTooLong) {
   Mesh mesh = passage(36);
   mesh.zones.front().name = std::string(30, 'z');
-  Links const links = connect_and_check(mesh, {});
-  WheelRows const rows = find_rows(mesh, links, Axis{}, {});
+  PassageLinks const links = passage_links(mesh, connect_and_check(mesh, {}), {});
+  WheelRows const rows = find_rows(mesh, links, Axis{});
   expect_all_in(message_of<MeshError>([&] { make_wheel_mesh(mesh, links, rows, Axis{}, {36}, WheelFamilies::shared); }),
                 {std::string(30, 'z'), "34 characters of 32"});
 }

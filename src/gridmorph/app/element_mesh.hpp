@@ -3,6 +3,7 @@
 
 #include <gridmorph/app/any_mesh.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <array>
 
@@ -58,6 +59,11 @@ class ElementMesh final : public AnyMesh {
   /// Whether its solvers work by faces, so that the quality of faces is worth its time: polyhedra, or a file of OpenFOAM.
   bool by_faces_;
 };
+
+/// Near and partially wrapped elements, and the walls that drive them.
+NearCells near_elements_of(PreparedUnstructured const& prepared);
+/// The plan options of a case file with its background mesh, read where it has one.
+PlanOptions with_background(CaseFile const& case_file);
 
 /// What AnyPlan::write_stages() of such a mesh may put into its folder.
 inline constexpr std::array stage_names{"regions.cgns", "wrap.cgns", "background.cgns", "background_morphed.cgns"};

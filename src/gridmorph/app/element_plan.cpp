@@ -21,18 +21,10 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-/// Near and partially wrapped elements.
-NearCells near_elements_of(PreparedUnstructured const& prepared) {
-  auto const& regions = prepared.report.regions.element;
-  Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const near("gridmorph::cli::near_field", regions.size());
-  for (std::size_t e = 0; e < regions.size(); ++e) near(e) = regions[e] == Region::far ? 0 : 1;
-  return {near, prepared.boundary.driving_patches};
-}
-
 class ElementPlan final : public AnyPlan {
  public:
   ElementPlan(ElementMesh const& mesh, CaseFile const& case_file)
-      : mesh_(mesh), case_file_(case_file), options_(options_of(case_file)) {
+      : mesh_(mesh), case_file_(case_file), options_(with_background(case_file)) {
     Problems problems;
     for (auto const& problem : mesh.face_patches.problems) problems.add(problem);
     problems.throw_if_any<MeshError>();
@@ -234,14 +226,6 @@ class ElementPlan final : public AnyPlan {
   [[nodiscard]] SmoothingRecord new_record() const override { return SmoothingRecord(prepared_); }
   void drop_morpher() override { morpher_.reset(); }
 
-  static PlanOptions options_of(CaseFile const& case_file) {
-    PlanOptions options = case_file.plan;
-    if (auto const& own = case_file.background)
-      options.elements.background =
-          std::make_shared<Background const>(make_background(read_mesh(own->path.string()), own->wrap, own->outer));
-    return options;
-  }
-
   /// The morphed mesh with its regions (0 near, 1 partially wrapped, 2 far), layers and displacements.
   void write_regions(std::string const& path, Coordinates const& morphed) const {
     if (mesh_.mesh.polyhedra.element.size() > 0) return;  // they cannot be written anew
@@ -265,6 +249,21 @@ class ElementPlan final : public AnyPlan {
 };
 
 }  // namespace
+
+NearCells near_elements_of(PreparedUnstructured const& prepared) {
+  auto const& regions = prepared.report.regions.element;
+  Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const near("gridmorph::cli::near_field", regions.size());
+  for (std::size_t e = 0; e < regions.size(); ++e) near(e) = regions[e] == Region::far ? 0 : 1;
+  return {near, prepared.boundary.driving_patches};
+}
+
+PlanOptions with_background(CaseFile const& case_file) {
+  PlanOptions options = case_file.plan;
+  if (auto const& own = case_file.background)
+    options.elements.background =
+        std::make_shared<Background const>(make_background(read_mesh(own->path.string()), own->wrap, own->outer));
+  return options;
+}
 
 std::unique_ptr<AnyPlan> ElementMesh::plan(CaseFile const& case_file) const {
   return std::make_unique<ElementPlan>(*this, case_file);

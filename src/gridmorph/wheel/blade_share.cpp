@@ -1,7 +1,5 @@
 #include <gridmorph/wheel/blade_share.hpp>
 
-#include <gridmorph/boundary/link_nodes.hpp>
-#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
@@ -10,6 +8,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -23,17 +22,22 @@ enum Side : unsigned char { lower_side = 1, upper_side = 2 };
 /// Blades of one row, and what its nodes lie on.
 class Row {
  public:
-  Row(Mesh const& mesh, Links const& links, WheelRows const& rows, int row, ResolvedMotion const& motion)
-      : mesh_(mesh), links_(links), rows_(rows), row_(row), motion_(motion) {}
+  Row(Boundary const& boundary, PassageLinks const& links, WheelRows const& rows, int row, ResolvedMotion const& motion,
+      OneOfPlace const& one_of_place)
+      : boundary_(boundary),
+        mesh_(boundary.mesh()),
+        links_(links),
+        rows_(rows),
+        row_(row),
+        motion_(motion),
+        one_of_place_(one_of_place) {}
 
-  void prepare(SharedNodes const& plain, SharedNodes const& all, std::vector<Index> const& first_of_group) {
-    plain_ = &plain;
-    first_of_group_ = &first_of_group;
+  void prepare(SharedNodes const& all) {
     for (std::size_t l = 0; l < links_.all.size(); ++l) {
-      Link const& link = links_.all[l];
+      PassageLink const& link = links_.all[l];
       if (rows_.pitches_of_link[l] == 0 || rows_.row_of_zone[link.zone] != row_) continue;
       unsigned char const side = rows_.pitches_of_link[l] > 0 ? lower_side : upper_side;
-      for_each_node(mesh_.zones[link.zone], link.range, [&](Index n) { side_[key(n)] |= side; });
+      for (auto const& pair : link.pairs) side_[one_of_place_(pair[0])] |= side;
     }
     blades_ = find_blades();
     number_blades(all);
@@ -41,7 +45,7 @@ class Row {
 
   [[nodiscard]] BladeShare share(Index node, int rule) {
     BladeShare out;
-    Index const k = key(node);
+    Index const k = one_of_place_(node);
     auto const side = side_.find(k);
     if (side != side_.end() && side->second == (lower_side | upper_side)) {
       out.on_axis = true;
@@ -56,12 +60,6 @@ class Row {
   }
 
  private:
-  /// The same for all nodes that coincide inside the passage.
-  [[nodiscard]] Index key(Index node) const {
-    auto const* member = plain_->find(node);
-    return member ? (*first_of_group_)[member->group] : node;
-  }
-
   [[nodiscard]] std::vector<int> find_blades() const {
     std::set<int> out;
     auto const add = [&](int p) {
@@ -92,12 +90,12 @@ class Row {
     std::map<int, std::vector<Meeting>> meetings;  // by group
     std::vector<unsigned char> touches(blades_.size(), 0);
     for (std::size_t b = 0; b < blades_.size(); ++b) {
-      Patch const& patch = mesh_.patches[blades_[b]];
-      for_each_node(mesh_.zones[patch.zone], patch.range, [&](Index n) {
-        if (auto const side = side_.find(key(n)); side != side_.end()) touches[b] |= side->second;
-        if (auto const* m = all.find(n); m != nullptr && !all.on_axis(m->group))
+      for (Index const n : boundary_.surface(blades_[b]).nodes) {
+        Index const one = one_of_place_(n);
+        if (auto const side = side_.find(one); side != side_.end()) touches[b] |= side->second;
+        if (auto const* m = all.find(one); m != nullptr && !all.on_axis(m->group))
           meetings[m->group].push_back({int(b), m->offset});
-      });
+      }
     }
     std::vector<std::set<std::pair<int, int>>> neighbours(blades_.size());  // (patch, its number minus the own one)
     for (auto const& [group, meets] : meetings)
@@ -138,10 +136,8 @@ class Row {
         if (touches[b] != 0) middle_ = 0;
       }
     }
-    for (std::size_t b = 0; b < blades_.size(); ++b) {
-      Patch const& patch = mesh_.patches[blades_[b]];
-      for_each_node(mesh_.zones[patch.zone], patch.range, [&](Index n) { blade_at_[key(n)] = number[b]; });
-    }
+    for (std::size_t b = 0; b < blades_.size(); ++b)
+      for (Index const n : boundary_.surface(blades_[b]).nodes) blade_at_[one_of_place_(n)] = number[b];
   }
 
   PitchFraction const& fraction_of(int rule) {
@@ -150,45 +146,52 @@ class Row {
     std::vector<int> patches;
     for (int p = 0; p < int(mesh_.patches.size()); ++p)
       if (motion_.patch[p].rule == rule) patches.push_back(p);
-    return fractions_.try_emplace(rule, mesh_, links_, rows_, row_, motion_.axis, patches).first->second;
+    return fractions_.try_emplace(rule, boundary_, links_, rows_, row_, motion_.axis, patches).first->second;
   }
 
+  Boundary const& boundary_;
   Mesh const& mesh_;
-  Links const& links_;
+  PassageLinks const& links_;
   WheelRows const& rows_;
   int row_;
   ResolvedMotion const& motion_;
-  SharedNodes const* plain_ = nullptr;
-  std::vector<Index> const* first_of_group_ = nullptr;
+  OneOfPlace const& one_of_place_;
   std::vector<int> blades_;                        ///< patches
-  std::unordered_map<Index, unsigned char> side_;  ///< by key: periodic sides the node lies on
-  std::unordered_map<Index, int> blade_at_;        ///< by key: which blade
+  std::unordered_map<Index, unsigned char> side_;  ///< by place: periodic sides the node lies on
+  std::unordered_map<Index, int> blade_at_;        ///< by place: which blade
   std::map<int, PitchFraction> fractions_;         ///< by rule
   double middle_ = 0.5;                            ///< where in the passage its blade stands
 };
 
 }  // namespace
 
-std::vector<BladeShare> blade_shares(Mesh const& sector, Links const& links, WheelRows const& rows,
-                                     ResolvedMotion const& motion, std::vector<char> const& open,
-                                     BoundaryRequests const& boundary, std::vector<Index> const& boundary_nodes) {
-  std::vector<BladeShare> out(boundary_nodes.size());
-  SharedNodes const plain(sector, links, rows, false), all(sector, links, rows, true);
-  std::vector<Index> first_of_group(plain.n_groups(), -1);
-  for (auto const& m : plain.members())
+OneOfPlace one_of_place(PassageLinks const& links, WheelRows const& rows) {
+  auto const plain = std::make_shared<SharedNodes const>(links, rows, false);
+  std::vector<Index> first_of_group(plain->n_groups(), -1);
+  for (auto const& m : plain->members())
     if (first_of_group[m.group] < 0) first_of_group[m.group] = m.node;
+  return [plain, first_of_group](Index node) {
+    auto const* member = plain->find(node);
+    return member ? first_of_group[member->group] : node;
+  };
+}
 
+std::vector<BladeShare> blade_shares(Boundary const& sector, PassageLinks const& links, WheelRows const& rows,
+                                     ResolvedMotion const& motion, std::vector<char> const& open,
+                                     OneOfPlace const& one_of_place, BoundaryRequests const& requests,
+                                     std::vector<Index> const& nodes) {
+  std::vector<BladeShare> out(nodes.size());
+  SharedNodes const all(links, rows, true);
   std::map<int, Row> opened;
   for (int r = 0; r < int(rows.rows.size()); ++r)
-    if (open[r] != 0)
-      opened.try_emplace(r, sector, links, rows, r, motion).first->second.prepare(plain, all, first_of_group);
+    if (open[r] != 0) opened.try_emplace(r, sector, links, rows, r, motion, one_of_place).first->second.prepare(all);
 
-  std::vector<char> done(boundary_nodes.size(), 0);
-  for (auto const& request : boundary.requests) {
+  std::vector<char> done(nodes.size(), 0);
+  for (auto const& request : requests.requests) {
     if (done[request.boundary_node] != 0) continue;
     done[request.boundary_node] = 1;
-    Index const node = boundary_nodes[request.boundary_node];
-    auto const row = opened.find(rows.row_of_zone[sector.zone_of(node)]);
+    Index const node = nodes[request.boundary_node];
+    auto const row = opened.find(rows.row_of_zone[sector.mesh().zone_of(node)]);
     if (row != opened.end()) out[request.boundary_node] = row->second.share(node, request.rule);
   }
   return out;

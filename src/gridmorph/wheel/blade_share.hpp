@@ -1,11 +1,13 @@
 // Whose motion a boundary node of a passage has when the blades differ: its own blade's, a neighbour's, or some of both.
 #pragma once
 
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 namespace gridmorph {
@@ -25,13 +27,20 @@ struct BladeShare {
   [[nodiscard]] double weight_of_upper() const { return position - std::floor(position); }
 };
 
-/// One per boundary node. open: the rows whose blades differ; nodes of others have position 0. `boundary` and `boundary_nodes` are
-/// those of the opened passage, `motion` that of the sector. Blades are the patches that slide and follow rules are `of`, or without
+/// For each node one that stands for all at its place, in whichever zone; itself where it is alone.
+using OneOfPlace = std::function<Index(Index)>;
+
+/// That of nodes which the plain ones among the links of blocks join.
+OneOfPlace one_of_place(PassageLinks const& links, WheelRows const& rows);
+
+/// One per boundary node. open: the rows whose blades differ; nodes of others have position 0. `sector`, `links` and `motion` are those of
+/// the sector, `requests` and their `nodes` what the plan asks. Blades are the patches that slide and follow rules are `of`, or without
 /// these the walls whose displacement is given. Throws MotionError where a blade hangs together with its neighbour.
-/// Cost: O(interface nodes + boundary nodes), times the nodes across the passage for slide rules.
-std::vector<BladeShare> blade_shares(Mesh const& sector, Links const& links, WheelRows const& rows,
+/// Cost: O(nodes of links + boundary nodes), times the nodes along the sides for slide rules.
+std::vector<BladeShare> blade_shares(Boundary const& sector, PassageLinks const& links, WheelRows const& rows,
                                      ResolvedMotion const& motion, std::vector<char> const& open,
-                                     BoundaryRequests const& boundary, std::vector<Index> const& boundary_nodes);
+                                     OneOfPlace const& one_of_place, BoundaryRequests const& requests,
+                                     std::vector<Index> const& nodes);
 
 /// (1 - w) of a and w of b for the point x, in cylindrical components about the axis: two motions that keep radius or axial position
 /// share to one that does. Equal motions come back bit for bit.

@@ -14,8 +14,15 @@ bool is_explicit(Rule const& rule) {
 
 }  // namespace
 
-OpenedPassage open_passage(Mesh const& sector, Links const& links, WheelRows const& rows, ResolvedMotion const& motion,
-                           std::vector<char> const& open) {
+std::string no_rule_for_side(Mesh const& sector, PassageLink const& link) {
+  return describe(sector, link) +
+         " lies between passages with different blades, and no rule says how it moves; give it the rule follow "
+         "(patches "
+         "= [\"type:periodic\"], rule = \"follow\", of = the blade) or fixed";
+}
+
+OpenedPassage open_passage(Mesh const& sector, PassageLinks const& links, WheelRows const& rows,
+                           ResolvedMotion const& motion, std::vector<char> const& open) {
   OpenedPassage out{sector, motion};
   auto const opened = [&](int zone) { return open[rows.row_of_zone[zone]] != 0; };
 
@@ -29,19 +36,16 @@ OpenedPassage open_passage(Mesh const& sector, Links const& links, WheelRows con
 
   Problems problems;
   std::set<int> reported;
-  for (Link const& link : links.all) {
+  for (PassageLink const& link : links.all) {
     if (!link.periodic || !opened(link.zone)) continue;
-    Interface1to1 const& face = sector.interfaces[link.interface];
-    int const rule = motion.interface[link.interface].rule;
+    Interface1to1 const& face = sector.interfaces[link.connection];
+    int const rule = motion.interface[link.connection].rule;
     if (rule < 0 || !is_explicit(motion.rules[rule].rule)) {
-      if (reported.insert(link.interface).second)
-        problems.add("periodic interface '" + face.name + "' (" + describe_range(sector, face.zone, face.range) +
-                     ") lies between passages with different blades, and no rule says how it moves; give it the rule "
-                     "follow (patches = [\"type:periodic\"], rule = \"follow\", of = the blade) or fixed");
+      if (reported.insert(link.connection).second) problems.add(no_rule_for_side(sector, link));
       continue;
     }
     out.mesh.patches.push_back({face.name, "UserDefined", PatchKind::periodic, face.families, link.zone, link.range});
-    out.motion.patch.push_back(motion.interface[link.interface]);
+    out.motion.patch.push_back(motion.interface[link.connection]);
   }
   problems.throw_if_any<MotionError>();
 

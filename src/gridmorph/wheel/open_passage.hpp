@@ -1,10 +1,10 @@
-// A passage whose periodic sides move independently of each other.
+// A passage of blocks whose periodic sides move independently of each other.
 #pragma once
 
-#include <gridmorph/boundary/links.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
+#include <string>
 #include <vector>
 
 namespace gridmorph {
@@ -19,7 +19,10 @@ struct OpenedPassage {
 };
 
 /// open: per row. Throws MotionError naming the periodic interfaces of such rows that no rule moves beforehand.
-OpenedPassage open_passage(Mesh const& sector, Links const& links, WheelRows const& rows, ResolvedMotion const& motion,
-                           std::vector<char> const& open);
+OpenedPassage open_passage(Mesh const& sector, PassageLinks const& links, WheelRows const& rows,
+                           ResolvedMotion const& motion, std::vector<char> const& open);
+
+/// What is said of a periodic side between passages with different blades that no rule moves.
+std::string no_rule_for_side(Mesh const& sector, PassageLink const& link);
 
 }  // namespace gridmorph

@@ -1,6 +1,5 @@
 #include <gridmorph/wheel/rows.hpp>
 
-#include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
@@ -13,20 +12,15 @@ namespace gridmorph {
 
 namespace {
 
-std::string describe(Mesh const& mesh, Link const& link) {
-  return "periodic interface '" + mesh.interfaces[link.interface].name + "' (" +
-         describe_range(mesh, link.zone, link.range) + ")";
-}
-
 /// Angle of a rotation about the unit direction d, in (-pi, pi]; meaningful when d is its axis.
 double angle_about(Vec3 const& d, Mat3 const& r) {
   Vec3 const twice_sine{r.m[2][1] - r.m[1][2], r.m[0][2] - r.m[2][0], r.m[1][0] - r.m[0][1]};
   return std::atan2(dot(d, twice_sine), r.m[0][0] + r.m[1][1] + r.m[2][2] - 1);
 }
 
-WheelRows connected_zones(Mesh const& mesh, Links const& links) {
+WheelRows connected_zones(Mesh const& mesh, PassageLinks const& links) {
   DisjointSets<int> sets(mesh.zones.size());
-  for (Link const& l : links.all) sets.join(l.zone, l.donor_zone);
+  for (PassageLink const& l : links.all) sets.join(l.zone, l.donor_zone);
   WheelRows out;
   out.row_of_zone = sets.set_numbers();
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
@@ -39,13 +33,13 @@ WheelRows connected_zones(Mesh const& mesh, Links const& links) {
 
 }  // namespace
 
-WheelRows find_rows(Mesh const& mesh, Links const& links, Axis const& axis, TopologyOptions const& options) {
+WheelRows find_rows(Mesh const& mesh, PassageLinks const& links, Axis const& axis) {
   WheelRows out = connected_zones(mesh, links);
   Vec3 const direction = (1 / norm(axis.direction)) * axis.direction;
   out.pitches_of_link.assign(links.all.size(), 0);
   Problems problems;
   for (std::size_t l = 0; l < links.all.size(); ++l) {
-    Link const& link = links.all[l];
+    PassageLink const& link = links.all[l];
     if (!link.periodic) continue;
     double const angle = angle_about(direction, link.transform.rotation);
     // A whole turn is a wheel already; no turn about this axis is a translation, or a rotation about another one.
@@ -56,25 +50,23 @@ WheelRows find_rows(Mesh const& mesh, Links const& links, Axis const& axis, Topo
     Index at = -1;
     if (passages > 1) {
       Turn const turn(axis, angle > 0 ? 1 : -1, passages);
-      for_each_pair(mesh, link, [&](Index own, Index donor) {
+      for (auto const& [own, donor] : link.pairs) {
         double const gap = distance(turn(mesh.coordinates[own]), mesh.coordinates[donor]);
         if (gap > worst) {
           worst = gap;
           at = own;
         }
-      });
+      }
     }
-    bool const single = mesh.zones[link.zone].single_precision || mesh.zones[link.donor_zone].single_precision;
-    double const tolerance =
-        options.matching_tolerance > 0 ? options.matching_tolerance : (single ? 1e-6 : 1e-8) * links.mesh_size;
     if (passages < 2)
       problems.add(describe(mesh, link) +
                    " does not turn about the axis of [mesh]; a wheel needs rotational periodicity about it");
-    else if (worst > tolerance)
+    else if (worst > link.tolerance)
       problems.add(describe(mesh, link) + " turns by " + to_text(angle * 180 / std::numbers::pi, 6) + " degrees, and " +
                    std::to_string(passages) + " passages do not make a whole wheel about the axis: a turn by 360 / " +
                    std::to_string(passages) + " degrees leaves " + describe_node(mesh, at) + " " + to_text(worst, 6) +
-                   " from its periodic partner (tolerance " + to_text(tolerance, 6) + "); check the axis of [mesh]");
+                   " from its periodic partner (tolerance " + to_text(link.tolerance, 6) +
+                   "); check the axis of [mesh]");
     else if (row_passages > 1 && row_passages != passages)
       problems.add(describe(mesh, link) + " turns by 360 / " + std::to_string(passages) +
                    " degrees, another one of its row by 360 / " + std::to_string(row_passages) +

@@ -1,18 +1,17 @@
 // Blade rows of a sector mesh: which zones belong together, and how many of their passages make a wheel.
 #pragma once
 
-#include <gridmorph/boundary/links.hpp>
 #include <gridmorph/motion/motion.hpp>
-#include <gridmorph/plan/options.hpp>
+#include <gridmorph/wheel/passage_links.hpp>
 
 #include <vector>
 
 namespace gridmorph {
 
-/// Zones that hang together by 1-to-1 interfaces, periodic ones included.
+/// Zones that hang together by 1-to-1 interfaces or connections, periodic ones included.
 struct WheelRow {
   std::vector<int> zones;  ///< ascending
-  int passages = 1;        ///< that make 360 degrees; 1 for zones without a periodic interface
+  int passages = 1;        ///< that make 360 degrees; 1 for zones without a periodic link
   [[nodiscard]] bool periodic() const { return passages > 1; }
 };
 
@@ -20,12 +19,11 @@ struct WheelRows {
   std::vector<WheelRow> rows;    ///< by their first zone
   std::vector<int> row_of_zone;  ///< per Mesh::zones
   std::vector<int>
-      pitches_of_link;  ///< per Links::all: the donor is where own nodes are after so many pitches (0, 1, -1)
+      pitches_of_link;  ///< per PassageLinks::all: the donor is where own nodes are after so many pitches (0, 1, -1)
 };
 
-/// Finds the rows and checks that the periodic interfaces of each turn by one pitch, 360 degrees over a whole number, about
-/// the axis, node by node to the matching tolerance. Throws MeshError naming every interface that does not.
-/// Cost: O(nodes of periodic interfaces).
-WheelRows find_rows(Mesh const& mesh, Links const& links, Axis const& axis, TopologyOptions const& options);
+/// Finds the rows and checks that the periodic links of each turn by one pitch, 360 degrees over a whole number, about the axis, node by
+/// node to their tolerance. Throws MeshError naming every interface or connection that does not. Cost: O(nodes of periodic links).
+WheelRows find_rows(Mesh const& mesh, PassageLinks const& links, Axis const& axis);
 
 }  // namespace gridmorph

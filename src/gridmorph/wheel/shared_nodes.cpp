@@ -1,8 +1,5 @@
 #include <gridmorph/wheel/shared_nodes.hpp>
 
-#include <gridmorph/boundary/link_nodes.hpp>
-#include <gridmorph/boundary/range_nodes.hpp>
-
 #include <algorithm>
 #include <numeric>
 
@@ -44,7 +41,7 @@ class Unions {
       if (shift % passages != 0) axis_[x.root] = 1;
       return;
     }
-    // The smaller number stays the root, so that the result does not depend on the order of the interfaces.
+    // The smaller number stays the root, so that the result does not depend on the order of the links.
     if (y.root < x.root) {
       parent_[x.root] = y.root;
       offset_[x.root] = shift;
@@ -64,23 +61,22 @@ class Unions {
 
 }  // namespace
 
-SharedNodes::SharedNodes(Mesh const& mesh, Links const& links, WheelRows const& rows, bool periodic) {
+SharedNodes::SharedNodes(PassageLinks const& links, WheelRows const& rows, bool periodic) {
   std::vector<Index> nodes;
-  for (Link const& link : links.all)
+  for (PassageLink const& link : links.all)
     if (periodic || !link.periodic)
-      for_each_node(mesh.zones[link.zone], link.range, [&](Index n) { nodes.push_back(n); });
+      for (auto const& pair : link.pairs) nodes.push_back(pair[0]);
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   auto const number = [&](Index n) { return int(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin()); };
 
   Unions unions(nodes.size());
   for (std::size_t l = 0; l < links.all.size(); ++l) {
-    Link const& link = links.all[l];
+    PassageLink const& link = links.all[l];
     if (link.periodic && !periodic) continue;
     int const passages = rows.rows[rows.row_of_zone[link.zone]].passages;
-    for_each_pair(mesh, link, [&](Index own, Index donor) {
+    for (auto const& [own, donor] : link.pairs)
       unions.join(number(own), number(donor), rows.pitches_of_link[l], passages);
-    });
   }
 
   std::vector<int> group(nodes.size(), -1);

@@ -39,7 +39,6 @@ class Ignored {
   void of_unstructured() {
     std::string const why = "is for structured meshes, and '" + case_.input.string() + "' is unstructured";
     refuse("", "volume", why + ": law in [background] and weights in [near_field] say there how the volume follows");
-    refuse("", "wheel", why + ": passages are joined along the faces of blocks");
     refuse("", "region", why + ": regions are made of boxes of cells");
     refuse("mesh", "open_faces", why + ": boundary faces that no patch claims have to be given one in the mesh");
     refuse("mesh", "matching_tolerance", why + ": connections pair nodes there, which are taken as they are paired");
@@ -64,8 +63,15 @@ class Ignored {
   void of_wheel() {
     refuse("", "sequence", "is for `gridmorph morph`, and a wheel is made at one time");
     refuse("", "region", "is for `gridmorph morph`, and passages of a wheel are morphed without regions");
-    for (char const* key : {"smooth", "freeze"})
-      refuse("guard", key, "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
+    if (use_.unstructured) {
+      std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";
+      refuse("guard", "freeze", why);
+      if (!case_.background) refuse("guard", "steps", why);
+      refuse("output", "stages", why);
+    } else {
+      for (char const* key : {"smooth", "freeze"})
+        refuse("guard", key, "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
+    }
     if (case_.plan.volume.order == OrderBy::prediction)
       refuse("volume", "order", "is for `gridmorph morph`, and chains of a wheel, whose blades differ, go by priority");
     if (case_.plan.volume.laws_by_prediction)

@@ -1,16 +1,11 @@
-#include <gridmorph/app/block_mesh.hpp>
-#include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
-#include <gridmorph/app/cli/wheel_setup.hpp>
+#include <gridmorph/app/cli/wheel_passage.hpp>
 #include <gridmorph/app/cli/wheel_text.hpp>
 #include <gridmorph/app/run.hpp>
-#include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
-#include <gridmorph/morph/morpher.hpp>
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/wheel/seams.hpp>
 #include <gridmorph/wheel/turn.hpp>
@@ -57,23 +52,22 @@ void add_passage(Certificate& wheel, Certificate const& passage, std::map<int, i
 /// Morphs, measures, turns and writes a wheel, one passage at a time.
 class WheelRun {
  public:
-  WheelRun(CaseFile const& case_file, Terminal& terminal)
+  WheelRun(CaseFile const& case_file, MeshKind kind, Terminal& terminal)
       : case_(case_file),
         terminal_(terminal),
-        mesh_(read(case_file, terminal)),
-        links_(connect_and_check(mesh_, case_file.plan.topology)),
-        rows_(find_rows(mesh_, links_, case_file.motion.axis, case_file.plan.topology)),
+        sector_(read(case_file, kind, terminal)),
+        mesh_(sector_->mesh()),
+        rows_(find_rows(mesh_, sector_->links(), case_file.motion.axis)),
         setup_(wheel_setup(case_file, mesh_, rows_)),
-        wheel_(make_wheel_mesh(mesh_, links_, rows_, case_file.motion.axis, setup_.passages(),
-                               case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
-        sector_(mesh_) {
-    result_.nodes = wheel_.mesh.n_nodes();
+        wheel_(sector_->wheel(rows_, case_file.motion.axis, setup_.passages(),
+                              case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)) {
+    result_.nodes = wheel_.n_nodes();
     result_.whole.certificate.emplace();
     for (Zone const& zone : wheel_.mesh.zones) result_.whole.zone_names.push_back(zone.name);
     time("read");
   }
 
-  [[nodiscard]] Mesh const& mesh() const { return mesh_; }
+  [[nodiscard]] PassageMesh const& sector() const { return *sector_; }
   [[nodiscard]] WheelMesh const& wheel() const { return wheel_; }
   [[nodiscard]] WheelRows const& rows() const { return rows_; }
   [[nodiscard]] WheelSetup const& setup() const { return setup_; }
@@ -81,20 +75,19 @@ class WheelRun {
   [[nodiscard]] nlohmann::json const& retried() const { return retried_.json; }
 
   WheelResult run(MeshFileWriter& writer) {
-    terminal_.progress("connecting zones, applying rules, planning");
-    auto planned = std::make_unique<WheelMotion>(motion_of(case_));
+    terminal_.progress(sector_->kind().planning);
+    auto plan = plan_of(case_);
     time("plan");
-    prepare_quality(planned->plan());
+    prepare_quality(*plan);
     if (case_.guard.retry) {
-      retry(planned);
+      retry(plan);
       time("retries");
     }
-    WheelMotion const& motion = *planned;
-    result_.notes = mesh_.notes;
-    result_.notes.insert(result_.notes.end(), motion.notes().begin(), motion.notes().end());
+    PassageMotions const& motions = plan->passages();
+    result_.notes = sector_->notes();
+    result_.notes.insert(result_.notes.end(), plan->notes().begin(), plan->notes().end());
     if (!retried_.text.empty()) result_.notes.push_back(retried_.text);
-    Morpher<Exec> const morpher(exec_, motion.plan(), mesh_.coordinates);
-    SharedNodes const shared(mesh_, links_, rows_, true);
+    SharedNodes const shared(sector_->links(), rows_, true);
     std::vector<Seams> seams;
     for (int r = 0; r < int(rows_.rows.size()); ++r)
       seams.emplace_back(mesh_, shared, rows_, r, case_.motion.axis, setup_.blades[r].passages);
@@ -102,16 +95,20 @@ class WheelRun {
     terminal_.expect({});
     Coordinates morphed(mesh_.n_nodes()), placed(mesh_.n_nodes());
     int last = -1, zone = 0;
-    int const n_passages = wheel_.zones.back().passage + 1;
+    int const n_passages = motions.n_passages();
     for (int p = 0; p < n_passages; ++p) {
       terminal_.progress(fmt::format("passage {} of {}", p + 1, n_passages), double(p) / n_passages);
-      if (last < 0 || !motion.alike(p, last)) {
-        auto const boundary = motion.boundary(p);
-        morph(morpher, boundary, morphed);
+      if (last < 0 || !motions.alike(p, last)) {
+        auto const boundary = motions.boundary(p);
+        RelaxReport const relaxed = morph(*plan, boundary, morphed);
         last = p;
         int same = 0;  // a passage like this one has been measured
-        while (same < p && !motion.alike(p, same)) ++same;
-        result_.passages.push_back(same < p ? result_.passages[same] : measure(boundary, morphed));
+        while (same < p && !motions.alike(p, same)) ++same;
+        result_.passages.push_back(same < p ? result_.passages[same] : measure(*plan, boundary, morphed));
+        if (same == p && relaxed.before > 0)
+          result_.notes.push_back(
+              fmt::format("passage {}: {} {}; displacements around them are smoothed in {} rounds, {} are left", p + 1,
+                          relaxed.before, sector_->kind().lost, relaxed.rounds, relaxed.after));
       } else {
         result_.passages.push_back(result_.passages.back());
       }
@@ -128,9 +125,10 @@ class WheelRun {
         if (p < setup_.blades[r].passages) close(seams[r], p, placed);
       time("turn");
       certify_zones(zones, placed);
+      Coordinates const written = sector_->in_file_order(placed);
       for (; zone < int(wheel_.zones.size()) && wheel_.zones[zone].passage == p; ++zone) {
         Index const first = mesh_.zones[wheel_.zones[zone].zone].first_node;
-        writer.write_zone(zone, placed.x.data() + first, placed.y.data() + first, placed.z.data() + first);
+        writer.write_zone(zone, written.x.data() + first, written.y.data() + first, written.z.data() + first);
       }
       time("write");
     }
@@ -139,57 +137,59 @@ class WheelRun {
   }
 
  private:
-  static Mesh read(CaseFile const& case_file, Terminal& terminal) {
+  static std::unique_ptr<PassageMesh> read(CaseFile const& case_file, MeshKind kind, Terminal& terminal) {
     terminal.progress("reading " + case_file.input.string());
-    return load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
+    return kind == MeshKind::unstructured ? element_passage(case_file) : block_passage(case_file);
   }
 
-  [[nodiscard]] WheelMotion motion_of(CaseFile const& case_file) const {
-    return {mesh_, links_, rows_, setup_.motions, case_file.plan, setup_.blades};
+  [[nodiscard]] std::unique_ptr<PassagePlan> plan_of(CaseFile const& case_file) const {
+    return sector_->plan(case_file, rows_, setup_);
   }
 
   /// Where the worst passage falls short: other recipes for it, and the best of them for all passages.
-  void retry(std::unique_ptr<WheelMotion>& motion) {
+  void retry(std::unique_ptr<PassagePlan>& plan) {
     Coordinates morphed(mesh_.n_nodes());
-    auto const trial_of = [&](Morpher<Exec> const& morpher, std::vector<Vec3> const& boundary) {
-      morph(morpher, boundary, morphed);
+    auto const trial_of = [&](PassagePlan& by, std::vector<Vec3> const& boundary) {
+      (void)morph(by, boundary, morphed);
       quality_.morphed = &morphed;
-      QualityReport const quality = sector_.measure(quality_);
+      QualityReport const quality = sector_->measure(quality_);
       return Trial{badness_of(quality), newly_inverted(quality) > 0 ||
                                             any_failure(shortfalls(result_.baseline, quality, thresholds_of(case_)))};
     };
-    int const n_passages = wheel_.zones.back().passage + 1;
+    PassageMotions const& motions = plan->passages();
     int worst = -1;
     Trial first;
-    {
-      Morpher<Exec> const morpher(exec_, motion->plan(), mesh_.coordinates);
-      for (int p = 0; p < n_passages; ++p) {
-        int same = 0;
-        while (same < p && !motion->alike(p, same)) ++same;
-        if (same < p) continue;
-        Trial const now = trial_of(morpher, motion->boundary(p));
-        if (worst >= 0 && !(first.badness < now.badness)) continue;
-        worst = p;
-        first = now;
-      }
+    for (int p = 0; p < motions.n_passages(); ++p) {
+      int same = 0;
+      while (same < p && !motions.alike(p, same)) ++same;
+      if (same < p) continue;
+      Trial const now = trial_of(*plan, motions.boundary(p));
+      if (worst >= 0 && !(first.badness < now.badness)) continue;
+      worst = p;
+      first = now;
     }
     if (!first.falls_short) return;
-    std::unique_ptr<WheelMotion> other;
+    std::unique_ptr<CaseFile> trying;  // plans refer to theirs
+    std::unique_ptr<PassagePlan> other;
     retried_ = RecipeSearch{
         .case_file = case_,
-        .unstructured = false,
+        .unstructured = !mesh_.is_structured(),
         .chains = false,
         .smoothing = false,
-        .cells = BlockMesh::traits().cells,
+        .cells = sector_->kind().cells,
         .progress = [&](std::string const& keys) { terminal_.progress("trying " + keys); },
         .make =
             [&](CaseFile const& recipe) {
-              other = std::make_unique<WheelMotion>(motion_of(recipe));
-              return trial_of(Morpher<Exec>(exec_, other->plan(), mesh_.coordinates), other->boundary(worst));
+              other.reset();
+              trying = std::make_unique<CaseFile>(recipe);
+              other = plan_of(*trying);
+              return trial_of(*other, other->passages().boundary(worst));
             },
         .decide =
             [&](std::unique_ptr<CaseFile> const& kept) {
-              if (kept) motion = std::move(other);
+              if (!kept) return;
+              plan = std::move(other);
+              recipe_ = std::move(trying);
             }}.run(first);
     retried_.json["passage"] = worst + 1;
     if (!retried_.text.empty()) retried_.text = fmt::format("passage {}, the worst one: {}", worst + 1, retried_.text);
@@ -197,40 +197,38 @@ class WheelRun {
 
   void time(std::string const& step) { add_time(result_.times, step, watch_.lap(), step != "plan" && step != "read"); }
 
-  void prepare_quality(Plan const& plan) {
-    quality_.near = near_cells_of(mesh_, plan, case_);
+  void prepare_quality(PassagePlan const& plan) {
+    quality_.near = plan.near();
     quality_.limits = case_.guard;
-    quality_.fast = wants_verdict(case_, mesh_.n_cells());
-    result_.baseline = sector_.measure(quality_);
-    handedness_ = zone_handedness(exec_, mesh_, views(mesh_.coordinates));
+    quality_.fast = wants_verdict(case_, sector_->n_cells());
+    result_.baseline = sector_->measure(quality_);
+    result_.whole.unstructured = result_.baseline.unstructured;
     time("quality");
   }
 
-  void morph(Morpher<Exec> const& morpher, std::vector<Vec3> const& boundary, Coordinates& morphed) {
-    Kokkos::View<Vec3 const*, Exec::memory_space, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const given(boundary.data(),
-                                                                                                       boundary.size());
-    morpher.positions(exec_, given, morphed);
-    exec_.fence();
+  RelaxReport morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed) {
+    RelaxReport const report = plan.morph(boundary, morphed);
     time("morph");
+    return report;
   }
 
-  PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed) {
+  PassageResult measure(PassagePlan const& plan, std::vector<Vec3> const& boundary, Coordinates const& morphed) {
     PassageResult passage;
     for (Vec3 const& u : boundary) passage.largest_displacement = std::max(passage.largest_displacement, norm(u));
     quality_.morphed = &morphed;
-    passage.quality = sector_.measure(quality_);
+    passage.quality = sector_->measure(quality_);
     passage.shortfalls = shortfalls(result_.baseline, passage.quality, thresholds_of(case_));
     if (worst_of_.worst.empty() && newly_inverted(passage.quality) > 0)
-      worst_of_ = diagnose(case_, for_messages(mesh_), passage.quality, morphed);
+      worst_of_ = diagnose(case_, plan.for_messages(), passage.quality, morphed);
     time("quality");
     return passage;
   }
 
-  /// Of a passage in its place, closed to its neighbours: a turn changes no sign. `zones`: those of the sector that it has.
+  /// Of a passage in its place, closed to its neighbours. `zones`: those of the sector that it has.
   void certify_zones(std::map<int, int> const& zones, Coordinates const& placed) {
-    CertificateInput<Kokkos::HostSpace> input{views(placed), views(mesh_.coordinates), handedness_};
-    for (auto const& [of_sector, of_wheel] : zones) input.zones.push_back(of_sector);
-    add_passage(*result_.whole.certificate, certify(exec_, mesh_, input), zones);
+    std::vector<int> own;
+    for (auto const& [of_sector, of_wheel] : zones) own.push_back(of_sector);
+    add_passage(*result_.whole.certificate, sector_->certify(placed, own), zones);
     time("quality");
   }
 
@@ -248,8 +246,9 @@ class WheelRun {
     SeamGap const& gap = seams.largest_gap();
     if (gap.distance > result_.gap.distance) result_.gap = gap;
     double mismatch = 0;
-    for (Link const& link : links_.all) mismatch = std::max(mismatch, link.mismatch);
-    double const tolerance = 4 * mismatch + std::max(1e-8, case_.motion.conformity_tolerance) * links_.mesh_size;
+    for (PassageLink const& link : sector_->links().all) mismatch = std::max(mismatch, link.mismatch);
+    double const tolerance =
+        4 * mismatch + std::max(1e-8, case_.motion.conformity_tolerance) * sector_->links().mesh_size;
     if (gap.distance > tolerance)
       throw MotionError(
           fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
@@ -264,14 +263,13 @@ class WheelRun {
   Stopwatch watch_;
   Exec exec_;
   WheelResult result_;
-  Mesh mesh_;
-  Links links_;
+  std::unique_ptr<PassageMesh> sector_;
+  Mesh const& mesh_;
   WheelRows rows_;
   WheelSetup setup_;
   WheelMesh wheel_;
-  BlockMesh sector_;  ///< the same mesh, to measure
   QualityWanted quality_;
-  std::vector<int> handedness_;
+  std::unique_ptr<CaseFile> recipe_;  ///< that the plan refers to, where it is not the case file
 };
 
 bool any_inverted(WheelResult const& result) {
@@ -282,7 +280,7 @@ bool any_inverted(WheelResult const& result) {
 std::string text_of(WheelRun const& run, WheelResult const& result) {
   std::string text;
   for (auto const& note : result.notes) text += "note: " + note + "\n";
-  text += describe_rows(run.mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
+  text += describe_rows(run.sector().mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
   text += certificate_text(result.whole);
   text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
                       result.gap.distance);
@@ -306,7 +304,7 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
   outputs.front().what = "wheel";  // CGNS, whatever the sector is
   check_run_files(inputs_of(case_file, file), outputs);
 
-  WheelRun run(case_file, terminal);
+  WheelRun run(case_file, file.kind, terminal);
   MeshFileWriter writer(output.string(), run.wheel().mesh);
   WheelResult const result = run.run(writer);
   bool const written = !any_inverted(result) || case_file.guard.write_inverted;
@@ -321,7 +319,7 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
                    .falls_short = !failures.empty(),
                    .json =
                        [&] {
-                         nlohmann::json json = wheel_json(run.mesh(), run.rows(), run.setup(), result);
+                         nlohmann::json json = wheel_json(run.sector().mesh(), run.rows(), run.setup(), result);
                          json["case_file"] = case_file.source.string();
                          json["input"] = case_file.input.string();
                          if (!run.retried().is_null()) json["retry"] = run.retried();
@@ -338,7 +336,11 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
                    .refusal =
                        [&] {
                          return refusal(output.string(), "cells are inverted that were not in the baseline",
-                                        run.diagnosis(), "move the blades less, " + BlockMesh::traits().change);
+                                        run.diagnosis(),
+                                        "move the blades less, " +
+                                            (run.sector().mesh().is_structured()
+                                                 ? run.sector().kind().change
+                                                 : std::string("change [near_field], set retry = true in [guard]")));
                        }},
                   terminal);
 }

@@ -1,19 +1,20 @@
 // How far across its passage a point lies.
 #pragma once
 
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
-#include <optional>
+#include <array>
 #include <vector>
 
 namespace gridmorph {
 
 /// Fraction of the pitch from the lower periodic side (0) to the upper one (1), at the same place of the meridional plane. Made from
-/// the grid lines in which patches (an inlet, say) meet the lower side; between their nodes the angle is linear.
+/// the grid lines, or the edges of faces, in which patches (an inlet, say) meet the lower side; between their nodes the angle is linear.
 class PitchFraction {
  public:
-  PitchFraction(Mesh const& mesh, Links const& links, WheelRows const& rows, int row, Axis const& axis,
+  PitchFraction(Boundary const& boundary, PassageLinks const& links, WheelRows const& rows, int row, Axis const& axis,
                 std::vector<int> const& patches);
 
   [[nodiscard]] bool empty() const { return segments_.empty(); }

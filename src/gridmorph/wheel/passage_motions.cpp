@@ -1,0 +1,64 @@
+#include <gridmorph/wheel/passage_motions.hpp>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace gridmorph {
+
+std::vector<int> used_motions(std::vector<WheelRowBlades> const& blades) {
+  std::set<int> used;
+  for (auto const& row : blades) used.insert(row.blades.begin(), row.blades.end());
+  return {used.begin(), used.end()};
+}
+
+std::vector<char> open_rows(std::vector<WheelRowBlades> const& blades) {
+  std::vector<char> open;
+  for (auto const& row : blades)
+    open.push_back(
+        std::any_of(row.blades.begin(), row.blades.end(), [&](int b) { return b != row.blades.front(); }) ? 1 : 0);
+  return open;
+}
+
+PassageMotions::PassageMotions(Axis const& axis, std::vector<WheelRowBlades> blades, std::vector<Node> nodes,
+                               std::vector<std::vector<Vec3>> values)
+    : axis_(axis), blades_(std::move(blades)), nodes_(std::move(nodes)), values_(std::move(values)) {}
+
+int PassageMotions::motion_of(int row, int passage) const {
+  auto const& blades = blades_[row].blades;
+  int const n = int(blades.size());
+  return blades[((passage % n) + n) % n];
+}
+
+std::vector<Vec3> PassageMotions::boundary(int passage) const {
+  std::vector<Vec3> out(nodes_.size());
+  Vec3 const direction = (1 / norm(axis_.direction)) * axis_.direction;
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    auto const& [place, row, share] = nodes_[n];
+    if (share.on_axis) {
+      double along = 0;
+      for (int const m : blades_[row].blades) along += dot(values_[m][n], direction);
+      out[n] = (along / double(blades_[row].blades.size())) * direction;
+      continue;
+    }
+    int const lower = passage + share.lower();
+    out[n] = share_motion(axis_, place, values_[motion_of(row, lower)][n], values_[motion_of(row, lower + 1)][n],
+                          share.weight_of_upper());
+  }
+  return out;
+}
+
+bool PassageMotions::alike(int passage, int other) const {
+  for (int row = 0; row < int(blades_.size()); ++row)
+    for (int beside = -1; beside <= 1; ++beside)
+      if (motion_of(row, passage + beside) != motion_of(row, other + beside)) return false;
+  return true;
+}
+
+int PassageMotions::n_passages() const {
+  int most = 0;
+  for (auto const& row : blades_) most = std::max(most, row.passages);
+  return most;
+}
+
+}  // namespace gridmorph
