@@ -2,6 +2,7 @@
 #include "kernels/tables.hpp"
 #include "support/random.hpp"
 
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/kernels/column_motion.hpp>
 #include <gridmorph/kernels/wall_turn.hpp>
 
@@ -244,6 +245,22 @@ TEST(WallTurn, OfAWallThatStretchesAndShearsIsThePolarRotation) {
     };
     Vec3 const twist = axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after));
     EXPECT_LT(distance(twist, {0, 0, std::atan2(c - b, a + d)}), 1e-9);
+  }
+}
+
+// A spike of the wall with an edge along its normal: what round-off leaves of that edge across the normal must decide nothing.
+TEST(WallTurn, IsThatOfTheOtherArmsWhereOneIsAlongTheNormal) {
+  Random random(8);
+  for (int n = 0; n < 50; ++n) {
+    auto const unit = [](Vec3 const& v) { return (1 / norm(v)) * v; };
+    Vec3 const axis = n == 0 ? Vec3{1, 0, 0} : unit(random.vector(1));
+    double const angle = random.between(-1, 1);
+    Vec3 const across = unit(cross(axis, random.vector(1)));
+    std::vector<Vec3> const arms{axis + random.vector(1e-16), axis + across, axis + across + 0.8 * cross(axis, across)};
+    auto const before = [&](Index k) { return arms[std::size_t(k)]; };
+    auto const after = [&](Index k) { return rotation_about({}, axis, angle)(arms[std::size_t(k)]); };
+    Vec3 const twist = axis_times_angle(kernels::twist_about(axis, Vec3{}, 3, before, after));
+    EXPECT_LT(distance(twist, angle * axis), 1e-13) << n;
   }
 }
 

@@ -29,19 +29,15 @@ namespace gridmorph::kernels {
 template <class V, class Before, class After>
 KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Before const& before, After const& after) {
   using Scalar = std::decay_t<decltype(dot(axis, axis))>;
-  V t1{}, t2{};
+  // Any two directions across the axis serve. Not one of the arms: an arm along the axis leaves nothing but round-off.
+  Vec3 const a = value_of(axis);
+  double const x = a.x < 0 ? -a.x : a.x, y = a.y < 0 ? -a.y : a.y, z = a.z < 0 ? -a.z : a.z;
+  V const least = V{x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1}};
+  V const across = least - dot(least, axis) * axis;
+  V const t1 = (1 / norm(across)) * across, t2 = cross(axis, t1);
   Scalar c11{}, c12{}, c22{}, b11{}, b12{}, b21{}, b22{};
-  bool has_frame = false;
   for (Index k = 0; k < n; ++k) {
     V const arm = before(k), p = arm + turned_by(swing, arm), q = after(k);
-    if (!has_frame) {
-      V const across = p - dot(p, axis) * axis;
-      auto const size = norm(across);
-      if (!(size > 0)) continue;
-      t1 = (1 / size) * across;
-      t2 = cross(axis, t1);
-      has_frame = true;
-    }
     auto const p1 = dot(p, t1), p2 = dot(p, t2), q1 = dot(q, t1), q2 = dot(q, t2);
     c11 = c11 + p1 * p1;
     c12 = c12 + p1 * p2;
