@@ -5,6 +5,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/kernels/element_place.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
 
 #include <gtest/gtest.h>
@@ -14,6 +15,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 namespace gridmorph::test {
@@ -267,6 +269,34 @@ TEST(ElementLocator, SharedPlacesBelongToTheElementWithTheSmallestNumber) {
     for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
     auto const found = locate(mesh, points);
     for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(found[n].element, smallest[n]);
+  }
+}
+
+// On the axis of a round hole all elements around are equally near.
+TEST(ElementLocator, OfPlacesEquallyNearTheSameIsTakenHoweverElementsAreNumberedAndInAnyUnit) {
+  Random random(4);
+  for (double const scale : {1.0, 0.1, 3e3}) {
+    auto const round = [&](Vec3 p) {
+      double const angle = 2 * std::numbers::pi / 12 * p.x;
+      return scale * Vec3{(1 + p.y) * std::cos(angle), (1 + p.y) * std::sin(angle), p.z};
+    };
+    Mesh const mesh = moved(as_hexahedra(unit_box({12, 2, 3})), round);
+    std::vector<Vec3> const points{scale * Vec3{0, 0, 0.4}, scale * Vec3{0, 0, 1}, scale * Vec3{0, 0, 2.2}};
+    auto const expected = locate(mesh, points);
+    for (int again = 0; again < 5; ++again) {
+      FileOrder order;
+      order.node.resize(std::size_t(mesh.n_nodes()));
+      std::iota(order.node.begin(), order.node.end(), 0);
+      order.element = all_of(mesh);
+      random.shuffle(order.element);
+      Mesh renumbered = mesh;
+      reorder(renumbered, std::move(order));
+      auto const found = locate(renumbered, points);
+      for (std::size_t n = 0; n < points.size(); ++n) {
+        EXPECT_LT(distance(position(renumbered, found[n]), position(mesh, expected[n])), 1e-12 * scale) << n;
+        EXPECT_LT(position(mesh, expected[n]).x, -0.8 * scale);  // towards the least x
+      }
+    }
   }
 }
 

@@ -55,7 +55,7 @@ struct LocatorTables {
 ///
 /// "Contains" allows for round-off: 1e-12 of the mesh's size. Of several elements that contain a point (on faces, edges and
 /// nodes, or where elements overlap) the one with the smallest number is taken; of several that are equally near (to single
-/// precision) too. Elements without volume and inside-out ones are found like others as far as their maps have an inverse;
+/// precision) the one towards the least x, then y, then z, and only where they share that place the smallest number. Elements without volume and inside-out ones are found like others as far as their maps have an inverse;
 /// else they count as what their faces enclose. In 2-D meshes points are projected on the mesh's plane first, and distances
 /// are measured in it.
 ///

@@ -4,6 +4,8 @@
 #include <gridmorph/kernels/element_place.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
 
+#include <cstdint>
+
 namespace gridmorph::detail {
 
 template <class MemorySpace>
@@ -44,14 +46,6 @@ KOKKOS_INLINE_FUNCTION void for_each_part(LocatorTables<MemorySpace> const& t, I
   }
 }
 
-/// Position of a place; that of the element's first corner in a polyhedron.
-template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION Vec3 position_at(LocatorTables<MemorySpace> const& t, Location const& place) {
-  ElementType const type = t.elements.type(place.element);
-  if (type == ElementType::polyhedron) return node_at(t, t.elements.node(t.elements.first(place.element)));
-  return element_position(type, corners_at(t, type, place.element), place.local);
-}
-
 /// Whether an element contains the point; then the place in it.
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION bool contains(LocatorTables<MemorySpace> const& t, Index32 element, Vec3 const& p,
@@ -74,21 +68,28 @@ KOKKOS_INLINE_FUNCTION bool contains(LocatorTables<MemorySpace> const& t, Index3
   return true;
 }
 
-/// The place of an element nearest to a point that it does not contain; nothing when that is further than `limit`. `towards`:
-/// from the point to the best place so far.
-template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION Location nearest(LocatorTables<MemorySpace> const& t, Index32 element, Vec3 const& p,
-                                        Vec3 const& towards, double limit) {
+/// The place of an element nearest to a point, and the way there.
+struct NearestPlace {
   Location place;
-  place.distance = kernels::unbounded;
+  Vec3 towards;
+};
+
+/// Of an element that does not contain the point; no element when that is further than `limit`. `towards`: from the point to the
+/// best place so far.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION NearestPlace nearest(LocatorTables<MemorySpace> const& t, Index32 element, Vec3 const& p,
+                                            Vec3 const& towards, double limit) {
+  NearestPlace best;
+  best.place.distance = kernels::unbounded;
   auto const look = [&](ElementType type, kernels::ElementCorners const& c, Index32 part) {
     if (!may_be_nearer(type, c, p, towards, limit)) return;
     kernels::ElementPlace const found = nearest_in_element(type, c, p);
-    if (!(found.distance < place.distance)) return;
-    place.element = element;
-    place.part = part;
-    place.local = found.local;
-    place.distance = found.distance;
+    if (!(found.distance < best.place.distance)) return;
+    best.place.element = element;
+    best.place.part = part;
+    best.place.local = found.local;
+    best.place.distance = found.distance;
+    best.towards = element_position(type, c, found.local) - p;
   };
   ElementType const type = t.elements.type(element);
   if (type == ElementType::polyhedron) {
@@ -99,41 +100,52 @@ KOKKOS_INLINE_FUNCTION Location nearest(LocatorTables<MemorySpace> const& t, Ind
   } else {
     look(type, corners_at(t, type, element), 0);
   }
-  if (place.distance <= t.tolerance) place.distance = 0;
-  return place;
+  if (best.place.distance <= t.tolerance) best.place.distance = 0;
+  return best;
 }
 
-/// Distances that differ by round-off are the same.
-KOKKOS_INLINE_FUNCTION bool is_nearer(Location const& a, Location const& b) {
-  float const da = float(a.distance), db = float(b.distance);
-  return da < db || (da == db && a.element < b.element);
+/// Distances that differ by round-off are the same: then the direction decides, so that the choice does not depend on numbers
+/// (a point on the axis of a round wall has many nearest places), and where that is the same, the number.
+KOKKOS_INLINE_FUNCTION bool is_nearer(NearestPlace const& a, NearestPlace const& b) {
+  float const da = float(a.place.distance), db = float(b.place.distance);
+  if (da != db) return da < db;
+  // In whole steps: comparing with a tolerance would depend on the order of comparisons. Shifted, since components that are 0, 1
+  // or 1/2 are common.
+  auto const step = [&](double component) {
+    return da > 0 ? std::int64_t((component / double(da) + 2) * 1e6 + 0.37) : 0;
+  };
+  std::int64_t const ways[3][2] = {{step(a.towards.x), step(b.towards.x)},
+                             {step(a.towards.y), step(b.towards.y)},
+                             {step(a.towards.z), step(b.towards.z)}};
+  for (auto const& way : ways)
+    if (way[0] != way[1]) return way[0] < way[1];
+  return a.place.element < b.place.element;
 }
 
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION Location locate_point(LocatorTables<MemorySpace> const& t, Vec3 p) {
-  Location best;
-  best.distance = kernels::unbounded;
-  if (!kernels::is_finite(p.x) || !kernels::is_finite(p.y) || !kernels::is_finite(p.z)) return best;
+  Location holding;
+  holding.distance = kernels::unbounded;
+  if (!kernels::is_finite(p.x) || !kernels::is_finite(p.y) || !kernels::is_finite(p.z)) return holding;
   if (t.two_dimensional) p = p - dot(t.normal, p - t.plane_point) * t.normal;
   t.tree.for_each_holding(p, [&](Index thing) {
     Index32 const element = t.element(thing);
-    if (best.element >= 0 && element > best.element) return;
-    contains(t, element, p, best);
+    if (holding.element >= 0 && element > holding.element) return;
+    contains(t, element, p, holding);
   });
-  if (best.element >= 0) return best;
+  if (holding.element >= 0) return holding;
   // A plane across the way to the best place rules out most elements behind that.
-  Vec3 towards;
+  NearestPlace best;
+  best.place.distance = kernels::unbounded;
   t.tree.for_each_nearer(
       p,
       [&](Index thing) {
-        Location const place = nearest(t, t.element(thing), p, towards, best.distance);
-        if (place.element < 0 || !kernels::is_finite(place.distance)) return;
-        if (best.element >= 0 && !is_nearer(place, best)) return;
-        best = place;
-        towards = position_at(t, place) - p;
+        NearestPlace const found = nearest(t, t.element(thing), p, best.towards, best.place.distance);
+        if (found.place.element < 0 || !kernels::is_finite(found.place.distance)) return;
+        if (best.place.element < 0 || is_nearer(found, best)) best = found;
       },
-      [&] { return best.distance * best.distance * (1 + 1e-6); });
-  return best;
+      [&] { return best.place.distance * best.place.distance * (1 + 1e-6); });
+  return best.place;
 }
 
 }  // namespace gridmorph::detail
