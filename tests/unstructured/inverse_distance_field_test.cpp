@@ -138,11 +138,20 @@ TEST(InverseDistanceField, OfOneSourceIsItsValueAndOfTwoTheirMean) {
   Function const itself = [](Vec3 const& x) { return x; };
   for (Vec3 const& v : on_lattice(Sources({{1, 2, 3}}).planned(3, {0, 0, 0}, {4, 4, 4}, 200), {{5, 6, 7}}))
     EXPECT_EQ(v, (Vec3{5, 6, 7}));
-  // Up to four are one group, wherever they are.
-  Sources const two({{1, 2, 3}, {3, 2, 1}});
+  // Up to four are one group where they are closer together than cells of the lattice show.
+  Sources const two({{1, 2, 3}, {1.1, 2, 2.9}});
   Vec3 const mean = 1 / (two.area[0] + two.area[1]) * (two.area[0] * two.point[0] + two.area[1] * two.point[1]);
   for (Vec3 const& v : on_lattice(two.planned(3, {0, 0, 0}, {4, 4, 4}, 200), values_at(two.point, itself)))
     EXPECT_LT(distance(v, mean), 1e-6);
+  // Further apart each is the nearer one somewhere: the value beside it is its own.
+  Sources const apart({{1, 2, 3}, {3, 2, 1}});
+  auto const planned = apart.planned(3, {0, 0, 0}, {4, 4, 4}, 1000);
+  auto const found = on_lattice(planned, values_at(apart.point, itself));
+  for (std::size_t n = 0; n < found.size(); ++n)
+    for (Vec3 const& p : apart.point)
+      if (distance(planned.shape.position(std::int64_t(n)), p) < planned.shape.spacing) {
+        EXPECT_LT(distance(found[n], p), 0.02) << n;
+      }
   EXPECT_TRUE(Sources({}).planned(3, {0, 0, 0}, {4, 4, 4}, 200).empty());
 }
 

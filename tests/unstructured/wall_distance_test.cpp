@@ -50,7 +50,8 @@ class PlainSweeps {
   [[nodiscard]] Own better(Index32 n, Index32 s, Own const& own) const {
     double const d = distance(x_[n], x_[s]);
     if (own.first >= 0) {
-      double const a = rounded_by_mantissa(d), b = rounded_by_mantissa(own.second);
+      double const step = is_before_.step();
+      double const a = rounded_by_mantissa(d / step), b = rounded_by_mantissa(own.second / step);
       if (!(a < b || (a == b && is_before_(s, own.first)))) return own;
     }
     return {s, d};

@@ -25,15 +25,21 @@ struct Group {
 
 class Tree {
  public:
-  Tree(Coordinates const& x, std::vector<Index32> const& nodes, std::vector<double> const& area)
-      : x_(x), nodes_(nodes), area_(area), order_(nodes.size()) {
+  /// leaf_radius: of groups whose nodes need not be told apart.
+  Tree(Coordinates const& x, std::vector<Index32> const& nodes, std::vector<double> const& area, double leaf_radius)
+      : x_(x), nodes_(nodes), area_(area), leaf_radius_(leaf_radius), order_(nodes.size()) {
     std::iota(order_.begin(), order_.end(), Index32(0));
-    PlaceOrder const is_before(x);
+    // Coarse steps: which nodes make a group is seen in the field, so noise far above round-off should not decide it.
+    PlaceOrder const is_before(x, 1.13e-3);
     std::sort(order_.begin(), order_.end(),
               [&](Index32 a, Index32 b) { return is_before(nodes_[std::size_t(a)], nodes_[std::size_t(b)]); });
     step_ = is_before.step();
     place_.resize(order_.size());
-    for (std::size_t k = 0; k < order_.size(); ++k) place_[std::size_t(order_[k])] = Index32(k);
+    steps_.resize(order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      place_[std::size_t(order_[k])] = Index32(k);
+      steps_[k] = is_before.steps(x[nodes[k]]);
+    }
     if (!nodes.empty()) make(0, Index32(nodes.size()));
   }
   std::vector<Group> groups;  ///< the root first
@@ -45,7 +51,6 @@ class Tree {
  private:
   static constexpr Index32 leaf_size = 4;
   double step_ = 1;  ///< of PlaceOrder
-  static double component(Vec3 const& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
   Index32 make(Index32 begin, Index32 end) {
     Index32 const g = Index32(groups.size());
@@ -63,18 +68,16 @@ class Tree {
     }
     group.centre = (1 / group.area) * sum;
     for (Index32 k = begin; k < end; ++k) group.radius = std::max(group.radius, distance(x_[node(k)], group.centre));
-    if (end - begin > leaf_size) {
+    if (end - begin > leaf_size || (end - begin > 1 && group.radius > leaf_radius_)) {
       Vec3 const extent = box.high - box.low;
       // Extents that are the same but for round-off: the first axis.
       double const slack = step_;
-      int const axis = extent.x + slack >= extent.y ? (extent.x + slack >= extent.z ? 0 : 2)
-                                                    : (extent.y + slack >= extent.z ? 1 : 2);
+      std::size_t const axis = extent.x + slack >= extent.y ? (extent.x + slack >= extent.z ? 0 : 2)
+                                                            : (extent.y + slack >= extent.z ? 1 : 2);
       Index32 const middle = (begin + end) / 2;
       std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                        [&](Index32 a, Index32 b) {
-                         double const p = component(x_[nodes_[std::size_t(a)]], axis),
-                                      q = component(x_[nodes_[std::size_t(b)]], axis);
-                         double const s = std::floor(p / step_ + 0.3819), t = std::floor(q / step_ + 0.3819);
+                         auto const s = steps_[std::size_t(a)][axis], t = steps_[std::size_t(b)][axis];
                          return s < t || (s == t && place_[std::size_t(a)] < place_[std::size_t(b)]);
                        });
       group.part[0] = make(begin, middle);
@@ -88,7 +91,9 @@ class Tree {
   Coordinates const& x_;
   std::vector<Index32> const& nodes_;
   std::vector<double> const& area_;
+  double leaf_radius_;
   std::vector<Index32> order_, place_;  ///< by position, and where each is in that order
+  std::vector<std::array<std::int64_t, 3>> steps_;
 };
 
 kernels::UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dimension, Index most_nodes) {
@@ -114,10 +119,12 @@ InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates 
                                           int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes) {
   InverseDistanceField out;
   if (nodes.empty()) return out;
-  Tree const tree(coordinates, nodes, area);
+  out.shape = lattice_over(low, high, dimension, most_nodes);
+  // What cells of the lattice show. Where nodes of walls are further apart, the nearest of them decide about a cell, and means of
+  // four would depend on which are grouped.
+  Tree const tree(coordinates, nodes, area, 0.2513 * out.shape.spacing);
   out.n_groups = Index32(tree.groups.size());
   for (Group const& group : tree.groups) out.centre.push_back(group.centre);
-  out.shape = lattice_over(low, high, dimension, most_nodes);
   std::vector<Index32> items;
   std::vector<double> weights;
   std::vector<std::vector<Index32>> by_height(std::size_t(tree.groups.front().height) + 1);

@@ -30,8 +30,11 @@ double share_of_slope(double slope) {
 
 /// The source of largest weight first: the one that a row keeps in double precision.
 void add_row(Index32 node, PlaceOrder const& is_before, std::vector<Source>& sources, InterpolationOperator& rows) {
+  double largest = 0;
+  for (Source const& s : sources) largest = std::max(largest, s.weight);
+  // Shares of the largest have no unit.
   std::sort(sources.begin(), sources.end(), [&](Source const& a, Source const& b) {
-    double const v = PlaceOrder::rounded(a.weight), w = PlaceOrder::rounded(b.weight);
+    double const v = PlaceOrder::rounded(a.weight / largest), w = PlaceOrder::rounded(b.weight / largest);
     return v > w || (v == w && is_before(a.node, b.node));
   });
   double sum = 0;
@@ -120,11 +123,14 @@ LayerRows make_layers(HostInstance const& host, NodeGraph const& graph, Coordina
     Index32 const node = turns.node[std::size_t(k)];
     sources.clear();
     Index32 nearest = -1;
+    double least = 0;
     for (Index32 const m : graph.neighbours[node]) {
       if (turns.of[std::size_t(m)] > k) continue;
-      if (nearest < 0 || PlaceOrder::is_less(distance[std::size_t(m)], distance[std::size_t(nearest)]) ||
-          (!PlaceOrder::is_less(distance[std::size_t(nearest)], distance[std::size_t(m)]) && is_before(m, nearest)))
+      double const away = is_before.rounded_steps(distance[std::size_t(m)]);
+      if (nearest < 0 || away < least || (away == least && is_before(m, nearest))) {
         nearest = m;
+        least = away;
+      }
       double const edge = gridmorph::distance(coordinates[node], coordinates[m]);
       double const share = share_of_slope((distance[std::size_t(node)] - distance[std::size_t(m)]) / edge);
       if (share > 0) sources.push_back({share * weight(node, m), m});

@@ -13,21 +13,21 @@
 
 namespace gridmorph {
 
-/// By x, y and z in steps of a millionth of the largest extent, then by what the steps leave. Where several nodes would do, the first of them is taken: numbered
-/// anew, or with coordinates that are off by round-off, it is the same one. Steps begin off round numbers, where meshes have their nodes.
+/// By x, y and z in steps of a share of the largest extent, a millionth unless told, then by what the steps leave. Where several nodes would do, the first of them is taken: numbered
+/// anew, in another unit, or with coordinates that are off by round-off, it is the same one. Steps begin and end off round numbers, where meshes have their
+/// nodes.
 class PlaceOrder {
  public:
   /// O(n); keeps a reference.
-  explicit PlaceOrder(Coordinates const& coordinates) : x_(coordinates) {
+  explicit PlaceOrder(Coordinates const& coordinates, double share = 1.13e-6) : x_(coordinates) {
     for (Index n = 0; n < coordinates.size(); ++n) {
       Vec3 const p = coordinates[n];
       low_ = n == 0 ? p : Vec3{std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
       high_ = n == 0 ? p : Vec3{std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
     }
     Vec3 const size = high_ - low_;
-    // A power of two: extents that differ by round-off have the same steps.
-    double const largest = 1.13 * std::max({size.x, size.y, size.z});
-    step_ = largest > 0 ? std::exp2(std::floor(std::log2(largest)) - 20) : 1;
+    double const largest = std::max({size.x, size.y, size.z});
+    if (largest > 0) step_ = share * largest;
   }
 
   /// Whether node a comes before node b.
@@ -39,8 +39,13 @@ class PlaceOrder {
     return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
   }
   [[nodiscard]] double step() const { return step_; }
-  /// But for round-off.
-  [[nodiscard]] static bool is_less(double a, double b) { return rounded(a) < rounded(b); }
+  /// In which step a place is, per axis.
+  [[nodiscard]] std::array<std::int64_t, 3> steps(Vec3 const& p) const {
+    auto const count = [&](double x, double low) { return std::int64_t(std::floor((x - low) / step_ + 0.3819)); };
+    return {count(p.x, low_.x), count(p.y, low_.y), count(p.z, low_.z)};
+  }
+  /// A length in steps, but for round-off.
+  [[nodiscard]] double rounded_steps(double length) const { return rounded(length / step_); }
   /// To 16 bits: a number that round-off does not change, but for those at its steps, which no ratio of small integers is at.
   [[nodiscard]] static double rounded(double a) {
     if (!std::isfinite(a) || a == 0) return a;
@@ -55,11 +60,6 @@ class PlaceOrder {
   }
 
  private:
-  [[nodiscard]] std::array<std::int64_t, 3> steps(Vec3 const& p) const {
-    auto const count = [&](double x, double low) { return std::int64_t(std::floor((x - low) / step_ + 0.3819)); };
-    return {count(p.x, low_.x), count(p.y, low_.y), count(p.z, low_.z)};
-  }
-
   Coordinates const& x_;
   Vec3 low_, high_;
   double step_ = 1;

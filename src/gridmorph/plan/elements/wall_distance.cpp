@@ -69,7 +69,7 @@ class Spreading {
   };
   enum class Waits : std::uint8_t { no, as_known, offered_more };
 
-  // Steps of PlaceOrder::is_less are below 1e-4: squares further apart than that say the same.
+  // Steps of PlaceOrder::rounded are below 1e-4: squares further apart than that say the same.
   static constexpr double clearly_more = (1 + 1e-4) * (1 + 1e-4), clearly_less = (1 - 1e-4) * (1 - 1e-4);
 
   [[nodiscard]] double squared(Vec3 const& x, Index32 source) const {
@@ -81,7 +81,8 @@ class Spreading {
   [[nodiscard]] bool is_better(Found const& a, Found const& than) const {
     if (a.squared > than.squared * clearly_more) return false;
     if (a.squared < than.squared * clearly_less) return true;
-    double const d = PlaceOrder::rounded(std::sqrt(a.squared)), other = PlaceOrder::rounded(std::sqrt(than.squared));
+    double const d = is_before_.rounded_steps(std::sqrt(a.squared)),
+                 other = is_before_.rounded_steps(std::sqrt(than.squared));
     return d < other || (d == other && is_before_(sources_[std::size_t(a.source)], sources_[std::size_t(than.source)]));
   }
 
