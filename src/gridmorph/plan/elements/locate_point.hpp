@@ -115,8 +115,8 @@ KOKKOS_INLINE_FUNCTION bool is_nearer(NearestPlace const& a, NearestPlace const&
     return da > 0 ? std::int64_t((component / double(da) + 2) * 1e6 + 0.37) : 0;
   };
   std::int64_t const ways[3][2] = {{step(a.towards.x), step(b.towards.x)},
-                             {step(a.towards.y), step(b.towards.y)},
-                             {step(a.towards.z), step(b.towards.z)}};
+                                   {step(a.towards.y), step(b.towards.y)},
+                                   {step(a.towards.z), step(b.towards.z)}};
   for (auto const& way : ways)
     if (way[0] != way[1]) return way[0] < way[1];
   return a.place.element < b.place.element;
