@@ -111,6 +111,9 @@ class Joiner {
     for (std::size_t g = 0; g < out.surface.grids.size(); ++g) {
       int const p = piece_[g];
       for (int& v : out.surface.grids[g].vertex) v = out.vertex[v];
+      for (GridFacet& face : out.surface.grids[g].faces)
+        for (int& v : face)
+          if (v >= 0) v = out.vertex[v];
       out.turned.push_back(p != home && place[p].has_value() ? 1 : 0);
       out.turn.push_back(out.turned.back() != 0 ? *place[p] : RigidTransform{});
     }

@@ -22,7 +22,8 @@ Vec3 parabola_slope(Vec3 const& a, Vec3 const& b, Vec3 const& c, double h, doubl
 }  // namespace
 
 SectionProfile::SectionProfile(std::vector<Vec3> points, Vec3 const& span, Vec3 const& flow, std::string const& name,
-                               Edges edges) {
+                               Edges edges, double window)
+    : window_(window) {
   double around = 0;
   for (std::size_t n = 1; n < points.size(); ++n) around += distance(points[n - 1], points[n]);
   if (!(around > 0) || !std::isfinite(around))
@@ -60,12 +61,54 @@ bool SectionProfile::is_corner(int n) const {
 
 double SectionProfile::extreme_length(int n, std::function<double(Vec3 const&)> const& measure) const {
   if (is_corner(n)) return length_[n];
+  if (window_ > 0) return fitted_extreme(n, measure);
   double const h = distance(points_[wrap(n - 1)], points_[n]), k = distance(points_[n], points_[wrap(n + 1)]);
   double const a = measure(points_[wrap(n - 1)]), b = measure(points_[n]), c = measure(points_[wrap(n + 1)]);
   double const slope = (h * (c - b) / k + k * (b - a) / h) / (h + k);
   double const bend = 2 * ((c - b) / k - (b - a) / h) / (h + k);
   if (!(bend < 0)) return length_[n];
   return length_[n] + std::clamp(-slope / bend, -0.5 * h, 0.5 * k);
+}
+
+/// The vertex of the parabola a + b s + c s^2 that fits the measure best around point n, s being the length from there. Points have the weight of the
+/// line beside them.
+double SectionProfile::fitted_extreme(int n, std::function<double(Vec3 const&)> const& measure) const {
+  double const whole = length_.back();
+  std::array<double, 5> moment{};  // of s^0 ... s^4
+  std::array<double, 3> product{};
+  auto const add = [&](int at, double s) {
+    double const weight =
+        distance(points_[wrap(at - 1)], points_[wrap(at)]) + distance(points_[wrap(at)], points_[wrap(at + 1)]);
+    double const value = measure(points_[wrap(at)]) - measure(points_[n]);
+    double power = weight;
+    for (std::size_t k = 0; k < moment.size(); ++k, power *= s) {
+      moment[k] += power;
+      if (k < product.size()) product[k] += power * value;
+    }
+  };
+  add(n, 0);
+  constexpr int around = 8;
+  double spacing = 0;
+  for (int k = -around; k < around; ++k)
+    spacing += distance(points_[wrap(n + k)], points_[wrap(n + k + 1)]) / (2 * around);
+  std::array<double, 2> reach{};
+  for (int const side : {0, 1}) {
+    int const step = side == 0 ? -1 : 1;
+    double s = 0;
+    for (int k = 1; k < size() / 4 && reach[std::size_t(side)] <= window_ * spacing; ++k) {
+      s += distance(points_[wrap(n + step * k)], points_[wrap(n + step * (k - 1))]);
+      reach[std::size_t(side)] = s;
+      if (is_corner(wrap(n + step * k))) break;
+      add(n + step * k, step * s);
+    }
+  }
+  auto const [m0, m1, m2, m3, m4] = moment;
+  auto const [p0, p1, p2] = product;
+  double const det = m0 * (m2 * m4 - m3 * m3) - m1 * (m1 * m4 - m2 * m3) + m2 * (m1 * m3 - m2 * m2);
+  double const slope = m0 * (p1 * m4 - m3 * p2) - p0 * (m1 * m4 - m2 * m3) + m2 * (m1 * p2 - p1 * m2);
+  double const bend = m0 * (m2 * p2 - p1 * m3) - m1 * (m1 * p2 - p1 * m2) + p0 * (m1 * m3 - m2 * m2);
+  if (!(det > 0) || !(bend < 0) || !(whole > 0)) return length_[n];
+  return length_[n] + std::clamp(-0.5 * slope / bend, -0.5 * reach[0], 0.5 * reach[1]);
 }
 
 void SectionProfile::find_edges(Vec3 const& flow, std::string const& name, Edges edges) {
@@ -129,19 +172,28 @@ void SectionProfile::find_edges(Vec3 const& flow, std::string const& name, Edges
   stretch_ = {end, lead, begin, end + whole};
 }
 
+SectionPosition SectionProfile::position_at(double s) const {
+  double const whole = length_.back(), tiny = 1e-12 * whole;
+  while (s < stretch_[0] - tiny) s += whole;
+  while (s >= stretch_[3] - tiny) s -= whole;
+  int stretch = 0;
+  while (stretch < 2 && s > stretch_[stretch + 1] + tiny) ++stretch;
+  double const long_ = stretch_[stretch + 1] - stretch_[stretch];
+  return {stretch, long_ > 0 ? std::clamp((s - stretch_[stretch]) / long_, 0.0, 1.0) : 0.0};
+}
+
 std::vector<SectionPosition> SectionProfile::positions() const {
   std::vector<SectionPosition> out;
-  double const whole = length_.back(), tiny = 1e-12 * whole;
-  for (int const n : given_) {
-    double s = length_[n];
-    while (s < stretch_[0] - tiny) s += whole;
-    while (s >= stretch_[3] - tiny) s -= whole;
-    int stretch = 0;
-    while (stretch < 2 && s > stretch_[stretch + 1] + tiny) ++stretch;
-    double const long_ = stretch_[stretch + 1] - stretch_[stretch];
-    out.push_back({stretch, long_ > 0 ? std::clamp((s - stretch_[stretch]) / long_, 0.0, 1.0) : 0.0});
-  }
+  for (int const n : given_) out.push_back(position_at(length_[n]));
   return out;
+}
+
+SectionPosition SectionProfile::position(int n, double t) const {
+  int const a = given_[n], b = given_[(std::size_t(n) + 1) % given_.size()];
+  if (a == b) return position_at(length_[a]);
+  bool const forward = b == wrap(a + 1);  // the points may have been turned round
+  double const way = t * distance(points_[a], points_[b]);
+  return position_at(forward ? length_[a] + way : length_[a] - way);
 }
 
 Vec3 SectionProfile::at(SectionPosition const& p) const {

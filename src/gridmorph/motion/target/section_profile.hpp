@@ -28,6 +28,9 @@ struct SectionPosition {
 ///
 /// Edges::extreme is for H meshes, whose lines across the flow touch the blade in a round edge: there the edges without
 /// corners are the points farthest up- and downstream, on the mesh as on the target.
+///
+/// `window` is for cuts through facets, whose points may be anywhere: parabolas at edges without corners then fit, by least squares, the points within
+/// so many of the mean distances between points around there, and the next ones on both sides.
 class SectionProfile {
  public:
   enum class Edges { farthest, extreme };
@@ -35,10 +38,12 @@ class SectionProfile {
   /// Points once around, the first one again at the end or not, or (open) from one side of the trailing edge to the
   /// other. `span`: direction the section is seen along; `flow`: downstream. Throws MotionError beginning with `name`.
   SectionProfile(std::vector<Vec3> points, Vec3 const& span, Vec3 const& flow, std::string const& name,
-                 Edges edges = Edges::farthest);
+                 Edges edges = Edges::farthest, double window = 0);
 
   /// Of the points that were given, in their order.
   [[nodiscard]] std::vector<SectionPosition> positions() const;
+  /// Of the place at the share t of the way from given point n to the next one.
+  [[nodiscard]] SectionPosition position(int n, double t) const;
   /// Exactly one of the points where the position agrees with it to 1e-9.
   [[nodiscard]] Vec3 at(SectionPosition const& position) const;
   [[nodiscard]] std::vector<Vec3> const& points() const { return points_; }
@@ -47,12 +52,15 @@ class SectionProfile {
   [[nodiscard]] int size() const { return int(points_.size()); }
   [[nodiscard]] int wrap(int n) const { return ((n % size()) + size()) % size(); }
   [[nodiscard]] bool is_corner(int n) const;
+  [[nodiscard]] SectionPosition position_at(double s) const;
   /// The length at which the measure is greatest near point n.
   [[nodiscard]] double extreme_length(int n, std::function<double(Vec3 const&)> const& measure) const;
+  [[nodiscard]] double fitted_extreme(int n, std::function<double(Vec3 const&)> const& measure) const;
   [[nodiscard]] Vec3 at_length(double s) const;
   [[nodiscard]] Vec3 slope(int n, int side) const;
   void find_edges(Vec3 const& flow, std::string const& name, Edges edges);
 
+  double window_ = 0;
   std::vector<Vec3> points_;         ///< right-handed about the span
   std::vector<int> given_;           ///< number in points_ of every point that was given
   std::vector<double> length_;       ///< (size + 1) arc length of the polygon up to each point, and around

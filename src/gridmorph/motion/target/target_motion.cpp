@@ -170,13 +170,7 @@ void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, A
     return;
   }
   if (rule.mapping == Mapping::sections || !target.sections.empty()) {
-    std::optional<PatchSurface> grids = surface_.in_grids(boundary);
-    if (!grids)
-      throw MotionError(name_ +
-                        ": sections go to rows of nodes around the blade or wing, and some faces of its patches are no "
-                        "quadrilaterals "
-                        "in rows; give a surface (STL, CGNS), which its nodes are projected to");
-    surface_ = std::move(*grids);
+    if (std::optional<PatchSurface> grids = surface_.in_grids(boundary)) surface_ = std::move(*grids);
     map_onto_sections(boundary, rule, axis, notes);
     return;
   }

@@ -34,7 +34,7 @@ class TargetMotion {
  private:
   using Mapping = TargetRule::Mapping;
 
-  /// Patches of an unstructured mesh: node for node as listed, by sections where their faces make grids, or onto the surface or profile.
+  /// Patches of an unstructured mesh: node for node as listed, by sections, or onto the surface or profile.
   void map_faces(Boundary const& boundary, TargetRule const& rule, Axis const& axis, std::vector<std::string>& notes);
   void map_onto_sections(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
                          std::vector<std::string>& notes);

@@ -5,6 +5,8 @@
 #include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/target/section_profile.hpp>
 #include <gridmorph/motion/target/section_rows.hpp>
+#include <gridmorph/motion/target/sliced_sections.hpp>
+#include <gridmorph/motion/target/span_coordinate.hpp>
 #include <gridmorph/motion/target/surface_spread.hpp>
 
 #include <algorithm>
@@ -15,26 +17,6 @@
 namespace gridmorph {
 
 namespace {
-
-/// Along which coordinate the span is measured, and which way it points.
-class SpanCoordinate {
- public:
-  SpanCoordinate(TargetRule const& rule, Axis const& axis)
-      : origin_(axis.origin), axis_((1 / norm(axis.direction)) * axis.direction) {
-    if (rule.span) direction_ = (1 / norm(*rule.span)) * *rule.span;
-  }
-  [[nodiscard]] bool straight() const { return direction_.has_value(); }
-  [[nodiscard]] double operator()(Vec3 const& p) const { return direction_ ? dot(p, *direction_) : norm(radial(p)); }
-  [[nodiscard]] Vec3 direction(Vec3 const& p) const { return direction_ ? *direction_ : radial(p); }
-
- private:
-  [[nodiscard]] Vec3 radial(Vec3 const& p) const {
-    Vec3 const d = p - origin_;
-    return d - dot(d, axis_) * axis_;
-  }
-  Vec3 origin_, axis_;
-  std::optional<Vec3> direction_;
-};
 
 Vec3 middle(std::vector<Vec3> const& points) {
   Vec3 sum;
@@ -130,6 +112,45 @@ std::vector<SectionProfile> target_profiles(TargetRule const& rule, SpanCoordina
   return out;
 }
 
+/// Where the vertices of the mesh lie in its sections.
+struct OwnSections {
+  std::vector<std::pair<int, SectionPosition>> places;
+  SectionProfile first, last;  ///< at the ends of the span
+  std::string note;            ///< what they are made of
+};
+
+OwnSections sections_of_rows(Boundary const& boundary, PatchSurface const& surface, SpanCoordinate const& span,
+                             Vec3 const& flow, SectionProfile::Edges edges, std::string const& name) {
+  SectionRows const found = find_section_rows(
+      surface, [&span](Vec3 const& p) { return span(p); }, name);
+  std::vector<SectionProfile> own;
+  std::vector<std::pair<int, SectionPosition>> places;
+  for (auto const& row : found.rows) {
+    std::vector<Vec3> points;
+    for (int const v : row) points.push_back(surface.points[v]);
+    own.emplace_back(points, span.direction(middle(points)), flow, name + ", section of the mesh", edges);
+    auto const positions = own.back().positions();
+    for (std::size_t n = 0; n < row.size(); ++n) places.emplace_back(row[n], positions[n]);
+  }
+  std::string note = std::to_string(own.size()) + " rows of nodes";
+  for (int const p : found.left_out)
+    note += "; patch " + describe_patch(boundary.mesh(), boundary.mesh().patches[p]) +
+            " has no sections and goes along with its edges";
+  return {std::move(places), own.front(), own.back(), std::move(note)};
+}
+
+OwnSections sections_of_facets(PatchSurface const& surface, SpanCoordinate const& span, Vec3 const& flow,
+                               SectionProfile::Edges edges, std::string const& name) {
+  SlicedSections sliced = slice_sections(surface, span, flow, edges, name);
+  std::string note = std::to_string(sliced.cuts) + " cuts through " + std::to_string(sliced.facets) + " facets";
+  std::vector<char> placed(surface.points.size(), 0);
+  for (auto const& place : sliced.places) placed[place.first] = 1;
+  if (auto const without = std::count(placed.begin(), placed.end(), 0); without > 0)
+    note += "; " + std::to_string(without) + " of " + std::to_string(placed.size()) +
+            " nodes are in no section (tips, ends that are cut off) and go along with those that are";
+  return {std::move(sliced.places), std::move(sliced.first), std::move(sliced.last), std::move(note)};
+}
+
 }  // namespace
 
 SectionMapping map_sections(Boundary const& boundary, PatchSurface const& given, TargetRule const& rule,
@@ -142,9 +163,6 @@ SectionMapping map_sections(Boundary const& boundary, PatchSurface const& given,
     if (!s.points.empty()) middles.push_back(middle(s.points));
   JoinedSides const joined = join_sides(boundary, given, middles.empty() ? Vec3{} : middle(middles));
   PatchSurface const& surface = joined.surface;
-  SectionRows const found = find_section_rows(
-      surface, [&span](Vec3 const& p) { return span(p); }, name);
-  auto const& rows = found.rows;
   auto const n_turned = std::count(joined.turned.begin(), joined.turned.end(), 1);
   auto const edges = n_turned > 0 ? SectionProfile::Edges::extreme : SectionProfile::Edges::farthest;
   Loft const loft(target_profiles(rule, span, edges, name), span);
@@ -152,53 +170,40 @@ SectionMapping map_sections(Boundary const& boundary, PatchSurface const& given,
   if (single && !span.straight())
     throw MotionError(name + ": one section makes no surface around an axis; give two or more, or a span direction");
 
-  std::vector<SectionProfile> own;
-  for (auto const& row : rows) {
-    std::vector<Vec3> points;
-    for (int const v : row) points.push_back(surface.points[v]);
-    own.emplace_back(points, span.direction(middle(points)), rule.flow, name + ", section of the mesh", edges);
-  }
+  OwnSections const own = surface.gridded ? sections_of_rows(boundary, surface, span, rule.flow, edges, name)
+                                          : sections_of_facets(surface, span, rule.flow, edges, name);
 
   std::vector<char> mapped(surface.points.size(), 0);
   std::vector<Vec3> image(surface.points.size());
   double beyond = 0;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    auto const positions = own[k].positions();
-    for (std::size_t n = 0; n < rows[k].size(); ++n) {
-      int const v = rows[k][n];
-      if (mapped[v] != 0) continue;
-      mapped[v] = 1;
-      SectionPosition const& p = positions[n];
-      double const w = span(surface.points[v]);
-      if (single) {
-        Vec3 const at = loft.profile(0).at(p);
-        double const gap = w - span(at);
-        bool const flat = std::fabs(gap) <= 1e-14 * (surface.size + norm(at));
-        image[v] = flat ? at : at + gap * *rule.span * (1 / norm(*rule.span));
-        continue;
-      }
-      double const lo = loft.span(0, p), hi = loft.span(loft.size() - 1, p);
-      double wanted = w;
-      if (rule.span_match == TargetRule::SpanMatch::fraction) {
-        double const own_lo = span(own.front().at(p)), own_hi = span(own.back().at(p));
-        // Alike surfaces keep the coordinate as it is: the product would round.
-        bool const alike = own_lo == lo && own_hi == hi;
-        if (!alike && own_hi > own_lo) wanted = lo + (w - own_lo) / (own_hi - own_lo) * (hi - lo);
-      }
-      beyond = std::max({beyond, (lo - wanted) / (hi - lo), (wanted - hi) / (hi - lo)});
-      image[v] = loft.at(p, wanted);
+  for (auto const& [v, p] : own.places) {
+    if (mapped[v] != 0) continue;
+    mapped[v] = 1;
+    double const w = span(surface.points[v]);
+    if (single) {
+      Vec3 const at = loft.profile(0).at(p);
+      double const gap = w - span(at);
+      bool const flat = std::fabs(gap) <= 1e-14 * (surface.size + norm(at));
+      image[v] = flat ? at : at + gap * *rule.span * (1 / norm(*rule.span));
+      continue;
     }
+    double const lo = loft.span(0, p), hi = loft.span(loft.size() - 1, p);
+    double wanted = w;
+    if (rule.span_match == TargetRule::SpanMatch::fraction) {
+      double const own_lo = span(own.first.at(p)), own_hi = span(own.last.at(p));
+      // Alike surfaces keep the coordinate as it is: the product would round.
+      bool const alike = own_lo == lo && own_hi == hi;
+      if (!alike && own_hi > own_lo) wanted = lo + (w - own_lo) / (own_hi - own_lo) * (hi - lo);
+    }
+    beyond = std::max({beyond, (lo - wanted) / (hi - lo), (wanted - hi) / (hi - lo)});
+    image[v] = loft.at(p, wanted);
   }
   if (beyond > 0.1)
     throw MotionError(name + ": nodes lie " + std::to_string(100 * beyond) +
                       " % of the span beyond the sections of the target; give sections for the whole span, or let the "
                       "span fraction say where nodes go");
-  std::string note = name + ": mapped by " + std::to_string(loft.size()) + " sections onto " +
-                     std::to_string(rows.size()) + " rows of nodes";
+  std::string note = name + ": mapped by " + std::to_string(loft.size()) + " sections onto " + own.note;
   if (beyond > 1e-9) note += "; extended by " + std::to_string(100 * beyond) + " % of the span beyond them";
-  for (int const p : found.left_out)
-    note += "; patch " + describe_patch(boundary.mesh(), boundary.mesh().patches[p]) +
-            " has no sections and goes along with its edges";
   if (n_turned > 0)
     note += "; " + std::to_string(n_turned) + " of " + std::to_string(joined.turned.size()) +
             " patches are a pitch away and go as their copies there";

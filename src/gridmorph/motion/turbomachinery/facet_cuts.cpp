@@ -99,7 +99,9 @@ void CutLine::reverse() {
 }
 
 FacetCuts::FacetCuts(SliceInput const& input) : input_(input) {
-  for (Vec3 const& p : input.points) span_.push_back(input.span(p));
+  span_ = input.at;
+  if (span_.empty())
+    for (Vec3 const& p : input.points) span_.push_back(input.span(p));
   // Ends of the span are whole lines of nodes but for round-off.
   auto const [low, high] = std::minmax_element(span_.begin(), span_.end());
   double const same = 1e-9 * (*high - *low);
@@ -147,6 +149,12 @@ std::pair<double, double> FacetCuts::range(SurfacePart const& part) const {
   double hi = -inf;
   for (int const t : part.triangles) hi = std::max(hi, range(t).second);
   return {part.low.front(), hi};
+}
+
+std::vector<std::array<int, 3>> FacetCuts::corners(SurfacePart const& part) const {
+  std::vector<std::array<int, 3>> out;
+  for (int const t : part.triangles) out.push_back(triangles_[std::size_t(t)]);
+  return out;
 }
 
 double FacetCuts::step(SurfacePart const& part) const {

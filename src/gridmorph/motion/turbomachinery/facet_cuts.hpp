@@ -18,6 +18,7 @@ struct SliceInput {
   std::function<double(Vec3 const&)> span;    ///< span fraction
   std::function<double(Vec3 const&)> along;   ///< increases along the flow
   std::function<double(Vec3 const&)> height;  ///< length of the span through a point
+  std::vector<double> at = {};  ///< span fraction of each point, where it is known; otherwise `span` says it
 };
 
 /// Span that facets with a part in sections gain at least, over their length: tip faces gain less.
@@ -62,6 +63,8 @@ class FacetCuts {
 
   [[nodiscard]] std::vector<SurfacePart> parts() const;
   [[nodiscard]] std::pair<double, double> range(SurfacePart const& part) const;
+  /// Points of its triangles.
+  [[nodiscard]] std::vector<std::array<int, 3>> corners(SurfacePart const& part) const;
   /// Mean span that a triangle takes up.
   [[nodiscard]] double step(SurfacePart const& part) const;
 

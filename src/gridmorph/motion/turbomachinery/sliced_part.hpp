@@ -17,6 +17,7 @@ class SlicedPart {
          last = 0;  ///< between these its sections follow one another without being cut off; equal: it has none
   double step = 1;  ///< span of a facet
 
+  [[nodiscard]] SurfacePart const& triangles() const { return triangles_; }
   /// Its section at mid span.
   [[nodiscard]] CutLine const& section() const { return reference_; }
   /// Its section at a span fraction, run through as that at mid span is.
