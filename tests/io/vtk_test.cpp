@@ -2,11 +2,13 @@
 #include "io/damage.hpp"
 #include "io/second_order.hpp"
 #include "support/expect_error.hpp"
+#include "support/made_bodies.hpp"
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <algorithm>
@@ -63,6 +65,7 @@ std::string stored(std::string const& bytes) {
 struct VtuWriter {
   Storage how;
   std::string data = {};
+  bool shared_faces = false;  ///< polyhedra as VTK 9.4 and later have them
 
   template <class T>
   void raw(T value, std::string& out) const {
@@ -121,6 +124,22 @@ struct VtuWriter {
                       : array(name, "Float64", components, values);
   }
 
+  std::string arrays_of_faces(Mesh const& mesh, std::vector<std::uint8_t> const& type) {
+    std::vector<std::int64_t> nodes, ends, of_cells, cell_ends;
+    std::array<Index32, max_face_corners> room{};
+    for (std::size_t c = 0; c < type.size(); ++c) {
+      for (int f = 0; type[c] == 42 && f < n_sides(mesh, Index(c)); ++f) {
+        auto const face = side_nodes(mesh, Index(c), f, room);
+        of_cells.push_back(std::int64_t(ends.size()));
+        nodes.insert(nodes.end(), face.begin(), face.end());
+        ends.push_back(std::int64_t(nodes.size()));
+      }
+      cell_ends.push_back(std::int64_t(of_cells.size()));
+    }
+    return array("face_connectivity", "Int64", 1, nodes) + array("face_offsets", "Int64", 1, ends) +
+           array("polyhedron_to_faces", "Int64", 1, of_cells) + array("polyhedron_offsets", "Int64", 1, cell_ends);
+  }
+
   /// Cells of a mesh, then faces of its patches with the numbers 10, 20, ... in `markers` (none: without).
   std::string run(Mesh const& mesh, std::string const& markers, bool with_faces = true) {
     std::map<ElementType, int> const types{{ElementType::triangle, 5},     {ElementType::quadrilateral, 9},
@@ -175,7 +194,10 @@ struct VtuWriter {
     if (!markers.empty()) out += "<CellData>\n" + array(markers, "Int32", 1, numbers) + "</CellData>\n";
     out += "<Cells>\n" + array("connectivity", "Int32", 1, connectivity) + array("offsets", "Int32", 1, offsets) +
            array("types", "UInt8", 1, type);
-    if (!faces.empty()) out += array("faces", "Int32", 1, faces) + array("faceoffsets", "Int32", 1, face_offsets);
+    if (!faces.empty() && shared_faces)
+      out += arrays_of_faces(mesh, type);
+    else if (!faces.empty())
+      out += array("faces", "Int32", 1, faces) + array("faceoffsets", "Int32", 1, face_offsets);
     out += "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
     if (std::string(how.format) == "appended")
       out += std::string("<AppendedData encoding=\"") + (how.base64 ? "base64" : "raw") + "\">\n _" + data +
@@ -262,6 +284,93 @@ TEST_P(Vtu, FieldsComeBesideWhatIsThere) {
   write_morphed(out, out, back, mesh.coordinates, fields);
   expect_all_in(bytes_of(out), {"Name=\"MorphDisplacement\"", "Name=\"MorphSize\""});
   read_mesh(out);
+}
+
+/// Two boxes beside one another, coordinates of thirds.
+std::array<Mesh, 2> halves() {
+  std::array<Mesh, 2> out{to_hexahedra(unit_box({2, 2, 2})), to_prisms_and_tetrahedra(unit_box({1, 2, 2}), 2)};
+  for (std::size_t m = 0; m < 2; ++m)
+    for (Index n = 0; n < out[m].n_nodes(); ++n)
+      out[m].coordinates.set(n, 1.0 / 3 * (out[m].coordinates[n] + Vec3{m == 1 ? 2.0 : 0, 0, 0}));
+  return out;
+}
+
+/// One file with two pieces: what is before the first one, both, and what is behind the second one.
+std::string in_pieces(Storage const& how, std::array<Mesh, 2> const& meshes) {
+  VtuWriter writer{how};
+  std::array<std::string, 2> text;
+  for (std::size_t m = 0; m < 2; ++m) text[m] = writer.run(meshes[m], "CellEntityIds", false);
+  std::string const end = "</Piece>\n";
+  auto const first = text[0].find("<Piece"), behind = text[0].find(end) + end.size();
+  return text[1].substr(0, text[1].find("<Piece")) + text[0].substr(first, behind - first) +
+         text[1].substr(text[1].find("<Piece"));
+}
+
+void expect_two_pieces(Mesh const& mesh) {
+  ASSERT_EQ(mesh.zones.size(), 2U);
+  EXPECT_EQ(mesh.zones[1].name, "piece 2");
+  EXPECT_EQ(mesh.n_elements(), 8 + 8);
+  ASSERT_EQ(mesh.connections.size(), 1U);
+  EXPECT_EQ(mesh.connections[0].nodes.size(), 9U);
+  EXPECT_EQ(largest_mismatch(mesh, mesh.connections[0]), 0);
+  EXPECT_FALSE(mesh.connections[0].periodic);
+  auto const topology = make_topology(mesh);
+  auto const faces = find_face_patches(mesh, topology);
+  EXPECT_TRUE(faces.problems.empty());
+  EXPECT_EQ(std::count(faces.patch.begin(), faces.patch.end(), BoundaryFacePatches::connection), 4 + 4);
+  ASSERT_EQ(mesh.patches.size(), 2U);
+  EXPECT_EQ(mesh.patches[0].name, "boundary");
+  EXPECT_EQ(mesh.patches[0].faces.size(), 20);
+}
+
+TEST_P(Vtu, SeveralPiecesAreZonesJoinedWhereTheyTouch) {
+  auto const meshes = halves();
+  read(meshes[0]);
+  std::string const text = in_pieces(GetParam(), meshes);
+  write_bytes(path_, text);
+  Mesh const mesh = read_mesh(path_);
+  expect_two_pieces(mesh);
+  std::string const out = folder_.file("out.vtu");
+  write_morphed(path_, out, mesh, mesh.coordinates);
+  EXPECT_EQ(bytes_of(out), text);
+  expect_coordinates_replaced(path_, out, GetParam().single);
+  OutputFields fields;
+  fields.displacement = true;
+  fields.cells.push_back({"Number", {}});
+  for (Index e = 0; e < mesh.n_elements(); ++e) fields.cells.back().values.push_back(double(e));
+  Coordinates moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.25, 0.1 * double(n % 5), 0});
+  write_morphed(path_, out, mesh, moved, fields);
+  Mesh const back = read_mesh(out);
+  EXPECT_EQ(back.elements.nodes.item, mesh.elements.nodes.item);
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    EXPECT_EQ(back.coordinates[n].y, GetParam().single ? double(float(moved[n].y)) : moved[n].y);
+}
+
+TEST_P(Vtu, PolyhedraInTheLayoutOfNowAreThoseOfBefore) {
+  Mesh polyhedra = as_polyhedra(to_prisms_and_tetrahedra(unit_box({1, 2, 2}), 1));
+  read(box());
+  write_bytes(path_, VtuWriter{GetParam()}.run(polyhedra, "CellEntityIds"));
+  Mesh const before = read_mesh(path_);
+  VtuWriter writer{GetParam()};
+  writer.shared_faces = true;
+  std::string const text = writer.run(polyhedra, "CellEntityIds");
+  EXPECT_EQ(text.find("\"faceoffsets\""), std::string::npos);
+  write_bytes(path_, text);
+  Mesh const mesh = read_mesh(path_);
+  EXPECT_EQ(mesh.elements.type, before.elements.type);
+  EXPECT_EQ(mesh.elements.nodes.item, before.elements.nodes.item);
+  EXPECT_EQ(mesh.polyhedra.faces.item, before.polyhedra.faces.item);
+  ASSERT_EQ(mesh.patches.size(), before.patches.size());
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+    EXPECT_EQ(mesh.patches[p].faces.item, before.patches[p].faces.item);
+  std::string const out = folder_.file("out.vtu");
+  write_morphed(path_, out, mesh, mesh.coordinates);
+  EXPECT_EQ(bytes_of(out), text);
+  expect_coordinates_replaced(path_, out, GetParam().single);
+  std::string const bad = folder_.file("bad.vtu");
+  expect_refused_where_cut(text, bad, 67, 2);
+  expect_no_harm_where_overwritten(text, bad, 200);
 }
 
 TEST_P(Vtu, DamagedFilesGiveAMeshOrAnError) {
@@ -585,6 +694,102 @@ TEST_F(Vtm, DamagedFilesGiveAMeshOrAnError) {
   }
   std::filesystem::remove(folder_ / "in" / "outlet.vtp");
   expect_all_in(message_of<IoError>([&] { read_mesh(path_); }), {"outlet.vtp", "no such file"});
+}
+
+/// The halves in files of their own, which a parallel file names.
+class Pvtu : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_ / "in");
+    auto const meshes = halves();
+    write_bytes(folder_ / "in" / "0.vtu", VtuWriter{Storage{"raw", "appended", false, true}}.run(meshes[0], "", false));
+    write_bytes(folder_ / "in" / "1.vtu", VtuWriter{Storage{"ascii"}}.run(meshes[1], "", false));
+    write_bytes(path_, text_);
+  }
+  TemporaryFolder folder_;
+  std::string const path_ = folder_.file("mesh.pvtu");
+  std::string const text_ =
+      "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\">\n<PUnstructuredGrid GhostLevel=\"0\">\n"
+      "<PPointData>\n<PDataArray type=\"Float64\" Name=\"p\"/>\n</PPointData>\n<PPoints><PDataArray type=\"Float64\" "
+      "NumberOfComponents=\"3\"/></PPoints>\n<Piece Source=\"in/0.vtu\"/>\n<Piece "
+      "Source=\"in/1.vtu\"/>\n</PUnstructuredGrid>\n</VTKFile>\n";
+};
+
+TEST_F(Pvtu, FilesOfPiecesAreOneMeshAndAreWrittenTogether) {
+  auto const facts = look_at_mesh(path_);
+  EXPECT_EQ(facts.format, MeshFormat::vtk);
+  EXPECT_EQ(facts.kind, MeshKind::unstructured);
+  EXPECT_EQ(facts.linked.size(), 2U);
+  Mesh const mesh = read_mesh(path_);
+  expect_two_pieces(mesh);
+  std::string const out = folder_.file("out.pvtu");
+  write_morphed(path_, out, mesh, mesh.coordinates);
+  auto const written = [&](int k) { return folder_ / "out" / ("out_" + std::to_string(k) + ".vtu"); };
+  for (int k = 0; k < 2; ++k)
+    EXPECT_EQ(bytes_of(written(k)), bytes_of(folder_ / "in" / (std::to_string(k) + ".vtu"))) << k;
+  expect_all_in(bytes_of(out), {"Source=\"out/out_0.vtu\"", "Source=\"out/out_1.vtu\""});
+  OutputFields fields;
+  fields.displacement = true;
+  fields.cells.push_back({"Number", std::vector<double>(std::size_t(mesh.n_elements()), 3)});
+  Coordinates moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.1, 0, mesh.coordinates[n].x});
+  write_morphed(path_, out, mesh, moved, fields);
+  Mesh const back = read_mesh(out);
+  expect_two_pieces(back);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
+  expect_all_in(bytes_of(out),
+                {"Name=\"p\"", "<PDataArray type=\"Float64\" Name=\"Displacement\" NumberOfComponents=\"3\"/>",
+                 "<PCellData>", "Name=\"Number\""});
+  // Once more onto that: one piece has the name, so that all give way.
+  write_morphed(out, folder_.file("again.pvtu"), back, moved, fields);
+  expect_all_in(bytes_of(folder_.file("again.pvtu")), {"Name=\"MorphDisplacement\"", "Name=\"MorphNumber\""});
+}
+
+TEST_F(Pvtu, WhatIsRefusedIsSaid) {
+  Mesh const mesh = read_mesh(path_);
+  expect_all_in(message_of<IoError>([&] { write_morphed(path_, folder_.file("out.vtu"), mesh, mesh.coordinates); }),
+                {"ending .pvtu"});
+  std::string const first = (folder_ / "in" / "0.vtu").string();
+  Mesh const alone = read_mesh(first);
+  expect_all_in(message_of<IoError>([&] { write_morphed(first, folder_.file("out.pvtu"), alone, alone.coordinates); }),
+                {"ending .vtu"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.pvtu"));
+  auto const with = [&](std::string const& what, std::string const& by) {
+    std::string text = text_;
+    write_bytes(path_, text.replace(text.find(what), what.size(), by));
+    return message_of<IoError>([&] { read_mesh(path_); });
+  };
+  expect_all_in(with("Source=\"in/1.vtu\"", "Sauce=\"in/1.vtu\""), {"mesh.pvtu:8", "no Source"});
+  expect_all_in(with("in/1.vtu", "in/7.vtu"), {"7.vtu", "no such file"});
+  // A piece with cells of another one.
+  std::string text = bytes_of(folder_ / "in" / "1.vtu");
+  text.insert(text.find("<Cells>"),
+              "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">1 1 0 0 0 0 0 "
+              "0</DataArray></CellData>\n");
+  write_bytes(folder_ / "in" / "1.vtu", text);
+  write_bytes(path_, text_);
+  expect_all_in(message_of<IoError>([&] { read_mesh(path_); }), {"1.vtu", "2 cells are ghosts", "GhostLevel 0"});
+}
+
+TEST_F(Pvtu, DamagedFilesGiveAMeshOrAnError) {
+  std::string const bad = folder_.file("bad.pvtu");
+  expect_refused_where_cut(text_, bad, 3, 2);
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    std::mt19937 random(seed);
+    std::string damaged = text_;
+    damaged[random() % damaged.size()] = char(random());
+    write_bytes(bad, damaged);
+    try {
+      if (mesh_kind(bad) == MeshKind::unstructured) read_mesh(bad);
+    } catch (Error const& e) {
+      EXPECT_FALSE(std::string(e.what()).empty());
+    }
+  }
+  std::string const whole = bytes_of(folder_ / "in" / "0.vtu");
+  for (std::size_t length = 0; length + 2 < whole.size(); length += 61) {
+    write_bytes(folder_ / "in" / "0.vtu", whole.substr(0, length));
+    EXPECT_THROW(read_mesh(path_), Error) << length;
+  }
 }
 
 TEST_F(VtuRead, ErrorsSayWhereWhatAndWhatToDo) {

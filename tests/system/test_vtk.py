@@ -14,14 +14,19 @@ import unittest
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_POLYHEDRON, vtkMultiBlockDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkThreshold
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
-from vtkmodules.vtkIOXML import (vtkXMLMultiBlockDataReader, vtkXMLMultiBlockDataWriter, vtkXMLUnstructuredGridReader,
-                                 vtkXMLUnstructuredGridWriter)
+from vtkmodules.vtkIOXML import (vtkXMLMultiBlockDataReader, vtkXMLMultiBlockDataWriter, vtkXMLPUnstructuredGridReader,
+                                 vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter)
+
+try:
+    from vtkmodules.vtkFiltersCore import vtkExtractCells
+except ImportError:  # before VTK 9.3
+    from vtkmodules.vtkFiltersExtraction import vtkExtractCells
 
 GRIDMORPH, MESHES = os.path.realpath(sys.argv.pop(1)), os.path.realpath(sys.argv.pop(1))
 
@@ -233,6 +238,90 @@ class Vtk(unittest.TestCase):
             self.assertLess(abs(shift - [0.002, 0.001, 0]).max(), 1e-6)
         self.assertLess(abs(arrays(moved.GetBlock(0).GetPointData())["MorphDisplacement"] - [0.002, 0.001, 0]).max(), 1e-12)
         self.assertAlmostEqual(volumes(moved.GetBlock(0)).sum(), volumes(blocks.GetBlock(0)).sum(), delta=1e-12)
+
+    def made_grid(self, polyhedra):
+        """Hexahedra, every other one by its faces where wanted."""
+        grid, points = vtkUnstructuredGrid(), vtkPoints()
+        points.SetDataTypeToDouble()
+        n = 5
+        for k, j, i in itertools.product(range(n), repeat=3):
+            points.InsertNextPoint(i / 3, j / 3, k / 3 + 0.01 * i)
+        grid.SetPoints(points)
+        corner = lambda i, j, k: i + n * (j + n * k)
+        for k, j, i in itertools.product(range(n - 1), repeat=3):
+            nodes = [corner(i + a, j + b, k + c) for a, b, c in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))]
+            if polyhedra and (i + j + k) % 2 == 0:
+                faces = vtkIdList()
+                faces.InsertNextId(6)
+                for face in ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)):
+                    faces.InsertNextId(4)
+                    for c in face:
+                        faces.InsertNextId(nodes[c])
+                grid.InsertNextCell(VTK_POLYHEDRON, faces)
+            else:
+                grid.InsertNextCell(VTK_HEXAHEDRON, 8, nodes)
+        return grid
+
+    def morph_made(self, name, output):
+        with open(os.path.join(self.folder.name, "case.toml"), "w") as case:
+            case.write(f'[mesh]\ninput = "{name}"\noutput = "{output}"\n[[motion]]\npatches = "boundary"\nrule = "formula"\ndx = "0.1 * z"\n'
+                       "[output]\ndisplacement = true\n")
+        self.run_gridmorph("morph", "case.toml")
+
+    def test_polyhedra_as_this_vtk_writes_them(self):
+        before = self.made_grid(True)
+        for mode in ("Ascii", "Binary", "Appended"):
+            writer = vtkXMLUnstructuredGridWriter()
+            writer.SetInputData(before)
+            writer.SetFileName(os.path.join(self.folder.name, "in.vtu"))
+            getattr(writer, "SetDataModeTo" + mode)()
+            writer.Write()
+            self.morph_made("in.vtu", "out.vtu")
+            after = grid_of(os.path.join(self.folder.name, "out.vtu"))
+            self.assertLess(abs(points_of(after)[:, 0] - points_of(before)[:, 0] - 0.1 * points_of(before)[:, 2]).max(), 2e-2)
+            for c in range(before.GetNumberOfCells()):
+                old, new = before.GetCell(c), after.GetCell(c)
+                self.assertEqual([old.GetPointId(n) for n in range(old.GetNumberOfPoints())], [new.GetPointId(n) for n in range(new.GetNumberOfPoints())])
+                self.assertEqual([[old.GetFace(f).GetPointId(n) for n in range(4)] for f in range(6)], [[new.GetFace(f).GetPointId(n) for n in range(4)] for f in range(6)])
+            # Faces are warped now, which VTK takes apart as it likes.
+            self.assertAlmostEqual(volumes(after).sum(), volumes(before).sum(), delta=1e-2)
+
+    def test_pieces_in_one_file_and_in_several(self):
+        whole = self.made_grid(False)
+        pieces = []
+        for part in range(2):
+            cells = vtkIdList()
+            for c in range(whole.GetNumberOfCells()):
+                if (c % 4 >= 2) == (part == 1):
+                    cells.InsertNextId(c)
+            extract = vtkExtractCells()
+            extract.SetInputData(whole)
+            extract.SetCellList(cells)
+            extract.Update()
+            pieces.append(extract.GetOutput())
+        for part, grid in enumerate(pieces):
+            writer = vtkXMLUnstructuredGridWriter()
+            writer.SetInputData(grid)
+            writer.SetFileName(os.path.join(self.folder.name, f"in_{part}.vtu"))
+            writer.Write()
+        with open(os.path.join(self.folder.name, "in.pvtu"), "w") as top:
+            top.write('<VTKFile type="PUnstructuredGrid" version="1.0"><PUnstructuredGrid GhostLevel="0"><PPoints><PDataArray type="Float64" Name="Points" '
+                      'NumberOfComponents="3"/></PPoints><Piece Source="in_0.vtu"/><Piece Source="in_1.vtu"/></PUnstructuredGrid></VTKFile>')
+        self.morph_made("in.pvtu", "out.pvtu")
+        reader = vtkXMLPUnstructuredGridReader()
+        reader.SetFileName(os.path.join(self.folder.name, "out.pvtu"))
+        reader.Update()
+        after = reader.GetOutput()
+        self.assertEqual(after.GetNumberOfCells(), whole.GetNumberOfCells())
+        self.assertIn("Displacement", arrays(after.GetPointData()))
+        before = numpy.concatenate([points_of(p) for p in pieces])
+        self.assertLess(abs(arrays(after.GetPointData())["Displacement"] - (points_of(after) - before)).max(), 1e-12)
+        self.assertAlmostEqual(volumes(after).sum(), volumes(whole).sum(), delta=1e-2)
+        # Points that pieces have in common went to one place.
+        places = {}
+        for old, new in zip(map(tuple, before), points_of(after)):
+            self.assertEqual(tuple(places.setdefault(old, tuple(new))), tuple(new))
+        self.assertLess(len(places), len(before))
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/ugrid/ugrid_file.hpp>
 #include <gridmorph/io/vtk/blocks.hpp>
+#include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ constexpr std::array endings{
     Ending{"cas", "Fluent"},      Ending{"vtk", "legacy VTK"}, Ending{"vtu", "VTK"},
     Ending{"vtp", "VTK vtp"},     Ending{"vts", "VTK vts"},    Ending{"vtm", "VTK"},
     Ending{"vtmb", "VTK vtmb"},   Ending{"vti", "VTK vti"},    Ending{"vtr", "VTK vtr"},
-    Ending{"pvtu", "VTK pvtu"},   Ending{"pvd", "VTK pvd"},    Ending{"vtkhdf", "VTK vtkhdf"},
+    Ending{"pvtu", "VTK"},        Ending{"pvd", "VTK pvd"},    Ending{"vtkhdf", "VTK vtkhdf"},
     Ending{"ugrid", "UGRID"},     Ending{"exo", "Exodus"},     Ending{"exoii", "Exodus"},
     Ending{"gen", "Exodus"},      Ending{"nc", "netCDF"},      Ending{"foam", "OpenFOAM"},
     Ending{"stl", "STL"},         Ending{"obj", "OBJ"},        Ending{"ply", "PLY"},
@@ -200,7 +201,7 @@ void refuse_other_format(std::string const& path) {
     found = foreign(io::read_head(path), fs::file_size(path, failure), ending_of(path));
   if (found.known())
     throw IoError(path + ": is " + std::string(found.is) +
-                  "; read are CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK (.vtu, .vtm) and UGRID. " +
+                  "; read are CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK (.vtu, .pvtu, .vtm) and UGRID. " +
                   std::string(found.remedy));
 }
 
@@ -211,7 +212,7 @@ MeshFormat mesh_format(std::string const& path) {
   if (fs::is_regular_file(path, ignored)) {
     std::string const head = io::read_head(path);
     if (gmsh::is_gmsh(head)) return MeshFormat::gmsh;
-    if (vtk::is_vtu(head) || vtk::is_blocks(head)) return MeshFormat::vtk;
+    if (vtk::is_vtu(head) || vtk::is_parallel(head) || vtk::is_blocks(head)) return MeshFormat::vtk;
   }
   if (fs::is_regular_file(path, ignored) && ugrid::is_ugrid(path)) return MeshFormat::ugrid;
   refuse_other_format(path);

@@ -9,6 +9,7 @@
 #include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/ugrid/ugrid_file.hpp>
 #include <gridmorph/io/vtk/blocks.hpp>
+#include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 
 #include <set>
@@ -51,8 +52,13 @@ MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> con
   MeshFileFacts out;
   out.format = mesh_format(path);
   if (out.format != MeshFormat::plot3d) out.kind = MeshKind::unstructured;
-  if (out.format == MeshFormat::vtk && vtk::is_blocks(io::read_head(path)))
-    for (auto const& file : vtk::files_of_blocks(path)) out.linked.push_back(file.string());
+  if (out.format == MeshFormat::vtk) {
+    std::string const head = io::read_head(path);
+    bool const parallel = vtk::is_parallel(head);
+    if (parallel || vtk::is_blocks(head))
+      for (auto const& file : parallel ? vtk::files_of_pieces(path) : vtk::files_of_blocks(path))
+        out.linked.push_back(file.string());
+  }
   if (out.format != MeshFormat::cgns) return out;
   cgns::File const file(path, cgns::File::Mode::read);
   auto const tree = file.tree();

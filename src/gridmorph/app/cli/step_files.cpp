@@ -51,7 +51,8 @@ void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
     return;
   }
   // What takes several files is written where it belongs.
-  if (format_ == MeshFormat::openfoam || case_file_.sequence->output.extension() == ".vtm") {
+  auto const ending = case_file_.sequence->output.extension();
+  if (format_ == MeshFormat::openfoam || ending == ".vtm" || ending == ".pvtu") {
     auto const folder = step_path(*case_file_.sequence, steps_++);
     std::error_code ignored;
     auto const beside = format_ == MeshFormat::openfoam ? folder : std::filesystem::path(folder).replace_extension();

@@ -203,35 +203,6 @@ std::vector<std::vector<Index32>> nodes_at(Leaf const& leaf, Mesh const& mesh, C
   return out;
 }
 
-void append(Mesh& all, Mesh const& one, std::string const& name) {
-  Index const first = all.n_nodes(), first_element = all.n_elements();
-  int const z = all.add_zone(name, one.n_nodes());
-  all.zones.back().single_precision = one.zones.front().single_precision;
-  std::vector<Index32> row;
-  auto const moved = [&](std::span<Index32 const> nodes) {
-    row.assign(nodes.begin(), nodes.end());
-    for (Index32& n : row) n += Index32(first);
-    return std::span<Index32 const>(row);
-  };
-  for (Index e = 0; e < one.n_elements(); ++e)
-    all.add_element(one.elements.type[std::size_t(e)], moved(one.elements.nodes[e]));
-  all.elements.number.insert(all.elements.number.end(), one.elements.number.begin(), one.elements.number.end());
-  auto& p = all.polyhedra;
-  if (!one.polyhedra.element.empty() && p.first_face.empty()) p.first_face.push_back(0);
-  Index const faces_before = p.faces.size();
-  for (std::size_t k = 0; k < one.polyhedra.element.size(); ++k) {
-    p.element.push_back(Index32(one.polyhedra.element[k] + first_element));
-    p.first_face.push_back(faces_before + one.polyhedra.first_face[k + 1]);
-  }
-  for (Index f = 0; f < one.polyhedra.faces.size(); ++f) p.faces.add(moved(one.polyhedra.faces[f]));
-  for (Patch patch : one.patches) {
-    patch.zone = z;
-    for (Index32& n : patch.faces.item) n += Index32(first);
-    all.patches.push_back(std::move(patch));
-  }
-  all.notes.insert(all.notes.end(), one.notes.begin(), one.notes.end());
-}
-
 void add_surface(Mesh& mesh, Leaf const& leaf) {
   auto const nodes = nodes_at(leaf, mesh, mesh.coordinates);
   Index loose = 0;
@@ -265,17 +236,6 @@ void add_surface(Mesh& mesh, Leaf const& leaf) {
     mesh.notes.push_back(leaf.path.string() + ": " + std::to_string(loose) + " of " +
                          std::to_string(leaf.faces.size()) + " cells of block '" + leaf.name +
                          "' are not at the mesh; left alone");
-}
-
-/// Of a zone's own part of an array of the whole mesh.
-std::vector<double> part(std::vector<double> const& values, Index first, Index n) {
-  return {values.begin() + first, values.begin() + first + n};
-}
-
-Coordinates part(Coordinates const& all, Zone const& zone) {
-  Coordinates out(zone.size());
-  for (Index n = 0; n < zone.size(); ++n) out.set(n, all[zone.first_node + n]);
-  return out;
 }
 
 /// A surface with its points moved as the nodes that lie there.
@@ -313,24 +273,18 @@ std::vector<fs::path> files_of_blocks(std::string const& path) {
 Mesh read_blocks(std::string const& path) {
   Blocks blocks(path);
   blocks.read();
-  Mesh mesh;
-  mesh.source = path;
-  mesh.first_number = 0;
-  mesh.dimension = blocks.dimension();
-  std::vector<Coordinates> places;
+  std::vector<std::string> names;
+  std::vector<Mesh> meshes;
   std::set<std::string> taken;
   for (Leaf const& leaf : blocks.leaves()) {
     if (!blocks.is_zone(leaf)) continue;
-    Mesh const one = mesh_of(*leaf.file, leaf.grid);
     std::string name = leaf.name;
     for (int n = 2; !taken.insert(name).second; ++n) name = leaf.name + " " + std::to_string(n);
-    append(mesh, one, name);
-    places.push_back(one.coordinates);
+    names.push_back(name);
+    meshes.push_back(mesh_of(*leaf.file, leaf.grid));
   }
-  mesh.coordinates = Coordinates(mesh.n_nodes());
-  Index next = 0;
-  for (Coordinates const& own : places)
-    for (Index n = 0; n < own.size(); ++n) mesh.coordinates.set(next++, own[n]);
+  Mesh mesh = joined(names, meshes);
+  mesh.source = path;
   for (Leaf const& leaf : blocks.leaves())
     if (blocks.is_surface(leaf)) add_surface(mesh, leaf);
   check_mesh(mesh);
@@ -347,9 +301,7 @@ void write_morphed_blocks(std::string const& input, std::string const& output, M
   Blocks blocks(input);
   blocks.read();
   Coordinates const before = in_file_order(mesh, mesh.coordinates), after = in_file_order(mesh, morphed);
-  OutputFields all = fields;
-  for (auto& field : all.nodes) field.values = in_file_order(mesh.file_order.node, field.values);
-  for (auto& field : all.cells) field.values = in_file_order(mesh.file_order.element, field.values);
+  OutputFields const all = in_order_of_the_file(mesh, fields);
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) throw MachineError(folder.string() + ": cannot be made: " + failure.message());
@@ -362,13 +314,8 @@ void write_morphed_blocks(std::string const& input, std::string const& output, M
       if (z == mesh.zones.size())
         throw IoError(input + ": holds more zones than the mesh; give the file that was read");
       Zone const& zone = mesh.zones[z++];
-      OutputFields own;
-      own.displacement = all.displacement;
-      for (auto const& f : all.nodes)
-        own.nodes.push_back({f.name, part(f.values, zone.first_node, zone.size()), f.unit});
-      for (auto const& f : all.cells)
-        own.cells.push_back({f.name, part(f.values, zone.first_element, zone.n_elements), f.unit});
-      text = morphed_text(*leaf.file, mesh.dimension, zone.n_elements, part(before, zone), part(after, zone), own);
+      text = morphed_text(*leaf.file, mesh.dimension, zone.n_elements, part(before, zone), part(after, zone),
+                          part(all, zone));
     } else if (blocks.is_surface(leaf)) {
       text = moved_surface(leaf, mesh, before, after);
     }

@@ -4,19 +4,44 @@
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/vtk/vtu_file.hpp>
 
+#include <span>
 #include <string>
+#include <vector>
 
 namespace gridmorph::vtk {
 
 /// The cells of the highest dimension, patches by cells one dimension lower. Throws MeshError.
 Mesh mesh_of(XmlFile const& file, Grid const& grid);
 
-/// Faces on the boundary that no patch has become the patch `boundary`, zone by zone.
+/// Meshes of one zone each as one mesh of zones with those names.
+Mesh joined(std::vector<std::string> const& names, std::vector<Mesh> const& meshes);
+
+/// Faces on the boundary that no patch and no connection has become the patch `boundary`, zone by zone.
 void add_rest_of_boundary(Mesh& mesh);
 
-/// The text of the file with other points, and with fields. `before` and `after`: coordinates, and fields, in the order of the file. Throws IoError where
+/// Of a zone's own part of what all zones have.
+Coordinates part(Coordinates const& all, Zone const& zone);
+OutputFields part(OutputFields const& all, Zone const& zone);
+
+/// Numbers as in the mesh that was read, before it was put in another order.
+OutputFields in_order_of_the_file(Mesh const& mesh, OutputFields const& fields);
+
+/// What goes before the names of fields, "Morph" where one of them is taken in a piece.
+struct FieldPrefixes {
+  std::string points, cells;
+};
+FieldPrefixes field_prefixes(std::span<Grid const* const> grids, OutputFields const& fields);
+
+/// What gives a grid other points, and fields. `before` and `after`: its coordinates, and fields, in the order of the file. Throws IoError where
 /// `n_elements` and the coordinates are not those of the grid.
+void morph_grid(XmlFile const& file, Grid const& grid, int dimension, Index n_elements, Coordinates const& before,
+                Coordinates const& after, OutputFields const& fields, FieldPrefixes const& prefixes,
+                std::vector<Edit>& edits);
+/// The same for a file with one grid: its text.
 std::string morphed_text(XmlFile const& file, int dimension, Index n_elements, Coordinates const& before,
                          Coordinates const& after, OutputFields const& fields);
+
+/// Puts text at the end of what a tag of a name holds in `parent`; where there is none it is made.
+void append_inside(Tag const& parent, std::string const& name, std::string const& text, std::vector<Edit>& edits);
 
 }  // namespace gridmorph::vtk

@@ -2,12 +2,12 @@
 #include <gridmorph/io/element_orders.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/kind_by_name.hpp>
-#include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/polyhedron.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/used_nodes.hpp>
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
+#include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 #include <gridmorph/io/vtk/vtu_file.hpp>
 #include <gridmorph/mesh/file_order.hpp>
@@ -21,6 +21,8 @@
 namespace gridmorph::vtk {
 
 namespace {
+
+constexpr char const* displacement_name = "Displacement";
 
 /// Number in the mesh of each point; -1 for those that no cell of its dimension uses.
 std::vector<Index32> mesh_nodes(Grid const& grid, int dimension, Index& n_nodes) {
@@ -165,52 +167,45 @@ class Builder {
   Index loose_ = 0;
 };
 
-/// Where fields go: into PointData or CellData, which are made where they are missing.
-class FieldEdits {
- public:
-  FieldEdits(XmlFile const& file, Grid const& grid, char const* tag_name)
-      : file_(file), grid_(grid), name_(tag_name), data_(grid.piece->child(tag_name)) {}
+std::vector<double> part(std::vector<double> const& values, Index first, Index n) {
+  return {values.begin() + first, values.begin() + first + n};
+}
 
-  void add(std::string const& name, int components, std::vector<double> const& values) {
-    text_ += file_.array_text(prefix_ + name, components, values, *grid_.points);
+/// Without coordinates.
+void append(Mesh& all, Mesh const& one, std::string const& name) {
+  Index const first = all.n_nodes(), first_element = all.n_elements();
+  int const z = all.add_zone(name, one.n_nodes());
+  all.zones.back().single_precision = one.zones.front().single_precision;
+  std::vector<Index32> row;
+  auto const moved = [&](std::span<Index32 const> nodes) {
+    row.assign(nodes.begin(), nodes.end());
+    for (Index32& n : row) n += Index32(first);
+    return std::span<Index32 const>(row);
+  };
+  for (Index e = 0; e < one.n_elements(); ++e)
+    all.add_element(one.elements.type[std::size_t(e)], moved(one.elements.nodes[e]));
+  all.elements.number.insert(all.elements.number.end(), one.elements.number.begin(), one.elements.number.end());
+  auto& p = all.polyhedra;
+  if (!one.polyhedra.element.empty() && p.first_face.empty()) p.first_face.push_back(0);
+  Index const faces_before = p.faces.size();
+  for (std::size_t k = 0; k < one.polyhedra.element.size(); ++k) {
+    p.element.push_back(Index32(one.polyhedra.element[k] + first_element));
+    p.first_face.push_back(faces_before + one.polyhedra.first_face[k + 1]);
   }
-  /// Names of what is to come, so that all can give way to those that are there.
-  void expect(std::vector<std::string> const& names) {
-    for (std::string const& name : names)
-      for (Tag const& t : data_ == nullptr ? std::vector<Tag>() : data_->children)
-        if (t["Name"] == name) prefix_ = "Morph";
+  for (Index f = 0; f < one.polyhedra.faces.size(); ++f) p.faces.add(moved(one.polyhedra.faces[f]));
+  for (Patch patch : one.patches) {
+    patch.zone = z;
+    for (Index32& n : patch.faces.item) n += Index32(first);
+    all.patches.push_back(std::move(patch));
   }
-  void append_to(std::vector<Edit>& edits) const {
-    if (text_.empty()) return;
-    std::string const end = "</" + std::string(name_) + ">\n";
-    if (data_ == nullptr)
-      edits.push_back({grid_.piece->inside, grid_.piece->inside, "\n<" + std::string(name_) + ">\n" + text_ + end});
-    else if (data_->closed)
-      edits.push_back({data_->end - 2, data_->end, ">\n" + text_ + end});
-    else
-      edits.push_back({data_->inside_end, data_->inside_end, text_});
-  }
+  all.notes.insert(all.notes.end(), one.notes.begin(), one.notes.end());
+}
 
- private:
-  XmlFile const& file_;
-  Grid const& grid_;
-  char const* name_;
-  Tag const* data_;
-  std::string prefix_, text_;
-};
-
-/// Coordinates and fields in the order of the file.
+/// Fields of points and of cells in the order of the file.
 void add_fields(XmlFile const& file, Grid const& grid, std::vector<Index32> const& number, int dimension,
                 Coordinates const& before, Coordinates const& after, OutputFields const& fields,
-                std::vector<Edit>& edits) {
-  FieldEdits points(file, grid, "PointData"), cells(file, grid, "CellData");
-  std::vector<std::string> names;
-  if (fields.displacement) names.emplace_back("Displacement");
-  for (auto const& field : fields.nodes) names.push_back(field.name);
-  points.expect(names);
-  names.clear();
-  for (auto const& field : fields.cells) names.push_back(field.name);
-  cells.expect(names);
+                FieldPrefixes const& prefixes, std::vector<Edit>& edits) {
+  std::string points, cells;
   if (fields.displacement) {
     std::vector<double> values(3 * number.size(), 0.0);
     for (std::size_t n = 0; n < number.size(); ++n) {
@@ -218,7 +213,7 @@ void add_fields(XmlFile const& file, Grid const& grid, std::vector<Index32> cons
       Vec3 const d = after[number[n]] - before[number[n]];
       std::copy_n(&d.x, 3, values.begin() + std::ptrdiff_t(3 * n));
     }
-    points.add("Displacement", 3, values);
+    points += file.array_text(prefixes.points + displacement_name, 3, values, *grid.points);
   }
   double const none = std::numeric_limits<double>::quiet_NaN();
   for (auto const& field : fields.nodes) {
@@ -226,17 +221,17 @@ void add_fields(XmlFile const& file, Grid const& grid, std::vector<Index32> cons
     std::vector<double> values(number.size(), none);
     for (std::size_t n = 0; n < number.size(); ++n)
       if (number[n] >= 0) values[n] = own[std::size_t(number[n])];
-    points.add(field.name, 1, values);
+    points += file.array_text(prefixes.points + field.name, 1, values, *grid.points);
   }
   for (auto const& field : fields.cells) {
     auto const& own = field.values;
     std::vector<double> values(std::size_t(grid.n_cells), none);
     for (std::size_t c = 0, e = 0; c < values.size(); ++c)
       if (dimension_of_cell(grid.type[c]) == dimension) values[c] = own[e++];
-    cells.add(field.name, 1, values);
+    cells += file.array_text(prefixes.cells + field.name, 1, values, *grid.points);
   }
-  points.append_to(edits);
-  cells.append_to(edits);
+  append_inside(*grid.piece, "PointData", points, edits);
+  append_inside(*grid.piece, "CellData", cells, edits);
 }
 
 }  // namespace
@@ -259,7 +254,8 @@ void add_rest_of_boundary(Mesh& mesh) {
   std::vector<Patch> rest(mesh.zones.size());
   for (Index f = 0; f < topology.boundary.size(); ++f) {
     auto const nodes = topology.boundary.nodes[f];
-    if (of_face.patch[std::size_t(f)] < 0) rest[std::size_t(mesh.zone_of(nodes[0]))].faces.add(nodes);
+    if (of_face.patch[std::size_t(f)] == BoundaryFacePatches::open)
+      rest[std::size_t(mesh.zone_of(nodes[0]))].faces.add(nodes);
   }
   for (std::size_t z = 0; z < rest.size(); ++z) {
     if (rest[z].faces.size() == 0) continue;
@@ -269,9 +265,75 @@ void add_rest_of_boundary(Mesh& mesh) {
   }
 }
 
-std::string morphed_text(XmlFile const& file, int dimension, Index n_elements, Coordinates const& before,
-                         Coordinates const& after, OutputFields const& fields) {
-  Grid const grid = read_grid(file);
+Mesh joined(std::vector<std::string> const& names, std::vector<Mesh> const& meshes) {
+  Mesh all;
+  all.first_number = 0;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    all.dimension = meshes[k].dimension;
+    append(all, meshes[k], names[k]);
+  }
+  all.coordinates = Coordinates(all.n_nodes());
+  Index next = 0;
+  for (Mesh const& one : meshes)
+    for (Index n = 0; n < one.n_nodes(); ++n) all.coordinates.set(next++, one.coordinates[n]);
+  return all;
+}
+
+Coordinates part(Coordinates const& all, Zone const& zone) {
+  Coordinates out(zone.size());
+  for (Index n = 0; n < zone.size(); ++n) out.set(n, all[zone.first_node + n]);
+  return out;
+}
+
+OutputFields part(OutputFields const& all, Zone const& zone) {
+  OutputFields out;
+  out.displacement = all.displacement;
+  for (auto const& f : all.nodes) out.nodes.push_back({f.name, part(f.values, zone.first_node, zone.size()), f.unit});
+  for (auto const& f : all.cells)
+    out.cells.push_back({f.name, part(f.values, zone.first_element, zone.n_elements), f.unit});
+  return out;
+}
+
+OutputFields in_order_of_the_file(Mesh const& mesh, OutputFields const& fields) {
+  OutputFields out = fields;
+  for (auto& field : out.nodes) field.values = in_file_order(mesh.file_order.node, field.values);
+  for (auto& field : out.cells) field.values = in_file_order(mesh.file_order.element, field.values);
+  return out;
+}
+
+FieldPrefixes field_prefixes(std::span<Grid const* const> grids, OutputFields const& fields) {
+  auto const taken = [&](char const* tag_name, std::string const& name) {
+    return std::any_of(grids.begin(), grids.end(), [&](Grid const* grid) {
+      Tag const* data = grid->piece->child(tag_name);
+      return data != nullptr &&
+             std::any_of(data->children.begin(), data->children.end(), [&](Tag const& t) { return t["Name"] == name; });
+    });
+  };
+  FieldPrefixes out;
+  constexpr char const* ours = "Morph";
+  if (fields.displacement && taken("PointData", displacement_name)) out.points = ours;
+  for (auto const& field : fields.nodes)
+    if (taken("PointData", field.name)) out.points = ours;
+  for (auto const& field : fields.cells)
+    if (taken("CellData", field.name)) out.cells = ours;
+  return out;
+}
+
+void append_inside(Tag const& parent, std::string const& name, std::string const& text, std::vector<Edit>& edits) {
+  if (text.empty()) return;
+  std::string const end = "</" + name + ">\n";
+  Tag const* tag = parent.child(name);
+  if (tag == nullptr)
+    edits.push_back({parent.inside, parent.inside, "\n<" + name + ">\n" + text + end});
+  else if (tag->closed)
+    edits.push_back({tag->end - 2, tag->end, ">\n" + text + end});
+  else
+    edits.push_back({tag->inside_end, tag->inside_end, text});
+}
+
+void morph_grid(XmlFile const& file, Grid const& grid, int dimension, Index n_elements, Coordinates const& before,
+                Coordinates const& after, OutputFields const& fields, FieldPrefixes const& prefixes,
+                std::vector<Edit>& edits) {
   Index n_nodes = 0, n_cells = 0;
   auto const number = mesh_nodes(grid, dimension, n_nodes);
   for (std::uint8_t const type : grid.type) n_cells += dimension_of_cell(type) == dimension ? 1 : 0;
@@ -283,33 +345,25 @@ std::string morphed_text(XmlFile const& file, int dimension, Index n_elements, C
     Vec3 const to = after[number[n]];
     std::copy_n(&to.x, 3, places.begin() + std::ptrdiff_t(3 * n));
   }
-  std::vector<Edit> edits;
   file.replace(*grid.points, places, edits);
-  add_fields(file, grid, number, dimension, before, after, fields, edits);
+  add_fields(file, grid, number, dimension, before, after, fields, prefixes, edits);
+}
+
+std::string morphed_text(XmlFile const& file, int dimension, Index n_elements, Coordinates const& before,
+                         Coordinates const& after, OutputFields const& fields) {
+  Grid const grid = read_grid(file);
+  Grid const* const all[]{&grid};
+  std::vector<Edit> edits;
+  morph_grid(file, grid, dimension, n_elements, before, after, fields, field_prefixes(all, fields), edits);
   return file.edited(std::move(edits));
 }
 
-Mesh read(std::string const& path) {
-  if (is_blocks(io::read_head(path))) return read_blocks(path);
-  XmlFile const file(path, {"UnstructuredGrid"});
-  Mesh mesh = mesh_of(file, read_grid(file));
-  add_rest_of_boundary(mesh);
-  return mesh;
-}
+Mesh read(std::string const& path) { return is_blocks(io::read_head(path)) ? read_blocks(path) : read_pieces(path); }
 
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
                    OutputFields const& fields) {
   if (is_blocks(io::read_head(input))) return write_morphed_blocks(input, output, mesh, morphed, fields);
-  if (output.ends_with(".vtm"))
-    throw IoError(output + ": is written as " + input + " is, an unstructured grid; give it the ending .vtu");
-  OutputFields ordered = fields;
-  for (auto& field : ordered.nodes) field.values = in_file_order(mesh.file_order.node, field.values);
-  for (auto& field : ordered.cells) field.values = in_file_order(mesh.file_order.element, field.values);
-  std::string const text = morphed_text(XmlFile(input, {"UnstructuredGrid"}), mesh.dimension, mesh.n_elements(),
-                                        in_file_order(mesh, mesh.coordinates), in_file_order(mesh, morphed), ordered);
-  io::OutputFile target(output);
-  target.write(text);
-  target.commit();
+  write_morphed_pieces(input, output, mesh, morphed, fields);
 }
 
 }  // namespace gridmorph::vtk

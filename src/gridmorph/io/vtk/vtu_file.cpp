@@ -57,6 +57,61 @@ void check_faces(XmlFile const& file, Tag const& cells, Grid const& grid) {
   }
 }
 
+/// Faces as VTK 9.4 and later have them: each once for each polyhedron, its nodes between places of its own.
+void read_shared_faces(XmlFile const& file, Tag const& cells, Grid& grid) {
+  auto const nodes = file.integers(need_array(file, cells, "face_connectivity"));
+  auto const nodes_end = file.integers(need_array(file, cells, "face_offsets"));
+  auto const faces = file.integers(need_array(file, cells, "polyhedron_to_faces"));
+  auto const faces_end = file.integers(need_array(file, cells, "polyhedron_offsets"), grid.n_cells);
+  grid.faces_end.assign(std::size_t(grid.n_cells), -1);
+  std::int64_t at = 0;
+  for (Index c = 0; c < grid.n_cells; ++c) {
+    std::int64_t const end = faces_end[std::size_t(c)];
+    auto const bad = [&](std::string const& what) { file.fail(cells, "cell " + std::to_string(c) + ": " + what); };
+    if (end < at || end > std::int64_t(faces.size()))
+      bad("its faces end at " + std::to_string(end) + " of the " + std::to_string(faces.size()) +
+          " of 'polyhedron_to_faces'");
+    if (grid.type[std::size_t(c)] != polyhedron) {
+      if (end != at) bad("has faces, and is no polyhedron");
+      continue;
+    }
+    grid.faces.push_back(end - at);
+    for (; at < end; ++at) {
+      std::int64_t const f = faces[std::size_t(at)];
+      if (f < 0 || f >= std::int64_t(nodes_end.size()))
+        bad("has face " + std::to_string(f) + ", and there are " + std::to_string(nodes_end.size()) +
+            ", counted from 0");
+      std::int64_t const begin = f == 0 ? 0 : nodes_end[std::size_t(f) - 1], last = nodes_end[std::size_t(f)];
+      if (begin < 0 || last < begin || last > std::int64_t(nodes.size()))
+        bad("face " + std::to_string(f) + " has nodes " + std::to_string(begin) + " to " + std::to_string(last) +
+            " of the " + std::to_string(nodes.size()) + " of 'face_connectivity'");
+      // What damaged numbers list again and again is no mesh.
+      if (grid.faces.size() + std::size_t(last - begin) > 4 * (nodes.size() + faces.size()) + 64)
+        bad("faces are listed more often than meshes have them");
+      grid.faces.push_back(last - begin);
+      grid.faces.insert(grid.faces.end(), nodes.begin() + begin, nodes.begin() + last);
+    }
+    grid.faces_end[std::size_t(c)] = std::int64_t(grid.faces.size());
+  }
+}
+
+/// Cells that belong to another process would be in the mesh twice.
+void refuse_ghosts(XmlFile const& file, Tag const& piece) {
+  Tag const* data = piece.child("CellData");
+  Tag const* ghosts = data == nullptr ? nullptr : named_array(*data, "vtkGhostType");
+  if (data != nullptr && ghosts == nullptr) ghosts = named_array(*data, "vtkGhostLevels");
+  if (ghosts == nullptr || !XmlFile::is_integer(*ghosts)) return;
+  auto const values = file.integers(*ghosts);
+  constexpr std::int64_t duplicate = 1;
+  bool const levels = (*ghosts)["Name"] == "vtkGhostLevels";
+  auto const n = std::count_if(values.begin(), values.end(),
+                               [&](std::int64_t v) { return levels ? v != 0 : (v & duplicate) != 0; });
+  if (n > 0)
+    file.fail(*ghosts, std::to_string(n) +
+                           " cells are ghosts, copies of cells of other pieces; write the mesh without "
+                           "them (GhostLevel 0), or remove them in ParaView (Ghost Cells)");
+}
+
 }  // namespace
 
 int dimension_of_cell(std::uint8_t type) {
@@ -67,18 +122,12 @@ int dimension_of_cell(std::uint8_t type) {
   return io::vtk_shape(type).dimension;
 }
 
-Grid read_grid(XmlFile const& file) {
-  Tag const& unstructured = need(file, file.root(), "UnstructuredGrid");
+namespace {
+
+Grid read_piece(XmlFile const& file, Tag const& piece) {
   Grid out;
-  for (Tag const& piece : unstructured.children) {
-    if (piece.name != "Piece" || file.count(piece, "NumberOfCells") == 0) continue;
-    if (out.piece != nullptr)
-      file.fail(
-          piece,
-          "holds several pieces with cells; merge them in ParaView (Clean to Grid), or write it from one process");
-    out.piece = &piece;
-  }
-  if (out.piece == nullptr) file.fail(unstructured, "holds no cells");
+  out.piece = &piece;
+  refuse_ghosts(file, piece);
   out.n_points = file.count(*out.piece, "NumberOfPoints");
   out.n_cells = file.count(*out.piece, "NumberOfCells");
   constexpr Index most = std::numeric_limits<Index32>::max();
@@ -121,15 +170,40 @@ Grid read_grid(XmlFile const& file) {
     out.type.push_back(std::uint8_t(type));
   }
   if (std::find(out.type.begin(), out.type.end(), polyhedron) != out.type.end()) {
-    if (named_array(cells, "faces") == nullptr)
-      file.fail(
-          cells,
-          "holds polyhedra without DataArrays 'faces' and 'faceoffsets'; write it with VTK before 9.4, or as OpenFOAM");
-    out.faces = file.integers(need_array(file, cells, "faces"));
-    out.faces_end = file.integers(need_array(file, cells, "faceoffsets"), out.n_cells);
+    if (named_array(cells, "faces") != nullptr) {
+      out.faces = file.integers(need_array(file, cells, "faces"));
+      out.faces_end = file.integers(need_array(file, cells, "faceoffsets"), out.n_cells);
+    } else if (named_array(cells, "face_connectivity") != nullptr) {
+      read_shared_faces(file, cells, out);
+    } else {
+      file.fail(cells,
+                "holds polyhedra without DataArrays 'faces' and 'faceoffsets', or 'face_connectivity', "
+                "'face_offsets', 'polyhedron_to_faces' and 'polyhedron_offsets'");
+    }
     check_faces(file, cells, out);
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<Grid> read_grids(XmlFile const& file) {
+  Tag const& unstructured = need(file, file.root(), "UnstructuredGrid");
+  std::vector<Grid> out;
+  for (Tag const& piece : unstructured.children)
+    if (piece.name == "Piece" && file.count(piece, "NumberOfCells") > 0) out.push_back(read_piece(file, piece));
+  return out;
+}
+
+Grid read_grid(XmlFile const& file) {
+  auto grids = read_grids(file);
+  Tag const& unstructured = need(file, file.root(), "UnstructuredGrid");
+  if (grids.empty()) file.fail(unstructured, "holds no cells");
+  if (grids.size() > 1)
+    file.fail(*grids[1].piece,
+              "holds several pieces with cells, and one is wanted here; merge them in ParaView (Clean "
+              "to Grid), or write it from one process");
+  return std::move(grids.front());
 }
 
 int dimension_of(Grid const& grid) {

@@ -14,7 +14,7 @@ namespace gridmorph::vtk {
 /// Cell types without a fixed number of nodes (vtkCellType.h).
 inline constexpr std::uint8_t poly_vertex = 2, poly_line = 4, triangle_strip = 6, polygon = 7, polyhedron = 42;
 
-/// The one Piece of a file that has cells.
+/// A Piece of a file that has cells.
 struct Grid {
   Tag const* piece = nullptr;
   Tag const* points = nullptr;  ///< the array
@@ -27,7 +27,11 @@ struct Grid {
   std::vector<std::int64_t> faces, faces_end;
 };
 
-/// Throws IoError and MeshError for numbers that do not fit one another.
+/// All of a file, in its order. Polyhedra are read in the layout of VTK before 9.4 ("faces", "faceoffsets") and in that since ("face_connectivity",
+/// "face_offsets", "polyhedron_to_faces", "polyhedron_offsets"). Throws IoError and MeshError for numbers that do not fit one another, and for pieces with
+/// ghost cells.
+std::vector<Grid> read_grids(XmlFile const& file);
+/// The only one. Throws IoError where there are none, or several.
 Grid read_grid(XmlFile const& file);
 
 /// Dimension of the cells of highest dimension; 0 where there are none of surfaces or volumes.

@@ -360,16 +360,7 @@ void XmlFile::replace(Tag const& array, std::span<double const> values, std::vec
   });
   if (after == before.bytes) return;
   bool const appended = storage(array) == Storage::appended;
-  std::string text = encoded(std::move(after), size, !appended || appended_base64_);
-  auto const grown = std::ptrdiff_t(text.size()) - std::ptrdiff_t(before.end - before.begin);
-  edits.push_back({before.begin, before.end, std::move(text)});
-  if (!appended || grown == 0) return;
-  Index const own = count(array, "offset");
-  for (Attribute const* offset : offsets_) {
-    Index value = 0;
-    std::from_chars(offset->value.data(), offset->value.data() + offset->value.size(), value);
-    if (value > own) edits.push_back({offset->begin, offset->end, std::to_string(value + grown)});
-  }
+  edits.push_back({before.begin, before.end, encoded(std::move(after), size, !appended || appended_base64_)});
 }
 
 std::string XmlFile::array_text(std::string const& name, int components, std::span<double const> values,
@@ -392,6 +383,16 @@ std::string XmlFile::array_text(std::string const& name, int components, std::sp
 }
 
 std::string XmlFile::edited(std::vector<Edit> edits) const {
+  // What grows among the appended bytes moves what is behind it.
+  for (std::size_t const n = edits.size(); Attribute const* offset : offsets_) {
+    Index value = 0;
+    std::from_chars(offset->value.data(), offset->value.data() + offset->value.size(), value);
+    std::ptrdiff_t grown = 0;
+    for (std::size_t k = 0; k < n; ++k)
+      if (edits[k].begin >= appended_begin_ && edits[k].begin < appended_begin_ + std::size_t(value))
+        grown += std::ptrdiff_t(edits[k].by.size()) - std::ptrdiff_t(edits[k].end - edits[k].begin);
+    if (grown != 0) edits.push_back({offset->begin, offset->end, std::to_string(value + grown)});
+  }
   std::stable_sort(edits.begin(), edits.end(), [](Edit const& a, Edit const& b) { return a.begin < b.begin; });
   io::ReplacedText out(text_);
   for (Edit const& e : edits) out.replace(e.begin, e.end, e.by);

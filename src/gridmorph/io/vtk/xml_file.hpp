@@ -42,12 +42,12 @@ class XmlFile {
   [[nodiscard]] Index count(Tag const& tag, char const* attribute) const;
 
   /// What makes an array hold other values, in the way and precision it has; nothing where none changes. Of text the numbers that change alone, of
-  /// packed arrays all, and what is behind them moves: its offsets, too.
+  /// packed arrays all.
   void replace(Tag const& array, std::span<double const> values, std::vector<Edit>& edits) const;
   /// A new array, stored as `like` is if that is text, else base64 and packed as the file is.
   [[nodiscard]] std::string array_text(std::string const& name, int components, std::span<double const> values,
                                        Tag const& like) const;
-  /// The text with edits, in any order.
+  /// The text with edits, in any order; offsets of appended arrays behind what grows go along.
   [[nodiscard]] std::string edited(std::vector<Edit> edits) const;
 
  private:
