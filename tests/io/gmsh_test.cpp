@@ -495,6 +495,21 @@ class GmshErrors : public testing::Test {
   std::string const path_ = folder_.file("mesh.msh");
 };
 
+TEST_F(GmshErrors, SayWhatComesFirstInTheFile) {
+  auto const said = [&](std::string const& nodes) {
+    write_bytes(path_, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n" + nodes +
+                           "$EndNodes\n$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n");
+    return message_of<Error>([&] { read_mesh(path_); });
+  };
+  // Numbers so far apart that they are sorted: the largest is repeated first.
+  expect_all_in(said("1 0 0 0\n9000000 1 0 0\n3 0 1 0\n9000000 1 1 0\n1 2 0 0\n3 2 2 0\n"),
+                {"mesh.msh:9", "node 9000000 is there twice"});
+  // Dense ones, then what is no number.
+  expect_all_in(said("1 0 0 0\n2 1 0 0\n2 0 1 0\n4 zero 1 0\n1 2 0 0\n3 2 2 0\n"),
+                {"mesh.msh:8", "node 2 is there twice"});
+  expect_all_in(said("1 0 0 0\n2 1 0 0\n3 0 one 0\n4 0 1 0\n1 2 0 0\n3 2 2 0\n"), {"mesh.msh:8", "'one'"});
+}
+
 TEST_F(GmshErrors, SayWhereWhatAndWhatToDo) {
   expect_all_in(error("4.1 0 8", "1.0 0 8"), {"mesh.msh:2", "MSH 1.0", "gmsh -save FILE -format msh41"});
   expect_all_in(error("4.1 0 8", "4.1 0 4"), {"mesh.msh:2", "4 bytes"});

@@ -67,15 +67,26 @@ class Parser {
 
   void nodes(bool with_parameters) {
     has_nodes_ = true;
-    if (old())
-      old_nodes(with_parameters);
-    else
-      node_blocks();
+    try {
+      if (old())
+        old_nodes(with_parameters);
+      else
+        node_blocks();
+    } catch (IoError const&) {
+      refuse_repeated_nodes();  // what comes first in the file is said first
+      throw;
+    }
     if (out_.tag.size() > std::size_t(std::numeric_limits<Index32>::max()))
       text_.fail("there are " + std::to_string(out_.tag.size()) + " nodes, more than can be handled");
-    if (auto const twice = places_.set(out_.tag); twice >= 0)
-      text_.fail_at(out_.at[std::size_t(twice)],
-                    "node " + std::to_string(out_.tag[std::size_t(twice)]) + " is there twice");
+    refuse_repeated_nodes();
+  }
+
+  void refuse_repeated_nodes() {
+    auto const twice = places_.set(out_.tag);
+    if (twice < 0) return;
+    // Blocks of version 4.1 have all numbers before the coordinates.
+    std::size_t const at = std::size_t(twice) < out_.at.size() ? out_.at[std::size_t(twice)] : text_.at();
+    text_.fail_at(at, "node " + std::to_string(out_.tag[std::size_t(twice)]) + " is there twice");
   }
 
   void old_nodes(bool with_parameters) {

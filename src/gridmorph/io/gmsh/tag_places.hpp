@@ -14,7 +14,7 @@ namespace gridmorph::gmsh {
 /// Places of numbers in a list: by a table where they are dense, else by search.
 class TagPlaces {
  public:
-  /// Returns the place of a number that is there a second time; -1 where each is there once.
+  /// Returns the first place of a number that is there a second time; -1 where each is there once.
   Index set(std::vector<std::int64_t> const& tags) {
     table_.clear();
     sorted_.clear();
@@ -33,9 +33,11 @@ class TagPlaces {
     }
     for (std::size_t n = 0; n < tags.size(); ++n) sorted_.emplace_back(tags[n], Index32(n));
     std::sort(sorted_.begin(), sorted_.end());
+    Index32 twice = -1;
     for (std::size_t n = 1; n < sorted_.size(); ++n)
-      if (sorted_[n].first == sorted_[n - 1].first) return sorted_[n].second;
-    return -1;
+      if (sorted_[n].first == sorted_[n - 1].first && (twice < 0 || sorted_[n].second < twice))
+        twice = sorted_[n].second;
+    return twice;
   }
 
   /// -1 where there is no such number.
