@@ -1,4 +1,5 @@
 // Columns through boxes, where it is known which nodes stand on which: all elements, sides of the box, extents and positions.
+#include "support/made_bodies.hpp"
 #include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"
 
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -168,6 +170,85 @@ TEST(Columns, InACornerEachNodeBelongsToTheNearestWallThenToTheFirst) {
     }
     // In the corner alone the two bands of two layers overlap.
     EXPECT_EQ(c.size(), 5 * (6 * 2 + 6 * 2 - 2 * 2));
+  }
+}
+
+TEST(Columns, GoThroughPolyhedraAsThroughTheElementsThatTheyAre) {
+  for (Mesh const& mesh : {to_hexahedra(unit_box({3, 2, 4})), to_prisms_and_tetrahedra(unit_box({3, 2, 4}), 3)}) {
+    Standing typed(mesh), by_faces(as_polyhedra(mesh));
+    for (Standing* s : {&typed, &by_faces}) {
+      lean(*s, [](double k) { return 0.1 * k * (1 + 0.2 * k); });
+      s->stand_on("k_min", {Extent::layers, 4, 0});
+    }
+    Columns const a = typed.columns(), b = by_faces.columns();
+    EXPECT_GT(a.size(), 0);
+    auto const sorted = [](Columns const& c) {
+      std::set<std::array<Index32, 3>> out;
+      for (std::size_t k = 0; k < c.node.size(); ++k) out.insert({c.node[k], c.root[k], c.below[k]});
+      return out;
+    };
+    EXPECT_EQ(sorted(a), sorted(b));
+    EXPECT_EQ(a.height, b.height);
+  }
+}
+
+/// Prisms of that many sides on top of one another, the lowest on the patch "wall".
+Mesh stack(int sides, int levels) {
+  Mesh mesh;
+  mesh.add_zone("zone", Index(sides) * (levels + 1));
+  mesh.coordinates = Coordinates(mesh.n_nodes());
+  for (int k = 0; k <= levels; ++k)
+    for (int c = 0; c < sides; ++c) {
+      double const angle = 6.283185307179586 * c / sides;
+      mesh.coordinates.set(c + sides * k, {std::cos(angle), std::sin(angle), 0.1 * k * (1 + 0.1 * k)});
+    }
+  mesh.polyhedra.first_face.push_back(0);
+  for (int k = 0; k < levels; ++k) {
+    std::vector<Index32> all, low, high;
+    for (int c = 0; c < 2 * sides; ++c) all.push_back(Index32(c + sides * k));
+    for (int c = 0; c < sides; ++c) {
+      low.push_back(Index32(sides * k + (sides - 1 - c)));
+      high.push_back(Index32(sides * (k + 1) + c));
+    }
+    mesh.add_element(ElementType::polyhedron, all);
+    mesh.polyhedra.faces.add(low);
+    for (int c = 0; c < sides; ++c) {
+      int const d = (c + 1) % sides, base = sides * k;
+      std::array const quad{Index32(base + c), Index32(base + d), Index32(base + sides + d), Index32(base + sides + c)};
+      mesh.polyhedra.faces.add(quad);
+    }
+    mesh.polyhedra.faces.add(high);
+    mesh.polyhedra.element.push_back(Index32(k));
+    mesh.polyhedra.first_face.push_back(mesh.polyhedra.faces.size());
+    if (k > 0) continue;
+    Patch wall;
+    wall.name = "wall";
+    wall.zone = 0;
+    wall.faces.add(low);
+    mesh.patches.push_back(std::move(wall));
+  }
+  return mesh;
+}
+
+TEST(Columns, GoThroughPrismsOfManySides) {
+  for (int const sides : {3, 5, 6, 9}) {
+    int const levels = 4;
+    Standing s(stack(sides, levels));
+    s.stand_on("wall", {Extent::layers, 3, 0});
+    Columns const c = s.columns();
+    ASSERT_EQ(c.size(), 3 * sides);
+    for (std::size_t k = 0; k < c.node.size(); ++k) {
+      EXPECT_EQ(c.root[k], c.node[k] % sides);
+      EXPECT_EQ(c.below[k], c.node[k] - sides);
+      EXPECT_NEAR(c.above_wall[k], s.mesh.coordinates.z(c.node[k]), 1e-14);
+    }
+    // A pyramid in place of the top of the lowest one: no side lies over the wall.
+    Mesh cut = stack(sides, 1);
+    auto& item = cut.polyhedra.faces.item;
+    std::replace(item.begin(), item.end(), Index32(sides + 1), Index32(sides));
+    Standing other(cut);
+    other.stand_on("wall", {Extent::layers, 3, 0});
+    EXPECT_EQ(other.columns().size(), 0);
   }
 }
 

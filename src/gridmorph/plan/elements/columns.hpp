@@ -1,4 +1,4 @@
-// Columns of nodes through the prisms and hexahedra that stand on walls: the boundary layer.
+// Columns of nodes through the prisms, hexahedra and prismatic polyhedra that stand on walls: the boundary layer.
 #pragma once
 
 #include <gridmorph/motion/boundary_conditions.hpp>
@@ -21,15 +21,15 @@ struct Columns {
 
 /// How far the columns of a wall go: see BoundaryLayer. Extent::block: as long as cells are thinner than half the shortest edge of
 /// the wall face below, so that a mesh of hexahedra throughout has a boundary layer where its cells are flat. Extents given in
-/// layers or as a thickness go on through isotropic cells; all end with the prisms and hexahedra.
+/// layers or as a thickness go on through isotropic cells; all end with the elements that have an opposite side.
 struct ColumnExtent {
   BoundaryLayer::Extent extent = BoundaryLayer::Extent::block;
   int layers = 0;
   double thickness = 0;
 };
 
-/// From each face of `faces` (numbers in UnstructuredTopology::boundary, any order) through prisms that stand on their triangles
-/// and hexahedra, layer by layer; in 2-D through quadrilaterals. A node that several columns reach belongs to the one that
+/// From each face of `faces` (numbers in UnstructuredTopology::boundary, any order) through prisms that stand on their triangles,
+/// hexahedra and prismatic polyhedra (mesh/opposite_side.hpp), layer by layer; in 2-D through quadrilaterals. A node that several columns reach belongs to the one that
 /// reaches it in the lowest layer, then to the first face. Known nodes end a column. Cost O(cells of the columns).
 Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                      std::vector<Index32> const& faces, std::vector<ColumnExtent> const& extents,

@@ -1,4 +1,5 @@
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/mesh/opposite_side.hpp>
 #include <gridmorph/quality/detail/wall_columns.hpp>
 #include <gridmorph/quality/detail/wall_sums.hpp>
 #include <gridmorph/quality/element_tables.hpp>
@@ -22,7 +23,13 @@ struct WallTable {
 Index32 next_on_column(Mesh const& mesh, UnstructuredTopology const& topology, Index32 f, Index32 node) {
   Index32 const element = topology.boundary.element[std::size_t(f)];
   auto const type = mesh.elements.type[std::size_t(element)];
-  if (type == ElementType::polyhedron) return -1;
+  if (type == ElementType::polyhedron) {
+    OppositeSide opposite;
+    find_opposite_side(mesh, element, topology.boundary.side[std::size_t(f)], opposite);
+    auto const at = std::find(opposite.below.begin(), opposite.below.end(), node);
+    return opposite.side < 0 || at == opposite.below.end() ? -1
+                                                           : opposite.above[std::size_t(at - opposite.below.begin())];
+  }
   auto const corners = mesh.elements.corners(element);
   for (std::size_t c = 0; c < corners.size(); ++c)
     if (corners[c] == node) {
