@@ -55,7 +55,7 @@ void morph(std::string const& case_path, std::string const& output, std::size_t 
   auto const faces = find_face_patches(mesh, topology);
   auto const graph = make_node_graph(mesh, topology.elements_of_nodes);
   auto const boundary = boundary_conditions(mesh, topology, faces, graph, c.motion, c.plan.elements.walls);
-  std::vector<Vec3> const given = evaluate(mesh, boundary);
+  std::vector<Vec3> const given = evaluate(boundary);
   auto const start = std::chrono::steady_clock::now();
   std::vector<Vec3> places, centres, displacement;
   for (Index32 const n : boundary.known) {

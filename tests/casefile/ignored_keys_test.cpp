@@ -15,8 +15,7 @@ struct Example {
 };
 
 std::string const region = "[[region]]\nname = \"wake\"\nzones = \"a\"\n";
-std::vector<Example> const of_unstructured{{region, {"[region]", "boxes of cells"}},
-                                           {"[volume]\nlaw = \"c1\"\n", {"[volume]", "unstructured", "[background]"}}};
+std::vector<Example> const of_unstructured{{"[volume]\nlaw = \"c1\"\n", {"[volume]", "unstructured", "[background]"}}};
 std::vector<Example> const of_structured{
     {"[near_field]\noffset = 0.1\n", {"[near_field]", "'m' is structured", "[boundary_layer]"}},
     {"[background]\ncells = 4\n", {"[background]", "[volume]"}},

@@ -2,6 +2,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/write_series.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include "support/expect_error.hpp"
@@ -10,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -66,6 +68,24 @@ class FoamWriter {
       first.push_back(std::int64_t(nodes.size()));
     }
     write("faces", "faceCompactList", list(first) + "\n" + list(nodes));
+  }
+  /// cellZones with `cellLabels` or faceZones with `faceLabels` and a flipMap.
+  void zones(char const* name, char const* key,
+             std::vector<std::pair<std::string, std::vector<std::int64_t>>> const& values) const {
+    bool const of_faces = std::string(key) == "faceLabels";
+    std::string body = std::to_string(values.size()) + "\n(\n";
+    for (auto const& [zone, labels] : values) {
+      body += zone + "\n{\n    type " + (of_faces ? "faceZone" : "cellZone") + ";\n" + key + "      List<label> \n" +
+              list(labels) + ";\n";
+      if (of_faces) {
+        body += "flipMap         List<bool> \n" + std::to_string(labels.size()) + "(";
+        for (std::size_t n = 0; n < labels.size(); ++n)
+          body += storage_.binary ? std::string(1, '\0') : std::string(n > 0 ? " 0" : "0");
+        body += ");\n";
+      }
+      body += "}\n";
+    }
+    write(name, "regIOobject", body + ")");
   }
   void boundary(std::string const& body) const {
     Storage const kept = storage_;
@@ -247,7 +267,7 @@ TEST_P(OpenFoamStored, OnlyPointsThatMoveChangeAndAllElseIsCopied) {
   FoamBox const box;
   fs::path const from = folder / "case" / "constant" / "polyMesh", to = folder / "moved" / "constant" / "polyMesh";
   box.write(from, GetParam());
-  std::ofstream(from / "cellZones") << "anything";
+  std::ofstream(from / "pointZones") << "anything";
   Mesh const mesh = read_mesh((folder / "case").string());
   Coordinates same(mesh.n_nodes()), moved(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
@@ -255,7 +275,7 @@ TEST_P(OpenFoamStored, OnlyPointsThatMoveChangeAndAllElseIsCopied) {
     moved.set(n, mesh.coordinates[n] + (n % 3 == 0 ? Vec3{1.0 / 3, -2.0 / 7, 1e-9} : Vec3{}));
   }
   write_morphed((folder / "case").string(), (folder / "same").string(), mesh, same);
-  for (char const* name : {"points", "faces", "owner", "neighbour", "boundary", "cellZones"})
+  for (char const* name : {"points", "faces", "owner", "neighbour", "boundary", "pointZones"})
     EXPECT_EQ(bytes_of(folder / "same" / "constant" / "polyMesh" / name), bytes_of(from / name)) << name;
   write_morphed((folder / "case").string(), (folder / "moved").string(), mesh, moved);
   EXPECT_EQ(bytes_of(to / "faces"), bytes_of(from / "faces"));
@@ -412,6 +432,42 @@ TEST(OpenFoam, CyclicsAreConnectionsWithTheirTransform) {
   EXPECT_EQ(mesh.patches.size(), 6U);
 }
 
+TEST(OpenFoam, ZonesOfCellsAndFacesAreSubsets) {
+  TemporaryFolder const folder;
+  FoamBox const box;  // 3 x 2 x 2 cells
+  for (Storage const storage : {Storage{}, Storage{true, 32, 64}, Storage{true, 64, 32}}) {
+    fs::path const path = folder / ("box" + std::to_string(storage.label_bits) + (storage.binary ? "b" : ""));
+    box.write(path, storage);
+    FoamWriter const writer(path, storage);
+    writer.zones("cellZones", "cellLabels", {{"rotor", {5, 0, 1}}, {"none", {}}});
+    writer.zones("faceZones", "faceLabels", {{"cut", {2, 0}}});
+    Mesh const mesh = read_mesh(path.string());
+    ASSERT_EQ(mesh.subsets.size(), 3U);
+    EXPECT_EQ(mesh.subsets[0].name, "rotor");
+    EXPECT_EQ(mesh.subsets[0].elements, (std::vector<Index32>{0, 1, 5}));
+    EXPECT_EQ(mesh.subsets[0].faces.size(), 0);
+    EXPECT_EQ(mesh.subsets[1].name, "none");
+    EXPECT_TRUE(mesh.subsets[1].elements.empty());
+    EXPECT_EQ(mesh.subsets[2].name, "cut");
+    EXPECT_EQ(mesh.subsets[2].faces.size(), 2);
+    EXPECT_EQ(mesh.subsets[2].faces[0].size(), 4U);
+    // They follow their elements where the mesh is put in another order, and stay in the file.
+    Mesh ordered = mesh;
+    reorder(ordered, order_by_position(mesh));
+    for (std::size_t k = 0; k < 3; ++k) {
+      Index const e = ordered.subsets[0].elements[k];
+      EXPECT_TRUE(std::ranges::count(mesh.subsets[0].elements, ordered.file_order.element[std::size_t(e)]) == 1);
+    }
+    Coordinates moved(mesh.n_nodes());
+    for (Index n = 0; n < moved.size(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.5, 0, 0});
+    write_morphed(path.string(), (folder / "out").string(), mesh, moved);
+    EXPECT_EQ(bytes_of(path / "cellZones"), bytes_of(folder / "out" / "cellZones"));
+    fs::remove_all(folder / "out");
+    writer.zones("cellZones", "cellLabels", {{"rotor", {5, 12}}});
+    expect_all_in(message_of<MeshError>([&] { (void)read_mesh(path.string()); }), {"cellZones", "'rotor'", "12"});
+  }
+}
+
 TEST(OpenFoam, AMeshOneCellThickIsAPlaneMeshAndBothPlanesMoveAlike) {
   TemporaryFolder const folder;
   FoamBox box;
@@ -463,7 +519,10 @@ TEST(OpenFoam, DamagedFilesAreRefusedAndNothingElseHappens) {
     fs::path const path = folder / (storage.binary ? "binary" : "text");
     FoamBox const box;
     box.write(path, storage);
-    for (char const* name : {"points", "faces", "owner", "neighbour", "boundary"}) {
+    FoamWriter const writer(path, storage);
+    writer.zones("cellZones", "cellLabels", {{"rotor", {1, 2, 3, 4, 5, 6, 7, 8}}, {"stator", {0, 9, 10, 11}}});
+    writer.zones("faceZones", "faceLabels", {{"cut", {0, 1, 2, 3, 4, 5, 6, 7, 8}}});
+    for (char const* name : {"points", "faces", "owner", "neighbour", "boundary", "cellZones", "faceZones"}) {
       std::string const whole = bytes_of(path / name);
       auto const with = [&](std::string const& bytes) {
         std::ofstream(path / name, std::ios::binary) << bytes;

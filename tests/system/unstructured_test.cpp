@@ -427,6 +427,22 @@ TEST_F(FoamRun, SequencesAreCasesOrFoldersOfTimes) {
   for (char const* name : {"bad", "bad_1", "bad_2", "bad_3"}) EXPECT_FALSE(std::filesystem::exists(path(name))) << name;
 }
 
+TEST_F(FoamRun, CellZonesAreListedAndMoveAsRegions) {
+  file("cellZones", "regIOobject", "1\n(\nfar { type cellZone; cellLabels List<label> 2(2 3); }\n)");
+  Outcome const inspect = gridmorph("inspect case --quiet");
+  EXPECT_NE(inspect.out.find("far: 2 elements"), std::string::npos) << inspect.out;
+  EXPECT_EQ(nlohmann::json::parse(gridmorph("inspect case --json --quiet").out)["subsets"][0]["elements"], 2);
+  std::string const head =
+      "[mesh]\ninput = \"case\"\noutput = \"moved\"\n[[motion]]\npatches = [\"*\", \"part\"]\nrule = \"formula\"\ndx = "
+      "\"0.1 * x\"\n[[region]]\nname = \"part\"\n";
+  write("case.toml", head + "zones = \"far\"\n");
+  Outcome const run = gridmorph("morph case.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE((run.out + run.err).find("region 'part': 2 elements, 12 nodes"), std::string::npos) << run.out;
+  write("wrong.toml", head + "zones = \"fra\"\n");
+  expect_bad_input(gridmorph("morph wrong.toml"), {"region 'part'", "there is no zone 'fra'", "'internalMesh', 'far'"});
+}
+
 /// Fields of a mesh without a place for them go into the file for viewers.
 TEST_F(FoamRun, TheMeshForViewersHasTheFields) {
   std::string const head =

@@ -38,9 +38,8 @@ class ElementPlan final : public AnyPlan {
     if (auto const& sequence = case_file.sequence) {  // the offset of the wrap reckons with all steps
       options_.elements.motion = 0;
       for (int step = 0; step < sequence->steps; ++step)
-        options_.elements.motion =
-            std::max(options_.elements.motion,
-                     largest_norm(evaluate(mesh.mesh, boundary, motion_at(case_file, sequence->moment(step)))));
+        options_.elements.motion = std::max(
+            options_.elements.motion, largest_norm(evaluate(boundary, motion_at(case_file, sequence->moment(step)))));
     }
     double const seconds = watch.lap();
     prepared_ =
@@ -52,11 +51,11 @@ class ElementPlan final : public AnyPlan {
 
   std::vector<Vec3> displacement(Moment const* when) override {
     return when == nullptr ? prepared_.boundary_displacement(mesh_.mesh)
-                           : evaluate(mesh_.mesh, prepared_.boundary, motion_at(case_file_, *when));
+                           : evaluate(prepared_.boundary, motion_at(case_file_, *when));
   }
 
   std::vector<Vec3> displacement(double share) const override {
-    return evaluate(mesh_.mesh, prepared_.boundary, fraction_of(case_file_, share));
+    return evaluate(prepared_.boundary, fraction_of(case_file_, share));
   }
 
   void morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) override {

@@ -44,6 +44,11 @@ std::string block_text(Zone const& zone) {
   return fmt::format("block {} x {} x {}, ", zone.extent[0], zone.extent[1], zone.extent[2]);
 }
 
+std::string subset_text(Subset const& subset) {
+  return subset.faces.size() > 0 ? fmt::format("  {}: {} faces\n", subset.name, subset.faces.size())
+                                 : fmt::format("  {}: {} elements\n", subset.name, subset.elements.size());
+}
+
 Box box_of(Mesh const& mesh, std::vector<Index32> const& nodes) {
   Box box;
   for (Index32 const n : nodes) box.add(mesh.coordinates[n]);
@@ -105,6 +110,12 @@ std::string ElementMesh::text(MeshSummary const& summary, std::string const& qua
   }
   if (mesh.zones.size() > most_rows)
     text += fmt::format("  ... and {} more (--json lists all)\n", mesh.zones.size() - most_rows);
+  if (!mesh.subsets.empty()) {
+    text += "\nParts of zones that a [[region]] can name\n";
+    for (std::size_t s = 0; s < std::min(mesh.subsets.size(), most_rows); ++s) text += subset_text(mesh.subsets[s]);
+    if (mesh.subsets.size() > most_rows)
+      text += fmt::format("  ... and {} more (--json lists all)\n", mesh.subsets.size() - most_rows);
+  }
   text += "\nBoundaries that a case file can name\n" + boundaries_text(summary);
   text += "\nConnections\n";
   if (mesh.connections.empty()) text += "  none\n";
@@ -137,6 +148,10 @@ nlohmann::json ElementMesh::json(MeshSummary const& summary, SnippetOptions cons
       {"dimension", mesh.dimension}, {"nodes", mesh.n_nodes()},   {"elements", mesh.n_elements()},
       {"types", types_json(-1)},     {"families", mesh.families}, {"notes", notes()},
       {"problems", problems},        {"remarks", remarks},        {"case_file", case_snippet(summary, options)}};
+  json["subsets"] = nlohmann::json::array();
+  for (Subset const& subset : mesh.subsets)
+    json["subsets"].push_back(
+        {{"name", subset.name}, {"elements", subset.elements.size()}, {"faces", subset.faces.size()}});
   json["zones"] = nlohmann::json::array();
   for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
     auto const& zone = mesh.zones[z];

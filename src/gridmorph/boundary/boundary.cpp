@@ -82,11 +82,17 @@ Boundary::Boundary(Mesh const& mesh, std::optional<double> size)
 }
 
 Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
-                   std::optional<double> size)
+                   std::optional<double> size, std::span<Patch const> regions)
     : mesh_(without_elements(mesh)),
       size_(size ? *size : mesh.size()),
       plane_(mesh.dimension == 2),
-      surfaces_(mesh.patches.size()) {
+      surfaces_(mesh.patches.size() + regions.size()) {
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    auto const& nodes = regions[r].nodes;
+    surfaces_[mesh.patches.size() + r].nodes.assign(nodes.begin(), nodes.end());
+    mesh_.patches.push_back(regions[r]);
+    mesh_.patches.back().nodes.clear();
+  }
   if (plane_) across_ = size_ * plane_normal(mesh);
   auto const each_face = [&](auto&& visit) {
     for (Index f = 0; f < topology.boundary.size(); ++f)
@@ -103,7 +109,7 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
     auto& [nodes, grid, faces, in_file_order] = surfaces_[p];
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    if (nodes.empty()) {
+    if (nodes.empty() && p < mesh.patches.size()) {
       auto const listed = patch_nodes(mesh.patches[p]);
       nodes.assign(listed.begin(), listed.end());
     }

@@ -32,9 +32,9 @@ class Boundary {
   /// Of a mesh of blocks; `size`: Mesh::size(), where it is known. Cost O(nodes of patches).
   explicit Boundary(Mesh const& mesh, std::optional<double> size = {});
   /// Of a mesh of elements; `size` as above. Nodes of a patch are those of the boundary faces it got, or all it lists where it got none.
-  /// Cost O(boundary faces, log).
+  /// `regions`: regions_of_elements(), which become patches behind those of the mesh. Cost O(boundary faces, log).
   Boundary(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
-           std::optional<double> size = {});
+           std::optional<double> size = {}, std::span<Patch const> regions = {});
 
   /// Names, kinds, zones and coordinates of the mesh, without its elements and their faces; numbers are those of the mesh.
   [[nodiscard]] Mesh const& mesh() const { return mesh_; }

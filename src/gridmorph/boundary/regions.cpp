@@ -107,25 +107,45 @@ Vec3 middle(Mesh const& mesh, Zone const& zone, Index3 const& cell) {
   return 0.125 * sum;
 }
 
-class Finder {
+/// Names of regions, each once and none of a patch.
+class RegionNames {
  public:
-  explicit Finder(Mesh& mesh) : mesh_(mesh) {
+  explicit RegionNames(Mesh const& mesh) {
     for (Patch const& patch : mesh.patches) {
       taken_.insert(patch.name);
       taken_.insert(patch.families.begin(), patch.families.end());
     }
   }
+  static std::string label(InnerRegion const& region) {
+    return "region '" + region.name + "'" + (region.where.empty() ? "" : " (" + region.where + ")");
+  }
+  bool take(InnerRegion const& region, Problems& problems) {
+    if (region.name.empty())
+      problems.add(label(region) + " has no name; give one, for rules to name it by");
+    else if (!taken_.insert(region.name).second)
+      problems.add(label(region) +
+                   ": the name is that of a patch, of a family or of another region; choose another one");
+    else
+      return true;
+    return false;
+  }
+
+ private:
+  std::set<std::string> taken_;
+};
+
+std::string no_such_zone(std::string const& label, std::string const& zone, std::vector<std::string> const& zones) {
+  constexpr std::size_t most = 12;
+  return label + ": there is no zone '" + zone + "'; the zones are " + quote_list(zones, most);
+}
+
+class Finder {
+ public:
+  explicit Finder(Mesh& mesh) : mesh_(mesh), names_(mesh) {}
 
   void add(InnerRegion const& region) {
-    std::string const label = "region '" + region.name + "'" + (region.where.empty() ? "" : " (" + region.where + ")");
-    if (region.name.empty()) {
-      problems_.add(label + " has no name; give one, for rules to name it by");
-      return;
-    }
-    if (!taken_.insert(region.name).second) {
-      problems_.add(label + ": the name is that of a patch, of a family or of another region; choose another one");
-      return;
-    }
+    std::string const label = RegionNames::label(region);
+    if (!names_.take(region, problems_)) return;
     std::optional<std::vector<int>> const zones = zones_of(region, label);
     if (!zones) return;
     region.nodes ? add_nodes(region, *zones, label) : add_cells(region, *zones, label);
@@ -144,10 +164,9 @@ class Finder {
           found = true;
         }
       if (found) continue;
-      constexpr std::size_t most = 12;
       std::vector<std::string> names;
       for (Zone const& zone : mesh_.zones) names.push_back(zone.name);
-      problems_.add(label + ": there is no zone '" + name + "'; the zones are " + quote_list(names, most));
+      problems_.add(no_such_zone(label, name, names));
       return std::nullopt;
     }
     if (region.zones.empty())
@@ -224,7 +243,92 @@ class Finder {
   }
 
   Mesh& mesh_;
-  std::set<std::string> taken_;
+  RegionNames names_;
+  Problems problems_;
+};
+
+class ElementFinder {
+ public:
+  ElementFinder(Mesh const& mesh, std::vector<std::string>& notes) : mesh_(mesh), notes_(notes), names_(mesh) {}
+
+  void add(InnerRegion const& region) {
+    std::string const label = RegionNames::label(region);
+    if (!names_.take(region, problems_)) return;
+    if (region.nodes)
+      return problems_.add(label +
+                           ": its nodes are i, j and k of a block, and the mesh is one of elements; say which zones "
+                           "it lies in, or where");
+    std::vector<std::uint8_t> named(std::size_t(mesh_.n_elements()), region.zones.empty() ? 1 : 0);
+    std::vector<int> subsets;
+    for (std::string const& name : region.zones)
+      if (!name_zone(name, named, subsets)) {
+        std::vector<std::string> names;
+        for (Zone const& zone : mesh_.zones) names.push_back(zone.name);
+        for (Subset const& subset : mesh_.subsets) names.push_back(subset.name);
+        return problems_.add(no_such_zone(label, name, names));
+      }
+    Patch patch{region.name, "", PatchKind::region, {}, 0, {}, {}, {}};
+    Index elements = 0, faces = 0;
+    auto const holds = [&](std::span<Index32 const> corners) {
+      if (!region.holds) return true;
+      Vec3 sum;
+      for (Index32 const n : corners) sum += mesh_.coordinates[n];
+      return region.holds((1.0 / double(corners.size())) * sum);
+    };
+    auto const take = [&](std::span<Index32 const> nodes) {
+      patch.nodes.insert(patch.nodes.end(), nodes.begin(), nodes.end());
+    };
+    for (Index e = 0; e < mesh_.n_elements(); ++e) {
+      if (named[std::size_t(e)] == 0 || !holds(mesh_.elements.corners(e))) continue;
+      take(mesh_.elements.nodes[e]);
+      patch.zone = elements++ == 0 ? mesh_.zone_of_element(e) : patch.zone;
+    }
+    for (int const s : subsets) {
+      CsrGraph const& of = mesh_.subsets[std::size_t(s)].faces;
+      for (Index f = 0; f < of.size(); ++f) {
+        if (!holds(of[f])) continue;
+        take(of[f]);
+        patch.zone = elements == 0 && faces == 0 ? mesh_.zone_of(of[f].front()) : patch.zone;
+        ++faces;
+      }
+    }
+    if (patch.nodes.empty())
+      return problems_.add(label + " holds no element and no face of what it names; correct where it lies");
+    std::sort(patch.nodes.begin(), patch.nodes.end());
+    patch.nodes.erase(std::unique(patch.nodes.begin(), patch.nodes.end()), patch.nodes.end());
+    notes_.push_back("region '" + region.name +
+                     "': " + (elements > 0 || faces == 0 ? std::to_string(elements) + " elements" : "") +
+                     (elements > 0 && faces > 0 ? " and " : "") + (faces > 0 ? std::to_string(faces) + " faces" : "") +
+                     ", " + std::to_string(patch.nodes.size()) + " nodes");
+    found_.push_back(std::move(patch));
+  }
+
+  std::vector<Patch> finish() {
+    problems_.throw_if_any<MotionError>();
+    return std::move(found_);
+  }
+
+ private:
+  bool name_zone(std::string const& name, std::vector<std::uint8_t>& named, std::vector<int>& subsets) const {
+    bool found = false;
+    for (Zone const& zone : mesh_.zones)
+      if (glob_match(name, zone.name)) {
+        found = true;
+        std::fill_n(named.begin() + zone.first_element, zone.n_elements, std::uint8_t(1));
+      }
+    for (std::size_t s = 0; s < mesh_.subsets.size(); ++s)
+      if (glob_match(name, mesh_.subsets[s].name)) {
+        found = true;
+        subsets.push_back(int(s));
+        for (Index32 const e : mesh_.subsets[s].elements) named[std::size_t(e)] = 1;
+      }
+    return found;
+  }
+
+  Mesh const& mesh_;
+  std::vector<std::string>& notes_;
+  RegionNames names_;
+  std::vector<Patch> found_;
   Problems problems_;
 };
 
@@ -242,6 +346,13 @@ void add_regions(Mesh& mesh, std::span<InnerRegion const> regions) {
   Finder finder(mesh);
   for (InnerRegion const& region : regions) finder.add(region);
   finder.finish();
+}
+
+std::vector<Patch> regions_of_elements(Mesh const& mesh, std::span<InnerRegion const> regions,
+                                       std::vector<std::string>& notes) {
+  ElementFinder finder(mesh, notes);
+  for (InnerRegion const& region : regions) finder.add(region);
+  return finder.finish();
 }
 
 }  // namespace gridmorph

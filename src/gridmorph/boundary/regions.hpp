@@ -14,8 +14,8 @@ namespace gridmorph {
 
 struct InnerRegion {
   std::string name;                ///< what rules call it: neither the name nor the family of a patch
-  std::vector<std::string> zones;  ///< names of zones, globs; empty: all
-  /// Nodes of the one zone that `zones` names; extent 1 along one axis: a grid surface.
+  std::vector<std::string> zones;  ///< names of zones, in a mesh of elements of subsets too, globs; empty: all
+  /// Blocks: nodes of the one zone that `zones` names; extent 1 along one axis: a grid surface.
   std::optional<IndexRange> nodes;
   /// Whether a place lies in the region; nothing: everything in the zones does.
   std::function<bool(Vec3 const& place)> holds;
@@ -37,5 +37,10 @@ inline bool is_box(Patch const& patch) {
 /// MotionError naming every region without cells, whose name is taken, or whose zones or nodes there are not.
 /// Cost: a look at each cell of the zones that regions name without nodes.
 void add_regions(Mesh& mesh, std::span<InnerRegion const> regions);
+
+/// Of a mesh of elements: a patch of kind `region` for each, which lists all nodes of the elements whose mean of the corners is inside, and of
+/// faces of subsets likewise; appends a note for each. Throws MotionError as add_regions() does. Cost: a look at each element of what regions name.
+std::vector<Patch> regions_of_elements(Mesh const& mesh, std::span<InnerRegion const> regions,
+                                       std::vector<std::string>& notes);
 
 }  // namespace gridmorph

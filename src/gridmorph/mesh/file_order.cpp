@@ -109,6 +109,15 @@ Mesh permuted(HostInstance const& host, Mesh const& mesh, FileOrder const& order
     translate(connection.donor_nodes, new_node);
   }
   out.families = mesh.families;
+  out.subsets = mesh.subsets;
+  if (!out.subsets.empty()) {
+    auto const new_element = inverse_of(host, order.element);
+    for (auto& subset : out.subsets) {
+      translate(subset.elements, new_element);
+      std::sort(subset.elements.begin(), subset.elements.end());
+      translate(subset.faces.item, new_node);
+    }
+  }
   if (mesh.coordinates.size() > 0) out.coordinates = gather(host, mesh.coordinates, order.node);
   out.source = mesh.source;
   out.notes = mesh.notes;

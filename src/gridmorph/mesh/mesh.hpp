@@ -86,6 +86,13 @@ struct Connection {
   std::optional<Periodic> periodic;
 };
 
+/// A part of a mesh of elements that its file names, for regions: a cellZone or a faceZone of OpenFOAM.
+struct Subset {
+  std::string name;
+  std::vector<Index32> elements;  ///< ascending
+  CsrGraph faces{};               ///< or corner nodes of faces, inside or on the boundary
+};
+
 /// A CGNS Zone_t: a block of nodes (i, j, k), or elements. An SU2 file is one zone of elements.
 struct Zone {
   std::string name;  ///< unique in the mesh; "Base/Zone" when the file has several bases
@@ -143,6 +150,7 @@ struct Mesh {
   std::vector<Interface1to1> interfaces;  ///< of blocks, in file order
   std::vector<Connection> connections;    ///< of elements, in file order
   std::vector<std::string> families;      ///< Family_t names
+  std::vector<Subset> subsets;            ///< of elements, in file order; writers leave them to the file
   Coordinates coordinates;                ///< all three components, z = 0 where a file of elements has two
   std::string source;                     ///< file name or what made it, for messages
   /// How the file is stored where the file itself does not say so (PLOT3D: "unformatted, little-endian, ..."), for the writer;

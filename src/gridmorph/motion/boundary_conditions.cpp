@@ -1,4 +1,5 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
+#include <gridmorph/boundary/regions.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/extent.hpp>
@@ -53,12 +54,10 @@ class Finder {
         size_(extent_of(host, mesh.coordinates).size()) {}
 
   BoundaryConditions run(Motion const& motion, std::vector<std::string> const& walls, Displacements displacements) {
-    if (!motion.regions.empty())
-      throw MotionError("region '" + motion.regions.front().name +
-                        "' is in a mesh of elements, and regions are boxes of "
-                        "cells of structured meshes; remove it");
-    auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
-    ResolvedMotion const resolved = resolve(mesh_, with_periodic_patches(*boundary, motion, out_.notes));
+    std::vector<Patch> const regions = regions_of_elements(mesh_, motion.regions, out_.notes);
+    auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_, regions);
+    patches_ = boundary->mesh().patches;
+    ResolvedMotion const resolved = resolve(boundary->mesh(), with_periodic_patches(*boundary, motion, out_.notes));
     out_.notes.insert(out_.notes.end(), resolved.notes.begin(), resolved.notes.end());
     out_.motion = std::make_shared<BoundaryMotion const>(boundary, resolved);
     out_.notes.insert(out_.notes.end(), out_.motion->notes().begin(), out_.motion->notes().end());
@@ -99,16 +98,16 @@ class Finder {
 
   void find_driving_patches(std::vector<std::string> const& walls, Displacements displacements) {
     std::vector<std::uint8_t> moves;
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+    for (std::size_t p = 0; p < patches_.size(); ++p)
       moves.push_back((displacements == Displacements::any ? could_move(int(p)) : moves_now(int(p))) ? 1 : 0);
     if (std::find(moves.begin(), moves.end(), 1) == moves.end())
-      for (std::size_t p = 0; p < mesh_.patches.size(); ++p) moves[p] = could_move(int(p)) ? 1 : 0;
+      for (std::size_t p = 0; p < patches_.size(); ++p) moves[p] = could_move(int(p)) ? 1 : 0;
     choose_driving_patches(walls, moves);
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+    for (std::size_t p = 0; p < patches_.size(); ++p)
       if (moves[p] == 0 && is_wall(int(p)) && is_explicit(int(p)) &&
           !std::binary_search(out_.driving_patches.begin(), out_.driving_patches.end(), int(p)))
         out_.standing_patches.push_back(int(p));
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+    for (std::size_t p = 0; p < patches_.size(); ++p)
       if (is_wall(int(p)) && std::holds_alternative<SlipRule>(rules().patch_rule(int(p))))
         out_.sliding_patches.push_back(int(p));
   }
@@ -118,7 +117,7 @@ class Finder {
     Rule const& rule = rules().patch_rule(p);
     if (std::holds_alternative<CircumferentialSlideRule>(rule) || std::holds_alternative<FollowRule>(rule))
       return false;
-    PatchKind const kind = mesh_.patches[std::size_t(p)].kind;
+    PatchKind const kind = patches_[std::size_t(p)].kind;
     return kind == PatchKind::wall || kind == PatchKind::other;
   }
 
@@ -126,13 +125,13 @@ class Finder {
     if (!walls.empty()) {
       for (int const p : select_patches(mesh_, walls)) {
         if (!is_explicit(p))
-          throw MotionError("the near field names patch " + describe_patch(mesh_, mesh_.patches[std::size_t(p)]) +
+          throw MotionError("the near field names patch " + describe_patch(mesh_, patches_[std::size_t(p)]) +
                             " whose rule leaves its displacement to the volume; name walls with explicit rules");
         out_.driving_patches.push_back(p);
       }
       return;
     }
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+    for (std::size_t p = 0; p < patches_.size(); ++p)
       if (moves[p] != 0 && is_wall(int(p))) out_.driving_patches.push_back(int(p));
     if (out_.driving_patches.empty())
       throw MotionError(
@@ -145,7 +144,7 @@ class Finder {
     std::vector<std::uint8_t> drives(std::size_t(mesh_.n_nodes()), 0);
     is_known_.assign(std::size_t(mesh_.n_nodes()), 0);
     auto const each_explicit = [&](auto&& visit) {
-      for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+      for (std::size_t p = 0; p < patches_.size(); ++p)
         if (is_explicit(int(p))) visit(rules().patch[p].rule, int(p), -1, out_.nodes_of(int(p)));
       for (std::size_t c = 0; c < mesh_.connections.size(); ++c)
         if (int const r = rules().interface[c].rule; r >= 0 && mesh_.connections[c].periodic) {
@@ -179,7 +178,7 @@ class Finder {
   void find_slip_nodes() {
     std::vector<std::set<Index32>> surfaces;
     std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
       int const surface = out_.motion->slip_surface_of(int(p));
       if (surface < 0) continue;
       for (Index const n : out_.nodes_of(int(p))) {
@@ -271,6 +270,7 @@ class Finder {
   BoundaryFacePatches const& face_patches_;
   NodeGraph const& graph_;
   double size_;
+  std::vector<Patch> patches_;  ///< of the mesh without their faces, then regions
   BoundaryConditions out_;
   std::vector<std::uint8_t> is_known_;
 };
@@ -314,12 +314,12 @@ std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& 
       surfaces, resolve(surfaces->mesh(), with_periodic_patches(*surfaces, motion, said)));
 }
 
-std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary) {
-  return evaluate(mesh, boundary.requests, *boundary.motion, {});
+std::vector<Vec3> evaluate(BoundaryConditions const& boundary) {
+  return evaluate(boundary.motion->boundary().mesh(), boundary.requests, *boundary.motion, {});
 }
 
-std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary, Motion const& motion) {
-  return evaluate(mesh, boundary.requests, boundary.motion->with(motion), {});
+std::vector<Vec3> evaluate(BoundaryConditions const& boundary, Motion const& motion) {
+  return evaluate(boundary.motion->boundary().mesh(), boundary.requests, boundary.motion->with(motion), {});
 }
 
 double largest_norm(std::vector<Vec3> const& displacement) {

@@ -56,7 +56,7 @@ std::vector<int> row_of_nodes(Mesh const& mesh, Motion const& motion);
 
 /// Resolves the rules and finds what each boundary node is. `walls`: selectors of the walls that drive the near field; empty:
 /// every patch that moves and is no inflow, outflow, farfield or symmetry. Where no rule displaces anything now, all that could do.
-/// Throws MotionError when no wall moves, and the errors of resolve() and BoundaryMotion.
+/// Regions are patches behind those of the mesh (regions_of_elements()): all of their nodes are known, and none drives. Throws MotionError when no wall moves, and the errors of resolve() and BoundaryMotion.
 BoundaryConditions boundary_conditions(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                                        Motion const& motion, std::vector<std::string> const& walls,
@@ -72,9 +72,9 @@ inline BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopo
 std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& boundary, Motion const& motion);
 
 /// Displacement of every known node. Throws MotionError as evaluate() of BoundaryRequests does.
-std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary);
+std::vector<Vec3> evaluate(BoundaryConditions const& boundary);
 /// The same by another motion: one with the same rules for the same patches, whose displacements alone differ.
-std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryConditions const& boundary, Motion const& motion);
+std::vector<Vec3> evaluate(BoundaryConditions const& boundary, Motion const& motion);
 /// The length of the longest; 0 of none.
 double largest_norm(std::vector<Vec3> const& displacement);
 

@@ -146,8 +146,8 @@ struct PreparedUnstructured {
   std::optional<std::vector<Vec3>> displacement;
 
   /// The same, evaluated where planning did not; throws MotionError.
-  [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& mesh) const {
-    return displacement ? *displacement : evaluate(mesh, boundary);
+  [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& /*mesh*/) const {
+    return displacement ? *displacement : evaluate(boundary);
   }
 };
 

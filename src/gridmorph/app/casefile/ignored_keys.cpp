@@ -39,7 +39,6 @@ class Ignored {
   void of_unstructured() {
     std::string const why = "is for structured meshes, and '" + case_.input.string() + "' is unstructured";
     refuse("", "volume", why + ": law in [background] and weights in [near_field] say there how the volume follows");
-    refuse("", "region", why + ": regions are made of boxes of cells");
     refuse("mesh", "open_faces", why + ": boundary faces that no patch claims have to be given one in the mesh");
     refuse("mesh", "matching_tolerance", why + ": connections pair nodes there, which are taken as they are paired");
     if (use_.run == CaseUse::Run::sequence)

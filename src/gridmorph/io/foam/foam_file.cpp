@@ -278,6 +278,61 @@ std::vector<std::int64_t> FoamFile::raw_list(char const* what) {
   return out;
 }
 
+void FoamFile::pass_list(char const* what, int bytes) {
+  char bracket = 0;
+  Index const n = begin_list(what, 1, bracket);
+  if (n == 0 && bracket != '(') return;
+  if (binary_ && bracket == '(')
+    at_ += std::size_t(n) * std::size_t(bytes);
+  else
+    while (at_ < text_.size() && text_[at_] != (bracket == '(' ? ')' : '}')) ++at_;
+  expect(bracket == '(' ? ')' : '}', what);
+}
+
+std::vector<ZoneEntry> FoamFile::zones(std::string_view wanted, Index n_labels) {
+  at_ = body_;
+  char bracket = 0;
+  constexpr Index shortest = 4;  // "a{}\n"
+  Index const n = begin_list("zones", shortest, bracket);
+  if (n == 0 && bracket != '(') return {};
+  if (bracket == '{') fail("zones are listed one by one");
+  std::vector<ZoneEntry> out;
+  for (Index z = 0; z < n; ++z) {
+    ZoneEntry entry;
+    entry.name = word();
+    if (entry.name.empty()) fail("the name of a zone is missing");
+    expect('{', "the name of a zone");
+    while (peek() != '}') {
+      std::string const key = word();
+      if (key.empty()) fail("zone '" + entry.name + "': a key is missing");
+      std::size_t const before = at_;
+      std::string const type = word();
+      if (!type.starts_with("List<")) {
+        at_ = before;
+        (void)value_of_key();
+        continue;
+      }
+      if (key != wanted) {
+        pass_list("a list of a zone", type == "List<bool>" ? 1 : label_bytes_);
+      } else {
+        for (auto const v : raw_list("the labels of a zone")) {
+          if (v < 0 || v >= n_labels)
+            throw MeshError(path_ + ": zone '" + entry.name + "' names " + std::string(wanted) + " " +
+                            std::to_string(v) + ", and there are " + std::to_string(n_labels) + ", counted from 0");
+          entry.labels.push_back(Index32(v));
+        }
+      }
+      expect(';', "a list of a zone");
+    }
+    expect('}', "the keys of a zone");
+    std::sort(entry.labels.begin(), entry.labels.end());
+    entry.labels.erase(std::unique(entry.labels.begin(), entry.labels.end()), entry.labels.end());
+    out.push_back(std::move(entry));
+  }
+  expect(')', "the zones");
+  return out;
+}
+
 std::vector<Index32> FoamFile::labels() {
   at_ = body_;
   auto const all = raw_list("labels");

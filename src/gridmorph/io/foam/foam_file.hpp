@@ -35,6 +35,12 @@ struct BoundaryEntry {
   [[nodiscard]] std::string_view operator[](std::string_view key) const;
 };
 
+/// An entry of polyMesh/cellZones or faceZones.
+struct ZoneEntry {
+  std::string name;
+  std::vector<Index32> labels;
+};
+
 class FoamFile {
  public:
   /// Reads a file, or the packed one of that name with ".gz". Throws IoError when neither is there, for a file without the header
@@ -57,6 +63,8 @@ class FoamFile {
   Coordinates coordinates();
   /// Throws MeshError, too, that lists patches which do not have their faces among the n_faces of the mesh.
   std::vector<BoundaryEntry> boundary(Index n_faces);
+  /// Their `key` ("cellLabels", "faceLabels"), each of 0 ... n - 1; other lists are passed over. Throws MeshError for labels that are not.
+  std::vector<ZoneEntry> zones(std::string_view key, Index n);
 
  private:
   void find_faces(std::vector<BoundaryEntry>& entries, Index n_faces) const;
@@ -72,6 +80,8 @@ class FoamFile {
   Index begin_list(char const* what, Index least_bytes, char& bracket);
   [[nodiscard]] std::int64_t raw_label();
   std::vector<std::int64_t> raw_list(char const* what);
+  /// A list of `bytes` per value in binary files, of words in others.
+  void pass_list(char const* what, int bytes);
   [[noreturn]] void fail(std::string const& what) const;
 
   std::string path_, text_;

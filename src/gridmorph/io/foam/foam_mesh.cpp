@@ -64,6 +64,7 @@ class Reader {
     add_cells();
     auto const boundary = file("boundary", {"polyBoundaryMesh"}).boundary(faces_.size());
     add_patches(boundary);
+    add_subsets();
     Problems problems;
     io::check_finite(mesh_, mesh_.coordinates, path_, problems);
     problems.throw_if_any<MeshError>();
@@ -74,8 +75,6 @@ class Reader {
       mesh_.notes.push_back(
           path_ + ": has " + why_not +
           ", so that it is morphed as a mesh of volumes; nodes of the two planes may come apart a little");
-    if (is_there((folder_ / "cellZones").string()))
-      mesh_.notes.push_back(path_ + ": cellZones are left alone: elements are morphed whatever zone they are in");
     check_mesh(mesh_);
     return std::move(mesh_);
   }
@@ -170,6 +169,17 @@ class Reader {
     }
     problems.throw_if_any<MeshError>();
     add_cyclics(cyclics, faces_, mesh_);
+  }
+
+  void add_subsets() {
+    if (is_there((folder_ / "cellZones").string()))
+      for (ZoneEntry& zone : file("cellZones", {"regIOobject"}).zones("cellLabels", mesh_.n_elements()))
+        mesh_.subsets.push_back({std::move(zone.name), std::move(zone.labels)});
+    if (is_there((folder_ / "faceZones").string()))
+      for (ZoneEntry& zone : file("faceZones", {"regIOobject"}).zones("faceLabels", faces_.size())) {
+        mesh_.subsets.push_back({std::move(zone.name), {}});
+        for (Index32 const f : zone.labels) mesh_.subsets.back().faces.add(faces_[f]);
+      }
   }
 
   Patch patch_of(BoundaryEntry const& entry, std::string const& type) {

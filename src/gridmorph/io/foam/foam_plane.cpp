@@ -107,6 +107,17 @@ Mesh upper_plane(Mesh const& mesh, PlanePairs const& pairs, CsrGraph const& face
       if (auto const nodes = on_plane(patch.faces[f]); nodes.size() == 2) edges.faces.add(nodes);
     out.patches.push_back(std::move(edges));
   }
+  std::vector<Index32> element(std::size_t(mesh.n_elements()), -1);  // of a cell
+  for (std::size_t e = 0; e < out.elements.number.size(); ++e)
+    element[std::size_t(out.elements.number[e])] = Index32(e);
+  for (Subset const& subset : mesh.subsets) {
+    Subset own{subset.name, {}};
+    for (Index32 const c : subset.elements)
+      if (element[std::size_t(c)] >= 0) own.elements.push_back(element[std::size_t(c)]);
+    for (Index f = 0; f < subset.faces.size(); ++f)
+      if (auto const nodes = on_plane(subset.faces[f]); nodes.size() == 2) own.faces.add(nodes);
+    out.subsets.push_back(std::move(own));
+  }
   for (Connection const& connection : mesh.connections) {
     Connection own = connection;
     own.nodes.clear();

@@ -61,7 +61,7 @@ void UnstructuredPlanner::take_boundary() {
       plan.copies.push_back(n);
       plan.copied.push_back(o);
     }
-  if (!out_.displacement && options_.elements.motion < 0) out_.displacement = evaluate(mesh_, b);
+  if (!out_.displacement && options_.elements.motion < 0) out_.displacement = evaluate(b);
   reach_ = rest_reach_ = out_.displacement ? largest_norm(*out_.displacement) : options_.elements.motion;
 }
 
