@@ -1,7 +1,9 @@
 // Wheels of passages of elements: the demo passage as hexahedra, against the wheel of its blocks, and as prisms and tetrahedra.
 #include "support/cascade.hpp"
 #include "support/expect_error.hpp"
+#include "support/made_bodies.hpp"
 #include "support/unstructured_meshes.hpp"
+#include "unstructured/hybrid_file.hpp"
 #include "wheel/element_wheel_file.hpp"
 #include "wheel/wheel_run.hpp"
 
@@ -280,6 +282,55 @@ TEST_F(CascadeWheel, HasPatchesOfItsSidesAtTheEndsOfAPartAlone) {
   for (auto const& patch : part.patches)
     if (patch.name.ends_with("_side")) sides.push_back(part.zones[std::size_t(patch.zone)].name + " " + patch.name);
   EXPECT_EQ(sides, (std::vector<std::string>{"passage_P01 lower_side", "passage_P03 upper_side"}));
+}
+
+TEST_F(ElementWheel, OfBlocksBesideElementsIsTheWheelOfElements) {
+  std::set<std::string> some;
+  for (std::size_t z = 0; z < blocks.zones.size(); z += 2) some.insert(blocks.zones[z].name);
+  HybridFile(folder.file("hybrid.cgns"), blocks, as_hexahedra(blocks), some);
+  case_of("hybrid", rules);
+  ElementWheelFile const hybrid = element_wheel("hybrid", three_blades),
+                         plain = element_wheel("hexahedra", three_blades);
+  hybrid.expect_same_bits();
+  FaceCount const faces = hybrid.count_faces();
+  EXPECT_EQ(faces.open + faces.ends + faces.claimed, 0);
+  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_between(hybrid, p, plain, p), 1e-12 * size()) << p;
+}
+
+/// Edges have a node amid them, and connections pair these as all others.
+TEST_F(CascadeWheel, OfSecondOrderElementsHasTheSameBitsAmidEdges) {
+  Mesh mesh = second_order(to_prisms_and_tetrahedra(blocks, 4));
+  mesh.zones[0].name = "passage";
+  mesh.families = blocks.families;
+  Connection c;
+  c.name = "sides";
+  c.zone = c.donor_zone = 0;
+  c.periodic = blocks.interfaces.front().periodic;
+  std::vector<Index32> all(std::size_t(mesh.n_nodes()));
+  std::iota(all.begin(), all.end(), Index32(0));
+  auto const partner = match_points(mesh.coordinates, all, all, 1e-9, c.periodic);
+  Index amid = 0;
+  for (std::size_t n = 0; n < all.size(); ++n)
+    if (partner[n] >= 0) {
+      c.nodes.push_back(all[n]);
+      c.donor_nodes.push_back(partner[n]);
+      amid += Index(n) >= blocks.n_nodes() ? 1 : 0;
+    }
+  ASSERT_GT(amid, 100);
+  mesh.connections.push_back(c);
+  // Amid an edge that is straight the sides follow a curved blade, and the blade goes first.
+  std::string ranked = text("mixed.toml");
+  auto const follow = ranked.find("rule    = \"follow\"");
+  folder.write("mixed.toml", ranked.insert(follow, "rank = 1\n"));
+  write_mesh(folder.file("mixed.cgns"), mesh);
+  ElementWheelFile const wheel = element_wheel("mixed", blades);
+  EXPECT_EQ(wheel.n_periodic(), 0);
+  wheel.expect_same_bits();
+  FaceCount const faces = wheel.count_faces();
+  EXPECT_EQ(faces.open + faces.ends + faces.claimed, 0);
+  Mesh const one = morphed("mixed");
+  ElementWheelFile const equal = element_wheel("mixed", "");
+  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_from(equal, p, one), 1e-14 * size()) << p;
 }
 
 TEST_F(ElementWheel, TurnsWithItsSequence) {
