@@ -33,6 +33,7 @@ ElementWheelMotion::ElementWheelMotion(Mesh const& sector, UnstructuredTopology 
                                        BoundaryFacePatches const& face_patches, PassageLinks const& links,
                                        WheelRows const& rows, std::vector<Motion> const& motions, PlanOptions options,
                                        std::vector<WheelRowBlades> const& blades) {
+  refuse_regions(motions);
   auto const open = open_rows(blades);
   auto const used = used_motions(blades);
   bool const one = used.size() == 1;

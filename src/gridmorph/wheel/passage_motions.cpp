@@ -1,3 +1,4 @@
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/wheel/passage_motions.hpp>
 
 #include <algorithm>
@@ -5,6 +6,13 @@
 #include <utility>
 
 namespace gridmorph {
+
+void refuse_regions(std::vector<Motion> const& motions) {
+  for (Motion const& motion : motions)
+    if (!motion.regions.empty())
+      throw MotionError("region '" + motion.regions.front().name +
+                        "': passages of a wheel are morphed without regions; remove it");
+}
 
 std::vector<int> used_motions(std::vector<WheelRowBlades> const& blades) {
   std::set<int> used;

@@ -14,6 +14,8 @@ struct WheelRowBlades {
   std::vector<int> blades;  ///< which motion each has; as many as passages. Beyond the last comes the first again.
 };
 
+/// Throws MotionError for motions with regions, which passages of a wheel do without.
+void refuse_regions(std::vector<Motion> const& motions);
 /// Numbers of the motions that stand in any passage, ascending.
 std::vector<int> used_motions(std::vector<WheelRowBlades> const& blades);
 /// Per row whether its blades differ: then its periodic sides move independently.

@@ -1,6 +1,5 @@
 #include <gridmorph/wheel/wheel_motion.hpp>
 
-#include <gridmorph/core/error.hpp>
 #include <gridmorph/wheel/detail/append_notes.hpp>
 #include <gridmorph/wheel/open_passage.hpp>
 
@@ -12,10 +11,7 @@ namespace gridmorph {
 WheelMotion::WheelMotion(Mesh const& sector, PassageLinks const& links, WheelRows const& rows,
                          std::vector<Motion> const& motions, PlanOptions const& options,
                          std::vector<WheelRowBlades> const& blades) {
-  for (Motion const& motion : motions)
-    if (!motion.regions.empty())
-      throw MotionError("region '" + motion.regions.front().name +
-                        "': passages of a wheel are morphed without regions; remove it");
+  refuse_regions(motions);
   auto const open = open_rows(blades);
   auto const used = used_motions(blades);
   auto const boundary = std::make_shared<Boundary const>(sector);
