@@ -116,7 +116,8 @@ kernels::UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dime
 
 InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates const& coordinates,
                                           std::vector<Index32> const& nodes, std::vector<double> const& area,
-                                          int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes) {
+                                          int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes,
+                                          double opening) {
   InverseDistanceField out;
   if (nodes.empty()) return out;
   out.shape = lattice_over(low, high, dimension, most_nodes);
@@ -150,8 +151,6 @@ InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates 
   }
 
   double const nearest = 0.05 * out.shape.spacing;
-  // About a half, but no ratio of lengths in a lattice: round-off would break such ties.
-  constexpr double opening = 0.4917;
   struct Room {
     std::vector<Index32> open, items;
     std::vector<double> weights;

@@ -65,7 +65,7 @@ void UnstructuredPlanner::plan_smooth_walls() {
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
     if (near_[std::size_t(n)]) box.include(mesh_.coordinates[n]);
   plan.walls = make_scatter_lattice(host_, mesh_.coordinates, plan.driving, areas(plan.driving), mesh_.dimension,
-                                    box.low, box.high);
+                                    box.low, box.high, 100'000, fine_opening);
   double const reach = 4 * plan.walls.shape.spacing;
   for (Index32 const n : plan.near.rows.target) {
     double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);
