@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/cgns/new_names.hpp>
 #include <gridmorph/io/element_zones.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
@@ -8,18 +9,7 @@ namespace gridmorph::io {
 
 namespace {
 
-constexpr float library_version = 4.0F;
-constexpr std::size_t longest_name = 32;
 constexpr std::int32_t mixed = 20;
-
-std::string unique_name(std::set<std::string>& taken, std::string const& wanted) {
-  std::string name = wanted.substr(0, longest_name);
-  for (int n = 2; !taken.insert(name).second; ++n) {
-    std::string const suffix = "_" + std::to_string(n);
-    name = wanted.substr(0, longest_name - suffix.size()) + suffix;
-  }
-  return name;
-}
 
 /// ElementType_t of a list of nodes; 0 for those that this writer does not know.
 std::int32_t cgns_type(ElementType type, std::size_t nodes) {
@@ -37,19 +27,6 @@ std::int32_t cgns_type(ElementType type, std::size_t nodes) {
 
 std::int32_t face_type(std::size_t corners) { return corners == 2 ? 3 : corners == 3 ? 5 : corners == 4 ? 7 : 0; }
 
-std::string bc_type_of(Patch const& patch) {
-  if (patch.kind == PatchKind::connection) return "UserDefined";
-  if (!patch.bc_type.empty()) return patch.bc_type;
-  switch (patch.kind) {
-    case PatchKind::wall: return "BCWall";
-    case PatchKind::inflow: return "BCInflow";
-    case PatchKind::outflow: return "BCOutflow";
-    case PatchKind::symmetry: return "BCSymmetryPlane";
-    case PatchKind::farfield: return "BCFarfield";
-    default: return "UserDefined";
-  }
-}
-
 std::pair<std::string, std::string> split(std::string const& zone_name) {
   auto const slash = zone_name.find('/');
   if (slash == std::string::npos) return {"Base", zone_name};
@@ -62,7 +39,7 @@ ElementZoneWriter::ElementZoneWriter(cgns::File& file, Mesh const& mesh, WriteOp
     : file_(file), mesh_(mesh), options_(options) {}
 
 void ElementZoneWriter::begin() {
-  file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &library_version);
+  file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &cgns::library_version);
 }
 
 double ElementZoneWriter::base(std::string const& name) {
@@ -138,7 +115,7 @@ Index ElementZoneWriter::elements(Zone const& zone, double zone_id, std::set<std
     for (Index32 const n : list) nodes.push_back(std::int32_t(n - zone.first_node + 1));
     start.push_back(Index(nodes.size()));
   }
-  if (!types.empty()) section(zone_id, unique_name(taken, "Elements"), 1, types, start, nodes);
+  if (!types.empty()) section(zone_id, cgns::unique_name(taken, "Elements"), 1, types, start, nodes);
   return zone.n_elements + 1;
 }
 
@@ -157,7 +134,7 @@ void ElementZoneWriter::boundary(int z, double zone_id, Index next, std::set<std
   for (auto const& patch : mesh_.patches) {
     if (patch.zone != z) continue;
     if (taken.empty()) zone_bc = file_.create(zone_id, "ZoneBC", "ZoneBC_t");
-    double const id = file_.create_text(zone_bc, unique_name(taken, patch.name), "BC_t", bc_type_of(patch));
+    double const id = file_.create_text(zone_bc, cgns::unique_name(taken, patch.name), "BC_t", cgns::bc_type_of(patch));
     if (patch.faces.size() > 0) {
       std::vector<std::int32_t> types, nodes;
       for (Index f = 0; f < patch.faces.size(); ++f) {
@@ -167,7 +144,7 @@ void ElementZoneWriter::boundary(int z, double zone_id, Index next, std::set<std
                         std::to_string(patch.faces[f].size()) + " corners, which cannot be written");
       }
       for (Index32 const n : patch.faces.item) nodes.push_back(std::int32_t(n - zone.first_node + 1));
-      section(zone_id, unique_name(sections, patch.name), next, types, patch.faces.first, nodes);
+      section(zone_id, cgns::unique_name(sections, patch.name), next, types, patch.faces.first, nodes);
       std::array<std::int32_t, 2> const range{std::int32_t(next), std::int32_t(next + patch.faces.size() - 1)};
       next += patch.faces.size();
       if (options_.boundary_nodes) {
@@ -198,7 +175,7 @@ void ElementZoneWriter::connections(int z, double zone_id) {
     auto const& donor = mesh_.zones[std::size_t(c.donor_zone)];
     auto const [own_base, own_name] = split(mesh_.zones[std::size_t(z)].name);
     auto const [donor_base, donor_name] = split(donor.name);
-    double const id = file_.create_text(connectivity, unique_name(taken, c.name), "GridConnectivity_t",
+    double const id = file_.create_text(connectivity, cgns::unique_name(taken, c.name), "GridConnectivity_t",
                                         own_base == donor_base ? donor_name : donor_base + "/" + donor_name);
     file_.create_text(id, "GridConnectivityType", "GridConnectivityType_t", "Abutting1to1");
     points(id, "PointList", c.nodes, mesh_.zones[std::size_t(z)]);

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_families.hpp>
 #include <gridmorph/io/cgns/cgns_file.hpp>
+#include <gridmorph/io/cgns/new_names.hpp>
 #include <gridmorph/io/element_zones.hpp>
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/output_file.hpp>
@@ -16,44 +17,17 @@ namespace gridmorph {
 
 namespace {
 
-constexpr float library_version = 4.0F;
-constexpr std::size_t longest_name = 32;
-
-/// Names of siblings must differ and be short: appends "_2", "_3", ... where a name is taken.
-std::string unique_name(std::set<std::string>& taken, std::string const& wanted) {
-  std::string name = wanted.substr(0, longest_name);
-  for (int n = 2; !taken.insert(name).second; ++n) {
-    std::string const suffix = "_" + std::to_string(n);
-    name = wanted.substr(0, longest_name - suffix.size()) + suffix;
-  }
-  return name;
-}
-
-std::string bc_type_of(Patch const& patch) {
-  if (patch.kind == PatchKind::connection) return "UserDefined";
-  if (!patch.bc_type.empty()) return patch.bc_type;
-  switch (patch.kind) {
-    case PatchKind::wall: return "BCWall";
-    case PatchKind::inflow: return "BCInflow";
-    case PatchKind::outflow: return "BCOutflow";
-    case PatchKind::symmetry: return "BCSymmetryPlane";
-    case PatchKind::farfield: return "BCFarfield";
-    case PatchKind::degenerate: return "BCDegenerateLine";
-    default: return "UserDefined";
-  }
-}
-
 class MeshWriter {
  public:
   MeshWriter(cgns::File& file, Mesh const& mesh, WriteOptions const& options) : file_(file), mesh_(mesh) {
     dimension_ = mesh.dimension == 2 ? 2 : 3;
     physical_dimension_ = mesh.dimension == 2 ? options.physical_dimension : 3;
     for (auto const& patch : mesh.patches)
-      if (!patch.families.empty()) family_types_[patch.families.front()].insert(bc_type_of(patch));
+      if (!patch.families.empty()) family_types_[patch.families.front()].insert(cgns::bc_type_of(patch));
   }
 
   void begin() {
-    float const version = library_version;
+    float const version = cgns::library_version;
     file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &version);
   }
 
@@ -150,8 +124,8 @@ class MeshWriter {
       if (patch.zone != z || (dimension_ == 2 && patch.range.extent(2) == 1)) continue;
       if (taken.empty()) zone_bc = file_.create(zone_id, "ZoneBC", "ZoneBC_t");
       bool const by_family = !patch.families.empty() && family_types_.at(patch.families.front()).size() == 1;
-      double const id = file_.create_text(zone_bc, unique_name(taken, patch.name), "BC_t",
-                                          by_family ? "FamilySpecified" : bc_type_of(patch));
+      double const id = file_.create_text(zone_bc, cgns::unique_name(taken, patch.name), "BC_t",
+                                          by_family ? "FamilySpecified" : cgns::bc_type_of(patch));
       range(id, "PointRange", patch.range.begin, last_of(patch.range));
       family_names(id, patch.families);
     }
@@ -165,7 +139,7 @@ class MeshWriter {
       if (taken.empty()) connectivity = file_.create(zone_id, "ZoneGridConnectivity", "ZoneGridConnectivity_t");
       auto const [own_base, own_name] = split(mesh_.zones[z].name);
       auto const [donor_base, donor_name] = split(mesh_.zones[face.donor_zone].name);
-      double const id = file_.create_text(connectivity, unique_name(taken, face.name), "GridConnectivity1to1_t",
+      double const id = file_.create_text(connectivity, cgns::unique_name(taken, face.name), "GridConnectivity1to1_t",
                                           own_base == donor_base ? donor_name : donor_base + "/" + donor_name);
       Index3 const last = last_of(face.range);
       range(id, "PointRange", face.range.begin, last);
