@@ -18,26 +18,6 @@ namespace {
 constexpr int n_blades = 8;
 constexpr double pi = 3.14159265358979323846;
 
-constexpr char const* rules = R"(
-[[motion]]
-patches = "blade"
-rule    = "formula"
-dtheta  = "0.06 * sin(axial / 0.05) + 0.1 * axial"
-daxial  = "0.1 * (r - 0.12) * axial"
-[[motion]]
-patches = ["inlet", "outlet"]
-rule    = "circumferential-slide"
-of      = "blade"
-[[motion]]
-patches = "type:periodic"
-rule    = "follow"
-of      = "blade"
-[[motion]]
-patches = ["hub", "case"]
-rule    = "slip"
-surface = "revolution"
-)";
-
 class ElementWheel : public WheelTest {
  protected:
   void SetUp() override {
@@ -53,7 +33,7 @@ class ElementWheel : public WheelTest {
   /// A mesh and its case file in the folder.
   void put(std::string const& name, Mesh const& mesh) const {
     write_mesh(folder.file(name + ".cgns"), mesh);
-    case_of(name, rules);
+    case_of(name, demo_rules);
   }
   void case_of(std::string const& name, std::string const& motion) const {
     folder.write(name + ".toml",
@@ -68,28 +48,6 @@ class ElementWheel : public WheelTest {
     std::filesystem::remove(folder / "wheel.cgns");
     EXPECT_LE(gridmorph("wheel wheel.toml"), 1) << text("out") << text("err");
     return ElementWheelFile(folder.file("wheel.cgns"));
-  }
-  static double distance_from(ElementWheelFile const& wheel, int p, Mesh const& passage) {
-    double worst = 0;
-    for (auto const& zone : passage.zones) {
-      FileZone const& copy = wheel.zones.at(name(zone.name, p));
-      for (Index n = 0; n < zone.size(); ++n)
-        worst = std::max(worst, distance(Turn(Axis{}, -p, n_blades)(copy.at(std::size_t(n))),
-                                         passage.coordinates[zone.first_node + n]));
-    }
-    return worst;
-  }
-  static double distance_between(ElementWheelFile const& a, int p, ElementWheelFile const& b, int q) {
-    double worst = 0;
-    std::string const end = name("", p);
-    for (auto const& [zone_name, zone] : a.zones) {
-      if (!zone_name.ends_with(end)) continue;
-      FileZone const& other = b.zones.at(name(zone_name.substr(0, zone_name.size() - end.size()), q));
-      for (std::size_t n = 0; n < zone.x.size(); ++n)
-        worst =
-            std::max(worst, distance(Turn(Axis{}, -p, n_blades)(zone.at(n)), Turn(Axis{}, -q, n_blades)(other.at(n))));
-    }
-    return worst;
   }
   [[nodiscard]] double size() const { return blocks.size(); }
 
@@ -112,11 +70,11 @@ dtheta  = "-0.3 * axial"
 
 TEST_F(ElementWheel, WithoutMotionIsTheWheelOfTheBlocksBitForBit) {
   write_mesh(folder.file("blocks.cgns"), blocks);
-  case_of("blocks", rules);
+  case_of("blocks", demo_rules);
   for (std::string const blades : {"factors = [0]\n", "factors = [0, -0.0]\n"}) {
     WheelFile const of_blocks = wheel("blocks.toml", blades);
     ElementWheelFile const of_elements = element_wheel("hexahedra", blades);
-    EXPECT_EQ(distance_from(of_elements, 0, blocks), 0);
+    EXPECT_EQ(distance_from(of_elements, 0, n_blades, blocks), 0);
     ASSERT_EQ(of_elements.zones.size(), of_blocks.zones.size());
     for (auto const& [name, zone] : of_blocks.zones) {
       EXPECT_EQ(zone.x, of_elements.zones.at(name).x) << name;
@@ -135,13 +93,13 @@ TEST_F(ElementWheel, OfEqualBladesIsTheMorphedPassageTurned) {
   EXPECT_EQ(wheel.n_periodic(), 0);
   wheel.expect_same_bits();
   Mesh const one = morphed("hexahedra");
-  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_from(wheel, p, one), 1e-14 * size()) << p;
+  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_from(wheel, p, n_blades, one), 1e-14 * size()) << p;
 }
 
 /// Blades, inlet, outlet and periodic sides of different blades: what the rules say of them is the same whatever the cells are.
 TEST_F(ElementWheel, MovesBoundariesAsTheWheelOfTheBlocks) {
   write_mesh(folder.file("blocks.cgns"), blocks);
-  case_of("blocks", rules);
+  case_of("blocks", demo_rules);
   WheelFile const of_blocks = wheel("blocks.toml", three_blades);
   ElementWheelFile const of_elements = element_wheel("hexahedra", three_blades);
   expect_same_boundaries(blocks, {"hub", "case"}, of_blocks, of_elements);
@@ -208,7 +166,7 @@ class CascadeWheel : public ElementWheel {
     Mesh mixed = to_prisms_and_tetrahedra(blocks, 4);
     for (auto const& face : blocks.interfaces) mixed.connections.push_back(node_pairs(blocks, face));
     put("mixed", mixed);
-    std::string gentle = rules;
+    std::string gentle = demo_rules;
     gentle.replace(gentle.find("0.06 * sin(axial / 0.05) + 0.1 * axial"), 38, "0.04 * sin(2 * axial) + 0.01 * axial");
     gentle.replace(gentle.find("0.1 * (r - 0.12) * axial"), 24, "0.02 * (r - 1.2) * axial");
     for (std::string const kind : {"blocks", "hexahedra", "mixed"}) case_of(kind, gentle);
@@ -240,7 +198,8 @@ TEST_F(CascadeWheel, OfAnyElementsIsClosedFaceByFace) {
     EXPECT_EQ(faces.claimed, 0) << kind;
     ElementWheelFile const equal = element_wheel(kind, "");
     Mesh const one = morphed(kind);
-    for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_from(equal, p, one), 1e-14 * size()) << kind << " " << p;
+    for (int p = 0; p < n_blades; ++p)
+      EXPECT_LT(distance_from(equal, p, n_blades, one), 1e-14 * size()) << kind << " " << p;
   }
 }
 
@@ -274,7 +233,7 @@ TEST_F(CascadeWheel, HasPatchesOfItsSidesAtTheEndsOfAPartAlone) {
     for (auto const& [bc, family] : zone.family_of_bc) EXPECT_EQ(bc.find("_side"), std::string::npos) << name;
   FaceCount const faces = whole.count_faces();
   EXPECT_EQ(faces.open + faces.claimed + faces.ends, 0);
-  for (int p = 0; p < n_blades; ++p) EXPECT_EQ(distance_between(whole, p, without, p), 0) << p;
+  for (int p = 0; p < n_blades; ++p) EXPECT_EQ(distance_between(whole, p, without, p, n_blades), 0) << p;
 
   (void)element_wheel("sides", "passages = 3\n");
   Mesh const part = read_mesh(folder.file("wheel.cgns"));
@@ -288,13 +247,13 @@ TEST_F(ElementWheel, OfBlocksBesideElementsIsTheWheelOfElements) {
   std::set<std::string> some;
   for (std::size_t z = 0; z < blocks.zones.size(); z += 2) some.insert(blocks.zones[z].name);
   HybridFile(folder.file("hybrid.cgns"), blocks, as_hexahedra(blocks), some);
-  case_of("hybrid", rules);
+  case_of("hybrid", demo_rules);
   ElementWheelFile const hybrid = element_wheel("hybrid", three_blades),
                          plain = element_wheel("hexahedra", three_blades);
   hybrid.expect_same_bits();
   FaceCount const faces = hybrid.count_faces();
   EXPECT_EQ(faces.open + faces.ends + faces.claimed, 0);
-  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_between(hybrid, p, plain, p), 1e-12 * size()) << p;
+  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_between(hybrid, p, plain, p, n_blades), 1e-12 * size()) << p;
 }
 
 /// Edges have a node amid them, and connections pair these as all others.
@@ -330,7 +289,7 @@ TEST_F(CascadeWheel, OfSecondOrderElementsHasTheSameBitsAmidEdges) {
   EXPECT_EQ(faces.open + faces.ends + faces.claimed, 0);
   Mesh const one = morphed("mixed");
   ElementWheelFile const equal = element_wheel("mixed", "");
-  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_from(equal, p, one), 1e-14 * size()) << p;
+  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_from(equal, p, n_blades, one), 1e-14 * size()) << p;
 }
 
 TEST_F(ElementWheel, TurnsWithItsSequence) {
@@ -339,13 +298,13 @@ TEST_F(ElementWheel, TurnsWithItsSequence) {
   shifted.replace(0, shifted.find(']') + 1, R"(sequence = ["A", "A", "B", "A", "B", "B", "C", "A"])");
   ElementWheelFile const other = element_wheel("hexahedra", shifted);
   for (int p = 0; p < n_blades; ++p)
-    EXPECT_LT(distance_between(wheel, (p + 1) % n_blades, other, p), 1e-14 * size()) << p;
+    EXPECT_LT(distance_between(wheel, (p + 1) % n_blades, other, p, n_blades), 1e-14 * size()) << p;
 }
 
 TEST_F(ElementWheel, WithItsSidesKnownForEqualBladesIsTheSame) {
   ElementWheelFile const closed = element_wheel("hexahedra", "factors = [0.5]\n");
   ElementWheelFile const opened = element_wheel("hexahedra", "factors = [0.5, 0.5000000000000001]\n");
-  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_between(opened, p, closed, p), 1e-9 * size()) << p;
+  for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_between(opened, p, closed, p, n_blades), 1e-9 * size()) << p;
 }
 
 TEST_F(ElementWheel, IsTheSameBitsOnOneThread) {
@@ -371,7 +330,7 @@ TEST_F(ElementWheel, IsMeasuredAndCertifiedPassageByPassage) {
 }
 
 TEST_F(ElementWheel, OfDifferentBladesNeedsARuleForItsSides) {
-  std::string free = rules;
+  std::string free = demo_rules;
   auto const begin = free.find("[[motion]]\npatches = \"type:periodic\""), end = free.find("[[motion]]", begin + 1);
   free.erase(begin, end - begin);
   case_of("hexahedra", free);

@@ -27,24 +27,7 @@ class PassageWheel : public WheelTest {
 input  = "passage.cgns"
 output = "morphed.cgns"
 axis   = "x"
-[[motion]]
-patches = "blade"
-rule    = "formula"
-dtheta  = "0.06 * sin(axial / 0.05) + 0.1 * axial"
-daxial  = "0.1 * (r - 0.12) * axial"
-[[motion]]
-patches = ["inlet", "outlet"]
-rule    = "circumferential-slide"
-of      = "blade"
-[[motion]]
-patches = "type:periodic"
-rule    = "follow"
-of      = "blade"
-[[motion]]
-patches = ["hub", "case"]
-rule    = "slip"
-surface = "revolution"
-[boundary_layer]
+)" + std::string(demo_rules) + R"([boundary_layer]
 walls  = "blade"
 extent = "block"
 )");

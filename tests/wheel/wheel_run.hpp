@@ -25,6 +25,27 @@ struct CylindricalPoint {
 /// About the x axis.
 inline CylindricalPoint cylindrical(Vec3 const& p) { return {p.x, std::hypot(p.y, p.z), std::atan2(p.z, p.y)}; }
 
+/// The blade of the demo passage turns and shifts along the axis; the rest goes along.
+inline constexpr char const* demo_rules = R"(
+[[motion]]
+patches = "blade"
+rule    = "formula"
+dtheta  = "0.06 * sin(axial / 0.05) + 0.1 * axial"
+daxial  = "0.1 * (r - 0.12) * axial"
+[[motion]]
+patches = ["inlet", "outlet"]
+rule    = "circumferential-slide"
+of      = "blade"
+[[motion]]
+patches = "type:periodic"
+rule    = "follow"
+of      = "blade"
+[[motion]]
+patches = ["hub", "case"]
+rule    = "slip"
+surface = "revolution"
+)";
+
 class WheelTest : public ::testing::Test {
  protected:
   [[nodiscard]] int gridmorph(std::string const& arguments) const {
@@ -52,7 +73,8 @@ class WheelTest : public ::testing::Test {
   }
 
   /// The largest distance between passage p of a wheel, turned back, and a mesh of one passage.
-  static double distance_from(WheelFile const& wheel, int p, int of, Mesh const& passage) {
+  template <class File>
+  static double distance_from(File const& wheel, int p, int of, Mesh const& passage) {
     double worst = 0;
     for (auto const& zone : passage.zones) {
       FileZone const& copy = wheel.zones.at(name(zone.name, p));
@@ -63,7 +85,8 @@ class WheelTest : public ::testing::Test {
     return worst;
   }
   /// The same between passage p of one wheel and passage q of another.
-  static double distance_between(WheelFile const& a, int p, WheelFile const& b, int q, int of) {
+  template <class File>
+  static double distance_between(File const& a, int p, File const& b, int q, int of) {
     double worst = 0;
     std::string const end = name("", p);
     for (auto const& [zone_name, zone] : a.zones) {
