@@ -64,9 +64,7 @@ ElementWheelMotion::ElementWheelMotion(Mesh const& sector, UnstructuredTopology 
   if (options.elements.motion < 0) {
     double largest = -1;
     for (int p = 0; p < passages_.n_passages(); ++p) {
-      int same = 0;
-      while (same < p && !passages_.alike(p, same)) ++same;
-      if (same < p) continue;
+      if (passages_.first_alike(p) < p) continue;
       auto displacement = passages_.boundary(p);
       double const now = largest_norm(displacement);
       if (now <= largest) continue;

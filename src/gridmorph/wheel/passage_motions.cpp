@@ -63,6 +63,12 @@ bool PassageMotions::alike(int passage, int other) const {
   return true;
 }
 
+int PassageMotions::first_alike(int passage) const {
+  int same = 0;
+  while (same < passage && !alike(passage, same)) ++same;
+  return same;
+}
+
 int PassageMotions::n_passages() const {
   int most = 0;
   for (auto const& row : blades_) most = std::max(most, row.passages);

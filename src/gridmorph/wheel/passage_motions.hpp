@@ -39,6 +39,8 @@ class PassageMotions {
   [[nodiscard]] std::vector<Vec3> boundary(int passage) const;
   /// Whether two passages have equal displacements, because they and their neighbours have equal blades.
   [[nodiscard]] bool alike(int passage, int other) const;
+  /// The first passage whose displacements a passage has: itself where there is none before it.
+  [[nodiscard]] int first_alike(int passage) const;
   /// Of the row that makes most.
   [[nodiscard]] int n_passages() const;
 

@@ -102,8 +102,7 @@ class WheelRun {
         auto const boundary = motions.boundary(p);
         RelaxReport const relaxed = morph(*plan, boundary, morphed);
         last = p;
-        int same = 0;  // a passage like this one has been measured
-        while (same < p && !motions.alike(p, same)) ++same;
+        int const same = motions.first_alike(p);  // before p: it has been measured
         result_.passages.push_back(same < p ? result_.passages[same] : measure(*plan, boundary, morphed));
         if (same == p && relaxed.before > 0)
           result_.notes.push_back(
@@ -160,9 +159,7 @@ class WheelRun {
     int worst = -1;
     Trial first;
     for (int p = 0; p < motions.n_passages(); ++p) {
-      int same = 0;
-      while (same < p && !motions.alike(p, same)) ++same;
-      if (same < p) continue;
+      if (motions.first_alike(p) < p) continue;
       Trial const now = trial_of(*plan, motions.boundary(p));
       if (worst >= 0 && !(first.badness < now.badness)) continue;
       worst = p;

@@ -290,8 +290,8 @@ std::vector<Vec3> MiddleNodes::interpolated(std::vector<Index32> const& region, 
   return Interpolation(*this, region, x).run(sweeps);
 }
 
-bool MiddleNodes::pull_to(std::vector<Index32> const& rows, std::vector<Vec3> const& goals, double share, Verdict& now,
-                          Coordinates& x) {
+void MiddleNodes::pull_to(std::vector<Index32> const& rows, std::vector<Vec3> const& goals, double share, Verdict& now,
+                          std::vector<Index32>& touched, Coordinates& x) {
   constexpr int steps = 8;
   std::vector<Vec3> from;
   for (Index32 const r : rows) from.push_back(x[plan_.middle.target[std::size_t(r)]]);
@@ -314,10 +314,12 @@ bool MiddleNodes::pull_to(std::vector<Index32> const& rows, std::vector<Vec3> co
     at = judge(around, share, x);
   }
   bool const better = at.better_than(before);
-  if (!better)
-    for (std::size_t k = 0; k < rows.size(); ++k) set(rows[k], from[k], x);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (!better)
+      set(rows[k], from[k], x);
+    else if (!(x[plan_.middle.target[std::size_t(rows[k])]] == from[k]))
+      touched.push_back(rows[k]);
   now = better ? at : before;
-  return better;
 }
 
 std::vector<Index> MiddleNodes::pull(std::vector<Index32> const& suspects, double share, Coordinates& x) {
@@ -330,15 +332,7 @@ std::vector<Index> MiddleNodes::pull(std::vector<Index32> const& suspects, doubl
       std::vector<Index32> rows = rows_of(now.broken);
       for (int ring = 1; ring < rings; ++ring) rows = rows_of(elements_of(rows));
       if (rows.empty()) break;
-      std::vector<Vec3> const before = [&] {
-        std::vector<Vec3> out;
-        for (Index32 const r : rows) out.push_back(x[plan_.middle.target[std::size_t(r)]]);
-        return out;
-      }();
-      if (!pull_to(rows, to_straight ? straight(rows, x) : interpolated(rows, 2 * rings * rings, x), share, now, x))
-        continue;
-      for (std::size_t k = 0; k < rows.size(); ++k)
-        if (!(x[plan_.middle.target[std::size_t(rows[k])]] == before[k])) touched.push_back(rows[k]);
+      pull_to(rows, to_straight ? straight(rows, x) : interpolated(rows, 2 * rings * rings, x), share, now, touched, x);
     }
   sort_unique(touched);
   return {touched.begin(), touched.end()};

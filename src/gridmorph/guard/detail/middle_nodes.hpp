@@ -58,9 +58,9 @@ class MiddleNodes {
   [[nodiscard]] std::vector<Vec3> straight(std::vector<Index32> const& rows, Coordinates const& x) const;
   [[nodiscard]] Vec3 on_surfaces(Index32 row, Vec3 const& place) const;
   void set(Index32 row, Vec3 const& place, Coordinates& x) const;
-  /// Whether it got better; `now` becomes what it made.
-  bool pull_to(std::vector<Index32> const& rows, std::vector<Vec3> const& goals, double share, Verdict& now,
-               Coordinates& x);
+  /// `now` becomes what it made; rows that moved for the better are added to `touched`.
+  void pull_to(std::vector<Index32> const& rows, std::vector<Vec3> const& goals, double share, Verdict& now,
+               std::vector<Index32>& touched, Coordinates& x);
 
   Mesh const& mesh_;
   UnstructuredPlan const& plan_;

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/point_numbers.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
@@ -8,14 +9,10 @@
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <system_error>
-#include <unordered_map>
 #include <utility>
 
 namespace gridmorph::vtk {
@@ -74,25 +71,6 @@ class Pieces {
   std::vector<Grid const*> grids_;
 };
 
-/// The bits of a place; both zeros are one.
-struct Place {
-  std::array<std::uint64_t, 3> bits;
-
-  explicit Place(Vec3 const& p)
-      : bits{std::bit_cast<std::uint64_t>(p.x + 0.0), std::bit_cast<std::uint64_t>(p.y + 0.0),
-             std::bit_cast<std::uint64_t>(p.z + 0.0)} {}
-  [[nodiscard]] bool operator==(Place const&) const = default;
-  [[nodiscard]] bool operator<(Place const& other) const { return bits < other.bits; }
-  [[nodiscard]] std::uint64_t hash() const {
-    std::uint64_t out = 0;
-    for (std::uint64_t const b : bits) {
-      out = (out ^ b) * 0x9E3779B97F4A7C15ULL;
-      out ^= out >> 29;
-    }
-    return out;
-  }
-};
-
 /// Joins zones by faces whose corners lie in the same places.
 class Joiner {
  public:
@@ -100,18 +78,14 @@ class Joiner {
 
   void run() {
     BoundaryFaces const& faces = topology_.boundary;
-    std::unordered_map<std::uint64_t, std::vector<Index32>> waiting;  // faces without another side, ascending
-    for (Index f = 0; f < faces.size(); ++f) {
-      std::uint64_t key = 0;
-      for (Index32 const n : faces.nodes[f]) key += Place(mesh_.coordinates[n]).hash();
-      auto& same = waiting[key];
-      auto const other = std::find_if(same.begin(), same.end(), [&](Index32 g) {
-        return zone(g) != zone(Index32(f)) && places(g) == places(Index32(f));
-      });
+    std::map<std::vector<int>, std::vector<Index32>> waiting;  // by place: faces without another side, ascending
+    for (Index32 f = 0; f < Index32(faces.size()); ++f) {
+      auto& same = waiting[places(f)];
+      auto const other = std::find_if(same.begin(), same.end(), [&](Index32 g) { return zone(g) != zone(f); });
       if (other == same.end()) {
-        same.push_back(Index32(f));
+        same.push_back(f);
       } else {
-        join(*other, Index32(f));
+        join(*other, f);
         same.erase(other);
       }
     }
@@ -134,18 +108,18 @@ class Joiner {
   [[nodiscard]] int zone(Index32 face) const {
     return mesh_.zone_of_element(topology_.boundary.element[std::size_t(face)]);
   }
-  /// Of corners and nodes amid edges, in order, each with its node.
-  [[nodiscard]] std::vector<std::pair<Place, Index32>> nodes(Index32 face) const {
-    std::vector<std::pair<Place, Index32>> out;
+  /// Numbers of the places of corners and nodes amid edges, in order, each with its node.
+  [[nodiscard]] std::vector<std::pair<int, Index32>> nodes(Index32 face) {
+    std::vector<std::pair<int, Index32>> out;
+    auto const add = [&](Index32 n) { out.emplace_back(numbers_.find_or_add(mesh_.coordinates[n], int(n)), n); };
     BoundaryFaces const& faces = topology_.boundary;
-    for (Index32 const n : faces.nodes[face]) out.emplace_back(Place(mesh_.coordinates[n]), n);
-    for (Index32 const n : side_middles(mesh_, faces.element[std::size_t(face)], faces.side[std::size_t(face)]))
-      out.emplace_back(Place(mesh_.coordinates[n]), n);
+    for (Index32 const n : faces.nodes[face]) add(n);
+    for (Index32 const n : side_middles(mesh_, faces.element[std::size_t(face)], faces.side[std::size_t(face)])) add(n);
     std::sort(out.begin(), out.end());
     return out;
   }
-  [[nodiscard]] std::vector<Place> places(Index32 face) const {
-    std::vector<Place> out;
+  [[nodiscard]] std::vector<int> places(Index32 face) {
+    std::vector<int> out;
     for (auto const& [place, node] : nodes(face)) out.push_back(place);
     return out;
   }
@@ -158,6 +132,7 @@ class Joiner {
 
   Mesh& mesh_;
   UnstructuredTopology topology_;
+  PointNumbers numbers_{0};
   std::map<std::pair<int, int>, std::vector<std::pair<Index32, Index32>>> pairs_;
 };
 
