@@ -19,8 +19,7 @@ std::vector<Example> const of_unstructured{{"[volume]\nlaw = \"c1\"\n", {"[volum
 std::vector<Example> const of_structured{
     {"[near_field]\noffset = 0.1\n", {"[near_field]", "'m' is structured", "[boundary_layer]"}},
     {"[background]\ncells = 4\n", {"[background]", "[volume]"}},
-    {"[guard]\nsteps = 4\n", {"[guard] steps"}},
-    {"[output]\nstages = \"s\"\n", {"[output] stages", "gridmorph plan"}}};
+    {"[guard]\nsteps = 4\n", {"[guard] steps"}}};
 
 /// The example begins on line 7 where `mesh`, more keys of [mesh], is empty.
 std::vector<std::string> check(Example const& example, CaseUse const& use, std::string const& mesh = "") {
@@ -80,8 +79,14 @@ TEST(IgnoredKeys, OfOtherRunsAreErrors) {
     }
   }
   Example const stages{"[output]\nstages = \"s\"\n", {}};
-  EXPECT_TRUE(reported(check(stages, {.unstructured = true, .run = Run::sequence}), "case.toml:8: [output] stages",
-                       {"sequence"}));
+  for (bool const unstructured : {false, true}) {
+    for (auto const& [run, word] : {std::pair(Run::sequence, "sequence"), std::pair(Run::wheel, "wheel")}) {
+      auto const lines = check(stages, {.unstructured = unstructured, .run = run});
+      ASSERT_EQ(lines.size(), 1U) << word;
+      EXPECT_TRUE(reported(lines, "case.toml:8: [output] stages", {word}));
+    }
+    EXPECT_EQ(check(stages, {.unstructured = unstructured}).size(), 0U);
+  }
 }
 
 TEST(IgnoredKeys, OfOutputsInFormatsWithoutSolutionsAreErrors) {

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """Tests of scripts/picture on a small annulus with a wavy wall, written here straight through HDF5."""
+import json
 import os
 import runpy
+import shutil
 import struct
 import subprocess
 import sys
@@ -51,6 +53,21 @@ def write_annulus(path, shift=0.0, n=(17, 9, 13)):
             bc = node(boundary, family, "BC_t", "FamilySpecified")
             node(bc, "FamilyName", "FamilyName_t", family)
             node(bc, "PointRange", "IndexRange_t", np.array([begin, end]))
+
+
+def add_stages(path, stages):
+    """Fields of the cells: stage 1 up to the middle of i, 2 beyond it, in chains 1 and 2 along k."""
+    with h5py.File(path, "a") as file:
+        zone = file["Base/Zone 1"]
+        ni, nj, nk = zone[" data"][0]
+        solution = node(zone, "MorphCells", "FlowSolution_t")
+        node(solution, "GridLocation", "GridLocation_t", "CellCenter")
+        values = np.ones((nk - 1, nj - 1, ni - 1))
+        values[:, :, (ni - 1) // 2:] = stages
+        chains = np.ones_like(values)
+        chains[(nk - 1) // 2:] = 2
+        node(solution, "Stage", "DataArray_t", values)
+        node(solution, "Chain", "DataArray_t", chains)
 
 
 def image_size(path):
@@ -103,6 +120,44 @@ class Picture(unittest.TestCase):
     def test_a_plane_across_the_grid_lines_is_drawn(self):
         self.expect_pictures(self.run_picture(self.base, self.morphed, "--plane", "z=0.1"), ("section",))
 
+    def write_stages(self):
+        os.mkdir(self.path("stages"))
+        listed = []
+        for number, (name, shift) in enumerate((("boundary", 0), ("near field", 0.05), ("iteration 1", 0.1))):
+            file = f"stage_{number:02}_{name.replace(' ', '_')}.cgns"
+            write_annulus(self.path("stages/" + file), shift)
+            add_stages(self.path("stages/" + file), 2)
+            listed.append({"number": number, "name": name, "file": file, "chains": ["a", "b"] if number else []})
+        with open(self.path("stages/stages.json"), "w", encoding="utf-8") as file:
+            json.dump({"stages": listed}, file)
+
+    def test_stages_are_drawn_one_by_one_and_in_motion(self):
+        self.write_stages()
+        for where, names in ((("--span", "0.4"), self.walls), (("--plane", "z=0.1"), ("section",))):
+            run = self.run_picture(self.base, self.morphed, *where, "--stages", self.path("stages"))
+            self.assertEqual(run.returncode, 0, run.stderr)
+            stages = ("stage_00_boundary", "stage_01_near_field", "stage_02_iteration_1")
+            self.assertEqual(sorted(os.listdir(self.path("out"))), sorted([n + ".png" for n in (*names, *stages)] + ["stages.gif"]))
+            self.assertEqual(len({image_size(self.path(f"out/{n}.png")) for n in stages}), 1, "pictures of an animation are of one size")
+            with open(self.path("out/stages.gif"), "rb") as file:
+                self.assertEqual(file.read(6), b"GIF89a")
+            shutil.rmtree(self.path("out"))
+
+    def test_a_stage_shows_cells_that_were_reached(self):
+        """Inked pixels of the colour of the second iteration appear with it and not before."""
+        self.write_stages()
+        self.assertEqual(self.run_picture(self.base, "--k", "3", "--color", "none", "--stages", self.path("stages")).returncode, 0)
+        from PIL import Image
+
+        inked = []
+        for name in ("stage_01_near_field", "stage_02_iteration_1"):
+            pixels = np.asarray(Image.open(self.path(f"out/{name}.png")).convert("RGB"), int)
+            module = runpy.run_path(PICTURE)
+            pale = 255 - module["STAGE_TINT"] * (255 - np.array([0x4c, 0x9f, 0x70]))
+            green = np.abs(pixels - pale).max(2) < 12
+            inked.append(green.sum())
+        self.assertGreater(inked[1], 4 * max(inked[0], 1), "the legend has the colour too")
+
     def test_walls_of_adf_files_are_drawn(self):
         program = runpy.run_path(PICTURE)["cgnsconvert"]()
         if program is None:
@@ -119,7 +174,8 @@ class Picture(unittest.TestCase):
         for arguments, words in (((self.path("gone.cgns"),), "no such file"), ((self.path("noise.cgns"),), "neither an HDF5 nor an ADF"),
                                  ((self.base, self.path("other.cgns")), "differs in size"), ((self.base, "--plane", "q=1"), "x=0.5"),
                                  ((self.base, "--plane", "x=7"), "meets no zone"), ((self.base, "--span", "2"), "within 0 and 1"),
-                                 ((self.base, "--wall", "wing"), "blade")):
+                                 ((self.base, "--wall", "wing"), "blade"),
+                                 ((self.base, "--stages", self.path("none")), "stages.json")):
             run = self.run_picture(*arguments)
             self.assertEqual(run.returncode, 2, arguments)
             self.assertIn(words, run.stderr)

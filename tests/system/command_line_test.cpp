@@ -86,6 +86,20 @@ TEST_F(CommandLine, PlanPrintsStagesAndWritesNothing) {
   EXPECT_FALSE(std::filesystem::exists(path("passage_rotation.cgns")));
 }
 
+TEST_F(CommandLine, PlanIsDrawnAsSvgOrForGraphviz) {
+  for (std::string const name : {"plan.svg", "plan.dot", "plan.gv"}) {
+    Outcome const run = gridmorph("plan rotation.toml --graph " + name);
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("wrote " + name), std::string::npos);
+    std::string const text = contents(path(name));
+    EXPECT_EQ(text.rfind(name == "plan.svg" ? "<svg" : "graph", 0), 0U) << name;
+    for (std::string const word : {"near field", "iteration 1", "blade", "periodic"})
+      EXPECT_NE(text.find(word), std::string::npos) << name << ": " << word;
+  }
+  EXPECT_EQ(contents(path("plan.dot")), contents(path("plan.gv")));
+  expect_bad_input(gridmorph("plan rotation.toml --graph plan.png"), {"plan.png", "NAME.svg"});
+}
+
 TEST_F(CommandLine, QualityMeasuresOneMeshAndRefusesToCompareDifferentOnes) {
   Outcome const one = gridmorph("quality passage.cgns");
   EXPECT_EQ(one.status, 0) << one.err;

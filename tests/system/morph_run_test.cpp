@@ -122,6 +122,67 @@ TEST_F(MorphRun, EveryStepIsTimedInTheOutputAndInTheReport) {
   EXPECT_NEAR(times["total_seconds"].get<double>(), sum, 1e-12);
 }
 
+/// The meshes of the stages, in the order of stages.json.
+std::vector<nlohmann::json> stages_in(std::filesystem::path const& folder) {
+  return nlohmann::json::parse(contents(folder / "stages.json"))["stages"];
+}
+
+TEST_F(MorphRun, WritesTheMeshAfterEveryStage) {
+  write("case.toml", contents(path("rotation.toml")) + "\n[output]\nstages = \"stages\"\n");
+  std::filesystem::create_directory(path("stages"));
+  write("stages/stage_99_left_over.cgns", "of another run");
+  write("stages/mine.txt", "mine");
+  Outcome const run = gridmorph("morph case.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("the mesh after every stage"), std::string::npos);
+  auto const stages = stages_in(path("stages"));
+  ASSERT_GE(stages.size(), 4U);
+  EXPECT_EQ(stages[0]["file"], "stage_00_boundary.cgns");
+  EXPECT_EQ(stages[1]["file"], "stage_01_near_field.cgns");
+  EXPECT_EQ(stages[2]["name"], "iteration 1");
+  EXPECT_FALSE(stages[2]["chains"].empty());
+  EXPECT_EQ(stages.back()["name"].get<std::string>().rfind("slip surfaces", 0), 0U);
+  EXPECT_FALSE(std::filesystem::exists(path("stages/stage_99_left_over.cgns")));
+  EXPECT_TRUE(std::filesystem::exists(path("stages/mine.txt")));
+  Mesh const before = read_mesh(path("passage.cgns").string()),
+             morphed = read_mesh(path("passage_rotation.cgns").string());
+  Index moved_before = 0;
+  for (auto const& stage : stages) {
+    Mesh const mesh = read_mesh(path("stages/" + stage["file"].get<std::string>()).string());
+    ASSERT_EQ(mesh.n_nodes(), before.n_nodes());
+    EXPECT_EQ(mesh.patches.size(), before.patches.size());
+    EXPECT_EQ(mesh.interfaces.size(), before.interfaces.size());
+    Index moved = 0, left = 0;
+    for (Index n = 0; n < before.n_nodes(); ++n) {
+      moved += mesh.coordinates[n] == before.coordinates[n] ? 0 : 1;
+      left += mesh.coordinates[n] == morphed.coordinates[n] ? 0 : 1;
+    }
+    EXPECT_GE(moved, moved_before) << stage["name"];
+    moved_before = moved;
+    EXPECT_EQ(left == 0, stage == stages.back()) << stage["name"] << ": the last stage is the morphed mesh";
+  }
+  std::string const last = contents(path("stages/" + stages.back()["file"].get<std::string>()));
+  for (std::string const field : {"Stage", "Chain", "Direction", "DisplacementX"})
+    EXPECT_NE(last.find(field), std::string::npos) << field;
+}
+
+TEST_F(MorphRun, WhatAGuardMovesIsTheLastStage) {
+  write("case.toml", contents(path("rotation.toml")) +
+                         "\n[guard]\nsmooth = true\nwrite_inverted = true\n[output]\nstages = \"stages\"\n");
+  // Far enough that cells lose their shape.
+  std::string text = contents(path("case.toml"));
+  auto const at = text.find("file    = \"rotation.csv\"");
+  ASSERT_NE(at, std::string::npos);
+  write("case.toml", text.insert(at, "amplitude = 9\n"));
+  Outcome const run = gridmorph("morph case.toml");
+  ASSERT_LE(run.status, 1) << run.err;
+  auto const stages = stages_in(path("stages"));
+  ASSERT_EQ(stages.back()["name"], "guard") << run.out;
+  Mesh const morphed = read_mesh(path("passage_rotation.cgns").string());
+  Mesh const last = read_mesh(path("stages/" + stages.back()["file"].get<std::string>()).string());
+  for (Index n = 0; n < morphed.n_nodes(); ++n) ASSERT_EQ(last.coordinates[n], morphed.coordinates[n]);
+}
+
 TEST_F(MorphRun, QuietPrintsNothing) {
   Outcome const run = gridmorph("--quiet morph rotation.toml");
   EXPECT_EQ(run.status, 0);

@@ -84,6 +84,22 @@ TEST_F(RunFiles, NoStageTakesThePlaceOfTheMesh) {
   expect_refused("morph case.toml", {"stages/wrap.cgns", "never overwritten"});
 }
 
+TEST_F(RunFiles, NoStageOfBlocksTakesThePlaceOfAnyOtherFile) {
+  std::filesystem::create_directory(path("stages"));
+  std::filesystem::copy(path("passage.cgns"), path("stages/stage_00_boundary.cgns"));
+  std::string const output = "[output]\nstages = \"stages\"\n" + still;
+  write("case.toml",
+        "[mesh]\ninput = \"stages/stage_00_boundary.cgns\"\noutput = \"out.cgns\"\naxis = \"x\"\n" + output);
+  expect_refused("morph case.toml", {"stages/stage_00_boundary.cgns", "never overwritten"});
+  write_case("other.toml", output);
+  expect_refused("morph other.toml -o stages/stage_00_boundary.cgns", {"same file"});
+  expect_refused("morph other.toml -o stages/stage_03_iteration_2.cgns", {"same file"});
+  expect_refused("morph other.toml -r stages/stages.json", {"same file"});
+  expect_refused("plan other.toml --graph passage.svg/no.svg", {"no.svg"});
+  ASSERT_EQ(shell("ln passage.cgns mesh.svg").status, 0);
+  expect_refused("plan other.toml --graph mesh.svg", {"input mesh", "never overwritten"});
+}
+
 TEST_F(RunFiles, TwoOutputsAreTwoFiles) {
   write_case("case.toml", still);
   ASSERT_EQ(shell("mkdir sub && ln -s sub also && touch one.cgns && ln -s one.cgns two.json").status, 0);

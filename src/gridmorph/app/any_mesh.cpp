@@ -1,7 +1,12 @@
 #include <gridmorph/app/any_mesh.hpp>
 #include <gridmorph/app/block_mesh.hpp>
 #include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
+
+#include <fmt/format.h>
+
+#include <system_error>
 
 namespace gridmorph::cli {
 
@@ -30,6 +35,14 @@ SmoothingMap const& AnyPlan::freeze_recorded() {
   record_.reset();
   drop_morpher();
   return *frozen_map_;
+}
+
+void make_stage_folder(std::filesystem::path const& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw MachineError(
+        fmt::format("the folder '{}' for the stages cannot be made: {}", folder.string(), error.message()));
 }
 
 CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<Measure const> measures, Index n_cells) {

@@ -10,6 +10,7 @@
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/surface/surface_io.hpp>
 #include <gridmorph/io/write_series.hpp>
+#include <gridmorph/plan/block_graph.hpp>
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/report/step_times.hpp>
 
@@ -102,8 +103,10 @@ class AnyPlan {
   [[nodiscard]] virtual QualityReport measure(QualityWanted wanted) const = 0;
   /// `verdict`: that is all that is wanted; `at_once`: this is the motion as the rules stand, no step of a sequence.
   [[nodiscard]] virtual PlanOutcome outcome(Coordinates const& morphed, bool verdict, bool at_once) const = 0;
-  /// Pictures of the stages, where this kind of plan has any.
-  virtual void write_stages(std::filesystem::path const& /*folder*/, Coordinates const& /*morphed*/) const {}
+  /// What a mesh goes through on its way, as meshes in a folder, which is made where it is missing. `displacement`: of the boundary, that came to
+  /// `morphed`.
+  virtual void write_stages(std::filesystem::path const& folder, std::vector<Vec3> const& displacement,
+                            Coordinates const& morphed) const = 0;
 
   /// Defaults taken, facts found on the way, up to now.
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
@@ -114,6 +117,8 @@ class AnyPlan {
   /// For `gridmorph plan`.
   [[nodiscard]] virtual std::string text() const = 0;
   [[nodiscard]] virtual nlohmann::json json() const = 0;
+  /// Its blocks and chains, for drawings; nothing where a kind of plan has none.
+  [[nodiscard]] virtual std::optional<BlockGraph> graph() const { return {}; }
   /// A line or two above the results of a morph; may be empty.
   [[nodiscard]] virtual std::string headline() const { return {}; }
   [[nodiscard]] virtual MeshForMessages for_messages() const = 0;
@@ -133,6 +138,9 @@ class AnyPlan {
 
 /// Room for measures as fields of an output mesh, for measure_quality() to fill.
 CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<Measure const> measures, Index n_cells);
+
+/// Makes the folder of AnyPlan::write_stages(). Throws MachineError.
+void make_stage_folder(std::filesystem::path const& folder);
 
 /// How far nodes were from the models of `field` rules, and what was left out of these.
 std::vector<std::string> mapping_notes(CaseFile const& case_file);

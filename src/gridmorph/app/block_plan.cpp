@@ -1,5 +1,6 @@
 // The steps between a structured mesh with motion rules and morphed coordinates.
 #include <gridmorph/app/block_mesh.hpp>
+#include <gridmorph/app/block_stages.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
@@ -26,6 +27,7 @@ class BlockPlan final : public AnyPlan {
  public:
   BlockPlan(BlockMesh const& mesh, CaseFile const& case_file)
       : case_file_(case_file),
+        file_mesh_(mesh),
         prepared_(prepare(mesh.mesh(), case_file.motion, case_file.plan)),
         mesh_(prepared_.mesh),
         near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)) {
@@ -109,6 +111,13 @@ class BlockPlan final : public AnyPlan {
     return out;
   }
 
+  void write_stages(std::filesystem::path const& folder, std::vector<Vec3> const& displacement,
+                    Coordinates const& morphed) const override {
+    write_block_stages(folder, file_mesh_.mesh(), prepared_.plan(), displacement, morphed);
+  }
+
+  [[nodiscard]] std::optional<BlockGraph> graph() const override { return block_graph(prepared_); }
+
   [[nodiscard]] std::vector<std::string> notes() const override {
     std::vector<std::string> out = prepared_.mesh.notes;
     auto const append = [&](auto const& more) { out.insert(out.end(), more.begin(), more.end()); };
@@ -188,6 +197,7 @@ class BlockPlan final : public AnyPlan {
   }
 
   CaseFile const& case_file_;
+  BlockMesh const& file_mesh_;
   Exec exec_;
   PreparedMorph prepared_;
   BlockMesh mesh_;  ///< with the patches that planning added

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <system_error>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -97,12 +96,9 @@ class ElementPlan final : public AnyPlan {
     return out;
   }
 
-  void write_stages(std::filesystem::path const& folder, Coordinates const& morphed) const override {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-      throw MachineError(
-          fmt::format("the folder '{}' for the stages cannot be made: {}", folder.string(), error.message()));
+  void write_stages(std::filesystem::path const& folder, std::vector<Vec3> const& /*displacement*/,
+                    Coordinates const& morphed) const override {
+    make_stage_folder(folder);
     auto const path = [&](std::size_t n) { return (folder / stage_names[n]).string(); };
     write_regions(path(0), morphed);
     if (prepared_.report.wrap) write_mesh(path(1), wrap_mesh(*prepared_.report.wrap));

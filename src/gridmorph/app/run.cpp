@@ -1,3 +1,4 @@
+#include <gridmorph/app/block_stages.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
@@ -7,12 +8,14 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
+#include <gridmorph/report/block_graph_text.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -279,11 +282,42 @@ std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls) {
   return out;
 }
 
+namespace {
+
+/// Files that [output] stages writes, as far as they are known before there is a plan: which stages blocks have is not, so of these what is there
+/// already, and what has the name of a stage among the other outputs.
+RunFiles stage_files(std::filesystem::path const& folder, MeshKind kind, RunFiles const& others) {
+  RunFiles out;
+  auto const add = [&](std::filesystem::path const& path) { out.push_back({"stage", path, true}); };
+  if (kind == MeshKind::unstructured) {
+    for (char const* name : stage_names) add(folder / name);
+    return out;
+  }
+  add(folder / stage_list_name);
+  std::error_code error;
+  for (auto const& entry : std::filesystem::directory_iterator(folder, error))
+    if (is_stage_of_blocks(entry.path())) add(entry.path());
+  std::size_t const n_there = out.size();
+  for (RunFile const& other : others) {
+    auto const at = folder / other.path.filename();
+    bool const is_there = std::any_of(out.begin(), out.begin() + std::ptrdiff_t(n_there),
+                                      [&](RunFile const& stage) { return stage.path == at; });
+    if (!is_there && is_stage_of_blocks(at)) add(at);
+  }
+  return out;
+}
+
+bool is_dot(std::filesystem::path const& path) { return path.extension() == ".dot" || path.extension() == ".gv"; }
+
+}  // namespace
+
 int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& terminal) {
   auto const& options = case_file.output_options;
   RunFiles outputs = outputs_of(case_file.output, options.report);
-  if (options.stages)
-    for (char const* name : stage_names) outputs.push_back({"stage", *options.stages / name, true});
+  if (options.stages) {
+    auto const stages = stage_files(*options.stages, file.kind, outputs);
+    outputs.insert(outputs.end(), stages.begin(), stages.end());
+  }
   if (options.vtk) outputs.push_back({"VTK file", *options.vtk});
   check_run_files(inputs_of(case_file, file), outputs);
   terminal.expect(file.traits().costs);
@@ -350,7 +384,10 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   if (written) run.times.push_back({"write", 0, true});
   std::string const vtk = options.vtk ? fmt::format("wrote {}\n", options.vtk->string()) : std::string();
   std::string stages;
-  if (options.stages) stages = fmt::format("wrote wrap and background mesh to {}\n", options.stages->string());
+  if (options.stages)
+    stages = fmt::format("wrote {} to {}\n",
+                         file.kind == MeshKind::structured ? "the mesh after every stage" : "wrap and background mesh",
+                         options.stages->string());
   return conclude({.output = case_file.output,
                    .report = options.report,
                    .written = written,
@@ -371,7 +408,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                            if (options.vtk) run.mesh().write_vtk(*options.vtk, run.morphed(), run.fields());
                            add_time(run.times, "write", watch.lap());
                          }
-                         if (options.stages) run.plan().write_stages(*options.stages, run.morphed());
+                         if (options.stages) run.write_stages(*options.stages);
                        },
                    .text =
                        [&] {
@@ -386,9 +423,14 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                   terminal);
 }
 
-void print_plan(CaseFile const& case_file, Terminal& terminal) {
+void print_plan(CaseFile const& case_file, Terminal& terminal, std::optional<std::filesystem::path> const& graph) {
   MeshSource const file =
       checked_mesh_file(case_file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph);
+  if (graph) {
+    if (file.kind == MeshKind::unstructured)
+      throw ConfigError(case_file.input.string() + " is unstructured: there are no blocks to draw; leave out --graph");
+    check_run_files(inputs_of(case_file, file), {{"drawing", *graph}});
+  }
   if (file.kind == MeshKind::unstructured && case_file.plan.volume.order == OrderBy::prediction)
     throw ConfigError(case_file.input.string() +
                       " is unstructured: there are no chains to put in order; leave out --optimise");
@@ -403,10 +445,15 @@ void print_plan(CaseFile const& case_file, Terminal& terminal) {
   json["nodes"] = run.mesh().n_nodes();
   json["notes"] = run.notes;
   json["times"] = times_json(run.times, run.mesh().n_nodes());
+  if (graph) {
+    PendingFile drawing(*graph, is_dot(*graph) ? dot_text(*run.plan().graph()) : svg_text(*run.plan().graph()));
+    drawing.commit();
+  }
   terminal.document(json);
   if (!terminal.json())
     terminal.result(run.plan().text() + (prediction.text.empty() ? "" : "\n") + prediction.text + "\n" +
-                    format_times(run.times, run.mesh().n_nodes()));
+                    format_times(run.times, run.mesh().n_nodes()) +
+                    (graph ? fmt::format("wrote {}\n", graph->string()) : std::string()));
 }
 
 }  // namespace gridmorph::cli

@@ -73,6 +73,10 @@ class Run {
   [[nodiscard]] AnyMesh const& mesh() const { return *mesh_; }
   [[nodiscard]] AnyPlan const& plan() const { return *plan_; }
   [[nodiscard]] Coordinates const& morphed() const { return result_.morphed; }
+  /// [output] stages of the result.
+  void write_stages(std::filesystem::path const& folder) const {
+    plan_->write_stages(folder, displacement_, result_.morphed);
+  }
   [[nodiscard]] OutputFields const& fields() const { return result_.fields; }
   [[nodiscard]] QualityReport const& quality() const { return result_.quality; }
 
@@ -142,7 +146,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
 /// step has cells inverted that were not in the baseline, unless the case file says so.
 int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
 
-/// `gridmorph plan`: the plan of a case file, notes first.
-void print_plan(CaseFile const& case_file, Terminal& terminal);
+/// `gridmorph plan`: the plan of a case file, notes first. `graph`: a drawing of its blocks and chains goes there (SVG, or DOT of Graphviz).
+void print_plan(CaseFile const& case_file, Terminal& terminal, std::optional<std::filesystem::path> const& graph = {});
 
 }  // namespace gridmorph::cli

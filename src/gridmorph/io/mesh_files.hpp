@@ -14,6 +14,9 @@ Mesh read_blocks(cgns::File const& file, cgns::Node const& tree, ReadOptions con
 Mesh read_elements(cgns::File const& file, cgns::Node const& tree, ReadOptions const& options);
 
 void write_blocks(std::string const& path, Mesh const& mesh, WriteOptions const& options);
+/// With other coordinates than those of the mesh, and with fields.
+void write_blocks(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields,
+                  WriteOptions const& options);
 
 /// CGNS and PLOT3D; all formats of elements.
 void write_morphed_blocks(std::string const& input, std::string const& output, Mesh const& mesh,

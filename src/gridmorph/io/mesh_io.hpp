@@ -124,7 +124,7 @@ struct OutputFields {
   [[nodiscard]] bool empty() const { return !displacement && nodes.empty() && cells.empty(); }
 };
 
-/// A mesh of elements as write_mesh() writes it, with other coordinates than its own, and with fields.
+/// A mesh as write_mesh() writes it, with other coordinates than its own, and with fields.
 void write_mesh(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields,
                 WriteOptions const& options = {});
 

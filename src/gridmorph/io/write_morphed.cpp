@@ -114,6 +114,14 @@ void io::write_morphed_blocks(std::string const& input, std::string const& outpu
   target.commit();
 }
 
+void io::write_blocks(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields,
+                      WriteOptions const& options) {
+  io::OutputFile target(path);
+  write_blocks(target.path(), mesh, options);
+  write_morphed_blocks(target.path(), target.path(), mesh, morphed, fields);
+  target.commit();
+}
+
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed,
                    OutputFields const& fields) {
   (mesh.is_structured() ? io::write_morphed_blocks : io::write_morphed_elements)(input, output, mesh, morphed, fields);

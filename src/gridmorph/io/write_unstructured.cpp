@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/element_zones.hpp>
+#include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
@@ -23,6 +24,7 @@ void write_zones(cgns::File& file, Mesh const& mesh, Coordinates const& x, Write
 
 void write_mesh(std::string const& path, Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields,
                 WriteOptions const& options) {
+  if (mesh.is_structured()) return io::write_blocks(path, mesh, morphed, fields, options);
   check_mesh(mesh);
   if (morphed.size() != mesh.n_nodes())
     throw MeshError(path + ": the mesh has " + std::to_string(mesh.n_nodes()) + " nodes, but coordinates of " +

@@ -83,15 +83,10 @@ std::string chain_name(Mesh const& mesh, Topology const& topology, Chain const& 
 
 /// "'blade' to 'inlet'": what the ends of a chain lie on, or what made the faces known that they lie on; nothing where neither is named.
 std::string names_of_ends(Mesh const& mesh, Chain const& chain) {
-  auto const name_of = [](auto const& any) { return any.families.empty() ? any.name : any.families.front(); };
   auto const names = [&](ChainEnd const& end) {
     constexpr std::size_t most = 3;
-    std::set<std::string> all;
-    for (int const p : end.patches) {
-      std::size_t const n = std::size_t(p), n_patches = mesh.patches.size();
-      all.insert(n < n_patches ? name_of(mesh.patches[n]) : name_of(mesh.interfaces[n - n_patches]));
-    }
-    return all.empty() ? std::string("a pole") : quote_list({all.begin(), all.end()}, most);
+    auto const all = end_names(mesh, end);
+    return all.empty() ? std::string("a pole") : quote_list(all, most);
   };
   if (chain.first.patches.empty() && chain.last.patches.empty()) return {};
   return names(chain.first) + " to " + names(chain.last);

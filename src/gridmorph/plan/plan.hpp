@@ -12,6 +12,7 @@
 #include <gridmorph/plan/blocks/chain.hpp>
 #include <gridmorph/plan/options.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,13 @@ struct SideTables {
   std::vector<Vec3> positions;  ///< of chains that turn: as t, chain frame
 };
 
+/// Where a chain of a stage runs, for reports.
+struct ChainPath {
+  std::vector<int> blocks;  ///< that it passes, in order: numbers in Blocks
+  std::array<std::string, 2>
+      ends;  ///< what its ends lie on, or what made the faces known that they lie on; empty where nothing has a name
+};
+
 /// Chains that do not depend on one another, morphed together.
 struct Stage {
   LineTables lines;
@@ -60,6 +68,8 @@ struct Stage {
   bool turns = false;                              ///< whether any of its chains carries rotations
   std::vector<CellBox> cells;                      ///< of the blocks this stage morphs
   std::vector<int> chain_of_cells;                 ///< per entry of `cells`
+  std::vector<int> axis_of_cells;                  ///< likewise: index direction of the zone along which the chain runs
+  std::vector<ChainPath> paths;                    ///< per chain
   std::string name;                                ///< "near field", "1", "2", ...
   std::vector<std::string> description;            ///< one line per chain: blocks, ends, reasons of its rank
 };

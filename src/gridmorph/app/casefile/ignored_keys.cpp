@@ -24,6 +24,7 @@ class Ignored {
     else
       of_structured();
     if (use_.run == CaseUse::Run::wheel) of_wheel();
+    if (use_.run == CaseUse::Run::sequence) refuse("output", "stages", "is for one morph, and a sequence writes none");
     if (use_.run == CaseUse::Run::sequence)
       refuse("mesh", "output", "names one file, and the meshes of a sequence go where output in [sequence] says");
     if (use_.run == CaseUse::Run::morph)
@@ -41,8 +42,6 @@ class Ignored {
     refuse("", "volume", why + ": law in [background] and weights in [near_field] say there how the volume follows");
     refuse("mesh", "open_faces", why + ": boundary faces that no patch claims have to be given one in the mesh");
     refuse("mesh", "matching_tolerance", why + ": connections pair nodes there, which are taken as they are paired");
-    if (use_.run == CaseUse::Run::sequence)
-      refuse("output", "stages", "is for one morph, and a sequence of unstructured meshes writes none");
     refuse("guard", "smooth", why + ": elements that come out bad are always smoothed around");
     if (case_.background)
       refuse("guard", "steps",
@@ -54,7 +53,6 @@ class Ignored {
     refuse("", "near_field", why + ": [boundary_layer] says there how far the near field reaches");
     refuse("", "background", why + ": law in [volume] says there how displacements fall off");
     refuse("guard", "steps", why + ": displacements follow grid lines there, and steps add up to what one gives");
-    refuse("output", "stages", why + ": `gridmorph plan` prints the stages");
     if (use_.run != CaseUse::Run::wheel && !case_.guard.smooth && !case_.guard.retry)
       refuse("guard", "freeze", "keeps what smooth or retry do, and neither is true; use smooth = true");
   }
@@ -66,11 +64,11 @@ class Ignored {
       std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";
       refuse("guard", "freeze", why);
       if (!case_.background) refuse("guard", "steps", why);
-      refuse("output", "stages", why);
     } else {
       for (char const* key : {"smooth", "freeze"})
         refuse("guard", key, "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
     }
+    refuse("output", "stages", "is for `gridmorph morph`, and passages of a wheel have one plan");
     if (case_.plan.volume.order == OrderBy::prediction)
       refuse("volume", "order", "is for `gridmorph morph`, and chains of a wheel, whose blades differ, go by priority");
     if (case_.plan.volume.laws_by_prediction)

@@ -136,6 +136,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   plan->add_option("case", out.input, "Case file (TOML)")->required();
   plan->add_flag("--optimise", out.optimise,
                  "Look for the order of chains of which the best is predicted, as order in [volume]");
+  plan->add_option("--graph", out.graph, "Draw blocks, interfaces and chains: NAME.svg, or NAME.dot for Graphviz");
   commands.emplace_back(plan, Command::plan);
   auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
   quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK or UGRID)")

@@ -25,8 +25,9 @@ struct CommandLine {
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   std::optional<double> fraction;               ///< morph: of the motion
   bool dry_run = false;
-  bool optimise = false;               ///< plan: order of chains by prediction
-  std::optional<std::string> quality;  ///< morph, wheel: instead of the case file's; quality: "fast" or "full"
+  bool optimise = false;                       ///< plan: order of chains by prediction
+  std::optional<std::filesystem::path> graph;  ///< plan: a drawing of its blocks and chains goes there
+  std::optional<std::string> quality;          ///< morph, wheel: instead of the case file's; quality: "fast" or "full"
   bool json = false;
   std::optional<std::filesystem::path> side_file;        ///< inspect: of the mesh, instead of the one beside it
   std::optional<std::filesystem::path> write_side_file;  ///< inspect: what was found goes there

@@ -31,7 +31,8 @@ constexpr std::array topics{
           "  gridmorph inspect cascade.su2 --suggest case.toml\n"
           "  gridmorph inspect grid.p3d --write-side-file grid.toml\n",
           "formats.md (CGNS, PLOT3D and SU2 files, side files)"},
-    Topic{"plan", "  gridmorph plan case.toml\n", "method.md (stages and chains), unstructured.md"},
+    Topic{"plan", "  gridmorph plan case.toml\n  gridmorph plan case.toml --graph plan.svg\n",
+          "method.md (stages and chains), unstructured.md"},
     Topic{"quality",
           "  gridmorph quality wing.cgns wing_morphed.cgns\n"
           "  gridmorph quality cascade.su2 --json\n",

@@ -1,12 +1,21 @@
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/run.hpp>
+#include <gridmorph/core/error.hpp>
+
+#include <fmt/format.h>
 
 namespace gridmorph::cli {
 
 int run_plan_command(CommandLine const& options, Terminal& terminal) {
   CaseFile case_file = read_case_file(*options.case_document);
   if (options.optimise) case_file.plan.volume.order = OrderBy::prediction;
-  print_plan(case_file, terminal);
+  if (options.graph) {
+    auto const ending = options.graph->extension();
+    if (ending != ".svg" && ending != ".dot" && ending != ".gv")
+      throw ConfigError(
+          fmt::format("--graph {}: a drawing is NAME.svg, or NAME.dot for Graphviz", options.graph->string()));
+  }
+  print_plan(case_file, terminal, options.graph);
   return done;
 }
 

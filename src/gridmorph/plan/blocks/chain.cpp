@@ -121,6 +121,16 @@ std::optional<Chain> walk_from(Mesh const& mesh, Topology const& topology, Known
   return std::nullopt;
 }
 
+std::vector<std::string> end_names(Mesh const& mesh, ChainEnd const& end) {
+  auto const name_of = [](auto const& any) { return any.families.empty() ? any.name : any.families.front(); };
+  std::set<std::string> names;
+  for (int const p : end.patches) {
+    std::size_t const n = std::size_t(p), n_patches = mesh.patches.size();
+    names.insert(n < n_patches ? name_of(mesh.patches[n]) : name_of(mesh.interfaces[n - n_patches]));
+  }
+  return {names.begin(), names.end()};
+}
+
 Chain reversed(Chain chain) {
   std::reverse(chain.steps.begin(), chain.steps.end());
   std::swap(chain.first, chain.last);

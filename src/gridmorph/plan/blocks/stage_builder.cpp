@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace gridmorph {
 
@@ -19,6 +20,12 @@ int kind_rank(EndKind kind, std::vector<std::string> const& order) {
 }
 
 namespace {
+
+std::string list_of(std::vector<std::string> const& names) {
+  std::string text;
+  for (std::string const& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
 
 /// Appends the tubes and segments of a laid-out chain.
 void append_lines(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int number,
@@ -220,7 +227,11 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
       for (int a = 0; a < 3; ++a) --cells.end[a];
       stage.cells.push_back({piece.zone, cells});
       stage.chain_of_cells.push_back(number);
+      stage.axis_of_cells.push_back(p.to_chain.inverse().axis[0]);
     }
+    ChainPath path{{}, {list_of(end_names(context.mesh, chain.first)), list_of(end_names(context.mesh, chain.last))}};
+    for (ChainStep const& step : chain.steps) path.blocks.push_back(step.block);
+    stage.paths.push_back(std::move(path));
   }
   for (auto const& [c, entity] : writer) {
     known.known[c] = 1;
