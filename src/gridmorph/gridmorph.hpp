@@ -10,6 +10,8 @@
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/prediction.hpp>
+#include <gridmorph/motion/bulbs.hpp>
+#include <gridmorph/motion/height_table.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>

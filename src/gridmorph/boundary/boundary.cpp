@@ -45,9 +45,9 @@ BoundarySurface surface_of(Mesh const& mesh, Patch const& patch) {
 }
 
 /// The face as places among the nodes of its patch, so that its normal points into its element: elements may be numbered either
-/// way around.
+/// way around. That of a line is across x line, `across` being the normal of the plane.
 std::vector<int> inward_face(Mesh const& mesh, UnstructuredTopology const& topology, Index f,
-                             std::vector<Index> const& nodes) {
+                             std::vector<Index> const& nodes, Vec3 const& across) {
   auto const face = topology.boundary.nodes[f];
   std::vector<int> place;
   Vec3 middle, normal, centre;
@@ -55,8 +55,9 @@ std::vector<int> inward_face(Mesh const& mesh, UnstructuredTopology const& topol
     place.push_back(int(std::lower_bound(nodes.begin(), nodes.end(), Index(n)) - nodes.begin()));
     middle += (1 / double(face.size())) * mesh.coordinates[n];
   }
-  if (place.size() == 2) return place;
-  for (std::size_t k = 0; k < face.size(); ++k)
+  bool const line = place.size() == 2;
+  if (line) normal = cross(across, mesh.coordinates[face[1]] - mesh.coordinates[face[0]]);
+  for (std::size_t k = 0; k < face.size() && !line; ++k)
     normal += cross(mesh.coordinates[face[k]] - middle, mesh.coordinates[face[(k + 1) % face.size()]] - middle);
   auto const element = mesh.elements.corners(topology.boundary.element[std::size_t(f)]);
   for (Index32 const n : element) centre += (1 / double(element.size())) * mesh.coordinates[n];
@@ -122,7 +123,7 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
     });
   }
   each_face([&](Index f, BoundarySurface& surface) {
-    add_face(inward_face(mesh, topology, f, surface.nodes), surface.faces);
+    add_face(inward_face(mesh, topology, f, surface.nodes, across_), surface.faces);
   });
 }
 

@@ -20,7 +20,7 @@ struct BoundarySurface {
   std::vector<Index> nodes;  ///< of the mesh, each once: i fastest on a grid, otherwise ascending
   std::optional<std::array<int, 2>>
       grid;  ///< patches of blocks: nodes along their two directions, the first one fastest; not of regions with cells
-  /// Faces of elements on `nodes`, their normals pointing into the mesh; fans of triangles where they have more than four corners.
+  /// Faces of elements on `nodes`, their normals pointing into the mesh (of lines: Boundary::across() x line); fans of triangles where they have more than four corners.
   std::vector<GridFacet> faces;
   std::vector<int> in_file_order;  ///< of elements: places in `nodes` as the file counts its nodes
 };

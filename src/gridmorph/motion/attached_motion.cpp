@@ -2,6 +2,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/geometry/barycentric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,19 +18,6 @@ Vec3 mean(std::vector<Vec3> const& points) {
   Vec3 sum;
   for (Vec3 const& p : points) sum += p;
   return (1.0 / double(points.size())) * sum;
-}
-
-/// Of a point in the plane of a triangle.
-std::array<double, 3> barycentric(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c) {
-  Vec3 const ab = b - a, ac = c - a, ap = p - a;
-  double const d00 = dot(ab, ab), d01 = dot(ab, ac), d11 = dot(ac, ac), d20 = dot(ap, ab), d21 = dot(ap, ac);
-  double const area = d00 * d11 - d01 * d01;
-  if (!(area > 0)) {  // a segment, or a point
-    double const along = d00 >= d11 ? (d00 > 0 ? d20 / d00 : 0) : d21 / d11;
-    return d00 >= d11 ? std::array<double, 3>{1 - along, along, 0} : std::array<double, 3>{1 - along, 0, along};
-  }
-  double const v = (d11 * d20 - d01 * d21) / area, w = (d00 * d21 - d01 * d20) / area;
-  return {1 - v - w, v, w};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/attached_motion.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
+#include <gridmorph/motion/inflation/inflate_motion.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/target/target_motion.hpp>
 #include <gridmorph/motion/turbomachinery/row_motion.hpp>
@@ -37,6 +38,7 @@ struct BoundaryMotion::Impl {
   std::vector<RowMotion const*> row_of_rule;   ///< per rule, null for rules without a blade
   std::vector<std::unique_ptr<SectionMotion>> sections_of_rule;  ///< per rule, null for other rules
   std::map<int, std::shared_ptr<TargetMotion const>> targets;    ///< by rule
+  std::map<int, InflateMotion> inflations;                       ///< by rule
   std::map<int, AttachedMotion> attached;                        ///< by rule
 
   Impl(std::shared_ptr<Boundary const> of, ResolvedMotion resolved)
@@ -44,6 +46,7 @@ struct BoundaryMotion::Impl {
         motion(std::move(resolved)),
         slip(std::make_shared<SlipSurfaces const>(*boundary, motion, notes)) {
     make_targets();
+    inflate();
     make_blades();
     attach();
   }
@@ -53,6 +56,8 @@ struct BoundaryMotion::Impl {
     for (auto const& [r, target] : other.targets)
       targets[r] =
           std::make_shared<TargetMotion const>(*target, std::get<TargetRule>(rules[std::size_t(r)].rule).share);
+    each_inflation(
+        [&](int r, InflateRule const& rule) { inflations.try_emplace(r, other.inflations.at(r), rule, label(r)); });
     make_blades();
     attach();
   }
@@ -102,6 +107,28 @@ struct BoundaryMotion::Impl {
     problems.throw_if_any<MotionError>();
   }
 
+  template <class Make>
+  void each_inflation(Make const& make) {
+    Problems problems;
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      auto const* rule = std::get_if<InflateRule>(&rules[r].rule);
+      if (rule == nullptr) continue;
+      try {
+        make(int(r), *rule);
+      } catch (MotionError const& e) {
+        problems.add(e.what());
+      }
+    }
+    problems.throw_if_any<MotionError>();
+  }
+
+  /// Before the blade rows, which may follow a blade that is inflated.
+  void inflate() {
+    each_inflation([&](int r, InflateRule const& rule) {
+      inflations.try_emplace(r, *boundary, motion, patches_of(r), rule, slip, label(r), notes);
+    });
+  }
+
   /// After all that parts can be attached to.
   void attach() {
     Problems problems;
@@ -129,7 +156,7 @@ struct BoundaryMotion::Impl {
         throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
                           std::string(rule_name(rule)) +
                           "', whose displacement is not known beforehand; give "
-                          "it fixed, rigid, formula, field, sections or target");
+                          "it fixed, rigid, formula, field, sections, target or inflate");
     if (patches.empty()) throw MotionError("of: names no patch");
   }
 
@@ -145,7 +172,7 @@ struct BoundaryMotion::Impl {
   static bool is_direct(Rule const& rule) {
     return std::holds_alternative<FixedRule>(rule) || std::holds_alternative<RigidRule>(rule) ||
            std::holds_alternative<FunctionRule>(rule) || std::holds_alternative<SectionsRule>(rule) ||
-           std::holds_alternative<TargetRule>(rule);
+           std::holds_alternative<TargetRule>(rule) || std::holds_alternative<InflateRule>(rule);
   }
 
   [[nodiscard]] std::vector<int> patches_of(int r) const {
@@ -163,6 +190,8 @@ struct BoundaryMotion::Impl {
       text += ": " + function->description;
     if (auto const* target = std::get_if<TargetRule>(&rule.rule); target != nullptr && !target->description.empty())
       text += ": " + target->description;
+    if (auto const* inflate = std::get_if<InflateRule>(&rule.rule); inflate != nullptr && !inflate->description.empty())
+      text += ": " + inflate->description;
     return text + (rule.where.empty() ? "" : ", " + rule.where) + ")";
   }
 
@@ -180,6 +209,8 @@ struct BoundaryMotion::Impl {
                      [sections](Vec3 const& p) { return sections->displacement(p); });
     } else if (std::holds_alternative<TargetRule>(rule)) {
       targets.at(r)->displacement(points, out);
+    } else if (std::holds_alternative<InflateRule>(rule)) {
+      inflations.at(r).displacement(points, out);
     } else if (std::holds_alternative<AttachedRule>(rule)) {
       AttachedMotion const& motion_of_walls = attached.at(r);
       std::transform(points.begin(), points.end(), out.begin(),

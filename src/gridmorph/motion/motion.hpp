@@ -2,7 +2,7 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// circumferential slide, follow, attached, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// inflate, circumferential slide, follow, attached, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface). Regions inside the domain are addressed by their names
 // and take explicit rules that need no surface.
 #pragma once
@@ -113,6 +113,39 @@ struct FreeRule {
 /// zero, and no rule beside them disagrees with it.
 struct PrescribedRule {};
 
+/// Where a node of a surface is: its position, and on a blade or wing its place on the sections that SectionsRule finds.
+struct SurfacePlace {
+  Vec3 point;                 ///< baseline
+  double span_fraction = 0;   ///< the others are 0 unless the rule asks for sections
+  double chord_fraction = 0;  ///< along the chord line, 0 at the leading edge, 1 at the trailing edge
+  double side = 0;   ///< of the camber line: 1 where t grows (theta; wing: along span x flow), -1 on the other side
+  double chord = 0;  ///< of its section [length]
+  double from_leading_edge = 0;   ///< straight, in the surface of the section [length]
+  double from_trailing_edge = 0;  ///< likewise
+};
+
+/// Nodes go along the normals of their surface: coatings, deposits, erosion. Every face is offset by the height; on smooth surfaces a
+/// node moves by the height along its normal, at creases by the height over the cosine between its way and the normals of the faces, by
+/// twice the height at most. Nodes of slip surfaces stay on them. Surfaces that would fold are refused. docs/motion.md has the rest.
+struct InflateRule {
+  std::string description{};  ///< for reports: "height 0.001"
+  /// Height at each place, positive into the mesh; equal for equal places.
+  std::function<void(std::span<SurfacePlace const> places, std::span<double> height)> height;
+  double share = 1;  ///< of the height
+  /// Faces that turn by more than this meet in a crease.
+  double crease_angle_deg = 40;
+  /// What the sections of SurfacePlace are of: as in SectionsRule.
+  struct Sections {
+    SectionsRule::Sections kind = SectionsRule::Sections::blade;
+    std::optional<Vec3> span{};
+    Vec3 flow{1, 0, 0};
+    bool sides = false;  ///< whether `side` is used, which takes both sides of the blade
+  };
+  std::optional<Sections> sections{};
+  /// Heights above so many chords are refused; needs sections.
+  std::optional<double> most_chords{};
+};
+
 /// Goes along with walls that other rules move: regions around a wake or of refinement, bodies carried by a wing.
 struct AttachedRule {
   std::vector<std::string> of;  ///< patches with a rule of their own
@@ -127,7 +160,7 @@ struct AttachedRule {
 };
 
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
-                          SectionsRule, TargetRule, PrescribedRule, AttachedRule>;
+                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").

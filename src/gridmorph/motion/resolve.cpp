@@ -26,7 +26,7 @@ bool is(Rule const& rule) {
 /// Displacements that need no other patch: what a blade must have for others to follow it.
 bool is_direct(Rule const& rule) {
   return is<FixedRule>(rule) || is<RigidRule>(rule) || is<FunctionRule>(rule) || is<SectionsRule>(rule) ||
-         is<TargetRule>(rule);
+         is<TargetRule>(rule) || is<InflateRule>(rule);
 }
 
 /// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
@@ -142,6 +142,12 @@ class Resolver {
     } else if (auto const* target = std::get_if<TargetRule>(&rule);
                target != nullptr && !std::isfinite(target->share)) {
       problems_.add(label(r) + ": its share of the way to the target is not finite");
+    } else if (auto const* inflate = std::get_if<InflateRule>(&rule)) {
+      if (!inflate->height) problems_.add(label(r) + ": it has no height");
+      if (!std::isfinite(inflate->share)) problems_.add(label(r) + ": its share of the height is not finite");
+      if (!(inflate->crease_angle_deg > 0 && inflate->crease_angle_deg <= 180))
+        problems_.add(label(r) + ": the crease angle is " + std::to_string(inflate->crease_angle_deg) +
+                      " degrees; give one above 0 and up to 180");
     }
   }
 
@@ -205,7 +211,7 @@ class Resolver {
     Rule const& rule = motion_.rules[r].rule;
     auto const* free = std::get_if<FreeRule>(&rule);
     if (is<SlipRule>(rule) || is<SectionsRule>(rule) || is<TargetRule>(rule) || is<AttachedRule>(rule) ||
-        (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
+        is<InflateRule>(rule) || (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
       problems_.add(label(r) + " names the periodic " + name +
                     "; periodic interfaces take free without constraint, "
                     "follow, circumferential-slide, fixed, rigid or "
@@ -312,7 +318,7 @@ class Resolver {
       problems_.add(label(r) + ": of: " + quote_list(names_of(mesh_, patches)) + " has the rule '" +
                     std::string(rule_name(result_.rules[own].rule)) +
                     "', whose displacement is not known beforehand; give it "
-                    "fixed, rigid, formula, field, sections or target");
+                    "fixed, rigid, formula, field, sections, target or inflate");
   }
 
   /// What is asked for at places inside the domain, with no surface to go by.
@@ -344,8 +350,8 @@ class Resolver {
 
 std::string_view rule_name(Rule const& rule) {
   static constexpr std::array<std::string_view, std::variant_size_v<Rule>> names{
-      "fixed",  "rigid",      "function", "circumferential-slide", "follow", "slip", "free", "sections",
-      "target", "prescribed", "attached"};
+      "fixed",      "rigid",    "function", "circumferential-slide", "follow", "slip", "free", "sections", "target",
+      "prescribed", "attached", "inflate"};
   return names[rule.index()];
 }
 

@@ -22,6 +22,8 @@ namespace gridmorph {
 namespace {
 
 std::vector<std::string> const variable_names{"x", "y", "z", "r", "theta", "axial", "t", "step"};
+/// Of places on sections, for heights alone; constants of these names hide them.
+std::vector<std::string> const place_names{"span_fraction", "chord_fraction", "side"};
 
 /// Evaluated this many points at a time: long enough to hide the call, short enough to stay in cache.
 constexpr std::size_t batch = 512;
@@ -98,8 +100,14 @@ PolarFrame frame_of(Axis const& axis) {
 
 class Formula {
  public:
-  Formula(FormulaFrame frame, std::array<FormulaComponent, 3> components, Axis const& axis)
-      : frame_(frame), components_(std::move(components)), cylinder_(frame_of(axis)) {
+  /// `names`: variable_names, and what of place_names it has.
+  Formula(FormulaFrame frame, std::array<FormulaComponent, 3> components, Axis const& axis,
+          std::vector<std::string> names = variable_names)
+      : frame_(frame),
+        components_(std::move(components)),
+        cylinder_(frame_of(axis)),
+        names_(std::move(names)),
+        variables_(names_.size()) {
     for (auto& v : variables_) v.assign(batch, 1.0);
     for (auto& r : results_) r.assign(batch, 0.0);
   }
@@ -116,15 +124,38 @@ class Formula {
 
   void operator()(std::span<Vec3 const> points, std::span<Vec3> displacement, double share, Moment const& when) {
     std::lock_guard const lock(turn_);
-    std::fill(variables_[6].begin(), variables_[6].end(), when.time);
-    std::fill(variables_[7].begin(), variables_[7].end(), double(when.step));
+    begin(when);
     for (std::size_t first = 0; first < points.size(); first += batch) {
       std::size_t const n = std::min(batch, points.size() - first);
       evaluate(points.subspan(first, n), displacement.subspan(first, n), share);
     }
   }
 
+  /// The first component at places.
+  void heights(std::span<SurfacePlace const> places, std::span<double> out, Moment const& when) {
+    std::lock_guard const lock(turn_);
+    begin(when);
+    std::array<Vec3, batch> points, values;
+    for (std::size_t first = 0; first < places.size(); first += batch) {
+      std::size_t const n = std::min(batch, places.size() - first);
+      for (std::size_t i = 0; i < n; ++i) points[i] = places[first + i].point;
+      for (std::size_t v = variable_names.size(); v < names_.size(); ++v)
+        for (std::size_t i = 0; i < n; ++i) variables_[v][i] = value_of(names_[v], places[first + i]);
+      evaluate({points.data(), n}, {values.data(), n}, 1);
+      for (std::size_t i = 0; i < n; ++i) out[first + i] = values[i].x;
+    }
+  }
+
  private:
+  static double value_of(std::string const& name, SurfacePlace const& place) {
+    return name == place_names[0] ? place.span_fraction : name == place_names[1] ? place.chord_fraction : place.side;
+  }
+
+  void begin(Moment const& when) {
+    std::fill(variables_[6].begin(), variables_[6].end(), when.time);
+    std::fill(variables_[7].begin(), variables_[7].end(), double(when.step));
+  }
+
   void check(int c, std::map<std::string, double> const& constants, Problems& problems) {
     auto const& [key, expression, where] = components_[c];
     mu::Parser& parser = parsers_[c];
@@ -135,7 +166,7 @@ class Formula {
     }
     try {
       define_language(parser);
-      for (std::size_t v = 0; v < variable_names.size(); ++v) parser.DefineVar(variable_names[v], variables_[v].data());
+      for (std::size_t v = 0; v < names_.size(); ++v) parser.DefineVar(names_[v], variables_[v].data());
       for (auto const& [name, value] : constants) parser.DefineConst(name, value);
       parser.SetExpr(expression);
       int results = 0;
@@ -161,7 +192,7 @@ class Formula {
         if (!is_name_character(ch)) break;
         token += ch;
       }
-      std::vector<std::string> known = variable_names;
+      std::vector<std::string> known = names_;
       for (auto const& [name, value] : constants) known.push_back(name);
       std::string const near = nearest_word(token, [&] {
         auto all = known;
@@ -248,7 +279,8 @@ class Formula {
   std::array<FormulaComponent, 3> components_;
   PolarFrame cylinder_;
   bool needs_cylinder_ = false;
-  std::array<std::vector<double>, 8> variables_;  // in the order of variable_names, of one batch
+  std::vector<std::string> names_;
+  std::vector<std::vector<double>> variables_;  // in the order of names_, of one batch
   std::array<std::vector<double>, 3> results_;
   std::array<mu::Parser, 3> parsers_;
   std::mutex turn_;  // the parsers read and write the batch above
@@ -315,6 +347,31 @@ std::function<double(Moment const& when)> make_time_formula(FormulaComponent con
     rule(1, when).function({&origin, 1}, {&value, 1});
     return value.x;
   };
+}
+
+HeightAt make_height_formula(FormulaComponent const& formula, std::map<std::string, double> const& constants,
+                             Axis const& axis, Problems& problems) {
+  std::vector<std::string> names = variable_names;
+  for (auto const& name : place_names)
+    if (!constants.contains(name)) names.push_back(name);
+  auto const made = std::make_shared<Formula>(FormulaFrame::cartesian, std::array<FormulaComponent, 3>{formula, {}, {}},
+                                              axis, std::move(names));
+  made->prepare(constants, problems);
+  return [made](std::span<SurfacePlace const> places, std::span<double> out, Moment const& when) {
+    made->heights(places, out, when);
+  };
+}
+
+bool uses_sections(std::string const& expression, std::map<std::string, double> const& constants) {
+  auto const names = names_in(expression);
+  return std::any_of(place_names.begin(), place_names.end(), [&](std::string const& name) {
+    return !constants.contains(name) && std::find(names.begin(), names.end(), name) != names.end();
+  });
+}
+
+bool uses_side(std::string const& expression, std::map<std::string, double> const& constants) {
+  auto const names = names_in(expression);
+  return !constants.contains("side") && std::find(names.begin(), names.end(), "side") != names.end();
 }
 
 FunctionRule make_formula(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,

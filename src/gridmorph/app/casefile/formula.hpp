@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 
 namespace gridmorph {
@@ -40,6 +41,16 @@ FunctionRule make_formula(FormulaFrame frame, std::array<FormulaComponent, 3> co
 using FormulaAt = std::function<FunctionRule(double share, Moment const& when)>;
 FormulaAt make_formula_in_time(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
                                std::map<std::string, double> const& constants, Axis const& axis, Problems& problems);
+
+/// Heights of an inflated surface: an expression in the position, t and step as above, and in span_fraction, chord_fraction and side of
+/// SurfacePlace, unless constants have these names. Problems and errors as above.
+using HeightAt =
+    std::function<void(std::span<SurfacePlace const> places, std::span<double> height, Moment const& when)>;
+HeightAt make_height_formula(FormulaComponent const& formula, std::map<std::string, double> const& constants,
+                             Axis const& axis, Problems& problems);
+/// Whether an expression for a height uses span_fraction, chord_fraction or side; and side among them.
+bool uses_sections(std::string const& expression, std::map<std::string, double> const& constants);
+bool uses_side(std::string const& expression, std::map<std::string, double> const& constants);
 
 /// A number that depends on `t`, `step` and the constants alone. Problems are added as above, also for names of the position.
 std::function<double(Moment const& when)> make_time_formula(FormulaComponent const& formula,

@@ -1,6 +1,7 @@
 #include <gridmorph/motion/turbomachinery/section_motion.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/detail/slip_correction.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,25 +13,6 @@
 namespace gridmorph {
 
 namespace {
-
-/// Distance of a point from a slip surface, with its sign, the way that nodes are put back on it.
-double signed_distance(SlipSurface const& s, Vec3 const& p) {
-  if (s.kind == SlipSurface::Kind::facets) {
-    kernels::FacetFoot const foot = s.facets.view().closest_point(p);
-    return dot(p - foot.point, foot.normal);
-  }
-  Vec3 const d = p - s.origin;
-  double const a = dot(d, s.direction);
-  if (s.kind == SlipSurface::Kind::plane) return a;
-  double const r = norm(d - a * s.direction);
-  return s.kind == SlipSurface::Kind::revolution ? r - s.profile(a) : s.view().foot(a, r).away;
-}
-
-/// What gives the point back its distance from the surface.
-Vec3 correction(SlipSurface const& s, Vec3 const& p, Vec3 const& u) {
-  if (s.kind == SlipSurface::Kind::plane) return -dot(u, s.direction) * s.direction;
-  return s.view().constrain(p, signed_distance(s, p), u) - u;
-}
 
 /// Gauss-Legendre, five points: exact to the ninth degree.
 constexpr std::array<std::pair<double, double>, 5> gauss{{{0.0, 0.5688888888888889},
@@ -87,8 +69,8 @@ Vec3 EdgeTrim::operator()(Vec3 const& point, double span, Vec3 const& u) const {
   for (SlipSurface const* surface : surfaces_) {
     double const d = std::abs(signed_distance(*surface, point));
     // On a surface it decides alone.
-    if (d <= surface->baseline_deviation + 1e-14 * surface->size) return u + correction(*surface, point, u);
-    weighted += (1 / d) * correction(*surface, point, u);
+    if (d <= surface->baseline_deviation + 1e-14 * surface->size) return u + slip_correction(*surface, point, u);
+    weighted += (1 / d) * slip_correction(*surface, point, u);
     sum += 1 / d;
   }
   for (double end : free_ends_) {
@@ -103,13 +85,11 @@ SectionMotion::SectionMotion(Boundary const& boundary, ResolvedMotion const& mot
                              std::vector<int> const& patches, SlipSurfaces const& surfaces,
                              std::vector<std::string>& notes)
     : rule_(rule),
-      frame_(rule.sections == SectionsRule::Sections::blade ? blade_frame(boundary, motion, surfaces, patches)
-                                                            : wing_frame(boundary, rule, patches)),
-      blades_(find_sections(boundary, *frame_, patches, notes)),
-      trim_(boundary, *frame_, patches, surfaces),
+      places_(boundary, motion, rule, patches, surfaces, notes),
+      trim_(boundary, places_.frame(), patches, surfaces),
       thickens_(!rule.thickness.is_zero()),
       bows_(!rule.bow_rad.is_zero()) {
-  if (thickens_ && !std::all_of(blades_.begin(), blades_.end(), [](auto const& b) { return b.has_camber(); }))
+  if (thickens_ && !places_.have_camber())
     throw MotionError("thickness needs both sides of the blade: its camber line lies between them; name both");
   if (!bows_) return;
   std::set<double> knots{0};
@@ -129,34 +109,9 @@ double SectionMotion::bow_integral(double span) const {
   return bow_sums_[k] + integral_of_tangent(rule_.bow_rad, bow_knots_[k], span);
 }
 
-SectionMotion::Seat SectionMotion::seat(SectionPoint const& p) const {
-  Seat best;
-  double nearest = std::numeric_limits<double>::infinity();
-  bool const only = blades_.size() == 1 && blades_.front().images().size() == 1;
-  double const period = frame_->period();
-  for (SectionGeometry const& blade : blades_) {
-    ChordLine const line = blade.chord_line(p.span);
-    for (double image : blade.images()) {
-      double dt = p.t - image - line.t;
-      if (period > 0) dt = std::remainder(dt, period);
-      double const x = p.s - line.s, y = line.scale * dt;
-      ChordPoint const at{line.cos_stagger * x + line.sin_stagger * y, line.cos_stagger * y - line.sin_stagger * x};
-      if (only) return {&blade, line, at};
-      double const inside = std::clamp(at.along, 0.0, line.length);
-      double const camber = blade.has_camber() ? blade.camber(p.span, line.length, inside / line.length) : 0.0;
-      double const off = std::hypot(at.along - inside, at.across - camber);
-      if (off < nearest) {
-        nearest = off;
-        best = {&blade, line, at};
-      }
-    }
-  }
-  return best;
-}
-
 Vec3 SectionMotion::displacement(Vec3 const& point) const {
-  SectionPoint const p = frame_->at(point);
-  auto const [blade, line, at] = seat(p);
+  SectionPoint const p = places_.frame().at(point);
+  auto const [blade, line, at] = places_.seat(p);
   double const h = p.span;
 
   // In chord coordinates from the pivot; every term is a product with a parameter, so that zero moves nothing.
@@ -184,8 +139,8 @@ Vec3 SectionMotion::displacement(Vec3 const& point) const {
   }
   ds += line.cos_stagger * sweep;
   dt += line.sin_stagger * sweep + rule_.lean.at(h);
-  if (bows_) dt += frame_->height() * bow_integral(h);
-  return trim_(point, h, frame_->displacement(point, ds, dt / line.scale));
+  if (bows_) dt += places_.frame().height() * bow_integral(h);
+  return trim_(point, h, places_.frame().displacement(point, ds, dt / line.scale));
 }
 
 }  // namespace gridmorph

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
-#include <gridmorph/motion/turbomachinery/section_geometry.hpp>
+#include <gridmorph/motion/turbomachinery/section_places.hpp>
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,19 +41,11 @@ class SectionMotion {
   [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
 
  private:
-  /// The blade whose camber line is nearest, and the point as that blade sees it.
-  struct Seat {
-    SectionGeometry const* blade = nullptr;
-    ChordLine line;
-    ChordPoint point;
-  };
-  [[nodiscard]] Seat seat(SectionPoint const& p) const;
   /// Integral of tan(bow) from span 0.
   [[nodiscard]] double bow_integral(double span) const;
 
   SectionsRule rule_;
-  std::unique_ptr<SectionFrame> frame_;
-  std::vector<SectionGeometry> blades_;
+  SectionPlaces places_;
   EdgeTrim trim_;
   bool thickens_, bows_;
   std::vector<double> bow_knots_, bow_sums_;  ///< span fractions, and the integral up to there

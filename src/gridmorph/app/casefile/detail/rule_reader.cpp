@@ -1,4 +1,6 @@
+#include <gridmorph/app/casefile/detail/bulb_reader.hpp>
 #include <gridmorph/app/casefile/detail/field_reader.hpp>
+#include <gridmorph/app/casefile/detail/inflate_reader.hpp>
 #include <gridmorph/app/casefile/detail/rule_reader.hpp>
 #include <gridmorph/app/casefile/detail/sections_reader.hpp>
 #include <gridmorph/app/casefile/detail/target_reader.hpp>
@@ -22,9 +24,9 @@ namespace gridmorph::casefile {
 
 namespace {
 
-std::vector<std::string> const rule_names{"fixed",   "rigid",   "formula", "field",    "circumferential-slide",
-                                          "follow",  "slip",    "free",    "sections", "target",
-                                          "contour", "attached"};
+std::vector<std::string> const rule_names{"fixed",   "rigid",    "formula", "field",    "circumferential-slide",
+                                          "follow",  "slip",     "free",    "sections", "target",
+                                          "contour", "attached", "inflate", "bulb"};
 
 /// rotation = { axis, origin, angle_deg }. Without axis and origin: about the machine axis.
 void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid) {
@@ -112,12 +114,6 @@ TimedRule read_rigid(TableReader& table, RuleContext const& shared) {
   return {[all](double share, Moment const&) { return make_rigid_steps(all, share); }, {}};
 }
 
-/// Things that depend on t or step need a sequence.
-void needs_sequence(TableReader& table, RuleContext const& shared, std::string const& key) {
-  if (!shared.in_time)
-    table.problem(key, "depends on the time or the step, and there is no [sequence]; add one, or take t and step out");
-}
-
 TimedRule read_formula(TableReader& table, RuleContext const& shared) {
   std::array<std::string, 3> const cartesian{"dx", "dy", "dz"}, cylindrical{"dr", "dtheta", "daxial"};
   auto constants = shared.constants;
@@ -193,20 +189,52 @@ std::vector<std::pair<double, double>> read_profile(TableReader& table) {
   return profile;
 }
 
+/// The sum of two motions.
+FunctionRule both(FunctionRule first, FunctionRule second) {
+  return {first.description + ", " + second.description,
+          [one = std::move(first.function), other = std::move(second.function)](std::span<Vec3 const> points,
+                                                                                std::span<Vec3> out) {
+            std::vector<Vec3> more(points.size());
+            one(points, out);
+            other(points, more);
+            for (std::size_t n = 0; n < points.size(); ++n) out[n] += more[n];
+          }};
+}
+
 TimedRule read_contour(TableReader& table, RuleContext const& shared) {
   auto const profile = read_profile(table);
-  table.require("profile", "profile = [[axial, radius], [axial, radius], ...]");
+  auto const offset = table.string("offset");
+  auto constants = shared.constants;
+  read_constants(table, "constants", constants);
   TimedRule rule;
   rule.end_wall = true;
-  if (profile.empty() || !shared.axis) return rule;
-  try {
-    (void)make_contour(profile, *shared.axis, {});
-  } catch (MotionError const& e) {
-    table.problem("profile", e.what());
+  if (!table.has("profile") && !offset)
+    table.problem("profile",
+                  "is missing; add profile = [[axial, radius], [axial, radius], ...], or offset = "
+                  "\"0.002 * cos(36 * theta)\"");
+  if (offset && offset->empty()) table.problem("offset", "is empty; write a length as an expression, or leave it out");
+  if (!shared.axis) return rule;
+  FormulaAt bumps;
+  if (offset && !offset->empty()) {
+    rule.changes = uses_time(*offset);
+    if (rule.changes) needs_sequence(table, shared, "offset");
+    bumps = make_formula_in_time(FormulaFrame::cylindrical, {{{"offset", *offset, table.where("offset")}, {}, {}}},
+                                 constants, *shared.axis, table.context().problems);
+  }
+  if (!profile.empty()) {
+    try {
+      (void)make_contour(profile, *shared.axis, {});
+    } catch (MotionError const& e) {
+      table.problem("profile", e.what());
+      return rule;
+    }
+  } else if (!bumps) {
     return rule;
   }
-  rule.at = [profile, axis = *shared.axis, where = table.where("profile")](double share, Moment const&) {
-    return make_contour(profile, axis, where, share);
+  rule.at = [profile, bumps, axis = *shared.axis, where = table.where("profile")](double share, Moment const& when) {
+    if (profile.empty()) return bumps(share, when);
+    FunctionRule const contour = make_contour(profile, axis, where, share);
+    return bumps ? both(contour, bumps(share, when)) : contour;
   };
   return rule;
 }
@@ -345,6 +373,8 @@ std::optional<TimedRule> read_explicit(std::size_t number, TableReader& table, R
                        },
                        {}};
     case 10: needs_axis(table, shared, rule_names[number]); return read_contour(table, shared);
+    case 12: return read_inflate(table, shared);
+    case 13: return read_bulbs(table, shared);
     default: return std::nullopt;
   }
 }
@@ -382,6 +412,11 @@ Rule read_other(std::size_t number, TableReader& table, RuleContext const& share
 }
 
 }  // namespace
+
+void needs_sequence(TableReader& table, RuleContext const& shared, std::string const& key) {
+  if (!shared.in_time)
+    table.problem(key, "depends on the time or the step, and there is no [sequence]; add one, or take t and step out");
+}
 
 std::vector<std::string> const& known_rules() { return rule_names; }
 

@@ -23,6 +23,9 @@ std::vector<std::string> const& known_rules();
 /// { origin = [x, y, z], direction = [x, y, z] } or "x", "y", "z". Nothing when absent or unusable (problem noted).
 std::optional<Axis> read_axis(TableReader& table, std::string const& key);
 
+/// Notes that a key whose value depends on t or step needs a sequence, where there is none.
+void needs_sequence(TableReader& table, RuleContext const& shared, std::string const& key);
+
 /// Constants of formulas: a table of names and numbers.
 void read_constants(TableReader& table, std::string const& key, std::map<std::string, double>& constants);
 

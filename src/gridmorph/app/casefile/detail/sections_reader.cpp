@@ -58,7 +58,25 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   return cells;
 }
 
-/// The value of a key: one number for the whole span, or [[span, value], ...].
+void check(TableReader& table, std::string const& where, Parameter const& p,
+           std::vector<std::pair<double, double>> const& stations) {
+  check_spans(table, where, p.key, stations);
+  for (std::size_t n = 0; n < stations.size(); ++n) {
+    double const value = stations[n].second;
+    if (!(value > p.above && value < p.below))
+      table.problem(
+          where, p.above == -1
+                     ? fmt::format("{}: relative changes are above -1 (-0.1 is 10 % less), found {}", p.key, value)
+                     : fmt::format("{}: must lie between {} and {} degrees, found {}", p.key, p.above, p.below, value));
+  }
+}
+
+std::vector<SpanwiseColumn> read_columns(std::filesystem::path const& path) {
+  return parse_spanwise_columns(mapping::read_text_file(path, "table"), path.string(), parameter_keys());
+}
+
+}  // namespace
+
 std::vector<std::pair<double, double>> read_stations(TableReader& table, std::string const& key) {
   auto const* value = table.find(key);
   if (!value->is_array()) {
@@ -86,29 +104,18 @@ std::vector<std::pair<double, double>> read_stations(TableReader& table, std::st
   return stations;
 }
 
-void check(TableReader& table, std::string const& where, Parameter const& p,
-           std::vector<std::pair<double, double>> const& stations) {
+void check_spans(TableReader& table, std::string const& where, std::string const& name,
+                 std::vector<std::pair<double, double>> const& stations) {
   for (std::size_t n = 0; n < stations.size(); ++n) {
-    auto const [span, value] = stations[n];
+    double const span = stations[n].first;
     if (span < 0 || span > 1)
       table.problem(
-          where, fmt::format("{}: span fractions lie between 0 (root, hub) and 1 (tip, case), found {}", p.key, span));
+          where, fmt::format("{}: span fractions lie between 0 (root, hub) and 1 (tip, case), found {}", name, span));
     if (n > 0 && !(span > stations[n - 1].first))
       table.problem(
-          where, fmt::format("{}: span fractions must ascend, found {} after {}", p.key, span, stations[n - 1].first));
-    if (!(value > p.above && value < p.below))
-      table.problem(
-          where, p.above == -1
-                     ? fmt::format("{}: relative changes are above -1 (-0.1 is 10 % less), found {}", p.key, value)
-                     : fmt::format("{}: must lie between {} and {} degrees, found {}", p.key, p.above, p.below, value));
+          where, fmt::format("{}: span fractions must ascend, found {} after {}", name, span, stations[n - 1].first));
   }
 }
-
-std::vector<SpanwiseColumn> read_columns(std::filesystem::path const& path) {
-  return parse_spanwise_columns(mapping::read_text_file(path, "table"), path.string(), parameter_keys());
-}
-
-}  // namespace
 
 std::vector<SpanwiseColumn> parse_spanwise_columns(std::string_view text, std::string const& source,
                                                    std::vector<std::string> const& known) {
@@ -164,8 +171,7 @@ std::vector<SpanwiseColumn> parse_spanwise_columns(std::string_view text, std::s
   return columns;
 }
 
-SectionsRule read_sections(TableReader& table, bool has_axis) {
-  SectionsRule rule;
+void read_section_search(TableReader& table, bool has_axis, SectionsRule& rule) {
   auto const kind = table.choice("kind", {"blade", "wing"});
   rule.sections = (kind ? *kind == 0 : has_axis) ? SectionsRule::Sections::blade : SectionsRule::Sections::wing;
   bool const wing = rule.sections == SectionsRule::Sections::wing;
@@ -181,6 +187,11 @@ SectionsRule read_sections(TableReader& table, bool has_axis) {
   }
   if (rule.span && norm(cross(*rule.span, rule.flow)) < 1e-3 * norm(*rule.span) * norm(rule.flow))
     table.problem("span", "runs along the flow; give flow = [x, y, z], the way from leading to trailing edge");
+}
+
+SectionsRule read_sections(TableReader& table, bool has_axis) {
+  SectionsRule rule;
+  read_section_search(table, has_axis, rule);
   rule.pivot = table.number("pivot").value_or(rule.pivot);
   auto interpolation = SpanwiseTable::Interpolation::spline;
   if (auto const word = table.choice("interpolation", {"spline", "linear"}))

@@ -16,6 +16,15 @@ namespace gridmorph::casefile {
 /// which blades need and which makes them the default.
 SectionsRule read_sections(TableReader& table, bool has_axis);
 
+/// The keys that say what sections are of: kind, span and flow.
+void read_section_search(TableReader& table, bool has_axis, SectionsRule& rule);
+
+/// The value of a key: one number for the whole span, or [[span fraction, value], ...].
+std::vector<std::pair<double, double>> read_stations(TableReader& table, std::string const& key);
+/// Notes span fractions beyond 0 to 1 or out of order, of the table `name`, at the key `where`.
+void check_spans(TableReader& table, std::string const& where, std::string const& name,
+                 std::vector<std::pair<double, double>> const& stations);
+
 /// One column of a table of spanwise values: its name and (span fraction, value) where the column is not empty.
 struct SpanwiseColumn {
   std::string name;

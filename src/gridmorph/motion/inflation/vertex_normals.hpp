@@ -1,0 +1,43 @@
+// Normals of the smooth parts of a surface around each of its vertices.
+#pragma once
+
+#include <gridmorph/boundary/patch_surface.hpp>
+#include <gridmorph/kernels/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace gridmorph {
+
+/// Vertices that a periodic connection joins, and the rotation from directions at the first to those at the second.
+struct VertexImage {
+  int vertex = -1, image = -1;
+  Mat3 rotation;
+};
+
+/// Both ways of every pair of vertices of the surface that a periodic connection of the mesh joins.
+std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface const& surface);
+
+/// A vertex has one normal per smooth part of the surface around it, into the mesh: the mean of the normals of its faces' corners,
+/// weighted by their angles (Thuermer and Wuethrich 1998), so that it does not depend on how flat faces are cut. Corners whose normals are
+/// less than the crease angle apart, or are joined by others between, are one part. Faces beyond periodic connections count, turned back.
+/// Nodes that are no corners of faces (middles of the sides of curved elements) have the means of those of the corners around.
+class VertexNormals {
+ public:
+  /// Cost O(faces), and O(log) for each node that is no corner.
+  VertexNormals(Boundary const& boundary, PatchSurface const& surface, std::vector<VertexImage> const& images,
+                double crease_angle_deg);
+
+  /// Unit vectors; none where all faces are without area or those of a part cancel.
+  [[nodiscard]] std::span<Vec3 const> parts(int v) const {
+    return {parts_.data() + first_[std::size_t(v)], parts_.data() + first_[std::size_t(v) + 1]};
+  }
+
+ private:
+  std::vector<std::size_t> first_{0};
+  std::vector<Vec3> parts_;
+};
+
+}  // namespace gridmorph
