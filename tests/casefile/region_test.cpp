@@ -31,6 +31,22 @@ TEST(RegionText, NodesAreCountedFromOneAndBothEndsBelongToThem) {
   EXPECT_FALSE(r.holds);
 }
 
+TEST(RegionText, ThoseThatAreOnlyMeasuredAreNoPartOfTheMotion) {
+  CaseFile const c = parse_case_file(mesh_and_rule +
+                                         "[[region]]\nname = \"wake\"\nzones = \"a\"\nonly_measured = true\n"
+                                         "[[region]]\nname = \"tip\"\nzones = \"b\"\n",
+                                     "case.toml");
+  ASSERT_EQ(c.motion.regions.size(), 1U);
+  EXPECT_EQ(c.motion.regions[0].name, "tip");
+  ASSERT_EQ(c.measured_regions.size(), 1U);
+  EXPECT_EQ(c.measured_regions[0].name, "wake");
+  auto const problems =
+      problems_of(mesh_and_rule +
+                  "[[region]]\nname = \"a\"\nzones = \"z\"\nnodes = { from = [1, 1, 5], to = [9, 9, 5] }\n"
+                  "only_measured = true\n");
+  EXPECT_TRUE(reported(problems, "case.toml:11", {"surface of the grid"}));
+}
+
 TEST(RegionText, EveryProblemIsReportedWithItsLine) {
   auto const problems =
       problems_of(mesh_and_rule +

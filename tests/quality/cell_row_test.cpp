@@ -168,7 +168,7 @@ TEST(CellRow, ValuesDependNeitherOnTheNumberOfLanesNorOnThePlaceInTheRow) {
     SCOPED_TRACE(shape.name);
     RowNodes const nodes(longest_row, shape.position);
     Measures one, two, native;
-    double relative_one[longest_row], relative_native[longest_row];
+    kernels::RowRelativeDisplacements<longest_row> relative_one, relative_native;
     RowNodes const after(longest_row, [&](int i, int j, int k) {
       return 1.1 * shape.position(i, j, k) + Vec3{0, i * 0.01, 0};
     });
@@ -180,7 +180,8 @@ TEST(CellRow, ValuesDependNeitherOnTheNumberOfLanesNorOnThePlaceInTheRow) {
     for (int n = 0; n < longest_row; ++n) {
       expect_equal(two, n, measures_at(one, n));
       expect_equal(native, n, measures_at(one, n));
-      EXPECT_EQ(relative_native[n], relative_one[n]);
+      EXPECT_EQ(relative_native.largest[n], relative_one.largest[n]);
+      for (int d = 0; d < 3; ++d) EXPECT_EQ(relative_native.along[d][n], relative_one.along[d][n]);
       CellRow alone = nodes.row(handedness);
       alone.x += n;
       alone.y += n;
@@ -259,7 +260,8 @@ TEST(CellRow, DegenerateCellsAreThoseOfTheGeneralFunctionsAndLeaveTheirNeighbour
         Measures m, expected;
         row_measures<native_lanes>(nodes.row(1), m);
         row_measures<native_lanes>(sound.row(1), expected);
-        double determinant[longest_row], mark[longest_row], before[longest_row], after[longest_row];
+        double determinant[longest_row], mark[longest_row];
+        kernels::RowRelativeDisplacements<longest_row> before, after;
         row_determinants<native_lanes>(nodes.row(1), determinant, mark);
         row_relative_displacements<native_lanes>(nodes.row(1), sound.row(1), before);
         row_relative_displacements<native_lanes>(sound.row(1), nodes.row(1), after);
@@ -269,8 +271,8 @@ TEST(CellRow, DegenerateCellsAreThoseOfTheGeneralFunctionsAndLeaveTheirNeighbour
           EXPECT_EQ(determinant[n], m.determinant_3x3x3[n]);
           if (n != i && n != i - 1) {
             expect_equal(m, n, measures_at(expected, n));
-            EXPECT_EQ(before[n], 0);
-            EXPECT_EQ(after[n], 0);
+            EXPECT_EQ(before.largest[n], 0);
+            EXPECT_EQ(after.largest[n], 0);
             continue;
           }
           if (!is_regular(cell))
@@ -279,8 +281,13 @@ TEST(CellRow, DegenerateCellsAreThoseOfTheGeneralFunctionsAndLeaveTheirNeighbour
             EXPECT_NEAR(m.determinant_3x3x3[n], cell_measures(cell, 1).determinant_3x3x3, 1e-13);
           degenerate += is_regular(cell) ? 0 : 1;
           Vec3 const b = relative_displacement(cell, sound_cell), a = relative_displacement(sound_cell, cell);
-          expect_near_or_unbounded(before[n], larger(b.x, larger(b.y, b.z)));
-          expect_near_or_unbounded(after[n], larger(a.x, larger(a.y, a.z)));
+          expect_near_or_unbounded(before.largest[n], larger(b.x, larger(b.y, b.z)));
+          expect_near_or_unbounded(after.largest[n], larger(a.x, larger(a.y, a.z)));
+          double const b_along[3] = {b.x, b.y, b.z}, a_along[3] = {a.x, a.y, a.z};
+          for (int d = 0; d < 3; ++d) {
+            expect_near_or_unbounded(before.along[d][n], b_along[d]);
+            expect_near_or_unbounded(after.along[d][n], a_along[d]);
+          }
         }
         EXPECT_GT(degenerate, 0);
       }
@@ -290,9 +297,13 @@ TEST(CellRow, DirectionOfCollapsedEdgesHasNoRelativeDisplacement) {
   // Flat cells: the four edges along k have no length.
   RowNodes const flat(9, [](int i, int j, int) { return Vec3{double(i), double(j), 0}; });
   RowNodes const longer(9, [](int i, int j, int k) { return Vec3{1.5 * i, double(j), 0.1 * k}; });
-  double relative[longest_row];
+  kernels::RowRelativeDisplacements<longest_row> relative;
   row_relative_displacements<native_lanes>(flat.row(1), longer.row(1), relative);
-  for (int n = 0; n < 9; ++n) EXPECT_EQ(relative[n], 0.5);
+  for (int n = 0; n < 9; ++n) {
+    EXPECT_EQ(relative.largest[n], 0.5);
+    EXPECT_EQ(relative.along[0][n], 0.5);
+    EXPECT_EQ(relative.along[2][n], 0);
+  }
 }
 
 TEST(CellRow, RelativeDisplacementsAgreeWithThePlainReference) {
@@ -303,12 +314,16 @@ TEST(CellRow, RelativeDisplacementsAgreeWithThePlainReference) {
         Vec3 const p = shape.position(i, j, k);
         return p + 0.1 * Vec3{std::sin(i + 3.0 * j), 0.3 * std::cos(2.0 * i + k), 0.2 * std::sin(k + 2.0 * i * j)};
       });
-      double relative[longest_row];
+      kernels::RowRelativeDisplacements<longest_row> relative;
       row_relative_displacements<native_lanes>(before.row(1), after.row(1), relative);
       for (int n = 0; n < count; ++n) {
-        double const expected = test::reference_relative_displacement(test::corners_of(before.row(1).cell(n)),
-                                                                      test::corners_of(after.row(1).cell(n)));
-        EXPECT_NEAR(relative[n], expected, 1e-9 * expected) << shape.name;  // differences of coordinates up to 1e3
+        auto const from = test::corners_of(before.row(1).cell(n)), to = test::corners_of(after.row(1).cell(n));
+        double const expected = test::reference_relative_displacement(from, to);
+        EXPECT_NEAR(relative.largest[n], expected, 1e-9 * expected)
+            << shape.name;  // differences of coordinates up to 1e3
+        auto const along = test::reference_relative_displacements(from, to);
+        for (int d = 0; d < 3; ++d)
+          EXPECT_NEAR(relative.along[d][n], along[std::size_t(d)], 1e-9 * expected) << shape.name;
       }
     }
 }

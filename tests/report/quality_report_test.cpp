@@ -249,6 +249,43 @@ TEST(QualityTable, AVerdictHasNoBaselineAndNoRowsForWhatWasNotMeasured) {
   EXPECT_EQ(json.at("/morphed/far_field/flat"_json_pointer), 12);
 }
 
+/// A wake beside near and far field.
+QualityReport with_wake(QualityReport report, double determinant, double relative_j) {
+  report.regions.push_back({"wake", region(3.5, determinant, {7, 8, 9})});
+  QualityRegion& wake = report.regions.back().quality;
+  wake.cells = 321;
+  wake.measure[int(Measure::growth_ratio)] = statistics(1, 1.1, 1.37, true, {7, 8, 9});
+  wake.measure[int(Measure::face_area_ratio)] = statistics(1, 1.1, 1.63, true, {7, 8, 9});
+  if (report.against_baseline)
+    wake.measure[int(Measure::relative_displacement_j)] = statistics(0, 0, relative_j, true, {7, 8, 9});
+  return report;
+}
+
+TEST(QualityTable, RegionsHaveARowEach) {
+  std::string const table = format_table(with_wake(baseline(), 0.81, 0), with_wake(morphed(), 0.79, 0.123));
+  EXPECT_TRUE(has_line_with(table, {"Regions", "cells", "growth", "area", "displ."}));
+  EXPECT_TRUE(has_line_with(table, {"wake", "baseline", "321", "0.81", "1.37", "1.63"}));
+  EXPECT_TRUE(has_line_with(table, {"wake", "morphed", "321", "0.79", "0.123"}));
+  EXPECT_TRUE(has_line_with(table, {"near field", "morphed", "1000", "0.731"}));
+  EXPECT_EQ(format_table(baseline(), morphed()).find("Regions"), std::string::npos) << "where there are none";
+  nlohmann::json const json = quality_json(with_wake(baseline(), 0.81, 0), with_wake(morphed(), 0.79, 0.123), {});
+  EXPECT_EQ(json.at("/baseline/regions/wake/cells"_json_pointer), 321);
+  EXPECT_EQ(json.at("/morphed/regions/wake/measures/relative_displacement_j/max"_json_pointer), 0.123);
+  EXPECT_EQ(json.at("/morphed/regions/wake/measures/growth_ratio/worst/cell"_json_pointer),
+            (std::vector<int>{8, 9, 10}));
+}
+
+TEST(QualityTable, RelativeDisplacementHasARowPerDirection) {
+  QualityReport after = morphed();
+  for (int d = 0; d < 3; ++d)
+    after.far_field.measure[std::size_t(relative_displacement_along(d))] =
+        statistics(0, 0, 0.01 * (d + 1), true, {1, 2, 3});
+  std::string const table = format_table(baseline(), after);
+  EXPECT_TRUE(has_line_with(table, {"relative displacement i, max", "0.01"}));
+  EXPECT_TRUE(has_line_with(table, {"relative displacement j, max", "0.02"}));
+  EXPECT_TRUE(has_line_with(table, {"relative displacement k, max", "0.03"}));
+}
+
 TEST(QualityJson, CarriesValuesPlacesAndFormulas) {
   QualityReport after = morphed();
   let_fall(after, Fall::determinant, 1, 0.577);

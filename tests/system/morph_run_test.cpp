@@ -122,6 +122,34 @@ TEST_F(MorphRun, EveryStepIsTimedInTheOutputAndInTheReport) {
   EXPECT_NEAR(times["total_seconds"].get<double>(), sum, 1e-12);
 }
 
+TEST_F(MorphRun, RegionsThatAreOnlyMeasuredChangeNoNode) {
+  ASSERT_EQ(gridmorph("morph rotation.toml --report plain.json -o plain.cgns").status, 0);
+  write("case.toml", contents(path("rotation.toml")) +
+                         "\n[[region]]\nname = \"wake\"\naxial = [0.06, 0.15]\nonly_measured = true\n");
+  Outcome const run = gridmorph("morph case.toml --report r.json -o measured.cgns");
+  ASSERT_EQ(run.status, 0) << run.err;
+  Mesh const plain = read_mesh(path("plain.cgns").string()), measured = read_mesh(path("measured.cgns").string());
+  for (Index n = 0; n < plain.n_nodes(); ++n) ASSERT_EQ(plain.coordinates[n], measured.coordinates[n]);
+  EXPECT_NE(run.out.find("\nwake "), std::string::npos) << run.out;
+  auto const json = nlohmann::json::parse(contents(path("r.json")));
+  auto const before = nlohmann::json::parse(contents(path("plain.json")));
+  EXPECT_FALSE(before["morphed"].contains("regions"));
+  EXPECT_EQ(json["morphed"]["far_field"], before["morphed"]["far_field"]);
+  auto const& wake = json["morphed"]["regions"]["wake"];
+  EXPECT_GT(wake["cells"], 100);
+  EXPECT_LT(wake["cells"], before["morphed"]["far_field"]["cells"]);
+  for (std::string const name : {"relative_displacement_i", "relative_displacement_j", "relative_displacement_k",
+                                 "growth_ratio", "face_area_ratio"}) {
+    EXPECT_LE(wake["measures"][name]["max"].get<double>(),
+              before["morphed"]["far_field"]["measures"][name]["max"].get<double>() * 1.0000001)
+        << name;
+    EXPECT_GE(wake["measures"][name]["max"].get<double>(), 0);
+  }
+  write("wrong.toml", contents(path("rotation.toml")) +
+                          "\n[[region]]\nname = \"blade\"\naxial = [0.06, 0.15]\nonly_measured = true\n");
+  EXPECT_EQ(gridmorph("morph wrong.toml").status, 2) << "the name of a family";
+}
+
 /// The meshes of the stages, in the order of stages.json.
 std::vector<nlohmann::json> stages_in(std::filesystem::path const& folder) {
   return nlohmann::json::parse(contents(folder / "stages.json"))["stages"];

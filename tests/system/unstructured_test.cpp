@@ -439,6 +439,14 @@ TEST_F(FoamRun, CellZonesAreListedAndMoveAsRegions) {
   Outcome const run = gridmorph("morph case.toml");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_NE((run.out + run.err).find("region 'part': 2 elements, 12 nodes"), std::string::npos) << run.out;
+  Outcome const measured = gridmorph("morph case.toml --json --quality full");
+  EXPECT_EQ(nlohmann::json::parse(measured.out)["morphed"]["regions"]["part"]["cells"], 2) << measured.err;
+  write("only.toml",
+        "[mesh]\ninput = \"case\"\noutput = \"only\"\n[[motion]]\npatches = [\"*\"]\nrule = \"formula\"\ndx = \"0.1 * "
+        "x\"\n[[region]]\nname = \"part\"\nzones = \"far\"\nonly_measured = true\n");
+  EXPECT_EQ(nlohmann::json::parse(gridmorph("morph only.toml --json").out)["morphed"]["regions"]["part"]["cells"], 2);
+  write("none.toml", contents(path("only.toml")) + "box = { from = [50, 50, 50], to = [51, 51, 51] }\n");
+  expect_bad_input(gridmorph("morph none.toml"), {"region 'part'", "holds no element"});
   write("wrong.toml", head + "zones = \"fra\"\n");
   expect_bad_input(gridmorph("morph wrong.toml"), {"region 'part'", "there is no zone 'fra'", "'internalMesh', 'far'"});
 }

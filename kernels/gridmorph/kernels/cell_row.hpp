@@ -232,10 +232,17 @@ KOKKOS_INLINE_FUNCTION void row_verdicts(CellRow const& row, RowVerdicts<N>& v) 
   });
 }
 
-/// relative[n]: the largest component of relative_displacement of cell n, for rows of at most N.
+/// Of up to N cells.
+template <int N>
+struct RowRelativeDisplacements {
+  double along[3][N];  ///< i, j, k
+  double largest[N];   ///< of the three
+};
+
+/// The components of relative_displacement of the cells of a row.
 template <int W, int N>
 KOKKOS_INLINE_FUNCTION void row_relative_displacements(CellRow const& baseline, CellRow const& morphed,
-                                                       double (&relative)[N]) {
+                                                       RowRelativeDisplacements<N>& relative) {
   double mark[N];
   RowPlanes<4, N> planes;
   for_each_lanes<W>(morphed.count + 1, [&]<class T>(int n) {
@@ -255,14 +262,20 @@ KOKKOS_INLINE_FUNCTION void row_relative_displacements(CellRow const& baseline, 
       return {planes.template get<T>(m, at), broadcast<T>(0), planes.template get<T>(m + 1, at)};
     };
     PairChange<T> const j[2] = {pair(0, n), pair(0, n + 1)}, k[2] = {pair(2, n), pair(2, n + 1)};
-    MarkedValue<T> const r = relative_displacement(i, j, k);
-    store_lanes(relative + n, r.value);
+    MarkedDirections<T> const r = relative_displacement(i, j, k);
+    store_lanes(relative.along[0] + n, r.i);
+    store_lanes(relative.along[1] + n, r.j);
+    store_lanes(relative.along[2] + n, r.k);
+    store_lanes(relative.largest + n, larger(larger(r.i, r.j), r.k));
     store_lanes(mark + n, r.mark);
   });
   for (int n = 0; n < morphed.count; ++n)
     if (mark[n] != 0) {
       Vec3 const r = relative_displacement(baseline.cell(n), morphed.cell(n));
-      relative[n] = larger(r.x, larger(r.y, r.z));
+      relative.along[0][n] = r.x;
+      relative.along[1][n] = r.y;
+      relative.along[2][n] = r.z;
+      relative.largest[n] = larger(r.x, larger(r.y, r.z));
     }
 }
 

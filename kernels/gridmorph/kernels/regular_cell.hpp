@@ -224,26 +224,27 @@ KOKKOS_FORCEINLINE_FUNCTION PairChange<T> pair_change(LaneVec3<T> const& before0
 }
 
 template <class T>
-struct MarkedValue {
-  T value, mark;  ///< mark: 0 for regular cells
+struct MarkedDirections {
+  T i, j, k, mark;  ///< mark: 0 for regular cells
 };
 
-/// Relative displacement, the largest of the three directions; each direction in two pairs of edges.
+/// Relative displacement along each direction, which comes in two pairs of edges.
 template <class T>
-KOKKOS_FORCEINLINE_FUNCTION MarkedValue<T> relative_displacement(PairChange<T> const (&i)[2],
-                                                                 PairChange<T> const (&j)[2],
-                                                                 PairChange<T> const (&k)[2]) {
+KOKKOS_FORCEINLINE_FUNCTION MarkedDirections<T> relative_displacement(PairChange<T> const (&i)[2],
+                                                                      PairChange<T> const (&j)[2],
+                                                                      PairChange<T> const (&k)[2]) {
   T const mean_i = 0.25 * (i[0].length + i[1].length), mean_j = 0.25 * (j[0].length + j[1].length),
           mean_k = 0.25 * (k[0].length + k[1].length);
-  T const square = larger(larger(larger(i[0].largest, i[1].largest) / (mean_i * mean_i),
-                                 larger(j[0].largest, j[1].largest) / (mean_j * mean_j)),
-                          larger(k[0].largest, k[1].largest) / (mean_k * mean_k));
+  T const square_i = larger(i[0].largest, i[1].largest) / (mean_i * mean_i),
+          square_j = larger(j[0].largest, j[1].largest) / (mean_j * mean_j),
+          square_k = larger(k[0].largest, k[1].largest) / (mean_k * mean_k);
   T const shortest = smaller(smaller(mean_i, mean_j), mean_k), longest = larger(larger(mean_i, mean_j), mean_k);
   // No edge is longer than 4 means: above this limit no direction has 4 collapsed edges.
   T const limit = 4 * collapsed_fraction * longest;
   // Every corner is the end of an edge along i; extremes may drop what is no number, sums do not.
-  T const finite = (i[0].sum + i[1].sum) + ((mean_i + mean_j) + mean_k) + square;
-  return {square_root(square), (shortest > limit ? broadcast<T>(0) : broadcast<T>(1)) + (finite - finite)};
+  T const finite = (i[0].sum + i[1].sum) + ((mean_i + mean_j) + mean_k) + (square_i + square_j + square_k);
+  return {square_root(square_i), square_root(square_j), square_root(square_k),
+          (shortest > limit ? broadcast<T>(0) : broadcast<T>(1)) + (finite - finite)};
 }
 
 }  // namespace gridmorph::kernels

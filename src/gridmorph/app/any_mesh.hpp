@@ -11,7 +11,7 @@
 #include <gridmorph/io/surface/surface_io.hpp>
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/plan/block_graph.hpp>
-#include <gridmorph/quality/quality.hpp>
+#include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/report/step_times.hpp>
 
 #include <nlohmann/json.hpp>
@@ -33,10 +33,17 @@ struct NearCells {
   std::vector<int> walls = {};  ///< patches whose first cells are measured, beside those of walls
 };
 
+/// Regions that are measured by themselves, of either kind of mesh.
+struct MeasuredRegions {
+  std::vector<NamedCells> cells = {};
+  std::vector<NamedElements<Kokkos::HostSpace>> elements = {};
+};
+
 /// What of a mesh is measured, and against what.
 struct QualityWanted {
   Coordinates const* morphed = nullptr;  ///< measured against the mesh, or the mesh itself where there is none
   NearCells near = {};
+  MeasuredRegions regions = {};
   CellLimits limits = {};
   bool fast = false;                         ///< a verdict is enough
   std::vector<CellField>* fields = nullptr;  ///< those that go into output meshes, filled on the way

@@ -19,9 +19,17 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-constexpr std::array block_fields{Measure::aspect_ratio,       Measure::determinant_2x2x2,
-                                  Measure::determinant_3x3x3,  Measure::minimum_angle_deg,
-                                  Measure::equiangle_skewness, Measure::relative_displacement};
+constexpr std::array block_fields{Measure::aspect_ratio,
+                                  Measure::determinant_2x2x2,
+                                  Measure::determinant_3x3x3,
+                                  Measure::minimum_angle_deg,
+                                  Measure::equiangle_skewness,
+                                  Measure::growth_ratio,
+                                  Measure::face_area_ratio,
+                                  Measure::relative_displacement,
+                                  Measure::relative_displacement_i,
+                                  Measure::relative_displacement_j,
+                                  Measure::relative_displacement_k};
 
 std::string extent_text(Index3 const& e) { return fmt::format("{} x {} x {}", e[0], e[1], e[2]); }
 
@@ -75,6 +83,7 @@ QualityReport BlockMesh::measure(QualityWanted const& wanted) const {
   input.walls = wall_faces(mesh_, std::vector<int>(walls.begin(), walls.end()));
   input.limits = wanted.limits;
   input.fast = wanted.fast;
+  input.regions = wanted.regions.cells;
   input.handedness = handedness();
   if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, block_fields, n_cells());
   QualityReport report = measure_quality(Exec(), mesh_, input);

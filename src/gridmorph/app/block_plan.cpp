@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -23,6 +24,22 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
+/// Those that rules move, and those that are measured alone. mesh: with the patches of the former; notes: gets what there is to say of the latter.
+MeasuredRegions measured_regions(Mesh mesh, std::vector<InnerRegion> const& measured, std::vector<std::string>& notes) {
+  std::size_t const n_notes = mesh.notes.size();
+  add_regions(mesh, measured);
+  notes.assign(mesh.notes.begin() + std::ptrdiff_t(n_notes), mesh.notes.end());
+  MeasuredRegions out;
+  for (Patch const& patch : mesh.patches) {
+    if (!is_box(patch)) continue;
+    auto at = std::find_if(out.cells.begin(), out.cells.end(), [&](auto const& r) { return r.name == patch.name; });
+    if (at == out.cells.end()) at = out.cells.insert(at, {patch.name, {}});
+    at->boxes.push_back({patch.zone, patch.range});
+    for (int& end : at->boxes.back().cells.end) --end;
+  }
+  return out;
+}
+
 class BlockPlan final : public AnyPlan {
  public:
   BlockPlan(BlockMesh const& mesh, CaseFile const& case_file)
@@ -30,7 +47,8 @@ class BlockPlan final : public AnyPlan {
         file_mesh_(mesh),
         prepared_(prepare(mesh.mesh(), case_file.motion, case_file.plan)),
         mesh_(prepared_.mesh),
-        near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)) {
+        near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)),
+        regions_(measured_regions(prepared_.mesh, case_file.measured_regions, region_notes_)) {
     if (case_file.plan.volume.by_prediction()) order_by_prediction();
   }
 
@@ -85,6 +103,7 @@ class BlockPlan final : public AnyPlan {
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
     wanted.near = near_;
+    wanted.regions = regions_;
     return mesh_.measure(wanted);
   }
 
@@ -121,6 +140,7 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] std::vector<std::string> notes() const override {
     std::vector<std::string> out = prepared_.mesh.notes;
     auto const append = [&](auto const& more) { out.insert(out.end(), more.begin(), more.end()); };
+    append(region_notes_);
     append(prepared_.surface.motion().notes);
     append(prepared_.surface.notes());
     append(prepared_.plan().notes);
@@ -202,6 +222,8 @@ class BlockPlan final : public AnyPlan {
   PreparedMorph prepared_;
   BlockMesh mesh_;  ///< with the patches that planning added
   NearCells near_;
+  std::vector<std::string> region_notes_;
+  MeasuredRegions regions_;
   std::optional<Morpher<Exec>> morpher_;
   std::optional<FrozenSmoothing> frozen_;
   bool evaluated_ = false;

@@ -71,6 +71,7 @@ QualityReport ElementMesh::measure(QualityWanted const& wanted) const {
   input.signs = signs;
   input.limits = wanted.limits;
   input.fast = wanted.fast;
+  input.regions = wanted.regions.elements;
   input.faces = by_faces_;
   if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, element_fields, mesh.n_elements());
   Kokkos::DefaultHostExecutionSpace const exec;

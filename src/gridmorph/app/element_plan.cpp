@@ -45,6 +45,8 @@ class ElementPlan final : public AnyPlan {
         prepare({}, mesh.mesh, mesh.topology, mesh.face_patches, std::move(graph), std::move(boundary), options_);
     prepared_.report.seconds.boundary += seconds;
     near_ = near_elements_of(prepared_);
+    for (auto const* regions : {&case_file.motion.regions, &case_file.measured_regions})
+      for (InnerRegion const& region : *regions) add_measured(region);
     planning_ = seconds + watch.lap();
   }
 
@@ -85,6 +87,7 @@ class ElementPlan final : public AnyPlan {
 
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const override {
     wanted.near = near_;
+    wanted.regions = regions_;
     return mesh_.measure(wanted);
   }
 
@@ -218,6 +221,14 @@ class ElementPlan final : public AnyPlan {
     return text;
   }
 
+  void add_measured(InnerRegion const& region) {
+    auto const in = elements_of_region(mesh_.mesh, region);
+    if (std::none_of(in.begin(), in.end(), [](std::uint8_t n) { return n != 0; })) return;
+    Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const mask("gridmorph::cli::region", in.size());
+    std::copy(in.begin(), in.end(), mask.data());
+    regions_.elements.push_back({region.name, mask});
+  }
+
   [[nodiscard]] SmoothingRecord new_record() const override { return SmoothingRecord(prepared_); }
   void drop_morpher() override { morpher_.reset(); }
 
@@ -239,6 +250,7 @@ class ElementPlan final : public AnyPlan {
   PlanOptions options_;
   PreparedUnstructured prepared_;
   NearCells near_;
+  MeasuredRegions regions_;
   std::optional<Morpher<Exec>> morpher_;
   double planning_ = 0;
 };

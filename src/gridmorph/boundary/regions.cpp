@@ -261,32 +261,21 @@ class ElementFinder {
     std::vector<std::uint8_t> named(std::size_t(mesh_.n_elements()), region.zones.empty() ? 1 : 0);
     std::vector<int> subsets;
     for (std::string const& name : region.zones)
-      if (!name_zone(name, named, subsets)) {
-        std::vector<std::string> names;
-        for (Zone const& zone : mesh_.zones) names.push_back(zone.name);
-        for (Subset const& subset : mesh_.subsets) names.push_back(subset.name);
-        return problems_.add(no_such_zone(label, name, names));
-      }
+      if (!name_zone(name, named, subsets)) return problems_.add(no_such_zone(label, name, names_of_zones()));
     Patch patch{region.name, "", PatchKind::region, {}, 0, {}, {}, {}};
     Index elements = 0, faces = 0;
-    auto const holds = [&](std::span<Index32 const> corners) {
-      if (!region.holds) return true;
-      Vec3 sum;
-      for (Index32 const n : corners) sum += mesh_.coordinates[n];
-      return region.holds((1.0 / double(corners.size())) * sum);
-    };
     auto const take = [&](std::span<Index32 const> nodes) {
       patch.nodes.insert(patch.nodes.end(), nodes.begin(), nodes.end());
     };
     for (Index e = 0; e < mesh_.n_elements(); ++e) {
-      if (named[std::size_t(e)] == 0 || !holds(mesh_.elements.corners(e))) continue;
+      if (named[std::size_t(e)] == 0 || !holds(region, mesh_.elements.corners(e))) continue;
       take(mesh_.elements.nodes[e]);
       patch.zone = elements++ == 0 ? mesh_.zone_of_element(e) : patch.zone;
     }
     for (int const s : subsets) {
       CsrGraph const& of = mesh_.subsets[std::size_t(s)].faces;
       for (Index f = 0; f < of.size(); ++f) {
-        if (!holds(of[f])) continue;
+        if (!holds(region, of[f])) continue;
         take(of[f]);
         patch.zone = elements == 0 && faces == 0 ? mesh_.zone_of(of[f].front()) : patch.zone;
         ++faces;
@@ -303,12 +292,40 @@ class ElementFinder {
     found_.push_back(std::move(patch));
   }
 
+  /// Whether each element is in the region.
+  std::vector<std::uint8_t> elements(InnerRegion const& region) {
+    std::vector<std::uint8_t> in(std::size_t(mesh_.n_elements()), region.zones.empty() ? 1 : 0);
+    std::string const label = RegionNames::label(region);
+    std::vector<int> subsets;
+    if (region.nodes) problems_.add(label + ": its nodes are i, j and k of a block, and the mesh is one of elements");
+    for (std::string const& name : region.zones)
+      if (!name_zone(name, in, subsets)) problems_.add(no_such_zone(label, name, names_of_zones()));
+    problems_.throw_if_any<MotionError>();
+    for (Index e = 0; e < mesh_.n_elements(); ++e)
+      if (in[std::size_t(e)] != 0 && !holds(region, mesh_.elements.corners(e))) in[std::size_t(e)] = 0;
+    if (region.only_measured && std::count(in.begin(), in.end(), 1) == 0)
+      throw MotionError(label + " holds no element of what it names; correct where it lies");
+    return in;
+  }
+
   std::vector<Patch> finish() {
     problems_.throw_if_any<MotionError>();
     return std::move(found_);
   }
 
  private:
+  [[nodiscard]] bool holds(InnerRegion const& region, std::span<Index32 const> corners) const {
+    if (!region.holds) return true;
+    Vec3 sum;
+    for (Index32 const n : corners) sum += mesh_.coordinates[n];
+    return region.holds((1.0 / double(corners.size())) * sum);
+  }
+  [[nodiscard]] std::vector<std::string> names_of_zones() const {
+    std::vector<std::string> names;
+    for (Zone const& zone : mesh_.zones) names.push_back(zone.name);
+    for (Subset const& subset : mesh_.subsets) names.push_back(subset.name);
+    return names;
+  }
   bool name_zone(std::string const& name, std::vector<std::uint8_t>& named, std::vector<int>& subsets) const {
     bool found = false;
     for (Zone const& zone : mesh_.zones)
@@ -346,6 +363,11 @@ void add_regions(Mesh& mesh, std::span<InnerRegion const> regions) {
   Finder finder(mesh);
   for (InnerRegion const& region : regions) finder.add(region);
   finder.finish();
+}
+
+std::vector<std::uint8_t> elements_of_region(Mesh const& mesh, InnerRegion const& region) {
+  std::vector<std::string> notes;
+  return ElementFinder(mesh, notes).elements(region);
 }
 
 std::vector<Patch> regions_of_elements(Mesh const& mesh, std::span<InnerRegion const> regions,

@@ -4,6 +4,7 @@
 
 #include <gridmorph/mesh/mesh.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -19,7 +20,8 @@ struct InnerRegion {
   std::optional<IndexRange> nodes;
   /// Whether a place lies in the region; nothing: everything in the zones does.
   std::function<bool(Vec3 const& place)> holds;
-  std::string where;  ///< "case.toml:14", for messages
+  std::string where;           ///< "case.toml:14", for messages
+  bool only_measured = false;  ///< has a row of its own in reports of quality, and is no part of the motion
 };
 
 /// Boxes of cells that hold all cells c of a zone with `inside[c]`, i fastest, as ranges of nodes: where no cell of a whole layer is
@@ -37,6 +39,10 @@ inline bool is_box(Patch const& patch) {
 /// MotionError naming every region without cells, whose name is taken, or whose zones or nodes there are not.
 /// Cost: a look at each cell of the zones that regions name without nodes.
 void add_regions(Mesh& mesh, std::span<InnerRegion const> regions);
+
+/// Of a mesh of elements: whether each element lies in the region (its middle does); none of a subset that has faces alone. Throws MotionError
+/// as add_regions() does, for regions without elements where they are only measured.
+std::vector<std::uint8_t> elements_of_region(Mesh const& mesh, InnerRegion const& region);
 
 /// Of a mesh of elements: a patch of kind `region` for each, which lists all nodes of the elements whose mean of the corners is inside, and of
 /// faces of subsets likewise; appends a note for each. Throws MotionError as add_regions() does. Cost: a look at each element of what regions name.

@@ -15,6 +15,11 @@ std::string_view to_string(Measure measure) {
     case Measure::relative_displacement: return "relative_displacement";
     case Measure::non_orthogonality_deg: return "non_orthogonality_deg";
     case Measure::face_skewness: return "face_skewness";
+    case Measure::relative_displacement_i: return "relative_displacement_i";
+    case Measure::relative_displacement_j: return "relative_displacement_j";
+    case Measure::relative_displacement_k: return "relative_displacement_k";
+    case Measure::growth_ratio: return "growth_ratio";
+    case Measure::face_area_ratio: return "face_area_ratio";
     case Measure::count: break;
   }
   return "unknown";

@@ -31,6 +31,11 @@ enum class Measure {
   relative_displacement,  ///< paper, section 3.2: largest relative displacement / mean edge length, worst direction
   non_orthogonality_deg,  ///< elements, on request: largest angle between face normals and lines between centres
   face_skewness,  ///< elements, on request: largest distance of face centres from these lines / size of the face
+  relative_displacement_i,  ///< blocks: relative_displacement along each index direction of the zone by itself
+  relative_displacement_j,
+  relative_displacement_k,
+  growth_ratio,  ///< blocks: largest ratio (>= 1) of neighbouring edges along a grid line, across 1-to-1 interfaces too
+  face_area_ratio,  ///< blocks: largest ratio (>= 1) of the areas of faces that continue one another from cell to cell
   count
 };
 
@@ -41,8 +46,8 @@ std::string_view to_string(Measure measure);
 
 /// Whether the worst cell is the one with the largest value (aspect ratio, skewness, ratios) or with the smallest one.
 KOKKOS_INLINE_FUNCTION constexpr bool larger_is_worse(Measure m) {
-  return m == Measure::aspect_ratio || m == Measure::equiangle_skewness || m == Measure::volume_ratio ||
-         m == Measure::relative_displacement || m == Measure::non_orthogonality_deg || m == Measure::face_skewness;
+  return m != Measure::determinant_2x2x2 && m != Measure::determinant_3x3x3 && m != Measure::minimum_angle_deg &&
+         m != Measure::volume;
 }
 
 /// Statistics of one measure over one region.
@@ -103,6 +108,17 @@ struct QualityRegion {
   [[nodiscard]] FallenCells const& operator[](Fall f) const { return fallen[std::size_t(f)]; }
 };
 
+/// Along index direction 0, 1 or 2 (i, j, k).
+KOKKOS_INLINE_FUNCTION constexpr Measure relative_displacement_along(int direction) {
+  return Measure(int(Measure::relative_displacement_i) + direction);
+}
+
+/// Cells that an engineer knows by a name: a wake, a refinement.
+struct NamedRegion {
+  std::string name;
+  QualityRegion quality;
+};
+
 /// A node of the mesh for messages: zone and 0-based i, j, k.
 struct NodeLocation {
   int zone = -1;
@@ -143,6 +159,7 @@ struct Certificate {
 
 struct QualityReport {
   QualityRegion near_field, far_field;
+  std::vector<NamedRegion> regions;     ///< QualityInput::regions once more by themselves; not where `fast`
   WallQuality wall;                     ///< all walls together
   std::vector<WallGroup> wall_groups;   ///< the same walls by group, in the order of QualityInput::walls
   std::vector<std::string> zone_names;  ///< for messages: MeasureStatistics::worst_zone is a number in it
@@ -194,6 +211,12 @@ struct CellFields {
   [[nodiscard]] Kokkos::View<double*, MemorySpace>& operator[](Measure m) { return of[int(m)]; }
 };
 
+/// Cells to be measured by themselves as well, wherever they lie in near and far field. Boxes of one region do not overlap.
+struct NamedCells {
+  std::string name;
+  std::vector<CellBox> boxes;
+};
+
 /// What is measured.
 template <class MemorySpace>
 struct QualityInput {
@@ -207,6 +230,7 @@ struct QualityInput {
   bool fast = false;                 ///< only a verdict: a third of the time and no memory per cell; no fields
   std::vector<int> handedness = {};  ///< zone_handedness() of the baseline; left empty, it is found again
   CellFields<MemorySpace> fields = {};
+  std::vector<NamedCells> regions = {};  ///< not looked at where `fast`
 };
 
 /// +1 or -1 per zone: the sign that makes most corner Jacobians of a zone positive. Left-handed zones are valid CGNS;
@@ -220,9 +244,10 @@ std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
 /// with their baseline one by one; the rest of the baseline is read for relative displacements and walls only.
 ///
 /// Throws MeshError when Views are shorter than the mesh, or a wall or interface lies outside its zone.
-/// Memory: 8 bytes per cell for volumes (that field, where it is wanted), below 1 byte per cell for partial sums, 48 bytes per
+/// Memory: 8 bytes per cell for volumes (that field, where it is wanted), below 2 bytes per cell for partial sums, 48 bytes per
 /// node of the walls.
-/// Cost: one pass over the cells (about 1000 flops each, as many cells at once as the registers hold), one over the volumes.
+/// Cost: one pass over the cells (about 1000 flops each, as many cells at once as the registers hold), one over the volumes, one each for
+/// growth and face area ratios (500 flops and 48 divisions together); of regions once more.
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
                               QualityInput<typename Exec::memory_space> const& input);

@@ -192,12 +192,12 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
       detail::view_of(exec, topology.sides.first, "gridmorph::quality::first_side"),
       detail::view_of(exec, across.empty() ? topology.sides.neighbour : across, "gridmorph::quality::neighbour")};
   Kokkos::View<double const*, MemorySpace> const all_volumes = volumes;
-  Kokkos::View<detail::VolumeRatios*, MemorySpace> const ratios(
+  Kokkos::View<detail::NeighbourRatios*, MemorySpace> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::volume_ratios"), table.size());
   auto const ratio_field = fields.of[int(Measure::volume_ratio)];
   kernels::visit_chunks(
       exec, "gridmorph::measure_quality::volume_ratio", chunks, ratios,
-      KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::VolumeRatios& s) {
+      KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::NeighbourRatios& s) {
         for (int n = 0; n < row.count; ++n) {
           Index const e = first_element(row.zone) + row.i + n;
           double const ratio = detail::worst_ratio(all_volumes, neighbours, e);
@@ -232,6 +232,18 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTo
   if (input.fast) {
     detail::keep_verdict(report);
   } else {
+    for (auto const& named : input.regions) {
+      auto part = input;
+      part.near_field = named.elements;
+      part.fields = {};
+      check_sizes(mesh, part);
+      auto const of_region = measure_elements(exec, mesh, topology, part, signs);
+      NamedRegion region{named.name, {}};
+      QualityRegion others;
+      detail::combine(of_region.size(), of_region.data(), region.quality, others,
+                      [&](Index element) { return detail::place_of_element(mesh, element); });
+      report.regions.push_back(std::move(region));
+    }
     detail::WallQualities walls = detail::wall_quality(exec, mesh, topology, face_patches, input);
     report.wall = walls.all;
     report.wall_groups = std::move(walls.groups);

@@ -10,6 +10,13 @@
 
 namespace gridmorph {
 
+/// Elements to be measured by themselves as well, wherever they lie in near and far field.
+template <class MemorySpace>
+struct NamedElements {
+  std::string name;
+  Kokkos::View<std::uint8_t const*, MemorySpace> elements;  ///< (n_elements), nonzero: of the region
+};
+
 /// What is measured.
 template <class MemorySpace>
 struct UnstructuredQualityInput {
@@ -28,6 +35,7 @@ struct UnstructuredQualityInput {
   bool fast = false;       ///< only a verdict: half the time and no memory per element; no fields
   /// Non-orthogonality and face skewness too, which solvers that work by faces ask for; not where `fast`. A third more time, 32 bytes per element.
   bool faces = false;
+  std::vector<NamedElements<MemorySpace>> regions = {};  ///< each costs as much as all; not looked at where `fast`
 };
 
 /// (n_elements) Signs of the elements' volumes in SIDS order, of polyhedra with their faces as they point. Host, parallel.

@@ -42,6 +42,24 @@ MeasureText text_of(Measure measure) {
           "baseline length (u: displacement of a node); the largest of the three directions"};
     case Measure::non_orthogonality_deg: return {"non-orthogonality [deg]", "of elements alone, in degrees; best 0"};
     case Measure::face_skewness: return {"face skewness", "of elements alone; best 0"};
+    case Measure::relative_displacement_i:
+      return {"relative displacement i", "the same along index direction i of the cell's zone alone"};
+    case Measure::relative_displacement_j:
+      return {"relative displacement j", "the same along index direction j of the cell's zone alone"};
+    case Measure::relative_displacement_k:
+      return {"relative displacement k", "the same along index direction k of the cell's zone alone"};
+    case Measure::growth_ratio:
+      return {
+          "growth ratio",
+          "largest of longer / shorter of an edge of a cell and the edge that continues it along its grid line, across "
+          "1-to-1 interfaces too (collapsed edges left out); best 1"};
+    case Measure::face_area_ratio:
+      return {"face area ratio",
+              "largest of larger / smaller area of a face of a cell and each face that continues it in its grid "
+              "surface, in "
+              "the cell next to it, across 1-to-1 interfaces too (collapsed faces left out); area: half the cross "
+              "product of "
+              "the diagonals; best 1"};
     case Measure::count: break;
   }
   return {"unknown", ""};
@@ -89,6 +107,11 @@ std::string_view element_formula(Measure measure) {
       return "largest distance over the faces of an element from where the line between the centres on both sides "
              "crosses the face to the face's centre, against the reach of the face in that direction, as OpenFOAM's "
              "checkMesh measures it; best 0";
+    case Measure::relative_displacement_i:
+    case Measure::relative_displacement_j:
+    case Measure::relative_displacement_k:
+    case Measure::growth_ratio:
+    case Measure::face_area_ratio: return "of blocks alone, whose cells lie along grid lines";
     case Measure::count: break;
   }
   return "";

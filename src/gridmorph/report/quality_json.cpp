@@ -114,6 +114,7 @@ json definitions(bool unstructured) {
   list["orthogonality_deg"] = {{"formula", "angle between v and n in degrees; best 0"}};
   list["first_height_change"] = {{"formula", "|h / h_baseline - 1|"}};
   list["near_field"] = {{"formula", "the boundary-layer region of the moving walls; far_field: everything else"}};
+  list["regions"] = {{"formula", "cells of each [[region]], of near and far field, once more by themselves"}};
   list["indices"] = {{"formula", unstructured ? "numbers of elements and nodes as the mesh file counts them"
                                               : "1-based, as in the mesh file; cell i lies between nodes i and i + 1"}};
   return list;
@@ -141,6 +142,10 @@ void to_json(nlohmann::json& json, QualityReport const& report) {
           {"verdict_only", report.fast}};
   if (report.certificate) json["certificate"] = certificate_json(report);
   if (report.fast) return;
+  if (!report.regions.empty()) {
+    nlohmann::json& regions = json["regions"] = nlohmann::json::object();
+    for (NamedRegion const& region : report.regions) regions[region.name] = region_json(report, region.quality);
+  }
   json["walls"] = wall_json(report, report.wall);
   nlohmann::json& groups = json["walls"]["groups"] = nlohmann::json::object();
   for (WallGroup const& group : report.wall_groups) groups[group.name] = wall_json(report, group.quality);

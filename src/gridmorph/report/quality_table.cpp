@@ -131,12 +131,56 @@ void wall_groups(std::string& out, QualityReport const& baseline, std::optional<
   if (now.size() > limit) out += fmt::format("and {} more, in the JSON report\n", now.size() - limit);
 }
 
+/// A line per region and mesh: near field, far field, and those that have a name.
+void regions(std::string& out, QualityReport const& baseline, std::optional<QualityReport> const& morphed) {
+  QualityReport const& named = morphed ? *morphed : baseline;
+  if (named.regions.empty()) return;
+  constexpr std::size_t name_width = 22;
+  struct Entry {
+    Measure measure;
+    double MeasureStatistics::*statistic;
+    std::string_view title, unit;
+  };
+  std::vector<Entry> const entries{{Measure::aspect_ratio, &MeasureStatistics::max, "aspect", "max"},
+                                   {Measure::determinant_3x3x3, &MeasureStatistics::min, "determ.", "min"},
+                                   {Measure::minimum_angle_deg, &MeasureStatistics::min, "angle", "min"},
+                                   {Measure::volume_ratio, &MeasureStatistics::max, "volume", "ratio"},
+                                   {Measure::growth_ratio, &MeasureStatistics::max, "growth", "ratio"},
+                                   {Measure::face_area_ratio, &MeasureStatistics::max, "area", "ratio"},
+                                   {Measure::relative_displacement_i, &MeasureStatistics::max, "displ.", "i"},
+                                   {Measure::relative_displacement_j, &MeasureStatistics::max, "displ.", "j"},
+                                   {Measure::relative_displacement_k, &MeasureStatistics::max, "displ.", "k"}};
+  out += fmt::format("\n{:<{}}{:<9}{:>9}", "Regions", name_width, "", "cells");
+  for (Entry const& e : entries) out += fmt::format("{:>9}", e.title);
+  out += fmt::format("\n{:{}}", "", name_width + 18);
+  for (Entry const& e : entries) out += fmt::format("{:>9}", e.unit);
+  out += '\n';
+  auto const line = [&](std::string name, std::string_view state, QualityRegion const& region) {
+    if (region.cells == 0) return;
+    if (name.size() >= name_width) name = name.substr(0, name_width - 4) + "...";
+    out += fmt::format("{:<{}}{:<9}{:>9}", name, name_width, state, region.cells);
+    for (Entry const& e : entries) {
+      MeasureStatistics const& s = region[e.measure];
+      out += fmt::format("{:>9}", s.worst_zone < 0 ? std::string("-") : fmt::format("{:.4g}", s.*e.statistic));
+    }
+    out += '\n';
+  };
+  auto const both = [&](std::string const& name, QualityRegion const& before, QualityRegion const* after) {
+    line(name, "baseline", before);
+    if (after != nullptr) line(name, "morphed", *after);
+  };
+  both("near field", baseline.near_field, morphed ? &morphed->near_field : nullptr);
+  both("far field", baseline.far_field, morphed ? &morphed->far_field : nullptr);
+  for (std::size_t r = 0; r < baseline.regions.size() && r < named.regions.size(); ++r)
+    both(named.regions[r].name, baseline.regions[r].quality, morphed ? &morphed->regions[r].quality : nullptr);
+}
+
 void worst_cells(std::string& out, QualityReport const& report, std::string_view state) {
   out += fmt::format("\nWorst cells, {}\n", state);
   auto const region = [&](std::string_view name, QualityRegion const& r) {
-    for (Measure const m :
-         {Measure::determinant_3x3x3, Measure::minimum_angle_deg, Measure::aspect_ratio, Measure::volume_ratio,
-          Measure::non_orthogonality_deg, Measure::face_skewness, Measure::relative_displacement}) {
+    for (Measure const m : {Measure::determinant_3x3x3, Measure::minimum_angle_deg, Measure::aspect_ratio,
+                            Measure::volume_ratio, Measure::growth_ratio, Measure::face_area_ratio,
+                            Measure::non_orthogonality_deg, Measure::face_skewness, Measure::relative_displacement}) {
       MeasureStatistics const& s = r[m];
       if (s.worst_zone < 0) continue;
       out += fmt::format("{:<11}{:<24}{:>10}  {}\n", name, text_of(m).title, format_value(s.worst),
@@ -170,11 +214,16 @@ std::string format_table(QualityReport const& baseline, std::optional<QualityRep
   measure_row(out, list, Measure::equiangle_skewness, "max", &MeasureStatistics::max);
   measure_row(out, list, Measure::volume, "min", &MeasureStatistics::min);
   measure_row(out, list, Measure::volume_ratio, "max", &MeasureStatistics::max);
+  measure_row(out, list, Measure::growth_ratio, "max", &MeasureStatistics::max);
+  measure_row(out, list, Measure::face_area_ratio, "max", &MeasureStatistics::max);
   measure_row(out, list, Measure::non_orthogonality_deg, "max", &MeasureStatistics::max);
   measure_row(out, list, Measure::face_skewness, "max", &MeasureStatistics::max);
-  if (morphed && morphed->against_baseline && !morphed->fast)
+  if (morphed && morphed->against_baseline && !morphed->fast) {
     measure_row(out, list, Measure::relative_displacement, "max", &MeasureStatistics::max);
+    for (int d = 0; d < 3; ++d) measure_row(out, list, relative_displacement_along(d), "max", &MeasureStatistics::max);
+  }
   if (morphed && morphed->certificate) out += certificate_text(*morphed);
+  regions(out, baseline, morphed);
   walls(out, baseline, morphed);
   wall_groups(out, baseline, morphed);
   worst_cells(out, morphed ? *morphed : baseline, morphed ? "morphed" : "baseline");

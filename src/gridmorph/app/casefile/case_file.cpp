@@ -202,7 +202,10 @@ std::map<std::string, double> read_motion(TableReader& root, CaseFile& out) {
   casefile::RuleContext shared{out.axis, {}, out.sequence.has_value()};
   casefile::read_constants(root, "constants", shared.constants);
   for (auto& table : root.tables("motion")) casefile::read_motion_rule(table, shared, out);
-  for (auto& table : root.tables("region")) out.motion.regions.push_back(casefile::read_region(table, out.axis));
+  for (auto& table : root.tables("region")) {
+    InnerRegion region = casefile::read_region(table, out.axis);
+    (region.only_measured ? out.measured_regions : out.motion.regions).push_back(std::move(region));
+  }
   casefile::read_wheel(root, shared, out);
   if (!root.has("motion"))
     root.context().problems.add(root.context().file +

@@ -94,6 +94,7 @@ struct CaseFile {
   std::vector<std::string> leave_out;              ///< bases and zones of the file that are no part of the mesh
   std::optional<Axis> axis;                        ///< [mesh] axis as given; Motion::axis holds it too
   Motion motion;
+  std::vector<InnerRegion> measured_regions;  ///< [[region]] that rules do not move
   PlanOptions plan;
   std::optional<BackgroundFile> background;  ///< read and made part of `plan` by whoever morphs
   GuardOptions guard;

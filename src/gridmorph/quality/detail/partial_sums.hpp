@@ -117,11 +117,13 @@ struct PartialSums {
   }
 };
 
-/// The volume ratio of both regions: it has a pass of its own, when all volumes are known.
-struct VolumeRatios {
+static_assert(32 * sizeof(PartialSums) <= 48 * 1024, "those of a team of a GPU no longer fit into its scratch memory");
+
+/// A ratio to neighbours in both regions: each has a pass of its own, when all volumes, edges or faces are known.
+struct NeighbourRatios {
   PartialMeasure region[2];
 
-  KOKKOS_INLINE_FUNCTION void join(VolumeRatios const& other) {
+  KOKKOS_INLINE_FUNCTION void join(NeighbourRatios const& other) {
     for (int r = 0; r < 2; ++r) region[r].join(other.region[r], larger_is_worse(Measure::volume_ratio));
   }
 };

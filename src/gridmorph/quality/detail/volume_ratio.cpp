@@ -6,13 +6,6 @@
 
 namespace gridmorph::detail {
 
-namespace {
-
-struct FaceOfRange {
-  int axis, side;
-};
-
-/// The face of a zone that a node range lies on; nothing for edges, corners and ranges inside the zone.
 std::optional<FaceOfRange> face_of(Zone const& zone, IndexRange const& range) {
   std::optional<FaceOfRange> face;
   for (int a = 0; a < 3; ++a) {
@@ -27,6 +20,8 @@ std::optional<FaceOfRange> face_of(Zone const& zone, IndexRange const& range) {
   }
   return face;
 }
+
+namespace {
 
 void check_inside(Mesh const& mesh, Interface1to1 const& interface, int zone, IndexRange const& range) {
   bool inside = zone >= 0 && zone < int(mesh.zones.size());

@@ -3,9 +3,16 @@
 
 #include <gridmorph/quality/detail/zone_cells.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace gridmorph::detail {
+
+struct FaceOfRange {
+  int axis, side;
+};
+/// The face of a zone that a node range lies on; nothing for edges, corners and ranges inside the zone.
+std::optional<FaceOfRange> face_of(Zone const& zone, IndexRange const& range);
 
 /// Cells behind one side of an interface: for own cell p (begin <= p < end, on face `side` along `axis`) the neighbour is
 /// cell donor_offset + sum of donor_stride[a] * p[a].

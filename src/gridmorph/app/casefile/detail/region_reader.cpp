@@ -124,6 +124,10 @@ InnerRegion read_region(TableReader& table, std::optional<Axis> const& axis) {
     table.problem("nodes", "are those of one zone; name it, zones = \"Zone 1\"");
   if (table.has("name") && !table.has("nodes") && !has_shape && out.zones.empty())
     table.problem("name", "is all there is: say where the region lies, by zones, nodes, box, sphere, axial or radius");
+  out.only_measured = table.boolean("only_measured").value_or(false);
+  if (out.only_measured && out.nodes)
+    for (int a = 0; a < 3; ++a)
+      if (out.nodes->extent(a) == 1) table.problem("only_measured", "is for cells, and a surface of the grid has none");
   table.finish();
   if (!all.empty())
     out.holds = [all = std::move(all)](Vec3 const& p) {
