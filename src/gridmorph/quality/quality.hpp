@@ -247,7 +247,7 @@ std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
 /// Memory: 8 bytes per cell for volumes (that field, where it is wanted), below 2 bytes per cell for partial sums, 48 bytes per
 /// node of the walls.
 /// Cost: one pass over the cells (about 1000 flops each, as many cells at once as the registers hold), one over the volumes, one each for
-/// growth and face area ratios (500 flops and 48 divisions together); of regions once more.
+/// growth and face area ratios (500 flops and 48 comparisons together); of regions once more.
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
                               QualityInput<typename Exec::memory_space> const& input);
