@@ -1,5 +1,6 @@
 // Morphing from case file to mesh file.
 #include "run_command.hpp"
+#include "support/mesh_builders.hpp"
 #include "support/shared_mesh.hpp"
 #include "support/with_keys.hpp"
 
@@ -192,6 +193,33 @@ TEST_F(MorphRun, WritesTheMeshAfterEveryStage) {
   std::string const last = contents(path("stages/" + stages.back()["file"].get<std::string>()));
   for (std::string const field : {"Stage", "Chain", "Direction", "DisplacementX"})
     EXPECT_NE(last.find(field), std::string::npos) << field;
+}
+
+TEST_F(MorphRun, StagesOfATwoDimensionalMeshAreTwoDimensional) {
+  test::MeshBuilder builder("plane");
+  int const zone = builder.zone("plane", {9, 6, 2}, [](Index3 const& p) {
+    return Vec3{0.1 * p[0], 0.1 * p[1], 0.1 * p[2]};
+  });
+  builder.patch("floor", PatchKind::wall, zone, 1, 0);
+  builder.patch("roof", PatchKind::farfield, zone, 1, 1);
+  builder.patch("left", PatchKind::inflow, zone, 0, 0);
+  builder.patch("right", PatchKind::outflow, zone, 0, 1);
+  Mesh mesh = builder.finish();
+  mesh.dimension = 2;
+  write_mesh(path("plane.cgns").string(), mesh);
+  write("case.toml",
+        "[mesh]\ninput = \"plane.cgns\"\noutput = \"plane_moved.cgns\"\n[[motion]]\npatches = [\"floor\"]\nrule = "
+        "\"formula\"\n"
+        "dy = \"0.05 * sin(3.9269908169872414 * x)\"\n[output]\nstages = \"stages\"\n");
+  Outcome const run = gridmorph("morph case.toml");
+  ASSERT_EQ(run.status, 0) << run.err;
+  auto const stages = stages_in(path("stages"));
+  ASSERT_GE(stages.size(), 2U);
+  Mesh const last = read_mesh(path("stages/" + stages.back()["file"].get<std::string>()).string());
+  Mesh const moved = read_mesh(path("plane_moved.cgns").string());
+  EXPECT_EQ(last.dimension, 2);
+  ASSERT_EQ(last.n_nodes(), moved.n_nodes());
+  for (Index n = 0; n < moved.n_nodes(); ++n) ASSERT_EQ(last.coordinates[n], moved.coordinates[n]);
 }
 
 TEST_F(MorphRun, WhatAGuardMovesIsTheLastStage) {

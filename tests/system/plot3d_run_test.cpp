@@ -5,6 +5,8 @@
 
 #include <gridmorph/io/mesh_io.hpp>
 
+#include <algorithm>
+
 namespace gridmorph::testing {
 namespace {
 
@@ -57,6 +59,26 @@ TEST_F(Plot3dRun, MovesToTheBitAsTheCgnsMeshDoes) {
     for (Index n = 0; n < expected.n_nodes(); ++n)
       ASSERT_EQ(moved.coordinates[n], expected.coordinates[n]) << storage.name() << " " << describe_node(expected, n);
   }
+}
+
+/// A grid file has no place for fields, so that stages are CGNS files with the patches and interfaces that the side file gives.
+TEST_F(Plot3dRun, StagesAreCgnsFiles) {
+  write_plot3d({});
+  ASSERT_EQ(gridmorph("inspect passage.p3d --write-side-file found.toml").status, 0);
+  std::filesystem::rename(path("found.toml"), path("passage.toml"));
+  std::string text = contents(path("rotation.toml"));
+  text.replace(text.find("\"passage.cgns\""), 14, "\"passage.p3d\"");
+  write("p3d.toml", text + "\n[output]\nstages = \"stages\"\n");
+  Outcome const run = gridmorph("morph p3d.toml -o moved.p3d");
+  ASSERT_EQ(run.status, 0) << run.err;
+  Mesh const moved = read_mesh(path("moved.p3d").string());
+  std::filesystem::path last;
+  for (auto const& entry : std::filesystem::directory_iterator(path("stages")))
+    if (entry.path().extension() == ".cgns") last = std::max(last, entry.path());
+  Mesh const stage = read_mesh(last.string());
+  EXPECT_EQ(stage.interfaces.empty(), false);
+  ASSERT_EQ(stage.n_nodes(), moved.n_nodes());
+  for (Index n = 0; n < moved.n_nodes(); ++n) ASSERT_EQ(stage.coordinates[n], moved.coordinates[n]);
 }
 
 TEST_F(Plot3dRun, TheSideFileOfABareMeshMakesItWhole) {
