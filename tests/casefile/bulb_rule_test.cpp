@@ -1,4 +1,4 @@
-// The keys of rule = "bulb", and of contours with an offset.
+// The keys of rule = "bulb", of contours with an offset, and of rule = "extend".
 #include "case_text.hpp"
 
 #include <cmath>
@@ -67,6 +67,14 @@ TEST(ContourRuleText, OffsetsAreAddedToTheProfileOrStandAlone) {
   EXPECT_TRUE(
       reported(problems_of(case_with_rule("rule = \"contour\"\noffset = \"t\"")), "case.toml:8: ", {"no [sequence]"}));
   EXPECT_TRUE(reported(problems_of(case_with_rule("rule = \"contour\"\n")), "case.toml:5: ", {"profile", "offset"}));
+}
+
+TEST(ExtendRuleText, NamesItsWalls) {
+  EXPECT_EQ(std::get<ExtendRule>(rule_of("rule = \"extend\"\nof = [\"hub\", \"case\"]")).of,
+            (std::vector<std::string>{"hub", "case"}));
+  EXPECT_TRUE(reported(problems_of(case_with_rule("rule = \"extend\"")), "case.toml:5: ", {"of"}));
+  EXPECT_TRUE(reported(problems_of(case_with_rule("rule = \"extend\"\nof = \"hub\"\namplitude = 2")),
+                       "case.toml:9: ", {"rule of the blade or wall"}));
 }
 
 }  // namespace

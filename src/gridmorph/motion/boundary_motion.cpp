@@ -5,6 +5,7 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/attached_motion.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
+#include <gridmorph/motion/end_walls/wall_shift.hpp>
 #include <gridmorph/motion/inflation/inflate_motion.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/target/target_motion.hpp>
@@ -39,6 +40,9 @@ struct BoundaryMotion::Impl {
   std::vector<std::unique_ptr<SectionMotion>> sections_of_rule;  ///< per rule, null for other rules
   std::map<int, std::shared_ptr<TargetMotion const>> targets;    ///< by rule
   std::map<int, InflateMotion> inflations;                       ///< by rule
+  std::map<int, MovedWall> moved_walls;                          ///< by rule, those that blades are extended to
+  std::map<int, ExtensionMotion> extensions;                     ///< by rule
+  std::map<int, WallShift> wall_shifts;                          ///< by the rule of the wall
   std::map<int, AttachedMotion> attached;                        ///< by rule
 
   Impl(std::shared_ptr<Boundary const> of, ResolvedMotion resolved)
@@ -47,6 +51,7 @@ struct BoundaryMotion::Impl {
         slip(std::make_shared<SlipSurfaces const>(*boundary, motion, notes)) {
     make_targets();
     inflate();
+    extend(notes);
     make_blades();
     attach();
   }
@@ -58,6 +63,8 @@ struct BoundaryMotion::Impl {
           std::make_shared<TargetMotion const>(*target, std::get<TargetRule>(rules[std::size_t(r)].rule).share);
     each_inflation(
         [&](int r, InflateRule const& rule) { inflations.try_emplace(r, other.inflations.at(r), rule, label(r)); });
+    std::vector<std::string> said;  // with the notes of the first motion
+    extend(said);
     make_blades();
     attach();
   }
@@ -129,6 +136,48 @@ struct BoundaryMotion::Impl {
     });
   }
 
+  /// After all that moves walls.
+  void extend(std::vector<std::string>& said) {
+    Problems problems;
+    sections_of_rule.resize(rules.size());                         // none yet: they have walls that are known
+    std::map<int, std::vector<ExtensionMotion const*>> blades_on;  // by the rule of the wall
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      auto const* rule = std::get_if<ExtendRule>(&rules[r].rule);
+      if (rule == nullptr) continue;
+      try {
+        std::vector<int> const named = select_patches(boundary->mesh(), rule->of);
+        require_direct(named);
+        std::map<int, MovedWall const*> walls;
+        for (int const p : named) {
+          int const w = motion.patch[std::size_t(p)].rule;
+          if (std::holds_alternative<SectionsRule>(rules[std::size_t(w)].rule))
+            throw MotionError(label(int(r)) + ": of: " + describe_patch(boundary->mesh(), boundary->mesh().patches[p]) +
+                              " has the rule 'sections', which is about blades and not about the walls they stand on");
+          walls[w] = &moved_wall(w, label(int(r)));
+        }
+        std::vector<MovedWall const*> list;
+        for (auto const& [w, wall] : walls) list.push_back(wall);
+        auto const made =
+            extensions.try_emplace(int(r), *boundary, patches_of(int(r)), list, label(int(r)), said).first;
+        for (auto const& [w, wall] : walls) blades_on[w].push_back(&made->second);
+      } catch (MotionError const& e) {
+        problems.add(e.what());
+      }
+    }
+    problems.throw_if_any<MotionError>();
+    for (auto const& [w, blades] : blades_on)
+      wall_shifts.try_emplace(w, *boundary, moved_walls.at(w), blades, label(w));
+  }
+
+  MovedWall const& moved_wall(int w, std::string const& name) {
+    auto const displacement = [this, w](std::span<Vec3 const> points, std::span<Vec3> out) {
+      evaluate_rule(w, points, out);
+    };
+    bool const anywhere = !std::holds_alternative<TargetRule>(rules[std::size_t(w)].rule) &&
+                          !std::holds_alternative<InflateRule>(rules[std::size_t(w)].rule);
+    return moved_walls.try_emplace(w, *boundary, patches_of(w), displacement, anywhere, name).first->second;
+  }
+
   /// After all that parts can be attached to.
   void attach() {
     Problems problems;
@@ -196,6 +245,13 @@ struct BoundaryMotion::Impl {
   }
 
   void evaluate(int r, std::span<Vec3 const> points, std::span<Vec3> out) const {
+    if (auto const shift = wall_shifts.find(r); shift != wall_shifts.end())
+      shift->second.displacement(points, out);
+    else
+      evaluate_rule(r, points, out);
+  }
+
+  void evaluate_rule(int r, std::span<Vec3 const> points, std::span<Vec3> out) const {
     Rule const& rule = rules[r].rule;
     if (std::holds_alternative<FixedRule>(rule) || std::holds_alternative<PrescribedRule>(rule)) {
       std::fill(out.begin(), out.end(), Vec3{});
@@ -211,6 +267,8 @@ struct BoundaryMotion::Impl {
       targets.at(r)->displacement(points, out);
     } else if (std::holds_alternative<InflateRule>(rule)) {
       inflations.at(r).displacement(points, out);
+    } else if (std::holds_alternative<ExtendRule>(rule)) {
+      extensions.at(r).displacement(points, out);
     } else if (std::holds_alternative<AttachedRule>(rule)) {
       AttachedMotion const& motion_of_walls = attached.at(r);
       std::transform(points.begin(), points.end(), out.begin(),
@@ -242,7 +300,7 @@ BoundaryMotion& BoundaryMotion::operator=(BoundaryMotion&&) noexcept = default;
 bool BoundaryMotion::is_explicit(int rule) const {
   Rule const& own = impl_->rules[rule].rule;
   return Impl::is_direct(own) || impl_->row_of_rule[rule] != nullptr || std::holds_alternative<AttachedRule>(own) ||
-         std::holds_alternative<PrescribedRule>(own);
+         std::holds_alternative<PrescribedRule>(own) || std::holds_alternative<ExtendRule>(own);
 }
 
 void BoundaryMotion::displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const {

@@ -2,7 +2,7 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// inflate, circumferential slide, follow, attached, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// inflate, extend, circumferential slide, follow, attached, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface). Regions inside the domain are addressed by their names
 // and take explicit rules that need no surface.
 #pragma once
@@ -159,8 +159,15 @@ struct AttachedRule {
   std::optional<std::pair<Vec3, double>> near{};
 };
 
+/// Blades on end walls that other rules move: their spanwise grid lines are extended or trimmed along themselves to the moved walls, and the
+/// walls' nodes around them go along.
+struct ExtendRule {
+  std::vector<std::string>
+      of;  ///< end walls with a displacement of their own; another end of the lines stays where it is
+};
+
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
-                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule>;
+                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule, ExtendRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").

@@ -211,7 +211,8 @@ class Resolver {
     Rule const& rule = motion_.rules[r].rule;
     auto const* free = std::get_if<FreeRule>(&rule);
     if (is<SlipRule>(rule) || is<SectionsRule>(rule) || is<TargetRule>(rule) || is<AttachedRule>(rule) ||
-        is<InflateRule>(rule) || (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
+        is<InflateRule>(rule) || is<ExtendRule>(rule) ||
+        (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
       problems_.add(label(r) + " names the periodic " + name +
                     "; periodic interfaces take free without constraint, "
                     "follow, circumferential-slide, fixed, rigid or "
@@ -303,6 +304,7 @@ class Resolver {
     if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule)) of = &slide->of;
     if (auto const* follow = std::get_if<FollowRule>(&rule)) of = &follow->of;
     if (auto const* attached = std::get_if<AttachedRule>(&rule)) of = &attached->of;
+    if (auto const* extend = std::get_if<ExtendRule>(&rule)) of = &extend->of;
     if (of == nullptr) return;
     if (of->empty()) problems_.add(label(r) + ": `of` is empty; name the walls whose motion it takes up");
     std::vector<int> blades;
@@ -350,8 +352,10 @@ class Resolver {
 
 std::string_view rule_name(Rule const& rule) {
   static constexpr std::array<std::string_view, std::variant_size_v<Rule>> names{
-      "fixed",      "rigid",    "function", "circumferential-slide", "follow", "slip", "free", "sections", "target",
-      "prescribed", "attached", "inflate"};
+      "fixed",  "rigid",      "function", "circumferential-slide",
+      "follow", "slip",       "free",     "sections",
+      "target", "prescribed", "attached", "inflate",
+      "extend"};
   return names[rule.index()];
 }
 

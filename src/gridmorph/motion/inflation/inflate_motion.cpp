@@ -66,7 +66,7 @@ InflateMotion::InflateMotion(Boundary const& boundary, ResolvedMotion const& mot
     note += ", " + std::to_string(ground_->offset.at_creases()) + " of them at creases";
   if (ground_->offset.limited() > 0)
     note += "; at " + std::to_string(ground_->offset.limited()) +
-            " the crease is so sharp that their faces are offset by less than the height";
+            " a crease, or the angle to a slip wall, is so sharp that faces are offset by less than the height";
   notes.push_back(note);
 }
 

@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <queue>
 
 namespace gridmorph {
 
@@ -23,32 +21,6 @@ constexpr double longest = 2;
 double smoothstep(double low, double high, double value) {
   double const t = std::clamp((value - low) / (high - low), 0.0, 1.0);
   return t * t * (3 - 2 * t);
-}
-
-/// Distances from sources along the edges of the surface.
-std::vector<double> along_edges(std::vector<Vec3> const& points, std::vector<std::vector<int>> const& neighbours,
-                                std::vector<std::vector<int>> const& same, std::vector<int> const& sources) {
-  std::vector<double> out(points.size(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-  for (int const v : sources) {
-    out[std::size_t(v)] = 0;
-    front.emplace(0.0, v);
-  }
-  while (!front.empty()) {
-    auto const [d, v] = front.top();
-    front.pop();
-    if (d > out[std::size_t(v)]) continue;
-    auto const reach = [&](int w, double there) {
-      if (there >= out[std::size_t(w)]) return;
-      out[std::size_t(w)] = there;
-      front.emplace(there, w);
-    };
-    for (int const w : neighbours[std::size_t(v)])
-      reach(w, d + distance(points[std::size_t(v)], points[std::size_t(w)]));
-    for (int const w : same[std::size_t(v)]) reach(w, d);
-  }
-  return out;
 }
 
 Vec3 uncut_direction(std::span<Vec3 const> normals, std::span<Vec3 const> kept) {
@@ -140,16 +112,13 @@ void SurfaceOffset::find_rims(Boundary const& boundary, PatchSurface const& surf
 void SurfaceOffset::fade(PatchSurface const& surface, std::vector<VertexImage> const& images) {
   slides_.resize(points_.size());
   if (touched_.empty()) return;
-  auto const neighbours = surface.neighbours();
-  std::vector<std::vector<int>> same(points_.size());  // periodic images are one place
-  for (VertexImage const& image : images) same[std::size_t(image.vertex)].push_back(image.image);
   std::vector<std::vector<double>> away;
   std::vector<double> farthest;
   for (std::size_t s = 0; s < touched_.size(); ++s) {
     std::vector<int> sources;
     for (std::size_t v = 0; v < points_.size(); ++v)
       if (std::find(rims_[v].begin(), rims_[v].end(), int(s)) != rims_[v].end()) sources.push_back(int(v));
-    away.push_back(along_edges(points_, neighbours, same, sources));
+    away.push_back(edge_distances(surface, images, sources));
     farthest.push_back(0);
     for (double const d : away.back())
       if (std::isfinite(d)) farthest.back() = std::max(farthest.back(), d);

@@ -1,13 +1,14 @@
 #include <gridmorph/motion/inflation/vertex_normals.hpp>
 
-#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/geometry/barycentric.hpp>
 #include <gridmorph/geometry/target_tree.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace gridmorph {
@@ -163,23 +164,6 @@ class BetweenCorners {
 };
 
 }  // namespace
-
-std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface const& surface) {
-  std::vector<VertexImage> out;
-  Mesh const& mesh = boundary.mesh();
-  for (auto const& c : connections_of(mesh)) {
-    // Those of other zones too: the rim of a patch may be a node of a zone beside it that has the periodic side.
-    if (!c.periodic) continue;
-    Mat3 const rotation = boundary.transform(c.number).rotation;
-    for (auto const& [own, donor] : boundary.pairs(c.number)) {
-      int const a = surface.numbers.find(mesh.coordinates[own]), b = surface.numbers.find(mesh.coordinates[donor]);
-      if (a < 0 || b < 0 || a == b) continue;
-      out.push_back({a, b, rotation});
-      out.push_back({b, a, transpose(rotation)});
-    }
-  }
-  return out;
-}
 
 VertexNormals::VertexNormals(Boundary const& boundary, PatchSurface const& surface,
                              std::vector<VertexImage> const& images, double crease_angle_deg) {

@@ -2,23 +2,13 @@
 #pragma once
 
 #include <gridmorph/boundary/patch_surface.hpp>
-#include <gridmorph/kernels/vec3.hpp>
+#include <gridmorph/motion/detail/edge_distances.hpp>
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace gridmorph {
-
-/// Vertices that a periodic connection joins, and the rotation from directions at the first to those at the second.
-struct VertexImage {
-  int vertex = -1, image = -1;
-  Mat3 rotation;
-};
-
-/// Both ways of every pair of vertices of the surface that a periodic connection of the mesh joins.
-std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface const& surface);
 
 /// A vertex has one normal per smooth part of the surface around it, into the mesh: the mean of the normals of its faces' corners,
 /// weighted by their angles (Thuermer and Wuethrich 1998), so that it does not depend on how flat faces are cut. Corners whose normals are

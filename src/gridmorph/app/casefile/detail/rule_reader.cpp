@@ -26,7 +26,7 @@ namespace {
 
 std::vector<std::string> const rule_names{"fixed",   "rigid",    "formula", "field",    "circumferential-slide",
                                           "follow",  "slip",     "free",    "sections", "target",
-                                          "contour", "attached", "inflate", "bulb"};
+                                          "contour", "attached", "inflate", "bulb",     "extend"};
 
 /// rotation = { axis, origin, angle_deg }. Without axis and origin: about the machine axis.
 void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid) {
@@ -407,6 +407,7 @@ Rule read_other(std::size_t number, TableReader& table, RuleContext const& share
     case 6: return read_slip(table, shared);
     case 7: return read_free(table, shared);
     case 11: return read_attached(table);
+    case 14: return ExtendRule{read_of(table)};
     default: return FixedRule{};
   }
 }
@@ -480,7 +481,7 @@ void read_motion_rule(TableReader& table, RuleContext const& shared, CaseFile& o
   } else {
     motion.rule = read_other(number, table, shared);
     if (table.find("amplitude") != nullptr)
-      table.problem("amplitude", number == 4 || number == 5 || number == 11
+      table.problem("amplitude", number == 4 || number == 5 || number == 11 || number == 14
                                      ? "belongs to the rule of the blade or wall, which this rule goes along with"
                                      : fmt::format("multiplies a displacement, and \"{}\" gives none", *name));
   }

@@ -1,0 +1,61 @@
+#include <gridmorph/motion/detail/edge_distances.hpp>
+
+#include <gridmorph/boundary/selectors.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace gridmorph {
+
+std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface const& surface) {
+  std::vector<VertexImage> out;
+  Mesh const& mesh = boundary.mesh();
+  for (auto const& c : connections_of(mesh)) {
+    // Those of other zones too: the rim of a patch may be a node of a zone beside it that has the periodic side.
+    if (!c.periodic) continue;
+    Mat3 const rotation = boundary.transform(c.number).rotation;
+    for (auto const& [own, donor] : boundary.pairs(c.number)) {
+      int const a = surface.numbers.find(mesh.coordinates[own]), b = surface.numbers.find(mesh.coordinates[donor]);
+      if (a < 0 || b < 0 || a == b) continue;
+      out.push_back({a, b, rotation});
+      out.push_back({b, a, transpose(rotation)});
+    }
+  }
+  // Files store most connections once per side.
+  auto const pair = [](VertexImage const& i) { return std::pair(i.vertex, i.image); };
+  std::stable_sort(out.begin(), out.end(), [&](auto const& a, auto const& b) { return pair(a) < pair(b); });
+  out.erase(std::unique(out.begin(), out.end(), [&](auto const& a, auto const& b) { return pair(a) == pair(b); }),
+            out.end());
+  return out;
+}
+
+std::vector<double> edge_distances(PatchSurface const& surface, std::vector<VertexImage> const& images,
+                                   std::vector<int> const& sources) {
+  auto const& points = surface.points;
+  auto const neighbours = surface.neighbours();
+  std::vector<std::vector<int>> same(points.size());
+  for (VertexImage const& image : images) same[std::size_t(image.vertex)].push_back(image.image);
+  std::vector<double> out(points.size(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+  auto const reach = [&](int v, double there) {
+    if (there >= out[std::size_t(v)]) return;
+    out[std::size_t(v)] = there;
+    front.emplace(there, v);
+  };
+  for (int const v : sources) reach(v, 0);
+  while (!front.empty()) {
+    auto const [d, v] = front.top();
+    front.pop();
+    if (d > out[std::size_t(v)]) continue;
+    for (int const w : neighbours[std::size_t(v)])
+      reach(w, d + distance(points[std::size_t(v)], points[std::size_t(w)]));
+    for (int const w : same[std::size_t(v)]) reach(w, d);
+  }
+  return out;
+}
+
+}  // namespace gridmorph
