@@ -21,14 +21,16 @@ struct Channel {
 
   explicit Channel(double (*height)(double x)) {
     columns.height.assign(std::size_t(mesh.n_nodes()), 0);
+    columns.full_rise = columns.height;
     for (Index32 n = 0; n < mesh.n_nodes(); ++n) {
       Vec3 const x = mesh.coordinates[n];
-      if (x.y == 0) columns.height[std::size_t(n)] = height(x.x);
+      if (x.y == 0) columns.height[std::size_t(n)] = columns.full_rise[std::size_t(n)] = height(x.x);
       if (x.y == 0 || x.y > height(x.x)) continue;
       columns.node.push_back(n);
       columns.root.push_back(at(x.x, 0));
       columns.below.push_back(at(x.x, x.y - 1));
       columns.above_wall.push_back(x.y);
+      columns.rise.push_back(x.y);
     }
   }
   [[nodiscard]] Index32 at(double x, double y) const {
@@ -64,7 +66,7 @@ TEST(ColumnHeights, AreLevelAndWithinTheirBounds) {
   Channel const c([](double x) { return x < 4 ? 1.0 : 5.0; });
   std::vector<double> most(c.columns.height.size(), infinity);
   most[std::size_t(c.at(7, 0))] = 2;
-  auto const height = smooth_heights(c.graph, c.columns, most);
+  auto const height = smooth_rises(c.graph, c.columns, most);
   for (double x = 0; x <= 8; ++x) {
     double const h = height[std::size_t(c.at(x, 0))];
     EXPECT_GE(h, 1) << x;
@@ -79,9 +81,24 @@ TEST(ColumnHeights, AreLevelAndWithinTheirBounds) {
     EXPECT_LE(ends.above_wall[k], height[std::size_t(ends.root[k])] * (1 + 1e-8));
 }
 
+TEST(ColumnHeights, LongColumnsOfLinesThatLeanAreNotCutToTheLengthOfTheirNeighbours) {
+  for (double const share : {1.0 / 3, 1.0}) {
+    Channel c([](double x) { return x < 2 ? 6.0 : 2.0; });
+    std::size_t const n_all = c.columns.node.size();
+    for (double x = 0; x < 2; ++x) c.columns.full_rise[std::size_t(c.at(x, 0))] *= share;
+    for (std::size_t k = 0; k < n_all; ++k)
+      if (c.mesh.coordinates[c.columns.root[k]].x < 2) c.columns.rise[k] *= share;
+    auto const rise = smooth_rises(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
+    Columns const ends = cut(c.columns, rise);
+    bool const upright = share == 1;
+    EXPECT_EQ(ends.size() == c.columns.size(), !upright);
+    for (double x = 0; x < 2; ++x) EXPECT_NEAR(ends.height[std::size_t(c.at(x, 0))], upright ? 2 : 6, 0.5) << x;
+  }
+}
+
 TEST(ColumnHeights, EvenColumnsStayAsTheyAre) {
   Channel const c([](double) { return 4.0; });
-  auto const height = smooth_heights(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
+  auto const height = smooth_rises(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
   EXPECT_EQ(height, c.columns.height);
   EXPECT_EQ(cut(c.columns, height).node, c.columns.node);
 }

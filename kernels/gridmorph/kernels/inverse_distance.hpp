@@ -12,6 +12,7 @@
 
 #include <gridmorph/kernels/interpolation_rows.hpp>
 #include <gridmorph/kernels/uniform_lattice.hpp>
+#include <gridmorph/kernels/vector_array.hpp>
 
 namespace gridmorph::kernels {
 
@@ -53,6 +54,17 @@ struct InverseDistanceTable {
   UniformLattice shape;
 
   [[nodiscard]] bool empty() const { return lattice.size() == 0; }
+};
+
+/// Boundaries that say where they go and nothing of what is around them: frame(k) = boundary(slot(k)).
+template <class MemorySpace>
+struct FramesFromSlots {
+  Kokkos::View<std::int32_t const*, MemorySpace> slot;
+  VectorArray boundary;
+  AffineMotion* frame;
+
+  [[nodiscard]] Index size() const { return Index(slot.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { frame[k] = {boundary[slot(k)]}; }
 };
 
 /// Lattice nodes from groups, each group at its own place.

@@ -70,6 +70,8 @@ struct UnstructuredPlan {
   /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements what it misses. By
   /// NearFieldMethod::layers there is none, and layers carry all of it.
   InverseDistanceField walls;
+  /// What it is spread from behind the driving nodes: nodes of other boundaries among near elements that rules move, by their places in `known`.
+  std::vector<Index32> beside_slots;
   LayerRows near;
   std::vector<float> near_fade;  ///< per row of near: share of what the smooth part misses
   std::vector<float> near_turn;  ///< per row of near, by layers: share of its sources' turns that the node makes

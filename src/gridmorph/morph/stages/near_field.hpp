@@ -17,12 +17,16 @@ class NearField {
   NearField(Exec const& exec, UnstructuredPlan const& plan)
       : seeds_{upload_sources(exec, plan.driving, plan.near, plan.n_nodes, name("driving")),
                upload_sources(exec, plan.columns.node, plan.near, plan.n_nodes, name("columns"))},
+        beside_(upload(exec, plan.beside_slots, name("beside"))),
+        n_driving_(Index(plan.driving.size())),
         walls_(exec, plan.walls, name("walls")),
         layers_(upload(exec, plan.near, name("layers"))),
         fade_(upload(exec, plan.near_fade, name("fade"))) {}
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
+    launch("gridmorph::near::beside", exec,
+           kernels::FramesFromSlots<Memory>{beside_, f.boundary, f.frames.data() + n_driving_});
     walls_.enqueue(exec, f.frames.data());
     for (auto const& nodes : seeds_)
       launch("gridmorph::near::missing", exec,
@@ -37,6 +41,8 @@ class NearField {
   static std::string name(char const* what) { return region + "::" + what; }
 
   List<Exec, Index32> seeds_[2];  ///< on moving walls and at the ends of their columns, where layers begin
+  List<Exec, Index32> beside_;
+  Index n_driving_;
   SmoothField<Exec, kernels::AffineMotion> walls_;
   kernels::LayerTable<Memory> layers_;
   List<Exec, float> fade_;

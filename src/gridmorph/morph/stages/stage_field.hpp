@@ -27,9 +27,10 @@ struct StageField {
   kernels::Field<double> residuals{nullptr, nullptr, nullptr};  ///< on known sides of chains
 
   // Elements.
-  List<Exec, Vec3> u;                        ///< (n_nodes)
-  List<Exec, Vec3> work;                     ///< (n_nodes)
-  List<Exec, kernels::AffineMotion> frames;  ///< motions of the moving walls around their nodes
+  List<Exec, Vec3> u;     ///< (n_nodes)
+  List<Exec, Vec3> work;  ///< (n_nodes)
+  List<Exec, kernels::AffineMotion>
+      frames;  ///< motions of the moving walls around their nodes, then of what moves beside them
 };
 
 /// Coordinates of the baseline as arrays of double.

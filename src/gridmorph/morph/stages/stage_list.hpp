@@ -75,7 +75,8 @@ StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Morph
     StageField<Exec> field;
     field.u = room_for<Vec3>(exec, n, "gridmorph::Morpher::u");
     field.work = room_for<Vec3>(exec, n, "gridmorph::Morpher::work");
-    field.frames = room_for<kernels::AffineMotion>(exec, plan.driving.size(), "gridmorph::Morpher::frames");
+    field.frames = room_for<kernels::AffineMotion>(exec, plan.driving.size() + plan.beside_slots.size(),
+                                                   "gridmorph::Morpher::frames");
     out.fields.push_back(field);
   }
   if (options.smoothing && options.smoothing->n_modes > 0)

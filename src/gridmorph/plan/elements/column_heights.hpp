@@ -18,12 +18,13 @@ double room_in_gap(double gap, double motion);
 /// distance; infinite elsewhere: a boundary beside, on which the wall ends, leaves no gap. Cost O(nodes of columns).
 std::vector<double> gaps_ahead(Coordinates const& coordinates, Columns const& columns, NearestSource const& from_other);
 
-/// (n_nodes) Height of the column on each wall node, 0 where there is none: not above `most`, and without the jumps between
+/// (n_nodes) How high the column on each wall node rises above it, 0 where there is none: not above `most`, and without the jumps between
 /// neighbours whose columns end in different layers. What varies with the share of the height, and what begins at its end, must
-/// not jump. First the least of the neighbours, so that columns are hardly ever longer. Cost O(wall nodes).
-std::vector<double> smooth_heights(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most);
+/// not jump. First the least of the neighbours, so that columns are hardly ever longer. Lengths would not do: beside the edge of a blade
+/// lines may lean by 80 degrees, and columns are as high as their neighbours and six times as long. Cost O(wall nodes).
+std::vector<double> smooth_rises(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most);
 
-/// Columns up to the given heights; what is above belongs to the layers.
-Columns cut(Columns const& columns, std::vector<double> const& height);
+/// Columns up to the given rises; what is above belongs to the layers.
+Columns cut(Columns const& columns, std::vector<double> const& rise);
 
 }  // namespace gridmorph

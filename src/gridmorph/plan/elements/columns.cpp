@@ -17,6 +17,31 @@ struct Front {
   std::size_t face;  ///< number in the list of wall faces
 };
 
+/// (n_nodes) Sums of the faces' area vectors at wall nodes; in 2-D of their edges.
+std::vector<Vec3> wall_directions(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+                                  std::vector<Index32> const& faces) {
+  std::vector<Vec3> out(std::size_t(mesh.n_nodes()));
+  Coordinates const& x = mesh.coordinates;
+  for (Index32 const f : faces) {
+    auto const corners = topology.boundary.nodes[f];
+    Vec3 sum;
+    if (mesh.dimension == 2) sum = x[corners[1]] - x[corners[0]];
+    for (std::size_t c = 1; c + 1 < corners.size(); ++c)
+      sum += cross(x[corners[c]] - x[corners[0]], x[corners[c + 1]] - x[corners[0]]);
+    for (Index32 const n : corners) out[std::size_t(graph.representative[std::size_t(n)])] += sum;
+  }
+  return out;
+}
+
+/// Length of the part of `edge` across a wall that has that direction.
+double rise_of(Vec3 const& edge, Vec3 const& wall, bool is_plane) {
+  double const size = norm(wall);
+  if (!(size > 0)) return norm(edge);
+  Vec3 const unit = (1 / size) * wall;
+  double const along = dot(edge, unit);
+  return is_plane ? norm(edge - along * unit) : std::abs(along);
+}
+
 }  // namespace
 
 Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
@@ -24,6 +49,8 @@ Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, Nod
                      std::vector<std::uint8_t> const& is_known) {
   Columns out;
   out.height.assign(std::size_t(mesh.n_nodes()), 0);
+  out.full_rise = out.height;
+  std::vector<Vec3> const wall = wall_directions(mesh, topology, graph, faces);
   auto const owner = [&](Index32 n) { return graph.representative[std::size_t(n)]; };
   std::vector<Index32> root(std::size_t(mesh.n_nodes()), -1);
   std::vector<double> shortest(faces.size(), std::numeric_limits<double>::infinity());
@@ -38,7 +65,7 @@ Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, Nod
     front.push_back(
         {topology.boundary.element[std::size_t(faces[f])], topology.boundary.side[std::size_t(faces[f])], f});
   }
-  std::vector<double> above_wall(std::size_t(mesh.n_nodes()), 0);
+  std::vector<double> above_wall(std::size_t(mesh.n_nodes()), 0), risen = above_wall;
   std::vector<std::uint8_t> visited(std::size_t(mesh.n_elements()), 0);
   OppositeSide opposite;
   for (int layer = 0; !front.empty(); ++layer) {
@@ -63,11 +90,16 @@ Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, Nod
       for (std::size_t c = 0; c < n_corners; ++c) {
         Index32 const below = owner(nodes_below[c]), above = owner(nodes_above[c]);
         if (root[std::size_t(above)] >= 0 || is_known[std::size_t(above)] || root[std::size_t(below)] < 0) continue;
-        root[std::size_t(above)] = root[std::size_t(below)];
-        double const h = above_wall[std::size_t(below)] + distance(mesh.coordinates[below], mesh.coordinates[above]);
+        auto const foot = std::size_t(root[std::size_t(below)]);
+        Vec3 const edge = mesh.coordinates[above] - mesh.coordinates[below];
+        root[std::size_t(above)] = Index32(foot);
+        double const h = above_wall[std::size_t(below)] + norm(edge);
         above_wall[std::size_t(above)] = h;
-        double& height = out.height[std::size_t(root[std::size_t(above)])];
-        height = std::max(height, h);
+        out.height[foot] = std::max(out.height[foot], h);
+        double const rise = risen[std::size_t(below)] + rise_of(edge, wall[foot], mesh.dimension == 2);
+        risen[std::size_t(above)] = rise;
+        out.full_rise[foot] = std::max(out.full_rise[foot], rise);
+        out.rise.push_back(rise);
         out.node.push_back(above);
         out.root.push_back(root[std::size_t(above)]);
         out.below.push_back(below);

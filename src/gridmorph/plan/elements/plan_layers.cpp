@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 
 namespace gridmorph::detail {
 
@@ -64,13 +66,41 @@ void UnstructuredPlanner::plan_smooth_walls() {
   Box box;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
     if (near_[std::size_t(n)]) box.include(mesh_.coordinates[n]);
-  plan.walls = make_scatter_lattice(host_, mesh_.coordinates, plan.driving, areas(plan.driving), mesh_.dimension,
-                                    box.low, box.high, 100'000, fine_opening);
+  plan.beside_slots = slots_beside_walls();
+  std::vector<Index32> sources = plan.driving;
+  for (Index32 const s : plan.beside_slots) sources.push_back(plan.known[std::size_t(s)]);
+  plan.walls = make_scatter_lattice(host_, mesh_.coordinates, sources, areas(sources), mesh_.dimension, box.low,
+                                    box.high, 100'000, fine_opening);
   double const reach = 4 * plan.walls.shape.spacing;
   for (Index32 const n : plan.near.rows.target) {
     double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);
     plan.near_fade.push_back(float(1 - s * s * (3 - 2 * s)));
   }
+}
+
+std::vector<Index32> UnstructuredPlanner::slots_beside_walls() const {
+  using Request = BoundaryRequests::Request;
+  BoundaryConditions const& b = out_.boundary;
+  auto const& rules = b.motion->motion().rules;
+  auto const is_moved = [&](Request const& r) {
+    if (std::holds_alternative<FixedRule>(rules[std::size_t(r.rule)].rule)) return false;
+    return !out_.displacement || !((*out_.displacement)[std::size_t(r.boundary_node)] == Vec3{});
+  };
+  auto const surface = [](Request const& r) { return std::pair(r.patch, r.interface); };
+  std::set<std::pair<int, int>> moving;
+  for (Request const& r : b.requests.requests)
+    if (is_moved(r)) moving.insert(surface(r));
+  Mask is_beside(b.known.size(), 0);
+  for (Request const& r : b.requests.requests) {
+    auto const n = std::size_t(b.known[std::size_t(r.boundary_node)]);
+    bool const is_region = r.patch >= int(mesh_.patches.size());
+    if (near_[n] && !drives_[n] && !is_middle_[n] && !is_region && moving.contains(surface(r)))
+      is_beside[std::size_t(r.boundary_node)] = 1;
+  }
+  std::vector<Index32> out;
+  for (std::size_t s = 0; s < is_beside.size(); ++s)
+    if (is_beside[s]) out.push_back(Index32(s));
+  return out;
 }
 
 void UnstructuredPlanner::plan_layer_turns() {
@@ -94,7 +124,7 @@ void UnstructuredPlanner::plan_layer_turns() {
 
 double UnstructuredPlanner::beyond_column(std::size_t n) const {
   Index32 const wall = from_wall_.source[n];
-  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - columns_.height[std::size_t(wall)]);
+  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - columns_.full_rise[std::size_t(wall)]);
 }
 
 }  // namespace gridmorph::detail

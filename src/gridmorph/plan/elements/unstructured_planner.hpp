@@ -104,6 +104,9 @@ class UnstructuredPlanner {
   void plan_layers();
   /// The smooth part covers the wrap; what it misses fades over a few of its cells.
   void plan_smooth_walls();
+  /// Places in `known` of near nodes on boundaries that do not drive but move all the same, such as the sides of a passage that follow its
+  /// blade: were the near field to learn of them from the residual alone, it would be torn where they meet the wall.
+  [[nodiscard]] std::vector<Index32> slots_beside_walls() const;
   /// By layers turns fade from the ends of the columns on.
   void plan_layer_turns();
   /// Distance from the end of the column on the nearest wall node.
