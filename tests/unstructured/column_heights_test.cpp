@@ -66,7 +66,8 @@ TEST(ColumnHeights, AreLevelAndWithinTheirBounds) {
   Channel const c([](double x) { return x < 4 ? 1.0 : 5.0; });
   std::vector<double> most(c.columns.height.size(), infinity);
   most[std::size_t(c.at(7, 0))] = 2;
-  auto const height = smooth_rises(c.graph, c.columns, most);
+  ColumnEnds const even = smooth_ends(c.graph, c.columns, most);
+  std::vector<double> const& height = even.height;
   for (double x = 0; x <= 8; ++x) {
     double const h = height[std::size_t(c.at(x, 0))];
     EXPECT_GE(h, 1) << x;
@@ -75,32 +76,40 @@ TEST(ColumnHeights, AreLevelAndWithinTheirBounds) {
       EXPECT_LT(std::abs(h - height[std::size_t(c.at(x - 1, 0))]), 0.25) << x;
     }
   }
-  Columns const ends = cut(c.columns, height);
+  Columns const ends = cut(c.columns, even);
   EXPECT_LT(ends.size(), c.columns.size());
   for (std::size_t k = 0; k < ends.node.size(); ++k)
     EXPECT_LE(ends.above_wall[k], height[std::size_t(ends.root[k])] * (1 + 1e-8));
 }
 
-TEST(ColumnHeights, LongColumnsOfLinesThatLeanAreNotCutToTheLengthOfTheirNeighbours) {
-  for (double const share : {1.0 / 3, 1.0}) {
+// Of the columns at x < 2 the lengths, the rises or both are three times those of the others.
+TEST(ColumnHeights, ColumnsOfLinesThatLeanAreEvenInLengthOrInRise) {
+  for (auto const& [longer, higher] : {std::pair(true, false), std::pair(false, true), std::pair(true, true)}) {
     Channel c([](double x) { return x < 2 ? 6.0 : 2.0; });
-    std::size_t const n_all = c.columns.node.size();
-    for (double x = 0; x < 2; ++x) c.columns.full_rise[std::size_t(c.at(x, 0))] *= share;
-    for (std::size_t k = 0; k < n_all; ++k)
-      if (c.mesh.coordinates[c.columns.root[k]].x < 2) c.columns.rise[k] *= share;
-    auto const rise = smooth_rises(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
-    Columns const ends = cut(c.columns, rise);
-    bool const upright = share == 1;
-    EXPECT_EQ(ends.size() == c.columns.size(), !upright);
-    for (double x = 0; x < 2; ++x) EXPECT_NEAR(ends.height[std::size_t(c.at(x, 0))], upright ? 2 : 6, 0.5) << x;
+    for (std::size_t k = 0; k < c.columns.node.size(); ++k) {
+      if (c.mesh.coordinates[c.columns.root[k]].x >= 2) continue;
+      if (!longer) c.columns.above_wall[k] /= 3;
+      if (!higher) c.columns.rise[k] /= 3;
+    }
+    for (double x = 0; x < 2; ++x) {
+      if (!longer) c.columns.height[std::size_t(c.at(x, 0))] /= 3;
+      if (!higher) c.columns.full_rise[std::size_t(c.at(x, 0))] /= 3;
+    }
+    ColumnEnds const even = smooth_ends(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
+    bool const are_cut = longer && higher;
+    EXPECT_EQ(cut(c.columns, even).size() < c.columns.size(), are_cut);
+    for (double x = 0; x < 2; ++x) {
+      auto const n = std::size_t(c.at(x, 0));
+      EXPECT_NEAR(even.height[n] / c.columns.height[n], are_cut ? 1.0 / 3 : 1, 0.1) << x;
+    }
   }
 }
 
 TEST(ColumnHeights, EvenColumnsStayAsTheyAre) {
   Channel const c([](double) { return 4.0; });
-  auto const height = smooth_rises(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
-  EXPECT_EQ(height, c.columns.height);
-  EXPECT_EQ(cut(c.columns, height).node, c.columns.node);
+  ColumnEnds const even = smooth_ends(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
+  EXPECT_EQ(even.height, c.columns.height);
+  EXPECT_EQ(cut(c.columns, even).node, c.columns.node);
 }
 
 }  // namespace

@@ -114,21 +114,24 @@ TEST(Columns, EndWhereCellsAreAsThickAsHalfTheirFaceIsWide) {
   EXPECT_EQ(cubes.columns().size(), 0);
 }
 
-TEST(Columns, RiseAcrossTheWallWhateverTheirLinesLean) {
+TEST(Columns, OfLinesThatLeanRiseLessThanTheyAreLong) {
   RigidTransform const place = rotation_about({1, 2, 3}, {1, -2, 0.5}, 0.8);
-  Standing s(to_hexahedra(unit_box({3, 4, 5})));
-  s.stand_on("k_min", {Extent::layers, 3, 0});
-  s.move([&](Vec3 const& p) { return place({p.x + 2 * p.z, p.y, p.z}); });
-  Columns const leaning = s.columns();
-  Standing flat(flat_box(6, 7, 4));
-  flat.stand_on("j_min", {Extent::layers, 3, 0});
-  flat.move([](Vec3 const& p) { return Vec3{p.x + 2 * p.y, p.y, 0}; });
-  Columns const plane = flat.columns();
-  for (auto const* c : {&leaning, &plane}) {
-    ASSERT_GT(c->size(), 0);
-    for (Index32 const root : c->root) {
-      EXPECT_NEAR(c->full_rise[std::size_t(root)], 3, 1e-12);
-      EXPECT_NEAR(c->height[std::size_t(root)], 3 * std::sqrt(5), 1e-12);
+  for (double const lean : {0.0, 1.5, 4.0}) {
+    Standing s(to_hexahedra(unit_box({3, 4, 5})));
+    s.stand_on("k_min", {Extent::layers, 3, 0});
+    s.move([&](Vec3 const& p) { return place({p.x + lean * p.z, p.y, p.z}); });
+    Columns const leaning = s.columns();
+    Standing flat(flat_box(6, 7, 4));
+    flat.stand_on("j_min", {Extent::layers, 3, 0});
+    flat.move([&](Vec3 const& p) { return Vec3{p.x + lean * p.y, p.y, 0}; });
+    Columns const plane = flat.columns();
+    double const length = 3 * std::hypot(1, lean);
+    for (auto const* c : {&leaning, &plane}) {
+      ASSERT_GT(c->size(), 0);
+      for (Index32 const root : c->root) {
+        EXPECT_NEAR(c->height[std::size_t(root)], length, 1e-12);
+        EXPECT_NEAR(c->full_rise[std::size_t(root)], lean > std::sqrt(3) ? 6 : length, 1e-12);
+      }
     }
   }
 }

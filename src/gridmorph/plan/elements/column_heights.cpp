@@ -24,51 +24,66 @@ std::vector<double> gaps_ahead(Coordinates const& coordinates, Columns const& co
   return gap;
 }
 
-std::vector<double> smooth_rises(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most) {
+namespace {
+
+/// Least of the neighbours, then means, at the wall nodes where columns stand.
+std::vector<double> smooth(NodeGraph const& graph, std::vector<double> const& whole, std::vector<double> const& most) {
   constexpr int sweeps_of_least = 3, sweeps_of_mean = 20;
   std::vector<Index32> walls;
-  std::vector<double> rise = columns.full_rise;
-  for (std::size_t n = 0; n < rise.size(); ++n)
-    if (rise[n] > 0) {
+  std::vector<double> end = whole;
+  for (std::size_t n = 0; n < end.size(); ++n)
+    if (end[n] > 0) {
       walls.push_back(Index32(n));
-      rise[n] = std::min(rise[n], most[n]);
+      end[n] = std::min(end[n], most[n]);
     }
-  std::vector<double> next = rise;
+  std::vector<double> next = end;
   for (int s = 0; s < sweeps_of_least + sweeps_of_mean; ++s) {
     for (Index32 const n : walls) {
-      double sum = rise[std::size_t(n)], least = sum;
+      double sum = end[std::size_t(n)], least = sum;
       int count = 1;
       for (Index32 const m : graph.neighbours[n])
-        if (columns.full_rise[std::size_t(m)] > 0) {
-          sum += rise[std::size_t(m)];
-          least = std::min(least, rise[std::size_t(m)]);
+        if (whole[std::size_t(m)] > 0) {
+          sum += end[std::size_t(m)];
+          least = std::min(least, end[std::size_t(m)]);
           ++count;
         }
       next[std::size_t(n)] = s < sweeps_of_least ? least : sum / count;
     }
-    std::swap(rise, next);
+    std::swap(end, next);
   }
-  return rise;
+  return end;
 }
 
-Columns cut(Columns const& columns, std::vector<double> const& rise) {
+}  // namespace
+
+ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most) {
+  ColumnEnds out{smooth(graph, columns.height, most), smooth(graph, columns.full_rise, most)};
+  for (std::size_t n = 0; n < out.height.size(); ++n)
+    if (columns.height[n] > 0 && columns.full_rise[n] > 0) {
+      double const share = std::max(out.height[n] / columns.height[n], out.rise[n] / columns.full_rise[n]);
+      out.height[n] = share * columns.height[n];
+      out.rise[n] = share * columns.full_rise[n];
+    }
+  return out;
+}
+
+Columns cut(Columns const& columns, ColumnEnds const& ends) {
   Columns out;
-  out.full_rise = rise;
-  out.height = columns.height;
-  for (std::size_t n = 0; n < rise.size(); ++n)
-    if (columns.full_rise[n] > 0) out.height[n] *= rise[n] / columns.full_rise[n];
-  // Rises are means of what neighbours have: columns that all end alike must not lose their ends to round-off.
+  out.height = ends.height;
+  out.full_rise = ends.rise;
+  // Ends are means of what neighbours have: columns that all end alike must not lose their ends to round-off.
   constexpr double allowed = 1e-3;
-  std::vector<double> below(rise.size(), 0);
+  std::vector<double> below(ends.height.size(), 0), risen = below;
   for (std::size_t k = 0; k < columns.node.size(); ++k) {
     std::size_t const root = std::size_t(columns.root[k]);
-    double const above = columns.rise[k], layer = above - std::exchange(below[root], above);
-    if (above > rise[root] + allowed * layer) continue;
+    double const above = columns.above_wall[k], layer = above - std::exchange(below[root], above);
+    double const rise = columns.rise[k], step = rise - std::exchange(risen[root], rise);
+    if (above > ends.height[root] + allowed * layer && rise > ends.rise[root] + allowed * step) continue;
     out.node.push_back(columns.node[k]);
     out.root.push_back(columns.root[k]);
     out.below.push_back(columns.below[k]);
-    out.above_wall.push_back(columns.above_wall[k]);
-    out.rise.push_back(above);
+    out.above_wall.push_back(above);
+    out.rise.push_back(rise);
   }
   return out;
 }

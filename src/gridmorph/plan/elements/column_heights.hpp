@@ -18,13 +18,19 @@ double room_in_gap(double gap, double motion);
 /// distance; infinite elsewhere: a boundary beside, on which the wall ends, leaves no gap. Cost O(nodes of columns).
 std::vector<double> gaps_ahead(Coordinates const& coordinates, Columns const& columns, NearestSource const& from_other);
 
-/// (n_nodes) How high the column on each wall node rises above it, 0 where there is none: not above `most`, and without the jumps between
-/// neighbours whose columns end in different layers. What varies with the share of the height, and what begins at its end, must
-/// not jump. First the least of the neighbours, so that columns are hardly ever longer. Lengths would not do: beside the edge of a blade
-/// lines may lean by 80 degrees, and columns are as high as their neighbours and six times as long. Cost O(wall nodes).
-std::vector<double> smooth_rises(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most);
+/// Where columns end, by their wall nodes; 0 where there is none.
+struct ColumnEnds {
+  std::vector<double> height;  ///< (n_nodes) length of the column
+  std::vector<double> rise;    ///< (n_nodes) as Columns::full_rise
+};
 
-/// Columns up to the given rises; what is above belongs to the layers.
-Columns cut(Columns const& columns, std::vector<double> const& rise);
+/// Not above `most`, and without the jumps between neighbours whose columns end in different layers. What varies with the share of the
+/// height, and what begins at its end, must not jump. First the least of the neighbours, so that columns are hardly ever longer. Neither
+/// lengths nor rises would do alone, so a column ends where the higher of both asks for it: beside the edge of a blade lines may lean by 80
+/// degrees, and columns rise like their neighbours and are six times as long. Cost O(wall nodes).
+ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most);
+
+/// Columns up to their ends; what is above belongs to the layers.
+Columns cut(Columns const& columns, ColumnEnds const& ends);
 
 }  // namespace gridmorph

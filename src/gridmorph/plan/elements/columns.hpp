@@ -15,7 +15,7 @@ struct Columns {
   std::vector<Index32> below;      ///< the node beneath: of the wall, or one listed before
   std::vector<double> above_wall;  ///< length of the column up to the node
   std::vector<double> height;      ///< (n_nodes) of the mesh: of the column on a wall node, 0 where there is none
-  /// The same across the wall, the sums of the parts of edges along the wall's normal: lines may lean.
+  /// Lengths again, but of edges that lean by more than 60 degrees from the wall's normal only twice what they rise along it.
   std::vector<double> rise;       ///< up to the node
   std::vector<double> full_rise;  ///< (n_nodes) of the mesh: of the column on a wall node
 

@@ -71,7 +71,7 @@ void UnstructuredPlanner::find_columns() {
   columns_ = make_columns(mesh_, topology_, out_.graph, driving_faces_, extents, is_known_);
   find_wall_lines();
   out_.report.n_columns = std::count_if(columns_.height.begin(), columns_.height.end(), [](double h) { return h > 0; });
-  columns_ = cut(columns_, smooth_rises(out_.graph, columns_, most_heights()));
+  columns_ = cut(columns_, smooth_ends(out_.graph, columns_, most_heights()));
   for (double const h : columns_.full_rise) out_.report.layer_height = std::max(out_.report.layer_height, h);
   plan_columns();
   find_other_columns();
@@ -99,7 +99,7 @@ Columns UnstructuredPlanner::columns_on(std::vector<int> const& patches, Mask co
   for (std::size_t n = 0; n < most.size(); ++n)
     if (whole.height[n] > 0 && std::isfinite(from_wall_.distance[n]))
       most[n] = room_in_gap(from_wall_.distance[n], motion);
-  return cut(whole, smooth_rises(out_.graph, whole, most));
+  return cut(whole, smooth_ends(out_.graph, whole, most));
 }
 
 void UnstructuredPlanner::find_other_columns() {
