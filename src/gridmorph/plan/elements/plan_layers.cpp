@@ -124,7 +124,7 @@ void UnstructuredPlanner::plan_layer_turns() {
 
 double UnstructuredPlanner::beyond_column(std::size_t n) const {
   Index32 const wall = from_wall_.source[n];
-  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - columns_.height[std::size_t(wall)]);
+  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - columns_.full_rise[std::size_t(wall)]);
 }
 
 }  // namespace gridmorph::detail
