@@ -1,6 +1,7 @@
 // Blades on end walls that move: along themselves, with the walls' nodes around them.
 #include "support/expect_error.hpp"
 #include "support/motions.hpp"
+#include "support/periodic_match.hpp"
 #include "support/scramble.hpp"
 #include "support/unstructured_meshes.hpp"
 
@@ -166,18 +167,9 @@ TEST(Extend, PeriodicCopiesOfTheWallAndOfLinesInItMatch) {
     auto const plane = displacements(moves, name, 0);
     hub.insert(plane.begin(), plane.end());
   }
-  Boundary const boundary(mesh);
-  int pairs = 0;
-  for (int c = 0; c < int(mesh.interfaces.size()); ++c) {
-    if (!mesh.interfaces[std::size_t(c)].periodic) continue;
-    Mat3 const turn = boundary.transform(c).rotation;
-    for (auto const& [own, donor] : boundary.pairs(c)) {
-      if (!hub.contains(own)) continue;
-      EXPECT_LE(distance(turn * hub.at(own), hub.at(donor)), 1e-12);
-      ++pairs;
-    }
-  }
-  EXPECT_GT(pairs, 10);
+  PeriodicMatch const match = periodic_match(mesh, hub);
+  EXPECT_GT(match.pairs, 10);
+  EXPECT_LE(match.apart, 1e-12);
 }
 
 TEST(Extend, NothingMovesWhereTheWallDoesNot) {

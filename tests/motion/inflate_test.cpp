@@ -2,6 +2,7 @@
 #include "annulus.hpp"
 #include "support/expect_error.hpp"
 #include "support/motions.hpp"
+#include "support/periodic_match.hpp"
 #include "support/scramble.hpp"
 #include "support/unstructured_meshes.hpp"
 
@@ -177,18 +178,9 @@ TEST(Inflate, PeriodicCopiesMoveAlikeAndTheHubStaysRound) {
     Vec3 const before = sector_coordinates(sector, node.at), after = sector_coordinates(sector, node.at + node.u);
     EXPECT_NEAR(after.y, before.y + h, 2e-3 * h);  // the hub's facets are chords of the circle
   }
-  Boundary const boundary(mesh);
-  int pairs = 0;
-  for (int c = 0; c < int(mesh.interfaces.size()); ++c) {
-    if (!mesh.interfaces[std::size_t(c)].periodic) continue;
-    Mat3 const turn = boundary.transform(c).rotation;
-    for (auto const& [own, donor] : boundary.pairs(c)) {
-      if (!u.contains(own)) continue;
-      EXPECT_LE(distance(turn * u.at(own), u.at(donor)), 1e-14);
-      ++pairs;
-    }
-  }
-  EXPECT_GT(pairs, 3);
+  PeriodicMatch const match = periodic_match(mesh, u);
+  EXPECT_GT(match.pairs, 3);
+  EXPECT_LE(match.apart, 1e-14);
 }
 
 TEST(Inflate, NodesOfSlipWallsStayOnThemAndAllFacesAreOffsetByTheHeight) {
