@@ -48,6 +48,21 @@ TEST(ModalField, AddsMeanAndModesWithAmplitudeFrequencyAndPhase) {
   }
 }
 
+TEST(ModalField, AddsLoadCasesWithTheirFactors) {
+  StructuralModel const mean{point({0.5, 0, 0}), {}, {}, {}};
+  std::vector<StructuralModel> const loads{{point({0, 1, 0}), {}, {}, {}}, {point({0, 0, 2}), {}, {}, {}}};
+  std::vector<Mode> const modes{{{point({1, 0, 0}), {}, {}, {}}, 3, 1, 0}};
+  ModalField const field(mean, modes, loads, {});
+  EXPECT_EQ(field.fields().size(), 1u) << "load cases on equal nodes share their mapping";
+  for (double const t : {0.0, 0.3}) {
+    std::array<double, 2> const factors{0.81, -t};
+    std::array<Vec3, 1> const points{Vec3{0.25, 0, 0}};
+    std::array<Vec3, 1> u{};
+    field.at(t, factors, points, u);
+    EXPECT_VEC3_NEAR(u[0], (Vec3{0.5 + 3 * std::cos(two_pi * t), 0.81, -2 * t}), 1e-14);
+  }
+}
+
 TEST(ModalField, ComplexModesTravel) {
   // f + i g with f = cos(k x), g = -sin(k x): the real part of exp(i (w t - k x)) is cos(w t - k x).
   PointCloud cloud;
@@ -127,6 +142,31 @@ TEST_F(ModalCase, KeysSayWhatMovesWhen) {
     EXPECT_VEC3_NEAR(u, (Vec3{0, -6 * std::sin(two_pi * t), 1 + std::cos(2 * two_pi * t)}), 1e-14);
   }
   EXPECT_EQ(displacement_of(c.motion.rules.at(0).rule, {0, 0, 0}), (Vec3{0, 0, 2})) << "without a time: at its begin";
+}
+
+TEST_F(ModalCase, LoadCasesHaveFactorsThatMayChange) {
+  std::string const loads =
+      "file = \"a.csv\"\nloads = [ { file = \"b.csv\", factor = 0.81 }, { file = \"a.csv\", factor = \"k * ";
+  auto const still = parsed(loads + "2\" } ]\n", "[constants]\nk = -0.5\n");
+  EXPECT_EQ(displacement_of(still.motion.rules.at(0).rule, {0, 0, 0}), (Vec3{0, 1.62, 0}));
+  EXPECT_FALSE(still.timed.at(0).changes);
+  auto const moving =
+      parsed(loads + "t\" } ]\namplitude = 0.5\n", "[sequence]\nsteps = 4\nperiod = 2\n[constants]\nk = 3\n");
+  EXPECT_TRUE(moving.timed.at(0).changes);
+  for (double const t : {0.0, 0.25, 1.0})
+    EXPECT_VEC3_NEAR(displacement_of(motion_at(moving, {t / 2, t, 1}).rules.at(0).rule, {0, 0, 0}),
+                     (Vec3{0, 0.81, 0.5 + 1.5 * t}), 1e-14);
+}
+
+TEST_F(ModalCase, ProblemsOfLoadCasesNameTheirLine) {
+  std::string const none = "[constants]\na = 1\n";
+  EXPECT_TRUE(reported(problems("loads = []\n", none), line(10), {"the list is empty"}));
+  EXPECT_TRUE(reported(problems("loads = [\n { factor = 2 } ]\n", none), line(11), {"'file' is missing"}));
+  EXPECT_TRUE(
+      reported(problems("loads = [\n { file = \"a.csv\", factor = \"t\" } ]\n", none), line(11), {"[sequence]"}));
+  EXPECT_TRUE(reported(problems("loads = [\n { file = \"a.csv\", factor = \"\" } ]\n", none), line(11), {"is empty"}));
+  EXPECT_TRUE(reported(problems("loads = [\n { file = \"a.csv\", amplitude = 2 } ]\n", none), line(11),
+                       {"'amplitude'", "factor"}));
 }
 
 TEST_F(ModalCase, FrequenciesAreInCyclesPerUnitOfTime) {

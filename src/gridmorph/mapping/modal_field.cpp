@@ -35,7 +35,8 @@ Oscillation oscillation(double turns) {
   }
 }
 
-ModalField::ModalField(std::optional<StructuralModel> mean, std::vector<Mode> modes, FieldOptions options) {
+ModalField::ModalField(std::optional<StructuralModel> mean, std::vector<Mode> modes, std::vector<StructuralModel> loads,
+                       FieldOptions options) {
   options.keep = true;
   std::vector<Group> groups;
   // Number of the field that a displacement becomes; the first one of a group is that of its model.
@@ -65,14 +66,17 @@ ModalField::ModalField(std::optional<StructuralModel> mean, std::vector<Mode> mo
     part.phase_turns = mode.phase_turns;
     modes_.push_back(part);
   }
+  for (StructuralModel& load : loads) loads_.push_back(place(std::move(load)));
   for (Group& group : groups)
     fields_.push_back(std::make_shared<PointField const>(std::move(group.model), options, std::move(group.further)));
 }
 
-void ModalField::at(double periods, std::span<Vec3 const> points, std::span<Vec3> displacement) const {
+void ModalField::at(double periods, std::span<double const> load_factors, std::span<Vec3 const> points,
+                    std::span<Vec3> displacement) const {
   std::vector<std::vector<double>> factors;
   for (auto const& field : fields_) factors.emplace_back(field->n_fields(), 0.0);
   if (mean_) factors[mean_->field][mean_->real] = 1;
+  for (std::size_t l = 0; l < loads_.size(); ++l) factors[loads_[l].field][loads_[l].real] = load_factors[l];
   for (Part const& part : modes_) {
     auto const [cosine, sine] = oscillation(part.harmonic * periods + part.phase_turns);
     factors[part.field][part.real] = part.amplitude * cosine;

@@ -1,8 +1,12 @@
 #include <gridmorph/app/casefile/detail/field_reader.hpp>
+#include <gridmorph/app/casefile/formula.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/mapping/modal_field.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -72,6 +76,42 @@ std::optional<Mode> read_mode(TableReader& table, std::optional<std::string> con
   return mode;
 }
 
+/// A load case, its factor over time, and whether that changes.
+struct Load {
+  StructuralModel model;
+  std::function<double(Moment const&)> factor;
+  bool changes = false;
+};
+
+std::optional<Load> read_load(TableReader& table, RuleContext const& shared,
+                              std::optional<std::string> const& shared_elements) {
+  table.require("file", "file = \"speed.csv\", the displacement under that load");
+  Load load{{}, [](Moment const&) { return 1.0; }, false};
+  if (auto const* value = table.find("factor"); value != nullptr && value->is_string()) {
+    std::string const expression = *table.string("factor");
+    if (expression.empty()) {
+      table.problem("factor", "is empty; write a number or an expression of t and step");
+    } else {
+      load.factor =
+          make_time_formula({"factor", expression, table.where("factor")}, shared.constants, table.context().problems);
+      load.changes = uses_time(expression);
+      if (load.changes) needs_sequence(table, shared, "factor");
+    }
+  } else if (auto const factor = table.number("factor")) {
+    load.factor = [factor = *factor](Moment const&) { return factor; };
+  }
+  auto const own = table.string("elements");
+  auto const solution = table.string("solution");
+  auto model = read_model(table, own ? own : shared_elements, solution);
+  table.finish();
+  if (!model) return std::nullopt;
+  load.model = std::move(*model);
+  if (!load.model.nodes.imaginary.empty())
+    load.model.notes.push_back("the imaginary part of a load case is not used; modes have one");
+  load.model.nodes.imaginary.clear();
+  return load;
+}
+
 /// A displacement field times a share.
 FunctionRule shared_field(std::string description, double share,
                           std::function<void(std::span<Vec3 const> points, std::span<Vec3> u)> field) {
@@ -83,16 +123,34 @@ FunctionRule shared_field(std::string description, double share,
 }
 
 TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& options,
-                     std::optional<StructuralModel> mean, std::vector<Mode> modes) {
-  auto const n_modes = modes.size();
-  auto const field = std::make_shared<ModalField const>(std::move(mean), std::move(modes), options);
-  for (auto const& one : field->fields()) out.fields.push_back({table.context().where(table.line()), one});
+                     std::optional<StructuralModel> mean, std::vector<Mode> modes, std::vector<Load> loads) {
   TimedRule rule;
-  rule.changes = out.sequence.has_value();
-  rule.at = [field, n_modes](double share, Moment const& when) {
-    return shared_field(
-        fmt::format("field of {} modes", n_modes), share,
-        [field, when](std::span<Vec3 const> points, std::span<Vec3> u) { field->at(when.periods, points, u); });
+  rule.changes = (out.sequence.has_value() && !modes.empty()) ||
+                 std::any_of(loads.begin(), loads.end(), [](Load const& load) { return load.changes; });
+  std::vector<StructuralModel> models;
+  std::vector<std::function<double(Moment const&)>> factors;
+  for (Load& load : loads) {
+    models.push_back(std::move(load.model));
+    factors.push_back(std::move(load.factor));
+  }
+  auto const field = std::make_shared<ModalField const>(std::move(mean), std::move(modes), std::move(models), options);
+  for (auto const& one : field->fields()) out.fields.push_back({table.context().where(table.line()), one});
+  std::string description = "field of";
+  if (field->n_loads() > 0) description += fmt::format(" {} load cases", field->n_loads());
+  if (field->n_loads() > 0 && field->n_modes() > 0) description += " and";
+  if (field->n_modes() > 0) description += fmt::format(" {} modes", field->n_modes());
+  std::string const where = table.context().where(table.line());
+  rule.at = [field, factors, description, where](double share, Moment const& when) {
+    std::vector<double> now;
+    for (auto const& factor : factors) {
+      now.push_back(factor(when));
+      if (!std::isfinite(now.back()))
+        throw MotionError(fmt::format("{}: factor of load case {} is {} at t = {:.9g}, step {}", where, now.size(),
+                                      now.back(), when.time, when.step));
+    }
+    return shared_field(description, share, [field, when, now](std::span<Vec3 const> points, std::span<Vec3> u) {
+      field->at(when.periods, now, points, u);
+    });
   };
   return rule;
 }
@@ -107,7 +165,7 @@ void refuse_offset_of_points(TableReader& table, CaseFile const& out, std::size_
 
 }  // namespace
 
-TimedRule read_field(TableReader& table, CaseFile& out) {
+TimedRule read_field(TableReader& table, RuleContext const& shared, CaseFile& out) {
   std::size_t const first_field = out.fields.size();
   FieldOptions const options = read_options(table);
   auto const elements = table.string("elements");
@@ -125,13 +183,25 @@ TimedRule read_field(TableReader& table, CaseFile& out) {
     table.problem("modes", "the list is empty; give { file = \"mode_1.csv\" } or remove it");
     good = false;
   }
-  if (!has_modes) table.require("file", "file = \"displacement.csv\" (columns x,y,z,dx,dy,dz)");
+  bool const has_loads = table.has("loads");
+  std::vector<Load> loads;
+  for (auto& load_table : table.tables("loads")) {
+    auto load = read_load(load_table, shared, elements);
+    good = good && load;
+    if (load) loads.push_back(std::move(*load));
+  }
+  if (has_loads && good && loads.empty()) {
+    table.problem("loads", "the list is empty; give { file = \"speed.csv\", factor = 1 } or remove it");
+    good = false;
+  }
+  bool const is_sum = has_modes || has_loads;
+  if (!is_sum) table.require("file", "file = \"displacement.csv\" (columns x,y,z,dx,dy,dz)");
   auto const file = table.string("file");
   auto model = read_model(table, elements, solution);
-  if (!good || (!model && (file || !has_modes))) return {};
+  if (!good || (!model && (file || !is_sum))) return {};
   try {
-    if (has_modes) {
-      TimedRule rule = modal_rule(table, out, options, std::move(model), std::move(modes));
+    if (is_sum) {
+      TimedRule rule = modal_rule(table, out, options, std::move(model), std::move(modes), std::move(loads));
       refuse_offset_of_points(table, out, first_field);
       return rule;
     }

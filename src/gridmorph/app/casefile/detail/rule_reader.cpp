@@ -359,7 +359,7 @@ std::optional<TimedRule> read_explicit(std::size_t number, TableReader& table, R
   switch (number) {
     case 1: return read_rigid(table, shared);
     case 2: return read_formula(table, shared);
-    case 3: return read_field(table, out);
+    case 3: return read_field(table, shared, out);
     case 8:
       return TimedRule{[sections = read_sections(table, shared.axis.has_value())](double share, Moment const&) {
                          return share == 1 ? sections : share_of(sections, share);
