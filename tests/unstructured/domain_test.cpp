@@ -36,10 +36,12 @@ Vec3 in_sector(Vec3 const& p) {
   double const r = 10 + 2 * bump(p.x) + p.y * (0.5 - 0.3 * bump(p.x)), angle = 0.06 * p.z + 0.3 * bump(p.x);
   return {p.x, r * std::cos(angle), r * std::sin(angle)};
 }
-Vec3 in_pipe(Vec3 const& p) {
-  double const u = p.x / 6 - 1, v = p.y / 6 - 1;
-  return {8 * u * std::sqrt(1 - v * v / 2) + 1, 8 * v * std::sqrt(1 - u * u / 2) - 2, p.z};
+Vec3 in_disc(double u, double v, double z) {
+  return {8 * u * std::sqrt(1 - v * v / 2) + 1, 8 * v * std::sqrt(1 - u * u / 2) - 2, z};
 }
+Vec3 in_pipe(Vec3 const& p) { return in_disc(p.x / 6 - 1, p.y / 6 - 1, p.z); }
+Vec3 in_half_pipe(Vec3 const& p) { return in_disc(p.x / 6 - 1, p.y / 12, p.z); }
+Vec3 in_quarter_pipe(Vec3 const& p) { return in_disc(p.x / 12, p.y / 12 - 1, p.z); }
 Vec3 in_ball(Vec3 const& p) {
   Vec3 const q{p.x - 6, p.y - 6, 1.2 * (p.z - 5)};
   double const largest = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}), r = norm(q);
@@ -57,6 +59,8 @@ std::vector<Shape> shapes() {
           {"channel", in_channel, "box between surfaces"},
           {"sector", in_sector, "annular sector between surfaces"},
           {"pipe", in_pipe, "disc"},
+          {"half pipe", in_half_pipe, "disc"},
+          {"quarter pipe", in_quarter_pipe, "disc"},
           {"ball", in_ball, "box"}};
 }
 
@@ -154,8 +158,14 @@ TEST(FittedBackground, StaysInTheDomainAndLeavesNoNodeOfTheWrapOutside) {
         EXPECT_TRUE(y > -slack && y < 12 + slack) << y;
         EXPECT_TRUE(z > -slack && z < 10 + slack) << z;
       }
-      if (name == "pipe") {
+      if (name.ends_with("pipe")) {
         EXPECT_LT(std::hypot(p.x - 1, p.y + 2), 8 * (1 + 1e-9));
+      }
+      if (name == "half pipe") {
+        EXPECT_GE(p.y, -2 - 1e-9);
+      }
+      if (name == "quarter pipe") {
+        EXPECT_TRUE(p.x >= 1 - 1e-9 && p.y <= -2 + 1e-9) << p.x << ' ' << p.y;
       }
       if (name == "box") {
         EXPECT_TRUE(p.x >= 0 && p.x <= 12 && p.y >= 0 && p.y <= 12 && p.z >= 0 && p.z <= 10);
