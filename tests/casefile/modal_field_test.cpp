@@ -164,9 +164,11 @@ TEST_F(ModalCase, ProblemsOfLoadCasesNameTheirLine) {
   EXPECT_TRUE(reported(problems("loads = [\n { factor = 2 } ]\n", none), line(11), {"'file' is missing"}));
   EXPECT_TRUE(
       reported(problems("loads = [\n { file = \"a.csv\", factor = \"t\" } ]\n", none), line(11), {"[sequence]"}));
-  EXPECT_TRUE(reported(problems("loads = [\n { file = \"a.csv\", factor = \"\" } ]\n", none), line(11), {"is empty"}));
+  EXPECT_TRUE(reported(problems("loads = [\n { file = \"a.csv\", factor = \"\" } ]\n", none), line(11),
+                       {"loads factor", "is empty"}));
   EXPECT_TRUE(reported(problems("loads = [\n { file = \"a.csv\", amplitude = 2 } ]\n", none), line(11),
                        {"'amplitude'", "factor"}));
+  EXPECT_TRUE(reported(problems("file = \"a.csv\"\namplitude = \"\"\n", none), line(11), {"amplitude", "is empty"}));
 }
 
 TEST_F(ModalCase, FrequenciesAreInCyclesPerUnitOfTime) {

@@ -88,13 +88,10 @@ std::optional<Load> read_load(TableReader& table, RuleContext const& shared,
   table.require("file", "file = \"speed.csv\", the displacement under that load");
   Load load{{}, [](Moment const&) { return 1.0; }, false};
   if (auto const* value = table.find("factor"); value != nullptr && value->is_string()) {
-    std::string const expression = *table.string("factor");
-    if (expression.empty()) {
-      table.problem("factor", "is empty; write a number or an expression of t and step");
-    } else {
+    if (auto const expression = table.string("factor")) {
       load.factor =
-          make_time_formula({"factor", expression, table.where("factor")}, shared.constants, table.context().problems);
-      load.changes = uses_time(expression);
+          make_time_formula({"factor", *expression, table.where("factor")}, shared.constants, table.context().problems);
+      load.changes = uses_time(*expression);
       if (load.changes) needs_sequence(table, shared, "factor");
     }
   } else if (auto const factor = table.number("factor")) {

@@ -332,8 +332,7 @@ void read_amplitude(TableReader& table, RuleContext const& shared, TimedRule& ru
     rule.amplitude = amplitude_table(stations, smooth.value_or(0) == 1);
   } else if (value->is_string()) {
     auto const expression = table.string("amplitude");
-    if (expression->empty())
-      return table.problem("amplitude", "is empty; write a number or an expression of t and step");
+    if (!expression) return;
     rule.amplitude = make_time_formula({"amplitude", *expression, table.where("amplitude")}, shared.constants,
                                        table.context().problems);
     if (!uses_time(*expression)) {
