@@ -134,8 +134,6 @@ TimedRule read_formula(TableReader& table, RuleContext const& shared) {
     std::string const& key = round ? cylindrical[c] : cartesian[c];
     components[c] = {key, round ? b.value_or("") : a.value_or(""), table.where(key)};
     axis_used = axis_used || uses_axis(components[c].expression);
-    if ((a && a->empty()) || (b && b->empty()))
-      table.problem(table.has(cartesian[c]) ? cartesian[c] : cylindrical[c], "is empty; write \"0\" or leave it out");
     if (!uses_time(components[c].expression)) continue;
     needs_sequence(table, shared, key);
     in_time = true;
@@ -212,10 +210,9 @@ TimedRule read_contour(TableReader& table, RuleContext const& shared) {
     table.problem("profile",
                   "is missing; add profile = [[axial, radius], [axial, radius], ...], or offset = "
                   "\"0.002 * cos(36 * theta)\"");
-  if (offset && offset->empty()) table.problem("offset", "is empty; write a length as an expression, or leave it out");
   if (!shared.axis) return rule;
   FormulaAt bumps;
-  if (offset && !offset->empty()) {
+  if (offset) {
     rule.changes = uses_time(*offset);
     if (rule.changes) needs_sequence(table, shared, "offset");
     bumps = make_formula_in_time(FormulaFrame::cylindrical, {{{"offset", *offset, table.where("offset")}, {}, {}}},
