@@ -8,7 +8,9 @@
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <optional>
@@ -77,6 +79,22 @@ struct SeriesWriter::Impl {
     write_step(mesh.is_structured() ? morphed : in_file_order(mesh, morphed));
     ++written;
   }
+  void add_zone(int zone, std::array<double const*, 3> const& values) {
+    if (written == steps)
+      throw MeshError(name + ": more steps than the " + std::to_string(steps) + " times of the series");
+    if (zones_of_step.empty()) zones_of_step.assign(mesh.zones.size(), 0);
+    auto const& own = mesh.zones.at(std::size_t(zone));
+    std::string const what = "zone '" + own.name + "' of step " + std::to_string(written + 1);
+    if (std::exchange(zones_of_step[std::size_t(zone)], 1) != 0)
+      throw MeshError(name + ": " + what + " is written twice");
+    for (auto const* component : values)
+      if (!std::all_of(component, component + own.size(), [](double v) { return std::isfinite(v); }))
+        throw MeshError(name + ": " + what + " has coordinates that are not finite");
+    write_zone(std::size_t(zone), values);
+    if (std::find(zones_of_step.begin(), zones_of_step.end(), 0) != zones_of_step.end()) return;
+    zones_of_step.clear();
+    ++written;
+  }
   void finish() {
     if (written < steps)
       throw MeshError(name + ": " + std::to_string(written) + " of " + std::to_string(steps) +
@@ -88,8 +106,12 @@ struct SeriesWriter::Impl {
   Mesh const& mesh;
   std::size_t steps;
   std::size_t written = 0;
+  std::vector<char> zones_of_step;  ///< those that add_zone() has had of the step to come; empty: none
 
  private:
+  virtual void write_zone(std::size_t /*zone*/, std::array<double const*, 3> const& /*values*/) {
+    throw IoError(name + ": a series is written zone by zone into CGNS files alone");
+  }
   virtual void write_step(Coordinates const& ordered) = 0;
   virtual void put_in_place() = 0;
 };
@@ -117,7 +139,9 @@ struct CgnsSeries final : SeriesWriter::Impl {
 
   [[nodiscard]] std::uint64_t bytes_needed() const {
     std::uint64_t const zones = mesh.zones.size(), nodes_per_step = 4 * zones, once = 4 * zones + 4;
-    return steps * (cgns::File::bytes_per_node * nodes_per_step + 3 * sizeof(double) * std::uint64_t(mesh.n_nodes())) +
+    std::uint64_t nodes = 0;  // zones may share theirs
+    for (Zone const& zone : mesh.zones) nodes += std::uint64_t(zone.size());
+    return steps * (cgns::File::bytes_per_node * nodes_per_step + 3 * sizeof(double) * nodes) +
            cgns::File::bytes_per_node * once + steps * name_length * zones;
   }
 
@@ -149,21 +173,24 @@ struct CgnsSeries final : SeriesWriter::Impl {
   }
 
   void write_step(Coordinates const& ordered) override {
-    bool const blocks = mesh.is_structured();
     auto const arrays = io::components(ordered);
     for (std::size_t z = 0; z < layout.zones.size(); ++z) {
-      auto const& place = layout.zones[z];
-      double const grid = file->create(file->id(*place.node), grid_name(written, steps), "GridCoordinates_t");
-      std::vector<Index> sizes(place.extent.begin(), place.extent.begin() + place.index_dimension);
-      for (int c = 0; c < 3; ++c) {
-        if (place.array[c] == nullptr) continue;
-        auto const* source = arrays[std::size_t(c)] + mesh.zones[z].first_node;
-        auto const put = [&](double const* values) { write(grid, place, c, sizes, values); };
-        if (blocks)
-          cgns::with_file_nodes(place, mesh.zones[z], source, plane, put);
-        else
-          put(source);
-      }
+      Index const first = mesh.zones[z].first_node;
+      write_zone(z, {arrays[0] + first, arrays[1] + first, arrays[2] + first});
+    }
+  }
+
+  void write_zone(std::size_t z, std::array<double const*, 3> const& values) override {
+    auto const& place = layout.zones[z];
+    double const grid = file->create(file->id(*place.node), grid_name(written, steps), "GridCoordinates_t");
+    std::vector<Index> sizes(place.extent.begin(), place.extent.begin() + place.index_dimension);
+    for (int c = 0; c < 3; ++c) {
+      if (place.array[c] == nullptr) continue;
+      auto const put = [&](double const* of_file) { write(grid, place, c, sizes, of_file); };
+      if (mesh.is_structured())
+        cgns::with_file_nodes(place, mesh.zones[z], values[std::size_t(c)], plane, put);
+      else
+        put(values[std::size_t(c)]);
     }
   }
 
@@ -214,6 +241,10 @@ SeriesWriter::~SeriesWriter() = default;
 SeriesWriter::SeriesWriter(SeriesWriter&&) noexcept = default;
 
 void SeriesWriter::add(Coordinates const& morphed) { impl_->add(morphed); }
+
+void SeriesWriter::add_zone(int zone, double const* x, double const* y, double const* z) {
+  impl_->add_zone(zone, {x, y, z});
+}
 
 void SeriesWriter::commit() { impl_->finish(); }
 

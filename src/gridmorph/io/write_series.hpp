@@ -34,6 +34,9 @@ class SeriesWriter {
   /// Writes the next step. Throws MeshError for sizes that do not fit, more steps than times, and coordinates that are not
   /// finite, MachineError when writing fails.
   void add(Coordinates const& morphed);
+  /// The next step zone by zone, for meshes that never are in memory as a whole: zones in any order, each once per step, Zone::size()
+  /// values each, in the order of the file. The mesh's zones may share nodes. CGNS alone. Errors as above.
+  void add_zone(int zone, double const* x, double const* y, double const* z);
   /// Puts the file in place. Throws MeshError when steps are missing.
   void commit();
 

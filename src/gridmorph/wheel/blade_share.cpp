@@ -75,7 +75,9 @@ class Row {
     for (int p = 0; p < int(mesh_.patches.size()); ++p) {
       Rule const& rule = motion_.patch_rule(p);
       if ((mesh_.patches[p].kind == PatchKind::wall || mesh_.patches[p].kind == PatchKind::other) &&
-          (std::holds_alternative<RigidRule>(rule) || std::holds_alternative<FunctionRule>(rule)))
+          (std::holds_alternative<RigidRule>(rule) || std::holds_alternative<FunctionRule>(rule) ||
+           std::holds_alternative<SectionsRule>(rule) || std::holds_alternative<TargetRule>(rule) ||
+           std::holds_alternative<InflateRule>(rule)))
         add(p);
     }
     return {out.begin(), out.end()};

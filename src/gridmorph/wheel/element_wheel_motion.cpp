@@ -31,13 +31,14 @@ void refuse_free_sides(Mesh const& sector, PassageLinks const& links, WheelRows 
 
 ElementWheelMotion::ElementWheelMotion(Mesh const& sector, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, PassageLinks const& links,
-                                       WheelRows const& rows, std::vector<Motion> const& motions, PlanOptions options,
-                                       std::vector<WheelRowBlades> const& blades) {
+                                       WheelRows const& rows, std::vector<Motion> const& motions, SameRules same_rules,
+                                       PlanOptions options, std::vector<WheelRowBlades> const& blades,
+                                       WheelTimes const& times)
+    : sector_(sector), same_rules_(std::move(same_rules)), used_(used_motions(blades)) {
   refuse_regions(motions);
   auto const open = open_rows(blades);
-  auto const used = used_motions(blades);
-  bool const one = used.size() == 1;
-  Motion const& first = motions[used.front()];
+  bool const one = used_.size() == 1 && times.steps == 0;
+  Motion const& first = motions[used_.front()];
   NodeGraph graph = make_node_graph(sector, topology.elements_of_nodes, row_of_nodes(sector, first));
   BoundaryConditions conditions =
       boundary_conditions(sector, topology, face_patches, graph, first, options.elements.walls,
@@ -45,11 +46,13 @@ ElementWheelMotion::ElementWheelMotion(Mesh const& sector, UnstructuredTopology 
   refuse_free_sides(sector, links, rows, open, graph, conditions.known);
 
   Boundary const& boundary = conditions.motion->boundary();
-  std::vector<std::vector<Vec3>> values(motions.size());
-  for (int const m : used) {
-    auto const surface = m == used.front() ? conditions.motion : boundary_motion(conditions, motions[m]);
+  requests_ = conditions.requests;
+  for (int const m : used_) {
+    int const rules = same_rules_[m];
+    if (rules_.contains(rules)) continue;
+    auto const surface = rules == used_.front() ? conditions.motion : boundary_motion(conditions, motions[rules]);
+    rules_.emplace(rules, surface);
     detail::append_notes(notes_, surface->notes());
-    values[m] = evaluate(sector, conditions.requests, *surface, {});
   }
   std::vector<Index> const known(conditions.known.begin(), conditions.known.end());
   auto const shares = blade_shares(
@@ -58,7 +61,7 @@ ElementWheelMotion::ElementWheelMotion(Mesh const& sector, UnstructuredTopology 
   std::vector<PassageMotions::Node> nodes;
   for (std::size_t n = 0; n < known.size(); ++n)
     nodes.push_back({sector.coordinates[known[n]], rows.row_of_zone[sector.zone_of(known[n])], shares[n]});
-  passages_ = PassageMotions(first.axis, blades, std::move(nodes), std::move(values));
+  passages_ = PassageMotions(first.axis, blades, std::move(nodes), values_of(motions));
 
   std::optional<std::vector<Vec3>> most;
   if (options.elements.motion < 0) {
@@ -71,6 +74,8 @@ ElementWheelMotion::ElementWheelMotion(Mesh const& sector, UnstructuredTopology 
       largest = now;
       most = std::move(displacement);
     }
+    for (int step = 0; step < times.steps; ++step)
+      for (auto const& values : values_of(times.motions(step))) largest = std::max(largest, largest_norm(values));
     if (!one) {  // what turns leave of it differs from blade to blade
       options.elements.motion = largest;
       most.reset();
@@ -78,6 +83,18 @@ ElementWheelMotion::ElementWheelMotion(Mesh const& sector, UnstructuredTopology 
   }
   prepared_ = prepare({}, sector, topology, face_patches, std::move(graph), std::move(conditions), options, most);
   detail::append_notes(notes_, prepared_.notes);
+}
+
+void ElementWheelMotion::move(std::vector<Motion> const& motions) { passages_.take(values_of(motions)); }
+
+std::vector<Vec3> ElementWheelMotion::displacement(int m, Motion const& motion) const {
+  return evaluate(sector_, requests_, rules_.at(same_rules_[m])->with(motion), {});
+}
+
+std::vector<std::vector<Vec3>> ElementWheelMotion::values_of(std::vector<Motion> const& motions) const {
+  std::vector<std::vector<Vec3>> values(motions.size());
+  for (int const m : used_) values[m] = displacement(m, motions[m]);
+  return values;
 }
 
 }  // namespace gridmorph

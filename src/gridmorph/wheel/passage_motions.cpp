@@ -2,10 +2,17 @@
 #include <gridmorph/wheel/passage_motions.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <utility>
 
 namespace gridmorph {
+
+SameRules all_differ(std::size_t motions) {
+  SameRules out(motions);
+  std::iota(out.begin(), out.end(), 0);
+  return out;
+}
 
 void refuse_regions(std::vector<Motion> const& motions) {
   for (Motion const& motion : motions)

@@ -4,6 +4,7 @@
 #include <gridmorph/wheel/blade_share.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
@@ -13,6 +14,12 @@ struct WheelRowBlades {
   int passages = 1;         ///< how many are made
   std::vector<int> blades;  ///< which motion each has; as many as passages. Beyond the last comes the first again.
 };
+
+/// Motions that are an earlier one at another time, as blades of a travelling wave are: the number of that, per motion; itself for the
+/// others.
+using SameRules = std::vector<int>;
+/// For motions of which none is another one's.
+SameRules all_differ(std::size_t motions);
 
 /// Throws MotionError for motions with regions, which passages of a wheel do without.
 void refuse_regions(std::vector<Motion> const& motions);
@@ -34,6 +41,9 @@ class PassageMotions {
   /// values: per motion and node; empty for motions that no passage has. blades: per row.
   PassageMotions(Axis const& axis, std::vector<WheelRowBlades> blades, std::vector<Node> nodes,
                  std::vector<std::vector<Vec3>> values);
+
+  /// The same blades at another time.
+  void take(std::vector<std::vector<Vec3>> values) { values_ = std::move(values); }
 
   /// Displacements of the nodes in a passage. Passages beyond the last of a row have those of its first ones.
   [[nodiscard]] std::vector<Vec3> boundary(int passage) const;

@@ -9,25 +9,27 @@
 namespace gridmorph {
 
 WheelMotion::WheelMotion(Mesh const& sector, PassageLinks const& links, WheelRows const& rows,
-                         std::vector<Motion> const& motions, PlanOptions const& options,
-                         std::vector<WheelRowBlades> const& blades) {
+                         std::vector<Motion> const& motions, SameRules same_rules, PlanOptions const& options,
+                         std::vector<WheelRowBlades> const& blades)
+    : same_rules_(std::move(same_rules)), used_(used_motions(blades)) {
   refuse_regions(motions);
   auto const open = open_rows(blades);
-  auto const used = used_motions(blades);
   auto const boundary = std::make_shared<Boundary const>(sector);
 
-  ResolvedMotion const resolved = resolve(sector, motions[used.front()]);
+  ResolvedMotion const resolved = resolve(sector, motions[used_.front()]);
   detail::append_notes(notes_, resolved.notes);
-  OpenedPassage const opened = open_passage(sector, links, rows, resolved, open);
+  OpenedPassage opened = open_passage(sector, links, rows, resolved, open);
   Links const opened_links = connect(opened.mesh, options.topology);
   planned_ = make_plan({}, opened.mesh, opened_links, BoundaryMotion(opened.mesh, opened.motion), options);
   detail::append_notes(notes_, planned_.plan.notes);
+  opened_ = std::move(opened.mesh);
 
-  std::vector<std::vector<Vec3>> values(motions.size());
-  for (int const m : used) {
-    BoundaryMotion const surface(boundary, resolve(sector, motions[m]));
+  for (int const m : used_) {
+    int const rules = same_rules_[m];
+    if (rules_.contains(rules)) continue;
+    auto const& surface =
+        rules_.emplace(rules, BoundaryMotion(boundary, resolve(sector, motions[rules]))).first->second;
     detail::append_notes(notes_, surface.notes());
-    values[m] = evaluate(opened.mesh, planned_.boundary, surface, planned_.plan.rotations);
   }
   auto const shares = blade_shares(*boundary, links, rows, resolved, open, one_of_place(links, rows), planned_.boundary,
                                    planned_.plan.boundary_nodes);
@@ -36,7 +38,18 @@ WheelMotion::WheelMotion(Mesh const& sector, PassageLinks const& links, WheelRow
     Index const node = planned_.plan.boundary_nodes[n];
     nodes.push_back({sector.coordinates[node], rows.row_of_zone[sector.zone_of(node)], shares[n]});
   }
-  passages_ = PassageMotions(motions.front().axis, blades, std::move(nodes), std::move(values));
+  passages_ = PassageMotions(motions.front().axis, blades, std::move(nodes), {});
+  move(motions);
+}
+
+void WheelMotion::move(std::vector<Motion> const& motions) {
+  std::vector<std::vector<Vec3>> values(motions.size());
+  for (int const m : used_) values[m] = displacement(m, motions[m]);
+  passages_.take(std::move(values));
+}
+
+std::vector<Vec3> WheelMotion::displacement(int m, Motion const& motion) const {
+  return evaluate(opened_, planned_.boundary, rules_.at(same_rules_[m]).with(motion), planned_.plan.rotations);
 }
 
 }  // namespace gridmorph

@@ -187,6 +187,14 @@ void read_sequence(TableReader& root, CaseFile& out) {
   out.sequence = sequence;
 }
 
+bool changes_with_time(CaseFile const& out) {
+  auto const any = [](std::vector<TimedRule> const& rules) {
+    return std::any_of(rules.begin(), rules.end(), [](TimedRule const& r) { return r.changes; });
+  };
+  return any(out.timed) || (out.wheel && std::any_of(out.wheel->blades.begin(), out.wheel->blades.end(),
+                                                     [&](WheelBlade const& blade) { return any(blade.timed); }));
+}
+
 /// Returns the constants of all formulas.
 std::map<std::string, double> read_motion(TableReader& root, CaseFile& out) {
   if (auto const word = root.choice("default", {"type", "error"})) out.motion.strict = *word == 1;
@@ -211,8 +219,7 @@ std::map<std::string, double> read_motion(TableReader& root, CaseFile& out) {
     root.context().problems.add(root.context().file +
                                 ": no [[motion]] rule; add at least one, for example [[motion]] with "
                                 "patches = [\"blade\"] and rule = \"rigid\"");
-  else if (out.sequence && root.context().problems.empty() &&
-           std::none_of(out.timed.begin(), out.timed.end(), [](TimedRule const& r) { return r.changes; }))
+  else if (out.sequence && root.context().problems.empty() && !changes_with_time(out))
     root.context().problem(root.line("sequence"),
                            "[sequence]: no rule changes with time, so that all steps would be alike; give a rule an "
                            "amplitude over time, use t or step in a formula, or add modes to a rule \"field\"");
@@ -420,17 +427,17 @@ CaseFile parse_case_file(std::string const& text, std::filesystem::path const& p
   return read(CaseDocument(text, path), asked);
 }
 
+Rule rule_at(TimedRule const& timed, std::string const& where, Moment const& when, double factor) {
+  double const share = timed.amplitude ? timed.amplitude(when) : 1;
+  if (!std::isfinite(share))
+    throw MotionError(fmt::format("{}: amplitude is {} at t = {:.9g}, step {}", where, share, when.time, when.step));
+  return timed.at(share * factor, when);
+}
+
 Motion motion_at(CaseFile const& case_file, Moment const& when) {
   Motion motion = case_file.motion;
-  for (std::size_t r = 0; r < case_file.timed.size(); ++r) {
-    TimedRule const& timed = case_file.timed[r];
-    if (!timed.changes) continue;
-    double const share = timed.amplitude ? timed.amplitude(when) : 1;
-    if (!std::isfinite(share))
-      throw MotionError(fmt::format("{}: amplitude is {} at t = {:.9g}, step {}", motion.rules[r].where, share,
-                                    when.time, when.step));
-    motion.rules[r].rule = timed.at(share, when);
-  }
+  for (std::size_t r = 0; r < case_file.timed.size(); ++r)
+    if (case_file.timed[r].changes) motion.rules[r].rule = rule_at(case_file.timed[r], motion.rules[r].where, when);
   return motion;
 }
 

@@ -108,6 +108,9 @@ struct CaseFile {
       given;  ///< every key that was read, by table and line; what the mesh decides about (ignored_keys.hpp)
 };
 
+/// A rule at a moment, times a factor. Throws MotionError where its amplitude is not finite; `where`: of the rule.
+Rule rule_at(TimedRule const& timed, std::string const& where, Moment const& when, double factor = 1);
+
 /// The rules of the case file at a moment: those that change with time as they are then, all others as they stand. Throws
 /// MotionError where an amplitude is not finite.
 Motion motion_at(CaseFile const& case_file, Moment const& when);

@@ -27,7 +27,7 @@ class Ignored {
     if (use_.run == CaseUse::Run::sequence) refuse("output", "stages", "is for one morph, and a sequence writes none");
     if (use_.run == CaseUse::Run::sequence)
       refuse("mesh", "output", "names one file, and the meshes of a sequence go where output in [sequence] says");
-    if (use_.run == CaseUse::Run::morph)
+    if (!case_.sequence && !(use_.run == CaseUse::Run::wheel && has_wave()))
       refuse("motion modes", "harmonic", "says how often a shape oscillates in time, and there is no [sequence]");
     fields();
     std::stable_sort(lines_.begin(), lines_.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
@@ -37,6 +37,11 @@ class Ignored {
   }
 
  private:
+  [[nodiscard]] bool has_wave() const {
+    return case_.wheel && std::any_of(case_.wheel->rows.begin(), case_.wheel->rows.end(),
+                                      [](WheelRowCase const& row) { return row.nodal_diameters.value_or(0) != 0; });
+  }
+
   void of_unstructured() {
     std::string const why = "is for structured meshes, and '" + case_.input.string() + "' is unstructured";
     refuse("", "volume", why + ": law in [background] and weights in [near_field] say there how the volume follows");
@@ -58,7 +63,6 @@ class Ignored {
   }
 
   void of_wheel() {
-    refuse("", "sequence", "is for `gridmorph morph`, and a wheel is made at one time");
     refuse("", "region", "is for `gridmorph morph`, and passages of a wheel are morphed without regions");
     if (use_.unstructured) {
       std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";

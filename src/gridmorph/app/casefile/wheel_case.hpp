@@ -5,6 +5,7 @@
 #include <gridmorph/motion/motion.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct WheelRowCase {
   int passages = 0;                ///< 0: the whole wheel
   std::vector<std::string>
       sequence;  ///< names of blades, first passage first, repeated round the wheel; empty: as [[motion]] says
+  std::optional<int> nodal_diameters;  ///< of the wave in which the blades move over time
+  std::string where_diameters;
   std::vector<double> factors;  ///< on the displacement as WheelBlade::factor, repeated likewise; empty: 1
   std::string where;
 };

@@ -18,10 +18,14 @@ class BlockPassagePlan final : public PassagePlan {
                    CaseFile const& case_file)
       : mesh_(mesh),
         case_(case_file),
-        motion_(mesh, links, rows, setup.motions, case_file.plan, setup.blades),
+        motion_(mesh, links, rows, setup.at(setup.moments.front()), setup.same_rules(), case_file.plan, setup.blades),
         morpher_(exec_, motion_.plan(), mesh.coordinates) {}
 
   [[nodiscard]] PassageMotions const& passages() const override { return motion_.passages(); }
+  void move(std::vector<Motion> const& motions) override { motion_.move(motions); }
+  [[nodiscard]] std::vector<Vec3> displacement(int m, Motion const& motion) const override {
+    return motion_.displacement(m, motion);
+  }
   [[nodiscard]] std::vector<std::string> const& notes() const override { return motion_.notes(); }
   [[nodiscard]] NearCells near() const override { return near_cells_of(mesh_, motion_.plan(), case_); }
   RelaxReport morph(std::vector<Vec3> const& boundary, Coordinates& morphed) override {

@@ -19,11 +19,17 @@ class ElementPassagePlan final : public PassagePlan {
   ElementPassagePlan(ElementMesh const& mesh, PassageLinks const& links, WheelRows const& rows, WheelSetup const& setup,
                      CaseFile const& case_file)
       : mesh_(mesh),
-        motion_(mesh.mesh, mesh.topology, mesh.face_patches, links, rows, setup.motions, with_background(case_file),
-                setup.blades),
+        motion_(mesh.mesh, mesh.topology, mesh.face_patches, links, rows, setup.at(setup.moments.front()),
+                setup.same_rules(), with_background(case_file), setup.blades,
+                {case_file.sequence ? int(setup.moments.size()) : 0,
+                 [&](int step) { return setup.at(setup.moments[std::size_t(step)]); }}),
         morpher_(Exec(), motion_.prepared().plan, mesh.coordinates()) {}
 
   [[nodiscard]] PassageMotions const& passages() const override { return motion_.passages(); }
+  void move(std::vector<Motion> const& motions) override { motion_.move(motions); }
+  [[nodiscard]] std::vector<Vec3> displacement(int m, Motion const& motion) const override {
+    return motion_.displacement(m, motion);
+  }
   [[nodiscard]] std::vector<std::string> const& notes() const override { return motion_.notes(); }
   [[nodiscard]] NearCells near() const override { return near_elements_of(motion_.prepared()); }
   RelaxReport morph(std::vector<Vec3> const& boundary, Coordinates& morphed) override {

@@ -6,30 +6,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <cstdlib>
 #include <map>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace gridmorph::cli {
 
 namespace {
 
+/// Walls between which the blades stand are the same for all, and rules that follow others do so by themselves.
+bool is_of_blade(TimedRule const& timed) { return timed.at && !timed.end_wall; }
+
 /// A rule times a factor: rigid motions and sections by their parameters, targets by the way to them; formulas and fields by their
-/// displacement in cylindrical components, so that a turn stays a turn. Rules that follow others do so by themselves; walls between
-/// which the blades stand are the same for all. False for rules that have nothing to multiply.
-bool scale(Rule& rule, TimedRule const& timed, double factor, Axis const& axis) {
-  if (!timed.at || timed.end_wall) return false;
+/// displacement in cylindrical components, so that a turn stays a turn.
+Rule scaled(TimedRule const& timed, std::string const& where, Moment const& when, double factor, Axis const& axis) {
+  Rule rule = rule_at(timed, where, when);
   auto const* function = std::get_if<FunctionRule>(&rule);
-  if (function == nullptr) {
-    rule = timed.at(factor, {});
-    return true;
-  }
-  rule = FunctionRule{fmt::format("{} times {}", factor, function->description),
+  if (function == nullptr) return rule_at(timed, where, when, factor);
+  return FunctionRule{fmt::format("{} times {}", factor, function->description),
                       [inner = function->function, axis, factor](std::span<Vec3 const> points, std::span<Vec3> out) {
                         inner(points, out);
                         for (std::size_t n = 0; n < points.size(); ++n)
                           out[n] = share_motion(axis, points[n], {}, out[n], factor);
                       }};
-  return true;
+}
+
+/// What a wall does that stands in this passage and moves in others.
+FunctionRule standing() {
+  return {"fixed", [](auto, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }};
 }
 
 std::vector<int> patches_of(Mesh const& mesh, std::vector<std::string> const& selectors) {
@@ -49,6 +58,12 @@ class Setup {
       : case_(case_file), wheel_(*case_file.wheel), mesh_(mesh), rows_(rows) {}
 
   WheelSetup run() {
+    if (auto const& sequence = case_.sequence) {
+      out_.period = sequence->period;
+      for (int step = 0; step < sequence->steps; ++step) out_.moments.push_back(sequence->moment(step));
+    } else {
+      out_.moments.emplace_back();
+    }
     for (auto const& row : rows_.rows) out_.blades.push_back({row.passages, {}});
     std::vector<WheelRowCase const*> taken(rows_.rows.size(), nullptr);
     for (auto const& row : wheel_.rows) {
@@ -66,8 +81,9 @@ class Setup {
                       periodic_zones());
     }
     for (auto& row : out_.blades)
-      if (row.blades.empty()) row.blades.assign(std::size_t(row.passages), motion(-1, 1, {}));
+      if (row.blades.empty()) row.blades.assign(std::size_t(row.passages), motion(-1, 1, {}, {}));
     problems_.throw_if_any<ConfigError>();
+    stand_where_others_move();
     return std::move(out_);
   }
 
@@ -105,7 +121,9 @@ class Setup {
       return false;
     };
     bool const sequence = fits(row.sequence.size(), "sequence"), factors = fits(row.factors.size(), "factors");
-    if (!sequence || !factors) return;
+    bool const wave = !row.nodal_diameters || fits_wave(row, r, blades.passages);
+    if (!sequence || !factors || !wave) return;
+    int const whole = rows_.rows[r].passages, diameters = row.nodal_diameters.value_or(0);
     for (std::size_t p = 0; p < std::size_t(blades.passages); ++p) {
       int blade = -1;
       if (!row.sequence.empty()) {
@@ -114,14 +132,79 @@ class Setup {
             std::find_if(wheel_.blades.begin(), wheel_.blades.end(), [&](auto const& b) { return b.name == name; });
         blade = int(at - wheel_.blades.begin());
       }
-      blades.blades.push_back(motion(blade, row.factors.empty() ? 1 : row.factors[p % row.factors.size()], row.where));
+      // Parts of a turn as whole numbers, so that passages in phase have one motion.
+      int const turned = int(((std::int64_t(p) * diameters) % whole + whole) % whole);
+      int const part = std::gcd(turned, whole);
+      blades.blades.push_back(motion(blade, row.factors.empty() ? 1 : row.factors[p % row.factors.size()],
+                                     {turned / part, whole / part}, row.where));
+    }
+    if (diameters == 0) return;
+    bool const moves = std::any_of(blades.blades.begin(), blades.blades.end(), [&](int m) {
+      auto const& one = out_.motions[std::size_t(m)];
+      for (std::size_t n = 0; n < one.timed.size(); ++n)
+        if (one.timed[n].changes && is_of_blade(one.timed[n]) && is_in_row(one.motion.rules[n], r)) return true;
+      return false;
+    });
+    if (!moves)
+      problems_.add(fmt::format(
+          "{}: nodal_diameters: no blade of the row of zone '{}' moves with time, so that there is no wave; give its "
+          "rule modes, an amplitude over time or t in a formula, or remove the key",
+          row.where_diameters, zone));
+  }
+
+  [[nodiscard]] bool is_in_row(MotionRule const& rule, int r) const {
+    auto const patches = patches_of(mesh_, rule.patches);
+    return std::any_of(patches.begin(), patches.end(),
+                       [&](int p) { return rows_.row_of_zone[mesh_.patches[std::size_t(p)].zone] == r; });
+  }
+
+  /// A wave of so many nodal diameters round the wheel.
+  bool fits_wave(WheelRowCase const& row, int r, int passages) {
+    int const whole = rows_.rows[r].passages, diameters = *row.nodal_diameters;
+    std::string const zone = mesh_.zones[rows_.rows[r].zones.front()].name;
+    if (2 * std::abs(std::int64_t(diameters)) > whole) {
+      int const alias = int(std::remainder(double(diameters), double(whole)));
+      problems_.add(
+          fmt::format("{}: nodal_diameters: the row of zone '{}' has {} blades, which tell waves of {} to {} nodal "
+                      "diameters apart, "
+                      "found {}; to these blades that is {}",
+                      row.where_diameters, zone, whole, -(whole / 2), whole / 2, diameters, alias));
+      return false;
+    }
+    int const wave = whole / std::gcd(diameters, whole);
+    if (passages % wave == 0) return true;
+    problems_.add(fmt::format(
+        "{}: nodal_diameters: the ends of {} of {} passages do not match in a wave of {} nodal diameters; use "
+        "passages = {} or a multiple of it",
+        row.where_diameters, passages, whole, diameters, wave));
+    return false;
+  }
+
+  /// A near field of fixed walls would be another plan.
+  void stand_where_others_move() {
+    for (std::size_t r = 0; r < case_.motion.rules.size(); ++r) {
+      auto const is_fixed = [&](WheelBladeMotion const& m) {
+        return std::holds_alternative<FixedRule>(m.motion.rules[r].rule);
+      };
+      if (std::all_of(out_.motions.begin(), out_.motions.end(), is_fixed)) continue;
+      for (auto& m : out_.motions)
+        if (is_fixed(m)) m.motion.rules[r].rule = standing();
     }
   }
 
+  struct Ahead {
+    int turned = 0, of = 1;
+    auto operator<=>(Ahead const&) const = default;
+  };
+
   /// Number of a blade's motion; equal blades have one. where: of the row that asks for it.
-  int motion(int blade, double factor, std::string where) {
-    auto const [at, fresh] = known_.try_emplace({blade, factor}, int(out_.motions.size()));
+  int motion(int blade, double factor, Ahead ahead, std::string where) {
+    auto const [at, fresh] = known_.try_emplace({blade, factor, ahead}, int(out_.motions.size()));
     if (!fresh) return at->second;
+    int const number = at->second;
+    int same_rules = number;
+    for (auto const& [key, other] : known_)
+      if (std::get<0>(key) == blade && std::get<1>(key) == factor) same_rules = std::min(same_rules, other);
     Motion made = case_.motion;
     std::vector<TimedRule> timed = case_.timed;
     std::string name;
@@ -137,20 +220,14 @@ class Setup {
       for (std::size_t r = 0; r < own.rules.size(); ++r) replace(made, timed, own.rules[r], own.timed[r]);
     }
     if (factor != 1) name += fmt::format("{}x {:g}", name.empty() ? "" : " ", factor);
-    if (all != 1 && !scale_all(made, timed, all) && !stands)
+    if (ahead.turned != 0) name += fmt::format("{}{:g} deg", name.empty() ? "" : " ", 360.0 * ahead.turned / ahead.of);
+    if (all != 1 && !stands && std::none_of(timed.begin(), timed.end(), is_of_blade))
       problems_.add(where +
                     ": the factor has nothing to multiply; give the blade a rule rigid, formula, field, sections or "
                     "target in [[motion]] or [[wheel.blade.motion]]");
-    out_.motions.push_back(std::move(made));
-    out_.names.push_back(std::move(name));
-    return at->second;
-  }
-
-  static bool scale_all(Motion& motion, std::vector<TimedRule> const& timed, double factor) {
-    bool any = false;
-    for (std::size_t r = 0; r < motion.rules.size(); ++r)
-      any = scale(motion.rules[r].rule, timed[r], factor, motion.axis) || any;
-    return any;
+    out_.motions.push_back(
+        {std::move(made), std::move(timed), all, double(ahead.turned) / ahead.of, same_rules, std::move(name)});
+    return number;
   }
 
   void replace(Motion& motion, std::vector<TimedRule>& timed, MotionRule const& rule, TimedRule const& own) {
@@ -159,20 +236,15 @@ class Setup {
       if (patches.empty() || patches_of(mesh_, case_.motion.rules[r].patches) != patches) continue;
       Rule& base = motion.rules[r].rule;
       if (std::holds_alternative<FixedRule>(base) || (timed[r].at && !timed[r].end_wall)) {
-        // A near field of fixed walls would be another plan.
-        base = std::holds_alternative<FixedRule>(rule.rule)
-                   ? Rule(FunctionRule{"fixed",
-                                       [](auto, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }})
-                   : rule.rule;
+        base = std::holds_alternative<FixedRule>(rule.rule) ? Rule(standing()) : rule.rule;
         motion.rules[r].where = rule.where;
         timed[r] = own;
         return;
       }
     }
     problems_.add(
-        fmt::format("{}: patches {} are those of no rule fixed, rigid, formula, field, sections or target in "
-                    "[[motion]]; a blade replaces "
-                    "such a rule with the same patches",
+        fmt::format("{}: patches {} are those of no rule fixed, rigid, formula, field, sections, target, inflate or "
+                    "bulb in [[motion]]; a blade replaces such a rule with the same patches",
                     rule.where, quote_list(rule.patches)));
   }
 
@@ -181,7 +253,7 @@ class Setup {
   Mesh const& mesh_;
   WheelRows const& rows_;
   WheelSetup out_;
-  std::map<std::pair<int, double>, int> known_;
+  std::map<std::tuple<int, double, Ahead>, int> known_;
   Problems problems_;
 };
 
@@ -190,6 +262,38 @@ class Setup {
 std::vector<int> WheelSetup::passages() const {
   std::vector<int> out;
   for (auto const& row : blades) out.push_back(row.passages);
+  return out;
+}
+
+SameRules WheelSetup::same_rules() const {
+  SameRules out;
+  for (auto const& motion : motions) out.push_back(motion.same_rules);
+  return out;
+}
+
+bool WheelSetup::has_wave() const {
+  return std::any_of(motions.begin(), motions.end(), [](auto const& m) { return m.ahead != 0; });
+}
+
+std::vector<Motion> WheelSetup::at(Moment const& when) const {
+  std::vector<Motion> out;
+  for (int m = 0; m < int(motions.size()); ++m) out.push_back(at(m, when));
+  return out;
+}
+
+Motion WheelSetup::at(int number, Moment const& when) const {
+  WheelBladeMotion const& m = motions[std::size_t(number)];
+  Motion out = m.motion;
+  Moment const own{when.periods + m.ahead, when.time + m.ahead * period, when.step};
+  for (std::size_t r = 0; r < m.timed.size(); ++r) {
+    TimedRule const& timed = m.timed[r];
+    if (!timed.at) continue;
+    std::string const& where = out.rules[r].where;
+    if (!timed.end_wall && m.factor != 1)
+      out.rules[r].rule = scaled(timed, where, own, m.factor, out.axis);
+    else if (timed.changes)
+      out.rules[r].rule = rule_at(timed, where, timed.end_wall ? when : own);
+  }
   return out;
 }
 

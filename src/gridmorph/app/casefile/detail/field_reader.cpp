@@ -122,8 +122,8 @@ FunctionRule shared_field(std::string description, double share,
 TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& options,
                      std::optional<StructuralModel> mean, std::vector<Mode> modes, std::vector<Load> loads) {
   TimedRule rule;
-  rule.changes = (out.sequence.has_value() && !modes.empty()) ||
-                 std::any_of(loads.begin(), loads.end(), [](Load const& load) { return load.changes; });
+  rule.changes =
+      !modes.empty() || std::any_of(loads.begin(), loads.end(), [](Load const& load) { return load.changes; });
   std::vector<StructuralModel> models;
   std::vector<std::function<double(Moment const&)>> factors;
   for (Load& load : loads) {

@@ -18,19 +18,19 @@ WheelBlade read_blade(TableReader& table, RuleContext const& shared, CaseFile& o
   table.require("name", "name = \"A\", which sequence can name");
   blade.factor = table.number("factor").value_or(1);
   CaseFile fragment;
-  RuleContext own = shared;
-  own.in_time = false;
-  for (auto& rule : table.tables("motion")) read_motion_rule(rule, own, fragment);
+  fragment.sequence = out.sequence;
+  for (auto& rule : table.tables("motion")) read_motion_rule(rule, shared, fragment);
   for (std::size_t r = 0; r < fragment.timed.size(); ++r)
     if (fragment.timed[r].end_wall)
       table.problem("motion", "a blade does not move the walls it stands on; the rule contour belongs to [[motion]]");
-  for (auto& rule : fragment.motion.rules)
-    if (!std::holds_alternative<RigidRule>(rule.rule) && !std::holds_alternative<FunctionRule>(rule.rule) &&
-        !std::holds_alternative<FixedRule>(rule.rule))
+  for (std::size_t r = 0; r < fragment.timed.size(); ++r) {
+    Rule const& rule = fragment.motion.rules[r].rule;
+    if (!fragment.timed[r].at && !std::holds_alternative<FixedRule>(rule))
       table.problem("motion",
-                    fmt::format("a blade can have the rules fixed, rigid, formula and field, found {}; what follows "
-                                "from the blade belongs to [[motion]]",
-                                rule_name(rule.rule)));
+                    fmt::format("a blade can have the rules fixed, rigid, formula, field, sections, target, "
+                                "inflate and bulb, found {}; what follows from the blade belongs to [[motion]]",
+                                rule_name(rule)));
+  }
   blade.rules = std::move(fragment.motion.rules);
   blade.timed = std::move(fragment.timed);
   out.fields.insert(out.fields.end(), fragment.fields.begin(), fragment.fields.end());
@@ -55,6 +55,8 @@ WheelRowCase read_row(TableReader& table, std::vector<WheelBlade> const& blades)
     if (std::find(names.begin(), names.end(), name) == names.end())
       table.problem("sequence",
                     fmt::format("\"{}\" is the name of no [[wheel.blade]]{}", name, suggestion(name, names)));
+  row.nodal_diameters = table.integer("nodal_diameters");
+  row.where_diameters = table.where("nodal_diameters");
   row.factors = table.numbers("factors").value_or(std::vector<double>{});
   return row;
 }
@@ -78,16 +80,17 @@ void read_wheel(TableReader& root, RuleContext const& shared, CaseFile& out) {
     value.blades.push_back(std::move(blade));
   }
   WheelRowCase const own = read_row(*wheel, value.blades);
-  bool const given = wheel->has("zones") || wheel->has("passages") || wheel->has("sequence") || wheel->has("factors");
+  bool const given = wheel->has("zones") || wheel->has("passages") || wheel->has("sequence") || wheel->has("factors") ||
+                     wheel->has("nodal_diameters");
   for (auto& table : wheel->tables("row")) {
     table.require("zones", "zones = [\"rotor*\"], the zones of the row");
     value.rows.push_back(read_row(table, value.blades));
     table.finish();
   }
   if (given && !value.rows.empty())
-    wheel->problem(
-        "row",
-        "stands beside zones, passages, sequence or factors of [wheel]; give every row a [[wheel.row]] of its own");
+    wheel->problem("row",
+                   "stands beside zones, passages, sequence, factors or nodal_diameters of [wheel]; give every row a "
+                   "[[wheel.row]] of its own");
   if (value.rows.empty()) value.rows.push_back(own);
   if (!out.axis)
     wheel->problem(
