@@ -61,6 +61,7 @@ std::vector<std::string> mapping_notes(CaseFile const& case_file) {
   for (auto const& use : case_file.fields) {
     notes.insert(notes.end(), use.field->notes().begin(), use.field->notes().end());
     notes.push_back(use.where + ": " + describe_mapping(*use.field));
+    if (use.inverse) notes.push_back(use.where + ": " + describe_inverse(*use.inverse));
   }
   return notes;
 }

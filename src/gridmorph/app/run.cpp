@@ -224,6 +224,7 @@ nlohmann::json Run::json(QualityReport const& quality, PlanOutcome const& outcom
   for (auto const& use : case_file_.fields) {
     json["fields"].push_back(mapping_json(*use.field));
     json["fields"].back()["rule"] = use.where;
+    if (use.inverse) json["fields"].back()["inverse"] = inverse_json(*use.inverse);
   }
   json.update(outcome.json);
   return json;

@@ -44,4 +44,24 @@ nlohmann::json mapping_json(PointField const& field) {
   return json;
 }
 
+std::string describe_inverse(InverseField const& inverse) {
+  auto const r = inverse.report();
+  std::string text = fmt::format(
+      "taken back by iteration: |X + u(X) - x| is at most {:.3g} (tolerance {:.3g}) after {} iterations of {} node "
+      "positions",
+      r.residual, inverse.tolerance(), r.iterations, r.evaluated);
+  if (r.one_step > 0)
+    text += fmt::format("; one step, x - u(x), leaves {:.3g} at {}", r.one_step, to_text(r.worst_of_one_step, 6));
+  return text;
+}
+
+nlohmann::json inverse_json(InverseField const& inverse) {
+  auto const r = inverse.report();
+  return {{"evaluated", r.evaluated},
+          {"iterations", r.iterations},
+          {"tolerance", inverse.tolerance()},
+          {"residual", r.residual},
+          {"residual_of_one_step", r.one_step}};
+}
+
 }  // namespace gridmorph

@@ -1,6 +1,7 @@
 // What the mapping of a displacement field found, for the terminal and for JSON.
 #pragma once
 
+#include <gridmorph/mapping/inverse_field.hpp>
 #include <gridmorph/mapping/point_field.hpp>
 
 #include <nlohmann/json_fwd.hpp>
@@ -17,5 +18,9 @@ std::string describe_mapping(PointField const& field);
 /// "largest_extrapolation", "leave_one_out": {"tried", "max", "rms"}}. Lengths in units of the mesh, leave-one-out as share
 /// of the largest displacement; null where every position coincides with a node and nothing is interpolated.
 nlohmann::json mapping_json(PointField const& field);
+
+/// A line for people and an object for the report of a field that is taken back.
+std::string describe_inverse(InverseField const& inverse);
+nlohmann::json inverse_json(InverseField const& inverse);
 
 }  // namespace gridmorph

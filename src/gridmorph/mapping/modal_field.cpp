@@ -72,7 +72,7 @@ ModalField::ModalField(std::optional<StructuralModel> mean, std::vector<Mode> mo
 }
 
 void ModalField::at(double periods, std::span<double const> load_factors, std::span<Vec3 const> points,
-                    std::span<Vec3> displacement) const {
+                    std::span<Vec3> displacement, bool iterates) const {
   std::vector<std::vector<double>> factors;
   for (auto const& field : fields_) factors.emplace_back(field->n_fields(), 0.0);
   if (mean_) factors[mean_->field][mean_->real] = 1;
@@ -85,7 +85,7 @@ void ModalField::at(double periods, std::span<double const> load_factors, std::s
   std::fill(displacement.begin(), displacement.end(), Vec3{0, 0, 0});
   std::vector<Vec3> one(points.size());
   for (std::size_t f = 0; f < fields_.size(); ++f) {
-    fields_[f]->evaluate(factors[f], points, one);
+    fields_[f]->evaluate(factors[f], points, one, iterates);
     for (std::size_t n = 0; n < one.size(); ++n) displacement[n] += one[n];
   }
 }

@@ -33,9 +33,10 @@ class ModalField {
   ModalField(std::optional<StructuralModel> mean, std::vector<Mode> modes, FieldOptions options)
       : ModalField(std::move(mean), std::move(modes), {}, options) {}
 
-  /// Displacement at `periods` (time over period), one factor per load case. Throws MotionError as PointField does.
-  void at(double periods, std::span<double const> factors, std::span<Vec3 const> points,
-          std::span<Vec3> displacement) const;
+  /// Displacement at `periods` (time over period), one factor per load case; `iterates` as in PointField::evaluate. Throws MotionError
+  /// as PointField does.
+  void at(double periods, std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
+          bool iterates = false) const;
   void at(double periods, std::span<Vec3 const> points, std::span<Vec3> displacement) const {
     at(periods, {}, points, displacement);
   }

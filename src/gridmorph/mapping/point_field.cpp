@@ -52,7 +52,8 @@ struct PointField::Impl {
   void scale();
   void check(Vec3 const& q, Stencil const& stencil) const;
   [[nodiscard]] Stencil make(Vec3 const& q) const;
-  void evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> points, std::span<Vec3> displacement) const;
+  void evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> points, std::span<Vec3> displacement,
+                bool iterates) const;
 };
 
 void PointField::Impl::scale() {
@@ -115,10 +116,14 @@ void count(MappingDistance& to, double& sum, Vec3 const& q, Stencil const& stenc
 
 }  // namespace
 
-void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> at,
-                                std::span<Vec3> displacement) const {
+void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> at, std::span<Vec3> displacement,
+                                bool iterates) const {
   std::vector<Vec3> rotation;
   if (facets && options.turn_offset) rotation = nodal_rotations(model, field);
+  if (iterates) {
+    for (std::size_t n = 0; n < at.size(); ++n) displacement[n] = apply(make(at[n]), field, rotation);
+    return;
+  }
   if (options.keep) {
     std::lock_guard const lock(turn);
     for (std::size_t n = 0; n < at.size(); ++n) {
@@ -177,17 +182,17 @@ PointField::PointField(PointField&&) noexcept = default;
 PointField& PointField::operator=(PointField&&) noexcept = default;
 
 void PointField::operator()(std::span<Vec3 const> points, std::span<Vec3> displacement) const {
-  impl_->evaluate(impl_->fields.front(), points, displacement);
+  impl_->evaluate(impl_->fields.front(), points, displacement, false);
 }
 
-void PointField::evaluate(std::span<double const> factors, std::span<Vec3 const> points,
-                          std::span<Vec3> displacement) const {
+void PointField::evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
+                          bool iterates) const {
   std::vector<Vec3> field(size());
   for (std::size_t f = 0; f < factors.size(); ++f) {
     if (factors[f] == 0) continue;
     for (std::size_t n = 0; n < field.size(); ++n) field[n] += factors[f] * impl_->fields[f][n];
   }
-  impl_->evaluate(field, points, displacement);
+  impl_->evaluate(field, points, displacement, iterates);
 }
 
 std::size_t PointField::size() const { return impl_->model.nodes.size(); }

@@ -63,7 +63,9 @@ class PointField {
   /// max_extrapolation, naming the position.
   void operator()(std::span<Vec3 const> points, std::span<Vec3> displacement) const;
   /// The same from the sum of factors[f] * field f; fields whose factor is zero do not count at all.
-  void evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement) const;
+  /// `iterates`: the points are no nodes but on the way to some; they are neither kept nor counted in mapping().
+  void evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
+                bool iterates = false) const;
 
   [[nodiscard]] std::size_t size() const;        ///< nodes kept
   [[nodiscard]] std::size_t n_elements() const;  ///< 0: a cloud of points

@@ -5,6 +5,7 @@
 
 #include <gridmorph/app/casefile/timed_rule.hpp>
 #include <gridmorph/app/casefile/wheel_case.hpp>
+#include <gridmorph/mapping/inverse_field.hpp>
 #include <gridmorph/mapping/point_field.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
@@ -48,6 +49,8 @@ struct OutputOptions {
 struct FieldUse {
   std::string where;  ///< "case.toml:14"
   std::shared_ptr<PointField const> field;
+  std::shared_ptr<InverseField const> inverse =
+      {};  ///< of the rule, where its displacement is taken back; with its first field
 };
 
 /// [sequence]: meshes over time.

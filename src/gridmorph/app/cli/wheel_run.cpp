@@ -1,7 +1,6 @@
 #include <gridmorph/app/cli/wheel_run.hpp>
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/wheel/turn.hpp>
 
@@ -296,7 +295,8 @@ void WheelRun::make_baseline(ZoneSink const& sink) {
 WheelResult WheelRun::result(WheelMade made) {
   WheelResult out{std::move(made), baseline_, times_, wheel_.n_nodes()};
   out.notes.insert(out.notes.begin(), notes_.begin(), notes_.end());
-  for (auto const& use : case_.fields) out.notes.push_back(use.where + ": " + describe_mapping(*use.field));
+  auto const fields = mapping_notes(case_);
+  out.notes.insert(out.notes.end(), fields.begin(), fields.end());
   return out;
 }
 

@@ -1,19 +1,27 @@
 #include <gridmorph/app/casefile/detail/field_reader.hpp>
 #include <gridmorph/app/casefile/formula.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mapping/inverse_field.hpp>
 #include <gridmorph/mapping/modal_field.hpp>
+#include <gridmorph/motion/rigid_motion.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace gridmorph::casefile {
 
 namespace {
+
+struct InverseOptions {
+  double tolerance = 0;  ///< [length]; 0: by the size of the model
+  int most = 100;
+};
 
 FieldOptions read_options(TableReader& table) {
   FieldOptions options;
@@ -35,6 +43,87 @@ FieldOptions read_options(TableReader& table) {
   }
   if (auto const word = table.choice("offset", {"turn", "translate"})) options.turn_offset = *word == 0;
   return options;
+}
+
+/// Where the models of a rule stand.
+struct Placement {
+  bool deformed = false;          ///< at the positions that the displacement of `file` leads to
+  std::vector<RigidSteps> frame;  ///< from the coordinate system of the model to that of the mesh
+};
+
+Placement read_placement(TableReader& table, RuleContext const& shared) {
+  Placement out;
+  out.deformed = table.choice("positions", {"undeformed", "deformed"}).value_or(0) == 1;
+  for (auto& step : table.tables("frame")) {
+    RigidSteps rigid;
+    read_rotation(step, shared, rigid);
+    if (auto const shift = step.vector("translation")) rigid.translation = *shift;
+    if (!step.has("rotation") && !step.has("translation"))
+      step.context().problem(step.line(),
+                             "[[motion]] frame: needs rotation = { angle_deg, axis, origin } or translation = "
+                             "[x, y, z], from the coordinates of the model to those of the mesh");
+    step.finish();
+    out.frame.push_back(rigid);
+  }
+  return out;
+}
+
+/// Puts every model where it stands in the mesh, in units of its file.
+void place_models(TableReader& table, Placement const& placement, double length_scale, StructuralModel* mean,
+                  std::vector<StructuralModel*> const& others) {
+  if (placement.deformed) {
+    if (mean == nullptr) {
+      table.problem("positions",
+                    "is \"deformed\", by the displacement of file, which is missing; add file, or remove it");
+      return;
+    }
+    std::vector<Vec3> const deformed = mean->nodes.position;
+    for (std::size_t n = 0; n < deformed.size(); ++n)
+      mean->nodes.position[n] = deformed[n] - mean->nodes.displacement[n];
+    for (StructuralModel* other : others) {
+      if (other->nodes.position != deformed) {
+        table.problem("positions", fmt::format("is \"deformed\", by the displacement of file, and the points of {} are "
+                                               "others; give loads and modes at the points of file",
+                                               other->nodes.source));
+        return;
+      }
+      other->nodes.position = mean->nodes.position;
+    }
+  }
+  if (placement.frame.empty()) return;
+  RigidRule const rule = make_rigid_steps(placement.frame);
+  auto const place = [&](StructuralModel& model) {
+    for (Vec3& x : model.nodes.position) x = rule.matrix * x + (1 / length_scale) * rule.translation;
+    for (Vec3& u : model.nodes.displacement) u = rule.matrix * u;
+    for (Vec3& u : model.nodes.imaginary) u = rule.matrix * u;
+  };
+  if (mean != nullptr) place(*mean);
+  for (StructuralModel* other : others) place(*other);
+}
+
+/// Whether the displacement is taken back, and how.
+std::optional<InverseOptions> read_inverse(TableReader& table) {
+  bool const wanted = table.boolean("inverse").value_or(false);
+  InverseOptions options;
+  if (auto const tolerance = table.number("inverse_tolerance")) {
+    options.tolerance = *tolerance;
+    if (*tolerance <= 0) table.problem("inverse_tolerance", fmt::format("must be positive, found {}", *tolerance));
+  }
+  if (auto const most = table.integer("inverse_iterations")) {
+    options.most = *most;
+    if (*most < 1) table.problem("inverse_iterations", fmt::format("must be at least 1, found {}", *most));
+  }
+  for (char const* key : {"inverse_tolerance", "inverse_iterations"})
+    if (!wanted && table.has(key)) table.problem(key, "belongs to inverse = true; add that, or remove it");
+  return wanted ? std::optional(options) : std::nullopt;
+}
+
+std::shared_ptr<InverseField const> make_inverse(std::optional<InverseOptions> const& options, std::string source,
+                                                 double coincidence) {
+  if (!options) return nullptr;
+  // Within `coincidence`, 1e-7 of the model, displacements are those of its points.
+  double const tolerance = options->tolerance > 0 ? options->tolerance : 1e-2 * coincidence;
+  return std::make_shared<InverseField const>(std::move(source), tolerance, options->most);
 }
 
 /// Reads a model; problems of its files are noted at the key `file`.
@@ -120,7 +209,8 @@ FunctionRule shared_field(std::string description, double share,
 }
 
 TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& options,
-                     std::optional<StructuralModel> mean, std::vector<Mode> modes, std::vector<Load> loads) {
+                     std::optional<StructuralModel> mean, std::vector<Mode> modes, std::vector<Load> loads,
+                     std::optional<InverseOptions> const& inverse_options) {
   TimedRule rule;
   rule.changes =
       !modes.empty() || std::any_of(loads.begin(), loads.end(), [](Load const& load) { return load.changes; });
@@ -131,13 +221,17 @@ TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& opti
     factors.push_back(std::move(load.factor));
   }
   auto const field = std::make_shared<ModalField const>(std::move(mean), std::move(modes), std::move(models), options);
+  std::size_t const first = out.fields.size();
   for (auto const& one : field->fields()) out.fields.push_back({table.context().where(table.line()), one});
+  auto const inverse =
+      make_inverse(inverse_options, out.fields[first].field->source(), out.fields[first].field->coincidence());
+  out.fields[first].inverse = inverse;
   std::string description = "field of";
   if (field->n_loads() > 0) description += fmt::format(" {} load cases", field->n_loads());
   if (field->n_loads() > 0 && field->n_modes() > 0) description += " and";
   if (field->n_modes() > 0) description += fmt::format(" {} modes", field->n_modes());
   std::string const where = table.context().where(table.line());
-  rule.at = [field, factors, description, where](double share, Moment const& when) {
+  rule.at = [field, factors, description, where, inverse](double share, Moment const& when) {
     std::vector<double> now;
     for (auto const& factor : factors) {
       now.push_back(factor(when));
@@ -145,6 +239,13 @@ TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& opti
         throw MotionError(fmt::format("{}: factor of load case {} is {} at t = {:.9g}, step {}", where, now.size(),
                                       now.back(), when.time, when.step));
     }
+    if (inverse)
+      return FunctionRule{description + ", taken back",
+                          [field, when, now, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
+                            (*inverse)([&](std::span<Vec3 const> places, std::span<Vec3> there,
+                                           bool iterates) { field->at(when.periods, now, places, there, iterates); },
+                                       share, points, u);
+                          }};
     return shared_field(description, share, [field, when, now](std::span<Vec3 const> points, std::span<Vec3> u) {
       field->at(when.periods, now, points, u);
     });
@@ -165,6 +266,8 @@ void refuse_offset_of_points(TableReader& table, CaseFile const& out, std::size_
 TimedRule read_field(TableReader& table, RuleContext const& shared, CaseFile& out) {
   std::size_t const first_field = out.fields.size();
   FieldOptions const options = read_options(table);
+  Placement const placement = read_placement(table, shared);
+  auto const inverse_options = read_inverse(table);
   auto const elements = table.string("elements");
   auto const solution = table.string("solution");
   double const* const period = out.sequence ? &out.sequence->period : nullptr;
@@ -196,21 +299,41 @@ TimedRule read_field(TableReader& table, RuleContext const& shared, CaseFile& ou
   auto const file = table.string("file");
   auto model = read_model(table, elements, solution);
   if (!good || (!model && (file || !is_sum))) return {};
+  std::vector<StructuralModel*> others;
+  for (Mode& mode : modes) others.push_back(&mode.model);
+  for (Load& load : loads) others.push_back(&load.model);
+  place_models(table, placement, options.length_scale, model ? &*model : nullptr, others);
   try {
     if (is_sum) {
-      TimedRule rule = modal_rule(table, out, options, std::move(model), std::move(modes), std::move(loads));
+      TimedRule rule =
+          modal_rule(table, out, options, std::move(model), std::move(modes), std::move(loads), inverse_options);
       refuse_offset_of_points(table, out, first_field);
       return rule;
     }
     if (!model->nodes.imaginary.empty())
       model->notes.push_back(fmt::format("{}: the imaginary part is not used; name the file in modes", *file));
     auto const field = std::make_shared<PointField const>(std::move(*model), options);
-    out.fields.push_back({table.context().where(table.line()), field});
+    auto const inverse = make_inverse(inverse_options, field->source(), field->coincidence());
+    out.fields.push_back({table.context().where(table.line()), field, inverse});
     refuse_offset_of_points(table, out, first_field);
     std::string const description =
         fmt::format("field {} ({} points{})", *file, field->size(),
                     field->n_elements() > 0 ? fmt::format(", {} elements", field->n_elements()) : "");
     TimedRule rule;
+    if (inverse) {
+      rule.at = [field, inverse, description](double share, Moment const&) {
+        return FunctionRule{description + ", taken back",
+                            [field, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
+                              (*inverse)(
+                                  [&](std::span<Vec3 const> places, std::span<Vec3> there, bool iterates) {
+                                    constexpr double all = 1;
+                                    field->evaluate({&all, 1}, places, there, iterates);
+                                  },
+                                  share, points, u);
+                            }};
+      };
+      return rule;
+    }
     rule.at = [field, description](double share, Moment const&) {
       return shared_field(description, share,
                           [field](std::span<Vec3 const> points, std::span<Vec3> u) { (*field)(points, u); });

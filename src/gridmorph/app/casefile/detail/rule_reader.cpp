@@ -28,29 +28,6 @@ std::vector<std::string> const rule_names{"fixed",   "rigid",    "formula", "fie
                                           "follow",  "slip",     "free",    "sections", "target",
                                           "contour", "attached", "inflate", "bulb",     "extend"};
 
-/// rotation = { axis, origin, angle_deg }. Without axis and origin: about the machine axis.
-void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid) {
-  auto table = step.table("rotation");
-  if (!table) return;
-  auto const angle = table->number("angle_deg");
-  table->require("angle_deg", "angle_deg = 10.0 (degrees, right-handed about the axis)");
-  auto const direction = table->vector("axis");
-  auto const origin = table->vector("origin");
-  bool const given = table->has("axis");
-  if (given && direction && norm(*direction) == 0) {
-    table->problem("axis", "the direction [0, 0, 0] has no length; give the direction to turn about");
-    return;
-  }
-  if (!given && !shared.axis)
-    table->problem("axis", "is missing and [mesh] has no axis; add axis = [x, y, z] here or axis to [mesh]");
-  if (given && !table->has("origin"))
-    table->problem("origin", "is missing; add origin = [x, y, z], a point on the line to turn about");
-  table->finish();
-  if (!angle || (given && (!direction || !origin)) || (!given && !shared.axis)) return;
-  rigid.axis = {origin ? *origin : shared.axis->origin, given ? *direction : shared.axis->direction};
-  rigid.angle_rad = *angle * std::numbers::pi / 180;
-}
-
 /// scale = 0.95, scale = [sx, sy, sz], or scale = { factor = one of these, origin = [x, y, z] }.
 void read_scale(TableReader& step, RigidSteps& rigid) {
   auto const* value = step.find("scale");
@@ -409,6 +386,28 @@ Rule read_other(std::size_t number, TableReader& table, RuleContext const& share
 }
 
 }  // namespace
+
+void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid) {
+  auto table = step.table("rotation");
+  if (!table) return;
+  auto const angle = table->number("angle_deg");
+  table->require("angle_deg", "angle_deg = 10.0 (degrees, right-handed about the axis)");
+  auto const direction = table->vector("axis");
+  auto const origin = table->vector("origin");
+  bool const given = table->has("axis");
+  if (given && direction && norm(*direction) == 0) {
+    table->problem("axis", "the direction [0, 0, 0] has no length; give the direction to turn about");
+    return;
+  }
+  if (!given && !shared.axis)
+    table->problem("axis", "is missing and [mesh] has no axis; add axis = [x, y, z] here or axis to [mesh]");
+  if (given && !table->has("origin"))
+    table->problem("origin", "is missing; add origin = [x, y, z], a point on the line to turn about");
+  table->finish();
+  if (!angle || (given && (!direction || !origin)) || (!given && !shared.axis)) return;
+  rigid.axis = {origin ? *origin : shared.axis->origin, given ? *direction : shared.axis->direction};
+  rigid.angle_rad = *angle * std::numbers::pi / 180;
+}
 
 void needs_sequence(TableReader& table, RuleContext const& shared, std::string const& key) {
   if (!shared.in_time)

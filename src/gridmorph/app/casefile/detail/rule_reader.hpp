@@ -3,6 +3,7 @@
 
 #include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
+#include <gridmorph/motion/rigid_motion.hpp>
 
 #include <map>
 #include <string>
@@ -25,6 +26,9 @@ std::optional<Axis> read_axis(TableReader& table, std::string const& key);
 
 /// Notes that a key whose value depends on t or step needs a sequence, where there is none.
 void needs_sequence(TableReader& table, RuleContext const& shared, std::string const& key);
+
+/// rotation = { axis, origin, angle_deg } of a table; without axis and origin about the machine axis.
+void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid);
 
 /// Constants of formulas: a table of names and numbers.
 void read_constants(TableReader& table, std::string const& key, std::map<std::string, double>& constants);
