@@ -34,7 +34,7 @@ _gridmorph() {
         return
       fi
       case $command in
-        demo) mapfile -t COMPREPLY < <(compgen -W "passage ball turbine slat coil" -- "$current") ;;
+        demo) mapfile -t COMPREPLY < <(compgen -W "passage ball turbine slat coil aircraft" -- "$current") ;;
         morph | plan | wheel) mapfile -t COMPREPLY < <(compgen -d -- "$current"; compgen -f -X '!*.toml' -- "$current") ;;
         *) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
       esac

@@ -119,6 +119,54 @@ TEST_F(Example, WingBendsAndTwistsAsItsFormulaSays) {
   for_patch("sym", "", [&](Index n) { EXPECT_NEAR(after.coordinates.z(n), before.coordinates.z(n), 1e-15); });
 }
 
+TEST_F(Example, AircraftBendsItsWingDeflectsItsAileronTrimsItsTailAndCarriesItsNacelle) {
+  ASSERT_NO_FATAL_FAILURE(morph("aircraft", "aircraft.cgns"));
+  auto const bent = [](Vec3 const& p) {
+    double const s = p.y - 2, t = std::max(p.y - 2.2, 0.0) / 14.9, angle = -2 * deg * t * t;
+    double const x = p.x - (14.15 + (7.64 - 1.225) / 15 * s), z = p.z - (-0.7 + 1.312 / 15 * s);
+    double const c = std::cos(angle) - 1, sn = std::sin(angle);
+    return Vec3{x * c + z * sn, -2 * z * t / 14.9, -x * sn + z * c + t * t};
+  };
+  expect_motion("wing", "", bent);
+  double lowest = 0;
+  expect_motion("aileron", "", [&](Vec3 const& p) {
+    auto const rise = [](double t) { return t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * t); };
+    double const behind = p.x - (17.45 + (7.64 - 0.75 * 4.9) / 15 * (p.y - 2));
+    double const angle = 12 * deg * rise((p.y - 11.8) / 1.6) * rise((16 - p.y) / 1.6);
+    lowest = std::min(lowest, -behind * std::sin(angle));
+    return bent(p) + Vec3{behind * (std::cos(angle) - 1), 0, -behind * std::sin(angle)};
+  });
+  EXPECT_LT(lowest, -0.1);
+  // The nacelle as a whole: distances from one of its nodes stay; it rises with the wing above it.
+  Index first = -1;
+  for_patch("nacelle", "", [&](Index n) {
+    if (first < 0) first = n;
+    EXPECT_NEAR(distance(after.coordinates[n], after.coordinates[first]),
+                distance(before.coordinates[n], before.coordinates[first]), 1e-12);
+    EXPECT_NEAR(after.coordinates.z(n) - before.coordinates.z(n), 0.065, 0.05);
+  });
+  // The tail plane turns as a whole but where it slides on the fuselage.
+  double const c = std::cos(-2 * deg), sn = std::sin(-2 * deg);
+  Index turned = 0;
+  for_patch("htail", "", [&](Index n) {
+    Vec3 const p = before.coordinates[n], q = after.coordinates[n];
+    if (p.y < 1.45) return;
+    double const x = p.x - 33.5, z = p.z - 0.8;
+    EXPECT_LT(distance(q, {33.5 + c * x + sn * z, p.y, 0.8 - sn * x + c * z}), 1e-12);
+    ++turned;
+  });
+  EXPECT_GT(turned, 100);
+  for_patch("fuselage", "", [&](Index n) {
+    Vec3 const q = after.coordinates[n];
+    if (q.x > 5 && q.x < 24) {
+      EXPECT_NEAR(std::hypot(q.y, q.z), 2, 1e-3);
+    }
+  });
+  expect_fixed("vtail");
+  expect_fixed("farfield");
+  for_patch("symmetry", "", [&](Index n) { EXPECT_NEAR(after.coordinates.y(n), 0, 1e-14); });
+}
+
 TEST_F(Example, WingReachesItsTargetSurface) {
   ASSERT_NO_FATAL_FAILURE(morph("wing_target", "mdo_tutorial_000_vol.cgns"));
   auto const report = nlohmann::json::parse(contents(path("wing_target/wing_target.json")));

@@ -2,6 +2,7 @@
 #include "invariants/cases.hpp"
 #include "support/shared_mesh.hpp"
 
+#include <generators/aircraft.hpp>
 #include <generators/passage_motion.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
@@ -52,6 +53,35 @@ Case passage_with_free_surfaces() {
     m.axis = {options.placement.translation, options.placement.rotation * Vec3{1, 0, 0}};
     return m;
   };
+  return c;
+}
+
+/// An aircraft in 628 zones: the wing bends, its tail plane twists, the nacelle goes along.
+Case aircraft() {
+  Case c;
+  c.name = "aircraft";
+  c.mesh = [] {
+    AircraftOptions options;
+    options.nodes = 100'000;
+    options.first_cell = 1e-3;
+    return make_aircraft(options);
+  };
+  c.motion = [](double factor) {
+    VectorField const bend = [](Vec3 const& p) {
+      double const t = std::max(p.y - 2.2, 0.0) / 15;
+      return Vec3{0, -0.1 * (p.z + 0.7) * t, 0.8 * t * t};
+    };
+    VectorField const trim = [](Vec3 const& p) {
+      return rotation_about({33.5, 0, 0.8}, {0, 1, 0}, -0.02 * std::max(p.y - 1.4, 0.0))(p) - p;
+    };
+    AttachedRule carried;
+    carried.of = {"wing"};
+    return motion({rule({"wing", "aileron"}, function_rule(scaled(factor, bend))),
+                   rule({"htail"}, function_rule(scaled(factor, trim))), rule({"nacelle"}, carried),
+                   rule({"fuselage"}, SlipRule{SlipRule::Surface::baseline, {}, {}}), rule({"symmetry"}, SlipRule{})});
+  };
+  c.options.boundary_layers = {
+      {{"wing", "aileron", "nacelle", "htail"}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::rotate}};
   return c;
 }
 
@@ -134,6 +164,7 @@ std::vector<Case> make_cases() {
                           })))});
     };
   };
+  list.push_back(aircraft());
   list.push_back(from_file("wing", "mdo_tutorial_000_vol.cgns", {"*"}, bent("wall")));
   list.push_back(from_file("winglet", "717_wl_L2.cgns", {"*"}, bent("wall")));
   list.back().options.boundary_layers = {layers({"wall"}, 4)};

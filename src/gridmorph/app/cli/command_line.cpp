@@ -101,10 +101,12 @@ CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   demo->add_option(
           "name", out.demo_name,
           "passage: one airfoil passage of a turbomachine (O4H); ball: a ball on a rope under a crane (hybrid); "
-          "turbine, slat, coil: "
-          "only the mesh of an example (water turbine in 7 zones, airfoil with slat and flap, heated tube in a duct)")
+          "turbine, slat, coil, aircraft: "
+          "only the mesh of an example (water turbine in 7 zones, airfoil with slat and flap, heated tube in a duct, "
+          "aircraft in several "
+          "hundred zones)")
       ->required();
-  demo->add_option("-n,--nodes", out.demo_nodes, "passage: nodes of the mesh (default 200000)")
+  demo->add_option("-n,--nodes", out.demo_nodes, "passage, aircraft: nodes of the mesh (default 200000, 500000)")
       ->check(CLI::Range(Index(10'000), Index(400'000'000)));
   demo->add_option("-m,--motion", out.demo_motion, "passage: rotation, chord, or all (default)");
   demo->add_option("-e,--elements", out.demo_elements, "ball: elements of the mesh (default 500000)")

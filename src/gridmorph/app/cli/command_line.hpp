@@ -43,7 +43,7 @@ struct CommandLine {
 
   std::string demo_name;
   std::optional<std::string> demo_motion;  ///< passage
-  std::optional<Index> demo_nodes;         ///< passage
+  std::optional<Index> demo_nodes;         ///< passage, aircraft
   std::optional<Index> demo_elements;      ///< ball
   std::optional<double> demo_angle_deg;    ///< ball
   std::filesystem::path demo_folder;       ///< empty: "demo_<name>"

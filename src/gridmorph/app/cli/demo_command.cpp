@@ -1,11 +1,14 @@
+#include <generators/aircraft.hpp>
 #include <generators/ball_demo.hpp>
 #include <generators/passage_demo.hpp>
 #include <generators/stand_ins.hpp>
+#include <generators/text_file.hpp>
 #include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -79,6 +82,19 @@ int demo_ball(CommandLine const& options, std::filesystem::path const& folder, T
   return morph_demo(files.case_file, files.morphed, terminal);
 }
 
+int demo_aircraft(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  AircraftOptions aircraft;
+  aircraft.nodes = options.demo_nodes.value_or(aircraft.nodes);
+  terminal.progress(fmt::format("making the aircraft mesh with about {} nodes", aircraft.nodes));
+  Mesh const mesh = make_aircraft(aircraft);
+  make_folder(folder);
+  auto const path = folder / "aircraft.cgns";
+  check_demo_files({path});
+  write_mesh(path.string(), mesh);
+  terminal.say(fmt::format("mesh       {}: {} zones, {} nodes\n", path.string(), mesh.zones.size(), mesh.n_nodes()));
+  return done;
+}
+
 /// Meshes of examples, whose case files are not the command's to write.
 int demo_stand_in(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
   terminal.progress(fmt::format("making the mesh of the {}", options.demo_name));
@@ -112,6 +128,13 @@ int run_demo(CommandLine const& options, std::filesystem::path const& folder, Te
                       {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
     return demo_ball(options, folder, terminal);
   }
+  if (name == "aircraft") {
+    refuse_options_of("passage", name, {{"--motion", options.demo_motion.has_value()}});
+    refuse_options_of(
+        "ball", name,
+        {{"--elements", options.demo_elements.has_value()}, {"--angle", options.demo_angle_deg.has_value()}});
+    return demo_aircraft(options, folder, terminal);
+  }
   if (auto const& meshes = stand_in_names(); std::find(meshes.begin(), meshes.end(), name) != meshes.end()) {
     refuse_options_of("passage", name,
                       {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
@@ -120,8 +143,8 @@ int run_demo(CommandLine const& options, std::filesystem::path const& folder, Te
         {{"--elements", options.demo_elements.has_value()}, {"--angle", options.demo_angle_deg.has_value()}});
     return demo_stand_in(options, folder, terminal);
   }
-  throw ConfigError(
-      fmt::format("there is no demo '{}'{}", name, suggestion(name, {"passage", "ball", "turbine", "slat", "coil"})));
+  throw ConfigError(fmt::format("there is no demo '{}'{}", name,
+                                suggestion(name, {"passage", "ball", "turbine", "slat", "coil", "aircraft"})));
 }
 
 }  // namespace
