@@ -133,8 +133,10 @@ TEST_F(Example, AircraftBendsItsWingDeflectsItsAileronTrimsItsTailAndCarriesItsN
     auto const rise = [](double t) { return t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * t); };
     double const behind = p.x - (17.45 + (7.64 - 0.75 * 4.9) / 15 * (p.y - 2));
     double const angle = 12 * deg * rise((p.y - 11.8) / 1.6) * rise((16 - p.y) / 1.6);
-    lowest = std::min(lowest, -behind * std::sin(angle));
-    return bent(p) + Vec3{behind * (std::cos(angle) - 1), 0, -behind * std::sin(angle)};
+    double const above = rise(behind / 0.4) * (p.z - (-0.7 + 1.312 / 15 * (p.y - 2)));
+    double const c = std::cos(angle) - 1, sn = std::sin(angle);
+    lowest = std::min(lowest, -behind * sn);
+    return bent(p) + Vec3{behind * c + above * sn, 0, -behind * sn + above * c};
   });
   EXPECT_LT(lowest, -0.1);
   // The nacelle as a whole: distances from one of its nodes stay; it rises with the wing above it.
