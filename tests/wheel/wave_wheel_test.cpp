@@ -350,6 +350,30 @@ TEST_F(WaveWheel, BladesHaveRulesOfAnyKind) {
   }
 }
 
+TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
+  // The blade ends on the case, a cylinder of radius 0.167: what it grows there is what it rubs; the mesh keeps it on the case.
+  double const growth = 4e-4;
+  std::string const rule = fmt::format("rule = \"formula\"\ndr = \"{} * (r - 0.09) / (0.167 - 0.09)\"", growth);
+  std::string const clearance = "[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n";
+  for (bool const elements : {false, true}) {
+    std::string const input = elements ? "elements.cgns" : "passage.cgns";
+    if (elements) write_mesh(folder.file(input), as_hexahedra(mesh));
+    folder.write("one.toml", head(input) + blade_rule(rule) + clearance);
+    ASSERT_LE(gridmorph("morph one.toml --report one.json"), 1) << text("err");
+    auto const tip = nlohmann::json::parse(text("one.json"))["clearances"][0];
+    EXPECT_EQ(tip["name"], "rotor");
+    EXPECT_GT(tip["nodes"], 20);
+    EXPECT_NEAR(double(tip["before"]["smallest"]), 0, 1e-12);
+    EXPECT_NEAR(double(tip["by_rule"]["smallest"]), -growth, 1e-12);
+    EXPECT_NEAR(double(tip["by_rule"]["mean"]), -growth, 1e-12);
+    EXPECT_NEAR(double(tip["after"]["smallest"]), elements ? -growth : 0, 1e-12) << "elements keep what they are given";
+    expect_all_in(text("out"), {"clearance", "rotor", "-0.0004", "rubs"});
+  }
+  folder.write("one.toml", head() + blade_rule(rule) + "[[clearance]]\ntips = \"blade\"\nwalls = \"inlet\"\n");
+  EXPECT_EQ(gridmorph("morph one.toml"), 2);
+  expect_all_in(text("err"), {"clearance", "revolution"});
+}
+
 TEST_F(WaveWheel, OfElementsMovesTheSameBlades) {
   write_mesh(folder.file("elements.cgns"), as_hexahedra(mesh));
   int const steps = 2;

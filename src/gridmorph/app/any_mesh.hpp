@@ -188,6 +188,9 @@ class AnyMesh {
   [[nodiscard]] virtual PatchesAsSurface surface(std::vector<std::string> const& selectors, bool as_facets,
                                                  int split) const = 0;
 
+  /// Numbers of the nodes of patches, those at one place once or several times. Throws MotionError for selectors that name none.
+  [[nodiscard]] virtual std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const = 0;
+
   /// The file `input`, which this was read from, with other coordinates: write_morphed(), SeriesWriter.
   virtual void write(std::filesystem::path const& input, std::filesystem::path const& output,
                      Coordinates const& morphed, OutputFields const& fields) const = 0;

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <gridmorph/motion/rigid_motion.hpp>
 #include <system_error>
 #include <utility>
 
@@ -212,6 +213,70 @@ std::vector<Shortfall> Run::shortfalls_of(QualityReport const& quality) const {
   return shortfalls(baseline_, quality, thresholds_of(case_file_));
 }
 
+/// Number of the rule that the user gives all of these nodes, ascending; -1 where there is none.
+int Run::rule_of(std::vector<Index> const& nodes) const {
+  auto const& rules = case_file_.motion.rules;
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    std::vector<Index> named;
+    try {
+      named = mesh_->nodes_of(rules[r].patches);
+    } catch (MotionError const&) {  // it names interfaces alone
+      continue;
+    }
+    std::sort(named.begin(), named.end());
+    if (std::includes(named.begin(), named.end(), nodes.begin(), nodes.end())) return int(r);
+  }
+  return -1;
+}
+
+std::vector<TipClearance> Run::clearances() const {
+  std::vector<TipClearance> out;
+  Motion const& motion = case_file_.motion;
+  auto const places = [](Coordinates const& x, std::vector<Index> const& nodes) {
+    std::vector<Vec3> at;
+    for (Index const n : nodes) at.push_back(x[n]);
+    return at;
+  };
+  auto const ascending = [](std::vector<Index> nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+  };
+  for (ClearanceCase const& one : case_file_.clearances) {
+    auto const wall_nodes = ascending(mesh_->nodes_of(one.walls)), blade = ascending(mesh_->nodes_of(one.tips));
+    ClearanceWall const before(motion.axis, places(mesh_->coordinates(), wall_nodes));
+    // Nodes slide on a wall that slips, and those of a blade may be off it: the wall itself stays.
+    int const of_wall = rule_of(wall_nodes);
+    bool const moves = of_wall >= 0 && (case_file_.timed[std::size_t(of_wall)].at ||
+                                        std::holds_alternative<AttachedRule>(motion.rules[std::size_t(of_wall)].rule));
+    ClearanceWall const after = moves ? ClearanceWall(motion.axis, places(result_.morphed, wall_nodes)) : before;
+    auto const blade_places = places(mesh_->coordinates(), blade);
+    double side = 0;
+    for (Vec3 const& node : blade_places) side += before.distance(node);
+    std::vector<Index> tip;
+    for (std::size_t const n : tip_nodes(before, blade_places, one.rim)) tip.push_back(blade[n]);
+    double const outwards = side < 0 ? -1 : 1;
+    auto at = places(mesh_->coordinates(), tip);
+    TipClearance found{one.name,
+                       tip.size(),
+                       before.of(at, outwards),
+                       {},
+                       after.of(places(result_.morphed, tip), outwards),
+                       std::max(before.scatter(), after.scatter())};
+    if (int const r = rule_of(tip); r >= 0) {
+      Rule const& rule = motion.rules[std::size_t(r)].rule;
+      std::vector<Vec3> u(at.size());
+      auto const* function = std::get_if<FunctionRule>(&rule);
+      auto const* rigid = std::get_if<RigidRule>(&rule);
+      if (function != nullptr) function->function(at, u);
+      for (std::size_t n = 0; n < at.size(); ++n) at[n] += rigid != nullptr ? displacement(*rigid, at[n]) : u[n];
+      if (function != nullptr || rigid != nullptr) found.by_rule = after.of(at, outwards);
+    }
+    out.push_back(std::move(found));
+  }
+  return out;
+}
+
 nlohmann::json Run::json(QualityReport const& quality, PlanOutcome const& outcome) const {
   nlohmann::json json = quality_json(baseline_, quality, thresholds_of(case_file_));
   json["gridmorph"] = GRIDMORPH_VERSION;
@@ -366,6 +431,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   run.notes.insert(run.notes.end(), guarded.begin(), guarded.end());
   watch.lap();
   PlanOutcome const outcome = run.plan().outcome(run.morphed(), run.quality().fast, true);
+  auto const clearances = run.clearances();
   run.notes.insert(run.notes.end(), outcome.notes.begin(), outcome.notes.end());
   add_time(run.times, "quality", watch.lap());
 
@@ -396,6 +462,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                    .json =
                        [&] {
                          nlohmann::json json = run.json(run.quality(), outcome);
+                         if (!clearances.empty()) json["clearances"] = clearance_json(clearances);
                          if (!retried.is_null()) json["retry"] = retried;
                          if (!frozen.is_null()) json["frozen_guard"] = frozen;
                          return json;
@@ -415,6 +482,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                        [&] {
                          // Notes of a plan without a headline go straight on to what follows.
                          return run.head() + (run.plan().headline().empty() ? "" : "\n") +
+                                (clearances.empty() ? "" : clearance_table(clearances) + "\n") +
                                 run.tables(run.quality(), outcome);
                        },
                    .wrote = fmt::format("\nwrote {}\n", case_file.output.string()) + vtk,

@@ -8,6 +8,7 @@
 #include <gridmorph/app/cli/terminal.hpp>
 #include <gridmorph/app/recipe.hpp>
 #include <gridmorph/report/shortfalls.hpp>
+#include <gridmorph/report/tip_clearance.hpp>
 
 namespace gridmorph::cli {
 
@@ -80,6 +81,9 @@ class Run {
   [[nodiscard]] OutputFields const& fields() const { return result_.fields; }
   [[nodiscard]] QualityReport const& quality() const { return result_.quality; }
 
+  /// [[clearance]] of the result. Throws MotionError for walls that are not of revolution.
+  [[nodiscard]] std::vector<TipClearance> clearances() const;
+
   /// What the motion would make of cells.
   PlanPrediction predict();
 
@@ -99,6 +103,8 @@ class Run {
   StepTimes times;
 
  private:
+  [[nodiscard]] int rule_of(std::vector<Index> const& nodes) const;
+
   struct Result {
     Coordinates morphed;
     QualityReport quality;

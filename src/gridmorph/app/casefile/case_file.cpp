@@ -333,7 +333,30 @@ void read_plan(TableReader& root, std::map<std::string, double> const& constants
   volume->finish();
 }
 
+void read_clearances(TableReader& root, CaseFile& out) {
+  for (auto& table : root.tables("clearance")) {
+    ClearanceCase one;
+    one.where = table.context().where(table.line());
+    one.tips = table.strings("tips").value_or(std::vector<std::string>{});
+    one.walls = table.strings("walls").value_or(std::vector<std::string>{});
+    table.require("tips", "tips = [\"blade_tip\"], or the blade with rim = 0.02");
+    table.require("walls", "walls = [\"case\"], the wall that the tips run along");
+    one.name = table.string("name").value_or(one.tips.empty() ? "" : one.tips.front());
+    one.rim = table.number("rim").value_or(1);
+    if (one.rim <= 0 || one.rim > 1)
+      table.problem("rim",
+                    fmt::format("is the share of the blade's height that is its tip, 0 < rim <= 1, found {}", one.rim));
+    if (!out.axis)
+      table.problem("walls",
+                    "are of revolution about the machine axis; add axis = { origin = [0, 0, 0], direction = [1, "
+                    "0, 0] } to [mesh]");
+    table.finish();
+    out.clearances.push_back(std::move(one));
+  }
+}
+
 void read_results(TableReader& root, CaseFile& out) {
+  read_clearances(root, out);
   if (auto guard = root.table("guard")) {
     auto const limit = [&](char const* key, double& value, bool (*passes)(double), std::string_view meaning) {
       auto const found = guard->number(key);

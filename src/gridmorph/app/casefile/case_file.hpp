@@ -73,6 +73,14 @@ struct SequenceOptions {
   [[nodiscard]] Moment moment(int step) const { return {periods_at(step), time_at(step), step + 1}; }
 };
 
+/// [[clearance]]: how far the tips of blades are from a wall.
+struct ClearanceCase {
+  std::string name;
+  std::vector<std::string> tips, walls;  ///< selectors of patches
+  double rim = 1;                        ///< share of the height of `tips` that is tip: 1: all of it
+  std::string where;
+};
+
 /// [background] file: a background mesh of the user's.
 struct BackgroundFile {
   std::filesystem::path path;
@@ -103,6 +111,7 @@ struct CaseFile {
   GuardOptions guard;
   OutputOptions output_options;
   std::vector<FieldUse> fields;
+  std::vector<ClearanceCase> clearances;
   std::optional<WheelCase> wheel;  ///< [wheel], for `gridmorph wheel`
   std::vector<TimedRule> timed;    ///< per rule of `motion`
   std::optional<SequenceOptions> sequence;
