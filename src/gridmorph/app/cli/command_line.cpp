@@ -15,7 +15,8 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::vector<std::string> const command_names{"morph", "inspect", "plan", "quality", "wheel", "surface", "demo"};
+std::vector<std::string> const command_names{"morph", "inspect", "plan",    "quality",
+                                             "wheel", "fillet",  "surface", "demo"};
 
 constexpr char const* exit_statuses =
     "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
@@ -96,6 +97,31 @@ CLI::App* add_surface(CLI::App& app, CommandLine& out) {
   return surface;
 }
 
+CLI::App* add_fillet(CLI::App& app, CommandLine& out) {
+  auto* fillet =
+      app.add_subcommand("fillet", "Round the corner between a blade and an end wall, with blocks that suit it");
+  fillet->add_option("mesh", out.input, "Mesh of blocks (CGNS, PLOT3D)")->required();
+  fillet->add_option("-b,--blade", out.patches, "Patches of the blade, named as in case files")->required();
+  fillet->add_option("-w,--wall", out.end_walls, "Patches of the end wall: hub, case, or both")->required();
+  fillet->add_option("--radius", out.radius, "Radius: a number, or an expression of x, y, z along the corner")
+      ->required();
+  fillet->add_option("-o,--output", out.output, "Mesh with the fillet (CGNS)")->required();
+  fillet
+      ->add_option("--blade-layers", out.blade_layers,
+                   "Layers off the blade that the corner takes (default: by the radius)")
+      ->check(CLI::Range(1, 10000));
+  fillet
+      ->add_option("--wall-layers", out.end_wall_layers,
+                   "Layers off the end wall that it takes (default: by the radius)")
+      ->check(CLI::Range(1, 10000));
+  fillet
+      ->add_option("--run-out", out.run_out,
+                   "H meshes: radii over which the fillet runs out before the blade's edges (default 8)")
+      ->check(CLI::Range(0.0, 1000.0));
+  add_leave_out(*fillet, out);
+  return fillet;
+}
+
 CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   auto* demo = app.add_subcommand("demo", "Write a built-in mesh and its case files, and morph it");
   demo->add_option(
@@ -148,6 +174,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   add_leave_out(*quality, out);
   commands.emplace_back(quality, Command::quality);
   commands.emplace_back(add_wheel(app, out), Command::wheel);
+  commands.emplace_back(add_fillet(app, out), Command::fillet);
   commands.emplace_back(add_surface(app, out), Command::surface);
   commands.emplace_back(add_demo(app, out), Command::demo);
   for (auto const& [subcommand, command] : commands) {

@@ -13,7 +13,7 @@
 namespace gridmorph::cli {
 
 struct CommandLine {
-  enum class Command { morph, inspect, plan, quality, wheel, surface, demo };
+  enum class Command { morph, inspect, plan, quality, wheel, fillet, surface, demo };
   Command command = Command::morph;
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
@@ -37,9 +37,13 @@ struct CommandLine {
   bool match_periodic = true;          ///< inspect: and for periodicity
   double match_tolerance = 0.01;       ///< inspect: share of the smallest edge
 
-  std::vector<std::string> patches;  ///< surface: selectors
-  int split = 1;                     ///< surface: pieces along each side of a facet
-  bool ascii = false;                ///< surface: text, not binary
+  std::vector<std::string> patches;           ///< surface; fillet: of the blade; selectors
+  std::vector<std::string> end_walls;         ///< fillet: selectors
+  std::string radius;                         ///< fillet: a number or an expression
+  int blade_layers = 0, end_wall_layers = 0;  ///< fillet: 0: by the radius
+  double run_out = 8;                         ///< fillet: radii
+  int split = 1;                              ///< surface: pieces along each side of a facet
+  bool ascii = false;                         ///< surface: text, not binary
 
   std::string demo_name;
   std::optional<std::string> demo_motion;  ///< passage

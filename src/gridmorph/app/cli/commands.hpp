@@ -1,4 +1,4 @@
-// The six commands. Each returns the exit status 0, 1 or 4 and throws for the others (main maps errors to 2 and 3).
+// The commands. Each returns the exit status 0, 1 or 4 and throws for the others (main maps errors to 2 and 3).
 #pragma once
 
 #include <gridmorph/app/casefile/case_file.hpp>
@@ -28,6 +28,7 @@ int run_plan_command(CommandLine const& options, Terminal& terminal);
 int run_quality_command(CommandLine const& options, Terminal& terminal);
 int run_wheel_command(CommandLine const& options, Terminal& terminal);
 int run_surface_command(CommandLine const& options, Terminal& terminal);
+int run_fillet_command(CommandLine const& options, Terminal& terminal);
 int run_demo_command(CommandLine const& options, Terminal& terminal);
 
 }  // namespace gridmorph::cli

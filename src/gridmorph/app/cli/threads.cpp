@@ -38,6 +38,7 @@ std::optional<std::uintmax_t> bytes_of_mesh(CommandLine const& options) {
     case Command::wheel: mesh = options.case_document ? options.case_document->mesh() : std::nullopt; break;
     case Command::inspect:
     case Command::quality:
+    case Command::fillet:
     case Command::surface: break;
   }
   if (!mesh) return std::nullopt;

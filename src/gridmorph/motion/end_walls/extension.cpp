@@ -2,7 +2,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/geometry/cubic_piece.hpp>
+#include <gridmorph/geometry/arc_curve.hpp>
 #include <gridmorph/motion/detail/edge_distances.hpp>
 #include <gridmorph/motion/detail/spanwise_lines.hpp>
 
@@ -17,59 +17,9 @@ namespace {
 
 constexpr double least_left = 0.1;  // of a line
 
-/// A curve through points over its arc length.
-class LineCurve {
- public:
-  explicit LineCurve(std::vector<Vec3> points) : points_(std::move(points)) {
-    std::size_t const n = points_.size();
-    arc_.assign(1, 0.0);
-    for (std::size_t k = 1; k < n; ++k) arc_.push_back(arc_.back() + distance(points_[k - 1], points_[k]));
-    auto const secant = [&](std::size_t k) { return (1 / (arc_[k + 1] - arc_[k])) * (points_[k + 1] - points_[k]); };
-    for (std::size_t k = 0; k < n; ++k) {
-      if (n == 2) {
-        slope_.push_back(secant(0));
-        continue;
-      }
-      // Of the parabola through the node and two beside it.
-      std::size_t const m = std::clamp<std::size_t>(k, 1, n - 2);
-      double const before = arc_[m] - arc_[m - 1], behind = arc_[m + 1] - arc_[m];
-      Vec3 const bend = (1 / (before + behind)) * (secant(m) - secant(m - 1));
-      slope_.push_back(secant(m - 1) + (2 * arc_[k] - arc_[m - 1] - arc_[m]) * bend);
-    }
-  }
-
-  [[nodiscard]] double length() const { return arc_.back(); }
-  [[nodiscard]] double arc(std::size_t k) const { return arc_[k]; }
-
-  /// Exactly a node at a node.
-  [[nodiscard]] Vec3 at(double s) const {
-    if (s <= 0) return points_.front() + s * slope_.front();
-    if (s >= length()) return points_.back() + (s - length()) * slope_.back();
-    auto const k = piece(s);
-    double const width = arc_[k + 1] - arc_[k];
-    return cubic_piece(points_[k], points_[k + 1], slope_[k], slope_[k + 1], width, (s - arc_[k]) / width);
-  }
-  [[nodiscard]] Vec3 tangent(double s) const {
-    if (s <= 0) return slope_.front();
-    if (s >= length()) return slope_.back();
-    auto const k = piece(s);
-    double const width = arc_[k + 1] - arc_[k], t = (s - arc_[k]) / width;
-    return (6 * t * (1 - t) / width) * (points_[k + 1] - points_[k]) + ((1 - t) * (1 - 3 * t)) * slope_[k] +
-           (t * (3 * t - 2)) * slope_[k + 1];
-  }
-
- private:
-  [[nodiscard]] std::size_t piece(double s) const {
-    return std::size_t(piece_at(
-        int(arc_.size()), [&](int k) { return arc_[std::size_t(k)]; }, s));
-  }
-  std::vector<Vec3> points_, slope_;
-  std::vector<double> arc_;
-};
-
 /// How far along the line the wall is from one of its ends; exactly 0 where the end is on it. The foot of a blade may come to lie beside
 /// the wall, in what was inside of the blade: there the wall goes on along the planes of its facets, for as far as the foot moves.
-double way_to(MovedWall const& wall, LineCurve const& line, bool upper, std::string const& name) {
+double way_to(MovedWall const& wall, ArcCurve const& line, bool upper, std::string const& name) {
   double const start = upper ? line.length() : 0;
   double s = start;
   for (int step = 0; step < 60; ++step) {
@@ -168,7 +118,7 @@ ExtensionMotion::ExtensionMotion(Boundary const& boundary, std::vector<int> cons
       nodes.push_back(points[std::size_t(v)]);
     }
     if (nodes.size() < 2) continue;
-    LineCurve const line(std::move(nodes));
+    ArcCurve const line(std::move(nodes));
     std::array<double, 2> way{};
     for (int e = 0; e < 2; ++e) {
       int const w = wall_of[std::size_t(e == 0 ? kept.front() : kept.back())];

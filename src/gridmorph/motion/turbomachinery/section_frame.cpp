@@ -2,6 +2,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
+#include <gridmorph/geometry/unit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,6 @@
 namespace gridmorph {
 
 namespace {
-
-Vec3 unit(Vec3 const& v) { return (1 / norm(v)) * v; }
 
 /// A unit vector across the given one.
 Vec3 across(Vec3 const& direction) {

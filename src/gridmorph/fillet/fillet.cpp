@@ -1,0 +1,196 @@
+#include <gridmorph/fillet/fillet.hpp>
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/fillet/corner_stations.hpp>
+#include <gridmorph/fillet/layer_spacing.hpp>
+#include <gridmorph/geometry/cubic_piece.hpp>
+#include <gridmorph/geometry/unit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+/// From a wall to where its layers end: the cubic with these directions, as fast at both ends as the chord is long.
+struct LayerLine {
+  Vec3 foot, off_foot, end, into_end;
+
+  [[nodiscard]] double chord() const { return distance(foot, end); }
+  [[nodiscard]] Vec3 at(double share) const {
+    return cubic_piece(foot, end, chord() * off_foot, chord() * into_end, 1, share);
+  }
+};
+
+/// The layers of an old line of nodes off a wall.
+struct OldLayers {
+  ArcCurve curve;
+  std::vector<double> arcs;  ///< of the layers that are made
+  bool same = false;         ///< as many as there were
+
+  OldLayers(std::vector<Vec3> points, int made) : curve(std::move(points)), same(made == int(curve.size()) - 1) {
+    if (same)
+      for (std::size_t n = 0; n < curve.size(); ++n) arcs.push_back(curve.arc(n));
+    else
+      arcs = grown_spacing(made, curve.arc(1), curve.length());
+  }
+  [[nodiscard]] Vec3 at(std::size_t layer) const {
+    return layer == 0                 ? curve.point(0)
+           : layer + 1 == arcs.size() ? curve.point(curve.size() - 1)
+           : same                     ? curve.point(layer)
+                                      : curve.at(arcs[layer]);
+  }
+  [[nodiscard]] std::vector<double> shares() const {
+    std::vector<double> out = arcs;
+    for (double& s : out) s /= arcs.back();
+    return out;
+  }
+};
+
+class Layers {
+ public:
+  Layers(Mesh const& old, WallSheets const& sheets, SheetLayers const& layers, CornerStations const& stations)
+      : old_(old), sheets_(sheets), layers_(layers), stations_(stations) {
+    for (std::size_t c = 0; c < stations.corners().size(); ++c) mitres_.push_back(mitres_of(c));
+  }
+
+  /// Nodes of a zone that is the layers of a sheet.
+  void fill(SplitZone const& part, Zone const& zone, Coordinates& to) {
+    Sheet const& sheet = sheets_.all[part.sheet];
+    int const u = (sheet.axis + 1) % 3, v = (sheet.axis + 2) % 3;
+    for (int b = part.box.begin[v]; b < part.box.end[v]; ++b)
+      for (int a = part.box.begin[u]; a < part.box.end[u]; ++a) {
+        Index3 column{0, 0, 0};
+        column[u] = a;
+        column[v] = b;
+        std::vector<Vec3> const nodes = line(sheet, column);
+        for (int n = 0; n <= layers_.made; ++n) {
+          Index3 p{0, 0, 0};
+          p[u] = a - part.box.begin[u];
+          p[v] = b - part.box.begin[v];
+          p[sheet.axis] = sheet.side == 0 ? n : layers_.made - n;
+          to.set(zone.node(p), nodes[std::size_t(n)]);
+        }
+      }
+  }
+
+  [[nodiscard]] double wall_deviation() const { return wall_deviation_; }
+
+ private:
+  /// How layers are spaced in the face where those of both walls meet.
+  struct Mitre {
+    std::vector<double> shares;
+    double first = 0;
+  };
+
+  /// Old nodes off a wall, from the one on it on.
+  [[nodiscard]] std::vector<Vec3> nodes_off(Sheet const& sheet, Index3 p, int cells) const {
+    Zone const& zone = old_.zones[sheet.zone];
+    std::vector<Vec3> out;
+    for (int n = 0; n <= cells; ++n) {
+      p[sheet.axis] = sheet.side == 0 ? n : zone.extent[sheet.axis] - 1 - n;
+      out.push_back(old_.coordinates[zone.node(p)]);
+    }
+    return out;
+  }
+  [[nodiscard]] int layers_of(Sheet const& sheet) const { return layers_.old[std::size_t(sheet.wall)]; }
+
+  std::vector<Mitre> mitres_of(std::size_t c) const {
+    CornerFrame const& corner = stations_.corners()[c];
+    std::vector<Mitre> out;
+    for (int a = 0; a < corner.stations(); ++a) {
+      std::array<std::vector<double>, 2> shares;
+      double first = 1;
+      for (std::size_t w = 0; w < 2; ++w) {
+        OldLayers const own(nodes_off(*corner.sheet[w], corner.index(a, layers_.old), layers_.old[w]), layers_.made);
+        shares[w] = own.shares();
+        first *= own.arcs[1];
+      }
+      out.push_back({mean_shares(shares[0], shares[1], 0.5), std::sqrt(first)});
+    }
+    return out;
+  }
+
+  /// The layers over one node of a wall.
+  std::vector<Vec3> line(Sheet const& sheet, Index3 const& column) {
+    int const cells = layers_of(sheet);
+    auto const w = std::size_t(sheet.wall);
+    std::vector<Vec3> points = nodes_off(sheet, column, cells + 1);
+    Vec3 const off_wall = unit(points[1] - points[0]);
+    Vec3 const into_end = unit(points[std::size_t(cells) + 1] - points[std::size_t(cells) - 1]);
+    points.pop_back();
+    OldLayers const old(std::move(points), layers_.made);
+
+    std::vector<Vec3> out;
+    for (std::size_t n = 0; n < old.arcs.size(); ++n) out.push_back(old.at(n));
+    for (std::size_t c = 0; c < stations_.corners().size(); ++c) {
+      CornerFrame const& corner = stations_.corners()[c];
+      if (corner.sheet[w] != &sheet) continue;
+      Sheet const& other = *corner.sheet[1 - w];
+      int const depth = other.side == 0 ? column[other.axis] : corner.cells(int(1 - w)) - column[other.axis];
+      int const a = column[corner.along()];
+      CornerStation const& station = stations_.station(c, a);
+      if (depth >= int(station.line[w].curve.size())) continue;
+      double const g = station.line[w].share(depth);
+      if (g == 0) continue;
+      WallPlace const middle = station.middle();
+      WallPlace const foot = depth == station.line[w].layers ? middle : station.place(int(w), depth, off_wall);
+      if (!foot.rounded)
+        wall_deviation_ = std::max(wall_deviation_, station.surface[w]->closest_point(foot.point).distance);
+      LayerLine const before{old.at(0), off_wall, old.at(old.arcs.size() - 1), into_end};
+      LayerLine const after{foot.point, foot.normal, before.end,
+                            unit(g * unit(station.inner - middle.point) + (1 - g) * into_end)};
+      Mitre const& mitre = mitres_[c][std::size_t(a)];
+      auto const own_shares = old.shares();
+      auto const places_before = stretched(own_shares, old.arcs[1], before.chord());
+      auto const places_after = stretched(mean_shares(own_shares, mitre.shares, g),
+                                          std::pow(old.arcs[1], 1 - g) * std::pow(mitre.first, g), after.chord());
+      for (std::size_t n = 0; n + 1 < out.size(); ++n)
+        out[n] = after.at(places_after[n] / after.chord()) +
+                 (1 - g) * (out[n] - before.at(places_before[n] / before.chord()));
+    }
+    return out;
+  }
+
+  Mesh const& old_;
+  WallSheets const& sheets_;
+  SheetLayers const& layers_;
+  CornerStations const& stations_;
+  std::vector<std::vector<Mitre>> mitres_;
+  double wall_deviation_ = 0;
+};
+
+}  // namespace
+
+FilletResult make_fillet(Mesh const& mesh, Links const& links, FilletOptions const& options) {
+  WallSheets const sheets = find_wall_sheets(mesh, links, options.blade, options.end_wall);
+  FilletResult out;
+  out.layers = choose_layers(mesh, sheets, options);
+  out.split = split_corners(mesh, sheets, out.layers);
+  CornerStations const stations(mesh, links, sheets, out.layers, options);
+  stations.describe(out);
+
+  Mesh& made = out.split.mesh;
+  made.coordinates = Coordinates(made.n_nodes());
+  Layers layers(mesh, sheets, out.layers, stations);
+  for (std::size_t z = 0; z < made.zones.size(); ++z) {
+    SplitZone const& part = out.split.zones[z];
+    Zone const &zone = made.zones[z], &from = mesh.zones[part.zone];
+    if (part.sheet >= 0) {
+      layers.fill(part, zone, made.coordinates);
+      continue;
+    }
+    for (int k = 0; k < zone.extent[2]; ++k)
+      for (int j = 0; j < zone.extent[1]; ++j)
+        for (int i = 0; i < zone.extent[0]; ++i)
+          made.coordinates.set(
+              zone.node({i, j, k}),
+              mesh.coordinates[from.node({i + part.box.begin[0], j + part.box.begin[1], k + part.box.begin[2]})]);
+  }
+  out.wall_deviation = layers.wall_deviation();
+  return out;
+}
+
+}  // namespace gridmorph

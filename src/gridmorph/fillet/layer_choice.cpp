@@ -1,0 +1,96 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/fillet/corner_lines.hpp>
+#include <gridmorph/fillet/corner_stations.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace gridmorph {
+
+namespace {
+
+// Of the radius, that the layers off the blade and off the end wall should be high. Measured on a stage of leaning H meshes and an O4H
+// passage (docs/root_fillet.md): fewer layers off the blade invert cells where lines lean by 80 degrees.
+constexpr std::array<double, 2> room{1.0, 0.6};
+constexpr int least_left = 3;   // cells between the corner and the end of a line
+constexpr double flattest = 5;  // how much wider than high the layers in the corner may be, and the other way round
+
+/// Of layers off a wall, counted along the line of the other one.
+int most_layers(WallSheets const& sheets, std::vector<CornerFrame> const& corners, int wall, int asked) {
+  int most = std::numeric_limits<int>::max();
+  CornerFrame const* thinnest = nullptr;
+  for (auto const& corner : corners)
+    if (int const there = last_node(sheets, corner, 1 - wall) - least_left; there < most) {
+      most = there;
+      thinnest = &corner;
+    }
+  if (most >= std::max(1, asked)) return most;
+  throw MeshError("zone '" + thinnest->zone->name + "' has " + std::to_string(thinnest->cells(wall)) +
+                  " cells off the " + (wall == 0 ? "blade" : "end wall") + ", room for " +
+                  std::to_string(std::max(0, most)) + " layers in the corner" +
+                  (asked > 0 ? "; " + std::to_string(asked) + " are asked for" : std::string()) + "; give fewer");
+}
+
+/// How many layers are as high as the room for the mean radius.
+int layers_for_radius(Mesh const& mesh, std::vector<CornerFrame> const& corners, int wall, int most,
+                      FilletOptions const& options) {
+  std::vector<double> height(std::size_t(most) + 1, 0.0);
+  double radius = 0;
+  bool any = false;
+  for (auto const& corner : corners) {
+    auto const filled = filled_stations(mesh, corner, options);
+    for (int a = 0; a < corner.stations(); ++a) {
+      if (!filled[std::size_t(a)]) continue;
+      auto const points = line_points(mesh, corner, a, 1 - wall, most);
+      Vec3 const normal = wall_normal(mesh, corner, a, wall);
+      for (std::size_t n = 1; n < points.size(); ++n) height[n] += std::abs(dot(points[n] - points[0], normal));
+      radius += checked_radius(options, points[0]);
+      any = true;
+    }
+  }
+  if (!any) throw MeshError("no node of the corner is on both the blade and the end wall");
+  int n = 1;
+  while (n < most && height[std::size_t(n)] < room[std::size_t(wall)] * radius) ++n;
+  return n;
+}
+
+/// Where the corner stays sharp, layers that are much wider off one wall than off the other would meet in a mitre too flat for cells:
+/// those of the other wall become more.
+void even_out(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletOptions const& options,
+              std::array<int, 2> const& most, std::array<int, 2>& layers) {
+  for (auto const& corner : corners) {
+    auto const filled = filled_stations(mesh, corner, options);
+    for (int a = 0; a < corner.stations(); ++a) {
+      if (filled[std::size_t(a)]) continue;
+      auto const width = [&](int wall) {
+        std::array<int, 2> off{0, 0};
+        off[std::size_t(wall)] = layers[std::size_t(wall)];
+        return distance(node_at(mesh, corner, a, off), node_at(mesh, corner, a, {0, 0}));
+      };
+      for (int wall = 0; wall < 2; ++wall)
+        while (options.layers[std::size_t(wall)] == 0 && layers[std::size_t(wall)] < most[std::size_t(wall)] &&
+               width(1 - wall) > flattest * width(wall))
+          ++layers[std::size_t(wall)];
+    }
+  }
+}
+
+}  // namespace
+
+SheetLayers choose_layers(Mesh const& mesh, WallSheets const& sheets, FilletOptions const& options) {
+  auto const corners = corners_of(mesh, sheets);
+  SheetLayers out;
+  std::array<int, 2> most{};
+  for (int wall = 0; wall < 2; ++wall) {
+    auto const w = std::size_t(wall);
+    most[w] = most_layers(sheets, corners, wall, options.layers[w]);
+    out.old[w] = options.layers[w] > 0 ? options.layers[w] : layers_for_radius(mesh, corners, wall, most[w], options);
+  }
+  even_out(mesh, corners, options, most, out.old);
+  out.made = std::max(out.old[0], out.old[1]);
+  return out;
+}
+
+}  // namespace gridmorph
