@@ -11,7 +11,7 @@
 namespace gridmorph::testing {
 namespace {
 
-std::vector<std::string> const commands{"morph", "inspect", "plan", "quality", "wheel", "surface", "demo"};
+std::vector<std::string> const commands{"morph", "inspect", "plan", "quality", "wheel", "fillet", "surface", "demo"};
 
 class CommandInterface : public CommandTest {
  protected:
@@ -42,6 +42,7 @@ class CommandInterface : public CommandTest {
             {"inspect passage.cgns", "zones"},
             {"quality passage.cgns", "baseline"},
             {"wheel wheel.toml", "passages"},
+            {"fillet passage.cgns -b blade -w hub --radius 0.002 -o filled.cgns", "stations"},
             {"surface passage.cgns -p blade -o out.stl", "facets"},
             {"demo passage -n 10000 -m chord -d made", "morphs"}};
   }

@@ -22,6 +22,15 @@ struct LayerLine {
   [[nodiscard]] Vec3 at(double share) const {
     return cubic_piece(foot, end, chord() * off_foot, chord() * into_end, 1, share);
   }
+  /// Shares of layers whose first cell is as high as given.
+  [[nodiscard]] std::vector<double> places(std::vector<double> const& shares, double first) const {
+    double along = first;  // the line bends and is not passed through evenly
+    if (first < 0.5 * chord())
+      for (int step = 0; step < 4; ++step) along *= first / distance(at(along / chord()), foot);
+    std::vector<double> out = stretched(shares, along, chord());
+    for (double& s : out) s /= chord();
+    return out;
+  }
 };
 
 /// The layers of an old line of nodes off a wall.
@@ -144,12 +153,11 @@ class Layers {
                             unit(g * unit(station.inner - middle.point) + (1 - g) * into_end)};
       Mitre const& mitre = mitres_[c][std::size_t(a)];
       auto const own_shares = old.shares();
-      auto const places_before = stretched(own_shares, old.arcs[1], before.chord());
-      auto const places_after = stretched(mean_shares(own_shares, mitre.shares, g),
-                                          std::pow(old.arcs[1], 1 - g) * std::pow(mitre.first, g), after.chord());
+      auto const places_before = before.places(own_shares, old.arcs[1]);
+      auto const places_after = after.places(mean_shares(own_shares, mitre.shares, g),
+                                             std::pow(old.arcs[1], 1 - g) * std::pow(mitre.first, g));
       for (std::size_t n = 0; n + 1 < out.size(); ++n)
-        out[n] = after.at(places_after[n] / after.chord()) +
-                 (1 - g) * (out[n] - before.at(places_before[n] / before.chord()));
+        out[n] = after.at(places_after[n]) + (1 - g) * (out[n] - before.at(places_before[n]));
     }
     return out;
   }

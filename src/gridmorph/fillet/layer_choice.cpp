@@ -77,6 +77,23 @@ void even_out(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletO
   }
 }
 
+/// The wall with fewer layers gets more cells in them: they have to be high enough for first cells as they were.
+void make_room(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletOptions const& options,
+               std::array<int, 2> const& most, std::array<int, 2>& layers) {
+  constexpr double spare = 1.1;
+  std::size_t const fewer = layers[0] < layers[1] ? 0 : 1;
+  int const made = layers[1 - fewer];
+  if (options.layers[fewer] > 0) return;
+  for (auto const& corner : corners)
+    for (int a = 0; a < corner.stations(); ++a) {
+      auto const points = line_points(mesh, corner, a, 1 - int(fewer), most[fewer]);
+      double const first = distance(points[0], points[1]);
+      while (layers[fewer] < std::min(made, most[fewer]) &&
+             distance(points[0], points[std::size_t(layers[fewer])]) < spare * made * first)
+        ++layers[fewer];
+    }
+}
+
 }  // namespace
 
 SheetLayers choose_layers(Mesh const& mesh, WallSheets const& sheets, FilletOptions const& options) {
@@ -89,6 +106,7 @@ SheetLayers choose_layers(Mesh const& mesh, WallSheets const& sheets, FilletOpti
     out.old[w] = options.layers[w] > 0 ? options.layers[w] : layers_for_radius(mesh, corners, wall, most[w], options);
   }
   even_out(mesh, corners, options, most, out.old);
+  make_room(mesh, corners, options, most, out.old);
   out.made = std::max(out.old[0], out.old[1]);
   return out;
 }
