@@ -146,7 +146,7 @@ class Layers {
       if (g == 0) continue;
       WallPlace const middle = station.middle();
       WallPlace const foot = depth == station.line[w].layers ? middle : station.place(int(w), depth, off_wall);
-      if (!foot.rounded)
+      if (!foot.rounded && (w == 1 || !station.sharp()))  // where the corner is bare its line is on no blade
         wall_deviation_ = std::max(wall_deviation_, station.surface[w]->closest_point(foot.point).distance);
       LayerLine const before{old.at(0), off_wall, old.at(old.arcs.size() - 1), into_end};
       LayerLine const after{foot.point, foot.normal, before.end,

@@ -38,6 +38,8 @@ constexpr std::array topics{
           "  gridmorph quality cascade.su2 --json\n",
           "quality.md (what is measured, and how)"},
     Topic{"wheel", "  gridmorph wheel case.toml --output wheel.cgns\n", "wheel.md, case_file.md#wheel"},
+    Topic{"fillet", "  gridmorph fillet passage.cgns --blade blade --wall hub --radius 0.004 --output filled.cgns\n",
+          "root_fillet.md"},
     Topic{"surface", "  gridmorph surface wing.cgns --patches type:wall --output wing.stl\n",
           "motion.md#target (what the surface is for), formats.md"},
     Topic{"demo",
