@@ -266,6 +266,15 @@ TEST(Fillet, WhatCannotBeFilledIsRefused) {
                 {"meet in no corner"});
 }
 
+TEST(Fillet, PolesAreRefusedWhereLayersWouldBeLaidAroundThem) {
+  Mesh mesh = wedge(pi / 2);
+  Zone const& zone = mesh.zones.front();
+  for (int k = 0; k < zone.extent[2]; ++k)
+    mesh.coordinates.set(zone.node({0, 3, k}), mesh.coordinates[zone.node({0, 2, k})]);
+  expect_all_in(message_of<MeshError>([&] { (void)fillet_of(mesh, between(mesh, {"blade"}, {"hub"}, 0.03)); }),
+                {"two nodes", "pole"});
+}
+
 class FilledPassage : public ::testing::Test {
  protected:
   static Mesh passage(PassageOptions::Layout layout) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gridmorph {
 
@@ -27,6 +28,14 @@ std::vector<Vec3> line_points(Mesh const& mesh, CornerFrame const& corner, int s
   for (int n = 0; n <= last; ++n)
     out.push_back(node_at(mesh, corner, station, wall == 0 ? std::array<int, 2>{0, n} : std::array<int, 2>{n, 0}));
   return out;
+}
+
+ArcCurve curve_through(std::vector<Vec3> points) {
+  for (std::size_t n = 1; n < points.size(); ++n)
+    if (points[n] == points[n - 1])
+      throw MeshError("a grid line along the walls of the corner has two nodes at " + to_text(points[n], 9) +
+                      ": a pole, around which layers cannot be laid; fill corners of zones without one");
+  return ArcCurve(std::move(points));
 }
 
 Vec3 wall_normal(Mesh const& mesh, CornerFrame const& corner, int station, int wall) {

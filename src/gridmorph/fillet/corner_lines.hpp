@@ -3,6 +3,7 @@
 
 #include <gridmorph/fillet/corner_frame.hpp>
 #include <gridmorph/fillet/fillet.hpp>
+#include <gridmorph/geometry/arc_curve.hpp>
 
 #include <array>
 #include <vector>
@@ -19,6 +20,9 @@ inline Vec3 node_at(Mesh const& mesh, CornerFrame const& corner, int station, st
 
 /// Along one wall, from the corner to `last` cells from it.
 std::vector<Vec3> line_points(Mesh const& mesh, CornerFrame const& corner, int station, int wall, int last);
+
+/// A line of old nodes as a curve. Throws MeshError where two neighbours coincide (poles).
+ArcCurve curve_through(std::vector<Vec3> points);
 
 /// Across the corner and the wall's own line, unit: lines off the other wall may lean.
 Vec3 wall_normal(Mesh const& mesh, CornerFrame const& corner, int station, int wall);

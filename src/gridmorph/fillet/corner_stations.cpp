@@ -98,7 +98,7 @@ CornerStations::CornerStations(Mesh const& mesh, Links const& links, WallSheets 
       int const number = rows.number({c, a});
       Vec3 const root = node_at(mesh, corner, a, {0, 0});
       auto const line = [&](int wall) {
-        return ArcCurve(line_points(mesh, corner, a, wall, last_node(sheets, corner, wall)));
+        return curve_through(line_points(mesh, corner, a, wall, last_node(sheets, corner, wall)));
       };
       CornerStation station{.number = number,
                             .line = {WallLine{line(0), layers.old[1]}, WallLine{line(1), layers.old[0]}},

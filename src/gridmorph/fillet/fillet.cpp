@@ -1,6 +1,7 @@
 #include <gridmorph/fillet/fillet.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/fillet/corner_lines.hpp>
 #include <gridmorph/fillet/corner_stations.hpp>
 #include <gridmorph/fillet/layer_spacing.hpp>
 #include <gridmorph/geometry/cubic_piece.hpp>
@@ -39,7 +40,8 @@ struct OldLayers {
   std::vector<double> arcs;  ///< of the layers that are made
   bool same = false;         ///< as many as there were
 
-  OldLayers(std::vector<Vec3> points, int made) : curve(std::move(points)), same(made == int(curve.size()) - 1) {
+  OldLayers(std::vector<Vec3> points, int made)
+      : curve(curve_through(std::move(points))), same(made == int(curve.size()) - 1) {
     if (same)
       for (std::size_t n = 0; n < curve.size(); ++n) arcs.push_back(curve.arc(n));
     else
@@ -127,6 +129,13 @@ class Layers {
     int const cells = layers_of(sheet);
     auto const w = std::size_t(sheet.wall);
     std::vector<Vec3> points = nodes_off(sheet, column, cells + 1);
+    auto const& corners = stations_.corners();
+    bool const has_corner = std::any_of(corners.begin(), corners.end(),
+                                        [&](CornerFrame const& corner) { return corner.sheet[w] == &sheet; });
+    if (!has_corner && cells == layers_.made) {
+      points.pop_back();
+      return points;
+    }
     Vec3 const off_wall = unit(points[1] - points[0]);
     Vec3 const into_end = unit(points[std::size_t(cells) + 1] - points[std::size_t(cells) - 1]);
     points.pop_back();
@@ -134,8 +143,8 @@ class Layers {
 
     std::vector<Vec3> out;
     for (std::size_t n = 0; n < old.arcs.size(); ++n) out.push_back(old.at(n));
-    for (std::size_t c = 0; c < stations_.corners().size(); ++c) {
-      CornerFrame const& corner = stations_.corners()[c];
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      CornerFrame const& corner = corners[c];
       if (corner.sheet[w] != &sheet) continue;
       Sheet const& other = *corner.sheet[1 - w];
       int const depth = other.side == 0 ? column[other.axis] : corner.cells(int(1 - w)) - column[other.axis];
