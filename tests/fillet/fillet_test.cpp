@@ -297,6 +297,19 @@ TEST_F(FilledPassage, HubAndCaseAreFilledInEitherLayout) {
   }
 }
 
+TEST_F(FilledPassage, CoarseEndWallsGetSmallerCells) {
+  for (Index const nodes : {10'000, 30'000}) {
+    PassageOptions options;
+    options.nodes = nodes;
+    Mesh const mesh = make_passage(options);
+    for (double const radius : {0.001, 0.002}) {
+      FilletResult const result = fillet_of(mesh, between(mesh, {"blade"}, {"hub"}, radius));
+      (void)expect_sound(result.split.mesh);
+      EXPECT_FALSE(result.first_cells_kept);
+    }
+  }
+}
+
 TEST_F(FilledPassage, TheSameHowEverZonesAreStored) {
   Mesh const mesh = passage(PassageOptions::Layout::whole_faces);
   double const volume = volume_of(fillet_of(mesh, between(mesh, {"blade"}, {"hub"}, 0.002)).split.mesh);

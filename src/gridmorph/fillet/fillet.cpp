@@ -88,6 +88,7 @@ class Layers {
   }
 
   [[nodiscard]] double wall_deviation() const { return wall_deviation_; }
+  [[nodiscard]] bool first_cells_kept() const { return first_cells_kept_; }
 
  private:
   /// How layers are spaced in the face where those of both walls meet.
@@ -140,6 +141,7 @@ class Layers {
     Vec3 const into_end = unit(points[std::size_t(cells) + 1] - points[std::size_t(cells) - 1]);
     points.pop_back();
     OldLayers const old(std::move(points), layers_.made);
+    if (old.arcs[1] < 0.98 * old.curve.arc(1)) first_cells_kept_ = false;
 
     std::vector<Vec3> out;
     for (std::size_t n = 0; n < old.arcs.size(); ++n) out.push_back(old.at(n));
@@ -177,6 +179,7 @@ class Layers {
   CornerStations const& stations_;
   std::vector<std::vector<Mitre>> mitres_;
   double wall_deviation_ = 0;
+  bool first_cells_kept_ = true;
 };
 
 }  // namespace
@@ -207,6 +210,7 @@ FilletResult make_fillet(Mesh const& mesh, Links const& links, FilletOptions con
               mesh.coordinates[from.node({i + part.box.begin[0], j + part.box.begin[1], k + part.box.begin[2]})]);
   }
   out.wall_deviation = layers.wall_deviation();
+  out.first_cells_kept = layers.first_cells_kept();
   return out;
 }
 

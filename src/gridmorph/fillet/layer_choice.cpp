@@ -14,7 +14,8 @@ namespace {
 // Of the radius, that the layers off the blade and off the end wall should be high. Measured on a stage of leaning H meshes and an O4H
 // passage (docs/root_fillet.md): fewer layers off the blade invert cells where lines lean by 80 degrees.
 constexpr std::array<double, 2> room{1.0, 0.6};
-constexpr int least_left = 3;   // cells between the corner and the end of a line
+// Cells between the corner and the end of a line: a sixth of it, where that is not more than enough.
+int least_left(int cells) { return std::clamp(cells / 6, 1, 3); }
 constexpr double flattest = 5;  // how much wider than high the layers in the corner may be, and the other way round
 
 /// Of layers off a wall, counted along the line of the other one.
@@ -22,7 +23,7 @@ int most_layers(WallSheets const& sheets, std::vector<CornerFrame> const& corner
   int most = std::numeric_limits<int>::max();
   CornerFrame const* thinnest = nullptr;
   for (auto const& corner : corners)
-    if (int const there = last_node(sheets, corner, 1 - wall) - least_left; there < most) {
+    if (int const cells = last_node(sheets, corner, 1 - wall), there = cells - least_left(cells); there < most) {
       most = there;
       thinnest = &corner;
     }
@@ -77,21 +78,26 @@ void even_out(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletO
   }
 }
 
-/// The wall with fewer layers gets more cells in them: they have to be high enough for first cells as they were.
+/// The wall with fewer layers gets more cells in them: they have to be high enough for first cells as they were. Where that would make the corner
+/// much higher off one wall than off the other, layers stay as they are and first cells become smaller.
 void make_room(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletOptions const& options,
                std::array<int, 2> const& most, std::array<int, 2>& layers) {
-  constexpr double spare = 1.1;
+  constexpr double spare = 1.1, highest = 2;
   std::size_t const fewer = layers[0] < layers[1] ? 0 : 1;
   int const made = layers[1 - fewer];
   if (options.layers[fewer] > 0) return;
+  int enough = layers[fewer];
+  bool fits = true;
   for (auto const& corner : corners)
     for (int a = 0; a < corner.stations(); ++a) {
       auto const points = line_points(mesh, corner, a, 1 - int(fewer), most[fewer]);
+      auto const other = line_points(mesh, corner, a, int(fewer), made);
       double const first = distance(points[0], points[1]);
-      while (layers[fewer] < std::min(made, most[fewer]) &&
-             distance(points[0], points[std::size_t(layers[fewer])]) < spare * made * first)
-        ++layers[fewer];
+      auto const height = [&] { return distance(points[0], points[std::size_t(enough)]); };
+      while (enough < std::min(made, most[fewer]) && height() < spare * made * first) ++enough;
+      fits = fits && (enough == layers[fewer] || height() <= highest * distance(other.front(), other.back()));
     }
+  if (fits) layers[fewer] = enough;
 }
 
 }  // namespace

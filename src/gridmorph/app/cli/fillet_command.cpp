@@ -48,6 +48,10 @@ std::string summary_text(FilletResult const& result, Mesh const& before, double 
       "layers taken from the corner: {} off the blade, {} off the end wall; {} made of both\n"
       "moved wall nodes off the arc are {:.2g} from the walls as they were, at most\n",
       result.layers.old[0], result.layers.old[1], result.layers.made, result.wall_deviation);
+  if (!result.first_cells_kept)
+    text +=
+        "note: first cells off the wall with fewer layers become smaller, all along it: the layers of the other wall "
+        "do not fit otherwise\n";
   if (result.open_ends > 0)
     text += fmt::format(
         "note: the corner goes on where the blade ends, at {} nodes; the fillet runs out before them, and does not go "
