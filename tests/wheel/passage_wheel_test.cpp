@@ -27,7 +27,7 @@ class PassageWheel : public WheelTest {
 input  = "passage.cgns"
 output = "morphed.cgns"
 axis   = "x"
-)" + std::string(demo_rules) + R"([boundary_layer]
+)" + demo_rules + R"([boundary_layer]
 walls  = "blade"
 extent = "block"
 )");

@@ -18,21 +18,6 @@ namespace {
 constexpr int n_blades = 8;
 constexpr double pi = 3.14159265358979323846;
 
-constexpr char const* followers = R"(
-[[motion]]
-patches = ["inlet", "outlet"]
-rule    = "circumferential-slide"
-of      = "blade"
-[[motion]]
-patches = "type:periodic"
-rule    = "follow"
-of      = "blade"
-[[motion]]
-patches = ["hub", "case"]
-rule    = "slip"
-surface = "revolution"
-)";
-
 class WaveWheel : public WheelTest {
  protected:
   void SetUp() override {

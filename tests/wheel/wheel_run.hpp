@@ -25,13 +25,8 @@ struct CylindricalPoint {
 /// About the x axis.
 inline CylindricalPoint cylindrical(Vec3 const& p) { return {p.x, std::hypot(p.y, p.z), std::atan2(p.z, p.y)}; }
 
-/// The blade of the demo passage turns and shifts along the axis; the rest goes along.
-inline constexpr char const* demo_rules = R"(
-[[motion]]
-patches = "blade"
-rule    = "formula"
-dtheta  = "0.06 * sin(axial / 0.05) + 0.1 * axial"
-daxial  = "0.1 * (r - 0.12) * axial"
+/// All but the blade of the demo passage goes along with it.
+inline std::string const followers = R"(
 [[motion]]
 patches = ["inlet", "outlet"]
 rule    = "circumferential-slide"
@@ -45,6 +40,15 @@ patches = ["hub", "case"]
 rule    = "slip"
 surface = "revolution"
 )";
+
+/// The blade of the demo passage turns and shifts along the axis; the rest goes along.
+inline std::string const demo_rules = R"(
+[[motion]]
+patches = "blade"
+rule    = "formula"
+dtheta  = "0.06 * sin(axial / 0.05) + 0.1 * axial"
+daxial  = "0.1 * (r - 0.12) * axial"
+)" + followers;
 
 class WheelTest : public ::testing::Test {
  protected:

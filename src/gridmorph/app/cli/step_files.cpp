@@ -65,19 +65,23 @@ void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
   mesh_.write(case_file_.input, file.path(), morphed, fields);
 }
 
+void commit_steps(std::deque<io::OutputFile>& files, SequenceOptions const& options) {
+  int done = 0;
+  try {
+    for (; done < int(files.size()); ++done) files[std::size_t(done)].commit();
+  } catch (MachineError const&) {
+    for (int step = 0; step < done; ++step) std::remove(step_path(options, step).c_str());
+    throw;
+  }
+}
+
 void StepFiles::commit() {
   folders_.clear();
   if (series_) {
     series_->commit();
     return;
   }
-  int done = 0;
-  try {
-    for (; done < int(files_.size()); ++done) files_[std::size_t(done)].commit();
-  } catch (MachineError const&) {
-    for (int step = 0; step < done; ++step) std::remove(step_path(*case_file_.sequence, step).c_str());
-    throw;
-  }
+  commit_steps(files_, *case_file_.sequence);
 }
 
 }  // namespace gridmorph::cli

@@ -19,6 +19,9 @@ bool one_file_per_step(SequenceOptions const& options);
 /// output as it is.
 std::filesystem::path step_path(SequenceOptions const& options, int step);
 
+/// Puts files of steps, from the first on, in place: all or none. Throws MachineError.
+void commit_steps(std::deque<io::OutputFile>& files, SequenceOptions const& options);
+
 class StepFiles {
  public:
   /// `mesh` must outlive the files.

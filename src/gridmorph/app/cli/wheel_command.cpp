@@ -37,14 +37,7 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
        .report = report,
        .written = written,
        .falls_short = !failures.empty(),
-       .json =
-           [&] {
-             nlohmann::json json = wheel_json(run.sector().mesh(), run.rows(), run.setup(), result);
-             json["case_file"] = case_file.source.string();
-             json["input"] = case_file.input.string();
-             if (!run.retried().is_null()) json["retry"] = run.retried();
-             return json;
-           },
+       .json = [&] { return wheel_json(run, case_file, result); },
        .write =
            [&] {
              if (written) writer.commit();

@@ -331,6 +331,14 @@ std::string wheel_text(WheelRun const& run, WheelResult const& result) {
   return text + "\n" + format_times(result.times, result.nodes);
 }
 
+nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result) {
+  nlohmann::json json = wheel_json(run.sector().mesh(), run.rows(), run.setup(), result);
+  json["case_file"] = case_file.source.string();
+  json["input"] = case_file.input.string();
+  if (!run.retried().is_null()) json["retry"] = run.retried();
+  return json;
+}
+
 std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what) {
   return refusal(output.string(), what, run.diagnosis(),
                  "move the blades less, " + (run.sector().mesh().is_structured()

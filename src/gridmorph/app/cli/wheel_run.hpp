@@ -87,6 +87,8 @@ bool any_inverted(WheelMade const& made);
 
 /// What `gridmorph wheel` prints for a wheel at one time.
 std::string wheel_text(WheelRun const& run, WheelResult const& result);
+/// The same for its report.
+nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result);
 /// Why a wheel is not written.
 std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what);
 

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -45,13 +44,7 @@ class WheelFiles {
       series_->commit();
       return;
     }
-    int done = 0;
-    try {
-      for (; done < int(files_.size()); ++done) files_[std::size_t(done)].commit();
-    } catch (MachineError const&) {
-      for (int step = 0; step < done; ++step) std::remove(step_path(options_, step).c_str());
-      throw;
-    }
+    commit_steps(files_, options_);
   }
 
  private:
@@ -130,10 +123,7 @@ int wheel_sequence(CaseFile const& case_file, MeshSource const& file, std::files
        .falls_short = !failures.empty(),
        .json =
            [&] {
-             nlohmann::json json = wheel_json(run.sector().mesh(), run.rows(), run.setup(), result);
-             json["case_file"] = case_file.source.string();
-             json["input"] = case_file.input.string();
-             if (!run.retried().is_null()) json["retry"] = run.retried();
+             nlohmann::json json = wheel_json(run, case_file, result);
              nlohmann::json list = wheel_steps_json(steps);
              for (std::size_t s = 0; s < steps.size() && one_file_per_step(options); ++s)
                list[s]["file"] = step_path(options, int(s)).string();
