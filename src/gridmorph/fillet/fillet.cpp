@@ -71,12 +71,15 @@ class Layers {
   void fill(SplitZone const& part, Zone const& zone, Coordinates& to) {
     Sheet const& sheet = sheets_.all[part.sheet];
     int const u = (sheet.axis + 1) % 3, v = (sheet.axis + 2) % 3;
+    std::vector<std::size_t> corners;
+    for (std::size_t c = 0; c < stations_.corners().size(); ++c)
+      if (stations_.corners()[c].sheet[std::size_t(sheet.wall)] == &sheet) corners.push_back(c);
     for (int b = part.box.begin[v]; b < part.box.end[v]; ++b)
       for (int a = part.box.begin[u]; a < part.box.end[u]; ++a) {
         Index3 column{0, 0, 0};
         column[u] = a;
         column[v] = b;
-        std::vector<Vec3> const nodes = line(sheet, column);
+        std::vector<Vec3> const nodes = line(sheet, corners, column);
         for (int n = 0; n <= layers_.made; ++n) {
           Index3 p{0, 0, 0};
           p[u] = a - part.box.begin[u];
@@ -125,15 +128,12 @@ class Layers {
     return out;
   }
 
-  /// The layers over one node of a wall.
-  std::vector<Vec3> line(Sheet const& sheet, Index3 const& column) {
+  /// The layers over one node of a wall. `corners`: those of the sheet.
+  std::vector<Vec3> line(Sheet const& sheet, std::vector<std::size_t> const& corners, Index3 const& column) {
     int const cells = layers_of(sheet);
     auto const w = std::size_t(sheet.wall);
     std::vector<Vec3> points = nodes_off(sheet, column, cells + 1);
-    auto const& corners = stations_.corners();
-    bool const has_corner = std::any_of(corners.begin(), corners.end(),
-                                        [&](CornerFrame const& corner) { return corner.sheet[w] == &sheet; });
-    if (!has_corner && cells == layers_.made) {
+    if (corners.empty() && cells == layers_.made) {
       points.pop_back();
       return points;
     }
@@ -145,9 +145,8 @@ class Layers {
 
     std::vector<Vec3> out;
     for (std::size_t n = 0; n < old.arcs.size(); ++n) out.push_back(old.at(n));
-    for (std::size_t c = 0; c < corners.size(); ++c) {
-      CornerFrame const& corner = corners[c];
-      if (corner.sheet[w] != &sheet) continue;
+    for (std::size_t c : corners) {
+      CornerFrame const& corner = stations_.corners()[c];
       Sheet const& other = *corner.sheet[1 - w];
       int const depth = other.side == 0 ? column[other.axis] : corner.cells(int(1 - w)) - column[other.axis];
       int const a = column[corner.along()];
