@@ -14,8 +14,9 @@ namespace {
 // Of the radius, that the layers off the blade and off the end wall should be high. Measured on a stage of leaning H meshes and an O4H
 // passage (docs/root_fillet.md): fewer layers off the blade invert cells where lines lean by 80 degrees.
 constexpr std::array<double, 2> room{1.0, 0.6};
-// Cells between the corner and the end of a line: a sixth of it, where that is not more than enough.
-int least_left(int cells) { return std::clamp(cells / 6, 1, 3); }
+// Cells between the corner and the end of a line, for the rest of the arc: a sixth of it. With three of 53 off the blade of a passage the smallest
+// determinant is .25, with eight .53 (docs/root_fillet.md).
+int least_left(int cells) { return std::max(1, cells / 6); }
 constexpr double flattest = 5;  // how much wider than high the layers in the corner may be, and the other way round
 
 /// Of layers off a wall, counted along the line of the other one.
