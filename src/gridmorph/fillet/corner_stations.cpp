@@ -149,7 +149,7 @@ CornerStations::CornerStations(Mesh const& mesh, Links const& links, WallSheets 
     throw MotionError(
         "the fillet does not fit at the corner's node " + to_text(where, 9) + ": its radius is " +
         to_text(checked_radius(options, where), 6) + ", and about " +
-        to_text(fits * checked_radius(options, where), 4) +
+        to_text(0.97 * fits * checked_radius(options, where), 3) +
         " would do with the blocks around the blade as thick as they are; give a smaller radius, or more layers");
 }
 
