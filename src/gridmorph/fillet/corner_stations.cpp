@@ -4,6 +4,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/fillet/corner_lines.hpp>
+#include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/geometry/unit.hpp>
 
 #include <algorithm>
@@ -58,8 +59,7 @@ std::vector<Vec3> open_ends(Mesh const& mesh, std::vector<CornerFrame> const& co
 double away_from(std::vector<Vec3> const& ends, Vec3 const& p, double length) {
   double nearest = std::numeric_limits<double>::max();
   for (Vec3 const& end : ends) nearest = std::min(nearest, distance(end, p));
-  double const t = length > 0 ? std::min(1.0, nearest / length) : 1;
-  return t * t * (3 - 2 * t);
+  return length > 0 ? smoothstep(nearest / length) : 1;
 }
 
 }  // namespace

@@ -26,7 +26,6 @@ class Splitter {
     mesh.families = old_.families;
     for (int z = 0; z < int(old_.zones.size()); ++z) names_.insert(old_.zones[z].name);
     for (int z = 0; z < int(old_.zones.size()); ++z) split(z);
-    children_.resize(out_.zones.size());
     for (Patch const& patch : old_.patches) add(patch);
     for (Interface1to1 const& interface : old_.interfaces) add(interface);
     for (int z = 0; z < int(old_.zones.size()); ++z) join(z);
@@ -119,24 +118,12 @@ class Splitter {
     return out;
   }
 
-  /// Unique among the children of a zone.
-  std::string child_name(int zone, std::string const& name) {
-    auto& taken = children_[zone];
-    if (taken.insert(name).second) return name;
-    for (int n = 2;; ++n) {
-      std::string const end = "_" + std::to_string(n);
-      std::string const tried = name.substr(0, longest_name - end.size()) + end;
-      if (taken.insert(tried).second) return tried;
-    }
-  }
-
   void add(Patch const& patch) {
     for (int n : parts_[patch.zone]) {
       auto const piece = common(patch.range, out_.zones[n].box);
       if (!piece) continue;
       Patch next = patch;
       next.zone = n;
-      next.name = child_name(n, patch.name);
       next.range = place(out_.zones[n], *piece);
       out_.mesh.patches.push_back(std::move(next));
     }
@@ -155,7 +142,6 @@ class Splitter {
         Interface1to1 next = interface;
         next.zone = n;
         next.donor_zone = d;
-        next.name = child_name(n, interface.name);
         next.range = place(part, here);
         next.to_donor.own_origin = place(part, here.begin);
         next.to_donor.donor_origin = place(donor, interface.to_donor(here.begin));
@@ -172,7 +158,7 @@ class Splitter {
   void add_side(int own, IndexRange const& range, int donor, IndexMap const& map) {
     std::string const& to = out_.mesh.zones[donor].name;
     std::string const last = to.substr(to.rfind('/') == std::string::npos ? 0 : to.rfind('/') + 1);
-    out_.mesh.interfaces.push_back({.name = child_name(own, "to_" + last.substr(0, longest_name - 8)),
+    out_.mesh.interfaces.push_back({.name = "to_" + last,
                                     .families = {},
                                     .zone = own,
                                     .donor_zone = donor,
@@ -223,7 +209,6 @@ class Splitter {
   SheetLayers const& layers_;
   std::vector<std::vector<int>> parts_;  ///< per old zone: what is left of it first
   std::set<std::string> names_;
-  std::vector<std::set<std::string>> children_;
   SplitMesh out_;
 };
 

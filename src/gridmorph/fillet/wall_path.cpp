@@ -1,5 +1,6 @@
 #include <gridmorph/fillet/wall_path.hpp>
 
+#include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/geometry/unit.hpp>
 
 #include <algorithm>
@@ -9,10 +10,7 @@ namespace gridmorph {
 
 namespace {
 
-double falling(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return 1 - t * t * (3 - 2 * t);
-}
+double falling(double t) { return 1 - smoothstep(t); }
 
 /// A fillet with a radius far below the layers is a sharp corner to the lines above it.
 double roundness(CornerStation const& station) {

@@ -91,8 +91,7 @@ int run_fillet_command(CommandLine const& options, Terminal& terminal) {
         "\"target\" instead");
   check_run_files(inputs_of_mesh(file), {{"mesh", *options.output}});
   terminal.progress("reading " + options.input.string());
-  BlockMesh const before(options.input, {}, options.leave_out);
-  Mesh mesh = before.mesh();
+  Mesh mesh = load_mesh(options.input, {}, options.leave_out);
   if (mesh.dimension != 3)
     throw MeshError(options.input.string() + ": a mesh of two dimensions has no corners to fill");
   Stopwatch watch;

@@ -2,6 +2,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/motion/detail/edge_distances.hpp>
 
 #include <algorithm>
@@ -93,8 +94,7 @@ WallShift::WallShift(Boundary const& boundary, MovedWall const& wall, std::span<
   std::vector<Vec3> shift(points.size());
   for (std::size_t v = 0; v < points.size(); ++v) {
     if (!(away[v] < reach)) continue;
-    double const t = away[v] / reach;
-    shift[v] = (1 - t * t * (3 - 2 * t)) * pulled(pulls, points[v]);
+    shift[v] = (1 - smoothstep(away[v] / reach)) * pulled(pulls, points[v]);
   }
   make_periodic(images, shift);
   for (std::size_t v = 0; v < points.size(); ++v) displacement_[v] = wall.displaced(int(v), shift[v]);

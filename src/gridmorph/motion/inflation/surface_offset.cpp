@@ -2,6 +2,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/geometry/symmetric_eigen.hpp>
 #include <gridmorph/motion/detail/slip_correction.hpp>
 
@@ -17,11 +18,6 @@ namespace {
 constexpr double least_part = 1e-6;
 /// Heights that a vertex goes at most.
 constexpr double longest = 2;
-
-double smoothstep(double low, double high, double value) {
-  double const t = std::clamp((value - low) / (high - low), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 Vec3 uncut_direction(std::span<Vec3 const> normals, std::span<Vec3 const> kept) {
   std::vector<Vec3> basis;  // orthonormal, of the kept directions
@@ -135,7 +131,7 @@ void SurfaceOffset::fade(PatchSurface const& surface, std::vector<VertexImage> c
       // Faces along the slip surface, as that of a tip, cannot be offset within it.
       double least = 1;
       for (Vec3 const& n : normals_.parts(int(v))) least = std::min(least, 1 - dot(n, normal) * dot(n, normal));
-      share *= smoothstep(0.1, 0.3, least);
+      share *= smoothstep((least - 0.1) / (0.3 - 0.1));
       if (share > 0) slides_[v].push_back({touched_[s], share, offset_direction(normals_.parts(int(v)), {&normal, 1})});
     }
   }

@@ -1,4 +1,5 @@
 #include <gridmorph/geometry/symmetric_eigen.hpp>
+#include <gridmorph/geometry/unit.hpp>
 #include <gridmorph/plan/elements/tube.hpp>
 
 #include <algorithm>
@@ -10,7 +11,6 @@ namespace {
 
 double component(Vec3 const& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 Vec3 unit_vector(std::size_t axis) { return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}; }
-Vec3 normalized(Vec3 const& p) { return (1 / norm(p)) * p; }
 
 /// Place between sections: the lower one and the fraction to the next.
 struct Level {
@@ -156,7 +156,7 @@ class Fitter {
     if (component(tube_.axis, nearest) < 0) tube_.axis = -tube_.axis;
     tube_.box_axis = int(nearest);
     Vec3 const x = unit_vector((nearest + 1) % 3);
-    tube_.u = normalized(x - dot(x, tube_.axis) * tube_.axis);
+    tube_.u = unit(x - dot(x, tube_.axis) * tube_.axis);
     tube_.v = cross(tube_.axis, tube_.u);
   }
 

@@ -1,5 +1,7 @@
 #include <gridmorph/plan/elements/turn_share.hpp>
 
+#include <gridmorph/geometry/smoothstep.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -41,10 +43,7 @@ double turn_share_in_sight(double body, double others) {
   return q + smooth * (q * q * (3 - 2 * q) - q);
 }
 
-double narrowness(double way, double size) {
-  double const t = std::clamp((way / size - 3) / 3, 0.0, 1.0);
-  return 1 - t * t * (3 - 2 * t);
-}
+double narrowness(double way, double size) { return 1 - smoothstep((way / size - 3) / 3); }
 
 double compactness(double perimeter, double size) {
   return std::clamp((perimeter / (2 * std::numbers::pi * size) - 0.7) / 0.15, 0.0, 1.0);
