@@ -24,7 +24,7 @@ _gridmorph() {
     -q | --quiet | --json | --dry-run | --optimise | --match | --no-periodic | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
   esac
   case $previous in
-    -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out) return ;;
+    -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out | --matching-tolerance | --open-faces) return ;;
     -m | --motion) mapfile -t COMPREPLY < <(compgen -W "rotation chord all" -- "$current") ;;
     -d | --directory) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     -*) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;

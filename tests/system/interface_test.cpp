@@ -11,7 +11,8 @@
 namespace gridmorph::testing {
 namespace {
 
-std::vector<std::string> const commands{"morph", "inspect", "plan", "quality", "wheel", "fillet", "surface", "demo"};
+std::vector<std::string> const commands{"morph",  "inspect",   "plan",    "quality", "wheel",
+                                        "fillet", "hexahedra", "surface", "demo"};
 
 class CommandInterface : public CommandTest {
  protected:
@@ -43,6 +44,7 @@ class CommandInterface : public CommandTest {
             {"quality passage.cgns", "baseline"},
             {"wheel wheel.toml", "passages"},
             {"fillet passage.cgns -b blade -w hub --radius 0.002 -o filled.cgns", "stations"},
+            {"hexahedra passage.cgns -o elements.cgns", "hexahedra"},
             {"surface passage.cgns -p blade -o out.stl", "facets"},
             {"demo passage -n 10000 -m chord -d made", "morphs"}};
   }

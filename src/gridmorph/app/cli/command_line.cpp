@@ -15,8 +15,8 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::vector<std::string> const command_names{"morph", "inspect", "plan",    "quality",
-                                             "wheel", "fillet",  "surface", "demo"};
+std::vector<std::string> const command_names{"morph",  "inspect",   "plan",    "quality", "wheel",
+                                             "fillet", "hexahedra", "surface", "demo"};
 
 constexpr char const* exit_statuses =
     "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
@@ -66,6 +66,17 @@ void add_leave_out(CLI::App& command, CommandLine& out) {
       ->allow_extra_args(false);
 }
 
+/// What [mesh] of a case file says of boundaries.
+void add_topology(CLI::App& command, CommandLine& out) {
+  command
+      .add_option("--matching-tolerance", out.topology.matching_tolerance,
+                  "Largest distance of nodes that an interface joins (default: 1e-8 of the mesh size)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--open-faces", out.topology.open_faces,
+                     "Name of the patch that faces get which nothing claims (default: they are an error)");
+  add_leave_out(command, out);
+}
+
 CLI::App* add_inspect(CLI::App& app, CommandLine& out) {
   auto* inspect = app.add_subcommand("inspect", "Say what a mesh consists of and what a case file could name");
   inspect->add_option("mesh", out.input, "Mesh (CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK or UGRID)")->required();
@@ -97,6 +108,15 @@ CLI::App* add_surface(CLI::App& app, CommandLine& out) {
   return surface;
 }
 
+CLI::App* add_hexahedra(CLI::App& app, CommandLine& out) {
+  auto* hexahedra =
+      app.add_subcommand("hexahedra", "Write a mesh of blocks as one of elements, its cells as hexahedra");
+  hexahedra->add_option("mesh", out.input, "Mesh of blocks (CGNS, PLOT3D)")->required();
+  hexahedra->add_option("-o,--output", out.output, "NAME.cgns or NAME.vtu")->required();
+  add_topology(*hexahedra, out);
+  return hexahedra;
+}
+
 CLI::App* add_fillet(CLI::App& app, CommandLine& out) {
   auto* fillet =
       app.add_subcommand("fillet", "Round the corner between a blade and an end wall, with blocks that suit it");
@@ -118,7 +138,7 @@ CLI::App* add_fillet(CLI::App& app, CommandLine& out) {
       ->add_option("--run-out", out.run_out,
                    "H meshes: radii over which the fillet runs out before the blade's edges (default 8)")
       ->check(CLI::Range(0.0, 1000.0));
-  add_leave_out(*fillet, out);
+  add_topology(*fillet, out);
   return fillet;
 }
 
@@ -175,6 +195,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   commands.emplace_back(quality, Command::quality);
   commands.emplace_back(add_wheel(app, out), Command::wheel);
   commands.emplace_back(add_fillet(app, out), Command::fillet);
+  commands.emplace_back(add_hexahedra(app, out), Command::hexahedra);
   commands.emplace_back(add_surface(app, out), Command::surface);
   commands.emplace_back(add_demo(app, out), Command::demo);
   for (auto const& [subcommand, command] : commands) {

@@ -13,7 +13,7 @@
 namespace gridmorph::cli {
 
 struct CommandLine {
-  enum class Command { morph, inspect, plan, quality, wheel, fillet, surface, demo };
+  enum class Command { morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, demo };
   Command command = Command::morph;
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
@@ -21,7 +21,7 @@ struct CommandLine {
   std::filesystem::path input;                  ///< case file or mesh
   std::optional<CaseDocument> case_document;    ///< morph, plan, wheel: `input`, once it is read
   std::optional<std::filesystem::path> second;  ///< quality: morphed mesh
-  std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's; surface
+  std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's; what others write
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   std::optional<double> fraction;               ///< morph: of the motion
   bool dry_run = false;
@@ -37,6 +37,7 @@ struct CommandLine {
   bool match_periodic = true;          ///< inspect: and for periodicity
   double match_tolerance = 0.01;       ///< inspect: share of the smallest edge
 
+  TopologyOptions topology;                   ///< fillet, hexahedra
   std::vector<std::string> patches;           ///< surface; fillet: of the blade; selectors
   std::vector<std::string> end_walls;         ///< fillet: selectors
   std::string radius;                         ///< fillet: a number or an expression

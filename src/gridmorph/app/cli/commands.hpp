@@ -29,6 +29,7 @@ int run_quality_command(CommandLine const& options, Terminal& terminal);
 int run_wheel_command(CommandLine const& options, Terminal& terminal);
 int run_surface_command(CommandLine const& options, Terminal& terminal);
 int run_fillet_command(CommandLine const& options, Terminal& terminal);
+int run_hexahedra_command(CommandLine const& options, Terminal& terminal);
 int run_demo_command(CommandLine const& options, Terminal& terminal);
 
 }  // namespace gridmorph::cli

@@ -96,7 +96,7 @@ int run_fillet_command(CommandLine const& options, Terminal& terminal) {
     throw MeshError(options.input.string() + ": a mesh of two dimensions has no corners to fill");
   Stopwatch watch;
   terminal.progress("filling corners");
-  Links const links = connect_and_check(mesh, {});
+  Links const links = connect_and_check(mesh, options.topology);
   FilletOptions wanted;
   wanted.blade = select_patches(mesh, options.patches);
   wanted.end_wall = select_patches(mesh, options.end_walls);
@@ -109,7 +109,7 @@ int run_fillet_command(CommandLine const& options, Terminal& terminal) {
   terminal.progress("checking connections, measuring quality");
   BlockMesh const after(result.split.mesh);
   Mesh checked = after.mesh();
-  (void)connect_and_check(checked, {});
+  (void)connect_and_check(checked, options.topology);
   QualityReport const quality = after.measure({});
   Index const inverted = quality.far_field.inverted + quality.near_field.inverted;
   if (inverted > 0) {

@@ -39,6 +39,7 @@ std::optional<std::uintmax_t> bytes_of_mesh(CommandLine const& options) {
     case Command::inspect:
     case Command::quality:
     case Command::fillet:
+    case Command::hexahedra:
     case Command::surface: break;
   }
   if (!mesh) return std::nullopt;
