@@ -8,6 +8,7 @@
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/best_order.hpp>
 #include <gridmorph/morph/predictor.hpp>
+#include <gridmorph/motion/wake/wake_regions.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/report/prediction_text.hpp>
@@ -28,7 +29,7 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 MeasuredRegions measured_regions(Mesh mesh, std::vector<InnerRegion> const& measured, std::vector<std::string>& notes) {
   std::size_t const n_notes = mesh.notes.size();
   add_regions(mesh, measured);
-  notes.assign(mesh.notes.begin() + std::ptrdiff_t(n_notes), mesh.notes.end());
+  notes.insert(notes.end(), mesh.notes.begin() + std::ptrdiff_t(n_notes), mesh.notes.end());
   MeasuredRegions out;
   for (Patch const& patch : mesh.patches) {
     if (!is_box(patch)) continue;
@@ -48,7 +49,10 @@ class BlockPlan final : public AnyPlan {
         prepared_(prepare(mesh.mesh(), case_file.motion, case_file.plan)),
         mesh_(prepared_.mesh),
         near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)),
-        regions_(measured_regions(prepared_.mesh, case_file.measured_regions, region_notes_)) {
+        regions_(measured_regions(prepared_.mesh,
+                                  locate_wakes(prepared_.surface.shared_boundary(), prepared_.surface.motion(),
+                                               case_file.measured_regions, region_notes_),
+                                  region_notes_)) {
     if (case_file.plan.volume.by_prediction()) order_by_prediction();
   }
 

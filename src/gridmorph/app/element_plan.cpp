@@ -5,6 +5,7 @@
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/element_prediction.hpp>
+#include <gridmorph/motion/wake/wake_regions.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/report/element_prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
@@ -45,8 +46,11 @@ class ElementPlan final : public AnyPlan {
         prepare({}, mesh.mesh, mesh.topology, mesh.face_patches, std::move(graph), std::move(boundary), options_);
     prepared_.report.seconds.boundary += seconds;
     near_ = near_elements_of(prepared_);
+    BoundaryMotion const& rules = *prepared_.boundary.motion;
+    std::vector<std::string> notes;  // those of the rules come again
     for (auto const* regions : {&case_file.motion.regions, &case_file.measured_regions})
-      for (InnerRegion const& region : *regions) add_measured(region);
+      for (InnerRegion const& region : locate_wakes(rules.shared_boundary(), rules.motion(), *regions, notes))
+        add_measured(region);
     planning_ = seconds + watch.lap();
   }
 

@@ -20,6 +20,18 @@ struct InnerRegion {
   std::optional<IndexRange> nodes;
   /// Whether a place lies in the region; nothing: everything in the zones does.
   std::function<bool(Vec3 const& place)> holds;
+  /// Behind the trailing edges of blades or wings; locate_wakes() makes `holds` of it.
+  struct Wake {
+    std::vector<std::string> of;  ///< patches of whole blades or wings
+    bool of_wing = false;         ///< sections of a wing, not of blades about Motion::axis
+    std::optional<Vec3> span{};   ///< wing: from root to tip
+    Vec3 flow{1, 0, 0};           ///< wing
+    std::optional<double>
+        angle_rad{};  ///< of the wake, from the axis (wing: flow) towards theta (span x flow); absent: that of the camber line
+    double length = 0;  ///< behind the trailing edge
+    double width = 0;
+  };
+  std::optional<Wake> wake{};
   std::string where;           ///< "case.toml:14", for messages
   bool only_measured = false;  ///< has a row of its own in reports of quality, and is no part of the motion
 };

@@ -4,6 +4,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
+#include <gridmorph/motion/wake/wake_regions.hpp>
 
 #include <algorithm>
 #include <map>
@@ -54,7 +55,7 @@ class Finder {
         size_(extent_of(host, mesh.coordinates).size()) {}
 
   BoundaryConditions run(Motion const& motion, std::vector<std::string> const& walls, Displacements displacements) {
-    std::vector<Patch> const regions = regions_of_elements(mesh_, motion.regions, out_.notes);
+    std::vector<Patch> const regions = regions_of_elements(mesh_, located(motion), out_.notes);
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_, regions);
     patches_ = boundary->mesh().patches;
     ResolvedMotion const resolved = resolve(boundary->mesh(), with_periodic_patches(*boundary, motion, out_.notes));
@@ -69,6 +70,15 @@ class Finder {
   }
 
  private:
+  /// Regions, wakes found from their blades.
+  [[nodiscard]] std::vector<InnerRegion> located(Motion const& motion) const {
+    if (!have_wakes(motion.regions)) return motion.regions;
+    auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
+    std::vector<std::string> notes;  // those of the rules come again
+    Motion const rules = with_periodic_patches(*boundary, without_regions(motion), notes);
+    return locate_wakes(boundary, resolve(boundary->mesh(), rules), motion.regions, notes);
+  }
+
   Index32 owner(Index n) const { return graph_.representative[std::size_t(n)]; }
 
   [[nodiscard]] ResolvedMotion const& rules() const { return out_.motion->motion(); }

@@ -11,6 +11,7 @@
 #include <gridmorph/motion/target/target_motion.hpp>
 #include <gridmorph/motion/turbomachinery/row_motion.hpp>
 #include <gridmorph/motion/turbomachinery/section_motion.hpp>
+#include <gridmorph/motion/wake/wake_motion.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,7 @@ struct BoundaryMotion::Impl {
   std::map<int, ExtensionMotion> extensions;                     ///< by rule
   std::map<int, WallShift> wall_shifts;                          ///< by the rule of the wall
   std::map<int, AttachedMotion> attached;                        ///< by rule
+  std::map<int, WakeMotion> wakes;                               ///< by rule
 
   Impl(std::shared_ptr<Boundary const> of, ResolvedMotion resolved)
       : boundary(std::move(of)),
@@ -53,7 +55,7 @@ struct BoundaryMotion::Impl {
     inflate();
     extend(notes);
     make_blades();
-    attach();
+    attach(notes);
   }
 
   Impl(Impl const& other, Motion const& now) : boundary(other.boundary), motion(other.motion), slip(other.slip) {
@@ -66,7 +68,7 @@ struct BoundaryMotion::Impl {
     std::vector<std::string> said;  // with the notes of the first motion
     extend(said);
     make_blades();
-    attach();
+    attach(said);
   }
 
   Impl(Impl const&) = delete;
@@ -179,22 +181,24 @@ struct BoundaryMotion::Impl {
   }
 
   /// After all that parts can be attached to.
-  void attach() {
+  void attach(std::vector<std::string>& said) {
     Problems problems;
-    for (std::size_t r = 0; r < rules.size(); ++r) {
-      auto const* rule = std::get_if<AttachedRule>(&rules[r].rule);
-      if (rule == nullptr) continue;
-      try {
-        std::vector<int> const walls = select_patches(boundary->mesh(), rule->of);
-        require_direct(walls);
-        attached.try_emplace(int(r), *boundary, walls, *rule,
-                             [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
-                               evaluate(motion.patch[std::size_t(p)].rule, points, out);
-                             });
+    auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
+      evaluate(motion.patch[std::size_t(p)].rule, points, out);
+    };
+    auto const walls_of = [&](std::vector<std::string> const& of) {
+      std::vector<int> walls = select_patches(boundary->mesh(), of);
+      require_direct(walls);
+      return walls;
+    };
+    for (std::size_t r = 0; r < rules.size(); ++r) try {
+        if (auto const* rule = std::get_if<AttachedRule>(&rules[r].rule))
+          attached.try_emplace(int(r), *boundary, walls_of(rule->of), *rule, displacement);
+        else if (auto const* wake = std::get_if<WakeRule>(&rules[r].rule))
+          wakes.try_emplace(int(r), *boundary, motion, *wake, walls_of(wake->of), *slip, displacement, said);
       } catch (MotionError const& e) {
         problems.add(label(int(r)) + ": " + e.what());
       }
-    }
     problems.throw_if_any<MotionError>();
   }
 
@@ -273,6 +277,9 @@ struct BoundaryMotion::Impl {
       AttachedMotion const& motion_of_walls = attached.at(r);
       std::transform(points.begin(), points.end(), out.begin(),
                      [&](Vec3 const& p) { return motion_of_walls.displacement(p); });
+    } else if (std::holds_alternative<WakeRule>(rule)) {
+      WakeMotion const& wake = wakes.at(r);
+      std::transform(points.begin(), points.end(), out.begin(), [&](Vec3 const& p) { return wake.displacement(p); });
     } else {
       RowMotion const& row = *row_of_rule[r];
       bool const slides = std::holds_alternative<CircumferentialSlideRule>(rule);
@@ -300,7 +307,8 @@ BoundaryMotion& BoundaryMotion::operator=(BoundaryMotion&&) noexcept = default;
 bool BoundaryMotion::is_explicit(int rule) const {
   Rule const& own = impl_->rules[rule].rule;
   return Impl::is_direct(own) || impl_->row_of_rule[rule] != nullptr || std::holds_alternative<AttachedRule>(own) ||
-         std::holds_alternative<PrescribedRule>(own) || std::holds_alternative<ExtendRule>(own);
+         std::holds_alternative<WakeRule>(own) || std::holds_alternative<PrescribedRule>(own) ||
+         std::holds_alternative<ExtendRule>(own);
 }
 
 void BoundaryMotion::displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const {

@@ -34,7 +34,7 @@ class BoundaryMotion {
   [[nodiscard]] ResolvedMotion const& motion() const;
 
   /// Whether rule number r (in ResolvedMotion::rules) fixes displacements before the volume stage (fixed, rigid,
-  /// function, sections, target, inflate, extend, circumferential-slide, follow, attached, prescribed).
+  /// function, sections, target, inflate, extend, circumferential-slide, follow, attached, wake, prescribed).
   [[nodiscard]] bool is_explicit(int rule) const;
 
   /// Displacement that rule number r gives to baseline points; zero where the caller prescribes it. Throws MotionError (rule, point

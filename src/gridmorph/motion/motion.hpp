@@ -2,7 +2,7 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// inflate, extend, circumferential slide, follow, attached, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// inflate, extend, circumferential slide, follow, attached, wake, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface). Regions inside the domain are addressed by their names
 // and take explicit rules that need no surface.
 #pragma once
@@ -159,6 +159,16 @@ struct AttachedRule {
   std::optional<std::pair<Vec3, double>> near{};
 };
 
+/// Goes along with trailing edges that other rules move: wakes (WakeMotion has the formula).
+struct WakeRule {
+  std::vector<std::string> of;  ///< patches with a rule of their own: whole blades or wings
+  SectionsRule::Sections sections = SectionsRule::Sections::blade;  ///< these three as in SectionsRule
+  std::optional<Vec3> span{};
+  Vec3 flow{1, 0, 0};
+  std::optional<double> fade{};  ///< how far behind the edge the motion has faded to nothing [length]; absent: nowhere
+  double turn = 1;               ///< share of the turn of the edge that the wake takes over
+};
+
 /// Blades on end walls that other rules move: their spanwise grid lines are extended or trimmed along themselves to the moved walls, and the
 /// walls' nodes around them go along.
 struct ExtendRule {
@@ -167,7 +177,7 @@ struct ExtendRule {
 };
 
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
-                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule, ExtendRule>;
+                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule, ExtendRule, WakeRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").

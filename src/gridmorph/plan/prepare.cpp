@@ -1,11 +1,24 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
+#include <gridmorph/motion/wake/wake_regions.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
 #include <utility>
 
 namespace gridmorph {
+
+namespace {
+
+/// Regions, wakes found from their blades.
+std::vector<InnerRegion> located(Mesh& mesh, Links const& links, Motion const& motion) {
+  if (!have_wakes(motion.regions)) return motion.regions;
+  auto const boundary = std::make_shared<Boundary const>(mesh, links.mesh_size);
+  std::vector<std::string> notes;  // those of the rules come again
+  return locate_wakes(boundary, resolve(mesh, without_regions(motion)), motion.regions, notes);
+}
+
+}  // namespace
 
 PreparedMorph prepare(HostInstance const& host, Mesh const& given, Motion const& motion, PlanOptions const& options) {
   check_coordinates(given, "gridmorph::prepare");
@@ -16,7 +29,7 @@ PreparedMorph prepare(HostInstance const& host, Mesh const& given, Motion const&
   Mesh mesh = given;
   PreparedMorph::Seconds seconds;
   Links links = connect_and_check(host, mesh, options.topology);
-  add_regions(mesh, motion.regions);
+  add_regions(mesh, located(mesh, links, motion));
   seconds.topology = watch.lap();
   BoundaryMotion surface(std::make_shared<Boundary const>(mesh, links.mesh_size), resolve(mesh, motion));
   seconds.rules = watch.lap();

@@ -126,6 +126,15 @@ CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& mo
   return {motion.axis, pitch - dot(pitch, about_axis.direction()) * about_axis.direction()};
 }
 
+std::vector<RigidTransform> periodic_transforms_of_row(Boundary const& boundary, std::vector<int> const& blades) {
+  std::vector<bool> const in_row = zones_of_row(boundary, blades);
+  std::vector<RigidTransform> out;
+  for (AnyConnection const& connection : connections_of(boundary.mesh()))
+    if (connection.periodic && in_row[std::size_t(connection.zone)])
+      out.push_back(boundary.transform(connection.number));
+  return out;
+}
+
 Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
                        std::vector<int> const& blades) {
   std::vector<bool> const in_row = zones_of_row(boundary, blades);

@@ -25,6 +25,9 @@ CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& mo
 Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
                        std::vector<int> const& blades);
 
+/// Boundary::transform() of the periodic connections of its zones.
+std::vector<RigidTransform> periodic_transforms_of_row(Boundary const& boundary, std::vector<int> const& blades);
+
 /// Motion of the surfaces around one blade row. Only axial position and radius of a point enter, as position along the flow
 /// path and across it (see Annulus), and the displacement is turned to the point: copies of a point, turned about the axis,
 /// get copies of its displacement.

@@ -59,6 +59,10 @@ class BladeFrame final : public SectionFrame {
   [[nodiscard]] Vec3 displacement(Vec3 const& point, double ds, double dt) const override {
     return frame_.displacement(point, annulus_.motion(frame_.meridional(point), {ds, 0, dt}));
   }
+  [[nodiscard]] Vec3 carried(Vec3 const& from, Vec3 const& displacement, Vec3 const& to) const override {
+    CylindricalMotion const there = annulus_.components(frame_.meridional(from), frame_.motion(from, displacement));
+    return frame_.displacement(to, annulus_.motion(frame_.meridional(to), there));
+  }
   [[nodiscard]] double height() const override { return height_; }
   [[nodiscard]] double period() const override { return frame_.is_linear() ? 0 : 2 * std::numbers::pi; }
   [[nodiscard]] double scale_of_t() const override { return frame_.is_linear() ? chord_ : period(); }
@@ -95,6 +99,7 @@ class WingFrame final : public SectionFrame {
   [[nodiscard]] Vec3 displacement(Vec3 const&, double ds, double dt) const override {
     return ds * streamwise_ + dt * normal_;
   }
+  [[nodiscard]] Vec3 carried(Vec3 const&, Vec3 const& displacement, Vec3 const&) const override { return displacement; }
   [[nodiscard]] double height() const override { return hi_ - lo_; }
   [[nodiscard]] double period() const override { return 0; }
   [[nodiscard]] BladeInput stitching() const override {

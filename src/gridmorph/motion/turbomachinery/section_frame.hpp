@@ -26,6 +26,8 @@ class SectionFrame {
   [[nodiscard]] virtual SectionPoint at(Vec3 const& point) const = 0;
   /// The displacement of a point within its section surface by ds and dt. Exactly zero for zero.
   [[nodiscard]] virtual Vec3 displacement(Vec3 const& point, double ds, double dt) const = 0;
+  /// A displacement at one point as it is at another: of a wing the same, of a blade the same along and across the flow path and about the axis.
+  [[nodiscard]] virtual Vec3 carried(Vec3 const& from, Vec3 const& displacement, Vec3 const& to) const = 0;
   /// Length from span fraction 0 to 1: the mean over the nodes.
   [[nodiscard]] virtual double height() const = 0;
   /// What t is periodic in; 0 when it is not.

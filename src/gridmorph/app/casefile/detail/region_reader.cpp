@@ -1,5 +1,6 @@
 #include <gridmorph/app/casefile/detail/region_reader.hpp>
 
+#include <gridmorph/app/casefile/detail/sections_reader.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <utility>
 
 namespace gridmorph::casefile {
@@ -102,6 +104,33 @@ void read_nodes(TableReader& region, InnerRegion& out) {
       return region.problem("nodes", "must reach from the smaller to the larger i, j and k");
 }
 
+/// wake = { of = "blade", length = l, width = w }.
+void read_wake(TableReader& region, std::optional<Axis> const& axis, InnerRegion& out) {
+  auto table = region.table("wake");
+  if (!table) return;
+  InnerRegion::Wake wake;
+  wake.of = table->strings("of").value_or(std::vector<std::string>{});
+  table->require("of", "of = \"blade\", the blades or wings that it is behind");
+  SectionsRule search;
+  read_section_search(*table, axis.has_value(), search);
+  wake.of_wing = search.sections == SectionsRule::Sections::wing;
+  wake.span = search.span;
+  wake.flow = search.flow;
+  if (auto const angle = table->number("angle_deg")) {
+    wake.angle_rad = *angle * std::numbers::pi / 180;
+    if (!(std::abs(*angle) < 90))
+      table->problem("angle_deg", fmt::format("must lie between -90 and 90 degrees, found {}", *angle));
+  }
+  for (auto const& [key, value] : {std::pair("length", &wake.length), std::pair("width", &wake.width)}) {
+    auto const given = table->number(key);
+    table->require(key, fmt::format("{} = 0.1", key));
+    if (given && !(*given > 0)) table->problem(key, fmt::format("must be a positive length, found {}", *given));
+    if (given) *value = *given;
+  }
+  table->finish();
+  out.wake = std::move(wake);
+}
+
 }  // namespace
 
 InnerRegion read_region(TableReader& table, std::optional<Axis> const& axis) {
@@ -116,14 +145,17 @@ InnerRegion read_region(TableReader& table, std::optional<Axis> const& axis) {
   read_sphere(table, all);
   read_annulus(table, axis, all);
   read_nodes(table, out);
-  bool const has_shape = table.has("box") || table.has("sphere") || table.has("axial") || table.has("radius");
+  read_wake(table, axis, out);
+  bool const has_shape =
+      table.has("box") || table.has("sphere") || table.has("axial") || table.has("radius") || table.has("wake");
   if (table.has("nodes") && has_shape)
     table.problem("nodes",
-                  "say which nodes they are, and stand alone beside zones; remove box, sphere, axial and radius");
+                  "say which nodes they are, and stand alone beside zones; remove box, sphere, axial, radius and wake");
   if (table.has("nodes") && out.zones.size() != 1)
     table.problem("nodes", "are those of one zone; name it, zones = \"Zone 1\"");
   if (table.has("name") && !table.has("nodes") && !has_shape && out.zones.empty())
-    table.problem("name", "is all there is: say where the region lies, by zones, nodes, box, sphere, axial or radius");
+    table.problem("name",
+                  "is all there is: say where the region lies, by zones, nodes, box, sphere, axial, radius or wake");
   out.only_measured = table.boolean("only_measured").value_or(false);
   if (out.only_measured && out.nodes)
     for (int a = 0; a < 3; ++a)

@@ -26,7 +26,8 @@ namespace {
 
 std::vector<std::string> const rule_names{"fixed",   "rigid",    "formula", "field",    "circumferential-slide",
                                           "follow",  "slip",     "free",    "sections", "target",
-                                          "contour", "attached", "inflate", "bulb",     "extend"};
+                                          "contour", "attached", "inflate", "bulb",     "extend",
+                                          "wake"};
 
 /// scale = 0.95, scale = [sx, sy, sz], or scale = { factor = one of these, origin = [x, y, z] }.
 void read_scale(TableReader& step, RigidSteps& rigid) {
@@ -373,6 +374,23 @@ Rule read_attached(TableReader& table) {
   return rule;
 }
 
+Rule read_wake(TableReader& table, RuleContext const& shared) {
+  WakeRule rule;
+  rule.of = read_of(table);
+  SectionsRule search;
+  read_section_search(table, shared.axis.has_value(), search);
+  rule.sections = search.sections;
+  rule.span = search.span;
+  rule.flow = search.flow;
+  rule.fade = table.number("fade");
+  if (rule.fade && !(*rule.fade > 0))
+    table.problem("fade", fmt::format("must be a positive length, found {}", *rule.fade));
+  rule.turn = table.number("turn").value_or(rule.turn);
+  if (!(rule.turn >= 0 && rule.turn <= 1))
+    table.problem("turn", fmt::format("is a share, 0 to 1, found {}", rule.turn));
+  return rule;
+}
+
 Rule read_other(std::size_t number, TableReader& table, RuleContext const& shared) {
   switch (number) {
     case 4: needs_axis(table, shared, rule_names[number]); return CircumferentialSlideRule{read_of(table)};
@@ -381,6 +399,7 @@ Rule read_other(std::size_t number, TableReader& table, RuleContext const& share
     case 7: return read_free(table, shared);
     case 11: return read_attached(table);
     case 14: return ExtendRule{read_of(table)};
+    case 15: return read_wake(table, shared);
     default: return FixedRule{};
   }
 }

@@ -1,0 +1,73 @@
+#include <gridmorph/motion/wake/wake_motion.hpp>
+
+#include <gridmorph/geometry/smoothstep.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace gridmorph {
+
+namespace {
+
+SectionsRule section_search(WakeRule const& rule) {
+  SectionsRule out;
+  out.sections = rule.sections;
+  out.span = rule.span;
+  out.flow = rule.flow;
+  return out;
+}
+
+}  // namespace
+
+WakeMotion::WakeMotion(Boundary const& boundary, ResolvedMotion const& motion, WakeRule const& rule,
+                       std::vector<int> const& patches, SlipSurfaces const& surfaces,
+                       WallFaces::Displacement const& displacement, std::vector<std::string>& notes)
+    : rule_(rule),
+      places_(boundary, motion, section_search(rule), patches, surfaces, {}, notes),
+      walls_(boundary, patches, displacement) {}
+
+Vec3 WakeMotion::displacement(Vec3 const& point) const {
+  WakePlace const place = places_.at(point);
+  Vec3 const x = place.image ? (*place.image)(point) : point;
+  Vec3 u = behind_edge(x, place);
+  WallFaces::Place const wall = nearest(x);
+  double const share = 1 - smoothstep(distance(x, wall.point) / (WakePlaces::last_part * place.chord));
+  if (share > 0) u += share * (wall.displacement - behind_edge(wall.point, places_.at(wall.point)));
+  return place.image ? place.image->inverse().rotation * u : u;
+}
+
+WallFaces::Place WakeMotion::nearest(Vec3 const& x) const {
+  WallFaces::Place best = walls_.nearest(x);
+  for (RigidTransform const& copy : places_.copies()) {
+    WallFaces::Place const other = walls_.nearest(copy(x));
+    double const d = distance(x, best.point);
+    if (distance(copy(x), other.point) >= (1 - 1e-9) * d) continue;
+    RigidTransform const back = copy.inverse();
+    best = {back(other.point), back.rotation * other.displacement};
+  }
+  return best;
+}
+
+Vec3 WakeMotion::behind_edge(Vec3 const& x, WakePlace const& place) const {
+  double const share = rule_.fade ? 1 - smoothstep(place.behind / *rule_.fade) : 1.0;
+  if (share == 0) return {};
+  SectionFrame const& frame = places_.frame();
+  WallFaces::Place const edge = nearest(x + frame.displacement(x, place.to_edge[0], place.to_edge[1]));
+  WallFaces::Place const camber = nearest(x + frame.displacement(x, place.to_camber[0], place.to_camber[1]));
+  // In the plane of the section, from the camber line to the edge.
+  auto const way = [&](Vec3 const& from, Vec3 const& to) {
+    SectionPoint const a = frame.at(from), b = frame.at(to);
+    double const dt = frame.period() > 0 ? std::remainder(b.t - a.t, frame.period()) : b.t - a.t;
+    return std::array{b.s - a.s, place.scale * dt};
+  };
+  auto const before = way(camber.point, edge.point),
+             after = way(camber.point + camber.displacement, edge.point + edge.displacement);
+  double const angle =
+      rule_.turn * std::atan2(before[0] * after[1] - before[1] * after[0], before[0] * after[0] + before[1] * after[1]);
+  double const s = -place.to_edge[0], y = -place.scale * place.to_edge[1];
+  double const c = std::cos(angle) - 1, d = std::sin(angle);
+  return share * (frame.carried(edge.point, edge.displacement, x) +
+                  frame.displacement(x, c * s - d * y, (d * s + c * y) / place.scale));
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,46 @@
+#include <gridmorph/motion/wall_faces.hpp>
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/barycentric.hpp>
+
+#include <array>
+#include <utility>
+
+namespace gridmorph {
+
+WallFaces::WallFaces(Boundary const& boundary, std::vector<int> const& patches, Displacement const& displacement) {
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 3>> triangles;
+  for (int const p : patches) {
+    int const first = int(points.size());
+    FacetList const list = boundary.facets({&p, 1});
+    std::vector<Vec3> corners = list.points;
+    for (auto const& f : list.facets) {
+      triangles.push_back({first + f[0], first + f[1], first + f[2]});
+      if (f[3] >= 0) triangles.push_back({first + f[0], first + f[2], first + f[3]});
+    }
+    if (boundary.is_plane()) {
+      BoundarySurface const& lines = boundary.surface(p);
+      corners.clear();
+      for (Index const n : lines.nodes) corners.push_back(boundary.mesh().coordinates[n]);
+      for (GridFacet const& f : lines.faces) triangles.push_back({first + f[0], first + f[1], first + f[1]});
+    }
+    points.insert(points.end(), corners.begin(), corners.end());
+    of_node_.resize(points.size());
+    displacement(p, corners, std::span(of_node_).subspan(std::size_t(first)));
+  }
+  if (triangles.empty())
+    throw MotionError("the nearest place of the walls is looked for on faces, of which they have none; take \"rigid\"");
+  tree_ = TargetTree(std::move(points), std::move(triangles));
+}
+
+WallFaces::Place WallFaces::nearest(Vec3 const& point) const {
+  TargetTree::Hit const hit = tree_.closest(point);
+  auto const& corners = tree_.triangles()[std::size_t(hit.triangle)];
+  auto const x = [&](int c) { return tree_.points()[std::size_t(corners[std::size_t(c)])]; };
+  auto const u = [&](int c) { return of_node_[std::size_t(corners[std::size_t(c)])]; };
+  auto const weight = barycentric(hit.point, x(0), x(1), x(2));
+  return {hit.point, u(0) + weight[1] * (u(1) - u(0)) + weight[2] * (u(2) - u(0))};
+}
+
+}  // namespace gridmorph
