@@ -21,7 +21,7 @@ _gridmorph() {
     return
   fi
   case $previous in
-    -q | --quiet | --json | --dry-run | --optimise | --match | --no-periodic | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
+    -q | --quiet | --json | --dry-run | --optimise | --all | --match | --no-periodic | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
   esac
   case $previous in
     -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out | --matching-tolerance | --open-faces) return ;;

@@ -267,6 +267,28 @@ TEST(Plan, DescribesStagesChainsAndReasons) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
+TEST(Plan, OfManyChainsHasAnOverviewAndTheFirstOfEachStage) {
+  Plan const plan = prepare(around_a_box(1), motion({rule({"*"}, FixedRule{})}), {}).plan();
+  std::size_t chains = 0, cut = 0;
+  for (Stage const& stage : plan.stages) {
+    chains += stage.description.size();
+    cut += stage.description.size() > 1 ? 1 : 0;
+  }
+  ASSERT_GT(cut, 0U);
+  auto const lines = [](std::string const& text, char const* with) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(with); at != std::string::npos; at = text.find(with, at + 1)) ++n;
+    return n;
+  };
+  std::string const all = describe(plan), first = describe(plan, 1);
+  EXPECT_EQ(lines(all, "\n  zone '"), chains);
+  EXPECT_EQ(lines(first, "\n  zone '"), plan.stages.size());
+  EXPECT_EQ(lines(first, "\n  and "), cut);
+  std::string const table = overview(plan);
+  EXPECT_EQ(lines(table, "\n"), plan.stages.size() + 1);
+  EXPECT_NE(table.find("longest"), std::string::npos);
+}
+
 TEST(Plan, SaysWhereZonesTouchWithoutAnInterface) {
   auto const notes = [](PatchKind kind, Rule const& beside) {
     MeshBuilder builder("two");

@@ -122,7 +122,7 @@ class AnyPlan {
   /// Of planning.
   [[nodiscard]] virtual StepTimes times() const = 0;
   /// For `gridmorph plan`.
-  [[nodiscard]] virtual std::string text() const = 0;
+  [[nodiscard]] virtual std::string text(bool all) const = 0;
   [[nodiscard]] virtual nlohmann::json json() const = 0;
   /// Its blocks and chains, for drawings; nothing where a kind of plan has none.
   [[nodiscard]] virtual std::optional<BlockGraph> graph() const { return {}; }

@@ -164,10 +164,16 @@ class BlockPlan final : public AnyPlan {
     return out;
   }
 
-  [[nodiscard]] std::string text() const override {
+  [[nodiscard]] std::string text(bool all) const override {
     std::string text;
     for (auto const& note : notes()) text += "note: " + note + "\n";
-    return text + (text.empty() ? "" : "\n") + describe(prepared_.plan());
+    if (!text.empty()) text += "\n";
+    std::size_t chains = 0;
+    for (Stage const& stage : prepared_.plan().stages) chains += stage.lines.chains.size();
+    constexpr std::size_t readable = 60, of_stage = 6;
+    if (all || chains <= readable) return text + describe(prepared_.plan());
+    return text + overview(prepared_.plan()) + "\n" + describe(prepared_.plan(), of_stage) +
+           "(all chains: gridmorph plan --all)\n";
   }
 
   /// Name of each stage, one line per chain, how many cells it morphs; finalize passes at the end.

@@ -147,7 +147,7 @@ class ElementPlan final : public AnyPlan {
   }
   [[nodiscard]] StepTimes times() const override { return {{"plan", planning_, true}}; }
 
-  [[nodiscard]] std::string text() const override {
+  [[nodiscard]] std::string text(bool /*all*/) const override {
     std::string text;
     for (auto const& note : notes()) text += "note: " + note + "\n";
     return text + headline();

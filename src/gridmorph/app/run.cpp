@@ -492,7 +492,8 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                   terminal);
 }
 
-void print_plan(CaseFile const& case_file, Terminal& terminal, std::optional<std::filesystem::path> const& graph) {
+void print_plan(CaseFile const& case_file, Terminal& terminal, PlanPrinting const& options) {
+  auto const& graph = options.graph;
   MeshSource const file =
       checked_mesh_file(case_file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph);
   if (graph) {
@@ -520,7 +521,7 @@ void print_plan(CaseFile const& case_file, Terminal& terminal, std::optional<std
   }
   terminal.document(json);
   if (!terminal.json())
-    terminal.result(run.plan().text() + (prediction.text.empty() ? "" : "\n") + prediction.text + "\n" +
+    terminal.result(run.plan().text(options.all) + (prediction.text.empty() ? "" : "\n") + prediction.text + "\n" +
                     format_times(run.times, run.mesh().n_nodes()) +
                     (graph ? fmt::format("wrote {}\n", graph->string()) : std::string()));
 }

@@ -152,7 +152,12 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
 /// step has cells inverted that were not in the baseline, unless the case file says so.
 int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
 
-/// `gridmorph plan`: the plan of a case file, notes first. `graph`: a drawing of its blocks and chains goes there (SVG, or DOT of Graphviz).
-void print_plan(CaseFile const& case_file, Terminal& terminal, std::optional<std::filesystem::path> const& graph = {});
+struct PlanPrinting {
+  std::optional<std::filesystem::path>
+      graph{};       ///< a drawing of blocks and chains goes there (SVG, or DOT of Graphviz)
+  bool all = false;  ///< every chain, however many there are
+};
+/// `gridmorph plan`: the plan of a case file, notes first.
+void print_plan(CaseFile const& case_file, Terminal& terminal, PlanPrinting const& options = {});
 
 }  // namespace gridmorph::cli

@@ -437,7 +437,11 @@ PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const&
   std::vector<NearField> fields = near_fields(mesh, links, surface, kinds, options.boundary_layers);
   ChainLaws laws(mesh, options.volume);
   notes.insert(notes.end(), laws.notes().begin(), laws.notes().end());
-  MergeLimits limits = merge_limits(mesh, surface.motion(), ends, laws, fields, near_field_limits(mesh, links, fields));
+  std::vector<CutPlane> planes = near_field_limits(mesh, links, fields);
+  for (CutPlane const& plane : planes_of(mesh, options.volume.cuts)) planes.push_back(plane);
+  std::sort(planes.begin(), planes.end());
+  planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
+  MergeLimits limits = merge_limits(mesh, surface.motion(), ends, laws, fields, std::move(planes));
   Topology topology = build_topology(mesh, links, limits);
   return {mesh,
           std::move(notes),
@@ -525,7 +529,55 @@ PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& 
   return planned;
 }
 
-std::string describe(Plan const& plan) {
+namespace {
+
+std::string listed(std::vector<std::string> const& chains, std::size_t most) {
+  std::string text;
+  for (std::size_t n = 0; n < std::min(most, chains.size()); ++n) text += "  " + chains[n] + "\n";
+  if (chains.size() > most) text += "  and " + std::to_string(chains.size() - most) + " more\n";
+  return text;
+}
+
+std::string padded(std::string const& text, std::size_t width) {
+  return std::string(width - std::min(width, text.size()), ' ') + text;
+}
+
+/// "farfield - wing 12, htail - wing 3 and 4 others": what most chains run between.
+std::string most_ends(Stage const& stage) {
+  std::map<std::string, int> counts;
+  for (ChainPath const& path : stage.paths) {
+    auto const name = [](std::string const& end) { return end.empty() ? std::string("inside") : end; };
+    std::string a = name(path.ends[0]), b = name(path.ends[1]);
+    if (b < a) std::swap(a, b);
+    ++counts[a + " - " + b];
+  }
+  std::vector<std::pair<std::string, int>> ranked(counts.begin(), counts.end());
+  std::stable_sort(ranked.begin(), ranked.end(), [](auto const& a, auto const& b) { return a.second > b.second; });
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t n = 0; n < std::min(most, ranked.size()); ++n)
+    text += (n == 0 ? "" : ", ") + ranked[n].first + " " + std::to_string(ranked[n].second);
+  int others = 0;
+  for (std::size_t n = most; n < ranked.size(); ++n) others += ranked[n].second;
+  return text + (others > 0 ? " and " + std::to_string(others) + " others" : "");
+}
+
+}  // namespace
+
+std::string overview(Plan const& plan) {
+  std::string text = "Overview        chains  longest    lines  what most of them run between\n";
+  for (Stage const& stage : plan.stages) {
+    std::size_t longest = 0;
+    for (ChainPath const& path : stage.paths) longest = std::max(longest, path.blocks.size());
+    std::string const name = stage.name.substr(0, 14);
+    text += name + std::string(14 - name.size(), ' ') + padded(std::to_string(stage.lines.chains.size()), 8) +
+            padded(std::to_string(longest), 9) + padded(std::to_string(stage.lines.n_lines()), 9) + "  " +
+            most_ends(stage) + "\n";
+  }
+  return text;
+}
+
+std::string describe(Plan const& plan, std::size_t most_chains) {
   std::string text;
   text += std::to_string(plan.boundary_nodes.size()) + " boundary nodes with given displacement\n";
   for (Stage const& stage : plan.stages) {
@@ -535,13 +587,13 @@ std::string describe(Plan const& plan) {
                  ? ""
                  : ", " + std::to_string(stage.sides.corrected.size()) + " with transfinite correction") +
             "\n";
-    for (std::string const& line : stage.description) text += "  " + line + "\n";
+    text += listed(stage.description, most_chains);
   }
   for (std::size_t n = 0; n < plan.spreads.size(); ++n) {
     text += "finalize " + std::to_string(n + 1) + ": " + std::to_string(plan.spreads[n].ends.size()) +
             " nodes on slip surfaces, spread along " + std::to_string(plan.spreads[n].lines.n_lines()) +
             " grid lines\n";
-    for (std::string const& line : plan.spreads[n].description) text += "  " + line + "\n";
+    text += listed(plan.spreads[n].description, most_chains);
   }
   return text;
 }

@@ -81,6 +81,14 @@ enum class OrderBy {
   prediction  ///< the order of which predict() says the best, never worse than that by priority; needs the rules' displacements
 };
 
+/// A plane of nodes of a zone where blocks end: chains go on through it, and those beside one another on its two sides have ranks and orders of their own.
+struct BlockCut {
+  std::string zone;     ///< its name
+  int axis = 0;         ///< 0, 1, 2: the plane has one i, j or k
+  int node = 0;         ///< that one, counted from 0, inside the zone
+  std::string where{};  ///< "case.toml:14", for messages
+};
+
 struct VolumeOptions {
   Law law = Law::linear;
   OwnLaw own_law;               ///< of Law::own
@@ -93,6 +101,7 @@ struct VolumeOptions {
   /// lines from there end on boundaries at rest that are no walls and the walls move rigidly, 1; elsewhere 0.
   std::optional<double> turn;
   std::vector<PriorityRule> priority = standard_priority();
+  std::vector<BlockCut> cuts;  ///< blocks
 
   /// Whether displacements are looked at to plan.
   [[nodiscard]] bool by_prediction() const { return order == OrderBy::prediction || laws_by_prediction; }

@@ -13,6 +13,7 @@
 #include <gridmorph/plan/options.hpp>
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -115,7 +116,10 @@ struct Plan {
   std::vector<double> line_parameters;
 };
 
-/// The stages and chains in order, with the reason for each rank, as text.
-std::string describe(Plan const& plan);
+/// The stages and chains in order, with the reason for each rank, as text; of a stage or a pass at most so many chains, and how many there are besides.
+std::string describe(Plan const& plan, std::size_t most_chains = std::numeric_limits<std::size_t>::max());
+
+/// A line per stage: chains, blocks of the longest, grid lines, and what most of its chains run between. For plans of hundreds of chains.
+std::string overview(Plan const& plan);
 
 }  // namespace gridmorph

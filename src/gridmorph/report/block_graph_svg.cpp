@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -36,7 +37,12 @@ struct Place {
 class Drawing {
  public:
   explicit Drawing(BlockGraph const& graph)
-      : graph_(graph), node_(graph.blocks.size()), placed_(graph.blocks.size(), 0) {}
+      : graph_(graph), node_(graph.blocks.size()), placed_(graph.blocks.size(), 0) {
+    double area = 0;
+    for (BlockGraph::Chain const& chain : graph.chains)
+      area += (width_of(chain) + between_chains) * (height + between_lines);
+    widest_ = std::max(narrowest, std::sqrt(landscape * area));
+  }
 
   std::string text() {
     lay_out();
@@ -57,7 +63,8 @@ class Drawing {
   // Lengths in pixels; text is 11 high, about 6 per letter, 7 where it is large.
   static constexpr double node_width = 186, node_height = 40, between_nodes = 34, padding = 10, heading = 20,
                           letter = 7;
-  static constexpr double between_chains = 26, between_lines = 46, between_stages = 64, margin = 24, widest = 1240;
+  static constexpr double between_chains = 26, between_lines = 46, between_stages = 64, margin = 24, narrowest = 1240,
+                          landscape = 1.6;
   static constexpr std::size_t longest_end = 22, longest_name = 32;
 
   /// Chains side by side in lines, a stage below the other.
@@ -71,7 +78,7 @@ class Drawing {
       for (std::size_t c = 0; c < graph_.chains.size(); ++c) {
         if (graph_.chains[c].stage != int(s)) continue;
         double const width = width_of(graph_.chains[c]);
-        if (x > margin && x + width > widest) {
+        if (x > margin && x + width > widest_) {
           x = margin;
           y_ += height + between_lines;
         }
@@ -139,7 +146,7 @@ class Drawing {
         chains_ += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"14\" font-weight=\"bold\">moved by rules</text>\n",
                                margin, y_ + 6);
         y_ += 18;
-      } else if (x + node_width > widest) {
+      } else if (x + node_width > widest_) {
         x = margin;
         y_ += node_height + between_lines;
       }
@@ -203,6 +210,7 @@ class Drawing {
   std::vector<std::pair<int, int>> along_;  ///< neighbours in a chain, a < b
   std::string chains_, edges_, nodes_;
   double y_ = 0, width_ = 0;
+  double widest_ = 0;  ///< where lines of chains end: drawings of hundreds stay about as high as wide
 };
 
 }  // namespace

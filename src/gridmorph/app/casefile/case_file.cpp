@@ -306,6 +306,31 @@ std::vector<PriorityRule> read_priority(TableReader& volume) {
   return priority;
 }
 
+/// cuts = [ { zone = "Zone 1", i = 33 }, ... ], counted from 1.
+std::vector<BlockCut> read_cuts(TableReader& volume) {
+  std::vector<BlockCut> out;
+  for (auto& table : volume.tables("cuts")) {
+    table.require("zone", "zone = \"Zone 1\"");
+    BlockCut cut;
+    cut.where = table.where("zone");
+    cut.zone = table.string("zone").value_or("");
+    int given = 0;
+    for (int a = 0; a < 3; ++a)
+      if (auto const node = table.number(std::string(1, "ijk"[a]))) {
+        ++given;
+        cut.axis = a;
+        cut.node = int(std::clamp(*node, -1e9, 1e9)) - 1;
+        if (std::floor(*node) != *node)
+          table.problem(std::string(1, "ijk"[a]), fmt::format("is the number of a node, found {}", *node));
+      }
+    if (given != 1)
+      table.problem("zone", "needs one of i, j and k beside it: the plane of nodes to cut at, counted from 1");
+    table.finish();
+    out.push_back(std::move(cut));
+  }
+  return out;
+}
+
 void read_plan(TableReader& root, std::map<std::string, double> const& constants, CaseFile& out) {
   for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
   auto volume = root.table("volume");
@@ -330,6 +355,7 @@ void read_plan(TableReader& root, std::map<std::string, double> const& constants
       volume->problem("turn", fmt::format("is a share of the walls' turn, 0 to 1, found {}", *turn));
   }
   if (auto priority = read_priority(*volume); !priority.empty()) out.plan.volume.priority = std::move(priority);
+  out.plan.volume.cuts = read_cuts(*volume);
   volume->finish();
 }
 

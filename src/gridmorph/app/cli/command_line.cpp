@@ -184,6 +184,8 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   plan->add_option("case", out.input, "Case file (TOML)")->required();
   plan->add_flag("--optimise", out.optimise,
                  "Look for the order of chains of which the best is predicted, as order in [volume]");
+  plan->add_flag("--all", out.all,
+                 "List every chain; otherwise, where there are more than 60, an overview and the first of each stage");
   plan->add_option("--graph", out.graph, "Draw blocks, interfaces and chains: NAME.svg, or NAME.dot for Graphviz");
   commands.emplace_back(plan, Command::plan);
   auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");

@@ -25,6 +25,7 @@ struct CommandLine {
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   std::optional<double> fraction;               ///< morph: of the motion
   bool dry_run = false;
+  bool all = false;                            ///< plan: every chain of however many
   bool optimise = false;                       ///< plan: order of chains by prediction
   std::optional<std::filesystem::path> graph;  ///< plan: a drawing of its blocks and chains goes there
   std::optional<std::string> quality;          ///< morph, wheel: instead of the case file's; quality: "fast" or "full"

@@ -15,7 +15,7 @@ int run_plan_command(CommandLine const& options, Terminal& terminal) {
       throw ConfigError(
           fmt::format("--graph {}: a drawing is NAME.svg, or NAME.dot for Graphviz", options.graph->string()));
   }
-  print_plan(case_file, terminal, options.graph);
+  print_plan(case_file, terminal, {options.graph, options.all});
   return done;
 }
 

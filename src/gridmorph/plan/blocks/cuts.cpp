@@ -1,11 +1,37 @@
-#include <gridmorph/core/error.hpp>
 #include <gridmorph/plan/blocks/cuts.hpp>
+
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 
 #include <algorithm>
 #include <deque>
 #include <set>
 
 namespace gridmorph {
+
+std::vector<CutPlane> planes_of(Mesh const& mesh, std::vector<BlockCut> const& cuts) {
+  std::vector<CutPlane> out;
+  Problems problems;
+  for (BlockCut const& cut : cuts) {
+    std::string const label = std::string("cut at ") + "ijk"[cut.axis] + " = " + std::to_string(cut.node + 1) +
+                              " of zone '" + cut.zone + "'" + (cut.where.empty() ? "" : " (" + cut.where + ")") + ": ";
+    auto const zone =
+        std::find_if(mesh.zones.begin(), mesh.zones.end(), [&](Zone const& z) { return z.name == cut.zone; });
+    if (zone == mesh.zones.end()) {
+      std::vector<std::string> names;
+      for (Zone const& z : mesh.zones) names.push_back(z.name);
+      constexpr std::size_t most = 12;
+      problems.add(label + "there is no such zone; the zones are " + quote_list(names, most));
+    } else if (int const last = zone->extent[cut.axis]; cut.node < 1 || cut.node > last - 2) {
+      problems.add(label + (last < 3 ? std::string("the zone is one cell wide there, and has no plane inside")
+                                     : "planes inside are 2 to " + std::to_string(last - 1)));
+    } else {
+      out.push_back({int(zone - mesh.zones.begin()), cut.axis, cut.node});
+    }
+  }
+  problems.throw_if_any<PlanError>();
+  return out;
+}
 
 std::vector<ZoneCuts> cut_zones(Mesh const& mesh, Links const& links, std::vector<CutPlane> const& asked,
                                 Index max_pieces) {

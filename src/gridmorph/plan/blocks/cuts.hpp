@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/boundary/links.hpp>
+#include <gridmorph/plan/options.hpp>
 
 #include <array>
 #include <vector>
@@ -15,6 +16,9 @@ struct CutPlane {
   int index = 0;
   friend auto operator<=>(CutPlane const&, CutPlane const&) = default;
 };
+
+/// Their planes. Throws PlanError naming every cut in a zone that is not there, or not inside it.
+std::vector<CutPlane> planes_of(Mesh const& mesh, std::vector<BlockCut> const& cuts);
 
 /// Sorted node indices of the cut planes along each axis, both zone ends included.
 using ZoneCuts = std::array<std::vector<int>, 3>;

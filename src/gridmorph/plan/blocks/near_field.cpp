@@ -99,8 +99,6 @@ std::vector<CutPlane> near_field_limits(Mesh const& mesh, Links const& links, st
     }
   }
   problems.throw_if_any<PlanError>();
-  std::sort(planes.begin(), planes.end());
-  planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
   return planes;
 }
 
