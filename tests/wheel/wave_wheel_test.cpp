@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <functional>
 
 namespace gridmorph::test {
@@ -357,6 +358,28 @@ TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
   folder.write("one.toml", head() + blade_rule(rule) + "[[clearance]]\ntips = \"blade\"\nwalls = \"inlet\"\n");
   EXPECT_EQ(gridmorph("morph one.toml"), 2);
   expect_all_in(text("err"), {"clearance", "revolution"});
+}
+
+TEST_F(WaveWheel, PassageTellsTheSmallestClearanceOfASequence) {
+  double const growth = 4e-4;
+  std::string const rule =
+      fmt::format("rule = \"formula\"\ndr = \"{} * sin(2 * pi * t) * (r - 0.09) / (0.167 - 0.09)\"", growth);
+  std::string mesh_table = head();
+  mesh_table.erase(mesh_table.find("output"), std::string("output = \"morphed.cgns\"\n").size());
+  folder.write("one.toml", mesh_table + "[sequence]\nsteps = 4\noutput = \"step_{step}.cgns\"\n" + blade_rule(rule) +
+                               "[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n");
+  ASSERT_LE(gridmorph("morph one.toml --report one.json"), 1) << text("err");
+  auto const steps = nlohmann::json::parse(text("one.json"))["sequence"]["steps"];
+  ASSERT_EQ(steps.size(), 4U);
+  double least = 1;
+  for (auto const& step : steps) {
+    double const now = growth * std::sin(2 * pi * double(step["time"]));
+    EXPECT_NEAR(double(step["clearances"][0]["by_rule"]["smallest"]), -now, 1e-12);
+    EXPECT_NEAR(double(step["clearances"][0]["after"]["smallest"]), 0, 1e-12);
+    least = std::min(least, -now);
+  }
+  EXPECT_NEAR(least, -growth, 1e-12);
+  expect_all_in(text("out"), {"by the rule, step", "rotor", "-0.0004", "rubs"});
 }
 
 TEST_F(WaveWheel, OfElementsMovesTheSameBlades) {

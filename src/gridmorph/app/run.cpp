@@ -229,9 +229,10 @@ int Run::rule_of(std::vector<Index> const& nodes) const {
   return -1;
 }
 
-std::vector<TipClearance> Run::clearances() const {
+std::vector<TipClearance> Run::clearances(Moment const* when) const {
   std::vector<TipClearance> out;
-  Motion const& motion = case_file_.motion;
+  if (case_file_.clearances.empty()) return out;
+  Motion const motion = when == nullptr ? case_file_.motion : motion_at(case_file_, *when);
   auto const places = [](Coordinates const& x, std::vector<Index> const& nodes) {
     std::vector<Vec3> at;
     for (Index const n : nodes) at.push_back(x[n]);

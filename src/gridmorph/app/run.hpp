@@ -81,8 +81,8 @@ class Run {
   [[nodiscard]] OutputFields const& fields() const { return result_.fields; }
   [[nodiscard]] QualityReport const& quality() const { return result_.quality; }
 
-  /// [[clearance]] of the result. Throws MotionError for walls that are not of revolution.
-  [[nodiscard]] std::vector<TipClearance> clearances() const;
+  /// [[clearance]] of the result, of a moment of a sequence where one is given. Throws MotionError for walls that are not of revolution.
+  [[nodiscard]] std::vector<TipClearance> clearances(Moment const* when = nullptr) const;
 
   /// What the motion would make of cells.
   PlanPrediction predict();

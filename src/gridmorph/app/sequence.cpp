@@ -27,6 +27,7 @@ struct StepResult {
   std::vector<int> cell;  ///< 1-based indices; of an unstructured mesh the element's number
   Index newly_inverted = 0;
   std::string shortfall;  ///< the first of those that are failures
+  std::vector<TipClearance> clearances;
 };
 
 /// Rows of the table; of longer sequences evenly spaced steps and the worst one are shown.
@@ -73,6 +74,7 @@ nlohmann::json steps_json(std::vector<StepResult> const& steps, std::size_t wors
       else
         json["min_determinant"]["cell"] = step.cell;
     }
+    if (!step.clearances.empty()) json["clearances"] = clearance_json(step.clearances);
     if (one_file_per_step(options)) json["file"] = step_path(options, int(s)).string();
     list.push_back(std::move(json));
   }
@@ -214,6 +216,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
         step_result(options.time_at(step), run.mesh().coordinates(), run.morphed(), run.quality()));
     for (auto const& s : shortfalls({}, run.quality(), thresholds_of(case_file)))
       if (s.severity == Shortfall::Severity::failure && result.shortfall.empty()) result.shortfall = s.message;
+    result.clearances = run.clearances(&moment);
     inverted = inverted || result.newly_inverted > 0;
     if (step == 0 || badness(result) < badness(results[worst])) {
       worst = std::size_t(step);
@@ -262,6 +265,9 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
                        [&] {
                          std::string text = run.head();
                          text += (text.empty() ? "" : "\n") + steps_table(results, worst);
+                         std::vector<std::vector<TipClearance>> clearances;
+                         for (StepResult const& step : results) clearances.push_back(step.clearances);
+                         if (std::string const tips = clearance_steps_table(clearances); !tips.empty()) text += "\n" + tips;
                          if (!shortfall.empty()) text += "\n" + shortfall + "\n";
                          return text + fmt::format("\nstep {}, the worst one\n\n", worst + 1) +
                                 run.tables(worst_quality, outcome);

@@ -143,6 +143,34 @@ std::string clearance_table(std::vector<TipClearance> const& tips) {
   return text;
 }
 
+std::string clearance_steps_table(std::vector<std::vector<TipClearance>> const& steps) {
+  if (steps.empty() || steps.front().empty()) return {};
+  std::size_t width = 9;
+  for (auto const& tip : steps.front()) width = std::max(width, tip.name.size());
+  std::string text = fmt::format("{:<{}}  {:>11}  {:>18}  {:>18}  {:>24}  {}\n", "clearance", width, "before",
+                                 "by the rule, step", "in the mesh, step", "mean in the mesh", "smallest at");
+  for (std::size_t t = 0; t < steps.front().size(); ++t) {
+    std::size_t by_rule = 0, after = 0;
+    double least = steps[0][t].after.mean, most = least;
+    for (std::size_t s = 0; s < steps.size(); ++s) {
+      TipClearance const& tip = steps[s][t];
+      if (tip.by_rule && tip.by_rule->smallest < steps[by_rule][t].by_rule->smallest) by_rule = s;
+      if (tip.after.smallest < steps[after][t].after.smallest) after = s;
+      least = std::min(least, tip.after.mean);
+      most = std::max(most, tip.after.mean);
+    }
+    auto const& rule = steps[by_rule][t].by_rule;
+    Clearance const& mesh = steps[after][t].after;
+    Clearance const& told = rule ? *rule : mesh;
+    text += fmt::format("{:<{}}  {:>11.4g}", steps[0][t].name, width, steps[0][t].before.smallest);
+    text += rule ? fmt::format("  {:>11.4g}  {:>5}", rule->smallest, by_rule + 1)
+                 : fmt::format("  {:>11}  {:>5}", "-", "-");
+    text += fmt::format("  {:>11.4g}  {:>5}  {:>11.4g}  {:>11.4g}  {}{}\n", mesh.smallest, after + 1, least, most,
+                        to_text(told.at, 6), told.smallest < -round_off * norm(told.at) ? ", rubs" : "");
+  }
+  return text;
+}
+
 nlohmann::json clearance_json(std::vector<TipClearance> const& tips) {
   nlohmann::json out = nlohmann::json::array();
   for (auto const& tip : tips)

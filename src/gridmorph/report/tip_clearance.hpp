@@ -57,6 +57,10 @@ class ClearanceWall {
 /// Numbers, in `blade`, of the nodes within a share of the blade's height of its end towards the wall; all of them for share 1.
 std::vector<std::size_t> tip_nodes(ClearanceWall const& wall, std::vector<Vec3> const& blade, double share);
 
+/// Of many steps: a line per tip with the smallest clearance of all steps by the rule and in the mesh, and the steps they are in (from 1 on); the largest mean in the mesh
+/// beside the smallest. Precondition: every step has the same tips.
+std::string clearance_steps_table(std::vector<std::vector<TipClearance>> const& steps);
+
 /// A table with one line per tip, under its header.
 std::string clearance_table(std::vector<TipClearance> const& tips);
 nlohmann::json clearance_json(std::vector<TipClearance> const& tips);

@@ -26,8 +26,6 @@ class Ignored {
     if (use_.run == CaseUse::Run::wheel) of_wheel();
     if (use_.run == CaseUse::Run::sequence) refuse("output", "stages", "is for one morph, and a sequence writes none");
     if (use_.run == CaseUse::Run::sequence)
-      refuse("", "clearance", "is for one morph, and a sequence has many; give the moment by amplitude");
-    if (use_.run == CaseUse::Run::sequence)
       refuse("mesh", "output", "names one file, and the meshes of a sequence go where output in [sequence] says");
     if (!case_.sequence && !(use_.run == CaseUse::Run::wheel && has_wave()))
       refuse("motion modes", "harmonic", "says how often a shape oscillates in time, and there is no [sequence]");
