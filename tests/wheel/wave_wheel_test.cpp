@@ -336,6 +336,26 @@ TEST_F(WaveWheel, BladesHaveRulesOfAnyKind) {
   }
 }
 
+TEST_F(WaveWheel, EndWallsMoveAndBladesAreExtendedInEveryPassage) {
+  // The same bump before every blade.
+  std::string const rules = fmt::format(
+      "[[motion]]\npatches = \"hub\"\nrule = \"contour\"\noffset = \"0.002 * (2 + cos({} * theta)) * smoothstep(-0.1, "
+      "0, "
+      "axial)\"\n"
+      "[[motion]]\npatches = \"blade\"\nrule = \"extend\"\nof = \"hub\"\n"
+      "[[motion]]\npatches = [\"inlet\", \"outlet\"]\nrule = \"free\"\nconstraint = \"axial\"\n"
+      "[[motion]]\npatches = \"type:periodic\"\nrule = \"free\"\n[[motion]]\npatches = \"case\"\nrule = \"fixed\"\n",
+      n_blades);
+  folder.write("one.toml", head() + rules);
+  ASSERT_LE(gridmorph("morph one.toml"), 1) << text("err");
+  auto const alone = blade(read_mesh(folder.file("morphed.cgns")));
+  EXPECT_GT(largest(alone, blade(mesh)), 0.002);
+  make(head() + rules + "[wheel]\noutput = \"walls.cgns\"\n");
+  WheelFile const wheel(folder.file("walls.cgns"));
+  wheel.expect_watertight();
+  for (int p = 0; p < n_blades; ++p) EXPECT_LT(largest(blade(wheel, p), alone), 1e-13 * size()) << p;
+}
+
 TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
   // The blade ends on the case, a cylinder of radius 0.167: what it grows there is what it rubs; the mesh keeps it on the case.
   double const growth = 4e-4;

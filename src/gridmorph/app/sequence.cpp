@@ -267,7 +267,8 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
                          text += (text.empty() ? "" : "\n") + steps_table(results, worst);
                          std::vector<std::vector<TipClearance>> clearances;
                          for (StepResult const& step : results) clearances.push_back(step.clearances);
-                         if (std::string const tips = clearance_steps_table(clearances); !tips.empty()) text += "\n" + tips;
+                         if (std::string const tips = clearance_steps_table(clearances); !tips.empty())
+                           text += "\n" + tips;
                          if (!shortfall.empty()) text += "\n" + shortfall + "\n";
                          return text + fmt::format("\nstep {}, the worst one\n\n", worst + 1) +
                                 run.tables(worst_quality, outcome);

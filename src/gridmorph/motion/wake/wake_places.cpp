@@ -37,10 +37,10 @@ WakePlace WakePlaces::at(Vec3 const& point) const {
 }
 
 WakePlace WakePlaces::place(Vec3 const& point) const {
-  auto const [blade, line, at] = places_.seat(places_.frame().at(point));
-  auto const span = places_.frame().at(point).span;
+  SectionPoint const in_section = places_.frame().at(point);
+  auto const [blade, line, at] = places_.seat(in_section);
   ChordPoint const inner{(1 - last_part) * line.length,
-                         blade->has_camber() ? blade->camber(span, line.length, 1 - last_part) : 0.0};
+                         blade->has_camber() ? blade->camber(in_section.span, line.length, 1 - last_part) : 0.0};
   ChordPoint const edge{line.length, 0};
   auto const to = [&line = line, &at = at](ChordPoint const& goal) {
     double const x = goal.along - at.along, y = goal.across - at.across;
