@@ -31,9 +31,9 @@ Vec3 TargetTree::normal(int triangle) const {
 }
 
 template <class Accept>
-TargetTree::Hit TargetTree::search(Vec3 const& p, Accept const& accept) const {
+TargetTree::Hit TargetTree::search(Vec3 const& p, Accept const& accept, double within) const {
   Hit best;
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = within * within;
   auto const look = [&](int t) {
     if (!accept(t)) return;
     auto const& [i, j, k] = triangles_[t];
@@ -51,6 +51,11 @@ TargetTree::Hit TargetTree::search(Vec3 const& p, Accept const& accept) const {
 
 TargetTree::Hit TargetTree::closest(Vec3 const& p) const {
   return search(p, [](int) { return true; });
+}
+
+TargetTree::Hit TargetTree::closest_within(Vec3 const& p, double distance) const {
+  return search(
+      p, [](int) { return true; }, distance);
 }
 
 TargetTree::Hit TargetTree::closest_of(Vec3 const& p, std::function<bool(int triangle)> const& accept) const {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace gridmorph {
@@ -34,6 +35,8 @@ class TargetTree {
 
   /// The nearest point; of equally near ones that of the triangle with the smaller number.
   [[nodiscard]] Hit closest(Vec3 const& p) const;
+  /// The same among points nearer than a distance; cheap where there is none.
+  [[nodiscard]] Hit closest_within(Vec3 const& p, double distance) const;
   /// The nearest point on a triangle that `accept` says yes to.
   [[nodiscard]] Hit closest_of(Vec3 const& p, std::function<bool(int triangle)> const& accept) const;
   /// The nearest point on a triangle whose normal is less than a right angle from `direction`.
@@ -41,7 +44,8 @@ class TargetTree {
 
  private:
   template <class Accept>
-  [[nodiscard]] Hit search(Vec3 const& p, Accept const& accept) const;
+  [[nodiscard]] Hit search(Vec3 const& p, Accept const& accept,
+                           double within = std::numeric_limits<double>::infinity()) const;
 
   std::vector<Vec3> points_;
   std::vector<std::array<int, 3>> triangles_;

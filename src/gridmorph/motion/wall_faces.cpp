@@ -34,8 +34,12 @@ WallFaces::WallFaces(Boundary const& boundary, std::vector<int> const& patches, 
   tree_ = TargetTree(std::move(points), std::move(triangles));
 }
 
-WallFaces::Place WallFaces::nearest(Vec3 const& point) const {
-  TargetTree::Hit const hit = tree_.closest(point);
+std::optional<WallFaces::Place> WallFaces::nearest_within(Vec3 const& point, double distance) const {
+  TargetTree::Hit const hit = tree_.closest_within(point, distance);
+  return hit.triangle < 0 ? std::nullopt : std::optional(place(hit));
+}
+
+WallFaces::Place WallFaces::place(TargetTree::Hit const& hit) const {
   auto const& corners = tree_.triangles()[std::size_t(hit.triangle)];
   auto const x = [&](int c) { return tree_.points()[std::size_t(corners[std::size_t(c)])]; };
   auto const u = [&](int c) { return of_node_[std::size_t(corners[std::size_t(c)])]; };

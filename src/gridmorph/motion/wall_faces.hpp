@@ -5,6 +5,7 @@
 #include <gridmorph/geometry/target_tree.hpp>
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,13 @@ class WallFaces {
 
   [[nodiscard]] bool empty() const { return tree_.empty(); }
   /// The nearest place of the walls. Cost O(log n) near them.
-  [[nodiscard]] Place nearest(Vec3 const& point) const;
+  [[nodiscard]] Place nearest(Vec3 const& point) const { return place(tree_.closest(point)); }
+  /// Where one is nearer than a distance. Cost O(log n), far away O(1).
+  [[nodiscard]] std::optional<Place> nearest_within(Vec3 const& point, double distance) const;
 
  private:
+  [[nodiscard]] Place place(TargetTree::Hit const& hit) const;
+
   TargetTree tree_;
   std::vector<Vec3> of_node_;
 };

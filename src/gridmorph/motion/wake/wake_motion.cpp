@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace gridmorph {
 
@@ -30,22 +31,29 @@ Vec3 WakeMotion::displacement(Vec3 const& point) const {
   WakePlace const place = places_.at(point);
   Vec3 const x = place.image ? (*place.image)(point) : point;
   Vec3 u = behind_edge(x, place);
-  WallFaces::Place const wall = nearest(x);
-  double const share = 1 - smoothstep(distance(x, wall.point) / (WakePlaces::last_part * place.chord));
-  if (share > 0) u += share * (wall.displacement - behind_edge(wall.point, places_.at(wall.point)));
+  double const reach = WakePlaces::last_part * place.chord;
+  if (auto const wall = nearest_within(x, reach)) {
+    double const share = 1 - smoothstep(distance(x, wall->point) / reach);
+    u += share * (wall->displacement - behind_edge(wall->point, places_.at(wall->point)));
+  }
   return place.image ? place.image->inverse().rotation * u : u;
 }
 
-WallFaces::Place WakeMotion::nearest(Vec3 const& x) const {
-  WallFaces::Place best = walls_.nearest(x);
+std::optional<WallFaces::Place> WakeMotion::nearest_within(Vec3 const& x, double reach) const {
+  std::optional<WallFaces::Place> best = walls_.nearest_within(x, reach);
   for (RigidTransform const& copy : places_.copies()) {
-    WallFaces::Place const other = walls_.nearest(copy(x));
-    double const d = distance(x, best.point);
-    if (distance(copy(x), other.point) >= (1 - 1e-9) * d) continue;
+    // Of places at equal distances that of the walls themselves.
+    double const so_far = best ? (1 - 1e-9) * distance(x, best->point) : reach;
+    auto const other = walls_.nearest_within(copy(x), so_far);
+    if (!other) continue;
     RigidTransform const back = copy.inverse();
-    best = {back(other.point), back.rotation * other.displacement};
+    best = {back(other->point), back.rotation * other->displacement};
   }
   return best;
+}
+
+WallFaces::Place WakeMotion::nearest(Vec3 const& x) const {
+  return *nearest_within(x, std::numeric_limits<double>::infinity());
 }
 
 Vec3 WakeMotion::behind_edge(Vec3 const& x, WakePlace const& place) const {

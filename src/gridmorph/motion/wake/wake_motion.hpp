@@ -29,6 +29,7 @@ class WakeMotion {
  private:
   /// The nearest place of the walls and of their periodic copies: in H meshes the two sides of a blade are a pitch apart.
   [[nodiscard]] WallFaces::Place nearest(Vec3 const& x) const;
+  [[nodiscard]] std::optional<WallFaces::Place> nearest_within(Vec3 const& x, double reach) const;
   [[nodiscard]] Vec3 behind_edge(Vec3 const& point, WakePlace const& place) const;
 
   WakeRule rule_;
