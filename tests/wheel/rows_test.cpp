@@ -1,4 +1,5 @@
-// Turns, blade rows and coincident nodes of a wheel, on the demo passage and on made-up axes.
+// Turns, blade rows and coincident nodes of a wheel, on the demo passage and on
+// made-up axes.
 #include "support/expect_error.hpp"
 
 #include <generators/passage.hpp>
@@ -94,7 +95,7 @@ TEST(WheelMeshes, RefuseNamesThatGetTooLong) {
   mesh.zones.front().name = std::string(30, 'z');
   PassageLinks const links = passage_links(mesh, connect_and_check(mesh, {}), {});
   WheelRows const rows = find_rows(mesh, links, Axis{});
-  expect_all_in(message_of<MeshError>([&] { make_wheel_mesh(mesh, links, rows, Axis{}, {36}, WheelFamilies::shared); }),
+  expect_all_in(message_of<MeshError>([&] { make_wheel_mesh(mesh, links, rows, {36}, WheelFamilies::shared); }),
                 {std::string(30, 'z'), "34 characters of 32"});
 }
 

@@ -2,7 +2,6 @@
 
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/wheel/detail/pitch_fraction.hpp>
 #include <gridmorph/wheel/shared_nodes.hpp>
 
@@ -83,8 +82,9 @@ class Row {
     return {out.begin(), out.end()};
   }
 
-  /// Patches that meet are of one blade. A patch whose nodes are `a` passages ahead meets another whose nodes are `b` ahead:
-  /// their blades' numbers differ by a - b.
+  /// Patches that meet are of one blade. A patch whose nodes are `a` passages
+  /// ahead meets another whose nodes are `b` ahead: their blades' numbers
+  /// differ by a - b.
   void number_blades(SharedNodes const& all) {
     struct Meeting {
       int patch, offset;
@@ -121,10 +121,10 @@ class Row {
             number[other] = expected;
             blade.push_back(other);
           } else if (number[other] != expected) {
-            throw MotionError(
-                "blade " + describe_patch(mesh_, mesh_.patches[blades_[start]]) +
-                " hangs together with the blade of the next passage, so the two cannot move differently; name the "
-                "blade alone in `of`, without hub and case");
+            throw MotionError("blade " + describe_patch(mesh_, mesh_.patches[blades_[start]]) +
+                              " hangs together with the blade of the next passage, so the "
+                              "two cannot move differently; name the "
+                              "blade alone in `of`, without hub and case");
           }
         }
       // Blade p stands at the lower side of passage p, where it touches one.
@@ -148,7 +148,7 @@ class Row {
     std::vector<int> patches;
     for (int p = 0; p < int(mesh_.patches.size()); ++p)
       if (motion_.patch[p].rule == rule) patches.push_back(p);
-    return fractions_.try_emplace(rule, boundary_, links_, rows_, row_, motion_.axis, patches).first->second;
+    return fractions_.try_emplace(rule, boundary_, links_, rows_, row_, patches).first->second;
   }
 
   Boundary const& boundary_;
@@ -197,15 +197,6 @@ std::vector<BladeShare> blade_shares(Boundary const& sector, PassageLinks const&
     if (row != opened.end()) out[request.boundary_node] = row->second.share(node, request.rule);
   }
   return out;
-}
-
-Vec3 share_motion(Axis const& axis, Vec3 const& x, Vec3 const& a, Vec3 const& b, double w) {
-  if (w == 0 || a == b) return a;
-  CylindricalFrame const frame(axis);
-  if (frame.meridional(x).radius == 0) return a + w * (b - a);
-  CylindricalMotion const p = frame.motion(x, a), q = frame.motion(x, b);
-  return frame.displacement(x, {p.axial + w * (q.axial - p.axial), p.radial + w * (q.radial - p.radial),
-                                p.angle_rad + w * (q.angle_rad - p.angle_rad)});
 }
 
 }  // namespace gridmorph

@@ -61,7 +61,7 @@ ElementWheelMotion::ElementWheelMotion(Mesh const& sector, UnstructuredTopology 
   std::vector<PassageMotions::Node> nodes;
   for (std::size_t n = 0; n < known.size(); ++n)
     nodes.push_back({sector.coordinates[known[n]], rows.row_of_zone[sector.zone_of(known[n])], shares[n]});
-  passages_ = PassageMotions(first.axis, blades, std::move(nodes), values_of(motions));
+  passages_ = PassageMotions(rows, blades, std::move(nodes), values_of(motions));
 
   std::optional<std::vector<Vec3>> most;
   if (options.elements.motion < 0) {

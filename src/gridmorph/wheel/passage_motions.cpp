@@ -35,9 +35,11 @@ std::vector<char> open_rows(std::vector<WheelRowBlades> const& blades) {
   return open;
 }
 
-PassageMotions::PassageMotions(Axis const& axis, std::vector<WheelRowBlades> blades, std::vector<Node> nodes,
+PassageMotions::PassageMotions(WheelRows const& rows, std::vector<WheelRowBlades> blades, std::vector<Node> nodes,
                                std::vector<std::vector<Vec3>> values)
-    : axis_(axis), blades_(std::move(blades)), nodes_(std::move(nodes)), values_(std::move(values)) {}
+    : blades_(std::move(blades)), nodes_(std::move(nodes)), values_(std::move(values)) {
+  for (auto const& row : rows.rows) pitches_.push_back(row.pitch);
+}
 
 int PassageMotions::motion_of(int row, int passage) const {
   auto const& blades = blades_[row].blades;
@@ -47,18 +49,19 @@ int PassageMotions::motion_of(int row, int passage) const {
 
 std::vector<Vec3> PassageMotions::boundary(int passage) const {
   std::vector<Vec3> out(nodes_.size());
-  Vec3 const direction = (1 / norm(axis_.direction)) * axis_.direction;
   for (std::size_t n = 0; n < out.size(); ++n) {
     auto const& [place, row, share] = nodes_[n];
+    RowPitch const& pitch = pitches_[row];
     if (share.on_axis) {
+      Vec3 const& direction = pitch.direction();
       double along = 0;
       for (int const m : blades_[row].blades) along += dot(values_[m][n], direction);
       out[n] = (along / double(blades_[row].blades.size())) * direction;
       continue;
     }
     int const lower = passage + share.lower();
-    out[n] = share_motion(axis_, place, values_[motion_of(row, lower)][n], values_[motion_of(row, lower + 1)][n],
-                          share.weight_of_upper());
+    out[n] = pitch.share_motion(place, values_[motion_of(row, lower)][n], values_[motion_of(row, lower + 1)][n],
+                                share.weight_of_upper());
   }
   return out;
 }

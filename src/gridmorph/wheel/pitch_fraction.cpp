@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace gridmorph {
 
@@ -31,7 +30,8 @@ Edges edges_of_line(Mesh const& mesh, Patch const& patch, PassageLink const& lin
   return out;
 }
 
-/// Of a patch of elements: those of its faces whose ends the link has. Patches of a plane mesh meet it in single nodes.
+/// Of a patch of elements: those of its faces whose ends the link has. Patches
+/// of a plane mesh meet it in single nodes.
 Edges edges_of_faces(Boundary const& boundary, int patch, PassageLink const& link) {
   std::vector<Index> side;
   for (auto const& pair : link.pairs) side.push_back(pair[0]);
@@ -57,16 +57,8 @@ Edges edges_of_faces(Boundary const& boundary, int patch, PassageLink const& lin
 }  // namespace
 
 PitchFraction::PitchFraction(Boundary const& boundary, PassageLinks const& links, WheelRows const& rows, int row,
-                             Axis const& axis, std::vector<int> const& patches)
-    : origin_(axis.origin),
-      direction_((1 / norm(axis.direction)) * axis.direction),
-      passages_(rows.rows[row].passages) {
-  Vec3 const d = direction_;
-  Vec3 const other = std::abs(d.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  zero_ = cross(d, other);
-  zero_ = (1 / norm(zero_)) * zero_;
-  quarter_ = cross(d, zero_);
-
+                             std::vector<int> const& patches)
+    : pitch_(rows.rows[row].pitch) {
   Mesh const& mesh = boundary.mesh();
   for (int const p : patches) {
     Patch const& patch = mesh.patches[p];
@@ -75,37 +67,30 @@ PitchFraction::PitchFraction(Boundary const& boundary, PassageLinks const& links
       if (rows.pitches_of_link[l] != 1) continue;
       for (auto const& [from, to] : boundary.surface(p).grid ? edges_of_line(mesh, patch, links.all[l])
                                                              : edges_of_faces(boundary, p, links.all[l])) {
-        Segment s{place(mesh.coordinates[from]), place(mesh.coordinates[to])};
-        s.to.angle = s.from.angle + std::remainder(s.to.angle - s.from.angle, 2 * std::numbers::pi);
+        Segment s{pitch_.place(mesh.coordinates[from]), pitch_.place(mesh.coordinates[to])};
+        s.to.along = s.from.along + pitch_.pitches_near(s.to.along - s.from.along, 0);
         segments_.push_back(s);
       }
     }
   }
 }
 
-PitchFraction::Place PitchFraction::place(Vec3 const& p) const {
-  Vec3 const q = p - origin_;
-  double const a = dot(q, zero_), b = dot(q, quarter_);
-  return {dot(q, direction_), std::hypot(a, b), std::atan2(b, a)};
-}
-
 double PitchFraction::operator()(Vec3 const& p) const {
-  Place const at = place(p);
-  double nearest = std::numeric_limits<double>::infinity(), angle = 0;
+  PlaceInRow const at = pitch_.place(p);
+  double nearest = std::numeric_limits<double>::infinity(), along_side = 0;
   for (Segment const& s : segments_) {
-    double const dx = s.to.axial - s.from.axial, dr = s.to.radius - s.from.radius, length = dx * dx + dr * dr;
-    double const along = (at.axial - s.from.axial) * dx + (at.radius - s.from.radius) * dr;
+    double const d1 = s.to.first - s.from.first, d2 = s.to.second - s.from.second, length = d1 * d1 + d2 * d2;
+    double const along = (at.first - s.from.first) * d1 + (at.second - s.from.second) * d2;
     double const t = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
-    double const gap = std::hypot(at.axial - s.from.axial - t * dx, at.radius - s.from.radius - t * dr);
+    double const gap = std::hypot(at.first - s.from.first - t * d1, at.second - s.from.second - t * d2);
     if (gap < nearest) {
       nearest = gap;
-      angle = s.from.angle + t * (s.to.angle - s.from.angle);
+      along_side = s.from.along + t * (s.to.along - s.from.along);
     }
   }
-  // Of all the turns that the difference leaves open, the one nearest to the middle of the passage.
-  double const pitch = 2 * std::numbers::pi / passages_;
-  double const fraction = 0.5 + std::remainder((at.angle - angle) / pitch - 0.5, double(passages_));
-  return std::clamp(fraction, 0.0, 1.0);
+  // Of all the turns that the difference leaves open, the one nearest to the
+  // middle of the passage.
+  return std::clamp(pitch_.pitches_near(at.along - along_side, 0.5), 0.0, 1.0);
 }
 
 }  // namespace gridmorph

@@ -4,9 +4,8 @@
 
 namespace gridmorph {
 
-Seams::Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows, int row, Axis const& axis,
-             int passages)
-    : axis_(axis), passages_(passages), whole_(rows.rows[row].passages) {
+Seams::Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows, int row, int passages)
+    : pitch_(rows.rows[row].pitch), passages_(passages) {
   std::map<int, int> number;
   for (auto const& m : shared.members()) {
     if (rows.row_of_zone[mesh.zone_of(m.node)] != row) continue;
@@ -28,18 +27,18 @@ void Seams::close(int passage, Coordinates& x) {
       points.known.assign(on_axis_.size(), 0);
       points.position.resize(on_axis_.size());
     }
-    Turn const turn(axis_, around * passages_, whole_);
     if (points.known[m.group] == 0) {
       points.known[m.group] = 1;
-      points.position[m.group] = Turn(axis_, -around * passages_, whole_)(x[m.node]);
+      points.position[m.group] = pitch_.times(-around * passages_)(x[m.node]);
       continue;
     }
-    Vec3 const decided = turn(points.position[m.group]);
+    Vec3 const decided = pitch_.times(around * passages_)(points.position[m.group]);
     double const gap = distance(decided, x[m.node]);
     if (gap > gap_.distance) gap_ = {gap, m.node, passage};
     x.set(m.node, decided);
   }
-  // Forget what no later passage meets: later ones reach down to passage + 1 + lowest_, and round the end to the first ones.
+  // Forget what no later passage meets: later ones reach down to passage + 1 +
+  // lowest_, and round the end to the first ones.
   std::erase_if(open_, [&](auto const& entry) {
     int const count = entry.first;
     bool const met_ahead = count >= passage + 1 + lowest_;

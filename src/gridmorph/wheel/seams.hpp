@@ -1,9 +1,9 @@
-// Coordinates of coincident nodes of a wheel: one passage decides, the others copy.
+// Coordinates of coincident nodes of a wheel: one passage decides, the others
+// copy.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/wheel/shared_nodes.hpp>
-#include <gridmorph/wheel/turn.hpp>
 
 #include <map>
 #include <vector>
@@ -17,16 +17,20 @@ struct SeamGap {
   int passage = -1;
 };
 
-/// Closes the seams of one row, passage by passage from the first to the last: the first copy of a point to come decides. The
-/// last passage meets the first one again. The two ends of a part of a wheel are each other, turned by the part's angle.
+/// Closes the seams of one row, passage by passage from the first to the last:
+/// the first copy of a point to come decides. The last passage meets the first
+/// one again. The two ends of a part of a wheel are each other, that part's
+/// pitches apart.
 ///
-/// Memory: 24 bytes per interface node, for the two or three passages that are not closed yet and for the first one.
+/// Memory: 24 bytes per interface node, for the two or three passages that are
+/// not closed yet and for the first one.
 class Seams {
  public:
-  /// passages: how many are made, of row.passages. `shared` covers all rows.
-  Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows, int row, Axis const& axis, int passages);
+  /// passages: how many are made. `shared` covers all rows.
+  Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows, int row, int passages);
 
-  /// Replaces the positions of the row's nodes that an earlier one decides; positions are in the wheel's frame.
+  /// Replaces the positions of the row's nodes that an earlier one decides;
+  /// positions are in the wheel's frame.
   void close(int passage, Coordinates& x);
 
   [[nodiscard]] SeamGap const& largest_gap() const { return gap_; }
@@ -39,8 +43,8 @@ class Seams {
 
   std::vector<SharedNodes::Member> members_;  ///< of the row, groups renumbered
   std::vector<char> on_axis_;                 ///< per group
-  Axis axis_;
-  int passages_, whole_;
+  RowPitch pitch_;
+  int passages_;
   int lowest_ = 0, highest_ = 0;  ///< offsets
   std::map<int, Points> open_;    ///< by the passage of the group's own count
   SeamGap gap_;

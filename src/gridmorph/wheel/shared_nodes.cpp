@@ -7,7 +7,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Union-find whose members know how many passages they are ahead of their root: (n, p) is the point (root, p + offset).
+/// Union-find whose members know how many passages they are ahead of their
+/// root: (n, p) is the point (root, p + offset).
 class Unions {
  public:
   explicit Unions(std::size_t n) : parent_(n), offset_(n, 0), axis_(n, 0) {
@@ -33,15 +34,16 @@ class Unions {
     return {root, offset};
   }
 
-  /// (a, p) is (b, p - pitches) in a wheel of so many passages.
-  void join(int a, int b, int pitches, int passages) {
+  /// (a, p) is (b, p - pitches).
+  void join(int a, int b, int pitches, RowPitch const& pitch) {
     Place const x = find(a), y = find(b);
     int const shift = y.offset - pitches - x.offset;  // (root of a, t) is (root of b, t + shift)
     if (x.root == y.root) {
-      if (shift % passages != 0) axis_[x.root] = 1;
+      if (!pitch.comes_round(shift)) axis_[x.root] = 1;
       return;
     }
-    // The smaller number stays the root, so that the result does not depend on the order of the links.
+    // The smaller number stays the root, so that the result does not depend on
+    // the order of the links.
     if (y.root < x.root) {
       parent_[x.root] = y.root;
       offset_[x.root] = shift;
@@ -74,9 +76,8 @@ SharedNodes::SharedNodes(PassageLinks const& links, WheelRows const& rows, bool 
   for (std::size_t l = 0; l < links.all.size(); ++l) {
     PassageLink const& link = links.all[l];
     if (link.periodic && !periodic) continue;
-    int const passages = rows.rows[rows.row_of_zone[link.zone]].passages;
-    for (auto const& [own, donor] : link.pairs)
-      unions.join(number(own), number(donor), rows.pitches_of_link[l], passages);
+    RowPitch const& pitch = rows.rows[rows.row_of_zone[link.zone]].pitch;
+    for (auto const& [own, donor] : link.pairs) unions.join(number(own), number(donor), rows.pitches_of_link[l], pitch);
   }
 
   std::vector<int> group(nodes.size(), -1);

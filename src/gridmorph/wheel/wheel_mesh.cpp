@@ -2,12 +2,9 @@
 
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/wheel/turn.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
@@ -27,23 +24,13 @@ std::string with_suffix(std::string const& name, std::string const& suffix, char
   return name + suffix;
 }
 
-/// Angles about x, y, z (CGNS SIDS: x first) of a turn; a turn about a coordinate axis keeps its angle as it is.
-Vec3 angles_of(Axis const& axis, RigidTransform const& t, double angle) {
-  Vec3 const d = (1 / norm(axis.direction)) * axis.direction;
-  if (std::abs(d.x) == 1 || std::abs(d.y) == 1 || std::abs(d.z) == 1) return angle * d;
-  auto const& m = t.rotation.m;
-  return {std::atan2(m[2][1], m[2][2]), std::atan2(-m[2][0], std::hypot(m[0][0], m[1][0])),
-          std::atan2(m[1][0], m[0][0])};
-}
-
 class Builder {
  public:
-  Builder(Mesh const& sector, PassageLinks const& links, WheelRows const& rows, Axis const& axis,
-          std::vector<int> const& passages, WheelFamilies families)
+  Builder(Mesh const& sector, PassageLinks const& links, WheelRows const& rows, std::vector<int> const& passages,
+          WheelFamilies families)
       : sector_(sector),
         links_(links),
         rows_(rows),
-        axis_(axis),
         passages_(passages),
         families_(families),
         of_elements_(!sector.is_structured()) {}
@@ -73,7 +60,8 @@ class Builder {
   [[nodiscard]] WheelRow const& row_of(int zone) const { return rows_.rows[rows_.row_of_zone[zone]]; }
   [[nodiscard]] int passages_of(int zone) const { return passages_[rows_.row_of_zone[zone]]; }
   [[nodiscard]] std::string suffix_of(int zone, int passage) const {
-    return row_of(zone).periodic() ? passage_suffix(passage, row_of(zone).passages) : std::string();
+    return row_of(zone).periodic() ? passage_suffix(passage, std::max(row_of(zone).passages, passages_of(zone)))
+                                   : std::string();
   }
 
   void add_zone(int z, int passage) {
@@ -110,7 +98,8 @@ class Builder {
     }
   }
 
-  /// Per face of a patch of elements the periodic link of its zone on whose side it lies, or -1; of a patch of nodes one entry.
+  /// Per face of a patch of elements the periodic link of its zone on whose
+  /// side it lies, or -1; of a patch of nodes one entry.
   [[nodiscard]] std::vector<int> sides_of(Patch const& patch) const {
     std::vector<int> out(std::size_t(std::max<Index>(1, patch.faces.size())), -1);
     for (int const l : links_.of_zone[patch.zone]) {
@@ -130,7 +119,8 @@ class Builder {
     return out;
   }
 
-  /// What a patch has in a passage; nothing where all of it lies between passages.
+  /// What a patch has in a passage; nothing where all of it lies between
+  /// passages.
   [[nodiscard]] std::optional<Patch> without_seams(Patch const& patch, std::vector<int> const& sides,
                                                    int passage) const {
     auto const between = [&](int link) { return link >= 0 && !is_end(link, patch.zone, passage); };
@@ -148,9 +138,10 @@ class Builder {
     int const made = passages_of(zone);
     return (passage - rows_.pitches_of_link[link] + made) % made;
   }
-  /// Whether a link of a passage leads from one end of a part of a wheel to the other.
+  /// Whether a link of a passage leads from one end of a part of a wheel or of
+  /// a straight row to the other.
   [[nodiscard]] bool is_end(int link, int zone, int passage) const {
-    return passages_of(zone) < row_of(zone).passages &&
+    return !row_of(zone).pitch.comes_round(passages_of(zone)) &&
            donor_of(link, zone, passage) != passage - rows_.pitches_of_link[link];
   }
 
@@ -160,7 +151,8 @@ class Builder {
     for (int const l : links_.of_zone[zone]) {
       PassageLink const& link = links_.all[l];
       AnyConnection const& from = stored[link.connection];
-      // A connection that the file stores once gets the same name on its other side, unless that is taken there.
+      // A connection that the file stores once gets the same name on its other
+      // side, unless that is taken there.
       std::string name = from.name;
       for (int n = 2; !taken.insert(name).second; ++n) {
         std::string const number = "_" + std::to_string(n);
@@ -170,7 +162,7 @@ class Builder {
       int const own = number_.at({zone, passage}), donor = number_.at({link.donor_zone, donor_of(l, zone, passage)});
       std::optional<Periodic> periodic;
       if (is_end(l, zone, passage))
-        periodic = end_to_end(passages_of(zone) * rows_.pitches_of_link[l], row_of(zone).passages);
+        periodic = row_of(zone).pitch.periodic(passages_of(zone) * rows_.pitches_of_link[l]);
       if (!of_elements_) {
         out_.mesh.interfaces.push_back({name, families, own, donor, link.range, link.to_donor, periodic});
         continue;
@@ -184,18 +176,9 @@ class Builder {
     }
   }
 
-  [[nodiscard]] Periodic end_to_end(int pitches, int whole) const {
-    Periodic periodic;
-    periodic.declared = Turn(axis_, pitches, whole).transform();
-    periodic.rotation_center = axis_.origin;
-    periodic.rotation_angle_rad = angles_of(axis_, periodic.declared, 2 * std::numbers::pi * pitches / whole);
-    return periodic;
-  }
-
   Mesh const& sector_;
   PassageLinks const& links_;
   WheelRows const& rows_;
-  Axis const& axis_;
   std::vector<int> const& passages_;
   WheelFamilies families_;
   bool of_elements_;
@@ -218,9 +201,9 @@ std::string passage_suffix(int passage, int passages) {
   return "_P" + std::string(digits - std::min(digits, number.size()), '0') + number;
 }
 
-WheelMesh make_wheel_mesh(Mesh const& sector, PassageLinks const& links, WheelRows const& rows, Axis const& axis,
+WheelMesh make_wheel_mesh(Mesh const& sector, PassageLinks const& links, WheelRows const& rows,
                           std::vector<int> const& passages, WheelFamilies families) {
-  return Builder(sector, links, rows, axis, passages, families).run();
+  return Builder(sector, links, rows, passages, families).run();
 }
 
 }  // namespace gridmorph

@@ -38,7 +38,7 @@ WheelMotion::WheelMotion(Mesh const& sector, PassageLinks const& links, WheelRow
     Index const node = planned_.plan.boundary_nodes[n];
     nodes.push_back({sector.coordinates[node], rows.row_of_zone[sector.zone_of(node)], shares[n]});
   }
-  passages_ = PassageMotions(motions.front().axis, blades, std::move(nodes), {});
+  passages_ = PassageMotions(rows, blades, std::move(nodes), {});
   move(motions);
 }
 

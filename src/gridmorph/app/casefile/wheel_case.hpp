@@ -1,4 +1,5 @@
-// [wheel] of a case file: how many passages, and which blade stands in which of them.
+// [wheel] of a case file: how many passages, and which blade stands in which of
+// them.
 #pragma once
 
 #include <gridmorph/app/casefile/timed_rule.hpp>
@@ -22,13 +23,14 @@ struct WheelBlade {
 
 /// [[wheel.row]], or the same keys in [wheel].
 struct WheelRowCase {
-  std::vector<std::string> zones;  ///< names or globs; empty: all zones
-  int passages = 0;                ///< 0: the whole wheel
-  std::vector<std::string>
-      sequence;  ///< names of blades, first passage first, repeated round the wheel; empty: as [[motion]] says
+  std::vector<std::string> zones;      ///< names or globs; empty: all zones
+  int passages = 0;                    ///< 0: the whole wheel; straight rows have none
+  std::vector<std::string> sequence;   ///< names of blades, first passage first, repeated round the
+                                       ///< wheel; empty: as [[motion]] says
   std::optional<int> nodal_diameters;  ///< of the wave in which the blades move over time
   std::string where_diameters;
-  std::vector<double> factors;  ///< on the displacement as WheelBlade::factor, repeated likewise; empty: 1
+  std::vector<double> factors;  ///< on the displacement as WheelBlade::factor,
+                                ///< repeated likewise; empty: 1
   std::string where;
 };
 

@@ -54,9 +54,9 @@ class BlockPassage final : public PassageMesh {
   [[nodiscard]] Mesh const& mesh() const override { return mesh_.mesh(); }
   [[nodiscard]] Index n_cells() const override { return mesh_.n_cells(); }
   [[nodiscard]] PassageLinks const& links() const override { return links_; }
-  [[nodiscard]] WheelMesh wheel(WheelRows const& rows, Axis const& axis, std::vector<int> const& passages,
+  [[nodiscard]] WheelMesh wheel(WheelRows const& rows, std::vector<int> const& passages,
                                 WheelFamilies families) const override {
-    return make_wheel_mesh(mesh(), links_, rows, axis, passages, families);
+    return make_wheel_mesh(mesh(), links_, rows, passages, families);
   }
   [[nodiscard]] QualityReport measure(QualityWanted const& wanted) const override { return mesh_.measure(wanted); }
   [[nodiscard]] Certificate certify(Coordinates const& placed, std::vector<int> const& zones) const override {

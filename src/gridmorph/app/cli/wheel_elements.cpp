@@ -54,7 +54,8 @@ class ElementPassage final : public PassageMesh {
     for (auto const& problem : mesh_.problems) problems.add(problem);
     if (!mesh_.mesh.polyhedra.element.empty())
       problems.add(mesh_.mesh.source +
-                   ": has polyhedra, which are not written anew, and a wheel is a new file; make a wheel of a mesh of "
+                   ": has polyhedra, which are not written anew, and a wheel "
+                   "is a new file; make a wheel of a mesh of "
                    "tetrahedra, pyramids, prisms and hexahedra");
     problems.throw_if_any<MeshError>();
     links_ = passage_links(Boundary(mesh_.mesh, mesh_.topology, mesh_.face_patches));
@@ -65,15 +66,15 @@ class ElementPassage final : public PassageMesh {
   [[nodiscard]] Index n_cells() const override { return mesh_.n_cells(); }
   [[nodiscard]] PassageLinks const& links() const override { return links_; }
   [[nodiscard]] std::vector<std::string> notes() const override { return mesh_.notes(); }
-  [[nodiscard]] WheelMesh wheel(WheelRows const& rows, Axis const& axis, std::vector<int> const& passages,
+  [[nodiscard]] WheelMesh wheel(WheelRows const& rows, std::vector<int> const& passages,
                                 WheelFamilies families) const override {
-    if (mesh().file_order.node.empty()) return make_wheel_mesh(mesh(), links_, rows, axis, passages, families);
+    if (mesh().file_order.node.empty()) return make_wheel_mesh(mesh(), links_, rows, passages, families);
     Mesh const ordered = gridmorph::in_file_order(mesh());
     PassageLinks links = links_;
     for (PassageLink& link : links.all)
       for (auto& pair : link.pairs)
         for (Index& n : pair) n = mesh().file_order.node[std::size_t(n)];
-    return make_wheel_mesh(ordered, links, rows, axis, passages, families);
+    return make_wheel_mesh(ordered, links, rows, passages, families);
   }
   [[nodiscard]] Coordinates in_file_order(Coordinates const& x) const override {
     return gridmorph::in_file_order(mesh(), x);

@@ -2,7 +2,6 @@
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/report/quality_table.hpp>
-#include <gridmorph/wheel/turn.hpp>
 
 #include <fmt/format.h>
 #include <Kokkos_Core.hpp>
@@ -22,14 +21,15 @@ std::unique_ptr<PassageMesh> read(CaseFile const& case_file, MeshKind kind, Term
 }
 
 /// Puts a zone of the sector where its passage stands. Cost: 48 bytes per node.
-void turn_zone(Exec const& exec, Zone const& zone, Turn const& turn, Coordinates const& from, Coordinates& to) {
+void place_zone(Exec const& exec, Zone const& zone, Pitches const& pitches, Coordinates const& from, Coordinates& to) {
   Kokkos::parallel_for(
       "gridmorph::wheel::turn",
       Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, zone.first_node, zone.first_node + zone.size()),
-      [&](Index n) { to.set(n, turn(from[n])); });
+      [&](Index n) { to.set(n, pitches(from[n])); });
 }
 
-/// Adds what one passage gives; `zones`: numbers in the wheel of the zones of its sector.
+/// Adds what one passage gives; `zones`: numbers in the wheel of the zones of
+/// its sector.
 void add_passage(Certificate& wheel, Certificate const& passage, std::map<int, int> const& zones) {
   if (wheel.holds() && !passage.holds()) {
     wheel.broken = passage.broken;
@@ -52,7 +52,7 @@ WheelRun::WheelRun(CaseFile const& case_file, MeshKind kind, Terminal& terminal)
       mesh_(sector_->mesh()),
       rows_(find_rows(mesh_, sector_->links(), case_file.motion.axis)),
       setup_(wheel_setup(case_file, mesh_, rows_)),
-      wheel_(sector_->wheel(rows_, case_file.motion.axis, setup_.passages(),
+      wheel_(sector_->wheel(rows_, setup_.passages(),
                             case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
       shared_(sector_->links(), rows_, true) {
   time("read");
@@ -88,7 +88,8 @@ void WheelRun::prepare() {
   terminal_.expect({});
 }
 
-/// Passages of a wave are one period of one motion, so that the last blade meets the first.
+/// Passages of a wave are one period of one motion, so that the last blade
+/// meets the first.
 void WheelRun::check_wave() const {
   if (!setup_.has_wave()) return;
   for (std::size_t m = 0; m < setup_.motions.size(); ++m) {
@@ -105,8 +106,10 @@ void WheelRun::check_wave() const {
       constexpr double same = 1e-9;  // of the displacement: phases are rounded
       if (gap > same * std::max(size, 1e-6 * sector_->links().mesh_size))
         throw MotionError(
-            fmt::format("{}: nodal_diameters: what the rules say at t = {:.9g} and a period ({:.6g}) later differs by "
-                        "{:.3g}, so that the last blade of the wave would not meet the first; give motions that "
+            fmt::format("{}: nodal_diameters: what the rules say at t = {:.9g} and a "
+                        "period ({:.6g}) later differs by "
+                        "{:.3g}, so that the last blade of the wave would not meet the "
+                        "first; give motions that "
                         "repeat with the period of [sequence] (whole numbers of harmonic)",
                         case_.source.string(), when.time, setup_.period, gap));
     }
@@ -119,7 +122,8 @@ void WheelRun::move_to(int step) {
   step_ = step;
 }
 
-/// Where the worst passage falls short: other recipes for it, and the best of them for all passages and steps.
+/// Where the worst passage falls short: other recipes for it, and the best of
+/// them for all passages and steps.
 void WheelRun::retry() {
   auto const trial_of = [&](PassagePlan& by, std::vector<Vec3> const& boundary) {
     (void)morph(by, boundary, morphed_);
@@ -198,7 +202,7 @@ PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates c
 std::vector<Seams> WheelRun::new_seams() const {
   std::vector<Seams> seams;
   for (int r = 0; r < int(rows_.rows.size()); ++r)
-    seams.emplace_back(mesh_, shared_, rows_, r, case_.motion.axis, setup_.blades[r].passages);
+    seams.emplace_back(mesh_, shared_, rows_, r, setup_.blades[r].passages);
   return seams;
 }
 
@@ -208,13 +212,13 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
   for (int n = next; n < int(wheel_.zones.size()) && wheel_.zones[n].passage == passage; ++n) {
     int const z = wheel_.zones[n].zone;
     zones[z] = n;
-    turn_zone(exec_, mesh_.zones[z], Turn(case_.motion.axis, passage, rows_.rows[rows_.row_of_zone[z]].passages),
-              morphed, placed_);
+    place_zone(exec_, mesh_.zones[z], rows_.rows[rows_.row_of_zone[z]].pitch.times(passage), morphed, placed_);
   }
   exec_.fence();
   double mismatch = 0;
   for (PassageLink const& link : sector_->links().all) mismatch = std::max(mismatch, link.mismatch);
-  // Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
+  // Copies may differ by as much as the interfaces of the sector mesh do, and
+  // as rules that agree.
   double const tolerance =
       4 * mismatch + std::max(1e-8, case_.motion.conformity_tolerance) * sector_->links().mesh_size;
   for (int r = 0; r < int(seams.size()); ++r) {
@@ -224,9 +228,11 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
     if (own.distance > gap.distance) gap = own;
     if (own.distance > tolerance)
       throw MotionError(
-          fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
-                      "periodic side must move alike on both sides of the passage, in cylindrical components",
-                      own.passage + 1, describe_node(mesh_, own.node), own.distance));
+          fmt::format("passage {} and its neighbour move the node they share at {} apart "
+                      "by {:.3g}; a blade on a "
+                      "periodic side must move alike on both sides of the passage{}",
+                      own.passage + 1, describe_node(mesh_, own.node), own.distance,
+                      rows_.rows[r].pitch.is_straight() ? "" : ", in cylindrical components"));
   }
   return zones;
 }
@@ -264,8 +270,9 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
       made.passages.push_back(same < p ? made.passages[same] : measure(boundary, morphed_));
       if (same == p && relaxed.before > 0)
         made.notes.push_back(
-            fmt::format("passage {}: {} {}; displacements around them are smoothed in {} rounds, {} are left", p + 1,
-                        relaxed.before, sector_->kind().lost, relaxed.rounds, relaxed.after));
+            fmt::format("passage {}: {} {}; displacements around them are "
+                        "smoothed in {} rounds, {} are left",
+                        p + 1, relaxed.before, sector_->kind().lost, relaxed.rounds, relaxed.after));
     } else {
       made.passages.push_back(made.passages.back());
     }
@@ -300,7 +307,8 @@ WheelResult WheelRun::result(WheelMade made) {
   return out;
 }
 
-/// Of a passage in its place, closed to its neighbours. `zones`: those of the sector that it has.
+/// Of a passage in its place, closed to its neighbours. `zones`: those of the
+/// sector that it has.
 void WheelRun::certify_zones(std::map<int, int> const& zones, Certificate& wheel) {
   std::vector<int> own;
   for (auto const& [of_sector, of_wheel] : zones) own.push_back(of_sector);
@@ -326,8 +334,10 @@ std::string wheel_text(WheelRun const& run, WheelResult const& result) {
   for (auto const& note : result.notes) text += "note: " + note + "\n";
   text += describe_rows(run.sector().mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
   text += certificate_text(result.whole);
-  text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
-                      result.gap.distance);
+  text += fmt::format(
+      "\nlargest distance of coincident nodes before one took "
+      "over the other's position: {:.3g}\n",
+      result.gap.distance);
   return text + "\n" + format_times(result.times, result.nodes);
 }
 

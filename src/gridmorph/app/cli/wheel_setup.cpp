@@ -1,7 +1,6 @@
 #include <gridmorph/app/cli/wheel_setup.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/wheel/blade_share.hpp>
 
 #include <fmt/format.h>
 
@@ -19,20 +18,23 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// Walls between which the blades stand are the same for all, and rules that follow others do so by themselves.
+/// Walls between which the blades stand are the same for all, and rules that
+/// follow others do so by themselves.
 bool is_of_blade(TimedRule const& timed) { return timed.at && !timed.end_wall; }
 
-/// A rule times a factor: rigid motions and sections by their parameters, targets by the way to them; formulas and fields by their
-/// displacement in cylindrical components, so that a turn stays a turn.
-Rule scaled(TimedRule const& timed, std::string const& where, Moment const& when, double factor, Axis const& axis) {
+/// A rule times a factor: rigid motions and sections by their parameters,
+/// targets by the way to them; formulas and fields by their displacement in the
+/// components that neighbours share, so that in a wheel a turn stays a turn.
+Rule scaled(TimedRule const& timed, std::string const& where, Moment const& when, double factor,
+            RowPitch const& pitch) {
   Rule rule = rule_at(timed, where, when);
   auto const* function = std::get_if<FunctionRule>(&rule);
   if (function == nullptr) return rule_at(timed, where, when, factor);
   return FunctionRule{fmt::format("{} times {}", factor, function->description),
-                      [inner = function->function, axis, factor](std::span<Vec3 const> points, std::span<Vec3> out) {
+                      [inner = function->function, pitch, factor](std::span<Vec3 const> points, std::span<Vec3> out) {
                         inner(points, out);
                         for (std::size_t n = 0; n < points.size(); ++n)
-                          out[n] = share_motion(axis, points[n], {}, out[n], factor);
+                          out[n] = pitch.share_motion(points[n], {}, out[n], factor);
                       }};
 }
 
@@ -58,6 +60,7 @@ class Setup {
       : case_(case_file), wheel_(*case_file.wheel), mesh_(mesh), rows_(rows) {}
 
   WheelSetup run() {
+    out_.pitch = rows_.any_pitch(case_.motion.axis);
     if (auto const& sequence = case_.sequence) {
       out_.period = sequence->period;
       for (int step = 0; step < sequence->steps; ++step) out_.moments.push_back(sequence->moment(step));
@@ -77,9 +80,13 @@ class Setup {
         place(row, r);
       }
       if (!any)
-        problems_.add(row.where + ": zones: names no zone of a row with periodic interfaces; there are " +
+        problems_.add(row.where +
+                      ": zones: names no zone of a row with periodic "
+                      "interfaces; there are " +
                       periodic_zones());
     }
+    for (int r = 0; r < int(rows_.rows.size()); ++r)
+      if (taken[r] == nullptr) (void)need_number(r, wheel_.rows.front().where);
     for (auto& row : out_.blades)
       if (row.blades.empty()) row.blades.assign(std::size_t(row.passages), motion(-1, 1, {}, {}));
     problems_.throw_if_any<ConfigError>();
@@ -88,6 +95,23 @@ class Setup {
   }
 
  private:
+  /// Whether row r has no number of its own, which is a problem where the case
+  /// file gives none.
+  bool need_number(int r, std::string const& where) {
+    if (!rows_.rows[r].pitch.is_straight()) return false;
+    problems_.add(
+        fmt::format("{}: passages: is missing, and the row of zone '{}' is straight (its "
+                    "periodic sides are shifted, not turned), "
+                    "so that nothing says how many blades it has; add passages = 5, say",
+                    where, mesh_.zones[rows_.rows[r].zones.front()].name));
+    return true;
+  }
+
+  /// How many blades stand round the wheel, or in one period of a straight row.
+  [[nodiscard]] int round_of(int r) const {
+    return rows_.rows[r].pitch.is_straight() ? out_.blades[r].passages : rows_.rows[r].passages;
+  }
+
   [[nodiscard]] bool names(WheelRowCase const& row, int r) const {
     auto const& zones = rows_.rows[r].zones;
     return row.zones.empty() || std::any_of(zones.begin(), zones.end(), [&](int z) {
@@ -107,23 +131,27 @@ class Setup {
   void place(WheelRowCase const& row, int r) {
     WheelRowBlades& blades = out_.blades[r];
     std::string const zone = mesh_.zones[rows_.rows[r].zones.front()].name;
-    if (row.passages > rows_.rows[r].passages) {
-      problems_.add(fmt::format("{}: passages: {} asked for, but the row of zone '{}' has {} in 360 degrees", row.where,
-                                row.passages, zone, rows_.rows[r].passages));
+    if (row.passages == 0 && need_number(r, row.where)) return;
+    if (!rows_.rows[r].pitch.is_straight() && row.passages > rows_.rows[r].passages) {
+      problems_.add(
+          fmt::format("{}: passages: {} asked for, but the row of "
+                      "zone '{}' has {} in 360 degrees",
+                      row.where, row.passages, zone, rows_.rows[r].passages));
       return;
     }
     if (row.passages > 0) blades.passages = row.passages;
     auto const fits = [&](std::size_t length, char const* key) {
       if (length == 0 || std::size_t(blades.passages) % length == 0) return true;
       problems_.add(
-          fmt::format("{}: {}: has {} entries, which do not go evenly into the {} passages of the row of zone '{}'",
+          fmt::format("{}: {}: has {} entries, which do not go evenly into the "
+                      "{} passages of the row of zone '{}'",
                       row.where, key, length, blades.passages, zone));
       return false;
     };
     bool const sequence = fits(row.sequence.size(), "sequence"), factors = fits(row.factors.size(), "factors");
     bool const wave = !row.nodal_diameters || fits_wave(row, r, blades.passages);
     if (!sequence || !factors || !wave) return;
-    int const whole = rows_.rows[r].passages, diameters = row.nodal_diameters.value_or(0);
+    int const whole = round_of(r), diameters = row.nodal_diameters.value_or(0);
     for (std::size_t p = 0; p < std::size_t(blades.passages); ++p) {
       int blade = -1;
       if (!row.sequence.empty()) {
@@ -132,7 +160,8 @@ class Setup {
             std::find_if(wheel_.blades.begin(), wheel_.blades.end(), [&](auto const& b) { return b.name == name; });
         blade = int(at - wheel_.blades.begin());
       }
-      // Parts of a turn as whole numbers, so that passages in phase have one motion.
+      // Parts of a turn as whole numbers, so that passages in phase have one
+      // motion.
       int const turned = int(((std::int64_t(p) * diameters) % whole + whole) % whole);
       int const part = std::gcd(turned, whole);
       blades.blades.push_back(motion(blade, row.factors.empty() ? 1 : row.factors[p % row.factors.size()],
@@ -146,10 +175,12 @@ class Setup {
       return false;
     });
     if (!moves)
-      problems_.add(fmt::format(
-          "{}: nodal_diameters: no blade of the row of zone '{}' moves with time, so that there is no wave; give its "
-          "rule modes, an amplitude over time or t in a formula, or remove the key",
-          row.where_diameters, zone));
+      problems_.add(
+          fmt::format("{}: nodal_diameters: no blade of the row of zone '{}' "
+                      "moves with time, so that there is no wave; give its "
+                      "rule modes, an amplitude over time or t in a formula, "
+                      "or remove the key",
+                      row.where_diameters, zone));
   }
 
   [[nodiscard]] bool is_in_row(MotionRule const& rule, int r) const {
@@ -160,12 +191,13 @@ class Setup {
 
   /// A wave of so many nodal diameters round the wheel.
   bool fits_wave(WheelRowCase const& row, int r, int passages) {
-    int const whole = rows_.rows[r].passages, diameters = *row.nodal_diameters;
+    int const whole = round_of(r), diameters = *row.nodal_diameters;
     std::string const zone = mesh_.zones[rows_.rows[r].zones.front()].name;
     if (2 * std::abs(std::int64_t(diameters)) > whole) {
       int const alias = int(std::remainder(double(diameters), double(whole)));
       problems_.add(
-          fmt::format("{}: nodal_diameters: the row of zone '{}' has {} blades, which tell waves of {} to {} nodal "
+          fmt::format("{}: nodal_diameters: the row of zone '{}' has "
+                      "{} blades, which tell waves of {} to {} nodal "
                       "diameters apart, "
                       "found {}; to these blades that is {}",
                       row.where_diameters, zone, whole, -(whole / 2), whole / 2, diameters, alias));
@@ -173,10 +205,11 @@ class Setup {
     }
     int const wave = whole / std::gcd(diameters, whole);
     if (passages % wave == 0) return true;
-    problems_.add(fmt::format(
-        "{}: nodal_diameters: the ends of {} of {} passages do not match in a wave of {} nodal diameters; use "
-        "passages = {} or a multiple of it",
-        row.where_diameters, passages, whole, diameters, wave));
+    problems_.add(
+        fmt::format("{}: nodal_diameters: the ends of {} of {} passages do not "
+                    "match in a wave of {} nodal diameters; use "
+                    "passages = {} or a multiple of it",
+                    row.where_diameters, passages, whole, diameters, wave));
     return false;
   }
 
@@ -197,7 +230,8 @@ class Setup {
     auto operator<=>(Ahead const&) const = default;
   };
 
-  /// Number of a blade's motion; equal blades have one. where: of the row that asks for it.
+  /// Number of a blade's motion; equal blades have one. where: of the row that
+  /// asks for it.
   int motion(int blade, double factor, Ahead ahead, std::string where) {
     auto const [at, fresh] = known_.try_emplace({blade, factor, ahead}, int(out_.motions.size()));
     if (!fresh) return at->second;
@@ -223,7 +257,8 @@ class Setup {
     if (ahead.turned != 0) name += fmt::format("{}{:g} deg", name.empty() ? "" : " ", 360.0 * ahead.turned / ahead.of);
     if (all != 1 && !stands && std::none_of(timed.begin(), timed.end(), is_of_blade))
       problems_.add(where +
-                    ": the factor has nothing to multiply; give the blade a rule rigid, formula, field, sections or "
+                    ": the factor has nothing to multiply; give the "
+                    "blade a rule rigid, formula, field, sections or "
                     "target in [[motion]] or [[wheel.blade.motion]]");
     out_.motions.push_back(
         {std::move(made), std::move(timed), all, double(ahead.turned) / ahead.of, same_rules, std::move(name)});
@@ -243,8 +278,10 @@ class Setup {
       }
     }
     problems_.add(
-        fmt::format("{}: patches {} are those of no rule fixed, rigid, formula, field, sections, target, inflate or "
-                    "bulb in [[motion]]; a blade replaces such a rule with the same patches",
+        fmt::format("{}: patches {} are those of no rule fixed, rigid, "
+                    "formula, field, sections, target, inflate or "
+                    "bulb in [[motion]]; a blade replaces such a rule with the "
+                    "same patches",
                     rule.where, quote_list(rule.patches)));
   }
 
@@ -290,7 +327,7 @@ Motion WheelSetup::at(int number, Moment const& when) const {
     if (!timed.at) continue;
     std::string const& where = out.rules[r].where;
     if (!timed.end_wall && m.factor != 1)
-      out.rules[r].rule = scaled(timed, where, own, m.factor, out.axis);
+      out.rules[r].rule = scaled(timed, where, own, m.factor, pitch);
     else if (timed.changes)
       out.rules[r].rule = rule_at(timed, where, timed.end_wall ? when : own);
   }

@@ -1,6 +1,7 @@
 #include <gridmorph/app/cli/wheel_text.hpp>
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/report/measure_text.hpp>
 #include <gridmorph/report/quality_json.hpp>
 
@@ -60,6 +61,11 @@ std::string describe_rows(Mesh const& mesh, WheelRows const& rows, WheelSetup co
   std::string text;
   for (std::size_t r = 0; r < rows.rows.size(); ++r) {
     auto const zones = quote_list(zone_names(mesh, rows.rows[r]), 6);
+    if (RowPitch const& pitch = rows.rows[r].pitch; pitch.is_straight()) {
+      text += fmt::format("straight row of {}: {} passages, each shifted by {}\n", zones, setup.blades[r].passages,
+                          to_text(pitch.shift(), 6));
+      continue;
+    }
     text += rows.rows[r].periodic()
                 ? fmt::format("row of {}: {} of {} passages\n", zones, setup.blades[r].passages, rows.rows[r].passages)
                 : fmt::format("{}: no periodic interface, kept as it is\n", zones);
@@ -170,10 +176,14 @@ nlohmann::json wheel_steps_json(std::vector<WheelStep> const& steps) {
 nlohmann::json wheel_json(Mesh const& mesh, WheelRows const& rows, WheelSetup const& setup, WheelResult const& result) {
   nlohmann::json json{{"gridmorph", GRIDMORPH_VERSION}, {"nodes", result.nodes}, {"notes", result.notes}};
   json["rows"] = nlohmann::json::array();
-  for (std::size_t r = 0; r < rows.rows.size(); ++r)
-    json["rows"].push_back({{"zones", zone_names(mesh, rows.rows[r])},
-                            {"passages_of_wheel", rows.rows[r].passages},
-                            {"passages", setup.blades[r].passages}});
+  for (std::size_t r = 0; r < rows.rows.size(); ++r) {
+    nlohmann::json row{{"zones", zone_names(mesh, rows.rows[r])}, {"passages", setup.blades[r].passages}};
+    if (Vec3 const& shift = rows.rows[r].pitch.shift(); rows.rows[r].pitch.is_straight())
+      row["pitch"] = {shift.x, shift.y, shift.z};
+    else
+      row["passages_of_wheel"] = rows.rows[r].passages;
+    json["rows"].push_back(std::move(row));
+  }
   json["baseline"] = result.baseline;
   json["passages"] = nlohmann::json::array();
   for (std::size_t p = 0; p < result.passages.size(); ++p) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gridmorph/boundary/boundary.hpp>
-#include <gridmorph/motion/motion.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
 #include <array>
@@ -10,11 +9,14 @@
 
 namespace gridmorph {
 
-/// Fraction of the pitch from the lower periodic side (0) to the upper one (1), at the same place of the meridional plane. Made from
-/// the grid lines, or the edges of faces, in which patches (an inlet, say) meet the lower side; between their nodes the angle is linear.
+/// Fraction of the pitch from the lower periodic side (0) to the upper one (1),
+/// at the same place of the meridional plane. Made from the grid lines, or the
+/// edges of faces, in which patches (an inlet, say) meet the lower side;
+/// between their nodes the position along the pitch is linear. In a straight
+/// row that place is across the pitch.
 class PitchFraction {
  public:
-  PitchFraction(Boundary const& boundary, PassageLinks const& links, WheelRows const& rows, int row, Axis const& axis,
+  PitchFraction(Boundary const& boundary, PassageLinks const& links, WheelRows const& rows, int row,
                 std::vector<int> const& patches);
 
   [[nodiscard]] bool empty() const { return segments_.empty(); }
@@ -22,16 +24,11 @@ class PitchFraction {
   [[nodiscard]] double operator()(Vec3 const& p) const;
 
  private:
-  struct Place {
-    double axial, radius, angle;
-  };
   struct Segment {
-    Place from, to;
+    PlaceInRow from, to;
   };
-  [[nodiscard]] Place place(Vec3 const& p) const;
 
-  Vec3 origin_, direction_, zero_, quarter_;  ///< directions of axis, angle 0 and angle 90 degrees
-  int passages_;
+  RowPitch pitch_;
   std::vector<Segment> segments_;
 };
 
