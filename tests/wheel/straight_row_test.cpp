@@ -8,6 +8,7 @@
 
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/repeated_elements.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
 namespace gridmorph::test {
@@ -253,6 +254,111 @@ TEST(StraightRows, HaveOnePitch) {
   PassageLinks links = links_of(mesh);
   for (auto& pair : links.all.front().pairs) pair[1] = pair[0];  // a shift by nothing
   expect_all_in(message_of<MeshError>([&] { find_rows(mesh, links, Axis{}); }), {"periodic interface", "no shift"});
+}
+
+/// A plane passage with its blade on the floor: straight, or a sector of an annulus about z.
+Mesh plane_passage(int sectors, int layers = 3) {
+  constexpr int across = 12, high = 8;
+  Mesh mesh = flat_box(across, high, layers);
+  double const angle = sectors > 0 ? 2 * std::acos(-1.0) / sectors : 0;
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    double const x = mesh.coordinates.x(n) / across, y = 0.5 * mesh.coordinates.y(n) / high;
+    mesh.coordinates.set(n, sectors > 0 ? (1 + y) * Vec3{std::cos(angle * x), -std::sin(angle * x), 0} : Vec3{x, y, 0});
+  }
+  Patch floor = mesh.patches[2], blade = floor;
+  floor.name = "floor";
+  blade.name = "blade";
+  CsrGraph const faces = std::exchange(floor.faces, {});
+  blade.faces = {};
+  for (Index f = 0; f < faces.size(); ++f) (f >= 4 && f < 8 ? blade : floor).faces.add(faces[f]);
+  Patch const roof = mesh.patches[3];
+  mesh.patches = {blade, floor, roof};
+  Connection sides{"sides", {}, 0, 0, {}, {}, {}};
+  sides.periodic = sectors > 0 ? periodic_rotation({0, 0, 0}, {0, 0, 1}, -angle) : periodic_translation({1, 0, 0});
+  for (int j = 0; j <= high; ++j) {
+    sides.nodes.push_back(Index32(j * (across + 1)));
+    sides.donor_nodes.push_back(Index32(j * (across + 1) + across));
+  }
+  mesh.connections = {sides};
+  return mesh;
+}
+
+class PlaneRow : public WheelTest, public ::testing::WithParamInterface<int> {};
+
+/// Of 7 blades each: a wheel of that many sectors, and a row of that many passages.
+TEST_P(PlaneRow, IsAPlaneMeshOfPassagesEachAsMorphed) {
+  constexpr int n = 7;
+  bool const round = GetParam() > 0;
+  Mesh const mesh = plane_passage(GetParam());
+  write_mesh(folder.file("plane.cgns"), mesh);
+  // Nothing at the ends of the blade, a third and two thirds of the passage.
+  std::string const bump =
+      round ? "dr = \"-h * sin(10.5 * (theta + 2 * pi / 21))\"\n" : "dy = \"-h * sin(3 * pi * x)\"\n";
+  auto const case_of = [&](double h) {
+    return std::string("[mesh]\ninput = \"plane.cgns\"\noutput = \"morphed.cgns\"\naxis = ") +
+           (round ? "\"z\"" : "\"y\"") + "\n[[motion]]\npatches = \"blade\"\nrule = \"formula\"\n" + bump +
+           "constants = { h = " + std::to_string(h) + " }\n[[motion]]\npatches = \"type:periodic\"\nrule = \"fixed\"\n";
+  };
+  folder.write("wheel.toml", case_of(0.06) + "[wheel]\noutput = \"wheel.cgns\"\n" + (round ? "" : "passages = 7\n") +
+                                 "factors = [1, 0.5, 0, -0.5, 1, 1, 0]\n");
+  ASSERT_LE(gridmorph("wheel wheel.toml"), 1) << text("out") << text("err");
+  Mesh const row = read_mesh(folder.file("wheel.cgns"));
+  EXPECT_EQ(row.dimension, 2);
+  ASSERT_EQ(row.zones.size(), std::size_t(n));
+  EXPECT_EQ(row.n_elements(), n * mesh.n_elements());
+  int periodic = 0;
+  for (auto const& c : row.connections) {
+    periodic += c.periodic ? 1 : 0;
+    for (std::size_t k = 0; k < c.nodes.size() && !c.periodic; ++k)
+      EXPECT_TRUE(row.coordinates[c.nodes[k]] == row.coordinates[c.donor_nodes[k]]);
+  }
+  EXPECT_EQ(periodic, round ? 0 : 2);
+  RowPitch const pitch = round ? RowPitch(Axis{{0, 0, 0}, {0, 0, 1}}, n) : RowPitch(Vec3{1, 0, 0});
+  std::array<double, n> const factor{1, 0.5, 0, -0.5, 1, 1, 0};
+  for (int p = 0; p < n; ++p) {
+    folder.write("one.toml", case_of(0.06 * factor[std::size_t(p)]));
+    ASSERT_LE(gridmorph("morph one.toml"), 1) << text("err");
+    Mesh const one = read_mesh(folder.file("morphed.cgns"));
+    for (Index f = 0; f < mesh.patches.front().faces.size(); ++f)
+      for (Index32 const node : mesh.patches.front().faces[f]) {
+        Vec3 const back = pitch.times(-p)(row.coordinates[row.zones[std::size_t(p)].first_node + node]);
+        EXPECT_LT(distance(back, one.coordinates[node]), 1e-13) << p;
+      }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(StraightAndRound, PlaneRow, ::testing::Values(0, 7));
+
+/// As SU2 does it: a row of cells beyond the lower side, which are those below the upper side.
+TEST(StraightRows, LeaveOutElementsThatRepeatOthersAPitchAway) {
+  constexpr int across = 12, high = 8;
+  Mesh const mesh = plane_passage(0, high);
+  std::vector<Index32> beyond;
+  Mesh twice;
+  twice.dimension = 2;
+  twice.source = "twice";
+  twice.add_zone("plane", mesh.n_nodes() + high + 1);
+  twice.coordinates = Coordinates(twice.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) twice.coordinates.set(n, mesh.coordinates[n]);
+  for (int j = 0; j <= high; ++j) {
+    beyond.push_back(Index32(mesh.n_nodes() + j));
+    twice.coordinates.set(beyond.back(), mesh.coordinates[j * (across + 1) + across - 1] - Vec3{1, 0, 0});
+  }
+  for (Index e = 0; e < mesh.n_elements(); ++e)
+    twice.add_element(mesh.elements.type[std::size_t(e)], mesh.elements.nodes[e]);
+  for (int j = 0; j < high; ++j) {
+    auto const at = [&](int k) { return Index32(k * (across + 1)); };
+    twice.add_element(ElementType::quadrilateral,
+                      std::array{beyond[std::size_t(j)], at(j), at(j + 1), beyond[std::size_t(j + 1)]});
+  }
+  twice.patches = mesh.patches;
+  twice.connections = mesh.connections;
+  Connection inner{"inner", {}, 0, 0, {}, beyond, periodic_translation({-1, 0, 0})};
+  for (int j = 0; j <= high; ++j) inner.nodes.push_back(Index32(j * (across + 1) + across - 1));
+  twice.connections.push_back(inner);
+  EXPECT_EQ(leave_out_repeated_elements(twice), high);
+  expect_same_mesh(twice, mesh);
+  EXPECT_EQ(leave_out_repeated_elements(twice), 0);
 }
 
 }  // namespace
