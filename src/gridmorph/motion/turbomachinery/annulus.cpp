@@ -161,6 +161,10 @@ CylindricalMotion Annulus::motion(MeridionalPoint const& p, CylindricalMotion co
   return {there.axial - here.axial, there.radius - here.radius, c.angle_rad};
 }
 
+bool ends_row(PatchKind kind) {
+  return kind == PatchKind::inflow || kind == PatchKind::outflow || kind == PatchKind::connection;
+}
+
 std::vector<WallPiece> walls_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
                                     std::vector<bool> const& in_row, CylindricalFrame const& frame) {
   struct Extent {
@@ -172,7 +176,7 @@ std::vector<WallPiece> walls_of_row(Boundary const& boundary, SlipSurfaces const
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     int const s = surfaces.of_patch[p];
     Patch const& patch = mesh.patches[p];
-    if (s < 0 || !in_row[patch.zone]) continue;
+    if (s < 0 || !in_row[patch.zone] || ends_row(patch.kind)) continue;
     SlipSurface const& surface = surfaces.surfaces[s];
     bool const across = surface.kind == SlipSurface::Kind::plane && patch.kind == PatchKind::wall &&
                         norm(cross(surface.direction, frame.direction())) < parallel;

@@ -63,7 +63,11 @@ class Annulus {
   std::optional<FlowCoordinates> turning_;
 };
 
-/// Parts of the slip surfaces that the row's zones have: revolution, meridional, and walls on planes across the axis.
+/// Whether patches of this kind are the inlet, the exit or a mixing plane of a row: never its hub or case, also where they slip on a
+/// surface of revolution.
+bool ends_row(PatchKind kind);
+
+/// Parts of the slip surfaces of end walls that the row's zones have: revolution, meridional, and walls on planes across the axis.
 std::vector<WallPiece> walls_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
                                     std::vector<bool> const& in_row, CylindricalFrame const& frame);
 

@@ -34,12 +34,13 @@ std::vector<bool> zones_of_row(Boundary const& boundary, std::vector<int> const&
   return in_row;
 }
 
-std::vector<int> surfaces_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
-                                 std::vector<bool> const& in_row) {
+std::vector<int> end_walls_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
+                                  std::vector<bool> const& in_row) {
   Mesh const& mesh = boundary.mesh();
   std::set<int> found;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-    if (int const s = surfaces.of_patch[p]; s >= 0 && in_row[mesh.patches[p].zone]) found.insert(s);
+    if (int const s = surfaces.of_patch[p]; s >= 0 && in_row[mesh.patches[p].zone] && !ends_row(mesh.patches[p].kind))
+      found.insert(s);
   return {found.begin(), found.end()};
 }
 
@@ -138,7 +139,7 @@ std::vector<RigidTransform> periodic_transforms_of_row(Boundary const& boundary,
 Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
                        std::vector<int> const& blades) {
   std::vector<bool> const in_row = zones_of_row(boundary, blades);
-  return {surfaces, surfaces_of_row(boundary, surfaces, in_row), meridional_points(boundary, frame, blades),
+  return {surfaces, end_walls_of_row(boundary, surfaces, in_row), meridional_points(boundary, frame, blades),
           [&] { return walls_of_row(boundary, surfaces, in_row, frame); }};
 }
 
@@ -148,7 +149,7 @@ RowMotion::RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std
     : blades_(blades),
       frame_(frame_of_row(boundary, motion, blades)),
       row_zones_(zones_of_row(boundary, blades)),
-      annulus_(surfaces, surfaces_of_row(boundary, surfaces, row_zones_), meridional_points(boundary, frame_, blades),
+      annulus_(surfaces, end_walls_of_row(boundary, surfaces, row_zones_), meridional_points(boundary, frame_, blades),
                [&] { return walls_of_row(boundary, surfaces, row_zones_, frame_); }),
       sections_(make_sections(boundary, blades, frame_, annulus_, displacement, notes)),
       middle_(0.5 * (sections_.most_upstream() + sections_.most_downstream())),
