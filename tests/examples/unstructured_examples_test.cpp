@@ -121,6 +121,43 @@ TEST_F(UnstructuredExample, TurbineBladeTurnsRigidlyAndPeriodicSidesMoveAsOne) {
     for (Index32 const n : nodes_of(end)) EXPECT_TRUE(displacement(n) == Vec3()) << end;
 }
 
+/// Signed, of a plane element around its corners.
+double area(Mesh const& mesh, Index element) {
+  auto const corners = mesh.elements.corners(element);
+  double twice = 0;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    Vec3 const a = mesh.coordinates[corners[c]], b = mesh.coordinates[corners[(c + 1) % corners.size()]];
+    twice += a.x * b.y - a.y * b.x;
+  }
+  return 0.5 * twice;
+}
+
+TEST_F(UnstructuredExample, FivePassagesOfARowCoverItAndNoneCoversAnother) {
+  ASSERT_EQ(shell(run_command(meshes_, "vki_row")), 0) << contents(path("out")) << contents(path("vki_row/log.txt"));
+  Mesh const row = read_mesh(path("vki_row/vki_row.cgns")), one = read_mesh(mesh_of("vki_row", "mesh_vki_turbine.su2"));
+  EXPECT_EQ(row.dimension, 2);
+  // Of elements that lie a pitch apart the file has both; a passage has one.
+  Vec3 pitch;
+  for (Connection const& sides : one.connections)
+    if (sides.periodic) pitch = sides.periodic->declared(Vec3{});
+  ASSERT_GT(norm(pitch), 0);
+  std::set<std::pair<long, long>> places;
+  double of_passage = 0;
+  for (Index e = 0; e < one.n_elements(); ++e) {
+    Vec3 middle;
+    auto const corners = one.elements.corners(e);
+    for (Index32 const n : corners) middle += (1.0 / double(corners.size())) * one.coordinates[n];
+    auto const place = [](Vec3 const& p) { return std::pair(std::lround(p.x * 1e8), std::lround(p.y * 1e8)); };
+    bool const again = places.contains(place(middle + pitch)) || places.contains(place(middle - pitch));
+    places.insert(place(middle));
+    if (!again) of_passage += std::abs(area(one, e));
+  }
+  double whole = 0;
+  for (Index e = 0; e < row.n_elements(); ++e) whole += std::abs(area(row, e));
+  // Blades turn, and nothing else moves but along the pitch.
+  EXPECT_NEAR(whole / (5 * of_passage), 1, 1e-7);
+}
+
 TEST_F(UnstructuredExample, TheRowOfATurbineBladeGoesAlongWithIt) {
   ASSERT_NO_FATAL_FAILURE(run("vki_cascade", "mesh_vki_turbine.su2", "vki_cascade_morphed.su2"));
   // The chord is the longest distance on the blade.

@@ -249,6 +249,34 @@ TEST(StraightRows, CountUpwardsWhicheverSideTheFileNamesFirst) {
   }
 }
 
+/// Two components of the pitch are as large as each other but for round-off, which differs from side to side.
+TEST(StraightRows, OfPitchesAtFortyFiveDegreesGoOneWay) {
+  Mesh mesh = cascade();
+  PassageLinks links = links_of(mesh);
+  std::erase_if(links.all, [](PassageLink const& link) { return !link.periodic; });
+  links.all.resize(1);
+  PassageLink &one = links.all.front(), other = one;
+  auto const half = one.pairs.begin() + std::ptrdiff_t(one.pairs.size() / 2);
+  other.pairs.assign(half, one.pairs.end());
+  one.pairs.erase(half, one.pairs.end());
+  links.all.push_back(other);
+  for (double const noise : {1e-13, -1e-13}) {
+    Mesh skew = mesh;
+    skew.coordinates = Coordinates(mesh.n_nodes());
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      Vec3 const p = mesh.coordinates[n];
+      skew.coordinates.set(n, {p.x, p.y - p.z, p.z});
+    }
+    for (auto const& [own, donor] : links.all.back().pairs) {
+      Vec3 const p = skew.coordinates[donor];
+      skew.coordinates.set(donor, {p.x, p.y + noise, p.z});
+    }
+    WheelRows const rows = find_rows(skew, links, Axis{});
+    EXPECT_EQ(rows.pitches_of_link[0], rows.pitches_of_link[1]);
+    EXPECT_NEAR(norm(rows.rows.front().pitch.shift()), std::sqrt(2) * cascade_pitch, 1e-12);
+  }
+}
+
 TEST(StraightRows, HaveOnePitch) {
   Mesh mesh = cascade();
   PassageLinks links = links_of(mesh);

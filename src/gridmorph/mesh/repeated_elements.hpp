@@ -13,6 +13,6 @@ namespace gridmorph {
 /// in Mesh::notes how many. Meshes with blocks or polyhedra stay as they are.
 /// Returns the number of elements left out. Cost: O(n log n) in the nodes of
 /// periodic connections, and the elements once.
-Index leave_out_repeated_elements(Mesh &mesh);
+Index leave_out_repeated_elements(Mesh& mesh);
 
-} // namespace gridmorph
+}  // namespace gridmorph

@@ -133,9 +133,10 @@ class RowFinder {
 
   void shifts(std::size_t l, Vec3 const& shift) {
     PassageLink const& link = links_.all[l];
-    int const way = way_of(shift);
-    out_.pitches_of_link[l] = way;
     Shifts& row = shifts_[std::size_t(out_.row_of_zone[link.zone])];
+    // As the first of the row: of two components that are as large round-off would choose anew for each.
+    int const way = row.links == 0 ? way_of(shift) : (dot(shift, row.first) > 0 ? 1 : -1);
+    out_.pitches_of_link[l] = way;
     Vec3 const pitch = double(way) * shift;
     if (row.links == 0) row.first = pitch;
     if (distance(pitch, row.first) > 2 * link.tolerance)
