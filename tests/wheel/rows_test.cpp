@@ -1,5 +1,4 @@
-// Turns, blade rows and coincident nodes of a wheel, on the demo passage and on
-// made-up axes.
+// Turns, blade rows and coincident nodes of a wheel, on the demo passage and on made-up axes.
 #include "support/expect_error.hpp"
 
 #include <generators/passage.hpp>

@@ -1,5 +1,4 @@
-// Straight rows: passages whose periodic sides are a translation apart, of
-// blocks, of hexahedra and of plane elements.
+// Straight rows: passages whose periodic sides are a translation apart, of blocks, of hexahedra and of plane elements.
 #include "support/cascade.hpp"
 #include "support/expect_error.hpp"
 #include "support/unstructured_meshes.hpp"
@@ -117,8 +116,7 @@ TEST_F(StraightRow, HasItsEndsPeriodicByAllPitches) {
       EXPECT_EQ(c.translation[1], 0);
       EXPECT_NEAR(std::abs(c.translation[2]), passages * cascade_pitch, 1e-6);
     }
-    // The ends as a reader finds them: node by node, to the tolerance of every
-    // other mesh.
+    // The ends as a reader finds them: node by node, to the tolerance of every other mesh.
     Mesh whole = read_mesh(folder.file("wheel.cgns"));
     auto const links = passage_links(whole, connect_and_check(whole, {}), {});
     for (auto const& link : links.all) EXPECT_LT(link.mismatch, 1e-14 * size());
@@ -147,8 +145,7 @@ TEST_F(StraightRow, HasOnEveryBladeItsOwnMotion) {
   EXPECT_GT(apart, 1e-2 * size());
 }
 
-/// Blades that move along the pitch as a whole: between them every node moves
-/// by the share that its place along the pitch gives.
+/// Blades that move along the pitch as a whole: between them every node moves by the share that its place along the pitch gives.
 TEST_F(StraightRow, SharesLinearlyAlongThePitch) {
   folder.write("shift.toml", case_of("passage.cgns", "dx = \"0.04\"\ndz = \"0.1\"\n"));
   std::array<double, n_blades> const factor{1, 0, -0.5, 0.25, 1};

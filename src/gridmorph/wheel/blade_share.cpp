@@ -82,9 +82,8 @@ class Row {
     return {out.begin(), out.end()};
   }
 
-  /// Patches that meet are of one blade. A patch whose nodes are `a` passages
-  /// ahead meets another whose nodes are `b` ahead: their blades' numbers
-  /// differ by a - b.
+  /// Patches that meet are of one blade. A patch whose nodes are `a` passages ahead meets another whose nodes are `b` ahead:
+  /// their blades' numbers differ by a - b.
   void number_blades(SharedNodes const& all) {
     struct Meeting {
       int patch, offset;
@@ -121,10 +120,10 @@ class Row {
             number[other] = expected;
             blade.push_back(other);
           } else if (number[other] != expected) {
-            throw MotionError("blade " + describe_patch(mesh_, mesh_.patches[blades_[start]]) +
-                              " hangs together with the blade of the next passage, so the "
-                              "two cannot move differently; name the "
-                              "blade alone in `of`, without hub and case");
+            throw MotionError(
+                "blade " + describe_patch(mesh_, mesh_.patches[blades_[start]]) +
+                " hangs together with the blade of the next passage, so the two cannot move differently; name the "
+                "blade alone in `of`, without hub and case");
           }
         }
       // Blade p stands at the lower side of passage p, where it touches one.

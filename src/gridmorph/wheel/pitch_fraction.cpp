@@ -30,8 +30,7 @@ Edges edges_of_line(Mesh const& mesh, Patch const& patch, PassageLink const& lin
   return out;
 }
 
-/// Of a patch of elements: those of its faces whose ends the link has. Patches
-/// of a plane mesh meet it in single nodes.
+/// Of a patch of elements: those of its faces whose ends the link has. Patches of a plane mesh meet it in single nodes.
 Edges edges_of_faces(Boundary const& boundary, int patch, PassageLink const& link) {
   std::vector<Index> side;
   for (auto const& pair : link.pairs) side.push_back(pair[0]);
@@ -88,8 +87,7 @@ double PitchFraction::operator()(Vec3 const& p) const {
       along_side = s.from.along + t * (s.to.along - s.from.along);
     }
   }
-  // Of all the turns that the difference leaves open, the one nearest to the
-  // middle of the passage.
+  // Of all the turns that the difference leaves open, the one nearest to the middle of the passage.
   return std::clamp(pitch_.pitches_near(at.along - along_side, 0.5), 0.0, 1.0);
 }
 

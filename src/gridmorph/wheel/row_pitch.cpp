@@ -8,8 +8,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Angles about x, y, z (CGNS SIDS: x first) of a turn; a turn about a
-/// coordinate axis keeps its angle as it is.
+/// Angles about x, y, z (CGNS SIDS: x first) of a turn; a turn about a coordinate axis keeps its angle as it is.
 Vec3 angles_of(Vec3 const& d, RigidTransform const& t, double angle) {
   if (std::abs(d.x) == 1 || std::abs(d.y) == 1 || std::abs(d.z) == 1) return angle * d;
   auto const& m = t.rotation.m;

@@ -1,5 +1,4 @@
-// How the passages of a row stand beside each other: round the machine axis, or
-// along a straight line.
+// How the passages of a row stand beside each other: round the machine axis, or along a straight line.
 #pragma once
 
 #include <gridmorph/geometry/axis.hpp>
@@ -10,8 +9,7 @@
 
 namespace gridmorph {
 
-/// Some pitches of a row: a turn about its axis, or a shift. No pitch gives
-/// back a point bit for bit.
+/// Some pitches of a row: a turn about its axis, or a shift. No pitch gives back a point bit for bit.
 class Pitches {
  public:
   explicit Pitches(Turn const& turn) : turn_(turn) {}
@@ -25,8 +23,7 @@ class Pitches {
   bool shifts_ = false;
 };
 
-/// Where a point lies in its row. Points that differ in `along` alone are at
-/// the same place of different passages, or beside each other.
+/// Where a point lies in its row. Points that differ in `along` alone are at the same place of different passages, or beside each other.
 struct PlaceInRow {
   double first, second;  ///< wheel: axial position and radius; straight row:
                          ///< across the pitch [length]
@@ -57,16 +54,13 @@ class RowPitch {
   [[nodiscard]] Periodic periodic(int pitches) const;
 
   [[nodiscard]] PlaceInRow place(Vec3 const& p) const;
-  /// Difference of two `along`, of all that full turns leave open the nearest
-  /// to `near`.
+  /// Difference of two `along`, of all that full turns leave open the nearest to `near`.
   [[nodiscard]] double pitches_near(double difference, double near) const {
     return is_straight() ? difference : near + std::remainder(difference - near, double(passages_));
   }
 
-  /// (1 - w) of a and w of b for the point x: in a wheel in cylindrical
-  /// components, so that two motions that keep radius or axial position share
-  /// to one that does; in a straight row in Cartesian ones. Equal motions come
-  /// back bit for bit.
+  /// (1 - w) of a and w of b for the point x: in a wheel in cylindrical components, so that two motions that keep radius or axial position share to
+  /// one that does; in a straight row in Cartesian ones. Equal motions come back bit for bit.
   [[nodiscard]] Vec3 share_motion(Vec3 const& x, Vec3 const& a, Vec3 const& b, double w) const;
 
  private:

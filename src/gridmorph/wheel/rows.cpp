@@ -14,8 +14,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Angle of a rotation about the unit direction d, in (-pi, pi]; meaningful
-/// when d is its axis.
+/// Angle of a rotation about the unit direction d, in (-pi, pi]; meaningful when d is its axis.
 double angle_about(Vec3 const& d, Mat3 const& r) {
   Vec3 const twice_sine{r.m[2][1] - r.m[1][2], r.m[0][2] - r.m[2][0], r.m[1][0] - r.m[0][1]};
   return std::atan2(dot(d, twice_sine), r.m[0][0] + r.m[1][1] + r.m[2][2] - 1);
@@ -34,8 +33,7 @@ WheelRows connected_zones(Mesh const& mesh, PassageLinks const& links) {
   return out;
 }
 
-/// What a link shifts its nodes by where it does so to its tolerance: the mean
-/// over them.
+/// What a link shifts its nodes by where it does so to its tolerance: the mean over them.
 std::optional<Vec3> shift_of(Mesh const& mesh, PassageLink const& link) {
   Vec3 mean{};
   for (auto const& [own, donor] : link.pairs)
@@ -47,8 +45,7 @@ std::optional<Vec3> shift_of(Mesh const& mesh, PassageLink const& link) {
   return mean;
 }
 
-/// 1 where the largest component is positive, so that both sides of a file
-/// agree which way a straight row goes.
+/// 1 where the largest component is positive, so that both sides of a file agree which way a straight row goes.
 int way_of(Vec3 const& shift) {
   double largest = shift.x;
   for (double const c : {shift.y, shift.z})
@@ -74,8 +71,7 @@ class RowFinder {
       PassageLink const& link = links_.all[l];
       if (!link.periodic) continue;
       double const angle = angle_about(direction_, link.transform.rotation);
-      // A whole turn is a wheel already; no turn about this axis is a
-      // translation, or a rotation about another one.
+      // A whole turn is a wheel already; no turn about this axis is a translation, or a rotation about another one.
       double const count = 2 * std::numbers::pi / std::abs(angle);
       int const passages = count < 1e6 ? int(std::lround(count)) : 0;
       if (passages > 1)

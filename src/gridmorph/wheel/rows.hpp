@@ -1,5 +1,4 @@
-// Blade rows of a sector mesh: which zones belong together, and how many of
-// their passages make a wheel.
+// Blade rows of a sector mesh: which zones belong together, and how many of their passages make a wheel.
 #pragma once
 
 #include <gridmorph/motion/motion.hpp>
@@ -10,8 +9,7 @@
 
 namespace gridmorph {
 
-/// Zones that hang together by 1-to-1 interfaces or connections, periodic ones
-/// included.
+/// Zones that hang together by 1-to-1 interfaces or connections, periodic ones included.
 struct WheelRow {
   std::vector<int> zones;  ///< ascending
   int passages = 1;        ///< that make 360 degrees; 1 for zones without a periodic
@@ -27,8 +25,8 @@ struct WheelRows {
   /// their motions are shared by. That of a turn by 360 degrees where there is
   /// none.
   [[nodiscard]] RowPitch any_pitch(Axis const& axis) const;
-  std::vector<int> pitches_of_link;  ///< per PassageLinks::all: the donor is where own nodes
-                                     ///< are after so many pitches (0, 1, -1)
+  std::vector<int>
+      pitches_of_link;  ///< per PassageLinks::all: the donor is where own nodes are after so many pitches (0, 1, -1)
 };
 
 /// Finds the rows and checks that the periodic links of each turn by one pitch,

@@ -37,8 +37,7 @@ void Seams::close(int passage, Coordinates& x) {
     if (gap > gap_.distance) gap_ = {gap, m.node, passage};
     x.set(m.node, decided);
   }
-  // Forget what no later passage meets: later ones reach down to passage + 1 +
-  // lowest_, and round the end to the first ones.
+  // Forget what no later passage meets: later ones reach down to passage + 1 + lowest_, and round the end to the first ones.
   std::erase_if(open_, [&](auto const& entry) {
     int const count = entry.first;
     bool const met_ahead = count >= passage + 1 + lowest_;

@@ -1,5 +1,4 @@
-// Coordinates of coincident nodes of a wheel: one passage decides, the others
-// copy.
+// Coordinates of coincident nodes of a wheel: one passage decides, the others copy.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
@@ -22,15 +21,13 @@ struct SeamGap {
 /// one again. The two ends of a part of a wheel are each other, that part's
 /// pitches apart.
 ///
-/// Memory: 24 bytes per interface node, for the two or three passages that are
-/// not closed yet and for the first one.
+/// Memory: 24 bytes per interface node, for the two or three passages that are not closed yet and for the first one.
 class Seams {
  public:
   /// passages: how many are made. `shared` covers all rows.
   Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows, int row, int passages);
 
-  /// Replaces the positions of the row's nodes that an earlier one decides;
-  /// positions are in the wheel's frame.
+  /// Replaces the positions of the row's nodes that an earlier one decides; positions are in the wheel's frame.
   void close(int passage, Coordinates& x);
 
   [[nodiscard]] SeamGap const& largest_gap() const { return gap_; }

@@ -7,8 +7,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Union-find whose members know how many passages they are ahead of their
-/// root: (n, p) is the point (root, p + offset).
+/// Union-find whose members know how many passages they are ahead of their root: (n, p) is the point (root, p + offset).
 class Unions {
  public:
   explicit Unions(std::size_t n) : parent_(n), offset_(n, 0), axis_(n, 0) {
@@ -42,8 +41,7 @@ class Unions {
       if (!pitch.comes_round(shift)) axis_[x.root] = 1;
       return;
     }
-    // The smaller number stays the root, so that the result does not depend on
-    // the order of the links.
+    // The smaller number stays the root, so that the result does not depend on the order of the links.
     if (y.root < x.root) {
       parent_[x.root] = y.root;
       offset_[x.root] = shift;

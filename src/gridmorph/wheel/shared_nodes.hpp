@@ -1,5 +1,4 @@
-// Nodes that coincide in a wheel: within a passage, and between neighbouring
-// ones.
+// Nodes that coincide in a wheel: within a passage, and between neighbouring ones.
 #pragma once
 
 #include <gridmorph/wheel/rows.hpp>
@@ -19,14 +18,12 @@ class SharedNodes {
     int offset = 0;
   };
 
-  /// periodic = false: plain links alone, so that all offsets are zero. Cost:
-  /// O(n log n) in the nodes of links.
+  /// periodic = false: plain links alone, so that all offsets are zero. Cost: O(n log n) in the nodes of links.
   SharedNodes(PassageLinks const& links, WheelRows const& rows, bool periodic);
 
   [[nodiscard]] std::vector<Member> const& members() const { return members_; }  ///< ascending by node
   [[nodiscard]] int n_groups() const { return int(on_axis_.size()); }
-  /// A point on the axis: it is the same in every passage, and offsets mean
-  /// nothing.
+  /// A point on the axis: it is the same in every passage, and offsets mean nothing.
   [[nodiscard]] bool on_axis(int group) const { return on_axis_[group] != 0; }
   /// nullptr for nodes of no link.
   [[nodiscard]] Member const* find(Index node) const;

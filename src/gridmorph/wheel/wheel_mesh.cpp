@@ -98,8 +98,7 @@ class Builder {
     }
   }
 
-  /// Per face of a patch of elements the periodic link of its zone on whose
-  /// side it lies, or -1; of a patch of nodes one entry.
+  /// Per face of a patch of elements the periodic link of its zone on whose side it lies, or -1; of a patch of nodes one entry.
   [[nodiscard]] std::vector<int> sides_of(Patch const& patch) const {
     std::vector<int> out(std::size_t(std::max<Index>(1, patch.faces.size())), -1);
     for (int const l : links_.of_zone[patch.zone]) {
@@ -119,8 +118,7 @@ class Builder {
     return out;
   }
 
-  /// What a patch has in a passage; nothing where all of it lies between
-  /// passages.
+  /// What a patch has in a passage; nothing where all of it lies between passages.
   [[nodiscard]] std::optional<Patch> without_seams(Patch const& patch, std::vector<int> const& sides,
                                                    int passage) const {
     auto const between = [&](int link) { return link >= 0 && !is_end(link, patch.zone, passage); };
@@ -151,8 +149,7 @@ class Builder {
     for (int const l : links_.of_zone[zone]) {
       PassageLink const& link = links_.all[l];
       AnyConnection const& from = stored[link.connection];
-      // A connection that the file stores once gets the same name on its other
-      // side, unless that is taken there.
+      // A connection that the file stores once gets the same name on its other side, unless that is taken there.
       std::string name = from.name;
       for (int n = 2; !taken.insert(name).second; ++n) {
         std::string const number = "_" + std::to_string(n);

@@ -1,5 +1,4 @@
-// The mesh of a wheel, all but its coordinates: zones, patches and connections
-// of every passage.
+// The mesh of a wheel, all but its coordinates: zones, patches and connections of every passage.
 #pragma once
 
 #include <gridmorph/wheel/rows.hpp>
@@ -16,8 +15,7 @@ struct WheelZone {
 };
 
 struct WheelMesh {
-  Mesh mesh;                     ///< no coordinates. Zones of elements share the nodes and the
-                                 ///< elements of their zone of the sector
+  Mesh mesh;  ///< no coordinates. Zones of elements share the nodes and the elements of their zone of the sector
   std::vector<WheelZone> zones;  ///< per Mesh::zones; passage after passage
 
   /// Of all zones.

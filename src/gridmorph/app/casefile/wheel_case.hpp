@@ -1,5 +1,4 @@
-// [wheel] of a case file: how many passages, and which blade stands in which of
-// them.
+// [wheel] of a case file: how many passages, and which blade stands in which of them.
 #pragma once
 
 #include <gridmorph/app/casefile/timed_rule.hpp>
@@ -29,8 +28,7 @@ struct WheelRowCase {
                                        ///< wheel; empty: as [[motion]] says
   std::optional<int> nodal_diameters;  ///< of the wave in which the blades move over time
   std::string where_diameters;
-  std::vector<double> factors;  ///< on the displacement as WheelBlade::factor,
-                                ///< repeated likewise; empty: 1
+  std::vector<double> factors;  ///< on the displacement as WheelBlade::factor, repeated likewise; empty: 1
   std::string where;
 };
 

@@ -1,5 +1,5 @@
-// The passage of a wheel, as `gridmorph wheel` sees it whatever kind its mesh
-// is: blocks are in wheel_blocks.cpp, elements in wheel_elements.cpp.
+// The passage of a wheel, as `gridmorph wheel` sees it whatever kind its mesh is: blocks are in wheel_blocks.cpp, elements in
+// wheel_elements.cpp.
 #pragma once
 
 #include <gridmorph/app/any_mesh.hpp>
@@ -22,14 +22,12 @@ class PassagePlan {
   [[nodiscard]] virtual PassageMotions const& passages() const = 0;
   /// The same motions at another time: passages() is then of that.
   virtual void move(std::vector<Motion> const& motions) = 0;
-  /// What a motion, number m at any time, gives the nodes of passages() where
-  /// the whole wheel has that blade.
+  /// What a motion, number m at any time, gives the nodes of passages() where the whole wheel has that blade.
   [[nodiscard]] virtual std::vector<Vec3> displacement(int m, Motion const& motion) const = 0;
   [[nodiscard]] virtual std::vector<std::string> const& notes() const = 0;
   [[nodiscard]] virtual NearCells near() const = 0;
-  /// Moves the sector from its baseline by what a passage's boundary does, and
-  /// smooths around cells that came out bad where this kind of mesh always
-  /// does.
+  /// Moves the sector from its baseline by what a passage's boundary does, and smooths around cells that came out bad where this kind of
+  /// mesh always does.
   virtual RelaxReport morph(std::vector<Vec3> const& boundary, Coordinates& morphed) = 0;
   [[nodiscard]] virtual MeshForMessages for_messages() const = 0;
 };
@@ -51,8 +49,7 @@ class PassageMesh {
   /// Of some zones of a passage in its place: neither turns nor shifts change a
   /// sign.
   [[nodiscard]] virtual Certificate certify(Coordinates const& placed, std::vector<int> const& zones) const = 0;
-  /// The case file and the mesh must outlive the plan. Throws MeshError,
-  /// MotionError, PlanError.
+  /// The case file and the mesh must outlive the plan. Throws MeshError, MotionError, PlanError.
   [[nodiscard]] virtual std::unique_ptr<PassagePlan> plan(CaseFile const& case_file, WheelRows const& rows,
                                                           WheelSetup const& setup) const = 0;
 };

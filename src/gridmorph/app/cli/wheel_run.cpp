@@ -28,8 +28,7 @@ void place_zone(Exec const& exec, Zone const& zone, Pitches const& pitches, Coor
       [&](Index n) { to.set(n, pitches(from[n])); });
 }
 
-/// Adds what one passage gives; `zones`: numbers in the wheel of the zones of
-/// its sector.
+/// Adds what one passage gives; `zones`: numbers in the wheel of the zones of its sector.
 void add_passage(Certificate& wheel, Certificate const& passage, std::map<int, int> const& zones) {
   if (wheel.holds() && !passage.holds()) {
     wheel.broken = passage.broken;
@@ -88,8 +87,7 @@ void WheelRun::prepare() {
   terminal_.expect({});
 }
 
-/// Passages of a wave are one period of one motion, so that the last blade
-/// meets the first.
+/// Passages of a wave are one period of one motion, so that the last blade meets the first.
 void WheelRun::check_wave() const {
   if (!setup_.has_wave()) return;
   for (std::size_t m = 0; m < setup_.motions.size(); ++m) {
@@ -106,10 +104,8 @@ void WheelRun::check_wave() const {
       constexpr double same = 1e-9;  // of the displacement: phases are rounded
       if (gap > same * std::max(size, 1e-6 * sector_->links().mesh_size))
         throw MotionError(
-            fmt::format("{}: nodal_diameters: what the rules say at t = {:.9g} and a "
-                        "period ({:.6g}) later differs by "
-                        "{:.3g}, so that the last blade of the wave would not meet the "
-                        "first; give motions that "
+            fmt::format("{}: nodal_diameters: what the rules say at t = {:.9g} and a period ({:.6g}) later differs by "
+                        "{:.3g}, so that the last blade of the wave would not meet the first; give motions that "
                         "repeat with the period of [sequence] (whole numbers of harmonic)",
                         case_.source.string(), when.time, setup_.period, gap));
     }
@@ -122,8 +118,7 @@ void WheelRun::move_to(int step) {
   step_ = step;
 }
 
-/// Where the worst passage falls short: other recipes for it, and the best of
-/// them for all passages and steps.
+/// Where the worst passage falls short: other recipes for it, and the best of them for all passages and steps.
 void WheelRun::retry() {
   auto const trial_of = [&](PassagePlan& by, std::vector<Vec3> const& boundary) {
     (void)morph(by, boundary, morphed_);
@@ -217,8 +212,7 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
   exec_.fence();
   double mismatch = 0;
   for (PassageLink const& link : sector_->links().all) mismatch = std::max(mismatch, link.mismatch);
-  // Copies may differ by as much as the interfaces of the sector mesh do, and
-  // as rules that agree.
+  // Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
   double const tolerance =
       4 * mismatch + std::max(1e-8, case_.motion.conformity_tolerance) * sector_->links().mesh_size;
   for (int r = 0; r < int(seams.size()); ++r) {
@@ -228,8 +222,7 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
     if (own.distance > gap.distance) gap = own;
     if (own.distance > tolerance)
       throw MotionError(
-          fmt::format("passage {} and its neighbour move the node they share at {} apart "
-                      "by {:.3g}; a blade on a "
+          fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
                       "periodic side must move alike on both sides of the passage{}",
                       own.passage + 1, describe_node(mesh_, own.node), own.distance,
                       rows_.rows[r].pitch.is_straight() ? "" : ", in cylindrical components"));
@@ -270,9 +263,8 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
       made.passages.push_back(same < p ? made.passages[same] : measure(boundary, morphed_));
       if (same == p && relaxed.before > 0)
         made.notes.push_back(
-            fmt::format("passage {}: {} {}; displacements around them are "
-                        "smoothed in {} rounds, {} are left",
-                        p + 1, relaxed.before, sector_->kind().lost, relaxed.rounds, relaxed.after));
+            fmt::format("passage {}: {} {}; displacements around them are smoothed in {} rounds, {} are left", p + 1,
+                        relaxed.before, sector_->kind().lost, relaxed.rounds, relaxed.after));
     } else {
       made.passages.push_back(made.passages.back());
     }
@@ -307,8 +299,7 @@ WheelResult WheelRun::result(WheelMade made) {
   return out;
 }
 
-/// Of a passage in its place, closed to its neighbours. `zones`: those of the
-/// sector that it has.
+/// Of a passage in its place, closed to its neighbours. `zones`: those of the sector that it has.
 void WheelRun::certify_zones(std::map<int, int> const& zones, Certificate& wheel) {
   std::vector<int> own;
   for (auto const& [of_sector, of_wheel] : zones) own.push_back(of_sector);
@@ -334,10 +325,8 @@ std::string wheel_text(WheelRun const& run, WheelResult const& result) {
   for (auto const& note : result.notes) text += "note: " + note + "\n";
   text += describe_rows(run.sector().mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
   text += certificate_text(result.whole);
-  text += fmt::format(
-      "\nlargest distance of coincident nodes before one took "
-      "over the other's position: {:.3g}\n",
-      result.gap.distance);
+  text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
+                      result.gap.distance);
   return text + "\n" + format_times(result.times, result.nodes);
 }
 

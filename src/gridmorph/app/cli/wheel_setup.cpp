@@ -18,8 +18,7 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// Walls between which the blades stand are the same for all, and rules that
-/// follow others do so by themselves.
+/// Walls between which the blades stand are the same for all, and rules that follow others do so by themselves.
 bool is_of_blade(TimedRule const& timed) { return timed.at && !timed.end_wall; }
 
 /// A rule times a factor: rigid motions and sections by their parameters,
@@ -80,9 +79,7 @@ class Setup {
         place(row, r);
       }
       if (!any)
-        problems_.add(row.where +
-                      ": zones: names no zone of a row with periodic "
-                      "interfaces; there are " +
+        problems_.add(row.where + ": zones: names no zone of a row with periodic interfaces; there are " +
                       periodic_zones());
     }
     for (int r = 0; r < int(rows_.rows.size()); ++r)
@@ -133,18 +130,15 @@ class Setup {
     std::string const zone = mesh_.zones[rows_.rows[r].zones.front()].name;
     if (row.passages == 0 && need_number(r, row.where)) return;
     if (!rows_.rows[r].pitch.is_straight() && row.passages > rows_.rows[r].passages) {
-      problems_.add(
-          fmt::format("{}: passages: {} asked for, but the row of "
-                      "zone '{}' has {} in 360 degrees",
-                      row.where, row.passages, zone, rows_.rows[r].passages));
+      problems_.add(fmt::format("{}: passages: {} asked for, but the row of zone '{}' has {} in 360 degrees", row.where,
+                                row.passages, zone, rows_.rows[r].passages));
       return;
     }
     if (row.passages > 0) blades.passages = row.passages;
     auto const fits = [&](std::size_t length, char const* key) {
       if (length == 0 || std::size_t(blades.passages) % length == 0) return true;
       problems_.add(
-          fmt::format("{}: {}: has {} entries, which do not go evenly into the "
-                      "{} passages of the row of zone '{}'",
+          fmt::format("{}: {}: has {} entries, which do not go evenly into the {} passages of the row of zone '{}'",
                       row.where, key, length, blades.passages, zone));
       return false;
     };
@@ -160,8 +154,7 @@ class Setup {
             std::find_if(wheel_.blades.begin(), wheel_.blades.end(), [&](auto const& b) { return b.name == name; });
         blade = int(at - wheel_.blades.begin());
       }
-      // Parts of a turn as whole numbers, so that passages in phase have one
-      // motion.
+      // Parts of a turn as whole numbers, so that passages in phase have one motion.
       int const turned = int(((std::int64_t(p) * diameters) % whole + whole) % whole);
       int const part = std::gcd(turned, whole);
       blades.blades.push_back(motion(blade, row.factors.empty() ? 1 : row.factors[p % row.factors.size()],
@@ -175,12 +168,10 @@ class Setup {
       return false;
     });
     if (!moves)
-      problems_.add(
-          fmt::format("{}: nodal_diameters: no blade of the row of zone '{}' "
-                      "moves with time, so that there is no wave; give its "
-                      "rule modes, an amplitude over time or t in a formula, "
-                      "or remove the key",
-                      row.where_diameters, zone));
+      problems_.add(fmt::format(
+          "{}: nodal_diameters: no blade of the row of zone '{}' moves with time, so that there is no wave; give its "
+          "rule modes, an amplitude over time or t in a formula, or remove the key",
+          row.where_diameters, zone));
   }
 
   [[nodiscard]] bool is_in_row(MotionRule const& rule, int r) const {
@@ -196,8 +187,7 @@ class Setup {
     if (2 * std::abs(std::int64_t(diameters)) > whole) {
       int const alias = int(std::remainder(double(diameters), double(whole)));
       problems_.add(
-          fmt::format("{}: nodal_diameters: the row of zone '{}' has "
-                      "{} blades, which tell waves of {} to {} nodal "
+          fmt::format("{}: nodal_diameters: the row of zone '{}' has {} blades, which tell waves of {} to {} nodal "
                       "diameters apart, "
                       "found {}; to these blades that is {}",
                       row.where_diameters, zone, whole, -(whole / 2), whole / 2, diameters, alias));
@@ -205,11 +195,10 @@ class Setup {
     }
     int const wave = whole / std::gcd(diameters, whole);
     if (passages % wave == 0) return true;
-    problems_.add(
-        fmt::format("{}: nodal_diameters: the ends of {} of {} passages do not "
-                    "match in a wave of {} nodal diameters; use "
-                    "passages = {} or a multiple of it",
-                    row.where_diameters, passages, whole, diameters, wave));
+    problems_.add(fmt::format(
+        "{}: nodal_diameters: the ends of {} of {} passages do not match in a wave of {} nodal diameters; use "
+        "passages = {} or a multiple of it",
+        row.where_diameters, passages, whole, diameters, wave));
     return false;
   }
 
@@ -230,8 +219,7 @@ class Setup {
     auto operator<=>(Ahead const&) const = default;
   };
 
-  /// Number of a blade's motion; equal blades have one. where: of the row that
-  /// asks for it.
+  /// Number of a blade's motion; equal blades have one. where: of the row that asks for it.
   int motion(int blade, double factor, Ahead ahead, std::string where) {
     auto const [at, fresh] = known_.try_emplace({blade, factor, ahead}, int(out_.motions.size()));
     if (!fresh) return at->second;
@@ -257,8 +245,7 @@ class Setup {
     if (ahead.turned != 0) name += fmt::format("{}{:g} deg", name.empty() ? "" : " ", 360.0 * ahead.turned / ahead.of);
     if (all != 1 && !stands && std::none_of(timed.begin(), timed.end(), is_of_blade))
       problems_.add(where +
-                    ": the factor has nothing to multiply; give the "
-                    "blade a rule rigid, formula, field, sections or "
+                    ": the factor has nothing to multiply; give the blade a rule rigid, formula, field, sections or "
                     "target in [[motion]] or [[wheel.blade.motion]]");
     out_.motions.push_back(
         {std::move(made), std::move(timed), all, double(ahead.turned) / ahead.of, same_rules, std::move(name)});
@@ -278,10 +265,8 @@ class Setup {
       }
     }
     problems_.add(
-        fmt::format("{}: patches {} are those of no rule fixed, rigid, "
-                    "formula, field, sections, target, inflate or "
-                    "bulb in [[motion]]; a blade replaces such a rule with the "
-                    "same patches",
+        fmt::format("{}: patches {} are those of no rule fixed, rigid, formula, field, sections, target, inflate or "
+                    "bulb in [[motion]]; a blade replaces such a rule with the same patches",
                     rule.where, quote_list(rule.patches)));
   }
 

@@ -1,5 +1,4 @@
-// From [wheel] of a case file to the motions of the blades and the places they
-// stand in.
+// From [wheel] of a case file to the motions of the blades and the places they stand in.
 #pragma once
 
 #include <gridmorph/app/casefile/case_file.hpp>
@@ -12,8 +11,7 @@ namespace gridmorph::cli {
 
 /// One of the different blades of a wheel, over time.
 struct WheelBladeMotion {
-  Motion motion;  ///< of the case file, with the blade's own rules in place, as
-                  ///< they stand
+  Motion motion;  ///< of the case file, with the blade's own rules in place, as they stand
   std::vector<TimedRule> timed;
   double factor = 1;
   double ahead = 0;  ///< of the first passage in a travelling wave [period], 0 <= ahead < 1
@@ -30,8 +28,7 @@ struct WheelSetup {
 
   [[nodiscard]] std::vector<int> passages() const;
   [[nodiscard]] SameRules same_rules() const;
-  /// All motions at a moment. Throws MotionError where an amplitude is not
-  /// finite.
+  /// All motions at a moment. Throws MotionError where an amplitude is not finite.
   [[nodiscard]] std::vector<Motion> at(Moment const& when) const;
   [[nodiscard]] Motion at(int motion, Moment const& when) const;
   /// Whether blades move in a wave.

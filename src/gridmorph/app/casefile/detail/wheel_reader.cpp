@@ -22,17 +22,14 @@ WheelBlade read_blade(TableReader& table, RuleContext const& shared, CaseFile& o
   for (auto& rule : table.tables("motion")) read_motion_rule(rule, shared, fragment);
   for (std::size_t r = 0; r < fragment.timed.size(); ++r)
     if (fragment.timed[r].end_wall)
-      table.problem("motion",
-                    "a blade does not move the walls it stands on; "
-                    "the rule contour belongs to [[motion]]");
+      table.problem("motion", "a blade does not move the walls it stands on; the rule contour belongs to [[motion]]");
   for (std::size_t r = 0; r < fragment.timed.size(); ++r) {
     Rule const& rule = fragment.motion.rules[r].rule;
     if (!fragment.timed[r].at && !std::holds_alternative<FixedRule>(rule))
-      table.problem("motion", fmt::format("a blade can have the rules fixed, rigid, "
-                                          "formula, field, sections, target, "
-                                          "inflate and bulb, found {}; what follows from "
-                                          "the blade belongs to [[motion]]",
-                                          rule_name(rule)));
+      table.problem("motion",
+                    fmt::format("a blade can have the rules fixed, rigid, formula, field, sections, target, "
+                                "inflate and bulb, found {}; what follows from the blade belongs to [[motion]]",
+                                rule_name(rule)));
   }
   blade.rules = std::move(fragment.motion.rules);
   blade.timed = std::move(fragment.timed);
@@ -76,9 +73,7 @@ void read_wheel(TableReader& root, RuleContext const& shared, CaseFile& out) {
   if (auto const output = wheel->string("output"))
     value.output = (wheel->context().directory / *output).lexically_normal();
   if (!value.output.empty() && value.output == out.input)
-    wheel->problem("output",
-                   "is the input; give another file name, the "
-                   "baseline is never overwritten");
+    wheel->problem("output", "is the input; give another file name, the baseline is never overwritten");
   value.suffix_families = wheel->choice("families", {"shared", "suffixed"}).value_or(0) == 1;
   for (auto& table : wheel->tables("blade")) {
     WheelBlade blade = read_blade(table, shared, out);
@@ -96,8 +91,7 @@ void read_wheel(TableReader& root, RuleContext const& shared, CaseFile& out) {
   }
   if (given && !value.rows.empty())
     wheel->problem("row",
-                   "stands beside zones, passages, sequence, factors or "
-                   "nodal_diameters of [wheel]; give every row a "
+                   "stands beside zones, passages, sequence, factors or nodal_diameters of [wheel]; give every row a "
                    "[[wheel.row]] of its own");
   if (value.rows.empty()) value.rows.push_back(own);
   if (!out.axis)
