@@ -116,7 +116,7 @@ bool holds(InnerRegion const& of, Vec3 const& at) {
   m.regions = {of};
   std::vector<std::string> notes;
   auto const boundary = std::make_shared<Boundary const>(mesh);
-  return locate_wakes(boundary, resolve(mesh, without_regions(m)), {&of, 1}, notes).front().holds(at);
+  return locate_wakes(boundary, resolve(mesh, without_regions(mesh, m)), {&of, 1}, notes).front().holds(at);
 }
 
 TEST(WakeRegion, IsABandBehindTheTrailingEdge) {
@@ -147,6 +147,16 @@ TEST(WakeRegion, KeepsToWhatElseTheRegionSays) {
   wake.holds = [middle](Vec3 const& p) { return distance(p, middle) < 0.5; };
   EXPECT_TRUE(holds(wake, middle));
   EXPECT_FALSE(holds(wake, behind(0.3, 0, 0.5)));
+}
+
+TEST(WakeRegion, LeavesRulesThatNamePatchesToo) {
+  Motion m =
+      motion({rule({"wake", "w*"}, FixedRule{}), rule({"wake"}, FixedRule{}), rule({"type:region"}, FixedRule{})});
+  m.regions = {region({})};
+  Motion const left = without_regions(wing(), m);
+  ASSERT_EQ(left.rules.size(), 1U);
+  EXPECT_EQ(left.rules[0].patches, std::vector<std::string>{"w*"});
+  EXPECT_TRUE(left.regions.empty());
 }
 
 TEST(WakeRegion, WallsThatAreNotThereAreNamedWithTheRegion) {

@@ -75,7 +75,7 @@ class Finder {
     if (!have_wakes(motion.regions)) return motion.regions;
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
     std::vector<std::string> notes;  // those of the rules come again
-    Motion const rules = with_periodic_patches(*boundary, without_regions(motion), notes);
+    Motion const rules = with_periodic_patches(*boundary, without_regions(boundary->mesh(), motion), notes);
     return locate_wakes(boundary, resolve(boundary->mesh(), rules), motion.regions, notes);
   }
 

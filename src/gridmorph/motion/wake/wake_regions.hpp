@@ -19,7 +19,7 @@ std::vector<InnerRegion> locate_wakes(std::shared_ptr<Boundary const> const& bou
 /// Whether any of them is a wake.
 bool have_wakes(std::span<InnerRegion const> regions);
 
-/// The motion without regions and without rules about them alone: what can be resolved before regions are there.
-Motion without_regions(Motion motion);
+/// The motion without regions, and without what its rules say of them alone: what can be resolved before regions are patches of the mesh.
+Motion without_regions(Mesh const& mesh, Motion motion);
 
 }  // namespace gridmorph
