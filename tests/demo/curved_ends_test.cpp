@@ -185,7 +185,8 @@ class CurvedEnds : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     PlanesConesAndCurves, CurvedEnds,
     ::testing::Values(Case{{"Plane", 0, 0}, Ends::slide}, Case{{"Plane", 0, 0}, Ends::slip},
-                      Case{{"Cone", 0.5, 0}, Ends::slide}, Case{{"SteepCone", -1.2, 0}, Ends::slide},
+                      Case{{"Cone", 0.5, 0}, Ends::slide}, Case{{"Cone", 0.5, 0}, Ends::slip},
+                      Case{{"SteepCone", -1.2, 0}, Ends::slide}, Case{{"SteepCone", -1.2, 0}, Ends::slip},
                       Case{{"Curve", 0.2, 1.5}, Ends::slide}, Case{{"Curve", 0.2, 1.5}, Ends::slip}),
     [](auto const& info) {
       return std::string(info.param.bend.name) + (info.param.ends == Ends::slide ? "Slides" : "Slips");

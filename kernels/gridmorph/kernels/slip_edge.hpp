@@ -54,12 +54,15 @@ KOKKOS_INLINE_FUNCTION void constrain_to_all(int count, Surfaces const& surface,
                                              Vec3 const& baseline, Vec3& u, Vec3& rate) {
   constexpr int max_rounds = 3;
   for (int round = 0; round < (count > 1 ? max_rounds : 1); ++round) {
-    Vec3 const before = u;
+    // Each surface has to leave u as it is: two that put the node back along one line undo each other's step, round by round.
+    bool settled = true;
     for (int m = 0; m < count; ++m) {
+      Vec3 const before = u;
       if constexpr (Rate) rate = surface(m).constrain_rate(baseline, own(m), u, rate);
       u = surface(m).constrain(baseline, own(m), u);
+      settled = settled && u == before;
     }
-    if (count < 2 || u == before) return;
+    if (count < 2 || settled) return;
   }
   AcrossEdge const across = slide_along_edge(count, surface, own, baseline, u);
   if constexpr (Rate)
