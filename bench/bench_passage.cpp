@@ -8,6 +8,8 @@
 //   displace_4  four displacement fields at once                  96 bytes per node, 8 per line parameter
 //   rotate      apply with a near field that turns with the blade   48 bytes per node, 8 per line parameter
 //   rotate_to_the_end  its turn handed on to all chains from it      the same
+//   transpose   gradients of nodes handed back to the boundary       24 bytes per node, 8 per line parameter
+//   transpose_rotate, transpose_rotate_to_the_end: of rotate and rotate_to_the_end
 //
 // Bytes are those that must move at least; "share" compares with an in-place update, so stores that first read the line
 // they write (apply_to, displace) count as what they are: slower.
@@ -141,6 +143,15 @@ void register_all() {
   add("apply", 48, 8, apply);
   add("rotate", 48, 8, apply, 0.0);
   add("rotate_to_the_end", 48, 8, apply, 0.25);
+  auto const transpose = [](auto const& exec, Passage const& p, auto const& mesh) {
+    using Exec = std::decay_t<decltype(exec)>;
+    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh, {.transpose = true});
+    auto const out = Kokkos::create_mirror(typename Exec::memory_space(), mesh.boundary);
+    return [&, mesh, morpher, out] { morpher.transpose(exec, mesh.boundary, mesh, out); };
+  };
+  add("transpose", 24, 8, transpose);
+  add("transpose_rotate", 24, 8, transpose, 0.0);
+  add("transpose_rotate_to_the_end", 24, 8, transpose, 0.25);
   add("apply_to", 48, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
     Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);

@@ -14,7 +14,8 @@
 //   background    the background mesh itself: the structured engine on some ten thousand nodes
 //   apply         all of it, from boundary displacements to new coordinates
 //
-// topology, prepare and apply also on the mesh in order by position (..._in_order).
+// topology, prepare and apply also on the mesh in order by position (..._in_order), and there alone:
+//   transpose     gradients of all nodes handed back to the boundary
 //
 // Model, bytes. Rows (layers, project): 12 per row, 8 and a source of 24 per item, 24 written. apply: those; 60 per node for
 // displacement and work array, 48 for coordinates in and out, and as much again for the residual's value, fade and
@@ -219,6 +220,24 @@ struct Apply {
   }
 };
 
+/// Gradients of nodes handed back to the boundary; bytes as if it were Apply.
+struct Transpose {
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    using Memory = typename ExecutionSpace::memory_space;
+    BallCase const& ball = ball_case(state.range(0), true);
+    UnstructuredPlan const& plan = ball.plan();
+    NodeArrays<Memory> const baseline(ball.mesh.coordinates);
+    Morpher<ExecutionSpace> const morpher(exec, plan, baseline, {.transpose = true});
+    auto const given = ball.prepared().boundary_displacement(ball.mesh);
+    auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
+    auto const out = Kokkos::create_mirror(Memory(), boundary);
+    double const mean = time_iterations(state, exec, [&] { morpher.transpose(exec, boundary, baseline, out); });
+    double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows);
+    set_ball_rates(state, exec, mean, ball.mesh, rows + (60 + 48 + 220) * double(ball.mesh.n_nodes()));
+  }
+};
+
 /// 0.05 to 10 million elements.
 std::vector<std::int64_t> const ball_sizes{smoke_nodes, 24'000, 120'000, 480'000, 1'200'000, 2'400'000};
 
@@ -243,6 +262,7 @@ void register_all() {
   register_host("unstructured/topology_in_order", topology<true>);
   register_host("unstructured/prepare_in_order", prepare_all<true>);
   register_benchmark("unstructured/apply_in_order", Apply{true}, ball_sizes);
+  register_benchmark("unstructured/transpose_in_order", Transpose(), ball_sizes);
 }
 
 }  // namespace gridmorph::bench

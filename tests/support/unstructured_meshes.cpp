@@ -159,6 +159,23 @@ Mesh flat_box(int ni, int nj, int layers) {
   return mesh;
 }
 
+Mesh periodic_flat_box(int ni, int nj, int layers) {
+  Mesh mesh = flat_box(ni, nj, layers);
+  Connection pair;
+  pair.name = "pair";
+  pair.zone = pair.donor_zone = 0;
+  pair.periodic.emplace();
+  pair.periodic->translation = {double(ni), 0, 0};
+  for (Index32 n = 0; n < mesh.n_nodes(); ++n)
+    for (Index32 m = 0; m < mesh.n_nodes(); ++m)
+      if (mesh.coordinates.x(n) == 0 && mesh.coordinates.x(m) == ni && mesh.coordinates.y(n) == mesh.coordinates.y(m)) {
+        pair.nodes.push_back(n);
+        pair.donor_nodes.push_back(m);
+      }
+  mesh.connections.push_back(pair);
+  return mesh;
+}
+
 void expect_same_mesh(Mesh const& a, Mesh const& b) {
   ASSERT_EQ(a.zones.size(), b.zones.size());
   EXPECT_EQ(a.dimension, b.dimension);

@@ -20,6 +20,9 @@ Mesh unit_box(Index3 cells);
 /// "i_min" ... "j_max", j_min a wall.
 Mesh flat_box(int ni, int nj, int layers);
 
+/// The same with its sides i as a pair of periodic connections.
+Mesh periodic_flat_box(int ni, int nj, int layers);
+
 /// Zones, elements, polyhedra, patches, connections and, bit for bit, coordinates; numbers of elements in messages aside.
 void expect_same_mesh(Mesh const& a, Mesh const& b);
 

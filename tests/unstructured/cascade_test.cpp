@@ -1,5 +1,6 @@
 // A real cascade of elements: its blade and those behind its periodic sides.
 #include "io/io_support.hpp"
+#include "support/transpose_check.hpp"
 #include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
 
@@ -89,6 +90,21 @@ TEST(Cascade, ItsVelocitiesAreThoseOfDifferences) {
   }
   EXPECT_GT(size, 0.01);
   EXPECT_LT(error, 1e-7 * size);
+}
+
+TEST(Cascade, ItsTransposeHasTheProductsOfItsVelocities) {
+  UnstructuredCase const c(read_mesh(shared_mesh("mesh_vki_turbine.su2")));
+  PlanOptions options;
+  options.boundary_layers.push_back(
+      {.walls = {"airfoil"}, .extent = BoundaryLayer::Extent::thickness, .thickness = 1e-3});
+  auto const prepared =
+      prepare(c.mesh, c.topology, c.face_patches,
+              motion_of({rule_for({"airfoil"}, rotation({0.018, -0.02, 0}, {0, 0, 1}, std::numbers::pi / 18)),
+                         rule_for({"periodic_*"}, FreeRule{})}),
+              options);
+  LinearisedMorph<UnstructuredCase::Host> const at(prepared.plan, c.mesh.coordinates,
+                                                   prepared.boundary_displacement(c.mesh));
+  EXPECT_LE(product_error(at, 1), 1e-13);
 }
 
 }  // namespace

@@ -147,19 +147,8 @@ TEST(UnstructuredVelocity, OfNodesThatSlideOnASurfaceOfRevolutionIsAlongIt) {
 }
 
 TEST(UnstructuredVelocity, OfPeriodicNodesIsOne) {
-  Mesh mesh = flat_box(8, 5, 2);
-  Connection pair;
-  pair.name = "pair";
-  pair.zone = pair.donor_zone = 0;
-  pair.periodic.emplace();
-  pair.periodic->translation = {8, 0, 0};
-  for (Index32 n = 0; n < mesh.n_nodes(); ++n)
-    for (Index32 m = 0; m < mesh.n_nodes(); ++m)
-      if (mesh.coordinates.x(n) == 0 && mesh.coordinates.x(m) == 8 && mesh.coordinates.y(n) == mesh.coordinates.y(m)) {
-        pair.nodes.push_back(n);
-        pair.donor_nodes.push_back(m);
-      }
-  mesh.connections.push_back(pair);
+  Mesh mesh = periodic_flat_box(8, 5, 2);
+  Connection const pair = mesh.connections.front();
   Case const c(std::move(mesh));
   Planned const p(c, motion_of({rule_for({"j_min"}, translation({0, 0.3, 0}))}));
   Vectors rate, now;

@@ -104,11 +104,12 @@ struct RawRootTurn {
   Field<double> raw;      ///< per root
 
   [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { raw.set(r, written(turn_at(table.roots(r)))); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { raw.set(r, written(at(r, u))); }
 
- private:
-  /// By differences of displacements: nothing turns where all are the same.
-  KOKKOS_INLINE_FUNCTION V turn_at(Root const& root) const {
+  /// Of displacements u. By their differences: nothing turns where all are the same.
+  template <class Vectors>
+  KOKKOS_INLINE_FUNCTION V at(Index r, Vectors const& u) const {
+    Root const& root = table.roots(r);
     V const here = u[root.slot];
     auto const before = [&](Index k) { return V{table.neighbours(root.first_neighbour + k).arm}; };
     auto const after = [&](Index k) {
@@ -135,6 +136,8 @@ struct RawRootTurn {
     auto const face_after = [&](Index k) { return cross(after(2 * k), after(2 * k + 1)); };
     return share_that_keeps_height(root.line, turn, root.n_neighbours / 2, face_before, face_after) * turn;
   }
+
+ private:
   /// Normals of faces that lie on one another, all towards the side of the first.
   template <class Before, class After>
   KOKKOS_INLINE_FUNCTION static void add_one_side(Root const& root, Before const& before, After const& after, V& normal,
@@ -150,12 +153,12 @@ struct RawRootTurn {
 };
 
 /// Per end wall: alpha, and its normal before and after where it is a slip surface.
-template <class V>
+template <class Vectors>
 struct EndWallVectors {
-  VectorsWithRates<V> all;  ///< 3 per end wall
-  KOKKOS_INLINE_FUNCTION V alpha(Index e) const { return all[3 * e]; }
-  KOKKOS_INLINE_FUNCTION V normal(Index e) const { return all[3 * e + 1]; }
-  KOKKOS_INLINE_FUNCTION V moved(Index e) const { return all[3 * e + 2]; }
+  Vectors all;  ///< 3 per end wall
+  KOKKOS_INLINE_FUNCTION auto alpha(Index e) const { return all[3 * e]; }
+  KOKKOS_INLINE_FUNCTION auto normal(Index e) const { return all[3 * e + 1]; }
+  KOKKOS_INLINE_FUNCTION auto moved(Index e) const { return all[3 * e + 2]; }
 };
 
 /// alpha of every end wall.
@@ -168,18 +171,28 @@ struct EndWallTurn {
 
   [[nodiscard]] Index size() const { return Index(table.end_walls.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index e) const {
-    EndWall const& end = table.end_walls(e);
+    Found const found = at(e, u, raw);
+    out.set(3 * e, written(found.alpha));
+    out.set(3 * e + 1, written(found.before));
+    out.set(3 * e + 2, written(found.after));
+  }
+
+  struct Found {
     V alpha{}, before{}, after{};
+  };
+  /// Of displacements u and rotations raw.
+  template <class Displacements, class Rotations>
+  KOKKOS_INLINE_FUNCTION Found at(Index e, Displacements const& u, Rotations const& raw) const {
+    EndWall const& end = table.end_walls(e);
+    Found found;
     if (end.wall >= 0) {
-      alpha = turn_then(-raw[end.root], raw[end.wall]);
+      found.alpha = turn_then(-raw[end.root], raw[end.wall]);
     } else {
-      before = normal(end, V{});
-      after = normal(end, u[table.roots(end.root).slot]);
-      alpha = turn_between(before + turned_by(raw[end.root], before), after);
+      found.before = normal(end, V{});
+      found.after = normal(end, u[table.roots(end.root).slot]);
+      found.alpha = turn_between(found.before + turned_by(raw[end.root], found.before), found.after);
     }
-    out.set(3 * e, written(alpha));
-    out.set(3 * e + 1, written(before));
-    out.set(3 * e + 2, written(after));
+    return found;
   }
 
  private:
@@ -187,13 +200,17 @@ struct EndWallTurn {
   KOKKOS_INLINE_FUNCTION V normal(EndWall const& end, V const& displacement) const {
     V const there = table.in_frame(end.to_zone, displacement);
     if constexpr (has_rate<V>) {
-      double const size = norm(there.rate);
       Vec3 const value = normal_at(end, there.value);
-      if (!(size > 0)) return table.back(end.to_zone, V{value});
-      double const step = 1e-5 * table.surfaces(end.surface).size / size;
-      Vec3 const change =
-          normal_at(end, there.value + step * there.rate) - normal_at(end, there.value - step * there.rate);
-      return table.back(end.to_zone, V{value, (1 / (2 * step)) * change});
+      if (!(norm(there.rate) > 0)) return table.back(end.to_zone, V{value});
+      // Axis by axis, so that rates are linear to round-off, as their transpose takes them to be.
+      double const step = 1e-5 * table.surfaces(end.surface).size;
+      auto const along = [&](double rate, Vec3 const& axis) {
+        if (rate == 0) return Vec3{};
+        Vec3 const change = normal_at(end, there.value + step * axis) - normal_at(end, there.value - step * axis);
+        return (rate / (2 * step)) * change;
+      };
+      return table.back(end.to_zone, V{value, along(there.rate.x, {1, 0, 0}) + along(there.rate.y, {0, 1, 0}) +
+                                                  along(there.rate.z, {0, 0, 1})});
     } else {
       return table.back(end.to_zone, normal_at(end, there));
     }
@@ -211,7 +228,7 @@ template <class MemorySpace, class V>
 struct NearFieldTurn {
   RootTable<MemorySpace> table;
   VectorsWithRates<V> raw;  ///< per root
-  EndWallVectors<V> at_end;
+  EndWallVectors<VectorsWithRates<V>> at_end;
   Field<double> inner;  ///< per slot
   Field<double> outer;  ///< per root
 
@@ -219,19 +236,31 @@ struct NearFieldTurn {
   KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
     Root const& root = table.roots(r);
     if (root.stands == 0) return;
+    Found const found = at(r, raw, at_end);
+    inner.set(root.slot, written(found.inner));
+    outer.set(r, written(found.outer));
+  }
+
+  struct Found {
+    V inner, outer;
+  };
+  /// Of a root on which a line stands, by rotations raw and the vectors of end walls.
+  template <class Rotations, class AtEnd>
+  KOKKOS_INLINE_FUNCTION Found at(Index r, Rotations const& raw, AtEnd const& at_end) const {
+    Root const& root = table.roots(r);
     RootEnds const& ends = table.ends(r);
     V correction{};
     for (RootEnd const& end : ends.end)
       if (end.end >= 0 && end.share > 0)
         correction = correction + end.share * table.in_frame(end.to_root, at_end.alpha(end.end));
     V const own = raw[r], turned = turn_then(own, correction);
-    inner.set(root.slot, written(turned));
-    outer.set(r, written(root.turn == 0 ? V{} : root.turn * section(ends, own, turned)));
+    return {turned, root.turn == 0 ? V{} : root.turn * section(ends, own, turned, at_end)};
   }
 
  private:
   /// Between two slip surfaces about the spanwise direction alone, otherwise the turn itself.
-  KOKKOS_INLINE_FUNCTION V section(RootEnds const& ends, V const& own, V const& turned) const {
+  template <class AtEnd>
+  KOKKOS_INLINE_FUNCTION V section(RootEnds const& ends, V const& own, V const& turned, AtEnd const& at_end) const {
     if (!(ends.fraction >= 0)) return turned;
     V before{}, after{};
     for (int m = 0; m < 2; ++m) {

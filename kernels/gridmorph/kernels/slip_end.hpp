@@ -62,16 +62,21 @@ struct SlipEndValues {
 
   [[nodiscard]] Index size() const { return Index(ends.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    Index const slot = ends(item).slot;
+    values.set(ends(item).value, change(item, u[slot], Rate ? rate[slot] : Vec3{}));
+  }
+
+  /// d of one end whose slot is displaced by u; with `Rate` its derivative.
+  KOKKOS_INLINE_FUNCTION Vec3 change(Index item, Vec3 const& u_slot, Vec3 const& rate_slot) const {
     SlipEnd const& end = ends(item);
     SlipEndBaseline const& baseline = baselines(item);
-    Vec3 const given = in_frame(end.to_node, u[end.slot]);
-    Vec3 const given_rate = Rate ? in_frame(end.to_node, rate[end.slot]) : Vec3{};
+    Vec3 const given = in_frame(end.to_node, u_slot), given_rate = in_frame(end.to_node, rate_slot);
     Vec3 wanted = given, wanted_rate = given_rate;
     int const count = end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
     constrain_to_all<Rate>(count, Surfaces{surfaces, end}, Offsets{baseline}, baseline.position, wanted, wanted_rate);
     bool const left_alone = norm(wanted - given) <= end.tolerance && end.tolerance > 0;
     Vec3 const d = left_alone ? Vec3{} : (Rate ? wanted_rate - given_rate : wanted - given);
-    values.set(end.value, in_frame(end.to_chain, d));
+    return in_frame(end.to_chain, d);
   }
 
  private:

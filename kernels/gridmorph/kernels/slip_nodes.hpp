@@ -29,17 +29,21 @@ struct AskNodes {
 
   [[nodiscard]] Index size() const { return Index(table.node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    Index const n = table.node(k), slot = table.slot(k), from = table.first(k);
+    Index const n = table.node(k), slot = table.slot(k);
     Vec3 u = slot >= 0 ? boundary[slot] : asked[n], rate;
     if constexpr (Rate) rate = slot >= 0 ? boundary_rate[slot] : asked_rate[n];
-    int const count = int(table.first(k + 1) - from);
-    if (count > 0) {
-      Vec3 const baseline = x[n];
-      Surfaces const surface{table, from};
-      constrain_to_all<Rate>(count, surface, Offsets{surface, baseline}, baseline, u, rate);
-    }
+    constrain(k, u, rate);
     asked[n] = u;
     if constexpr (Rate) asked_rate[n] = rate;
+  }
+  /// What its surfaces make of a displacement, and with `Rate` of its rate.
+  KOKKOS_INLINE_FUNCTION void constrain(Index k, Vec3& u, Vec3& rate) const {
+    Index const from = table.first(k);
+    int const count = int(table.first(k + 1) - from);
+    if (count == 0) return;
+    Vec3 const baseline = x[table.node(k)];
+    Surfaces const surface{table, from};
+    constrain_to_all<Rate>(count, surface, Offsets{surface, baseline}, baseline, u, rate);
   }
 
  private:

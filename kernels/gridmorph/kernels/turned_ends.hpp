@@ -56,15 +56,27 @@ struct TurnNearField {
   [[nodiscard]] Index size() const { return Index(lines.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
     NearFieldLine const& line = lines(n);
+    Found const found = at(line, inner, raw, outer);
+    turn.set(line.lower, written(found.in));
+    turn.set(line.upper, written(found.out));
+    ends.set(line.lower, written(found.lower));
+    ends.set(line.upper, written(found.upper));
+  }
+
+  struct Found {
+    V in, out;  ///< rotations of its two ends
+    TurnedEnd<V> lower, upper;
+  };
+  /// Of a line, by the rotations of its root.
+  template <class Vectors>
+  KOKKOS_INLINE_FUNCTION Found at(NearFieldLine const& line, Vectors const& inner, Vectors const& raw,
+                                  Vectors const& outer) const {
     Index const slot = table.roots(line.root).slot;
     V const in = table.in_frame(line.matrix, inner[slot]), out = table.in_frame(line.matrix, outer[line.root]);
-    turn.set(line.lower, written(in));
-    turn.set(line.upper, written(out));
     Vec3 const pivot = position[line.lower];
     Quaternion<V> const wall = quaternion_of(in), edge = nearer(wall, quaternion_of(out));
     auto const s = stretch(line, table.in_frame(line.matrix, raw[line.root]), Q::between(edge, wall, line.f0));
-    ends.set(line.lower, written(TurnedEnd<V>{wall, pivot, s}));
-    ends.set(line.upper, written(TurnedEnd<V>{edge, pivot}));
+    return {in, out, {wall, pivot, s}, {edge, pivot}};
   }
 
  private:

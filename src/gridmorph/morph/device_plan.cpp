@@ -65,7 +65,7 @@ void join_lines(LineTables const& from, Shift const& shift, LineTables& to) {
   to.n_end_values += from.n_end_values;
 }
 
-void join_sides(SideTables const& from, Shift const& shift, SideTables& to) {
+void join_sides(gridmorph::SideTables const& from, Shift const& shift, gridmorph::SideTables& to) {
   for (kernels::Side side : from.sides) {
     side.chain += shift.chain;
     side.first += shift.side_node;

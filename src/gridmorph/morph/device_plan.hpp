@@ -10,6 +10,7 @@
 #include <gridmorph/plan/plan.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -81,7 +82,7 @@ struct DeviceSpread {
 /// All stages' and passes' tables put one behind the other on the host, with their numbers shifted.
 struct JoinedTables {
   LineTables lines;
-  SideTables sides;
+  gridmorph::SideTables sides;
   std::vector<kernels::VolumeBox> boxes;
   std::vector<kernels::VolumeTerm> terms;
 };
@@ -115,6 +116,9 @@ struct DeviceTurns {
 };
 
 template <class Exec>
+struct TransposedPlan;
+
+template <class Exec>
 struct DevicePlan {
   using Memory = typename Exec::memory_space;
   using Shape = kernels::TileShape<Exec>;
@@ -138,6 +142,7 @@ struct DevicePlan {
   Workspace<Memory> skeleton, ends, residuals;
   DeviceTurns<Exec> turns;
   int fields = 1;
+  std::shared_ptr<TransposedPlan<Exec> const> transposed;  ///< where gradients are asked for
 
   DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<double const> x, int n_fields);
 };

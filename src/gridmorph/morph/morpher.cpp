@@ -27,13 +27,16 @@ struct Morpher<Exec>::State {
   In baseline;
   FlatBaseline<Exec> flat;
   stages::StageList<Exec> list;
+  bool transposed = false;
 
   State(Exec const& exec, Plan const& plan, In const& x, MorpherOptions const& options)
       : n_nodes(plan.n_nodes),
         n_boundary(plan.boundary_nodes.size()),
         baseline(x),
         flat(exec, x),
-        list(stages::stage_list(exec, plan, flat.field, options)) {
+        list(stages::stage_list(exec, plan, flat.field, options)),
+        transposed(options.transpose) {
+    require_no_shifts();
     flat = {};  // line parameters have been made of it; the pass through the volume reads the caller's arrays
   }
   State(Exec const& exec, UnstructuredPlan const& plan, In const& x, MorpherOptions const& options)
@@ -41,7 +44,17 @@ struct Morpher<Exec>::State {
         n_boundary(plan.known.size()),
         baseline(x),
         flat(exec, x),
-        list(stages::stage_list(exec, plan, options)) {}
+        list(stages::stage_list(exec, plan, flat.field, options)),
+        transposed(options.transpose) {
+    require_no_shifts();
+  }
+
+  void require_no_shifts() const {
+    if (transposed && list.shifts)
+      throw ConfigError(
+          "gridmorph::Morpher: MorpherOptions::transpose does not know what a guard did (MorphPlan::with()); "
+          "leave one of both out");
+  }
 
   /// All that can be asked before anything is enqueued.
   void require(char const* who, std::span<In const> boundary, std::span<Out const> out) const {
@@ -112,6 +125,28 @@ struct Morpher<Exec>::State {
     ProfilingRegion const region(list.shifts->region);
     list.shifts->add_rate(exec, f, r, v);
   }
+
+  void run_transpose(Exec const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const {
+    Field f = list.fields[0], g = list.fields[1];
+    f.boundary = boundary.array();
+    g.nodes = dJ_du.array();
+    g.baseline = baseline.array();
+    g.boundary = dJ_db.array();
+    for_each_stage([&](auto const& stage) {
+      if constexpr (requires { stage.enqueue_kept(exec, flat.field, f); })
+        stage.enqueue_kept(exec, flat.field, f);
+      else
+        stage.enqueue(exec, flat.field, f);
+    });
+    std::visit([&](auto const& writer) { writer.transpose(exec, g); }, list.writer);
+    for (auto any = list.stages.rbegin(); any != list.stages.rend(); ++any)
+      std::visit(
+          [&](auto const& stage) {
+            ProfilingRegion const region("transposed " + stage.region);
+            stage.transpose(exec, flat.field, f, g);
+          },
+          *any);
+  }
 };
 
 namespace {
@@ -174,6 +209,18 @@ void Morpher<Exec>::velocities(Exec const& exec, In const& boundary, In const& r
   state_->require(who, {&boundary, 1}, {&v, 1});
   state_->require("gridmorph::Morpher::velocities (rate)", {&rate, 1}, {&v, 1});
   state_->run_rate(exec, boundary, rate, v);
+}
+
+template <class Exec>
+void Morpher<Exec>::transpose(Exec const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const {
+  char const* const who = "gridmorph::Morpher::transpose";
+  if (!state_->transposed)
+    throw ConfigError(std::string(who) + " needs tables that were not made; ask for them by MorpherOptions::transpose");
+  char const* const nodes = "MorphPlan::boundary_nodes()";
+  require_boundary_size(who, std::size_t(boundary.size()), state_->n_boundary, nodes);
+  require_all_nodes("gridmorph::Morpher::transpose (dJ_du)", dJ_du.size(), state_->n_nodes);
+  require_boundary_size("gridmorph::Morpher::transpose (dJ_db)", std::size_t(dJ_db.size()), state_->n_boundary, nodes);
+  state_->run_transpose(exec, boundary, dJ_du, dJ_db);
 }
 
 template <class Exec>

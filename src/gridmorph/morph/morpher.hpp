@@ -20,6 +20,7 @@ struct MorpherOptions {
   bool velocity = false;  ///< room for velocities()
   /// What a guard did, on top of every displacement, position and velocity; none: that of the MorphPlan, where it carries any.
   std::shared_ptr<SmoothingMap const> smoothing = nullptr;
+  bool transpose = false;  ///< tables and room for transpose()
 };
 
 /// A plan on an execution space, of blocks or of elements, as a list of stages. Construction uploads their tables, allocates the workspace and, for blocks,
@@ -64,6 +65,16 @@ class Morpher {
   /// displacements() at `boundary` in the direction `rate`, slip surfaces included. Needs MorpherOptions::velocity. Elements: exact for walls that
   /// turn; nodes that slip as kernels::constrain_to_all() says; costs two morphs.
   void velocities(ExecutionSpace const& exec, In const& boundary, In const& rate, Out const& v) const;
+
+  /// The transpose of the derivative of displacements() at `boundary`: with J any function of the displacements u of all nodes,
+  ///
+  ///   dJ_db(m) = sum over nodes n of (du(n) / db(m))^T dJ_du(n)
+  ///
+  /// slip surfaces and walls that turn included; velocities() is the same derivative forwards, and both agree to round-off. dJ_du, dJ/du = dJ/dx too,
+  /// has one vector for each node of the mesh, dJ_db one for each boundary node, in its frame. Sums are in one order whatever the number of threads: the same
+  /// bits always. Needs MorpherOptions::transpose. Cost: the stages of one morph forwards, without its pass through the volume, then per
+  /// node 32 bytes read for each chain through it, more where chains have known sides (kernels/transposed_sides.hpp).
+  void transpose(ExecutionSpace const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const;
 
   /// For pictures: of the nodes of the background mesh between wrap and outer box, by the last call. Empty where the plan has none.
   [[nodiscard]] In background_displacements() const;

@@ -4,7 +4,9 @@
 
 #include <gridmorph/kernels/body_turn.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
+#include <gridmorph/kernels/transposed_walls.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <memory>
@@ -25,8 +27,13 @@ struct BodyTurnTables {
   List<Exec, kernels::VectorMoments> sum, sum_rate;
   List<Exec, kernels::Quaternion<Vec3>> half, half_rate;
   List<Exec, Vec3> shift_sum, shift, shift_rate;
+  // Of transposes.
+  List<Exec, kernels::BodyGradient> parts, gradient;
+  List<Exec, kernels::VectorMoments> moments;
+  List<Exec, Vec3> listed;
+  kernels::TransposedRows<Memory> of_slots;
 
-  BodyTurnTables(Exec const& exec, UnstructuredPlan const& plan, bool with_rate)
+  BodyTurnTables(Exec const& exec, UnstructuredPlan const& plan, bool with_rate, bool back)
       : known(upload(exec, plan.known, name("known"))),
         driving(upload(exec, plan.driving, name("driving"))),
         body_of_driving(upload(exec, plan.turns_of_bodies.body_of_driving, name("body"))),
@@ -48,7 +55,30 @@ struct BodyTurnTables {
         half_rate(room_for<kernels::Quaternion<Vec3>>(exec, with_rate ? centre.extent(0) : 0, name("half_rate"))),
         shift_sum(room_for<Vec3>(exec, walls.first.extent(0) - 1, name("shift_sum"))),
         shift(room_for<Vec3>(exec, centre.extent(0), name("shift"))),
-        shift_rate(room_for<Vec3>(exec, with_rate ? centre.extent(0) : 0, name("shift_rate"))) {}
+        shift_rate(room_for<Vec3>(exec, with_rate ? centre.extent(0) : 0, name("shift_rate"))) {
+    if (!back) return;
+    std::size_t const n_bodies = centre.extent(0);
+    parts = room_for<kernels::BodyGradient>(exec, n_bodies * std::size_t(kernels::body_chunks(plan.n_nodes)),
+                                            name("parts"));
+    gradient = room_for<kernels::BodyGradient>(exec, n_bodies, name("gradient"));
+    moments = room_for<kernels::VectorMoments>(exec, n_bodies, name("moments"));
+    listed = room_for<Vec3>(exec, plan.turns_of_bodies.slot.size(), name("listed"));
+    of_slots = transposed(exec, plan.turns_of_bodies.slot, nullptr, name("of_slots"));
+  }
+
+  /// gradient += what chunks of nodes or frames have left in `parts`.
+  void sum_parts(Exec const& exec, Index n_chunks) const {
+    Index const n_bodies = Index(centre.extent(0));
+    kernels::launch("gridmorph::transposed::bodies::sum", exec, 0, n_bodies,
+                    kernels::BodySums{parts.data(), n_chunks, n_bodies, gradient.data()});
+  }
+  /// Of what bodies give to the nodes of a list, or to all n of them.
+  void sum_nodes(Exec const& exec, Baseline const& x, List<Exec, Index32> const& nodes, Index n, double sign,
+                 StageField<Exec> const& g) const {
+    kernels::BodyPartsOfNodes<Memory> const kernel{field<Vec3>(x), nodes, n, sign, g.u.data(), parts.data()};
+    kernels::launch("gridmorph::transposed::bodies::nodes", exec, kernel);
+    sum_parts(exec, kernel.size());
+  }
 
   template <class V>
   [[nodiscard]] kernels::BodyTurnField<Memory, V> field(Baseline const& x) const {
@@ -87,6 +117,24 @@ class TakeTurns {
     turn<kernels::DualVec3>(exec, tables_->half_rate);
     shift(exec, r, tables_->shift_rate);
     take<kernels::DualVec3>(exec, x, r);
+  }
+
+  /// Adds to what the transpose of AddTurns has left.
+  void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
+    using kernels::launch;
+    auto const& t = *tables_;
+    kernels::BodyPartsOfFrames<Memory> const frames{
+        t.half.data(), Index(t.centre.extent(0)), t.driving,     t.body_of_driving,
+        g.u.data(),    g.frames.data(),           t.parts.data()};
+    launch("gridmorph::transposed::bodies::frames", exec, frames);
+    t.sum_parts(exec, frames.size());
+    if (t.rigid.extent(0) > 0) t.sum_nodes(exec, x, t.rigid, Index(t.rigid.extent(0)), -1, g);
+    launch("gridmorph::transposed::bodies::turn", exec,
+           kernels::TurnBodiesBack<Memory>{t.walls, t.sum.data(), t.gradient.data(), t.moments.data()});
+    launch(
+        "gridmorph::transposed::bodies::walls", exec,
+        kernels::BodyWallsBack<Memory>{t.walls, t.moments.data(), t.gradient.data(), g.frames.data(), t.listed.data()});
+    kernels::gather_rows("gridmorph::transposed::bodies::slots", exec, t.of_slots, t.listed.data(), g.given.data());
   }
 
  private:
@@ -135,6 +183,14 @@ class AddTurns {
   void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
     add<Vec3>(exec, x, f);
     add<kernels::DualVec3>(exec, x, r);
+  }
+
+  void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
+    auto const& t = *tables_;
+    kernels::launch("gridmorph::transposed::bodies::slots_of_walls", exec,
+                    kernels::AddToSlots<Memory>{t.wall_slots(), t.known, g.u.data(), g.given.data()});
+    clear<kernels::BodyGradient>(exec, t.gradient);
+    t.sum_nodes(exec, x, {}, Index(g.u.extent(0)), 1, g);
   }
 
  private:

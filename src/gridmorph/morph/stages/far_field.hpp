@@ -3,6 +3,7 @@
 
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <utility>
@@ -15,7 +16,7 @@ class FarField {
   static inline std::string const region = "gridmorph::FarField";
 
   /// The plan has a background mesh.
-  FarField(Exec const& exec, UnstructuredPlan const& plan, bool with_rate)
+  FarField(Exec const& exec, UnstructuredPlan const& plan, bool with_rate, bool back)
       : wrap_(upload(exec, plan.wrap, name("wrap"))),
         outer_(upload(exec, plan.outer, name("outer"))),
         far_(upload(exec, plan.far, name("far"))),
@@ -23,7 +24,14 @@ class FarField {
         boundary_(room_for<Vec3>(exec, plan.background_morph->plan().boundary_nodes.size(), name("boundary"))),
         rate_(room_for<Vec3>(exec, with_rate ? boundary_.extent(0) : 0, name("rate"))),
         morpher_(exec, plan.background_morph->plan(), uploaded(exec, plan.background->mesh.coordinates).vectors(),
-                 {1, with_rate}) {}
+                 {1, with_rate, nullptr, back}) {
+    if (!back) return;
+    wrap_back_ = transposed(exec, plan.wrap, name("wrap_back"));
+    outer_back_ = transposed(exec, plan.outer, name("outer_back"));
+    far_back_ = transposed(exec, plan.far, name("far_back"));
+    node_gradient_ = room_for<Vec3>(exec, std::size_t(plan.background->mesh.n_nodes()), name("node_gradient"));
+    boundary_gradient_ = room_for<Vec3>(exec, boundary_.extent(0), name("boundary_gradient"));
+  }
 
   void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
     set_boundary(exec, f, boundary_);
@@ -37,6 +45,16 @@ class FarField {
     morpher_.velocities(exec, boundary_, rate_, u_.vectors());
     kernels::interpolate("gridmorph::far", exec, far_, u_.read(), r.u.data());
     enqueue(exec, x, f);
+  }
+
+  void transpose(Exec const& exec, Baseline const&, StageField<Exec> const&, StageField<Exec> const& g) const {
+    clear<Vec3>(exec, node_gradient_);
+    kernels::gather_rows("gridmorph::transposed::far", exec, far_back_, g.u.data(), node_gradient_.data());
+    kernels::launch("gridmorph::transposed::far::done", exec, kernels::ClearListed<Memory>{far_.target, g.u.data()});
+    morpher_.transpose(exec, boundary_, node_gradient_, boundary_gradient_);
+    kernels::gather_rows("gridmorph::transposed::wrap", exec, wrap_back_, boundary_gradient_.data(), g.u.data());
+    kernels::gather_rows("gridmorph::transposed::outer_box", exec, outer_back_, boundary_gradient_.data(),
+                         g.given.data());
   }
 
   /// Of the background's nodes, by the last call.
@@ -80,6 +98,8 @@ class FarField {
   Arrays u_;
   List<Exec, Vec3> boundary_, rate_;
   Morpher<Exec> morpher_;
+  kernels::TransposedRows<Memory> wrap_back_, outer_back_, far_back_;
+  List<Exec, Vec3> node_gradient_, boundary_gradient_;
 };
 
 }  // namespace gridmorph::stages

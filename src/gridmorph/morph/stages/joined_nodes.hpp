@@ -5,6 +5,7 @@
 #include <gridmorph/kernels/interpolation_rows.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/kernels/slip_nodes.hpp>
+#include <gridmorph/morph/stages/asked_back.hpp>
 #include <gridmorph/morph/stages/periodic_table.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -16,7 +17,7 @@ class JoinedNodes {
  public:
   static inline std::string const region = "gridmorph::JoinedNodes";
 
-  JoinedNodes(Exec const& exec, UnstructuredPlan const& plan)
+  JoinedNodes(Exec const& exec, UnstructuredPlan const& plan, bool back)
       : middle_(upload(exec, plan.middle, name("middle"))),
         copies_(upload(exec, plan.copies, name("copies"))),
         copied_(upload(exec, plan.copied, name("copied"))) {
@@ -26,6 +27,10 @@ class JoinedNodes {
                  upload(exec, at.surfaces.first, name("surfaces::first")),
                  upload(exec, at.surfaces.item, name("surfaces::item")), surfaces_.surfaces};
     if (!at.image_owners.empty()) periodic_ = periodic_table(exec, plan, at.image_owners, at.images_of_owner);
+    if (!back) return;
+    middle_back_ = transposed(exec, plan.middle, name("middle_back"));
+    copies_back_ = transposed(exec, plan.copied, &plan.copies, name("copies_back"));
+    asked_back_ = AskedBack<Exec>(exec, at.slot, name("asked_back"));
   }
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
@@ -33,6 +38,24 @@ class JoinedNodes {
     kernels::launch("gridmorph::middle::boundary", exec,
                     kernels::AskNodes<Memory, false>{boundary_, f.boundary, {}, x, f.u.data(), nullptr});
     join(exec, f);
+  }
+  /// The same, kept for the transpose.
+  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    follow_corners(exec, f);
+    asked_back_.keep(exec, boundary_, f.boundary, f.u);
+    kernels::launch("gridmorph::middle::boundary", exec,
+                    kernels::AskNodes<Memory, false>{boundary_, f.boundary, {}, x, f.u.data(), nullptr});
+    join(exec, f);
+  }
+
+  void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
+    using kernels::launch;
+    kernels::gather_rows("gridmorph::transposed::copies", exec, copies_back_, g.u.data(), g.u.data());
+    launch("gridmorph::transposed::copies::done", exec, kernels::ClearListed<Memory>{copies_, g.u.data()});
+    launch("gridmorph::transposed::middle::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.u.data()});
+    asked_back_.enqueue(exec, boundary_, x, g.u, g.given);
+    kernels::gather_rows("gridmorph::transposed::middle", exec, middle_back_, g.u.data(), g.u.data());
+    launch("gridmorph::transposed::middle::done", exec, kernels::ClearListed<Memory>{middle_.target, g.u.data()});
   }
 
   /// Slip surfaces are not linear: see slip_edge.hpp.
@@ -62,6 +85,8 @@ class JoinedNodes {
   kernels::SlipNodeTable<Memory> boundary_;
   kernels::PeriodicTable<Memory> periodic_;
   List<Exec, Index32> copies_, copied_;
+  kernels::TransposedRows<Memory> middle_back_, copies_back_;
+  AskedBack<Exec> asked_back_;
 };
 
 }  // namespace gridmorph::stages

@@ -4,7 +4,10 @@
 #include <gridmorph/kernels/lattice_field.hpp>
 #include <gridmorph/morph/stages/smooth_field.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
+
+#include <optional>
 
 namespace gridmorph::stages {
 
@@ -14,14 +17,22 @@ class NearField {
  public:
   static inline std::string const region = "gridmorph::NearField";
 
-  NearField(Exec const& exec, UnstructuredPlan const& plan)
+  /// back: positions of all nodes, where the transpose is asked for.
+  NearField(Exec const& exec, UnstructuredPlan const& plan, std::vector<Vec3> const* back)
       : seeds_{upload_sources(exec, plan.driving, plan.near, plan.n_nodes, name("driving")),
                upload_sources(exec, plan.columns.node, plan.near, plan.n_nodes, name("columns"))},
         beside_(upload(exec, plan.beside_slots, name("beside"))),
         n_driving_(Index(plan.driving.size())),
         walls_(exec, plan.walls, name("walls")),
         layers_(upload(exec, plan.near, name("layers"))),
-        fade_(upload(exec, plan.near_fade, name("fade"))) {}
+        fade_(upload(exec, plan.near_fade, name("fade"))) {
+    if (back == nullptr) return;
+    layers_back_ = transposed(exec, plan.near, plan.n_nodes, name("layers_back"));
+    std::vector<Index32> readers = plan.near.rows.target;
+    for (auto const* nodes : {&plan.driving, &plan.columns.node})
+      readers.insert(readers.end(), nodes->begin(), nodes->end());
+    walls_back_.emplace(exec, plan.walls, std::move(readers), *back, name("walls_back"));
+  }
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
@@ -36,6 +47,21 @@ class NearField {
            kernels::FieldAndMissing<Memory>{layers_.rows.target, fade_, walls_.field(), x, f.work.data(), f.u.data()});
   }
 
+  void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
+    using kernels::launch;
+    clear<Vec3>(exec, g.work);
+    clear<Vec3>(exec, g.read);
+    launch("gridmorph::transposed::near", exec,
+           kernels::FieldAndMissingBack<Memory>{layers_.rows.target, fade_, g.u.data(), g.work.data(), g.read.data()});
+    kernels::gather_layers("gridmorph::transposed::near::layers", exec, layers_back_, g.work.data());
+    for (auto const& nodes : seeds_)
+      launch("gridmorph::transposed::near::missing", exec,
+             kernels::FieldMissesBack<Memory>{nodes, g.work.data(), g.u.data(), g.read.data()});
+    walls_back_->enqueue(exec, x, g.read.data(), g.frames.data());
+    launch("gridmorph::transposed::near::beside", exec,
+           kernels::FramesToSlots<Memory>{beside_, g.frames.data() + n_driving_, g.given.data()});
+  }
+
  private:
   using Memory = typename Exec::memory_space;
   static std::string name(char const* what) { return region + "::" + what; }
@@ -46,6 +72,8 @@ class NearField {
   SmoothField<Exec, kernels::AffineMotion> walls_;
   kernels::LayerTable<Memory> layers_;
   List<Exec, float> fade_;
+  kernels::TransposedLayers<Memory> layers_back_;
+  std::optional<SmoothFieldBack<Exec, kernels::AffineMotion>> walls_back_;
 };
 
 }  // namespace gridmorph::stages

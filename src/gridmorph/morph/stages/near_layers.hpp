@@ -2,7 +2,9 @@
 #pragma once
 
 #include <gridmorph/kernels/layer_motion.hpp>
+#include <gridmorph/morph/stages/columns_of_walls.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <vector>
@@ -15,7 +17,9 @@ class NearLayers {
  public:
   static inline std::string const region = "gridmorph::NearLayers";
 
-  NearLayers(Exec const& exec, UnstructuredPlan const& plan) : NearLayers(exec, plan, in_places(plan)) {}
+  /// back: where the transpose is asked for.
+  NearLayers(Exec const& exec, UnstructuredPlan const& plan, std::vector<Vec3> const* back)
+      : NearLayers(exec, plan, in_places(plan), back != nullptr) {}
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
@@ -24,6 +28,19 @@ class NearLayers {
     kernels::PassMotions<Memory> const pass{layers_.rows, node_, turn_, x, motion_.data(), f.u.data()};
     for (std::size_t l = 0; l + 1 < layers_.level.size(); ++l)
       launch("gridmorph::near::layers", exec, layers_.level[l], layers_.level[l + 1], pass);
+  }
+
+  void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
+    using kernels::launch;
+    clear<kernels::AffineMotion>(exec, motion_);
+    launch("gridmorph::transposed::near", exec,
+           kernels::MotionsFromNodes<Memory>{layers_.rows.target, node_, g.u.data(), motion_.data()});
+    kernels::PassMotionsBack<Memory> const pass{layers_back_.rows, node_, kept_, x, motion_.data()};
+    for (std::size_t l = 0; l + 1 < layers_back_.level.size(); ++l)
+      launch("gridmorph::transposed::near::layers", exec, layers_back_.level[l], layers_back_.level[l + 1], pass);
+    launch("gridmorph::transposed::near::seeds", exec,
+           kernels::SeedMotionsBack<Memory>{
+               {column_, root_, share_}, columns_of_, n_walls_, motion_.data(), g.frames.data(), g.u.data()});
   }
 
  private:
@@ -44,7 +61,7 @@ class NearLayers {
       for (Index32& n : *nodes) n = place[std::size_t(n)];
     return out;
   }
-  NearLayers(Exec const& exec, UnstructuredPlan const& plan, Places const& places)
+  NearLayers(Exec const& exec, UnstructuredPlan const& plan, Places const& places, bool back)
       : column_(upload(exec, plan.columns.node, name("column"))),
         root_(upload(exec, plan.columns.root, name("root"))),
         share_(upload(exec, plan.columns.turn, name("share"))),
@@ -53,6 +70,15 @@ class NearLayers {
         turn_(upload(exec, plan.near_turn, name("turn"))),
         motion_(room_for<kernels::AffineMotion>(exec, places.node.size(), name("motion"))),
         n_walls_(Index(plan.driving.size())) {
+    if (back) {
+      layers_back_ = transposed(exec, places.layers, Index(places.node.size()), name("layers_back"));
+      columns_of_ = columns_of_walls(exec, plan);
+      std::vector<float> kept(places.node.size(), 1);
+      for (std::size_t r = 0; r < plan.near_turn.size(); ++r)
+        kept[std::size_t(places.layers.rows.target[r])] = plan.near_turn[r];
+      kept_ = upload(exec, kept, name("kept"));
+      compat::fence(exec, "gridmorph::NearLayers (host tables may go)");
+    }
     compat::fence(exec, "gridmorph::NearLayers (host tables may go)");
   }
 
@@ -63,6 +89,9 @@ class NearLayers {
   List<Exec, float> turn_;
   List<Exec, kernels::AffineMotion> motion_;
   Index n_walls_;
+  kernels::TransposedLayers<Memory> layers_back_;  ///< of places
+  kernels::ColumnsOf<Memory> columns_of_;
+  List<Exec, float> kept_;  ///< (places)
 };
 
 }  // namespace gridmorph::stages

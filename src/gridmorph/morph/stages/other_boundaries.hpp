@@ -4,10 +4,13 @@
 #include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/kernels/slip_nodes.hpp>
+#include <gridmorph/morph/stages/asked_back.hpp>
 #include <gridmorph/morph/stages/periodic_table.hpp>
 #include <gridmorph/morph/stages/smooth_field.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
+
+#include <optional>
 
 namespace gridmorph::stages {
 
@@ -16,8 +19,9 @@ class OtherBoundaries {
  public:
   static inline std::string const region = "gridmorph::OtherBoundaries";
 
-  OtherBoundaries(Exec const& exec, UnstructuredPlan const& plan)
-      : start_(exec, plan.start),
+  /// back: positions of all nodes, where the transpose is asked for.
+  OtherBoundaries(Exec const& exec, UnstructuredPlan const& plan, std::vector<Vec3> const* back)
+      : start_(exec, plan.start, plan.n_nodes, back),
         surfaces_(exec, plan.surfaces),
         nodes_{upload(exec, plan.residual_nodes, name("node")), upload(exec, plan.residual_slot, name("slot")),
                upload(exec, plan.residual_surfaces.first, name("surfaces::first")),
@@ -31,13 +35,50 @@ class OtherBoundaries {
         detail_(upload(exec, plan.residual_detail, name("detail"))),
         detail_begins_(
             upload_sources(exec, plan.residual_nodes, plan.residual_detail, plan.n_nodes, name("detail_begins"))),
-        detail_fade_(upload(exec, plan.detail_fade, name("detail_fade"))) {}
+        detail_fade_(upload(exec, plan.detail_fade, name("detail_fade"))) {
+    if (back == nullptr) return;
+    asked_back_ = AskedBack<Exec>(exec, plan.residual_slot, name("asked_back"));
+    sliding_back_ = transposed(exec, plan.sliding_root, &plan.sliding, name("sliding_back"));
+    if (residual_.empty()) return;
+    std::vector<Index32> readers;
+    for (std::size_t n = 0; n < plan.fade.size(); ++n)
+      if (plan.fade[n] != 0) readers.push_back(Index32(n));
+    readers.insert(readers.end(), plan.residual_nodes.begin(), plan.residual_nodes.end());
+    residual_back_.emplace(exec, plan.residual, std::move(readers), *back, name("residual_back"));
+    detail_back_ = transposed(exec, plan.residual_detail, plan.n_nodes, name("detail_back"));
+  }
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     start_.enqueue(exec, x, f);
     kernels::launch("gridmorph::residual_nodes", exec,
                     kernels::AskNodes<Memory, false>{nodes_, f.boundary, {}, x, f.work.data(), nullptr});
     take(exec, x, f);
+  }
+  /// The same, kept for the transpose.
+  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    start_.enqueue(exec, x, f);
+    asked_back_.keep(exec, nodes_, f.boundary, f.work);
+    kernels::launch("gridmorph::residual_nodes", exec,
+                    kernels::AskNodes<Memory, false>{nodes_, f.boundary, {}, x, f.work.data(), nullptr});
+    take(exec, x, f);
+  }
+
+  void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
+    using kernels::launch;
+    clear<Vec3>(exec, g.work);
+    clear<Vec3>(exec, lacked_);
+    if (!residual_.empty()) spread_back(exec, x, g);
+    launch("gridmorph::transposed::residual_nodes::take", exec,
+           kernels::TakeAskedBack<Memory>{nodes_.node, g.u.data(), g.work.data(), lacked_.data()});
+    launch("gridmorph::transposed::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.work.data()});
+    if (sliding_.extent(0) > 0) {
+      kernels::gather_rows("gridmorph::transposed::sliding_columns", exec, sliding_back_, g.work.data(), g.work.data());
+      launch("gridmorph::transposed::sliding_columns::done", exec,
+             kernels::ClearListed<Memory>{sliding_, g.work.data()});
+      launch("gridmorph::transposed::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.work.data()});
+    }
+    asked_back_.enqueue(exec, nodes_, x, g.work, g.given);
+    start_.transpose(exec, x, g);
   }
 
   /// Slip surfaces are not linear: see slip_edge.hpp.
@@ -58,7 +99,7 @@ class OtherBoundaries {
   /// displacement is given.
   class Start {
    public:
-    Start(Exec const& exec, UnstructuredPlan::Start const& plan)
+    Start(Exec const& exec, UnstructuredPlan::Start const& plan, Index n_nodes, std::vector<Vec3> const* back)
         : given_(upload(exec, plan.given, name("start::given"))),
           given_slot_(upload(exec, plan.given_slot, name("start::given_slot"))),
           residual_(exec, plan.residual, name("start::residual")),
@@ -66,7 +107,14 @@ class OtherBoundaries {
           detail_(upload(exec, plan.detail, name("start::detail"))),
           node_(upload(exec, plan.node, name("start::node"))),
           fade_(upload(exec, plan.fade, name("start::fade"))),
-          detail_fade_(upload(exec, plan.detail_fade, name("start::detail_fade"))) {}
+          detail_fade_(upload(exec, plan.detail_fade, name("start::detail_fade"))) {
+      if (back == nullptr || plan.residual.empty()) return;
+      std::vector<Index32> readers = plan.node;
+      readers.insert(readers.end(), plan.given.begin(), plan.given.end());
+      residual_back_.emplace(exec, plan.residual, std::move(readers), *back, name("start::residual_back"));
+      detail_back_ = transposed(exec, plan.detail, n_nodes, name("start::detail_back"));
+      slots_back_ = transposed(exec, plan.given_slot, nullptr, name("start::slots_back"));
+    }
 
     void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
       using kernels::launch;
@@ -83,6 +131,23 @@ class OtherBoundaries {
           "gridmorph::start", exec,
           kernels::StartFromField<Memory>{node_, fade_, detail_fade_, residual_.field(), x, f.u.data(), f.work.data()});
     }
+    void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const& g) const {
+      using kernels::launch;
+      clear<Vec3>(exec, g.read);
+      launch("gridmorph::transposed::start", exec,
+             kernels::StartFromFieldBack<Memory>{node_, fade_, detail_fade_, g.work.data(), g.u.data(), g.read.data()});
+      if (residual_.empty()) return;
+      kernels::gather_layers("gridmorph::transposed::start::layers", exec, detail_back_, g.work.data());
+      launch("gridmorph::transposed::start::layers_done", exec,
+             kernels::ClearListed<Memory>{detail_.rows.target, g.work.data()});
+      launch("gridmorph::transposed::start::missing", exec,
+             kernels::ReadWith<Memory, true>{given_, -1, g.work.data(), g.read.data()});
+      clear<Vec3>(exec, missing_);
+      residual_back_->enqueue(exec, x, g.read.data(), missing_.data());
+      launch("gridmorph::transposed::start::given", exec,
+             kernels::GivenMissesBack<Memory>{given_, g.work.data(), missing_.data(), g.u.data()});
+      kernels::gather_rows("gridmorph::transposed::start::slots", exec, slots_back_, missing_.data(), g.given.data());
+    }
 
    private:
     List<Exec, Index32> given_, given_slot_;
@@ -91,6 +156,9 @@ class OtherBoundaries {
     kernels::LayerTable<Memory> detail_;
     List<Exec, Index32> node_;
     List<Exec, float> fade_, detail_fade_;
+    std::optional<SmoothFieldBack<Exec, Vec3>> residual_back_;
+    kernels::TransposedLayers<Memory> detail_back_;
+    kernels::TransposedRows<Memory> slots_back_;
   };
 
   /// What is asked for holds; what the field so far lacked of it spreads.
@@ -113,6 +181,21 @@ class OtherBoundaries {
            kernels::AddShare<Memory>{detail_.rows.target, detail_fade_, f.work.data(), f.u.data()});
   }
 
+  /// Of the residual over all nodes, to what was lacked.
+  void spread_back(Exec const& exec, Baseline const& x, StageField<Exec> const& g) const {
+    using kernels::launch;
+    launch("gridmorph::transposed::residual::detail", exec,
+           kernels::ShareOf<Memory>{detail_.rows.target, detail_fade_, g.u.data(), g.work.data()});
+    kernels::gather_layers("gridmorph::transposed::residual::layers", exec, detail_back_, g.work.data());
+    launch("gridmorph::transposed::residual::layers_done", exec,
+           kernels::ClearListed<Memory>{detail_.rows.target, g.work.data()});
+    launch("gridmorph::transposed::residual", exec, 0, Index(fade_.extent(0)),
+           kernels::ReadWithShare<Memory>{fade_, g.u.data(), g.read.data()});
+    launch("gridmorph::transposed::residual::missing", exec,
+           kernels::ReadWith<Memory, true>{detail_begins_, -1, g.work.data(), g.read.data()});
+    residual_back_->enqueue(exec, x, g.read.data(), lacked_.data());
+  }
+
   Start start_;
   SlipSurfaceTable<Memory> surfaces_;
   kernels::SlipNodeTable<Memory> nodes_;
@@ -124,6 +207,10 @@ class OtherBoundaries {
   kernels::LayerTable<Memory> detail_;
   List<Exec, Index32> detail_begins_;  ///< boundary nodes that it reads
   List<Exec, float> detail_fade_;
+  AskedBack<Exec> asked_back_;
+  kernels::TransposedRows<Memory> sliding_back_;
+  std::optional<SmoothFieldBack<Exec, Vec3>> residual_back_;
+  kernels::TransposedLayers<Memory> detail_back_;
 };
 
 }  // namespace gridmorph::stages

@@ -1,7 +1,9 @@
 // The stages of a morph of blocks: on the skeleton, the faces, edges and corners of all pieces.
 #pragma once
 
+#include <gridmorph/morph/detail/block_turn_gradients.hpp>
 #include <gridmorph/morph/detail/block_turns.hpp>
+#include <gridmorph/morph/detail/transposed_plan.hpp>
 #include <gridmorph/morph/device_plan.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 
@@ -43,7 +45,42 @@ class OnSkeleton {
                                  plan().turns.of_skeleton(f.number, f.of));
   }
 
+  /// Where the transposes of sweeps and of the volume read gradients.
+  [[nodiscard]] kernels::PatchGradients<Memory> gradients(detail::TransposedLines<Exec> const& lines,
+                                                          StageField<Exec> const& g) const {
+    kernels::PatchGradients<Memory> from{lines.patches, plan().rotations, plan().t.data(), read(g.skeleton),
+                                         g.nodes,       no_field(),       no_field(),      g.baseline};
+    if (plan().turns.any()) {
+      from.slot_turns = plan().turns.slots.read()[g.number];
+      from.position = plan().turns.swept_position.read()[0];
+    }
+    return from;
+  }
+  /// Gradients of the ends of lines, from those of all nodes between.
+  void sum_lines(Exec const& exec, detail::TransposedLines<Exec> const& lines, Index first_end, Index n_ends,
+                 StageField<Exec> const& f, StageField<Exec> const& g) const {
+    auto const& turns = plan().turns;
+    kernels::launch("gridmorph::transposed::clear_ends", exec, first_end, first_end + n_ends,
+                    kernels::ClearVectors{g.ends});
+    kernels::launch("gridmorph::transposed::lines", exec, 0, lines.groups.n_items,
+                    kernels::LineGradients<Memory, kernels::TileShape<Exec>::lines>{
+                        lines.groups.entries, lines.groups.first_item, plan().lines.chains, gradients(lines, g),
+                        plan().law_knots.data(), turns.any() ? turns.read_ends(f.number, f.number).values : no_ends(),
+                        end_gradients(g)});
+  }
+  [[nodiscard]] kernels::EndGradients end_gradients(StageField<Exec> const& g) const {
+    kernels::EndGradients to{g.ends, {}, {nullptr, nullptr, nullptr}};
+    if (plan().turns.any()) {
+      to.turned = {plan().turns.ends_of(g.number)};
+      to.turns = plan().turns.end_turns.batch()[g.number];
+    }
+    return to;
+  }
+
  private:
+  static Baseline no_field() { return {nullptr, nullptr, nullptr}; }
+  static kernels::TurnedEnds<double const> no_ends() { return {}; }
+
   BlockTables<Exec> tables_;
 };
 
@@ -59,6 +96,16 @@ class BoundaryValues : OnSkeleton<Exec> {
   void rate(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& r) const {
     set<false>(exec, f);
     set<true>(exec, r);
+  }
+  /// g.boundary is written: gradients of the boundary's displacement.
+  void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
+    auto const& plan = this->plan();
+    detail::BlockTurnGradients<Exec>(plan, f.number, g.number).of_walls(exec);
+    kernels::copy_back<false>("gridmorph::transposed::axis", exec, plan.transposed->boundary_projections,
+                              plan.rotations, read(g.skeleton), g.skeleton);
+    kernels::launch(
+        "gridmorph::transposed::boundary", exec,
+        kernels::GatherBoundary<typename Exec::memory_space>{plan.boundary_slots, read(g.skeleton), g.boundary});
   }
 
  private:
@@ -85,8 +132,53 @@ class LineSweep : OnSkeleton<Exec> {
     run<false>(exec, f);
     run<true>(exec, r);
   }
+  void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
+    auto const& stage = this->plan().stages[number_];
+    auto const& back = this->plan().transposed->stages[number_];
+    detail::BlockTurnGradients<Exec> const turns(this->plan(), f.number, g.number);
+    turns.clear_ends(exec, stage);
+    this->sum_lines(exec, back.lines, stage.first_end_value, stage.n_end_values, f, g);
+    if (stage.side_lines.extent(0) > 0) sum_sides(exec, stage, back, f, g);
+    turns.of_ends(exec, stage, back, g.ends);
+    kernels::copy_back<true>("gridmorph::transposed::chain_ends", exec, back.ends, this->plan().rotations, read(g.ends),
+                             g.skeleton);
+  }
 
  private:
+  using Memory = typename Exec::memory_space;
+
+  /// The correction and its residuals, in reverse.
+  void sum_sides(Exec const& exec, detail::DeviceStage<Exec> const& stage, detail::TransposedStage<Exec> const& back,
+                 StageField<Exec> const& f, StageField<Exec> const& g) const {
+    using kernels::launch;
+    auto const& plan = this->plan();
+    auto const& chains = plan.lines.chains;
+    auto const sides = this->sides(f);
+    auto const edges = plan.transposed->edges.batch()[0], between = plan.transposed->between.batch()[0];
+    launch("gridmorph::transposed::clear_sides", exec, back.first_side_node, back.first_side_node + back.n_side_nodes,
+           kernels::ClearVectors{g.residuals});
+    launch("gridmorph::transposed::clear_edges", exec, 0, plan.transposed->edges.n, kernels::ClearVectors{edges});
+    launch("gridmorph::transposed::sides", exec,
+           kernels::SideGradients<Memory>{back.slabs, back.lines.groups.entries, chains, sides,
+                                          this->gradients(back.lines, g), g.residuals, edges});
+    launch("gridmorph::transposed::sum_edges", exec,
+           kernels::EdgeSums<Memory>{chains, sides, stage.corrected, back.first_part, read(edges), g.residuals});
+    launch("gridmorph::transposed::fill_sides", exec,
+           kernels::SideFillBack<Memory>{chains, sides, stage.side_lines, g.residuals, between});
+    launch("gridmorph::transposed::side_edges", exec,
+           kernels::SideEdgesBack<Memory>{chains, sides, stage.corrected, read(between), g.residuals});
+    launch("gridmorph::transposed::fill_edges", exec,
+           kernels::EdgeFillBack<Memory>{chains, sides, stage.corrected, g.residuals});
+    bool const any = plan.turns.any();
+    launch("gridmorph::transposed::residuals", exec,
+           kernels::SideResidualBack<Memory>{
+               chains, sides, stage.side_lines, g.residuals, plan.law_knots.data(),
+               any ? plan.turns.read_ends(f.number, f.number).values : kernels::TurnedEnds<double const>{},
+               any ? plan.turns.side_position.read()[0] : Baseline{nullptr, nullptr, nullptr}, this->end_gradients(g)});
+    kernels::copy_back<true>("gridmorph::transposed::known_sides", exec, back.gathers, plan.rotations,
+                             read(g.residuals), g.skeleton);
+  }
+
   template <bool Rate>
   void run(Exec const& exec, StageField<Exec> const& f) const {
     auto const& stage = this->plan().stages[number_];
@@ -124,7 +216,28 @@ class SlipSpread : OnSkeleton<Exec> {
     this->template sweep<true>(exec, pass().sweeps, r);
   }
 
+  /// The same, and what its transpose is linearised at is kept.
+  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    kernels::launch("gridmorph::transposed::keep_slip_ends", exec,
+                    kernels::KeepSlipEnds<Memory>{pass().ends, read(f.skeleton), back().kept.batch()[0]});
+    enqueue(exec, x, f);
+  }
+  void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
+    this->sum_lines(exec, back().lines, pass().first_value, pass().n_values, f, g);
+    kernels::SlipEndValues<Memory, true> const values{pass().ends,
+                                                      pass().baselines,
+                                                      this->plan().surfaces.surfaces,
+                                                      this->plan().rotations,
+                                                      read(f.skeleton),
+                                                      read(f.skeleton),
+                                                      g.ends};
+    kernels::pull_back("gridmorph::transposed::slip_ends", exec, back().ends_of_slot,
+                       kernels::SlipEndBySlot<Memory>{values, back().kept.read()[0], read(g.ends)}, g.skeleton);
+  }
+
  private:
+  using Memory = typename Exec::memory_space;
+  [[nodiscard]] detail::TransposedSpread<Exec> const& back() const { return this->plan().transposed->spreads[number_]; }
   [[nodiscard]] detail::DeviceSpread<Exec> const& pass() const { return this->plan().spreads[number_]; }
 
   /// End values of `to`, where the displacement is that of `at`; with `Rate`, their derivative.

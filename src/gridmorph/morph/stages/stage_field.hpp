@@ -18,6 +18,8 @@ namespace gridmorph::stages {
 template <class Exec>
 struct StageField {
   kernels::VectorArray boundary;  ///< displacements of MorphPlan::boundary_nodes()
+  kernels::VectorArray nodes;     ///< gradients of all nodes, where a field holds gradients
+  kernels::VectorArray baseline;  ///< coordinates, there too
 
   // Blocks: parts of the workspaces of DevicePlan.
   int number = 0;                                               ///< which field of theirs
@@ -27,8 +29,10 @@ struct StageField {
   kernels::Field<double> residuals{nullptr, nullptr, nullptr};  ///< on known sides of chains
 
   // Elements.
-  List<Exec, Vec3> u;     ///< (n_nodes)
-  List<Exec, Vec3> work;  ///< (n_nodes)
+  List<Exec, Vec3> u;      ///< (n_nodes)
+  List<Exec, Vec3> work;   ///< (n_nodes)
+  List<Exec, Vec3> given;  ///< of gradients: those of boundary nodes
+  List<Exec, Vec3> read;   ///< of gradients: those of what nodes read of lattices, (n_nodes)
   List<Exec, kernels::AffineMotion>
       frames;  ///< motions of the moving walls around their nodes, then of what moves beside them
 };

@@ -39,44 +39,58 @@ struct StageList {
 /// x: only while the list is made.
 template <class Exec>
 StageList<Exec> stage_list(Exec const& exec, Plan const& plan, Baseline const& x, MorpherOptions const& options) {
-  int const n_fields = std::max(options.fields, options.velocity ? 2 : 1);
-  auto const tables = std::make_shared<detail::DevicePlan<Exec> const>(exec, plan, x, n_fields);
+  int const n_fields = std::max(options.fields, options.velocity || options.transpose ? 2 : 1);
+  auto const tables = std::make_shared<detail::DevicePlan<Exec>>(exec, plan, x, n_fields);
+  if (options.transpose) tables->transposed = std::make_shared<detail::TransposedPlan<Exec> const>(exec, *tables);
   StageList<Exec> out{{}, {}, WriteBlocks<Exec>(tables), {}};
   out.stages.emplace_back(BoundaryValues<Exec>(tables));
   for (std::size_t n = 0; n < tables->stages.size(); ++n) out.stages.emplace_back(LineSweep<Exec>(tables, n));
   for (std::size_t n = 0; n < tables->spreads.size(); ++n) out.stages.emplace_back(SlipSpread<Exec>(tables, n));
-  for (int f = 0; f < n_fields; ++f)
-    out.fields.push_back(
-        {{}, f, f, tables->skeleton.batch()[f], tables->ends.batch()[f], tables->residuals.batch()[f], {}, {}, {}});
+  for (int f = 0; f < n_fields; ++f) {
+    StageField<Exec> field;
+    field.number = field.of = f;
+    field.skeleton = tables->skeleton.batch()[f];
+    field.ends = tables->ends.batch()[f];
+    field.residuals = tables->residuals.batch()[f];
+    out.fields.push_back(field);
+  }
   if (options.smoothing && options.smoothing->n_modes > 0)
     out.shifts.emplace(exec, *options.smoothing, Index(plan.boundary_nodes.size()), plan.n_nodes, tables->rotations);
   return out;
 }
 
 template <class Exec>
-StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, MorpherOptions const& options) {
+StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Baseline const& x,
+                           MorpherOptions const& options) {
+  std::vector<Vec3> const positions = options.transpose ? host_positions(exec, x, plan.n_nodes) : std::vector<Vec3>();
+  // Stages make what their transposes need where positions come with them.
+  auto const* const back = options.transpose ? &positions : nullptr;
   StageList<Exec> out{{}, {}, WriteElements<Exec>(), {}};
-  out.stages.emplace_back(WallMotion<Exec>(exec, plan, options.velocity));
+  out.stages.emplace_back(WallMotion<Exec>(exec, plan, options.velocity, back));
   SharedBodyTurns<Exec> turns;
   if (plan.turns_of_bodies.size() > 0) {
-    turns = std::make_shared<BodyTurnTables<Exec> const>(exec, plan, options.velocity);
+    turns = std::make_shared<BodyTurnTables<Exec> const>(exec, plan, options.velocity, back != nullptr);
     out.stages.emplace_back(TakeTurns<Exec>(turns));
   }
   if (plan.walls.empty())
-    out.stages.emplace_back(NearLayers<Exec>(exec, plan));
+    out.stages.emplace_back(NearLayers<Exec>(exec, plan, back));
   else
-    out.stages.emplace_back(NearField<Exec>(exec, plan));
-  if (plan.background) out.stages.emplace_back(FarField<Exec>(exec, plan, options.velocity));
+    out.stages.emplace_back(NearField<Exec>(exec, plan, back));
+  if (plan.background) out.stages.emplace_back(FarField<Exec>(exec, plan, options.velocity, back != nullptr));
   if (turns) out.stages.emplace_back(AddTurns<Exec>(turns));
-  out.stages.emplace_back(OtherBoundaries<Exec>(exec, plan));
-  out.stages.emplace_back(JoinedNodes<Exec>(exec, plan));
+  out.stages.emplace_back(OtherBoundaries<Exec>(exec, plan, back));
+  out.stages.emplace_back(JoinedNodes<Exec>(exec, plan, back != nullptr));
   auto const n = std::size_t(plan.n_nodes);
-  for (int f = 0; f < (options.velocity ? 2 : 1); ++f) {
+  for (int f = 0; f < (options.velocity || options.transpose ? 2 : 1); ++f) {
     StageField<Exec> field;
     field.u = room_for<Vec3>(exec, n, "gridmorph::Morpher::u");
     field.work = room_for<Vec3>(exec, n, "gridmorph::Morpher::work");
     field.frames = room_for<kernels::AffineMotion>(exec, plan.driving.size() + plan.beside_slots.size(),
                                                    "gridmorph::Morpher::frames");
+    if (options.transpose && f == 1) {
+      field.given = room_for<Vec3>(exec, plan.known.size(), "gridmorph::Morpher::given");
+      field.read = room_for<Vec3>(exec, n, "gridmorph::Morpher::read");
+    }
     out.fields.push_back(field);
   }
   if (options.smoothing && options.smoothing->n_modes > 0)

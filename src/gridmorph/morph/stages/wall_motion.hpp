@@ -3,7 +3,10 @@
 
 #include <gridmorph/kernels/column_motion.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
+#include <gridmorph/kernels/transposed_walls.hpp>
+#include <gridmorph/morph/stages/columns_of_walls.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 namespace gridmorph::stages {
@@ -13,7 +16,8 @@ class WallMotion {
  public:
   static inline std::string const region = "gridmorph::WallMotion";
 
-  WallMotion(Exec const& exec, UnstructuredPlan const& plan, bool with_rate)
+  /// back: where the transpose is asked for.
+  WallMotion(Exec const& exec, UnstructuredPlan const& plan, bool with_rate, std::vector<Vec3> const* back)
       : known_(upload(exec, plan.known, name("known"))),
         slots_(upload(exec, plan.driving_slots, name("driving_slots"))),
         wall_{upload(exec, plan.driving, name("driving")),
@@ -28,7 +32,21 @@ class WallMotion {
                  upload(exec, plan.columns.root, name("columns::root")),
                  upload(exec, plan.columns.turn, name("columns::share"))},
         turn_(room_for<Vec3>(exec, plan.driving.size(), name("turn"))),
-        turn_rate_(room_for<Vec3>(exec, with_rate ? plan.driving.size() : 0, name("turn_rate"))) {}
+        turn_rate_(room_for<Vec3>(exec, with_rate ? plan.driving.size() : 0, name("turn_rate"))) {
+    if (back == nullptr) return;
+    columns_of_ = columns_of_walls(exec, plan);
+    turn_gradient_ = room_for<Vec3>(exec, plan.driving.size(), name("turn_gradient"));
+    TransposedEntries around;
+    for (std::size_t r = 0; r < plan.driving.size(); ++r) {
+      std::vector<Index32> nodes{plan.driving[r]};
+      for (Index k = plan.one_rings.first[r]; k < plan.one_rings.first[r + 1]; ++k)
+        nodes.push_back(plan.one_rings.item[std::size_t(k)]);
+      std::sort(nodes.begin(), nodes.end());
+      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+      for (Index32 const n : nodes) around.add(n, Index32(r), 1);
+    }
+    turned_by_ = upload(exec, around, {}, name("around")).rows;
+  }
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     set(exec, f);
@@ -40,6 +58,23 @@ class WallMotion {
     enqueue(exec, x, f);
     set(exec, r);
     follow<kernels::DualVec3>(exec, {x}, {x, f.u.data(), r.u.data()}, turn_rate_, x, r);
+  }
+
+  /// The last one: g.boundary is written.
+  void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& g) const {
+    using kernels::DualVec3;
+    using kernels::launch;
+    launch("gridmorph::transposed::wall_motion", exec,
+           kernels::WallBack<Memory>{columns_, columns_of_, wall_.node, turn_.data(), x, g.frames.data(), g.u.data(),
+                                     turn_gradient_.data()});
+    kernels::WallTurn<Memory, DualVec3> const turn{wall_, {x}, {x}, nullptr};
+    set(exec, f);  // where the walls were when they turned
+    launch("gridmorph::transposed::wall_turn", exec,
+           kernels::WallTurnBack<Memory>{turned_by_, turn, x, f.u.data(), turn_gradient_.data(), g.u.data()});
+    launch("gridmorph::transposed::moving_walls", exec,
+           kernels::AddToSlots<Memory>{slots_, known_, g.u.data(), g.given.data()});
+    launch("gridmorph::transposed::slots", exec, 0, Index(g.given.extent(0)),
+           kernels::WriteSlots{g.given.data(), g.boundary});
   }
 
  private:
@@ -67,7 +102,9 @@ class WallMotion {
   List<Exec, Index32> known_, slots_;
   kernels::WallTable<Memory> wall_;
   kernels::ColumnTable<Memory> columns_;
-  List<Exec, Vec3> turn_, turn_rate_;
+  List<Exec, Vec3> turn_, turn_rate_, turn_gradient_;
+  kernels::ColumnsOf<Memory> columns_of_;
+  kernels::TransposedRows<Memory> turned_by_;  ///< node: the wall nodes whose rotation depends on it
 };
 
 }  // namespace gridmorph::stages

@@ -4,6 +4,7 @@
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
 #include <gridmorph/morph/stages/skeleton.hpp>
+#include <gridmorph/morph/stages/transposed_tables.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -27,6 +28,16 @@ class WriteBlocks {
       std::size_t const n = std::min<std::size_t>(out.size() - done, kernels::most_fields_at_once);
       write_at_once<Move>(exec, x, fields.subspan(done, n), out.subspan(done, n));
     }
+  }
+
+  /// Gradients of the skeleton, from those of its nodes; nodes inside pieces hand theirs to the stages.
+  void transpose(Exec const& exec, StageField<Exec> const& g) const {
+    using kernels::ClearVectors;
+    auto const& plan = *tables_;
+    kernels::launch("gridmorph::transposed::clear", exec, 0, plan.skeleton.n, ClearVectors{g.skeleton});
+    kernels::copy_back<true>("gridmorph::transposed::skeleton", exec, plan.transposed->skeleton_nodes, plan.rotations,
+                             g.nodes, g.skeleton);
+    detail::BlockTurnGradients<Exec>(plan, 0, g.number).clear(exec);
   }
 
  private:
@@ -73,6 +84,13 @@ struct WriteElements {
     for (std::size_t f = 0; f < out.size(); ++f)
       kernels::launch(Move ? "gridmorph::move" : "gridmorph::write", exec, 0, out[f].size(),
                       kernels::WriteNodes<Move>{fields[f].u.data(), x, out[f].array()});
+  }
+
+  void transpose(Exec const& exec, StageField<Exec> const& g) const {
+    kernels::launch("gridmorph::transposed::nodes", exec, 0, Index(g.u.extent(0)),
+                    kernels::ReadNodes{g.nodes, g.u.data()});
+    clear<Vec3>(exec, g.given);
+    clear<kernels::AffineMotion>(exec, g.frames);
   }
 };
 

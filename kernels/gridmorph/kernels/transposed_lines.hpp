@@ -1,0 +1,226 @@
+// Transposed grid lines: the gradient of what lies on a line, added up at its two ends. With J any function of the displacements and
+// g = dJ/du of the nodes of a line,
+//
+//   dJ/du0 = sum of (1 - w(t)) g,   dJ/du1 = sum of w(t) g
+//
+// and likewise for rotations at its ends (turned_line.hpp), linearised where the ends are: the transpose of skeleton_sweep.hpp and
+// volume_pass.hpp without their correction (transposed_sides.hpp).
+//
+// Nodes of a chain are listed as patches: boxes (s, a, b) of slots of the skeleton or of nodes inside a piece. A group is a rectangle
+// (a, b) of lines that run through the same patches, so that one work item has its lines to itself: sums come in one order whatever the
+// number of threads.
+//
+// Cost per node and chain through it: 24 bytes of gradient and 8 of line parameter read; where the chain turns 24 more, about 150
+// flops. Nothing is written but at the ends.
+#pragma once
+
+#include <gridmorph/kernels/row_correction.hpp>
+#include <gridmorph/kernels/skeleton_sweep.hpp>
+#include <gridmorph/kernels/transposed_turns.hpp>
+#include <gridmorph/kernels/vector_array.hpp>
+
+namespace gridmorph::kernels {
+
+/// Steps of an index along s, a and b.
+struct LineStep {
+  Index s, a, b;
+};
+
+struct LinePatch {
+  std::int32_t s, n_s;     ///< positions on the chain
+  std::int32_t matrix;     ///< chain frame -> frame of its values, -1: the same
+  std::int32_t in_volume;  ///< values of nodes, otherwise of slots
+  Index value;             ///< of the first position on the first line of its group
+  LineStep value_step;
+  Index t;  ///< line parameter likewise, < 0: none needed
+  LineStep t_step;
+  Index x;  ///< position likewise: in SkeletonTurns::position; nodes: as `value`
+  LineStep x_step;
+  Vec3 offset;  ///< of nodes: position in the chain's frame is matrix^T x + offset
+};
+
+struct LineGroup {
+  std::int32_t chain;
+  std::int32_t a, b, n_a, n_b;
+  std::int32_t first_patch, n_patches;
+};
+
+/// Gradients of the nodes of patches, and where these nodes are.
+template <class MemorySpace>
+struct PatchGradients {
+  Kokkos::View<LinePatch const*, MemorySpace> patches;
+  Kokkos::View<Mat3 const*, MemorySpace> matrices;
+  double const* t;
+  Field<double const> slots;
+  VectorArray nodes;
+  Field<double const> slot_turns, position;
+  VectorArray baseline;
+
+  KOKKOS_INLINE_FUNCTION static Index at(Index first, LineStep const& step, int s, int a, int b) {
+    return first + s * step.s + a * step.a + b * step.b;
+  }
+  /// (s, a, b): from the first of the patch. All in the frame of the chain.
+  KOKKOS_INLINE_FUNCTION Vec3 gradient(LinePatch const& p, int s, int a, int b) const {
+    Index const n = at(p.value, p.value_step, s, a, b);
+    return in_chain(p, p.in_volume != 0 ? nodes[n] : slots[n]);
+  }
+  KOKKOS_INLINE_FUNCTION double parameter(LinePatch const& p, int s, int a, int b) const {
+    return p.t < 0 ? 0 : t[at(p.t, p.t_step, s, a, b)];
+  }
+  KOKKOS_INLINE_FUNCTION Vec3 place(LinePatch const& p, int s, int a, int b) const {
+    Index const n = at(p.x, p.x_step, s, a, b);
+    return p.in_volume != 0 ? in_chain(p, baseline[n]) + p.offset : position[n];
+  }
+  /// Of the slot's rotation; patches of slots.
+  KOKKOS_INLINE_FUNCTION Vec3 turn_gradient(LinePatch const& p, int s, int a, int b) const {
+    return in_chain(p, slot_turns[at(p.value, p.value_step, s, a, b)]);
+  }
+  /// The gradients of n neighbouring lines from a on.
+  template <int width>
+  KOKKOS_INLINE_FUNCTION void row(LinePatch const& p, int s, int a, int b, int n, VectorRow<width>& g) const {
+    Index const first = at(p.value, p.value_step, s, a, b), step = p.value_step.a;
+    auto const read = [&](auto const& x, auto const& y, auto const& z, Index stride) {
+      for (int w = 0; w < n; ++w) {
+        g.x[w] = double(x[w * stride]);
+        g.y[w] = double(y[w * stride]);
+        g.z[w] = double(z[w * stride]);
+      }
+    };
+    if (p.in_volume == 0)
+      read(slots.x + first * slots.stride, slots.y + first * slots.stride, slots.z + first * slots.stride,
+           step * slots.stride);
+    else if (nodes.zones == nullptr)
+      nodes.with_row(first, [&](auto const& row) { read(row.x, row.y, row.z, step * row.stride); });
+    else
+      for (int w = 0; w < n; ++w) {
+        Vec3 const v = nodes[first + w * step];
+        g.x[w] = v.x;
+        g.y[w] = v.y;
+        g.z[w] = v.z;
+      }
+    if (p.matrix < 0) return;
+    Mat3 const back = transpose(matrices(p.matrix));
+    for (int w = 0; w < n; ++w) {
+      Vec3 const v = back * Vec3{g.x[w], g.y[w], g.z[w]};
+      g.x[w] = v.x;
+      g.y[w] = v.y;
+      g.z[w] = v.z;
+    }
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION Vec3 in_chain(LinePatch const& p, Vec3 const& v) const {
+    return p.matrix < 0 ? v : transpose(matrices(p.matrix)) * v;
+  }
+};
+
+/// Where gradients of line ends go: of displacements, and where chains turn of rotations made ready and as vectors.
+struct EndGradients {
+  Field<double> u;
+  TurnedEndGradients turned;
+  Field<double> turns{nullptr, nullptr, nullptr};
+};
+
+/// One item per at most `Width` neighbouring lines of a group. Sets the gradients at their ends.
+template <class MemorySpace, int Width>
+struct LineGradients {
+  Kokkos::View<LineGroup const*, MemorySpace> groups;
+  Kokkos::View<Index const*, MemorySpace> first_item;  ///< per group, and one past the last
+  Kokkos::View<Chain const*, MemorySpace> chains;
+  PatchGradients<MemorySpace> from;
+  double const* law_knots;
+  TurnedEnds<double const> ends;
+  EndGradients to;
+
+  static Index items(LineGroup const& g) { return tiles(g.n_a, Width) * g.n_b; }
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    int const entry = entry_of(first_item, item);
+    LineGroup const& group = groups(entry);
+    Chain const& chain = chains(group.chain);
+    Index const local = item - first_item(entry), per_row = tiles(group.n_a, Width);
+    Lines const lines{
+        int(local % per_row) * Width, int(local / per_row),
+        group.n_a - int(local % per_row) * Width < Width ? group.n_a - int(local % per_row) * Width : Width};
+    Index const lower = chain.first_end_value + group.a + lines.a + Index(chain.n_a) * (group.b + lines.b);
+    add_displacements(group, chain, lines, lower);
+    if (chain.turn != TurnLaw::none)
+      for (int w = 0; w < lines.n; ++w) add_turns(group, chain, lines.a + w, lines.b, lower + w);
+  }
+
+ private:
+  struct Lines {
+    int a, b, n;
+  };
+  using Row = VectorRow<Width>;
+
+  KOKKOS_INLINE_FUNCTION void add_displacements(LineGroup const& group, Chain const& chain, Lines const& lines,
+                                                Index lower) const {
+    Row first, last, g;
+    double weight[Width];
+    for (int w = 0; w < lines.n; ++w) first.x[w] = first.y[w] = first.z[w] = last.x[w] = last.y[w] = last.z[w] = 0;
+    bool const constant = chain.law == LineLaw::constant;
+    for (int m = 0; m < group.n_patches; ++m) {
+      LinePatch const& p = from.patches(group.first_patch + m);
+      for (int s = 0; s < p.n_s; ++s) {
+        from.row(p, s, lines.a, lines.b, lines.n, g);
+        if (!constant) weights(chain, p, s, lines, weight);
+        for (int w = 0; w < lines.n; ++w) {
+          double const f = constant ? 0 : weight[w];
+          first.x[w] += (1 - f) * g.x[w];
+          first.y[w] += (1 - f) * g.y[w];
+          first.z[w] += (1 - f) * g.z[w];
+          last.x[w] += f * g.x[w];
+          last.y[w] += f * g.y[w];
+          last.z[w] += f * g.z[w];
+        }
+      }
+    }
+    for (int w = 0; w < lines.n; ++w) {
+      to.u.set(lower + w, {first.x[w], first.y[w], first.z[w]});
+      to.u.set(lower + chain.section_size() + w, {last.x[w], last.y[w], last.z[w]});
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void weights(Chain const& chain, LinePatch const& p, int s, Lines const& lines,
+                                      double* weight) const {
+    if (p.t < 0) {
+      for (int w = 0; w < lines.n; ++w) weight[w] = law_weight(chain, law_knots, 0);
+      return;
+    }
+    double const* const at = from.t + from.at(p.t, p.t_step, s, lines.a, lines.b);
+    Index const step = p.t_step.a;
+    auto const fill = [&](auto const& law) {
+      for (int w = 0; w < lines.n; ++w) weight[w] = law(at[w * step]);
+    };
+    switch (chain.law) {
+      case LineLaw::linear: return fill([](double f) { return f; });
+      case LineLaw::c1: return fill([](double f) { return f * f * (3 - 2 * f); });
+      default: return fill([&](double f) { return law_weight(chain, law_knots, f); });
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void add_turns(LineGroup const& group, Chain const& chain, int a, int b, Index lower) const {
+    Index const upper = lower + chain.section_size();
+    TurnedGradient first, last;
+    Vec3 first_turn, last_turn;
+    for (int m = 0; m < group.n_patches; ++m) {
+      LinePatch const& p = from.patches(group.first_patch + m);
+      for (int s = 0; s < p.n_s; ++s) {
+        double const t = from.parameter(p, s, a, b);
+        turned_gradient(ends, chain, lower, upper, t, from.place(p, s, a, b), from.gradient(p, s, a, b), first, last);
+        if (p.in_volume != 0) continue;
+        Vec3 const g = from.turn_gradient(p, s, a, b);
+        TurnWeights const f = turn_weights(chain, t);
+        if (chain.turned_ends & 1u) first_turn += f.lower * g;
+        if (chain.turned_ends & 2u) last_turn += f.upper * g;
+      }
+    }
+    to.turned.set(lower, first);
+    to.turned.set(upper, last);
+    to.turns.set(lower, first_turn);
+    to.turns.set(upper, last_turn);
+  }
+};
+
+}  // namespace gridmorph::kernels

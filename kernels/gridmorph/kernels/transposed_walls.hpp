@@ -1,0 +1,260 @@
+// Transposes of how walls of elements turn and what stands on them: wall_turn.hpp, column_motion.hpp, layer_motion.hpp's seeds; and of
+// bodies that turn as wholes: body_turn.hpp. Rotations are linearised where the walls are.
+//
+// Cost: per column node as forwards; per wall node and neighbour three rates of the wall's rotation; per node and body that turns about
+// 150 flops, 16 bytes of shares, 48 read.
+#pragma once
+
+#include <gridmorph/kernels/body_turn.hpp>
+#include <gridmorph/kernels/column_motion.hpp>
+#include <gridmorph/kernels/transposed_rows.hpp>
+#include <gridmorph/kernels/transposed_turns.hpp>
+
+namespace gridmorph::kernels {
+
+/// Of turned_by(r, y), whose gradient is g.
+KOKKOS_INLINE_FUNCTION Vec3 turned_by_gradient(Vec3 const& r, Vec3 const& y, Vec3 const& g) {
+  return rotation_gradient(r, turned_gradient(quaternion_of(r), y, g));
+}
+KOKKOS_INLINE_FUNCTION Vec3 unit_vector(int a) { return {a == 0 ? 1.0 : 0.0, a == 1 ? 1.0 : 0.0, a == 2 ? 1.0 : 0.0}; }
+KOKKOS_INLINE_FUNCTION Vec3 column_of(Mat3 const& m, int j) { return {m.m[0][j], m.m[1][j], m.m[2][j]}; }
+
+/// The columns on each wall node, those of node r from first(r) on.
+template <class MemorySpace>
+struct ColumnsOf {
+  Kokkos::View<Index const*, MemorySpace> first;
+  Kokkos::View<std::int32_t const*, MemorySpace> column;
+};
+
+/// Gradients of the rotation and the displacement of each wall node, from its columns and the motion around it.
+template <class MemorySpace>
+struct WallBack {
+  ColumnTable<MemorySpace> columns;
+  ColumnsOf<MemorySpace> of;
+  Kokkos::View<std::int32_t const*, MemorySpace> wall;
+  Vec3 const* turn;
+  Field<double const> x;
+  AffineMotion const* frame;
+  Vec3 *u, *turn_gradient;
+
+  [[nodiscard]] Index size() const { return Index(wall.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    Index const w = wall(r);
+    Vec3 of_turn, of_wall = u[w] + frame[r].u;
+    for (int j = 0; j < 3; ++j) of_turn += turned_by_gradient(turn[r], unit_vector(j), column_of(frame[r].gradient, j));
+    for (Index k = of.first(r); k < of.first(r + 1); ++k) {
+      Index const c = of.column(k), n = columns.node(c);
+      double const share = columns.share(c);
+      of_wall += u[n];
+      of_turn += share * turned_by_gradient(share * turn[r], x[n] - x[w], u[n]);
+    }
+    u[w] = of_wall;
+    turn_gradient[r] = of_turn;
+  }
+};
+
+/// Transpose of SeedMotions: places of walls and of columns, to the motion around each wall node and the columns' displacement.
+template <class MemorySpace>
+struct SeedMotionsBack {
+  ColumnTable<MemorySpace> columns;
+  ColumnsOf<MemorySpace> of;
+  Index n_walls;
+  AffineMotion const* motion;  ///< gradients, of places
+  AffineMotion* frame;
+  Vec3* u;
+
+  [[nodiscard]] Index size() const { return n_walls; }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    AffineMotion sum = frame[r] + motion[r];
+    for (Index k = of.first(r); k < of.first(r + 1); ++k) {
+      Index const c = of.column(k);
+      AffineMotion const& g = motion[n_walls + c];
+      u[columns.node(c)] += g.u;
+      sum += double(columns.share(c)) * AffineMotion{{}, g.gradient};
+    }
+    frame[r] = sum;
+  }
+};
+
+/// Places of which one moves along a direction while the others stay where they are.
+struct SeededPlaces {
+  Field<double const> x;
+  Vec3 const* u;
+  Index seeded;
+  Vec3 direction;
+  KOKKOS_INLINE_FUNCTION DualVec3 operator[](Index n) const { return {x[n] + u[n], n == seeded ? direction : Vec3{}}; }
+};
+/// u(node) += what the rotations of wall nodes around it hand back. of: node -> wall nodes whose rotation depends on it.
+template <class MemorySpace>
+struct WallTurnBack {
+  TransposedRows<MemorySpace> of;
+  WallTurn<MemorySpace, DualVec3> turn;
+  Field<double const> x;
+  Vec3 const *displacement, *turn_gradient;
+  Vec3* u;
+
+  [[nodiscard]] Index size() const { return of.size(); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
+    Index const node = of.source(n);
+    Vec3 sum = u[node];
+    for (Index k = of.first(n); k < of.first(n + 1); ++k) {
+      Index const r = of.target(k);
+      auto const along = [&](Vec3 const& direction) {
+        return dot(turn.at(r, SeededPlaces{x, displacement, node, direction}).rate, turn_gradient[r]);
+      };
+      sum += {along({1, 0, 0}), along({0, 1, 0}), along({0, 0, 1})};
+    }
+    u[node] = sum;
+  }
+};
+
+/// Of the quaternion of half a body's rotation, and of its shift.
+struct BodyGradient {
+  Vec3 imaginary;
+  double less = 0;
+  Vec3 shift;
+  KOKKOS_INLINE_FUNCTION BodyGradient& operator+=(BodyGradient const& g) {
+    imaginary += g.imaginary;
+    less += g.less;
+    shift += g.shift;
+    return *this;
+  }
+};
+
+/// Of BodyTurnField::turned() with a share f of half, whose gradient is g: added.
+KOKKOS_INLINE_FUNCTION void add_body_turn(Quaternion<Vec3> const& half, double f, Vec3 const& y, Vec3 const& g,
+                                          BodyGradient& to) {
+  auto const h = Quaternion<Vec3>::share(half, f);
+  Quaternion<Vec3> const whole{(2 - 2 * h.less) * h.imaginary,
+                               2 * h.less - h.less * h.less + dot(h.imaginary, h.imaginary)};
+  TurnedGradient const of = turned_gradient(whole, y, g);
+  to.imaginary += f * ((2 - 2 * h.less) * of.imaginary + (2 * of.less) * h.imaginary);
+  to.less += f * ((2 - 2 * h.less) * of.less - 2 * dot(h.imaginary, of.imaginary));
+}
+
+/// Nodes of a part of a list, in chunks of so many.
+constexpr Index body_chunk = 1024;
+KOKKOS_INLINE_FUNCTION constexpr Index body_chunks(Index n) { return (n + body_chunk - 1) / body_chunk; }
+
+/// What the turns and shifts of all bodies give to nodes, handed back to them: parts, (chunks, bodies). node: empty for all of them.
+template <class MemorySpace>
+struct BodyPartsOfNodes {
+  BodyTurnField<MemorySpace, Vec3> field;
+  Kokkos::View<std::int32_t const*, MemorySpace> node;
+  Index n;
+  double sign;
+  Vec3 const* u;
+  BodyGradient* parts;
+
+  [[nodiscard]] Index size() const { return body_chunks(n); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
+    Index const n_bodies = Index(field.centre.extent(0)), n_nodes = Index(field.shift_share.extent(0)) / n_bodies;
+    BodyGradient* const of = parts + c * n_bodies;
+    for (Index b = 0; b < n_bodies; ++b) of[b] = {};
+    Index const end = (c + 1) * body_chunk < n ? (c + 1) * body_chunk : n;
+    for (Index k = c * body_chunk; k < end; ++k) {
+      Index const at = node.extent(0) > 0 ? node(k) : k;
+      Vec3 const g = sign * u[at];
+      for (Index b = 0; b < n_bodies; ++b) {
+        if (double const f = field.share(b * n_nodes + at); f != 0)
+          add_body_turn(field.half[b], f, field.x[at] - field.centre(b), g, of[b]);
+        if (double const s = field.shift_share(b * n_nodes + at); s != 0) of[b].shift += s * g;
+      }
+      for (Index m = n_bodies; m < Index(field.images.extent(0)); ++m)
+        if (double const f = field.share(m * n_nodes + at); f != 0) {
+          BodyImage const& image = field.images(m);
+          Mat3 const back = transpose(image.rotation);
+          add_body_turn(field.half[image.body], f, back * (field.x[at] - image.translation) - field.centre(image.body),
+                        back * g, of[image.body]);
+        }
+    }
+  }
+};
+/// The same of the motions around wall nodes, which lose what their body does: TakeTurnsFromFrames.
+template <class MemorySpace>
+struct BodyPartsOfFrames {
+  Quaternion<Vec3> const* half;
+  Index n_bodies;
+  Kokkos::View<std::int32_t const*, MemorySpace> node, body;
+  Vec3* u;
+  AffineMotion* frame;
+  BodyGradient* parts;
+
+  [[nodiscard]] Index size() const { return body_chunks(Index(node.extent(0))); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
+    BodyGradient* const of = parts + c * n_bodies;
+    for (Index b = 0; b < n_bodies; ++b) of[b] = {};
+    Index const n = Index(node.extent(0)), end = (c + 1) * body_chunk < n ? (c + 1) * body_chunk : n;
+    for (Index r = c * body_chunk; r < end; ++r) {
+      Index const b = body(r);
+      if (b < 0) continue;
+      u[node(r)] += frame[r].u;
+      frame[r].u = {};
+      for (int j = 0; j < 3; ++j) add_body_turn(half[b], 1, unit_vector(j), -column_of(frame[r].gradient, j), of[b]);
+    }
+  }
+};
+/// Item: a body.
+struct BodySums {
+  BodyGradient const* parts;
+  Index n_chunks, n_bodies;
+  BodyGradient* sum;  ///< += the parts
+  KOKKOS_INLINE_FUNCTION void operator()(Index b) const {
+    BodyGradient s = sum[b];
+    for (Index c = 0; c < n_chunks; ++c) s += parts[c * n_bodies + b];
+    sum[b] = s;
+  }
+};
+
+/// Transpose of TurnBodies: gradients of the sums over walls.
+template <class MemorySpace>
+struct TurnBodiesBack {
+  BodyWalls<MemorySpace> walls;
+  VectorMoments const* sum;
+  BodyGradient const* of;
+  VectorMoments* moments;  ///< per body
+
+  [[nodiscard]] Index size() const { return Index(walls.axis.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index b) const {
+    VectorMoments s;
+    for (int i = 0; i < 3; ++i) s.m[i][i] = 1;
+    for (Index c = walls.first_chunk(b); c < walls.first_chunk(b + 1); ++c) s += sum[c];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        VectorMoments rate;
+        rate.m[i][j] = 1;
+        auto const q = quaternion_of_half(best_turn<DualVec3>(s, rate, walls.axis(b)));
+        moments[b].m[i][j] = dot(q.imaginary.rate, of[b].imaginary) + q.less.rate * of[b].less;
+      }
+  }
+};
+/// Transposes of SumBodyWalls and SumBodyShifts: to the motions around wall nodes, and listed as `slot` is. Item: a chunk.
+template <class MemorySpace>
+struct BodyWallsBack {
+  BodyWalls<MemorySpace> walls;
+  VectorMoments const* moments;
+  BodyGradient const* of;
+  AffineMotion* frame;
+  Vec3* listed;
+
+  [[nodiscard]] Index size() const { return Index(walls.first.extent(0)) - 1; }
+  KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
+    Index const n_bodies = Index(walls.axis.extent(0));
+    Index b = 0;
+    while (b < n_bodies && walls.first_chunk(b + 1) <= c) ++b;
+    Vec3 shift;
+    if (b < n_bodies)
+      shift = of[b].shift;
+    else
+      for (Index m = 0; m < n_bodies; ++m) shift = shift - of[m].shift;
+    for (Index k = walls.first(c); k < walls.first(c + 1); ++k) {
+      listed[k] = walls.weight(k) * shift;
+      if (b == n_bodies) continue;
+      Mat3& g = frame[walls.wall(k)].gradient;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) g.m[j][i] += walls.weight(k) * moments[b].m[i][j];
+    }
+  }
+};
+
+}  // namespace gridmorph::kernels

@@ -1,0 +1,61 @@
+// What the transpose of a morph of blocks needs besides the tables of its DevicePlan: who reads what, turned round, and room for the
+// gradients that a field of its workspace has no place for.
+#pragma once
+
+#include <gridmorph/kernels/transposed_copies.hpp>
+#include <gridmorph/kernels/transposed_sides.hpp>
+#include <gridmorph/morph/device_plan.hpp>
+
+#include <vector>
+
+namespace gridmorph::detail {
+
+/// Lines of a stage or of a pass, by groups.
+template <class Exec>
+struct TransposedLines {
+  using Memory = typename Exec::memory_space;
+  WorkList<kernels::LineGroup, Memory> groups;
+  Kokkos::View<kernels::LinePatch*, Memory> patches;
+};
+
+template <class Exec>
+struct TransposedStage {
+  using Memory = typename Exec::memory_space;
+  TransposedLines<Exec> lines;
+  kernels::CopiesOf<Memory> ends, gathers;
+  Kokkos::View<kernels::SideSlab*, Memory> slabs;
+  Kokkos::View<Index*, Memory> first_part;                   ///< kernels::EdgeSums
+  Index first_side_node = 0, n_side_nodes = 0;               ///< of its corrected chains
+  kernels::Dependents<Memory> lines_of_slot, lines_of_root;  ///< of the near field
+};
+
+template <class Exec>
+struct TransposedSpread {
+  using Memory = typename Exec::memory_space;
+  TransposedLines<Exec> lines;
+  kernels::Dependents<Memory> ends_of_slot;
+  Workspace<Memory> kept;  ///< displacements of its ends
+};
+
+/// How walls' rotations depend on one another.
+template <class Exec>
+struct TransposedTurns {
+  using Memory = typename Exec::memory_space;
+  kernels::Dependents<Memory> roots_of_slot, end_walls_of_slot, end_walls_of_root, own_root, roots_of_end;
+};
+
+/// Memory: about 50 bytes per node of the skeleton, and 100 to 200 bytes per patch of lines. The plan has room for two fields.
+template <class Exec>
+struct TransposedPlan {
+  using Memory = typename Exec::memory_space;
+  std::vector<TransposedStage<Exec>> stages;
+  std::vector<TransposedSpread<Exec>> spreads;
+  TransposedTurns<Exec> turns;
+  kernels::CopiesOf<Memory> boundary_projections, skeleton_nodes;
+  Workspace<Memory> between;  ///< per side node
+  Workspace<Memory> edges;    ///< parts of edges; of one stage at a time
+
+  TransposedPlan(Exec const& exec, DevicePlan<Exec> const& plan);
+};
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,381 @@
+#include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/morph/detail/transposed_plan.hpp>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace gridmorph::detail {
+namespace {
+
+template <class View>
+auto on_host(View const& view) {
+  auto const copy = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+  using T = typename View::non_const_value_type;
+  return std::vector<T>(copy.data(), copy.data() + copy.extent(0));
+}
+
+struct Pair {
+  Index of, item;
+  std::int32_t matrix = -1;
+};
+void sort(std::vector<Pair>& pairs) {
+  std::stable_sort(pairs.begin(), pairs.end(), [](Pair const& a, Pair const& b) { return a.of < b.of; });
+}
+struct Rows {
+  std::vector<Index> of, first, item;
+  std::vector<std::int32_t> matrix;
+};
+Rows rows_of(std::vector<Pair> pairs) {
+  sort(pairs);
+  Rows rows;
+  for (Pair const& p : pairs) {
+    if (rows.of.empty() || rows.of.back() != p.of) {
+      rows.of.push_back(p.of);
+      rows.first.push_back(Index(rows.item.size()));
+    }
+    rows.item.push_back(p.item);
+    rows.matrix.push_back(p.matrix);
+  }
+  rows.first.push_back(Index(rows.item.size()));
+  return rows;
+}
+
+template <class Exec>
+kernels::CopiesOf<typename Exec::memory_space> copies_of(Exec const& exec,
+                                                         std::vector<kernels::NodeCopy> const& copies) {
+  std::vector<Pair> pairs;
+  for (kernels::NodeCopy const& c : copies)
+    for (Index q = 0; q < c.n_q; ++q)
+      for (Index p = 0; p < c.n_p; ++p)
+        pairs.push_back({c.source + p * c.source_stride_p + q * c.source_stride_q,
+                         c.destination + p * c.destination_stride_p + q * c.destination_stride_q, c.matrix});
+  // Lists may name a destination more than once, always with the same value: it counts once.
+  std::stable_sort(pairs.begin(), pairs.end(), [](Pair const& a, Pair const& b) { return a.item < b.item; });
+  pairs.erase(std::unique(pairs.begin(), pairs.end(), [](Pair const& a, Pair const& b) { return a.item == b.item; }),
+              pairs.end());
+  Rows const rows = rows_of(std::move(pairs));
+  kernels::CopiesOf<typename Exec::memory_space> const out{
+      table(exec, rows.of, "transposed::sources"), table(exec, rows.first, "transposed::first"),
+      table(exec, rows.item, "transposed::copies"), table(exec, rows.matrix, "transposed::matrices")};
+  compat::fence(exec, "gridmorph::Morpher (host tables may go)");
+  return out;
+}
+
+/// Targets and what depends on them; each pair counts once.
+using Dependencies = std::vector<std::pair<Index, Index>>;
+
+template <class Exec>
+kernels::Dependents<typename Exec::memory_space> dependents(Exec const& exec, Dependencies pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::vector<Pair> list;
+  for (auto const& [target, dependent] : pairs) list.push_back({target, dependent});
+  Rows const rows = rows_of(std::move(list));
+  kernels::Dependents<typename Exec::memory_space> const out{table(exec, rows.of, "transposed::targets"),
+                                                             table(exec, rows.first, "transposed::first"),
+                                                             table(exec, rows.item, "transposed::dependents")};
+  compat::fence(exec, "gridmorph::Morpher (host tables may go)");
+  return out;
+}
+
+/// Up to three directions of nodes, as they are stored, on the lines of a chain.
+struct Nodes {
+  int n[3] = {1, 1, 1};
+  Index3 origin{};      ///< (s, a, b) of node (0, 0, 0)
+  Index3 step[3] = {};  ///< along each direction
+  Index value = 0, value_step[3] = {};
+  Index t = -1, t_step[3] = {};
+  Index x = 0, x_step[3] = {};
+};
+
+/// A patch, and where its lines lie on the chain.
+struct PlacedPatch {
+  kernels::LinePatch patch;
+  std::array<int, 2> first, n;  ///< a, b
+};
+
+/// Directions that run against the chain's are turned round.
+PlacedPatch placed(Nodes nodes) {
+  PlacedPatch out{{}, {nodes.origin[1], nodes.origin[2]}, {1, 1}};
+  kernels::LinePatch& p = out.patch;
+  p.n_s = 1;
+  p.matrix = -1;
+  p.in_volume = 0;
+  Index steps[3][3] = {};
+  Index3 begin = nodes.origin, count{1, 1, 1};
+  Index value = nodes.value, t = nodes.t, x = nodes.x;
+  for (int d = 0; d < 3; ++d) {
+    if (nodes.n[d] == 1) continue;
+    int const axis = nodes.step[d][0] != 0 ? 0 : nodes.step[d][1] != 0 ? 1 : 2;
+    int const sign = nodes.step[d][axis];
+    count[axis] = nodes.n[d];
+    Index const last = nodes.n[d] - 1;
+    if (sign < 0) {
+      begin[axis] -= int(last);
+      value += last * nodes.value_step[d];
+      if (t >= 0) t += last * nodes.t_step[d];
+      x += last * nodes.x_step[d];
+    }
+    steps[0][axis] = sign * nodes.value_step[d];
+    steps[1][axis] = sign * nodes.t_step[d];
+    steps[2][axis] = sign * nodes.x_step[d];
+  }
+  auto const step = [&](int of) { return kernels::LineStep{steps[of][0], steps[of][1], steps[of][2]}; };
+  p.s = begin[0];
+  p.n_s = count[0];
+  p.value = value;
+  p.value_step = step(0);
+  p.t = t;
+  p.t_step = step(1);
+  p.x = x;
+  p.x_step = step(2);
+  out.first = {begin[1], begin[2]};
+  out.n = {count[1], count[2]};
+  return out;
+}
+
+PlacedPatch patch_of(kernels::SkeletonSweep const& sweep) {
+  Nodes nodes;
+  nodes.n[0] = sweep.n_p;
+  nodes.n[1] = sweep.n_q;
+  nodes.origin = {sweep.s[0], sweep.a[0], sweep.b[0]};
+  for (int d = 0; d < 2; ++d) nodes.step[d] = {sweep.s[1 + d], sweep.a[1 + d], sweep.b[1 + d]};
+  nodes.value = sweep.slot;
+  nodes.value_step[0] = 1;
+  nodes.value_step[1] = sweep.slot_q;
+  nodes.t = sweep.t;
+  nodes.t_step[0] = sweep.t_p;
+  nodes.t_step[1] = sweep.t_q;
+  nodes.x = sweep.x;
+  nodes.x_step[0] = 1;
+  nodes.x_step[1] = sweep.n_p;
+  PlacedPatch out = placed(nodes);
+  out.patch.matrix = sweep.matrix;
+  return out;
+}
+
+PlacedPatch patch_of(kernels::VolumeBox const& box, kernels::VolumeTerm const& term) {
+  Nodes nodes;
+  nodes.origin = {term.s[0], term.a[0], term.b[0]};
+  nodes.value = box.first;
+  nodes.t = term.t;
+  Index const value_step[3] = {1, box.stride_j, box.stride_k}, t_step[3] = {1, box.n[0], Index(box.n[0]) * box.n[1]};
+  for (int d = 0; d < 3; ++d) {
+    nodes.n[d] = box.n[d];
+    nodes.step[d] = {term.s[1 + d], term.a[1 + d], term.b[1 + d]};
+    nodes.value_step[d] = nodes.x_step[d] = value_step[d];
+    nodes.t_step[d] = t_step[d];
+  }
+  nodes.x = box.first;
+  PlacedPatch out = placed(nodes);
+  out.patch.matrix = term.matrix;
+  out.patch.in_volume = 1;
+  out.patch.offset = term.offset;
+  return out;
+}
+
+/// The part of a patch between two lines along a (axis 0) or b.
+PlacedPatch part(PlacedPatch p, int axis, int first, int end) {
+  Index const skip = first - p.first[std::size_t(axis)];
+  auto const along = [&](kernels::LineStep const& s) { return axis == 0 ? s.a : s.b; };
+  p.patch.value += skip * along(p.patch.value_step);
+  if (p.patch.t >= 0) p.patch.t += skip * along(p.patch.t_step);
+  p.patch.x += skip * along(p.patch.x_step);
+  p.first[std::size_t(axis)] = first;
+  p.n[std::size_t(axis)] = end - first;
+  return p;
+}
+
+/// Cut where any of them begins or ends, so that two of them have the same lines or none in common.
+std::vector<PlacedPatch> cut_alike(std::vector<PlacedPatch> patches) {
+  for (int axis = 0; axis < 2; ++axis) {
+    auto const d = std::size_t(axis);
+    std::set<int> cuts;
+    for (PlacedPatch const& p : patches) cuts.insert({p.first[d], p.first[d] + p.n[d]});
+    std::vector<PlacedPatch> pieces;
+    for (PlacedPatch const& p : patches) {
+      int first = p.first[d];
+      for (auto cut = cuts.upper_bound(first); first < p.first[d] + p.n[d]; first = *cut++)
+        pieces.push_back(part(p, axis, first, *cut));
+    }
+    patches = std::move(pieces);
+  }
+  return patches;
+}
+
+/// Per chain of a stage or pass, in the order of its chains.
+using PatchesOfChains = std::map<std::int32_t, std::vector<PlacedPatch>>;
+
+struct HostGroups {
+  std::vector<kernels::LineGroup> groups;
+  std::vector<kernels::LinePatch> patches;
+};
+HostGroups groups_of(PatchesOfChains const& of_chains) {
+  HostGroups out;
+  for (auto const& [chain, patches] : of_chains) {
+    using Place = std::array<int, 4>;  // b first: neighbours in memory follow one another
+    std::map<Place, std::vector<kernels::LinePatch>> places;
+    for (PlacedPatch const& p : cut_alike(patches)) places[{p.first[1], p.first[0], p.n[1], p.n[0]}].push_back(p.patch);
+    for (auto& [place, list] : places) {
+      std::stable_sort(list.begin(), list.end(), [](auto const& a, auto const& b) { return a.s < b.s; });
+      out.groups.push_back(
+          {chain, place[1], place[0], place[3], place[2], std::int32_t(out.patches.size()), std::int32_t(list.size())});
+      out.patches.insert(out.patches.end(), list.begin(), list.end());
+    }
+  }
+  return out;
+}
+
+template <class Exec>
+TransposedLines<Exec> lines_of(Exec const& exec, HostGroups const& host) {
+  using Memory = typename Exec::memory_space;
+  TransposedLines<Exec> out;
+  out.groups = WorkList<kernels::LineGroup, Memory>(
+      exec, host.groups, kernels::LineGradients<Memory, kernels::TileShape<Exec>::lines>::items, "transposed::groups");
+  out.patches = table(exec, host.patches, "transposed::patches");
+  compat::fence(exec, "gridmorph::Morpher (host tables may go)");
+  return out;
+}
+
+/// Host copies of what all stages look up.
+struct HostPlan {
+  std::vector<kernels::Chain> chains;
+  std::vector<kernels::Side> sides;
+  PatchesOfChains volume;
+
+  template <class Exec>
+  explicit HostPlan(DevicePlan<Exec> const& plan)
+      : chains(on_host(plan.lines.chains)), sides(on_host(plan.sides.sides)) {
+    auto const terms = on_host(plan.terms);
+    for (kernels::VolumeBox const& box : on_host(plan.boxes.entries))
+      for (int m = 0; m < box.n_terms; ++m) {
+        kernels::VolumeTerm const& term = terms[std::size_t(box.first_term + m)];
+        if (box.n[0] > 0 && box.n[1] > 0 && box.n[2] > 0) volume[term.chain].push_back(patch_of(box, term));
+      }
+  }
+
+  /// All nodes that the chains with these end values give something to.
+  [[nodiscard]] PatchesOfChains patches(std::vector<kernels::SkeletonSweep> const& sweeps, Index first_end,
+                                        Index n_ends) const {
+    PatchesOfChains out;
+    for (kernels::SkeletonSweep const& sweep : sweeps) out[sweep.chain].push_back(patch_of(sweep));
+    for (auto const& [chain, list] : volume) {
+      Index const first = chains[std::size_t(chain)].first_end_value;
+      if (first >= first_end && first < first_end + n_ends)
+        out[chain].insert(out[chain].end(), list.begin(), list.end());
+    }
+    return out;
+  }
+};
+
+/// Slabs of the corrected chains of a stage; returns the room that their parts of edges take.
+template <class Exec>
+Index add_slabs(Exec const& exec, HostPlan const& host, std::vector<kernels::LineGroup> const& groups,
+                std::vector<std::int32_t> const& corrected, TransposedStage<Exec>& stage) {
+  std::vector<kernels::SideSlab> slabs;
+  std::vector<Index> first_part;
+  Index room = 0;
+  for (std::int32_t const number : corrected) {
+    kernels::Chain const& chain = host.chains[std::size_t(number)];
+    auto const [begin, end] =
+        std::equal_range(groups.begin(), groups.end(), kernels::LineGroup{number, 0, 0, 0, 0, 0, 0},
+                         [](kernels::LineGroup const& a, kernels::LineGroup const& b) { return a.chain < b.chain; });
+    bool const has_edges = !chain.blends_along(0) && !chain.blends_along(1) && (chain.known_sides >> 4) != 0;
+    first_part.push_back(has_edges ? room : -1);
+    for (int direction = 0; direction < 2; ++direction)
+      for (int w = 0; w < (direction == 0 ? chain.n_b : chain.n_a); ++w)
+        slabs.push_back({number, direction, w, std::int32_t(begin - groups.begin()), std::int32_t(end - begin),
+                         has_edges && direction == 0 ? room + 4 * Index(w) * chain.n_s : -1});
+    if (has_edges) room += 4 * Index(chain.n_b) * chain.n_s;
+    for (int q = 0; q < 4; ++q) {
+      kernels::Side const& side = host.sides[std::size_t(chain.first_side + q)];
+      Index const side_end = side.first + Index(chain.n_s) * side.n_w;
+      if (stage.n_side_nodes == 0) stage.first_side_node = side.first;
+      stage.n_side_nodes = std::max(stage.n_side_nodes, side_end - stage.first_side_node);
+    }
+  }
+  stage.slabs = table(exec, slabs, "transposed::slabs");
+  stage.first_part = table(exec, first_part, "transposed::first_part");
+  compat::fence(exec, "gridmorph::Morpher (host tables may go)");
+  return room;
+}
+
+template <class Exec>
+TransposedTurns<Exec> turns_of(Exec const& exec, DeviceTurns<Exec> const& turns) {
+  auto const roots = on_host(turns.table.roots);
+  auto const neighbours = on_host(turns.table.neighbours);
+  auto const ends = on_host(turns.table.ends);
+  auto const end_walls = on_host(turns.table.end_walls);
+  Dependencies by_slot, walls_by_slot, walls_by_root, own, by_end;
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    by_slot.push_back({roots[r].slot, r});
+    for (Index k = 0; k < roots[r].n_neighbours; ++k)
+      by_slot.push_back({neighbours[std::size_t(roots[r].first_neighbour + k)].slot, r});
+    own.push_back({r, r});
+    for (kernels::RootEnd const& end : ends[r].end)
+      for (Index c = 0; end.end >= 0 && c < 3; ++c) by_end.push_back({3 * Index(end.end) + c, r});
+  }
+  for (std::size_t e = 0; e < end_walls.size(); ++e) {
+    walls_by_root.push_back({end_walls[e].root, e});
+    if (end_walls[e].wall >= 0)
+      walls_by_root.push_back({end_walls[e].wall, e});
+    else
+      walls_by_slot.push_back({roots[std::size_t(end_walls[e].root)].slot, e});
+  }
+  return {dependents(exec, by_slot), dependents(exec, walls_by_slot), dependents(exec, walls_by_root),
+          dependents(exec, own), dependents(exec, by_end)};
+}
+
+}  // namespace
+
+template <class Exec>
+TransposedPlan<Exec>::TransposedPlan(Exec const& exec, DevicePlan<Exec> const& plan) {
+  compat::fence(exec, "gridmorph::Morpher (tables are read back)");
+  HostPlan const host(plan);
+  auto const roots = on_host(plan.turns.table.roots);
+  Index room_for_edges = 0;
+  for (DeviceStage<Exec> const& stage : plan.stages) {
+    TransposedStage<Exec> t;
+    HostGroups const groups =
+        groups_of(host.patches(on_host(stage.sweeps.entries), stage.first_end_value, stage.n_end_values));
+    t.lines = lines_of(exec, groups);
+    t.ends = copies_of(exec, on_host(stage.ends.entries));
+    t.gathers = copies_of(exec, on_host(stage.gathers.entries));
+    room_for_edges = std::max(room_for_edges, add_slabs(exec, host, groups.groups, on_host(stage.corrected), t));
+    Dependencies of_slot, of_root;
+    auto const lines = on_host(stage.near_field);
+    std::set<Index> seen;  // lines between two tubes are listed with both
+    for (std::size_t n = 0; n < lines.size(); ++n) {
+      if (!seen.insert(lines[n].lower).second) continue;
+      of_slot.push_back({roots[std::size_t(lines[n].root)].slot, n});
+      of_root.push_back({lines[n].root, n});
+    }
+    t.lines_of_slot = dependents(exec, of_slot);
+    t.lines_of_root = dependents(exec, of_root);
+    stages.push_back(std::move(t));
+  }
+  for (DeviceSpread<Exec> const& pass : plan.spreads) {
+    TransposedSpread<Exec> t;
+    t.lines = lines_of(exec, groups_of(host.patches(on_host(pass.sweeps.entries), pass.first_value, pass.n_values)));
+    auto const ends = on_host(pass.ends);
+    Dependencies of_slot;
+    for (std::size_t n = 0; n < ends.size(); ++n) of_slot.push_back({ends[n].slot, n});
+    t.ends_of_slot = dependents(exec, of_slot);
+    t.kept = Workspace<Memory>(exec, Index(ends.size()), 1, "transposed::slip_ends");
+    spreads.push_back(std::move(t));
+  }
+  if (plan.turns.any()) turns = turns_of(exec, plan.turns);
+  boundary_projections = copies_of(exec, on_host(plan.boundary_projections.entries));
+  skeleton_nodes = copies_of(exec, on_host(plan.skeleton_nodes.entries));
+  between = Workspace<Memory>(exec, plan.residuals.n, 1, "transposed::between_edges");
+  edges = Workspace<Memory>(exec, room_for_edges, 1, "transposed::edges");
+}
+
+#define GRIDMORPH_INSTANTIATE(Exec) template struct TransposedPlan<Exec>;
+GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
+#undef GRIDMORPH_INSTANTIATE
+
+}  // namespace gridmorph::detail

@@ -1,0 +1,78 @@
+// A morph's transpose against its derivative forwards.
+#pragma once
+
+#include "support/random.hpp"
+
+#include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/morph/morpher.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace gridmorph::test {
+
+inline Coordinates random_vectors(unsigned seed, Index n) {
+  Random random(seed);
+  Coordinates c(n);
+  for (Index k = 0; k < n; ++k) c.set(k, random.vector(1));
+  return c;
+}
+inline Coordinates coordinates_of(std::vector<Vec3> const& values) {
+  Coordinates c(Index(values.size()));
+  for (Index k = 0; k < c.size(); ++k) c.set(k, values[std::size_t(k)]);
+  return c;
+}
+
+/// A Morpher on a host space at one displacement of the boundary, with velocity and transpose.
+template <class Exec>
+struct LinearisedMorph {
+  Morpher<Exec> morpher;
+  Coordinates boundary;
+  Index n_nodes;
+
+  template <class AnyPlan>
+  LinearisedMorph(AnyPlan const& plan, Coordinates const& baseline, std::vector<Vec3> const& at)
+      : morpher(Exec(), plan, baseline, {.velocity = true, .transpose = true}),
+        boundary(coordinates_of(at)),
+        n_nodes(baseline.size()) {}
+
+  [[nodiscard]] Coordinates forwards(Coordinates const& rate) const {
+    Coordinates v(n_nodes);
+    morpher.velocities(Exec(), boundary, rate, v);
+    Exec().fence();
+    return v;
+  }
+  [[nodiscard]] Coordinates backwards(Coordinates const& gradient) const {
+    Coordinates g(boundary.size());
+    morpher.transpose(Exec(), boundary, gradient, g);
+    Exec().fence();
+    return g;
+  }
+};
+
+/// Largest of |g . Jr - J^T g . r| over the sum of the sizes of both products' terms, for random g and r. Terms, not sums: those of a random g
+/// cancel.
+template <class Exec>
+double product_error(LinearisedMorph<Exec> const& at, unsigned n_seeds = 2) {
+  double worst = 0;
+  for (unsigned seed = 1; seed <= n_seeds; ++seed) {
+    Coordinates const rate = random_vectors(seed, at.boundary.size()), g = random_vectors(100 + seed, at.n_nodes);
+    Coordinates const v = at.forwards(rate), b = at.backwards(g);
+    double size = 0, difference = 0;
+    auto const add = [&](double sign, Coordinates const& p, Coordinates const& q) {
+      for (Index n = 0; n < p.size(); ++n) {
+        Vec3 const s = p[n], t = q[n];
+        difference += sign * dot(s, t);
+        size += std::abs(s.x * t.x) + std::abs(s.y * t.y) + std::abs(s.z * t.z);
+      }
+    };
+    add(1, g, v);
+    add(-1, b, rate);
+    worst = std::isfinite(difference) ? std::max(worst, std::abs(difference) / size) : HUGE_VAL;
+  }
+  return worst;
+}
+
+}  // namespace gridmorph::test

@@ -1,0 +1,212 @@
+// The transpose of a morph of elements against its derivative forwards, each kind of stage and boundary in turn.
+#include "support/made_bodies.hpp"
+#include "support/morph_run.hpp"
+#include "support/transpose_check.hpp"
+#include "support/unstructured_case.hpp"
+#include "support/unstructured_meshes.hpp"
+
+#include <gridmorph/core/instantiate.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <ostream>
+#include <string>
+
+namespace gridmorph::test {
+namespace {
+
+using Case = UnstructuredCase;
+using Exec = Case::Host;
+
+bool in_the_middle(Vec3 const& p) { return p.x > 2 && p.x < 5 && p.y > 2 && p.y < 5 && p.z > 2 && p.z < 5; }
+Mesh box() { return box_around({7, 7, 7}, in_the_middle); }
+
+/// Turned, bent and shifted.
+Rule bends(double size, Vec3 const& centre = {3.5, 3.5, 3.5}) {
+  return FunctionRule{"bends", [=](std::span<Vec3 const> x, std::span<Vec3> u) {
+                        for (std::size_t n = 0; n < x.size(); ++n) {
+                          Vec3 const p = x[n] - centre;
+                          Vec3 const bend{0.3 + 0.1 * p.y * p.y, 0.2 * std::sin(p.z), 0.1 * p.x * p.y};
+                          u[n] = size * (cross({0.5, 0.2, -0.4}, p) + bend);
+                        }
+                      }};
+}
+PlanOptions with_layers(int n, BoundaryLayer::Mode mode = BoundaryLayer::Mode::rotate) {
+  PlanOptions options;
+  options.elements.cells = 1;  // a coarse background: the stages are the same
+  options.boundary_layers.push_back({.walls = {}, .extent = BoundaryLayer::Extent::layers, .layers = n, .mode = mode});
+  return options;
+}
+PlanOptions by_layers() {
+  PlanOptions options = with_layers(1);
+  options.elements.method = NearFieldMethod::layers;
+  return options;
+}
+/// Half an annulus whose case bulges.
+double case_radius(double x) { return 2 + 0.3 * std::pow(std::sin(x), 2); }
+Mesh half_annulus() {
+  Mesh mesh = to_hexahedra(unit_box({10, 5, 8}));
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const q = mesh.coordinates[n];
+    double const x = q.x * std::numbers::pi / 10, angle = q.z * std::numbers::pi / 8;
+    double const r = 1 + (case_radius(x) - 1) * q.y / 5;
+    mesh.coordinates.set(n, {x, r * std::cos(angle), r * std::sin(angle)});
+  }
+  return mesh;
+}
+SlipRule on_the_case() {
+  std::vector<std::pair<double, double>> profile;
+  for (int k = 0; k <= 64; ++k) profile.emplace_back(k * std::numbers::pi / 64, case_radius(k * std::numbers::pi / 64));
+  return {.surface = SlipRule::Surface::revolution, .profile = profile};
+}
+/// A body beside another one that stands, near a wall that slips.
+Mesh two_bodies() {
+  return box_around({12, 7, 6}, [](Vec3 const& p) {
+    return p.y > 2 && p.y < 5 && p.z > 2 && p.z < 4 && ((p.x > 2 && p.x < 5) || (p.x > 7 && p.x < 9));
+  });
+}
+
+struct Kind {
+  std::string name;
+  std::function<Mesh()> mesh;
+  std::vector<MotionRule> rules;
+  PlanOptions options;
+  friend std::ostream& operator<<(std::ostream& out, Kind const& k) { return out << k.name; }
+};
+
+std::vector<Kind> kinds() {
+  auto const moves = [](double size = 0.1) { return rule_for({"body"}, bends(size)); };
+  MotionRule const slips = rule_for({"k_min"}, SlipRule{});
+  MotionRule const airfoil_turns = rule_for({"airfoil"}, rotation({0.3, 0, 0}, {0, 0, 1}, 0.4));
+  using Mode = BoundaryLayer::Mode;
+  return {
+      {"translated", box, {moves(), slips}, with_layers(1, Mode::translate)},
+      {"rotated", box, {moves(), slips}, with_layers(1, Mode::rotate)},
+      {"blended", box, {moves(), slips}, with_layers(2, Mode::blend)},
+      {"by_layers", box, {moves(), slips}, by_layers()},
+      {"no_columns", box, {moves()}, {}},
+      {"slips_on_three_sides",
+       box,
+       {moves(), rule_for({"i_min", "j_min", "k_min"}, SlipRule{}), rule_for({"i_max"}, translation({0.1, 0, 0})),
+        rule_for({"j_max", "k_max"}, FreeRule{})},
+       with_layers(1)},
+      {"slips_on_itself", box, {moves(), rule_for({"k_min"}, SlipRule{SlipRule::Surface::baseline})}, with_layers(1)},
+      {"tetrahedra",
+       [] {
+         return box_around({7, 7, 7}, in_the_middle, true);
+       },
+       {rule_for({"body"}, bends(0.1))},
+       {}},
+      {"second_order",
+       [] { return second_order(box(), true); },
+       {rule_for({"body"}, bends(0.1)), slips},
+       with_layers(1)},
+      {"two_zones",
+       [] { return in_two_zones(box(), [](Vec3 const& p) { return p.x < 5; }); },
+       {moves(), slips},
+       with_layers(1)},
+      {"two_bodies", two_bodies, {rule_for({"body"}, bends(0.05))}, {}},
+      {"airfoil", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, with_layers(2)},
+      {"airfoil_alone", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, {}},
+      {"periodic", [] { return periodic_flat_box(8, 5, 2); }, {rule_for({"j_min"}, translation({0, 0.3, 0}))}, {}},
+      {"revolution",
+       half_annulus,
+       {rule_for({"j_min"}, bends(0.03, {1, 0, 0})), rule_for({"j_max"}, on_the_case()),
+        rule_for({"i_min", "i_max", "k_min", "k_max"}, FreeRule{})},
+       {}},
+  };
+}
+
+class UnstructuredTranspose : public ::testing::TestWithParam<Kind> {
+ protected:
+  static void TearDownTestSuite() { made.clear(); }  // before Kokkos is closed
+
+  struct Planned {
+    Case c;
+    PreparedUnstructured prepared;
+    explicit Planned(Kind const& k)
+        : c(k.mesh()), prepared(prepare(c.mesh, c.topology, c.face_patches, motion_of(k.rules), k.options)) {}
+    template <class On>
+    [[nodiscard]] LinearisedMorph<On> at(double factor) const {
+      std::vector<Vec3> boundary = prepared.boundary_displacement(c.mesh);
+      for (Vec3& u : boundary) u = factor * u;
+      return {prepared.plan, c.mesh.coordinates, boundary};
+    }
+  };
+
+  /// Planned once for all tests.
+  static Planned const& planned() {
+    auto found = made.find(GetParam().name);
+    if (found == made.end()) found = made.try_emplace(GetParam().name, GetParam()).first;
+    return found->second;
+  }
+
+ private:
+  static inline std::map<std::string, Planned> made;
+};
+
+TEST_P(UnstructuredTranspose, HasTheProductsOfTheDerivativeForwards) {
+  Planned const& planned = this->planned();
+  for (double const factor : {1.0, 0.0})
+    EXPECT_LE(product_error(planned.at<Exec>(factor)), 1e-13) << "factor " << factor;
+}
+
+TEST_P(UnstructuredTranspose, IsTheDerivativeOfAFunctional) {
+  Planned const& planned = this->planned();
+  LinearisedMorph<Exec> const at = planned.at<Exec>(1);
+  // J = sum of w . u + |u|^2 / 2 along a direction of the boundary, by centred differences. Nodes of other boundaries stay: off a
+  // surface that nodes slide on, what they ask for is trimmed beyond a tolerance.
+  Vec3 const w{1, -2, 0.5};
+  Coordinates rate = random_vectors(5, at.boundary.size());
+  auto const& plan = planned.prepared.plan;
+  for (Index k = 0; k < rate.size(); ++k)
+    if (!std::binary_search(plan.driving.begin(), plan.driving.end(), plan.known[std::size_t(k)])) rate.set(k, {});
+  auto const displacements = [&](double h) {
+    Coordinates b(at.boundary.size()), u(at.n_nodes);
+    for (Index k = 0; k < b.size(); ++k) b.set(k, at.boundary[k] + h * rate[k]);
+    at.morpher.displacements(Exec(), b, u);
+    Exec().fence();
+    return u;
+  };
+  auto const J = [&](double h) {
+    Coordinates const u = displacements(h);
+    double sum = 0;
+    for (Index n = 0; n < u.size(); ++n) sum += dot(w + 0.5 * u[n], u[n]);
+    return sum;
+  };
+  Coordinates gradient = displacements(0);
+  for (Index n = 0; n < gradient.size(); ++n) gradient.set(n, gradient[n] + w);
+  Coordinates const b = at.backwards(gradient);
+  double product = 0, size = 0;
+  for (Index k = 0; k < b.size(); ++k) {
+    product += dot(b[k], rate[k]);
+    size += norm(b[k]) * norm(rate[k]);
+  }
+  double const h = 2e-7;
+  EXPECT_NEAR((J(h) - J(-h)) / (2 * h), product, 1e-7 * size);
+}
+
+TEST_P(UnstructuredTranspose, IsTheSameToTheBitOnAllHostSpaces) {
+  Planned const& planned = this->planned();
+  Coordinates const g = random_vectors(7, planned.c.mesh.n_nodes());
+  Coordinates const reference = planned.at<Exec>(1).backwards(g);
+  auto const compare = [&]<class Other>(Other, char const* name) {
+    if constexpr (Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename Other::memory_space>::accessible) {
+      EXPECT_EQ(different_bits(planned.at<Other>(1).backwards(g), reference), 0) << name;
+    }
+  };
+#define GRIDMORPH_COMPARE(Exec) compare(Exec(), #Exec);
+  GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_COMPARE)
+#undef GRIDMORPH_COMPARE
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, UnstructuredTranspose, ::testing::ValuesIn(kinds()),
+                         [](auto const& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace gridmorph::test
