@@ -96,6 +96,9 @@ struct ClearVectors {
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { v.set(n, {}); }
 };
 
+/// Normals of faces that lie on one another add up to less than this share of their area.
+inline constexpr double folded_walls = 1e-6;
+
 /// raw of every root.
 template <class MemorySpace, class V>
 struct RawRootTurn {
@@ -104,12 +107,11 @@ struct RawRootTurn {
   Field<double> raw;      ///< per root
 
   [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { raw.set(r, written(at(r, u))); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { raw.set(r, written(turn_at(table.roots(r)))); }
 
-  /// Of displacements u. By their differences: nothing turns where all are the same.
-  template <class Vectors>
-  KOKKOS_INLINE_FUNCTION V at(Index r, Vectors const& u) const {
-    Root const& root = table.roots(r);
+ private:
+  /// By differences of displacements: nothing turns where all are the same.
+  KOKKOS_INLINE_FUNCTION V turn_at(Root const& root) const {
     V const here = u[root.slot];
     auto const before = [&](Index k) { return V{table.neighbours(root.first_neighbour + k).arm}; };
     auto const after = [&](Index k) {
@@ -124,8 +126,7 @@ struct RawRootTurn {
       moved = moved + cross(after(k), after(k + 1));
       area += norm(value_of(face));
     }
-    constexpr double folded = 1e-6;
-    if (!(norm(value_of(normal)) > folded * area)) add_one_side(root, before, after, normal, moved);
+    if (!(norm(value_of(normal)) > folded_walls * area)) add_one_side(root, before, after, normal, moved);
     V const swing = turn_between(normal, moved);
     auto const size = norm(moved);
     if (!(size > 0)) return swing;
@@ -136,8 +137,6 @@ struct RawRootTurn {
     auto const face_after = [&](Index k) { return cross(after(2 * k), after(2 * k + 1)); };
     return share_that_keeps_height(root.line, turn, root.n_neighbours / 2, face_before, face_after) * turn;
   }
-
- private:
   /// Normals of faces that lie on one another, all towards the side of the first.
   template <class Before, class After>
   KOKKOS_INLINE_FUNCTION static void add_one_side(Root const& root, Before const& before, After const& after, V& normal,
@@ -236,31 +235,19 @@ struct NearFieldTurn {
   KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
     Root const& root = table.roots(r);
     if (root.stands == 0) return;
-    Found const found = at(r, raw, at_end);
-    inner.set(root.slot, written(found.inner));
-    outer.set(r, written(found.outer));
-  }
-
-  struct Found {
-    V inner, outer;
-  };
-  /// Of a root on which a line stands, by rotations raw and the vectors of end walls.
-  template <class Rotations, class AtEnd>
-  KOKKOS_INLINE_FUNCTION Found at(Index r, Rotations const& raw, AtEnd const& at_end) const {
-    Root const& root = table.roots(r);
     RootEnds const& ends = table.ends(r);
     V correction{};
     for (RootEnd const& end : ends.end)
       if (end.end >= 0 && end.share > 0)
         correction = correction + end.share * table.in_frame(end.to_root, at_end.alpha(end.end));
     V const own = raw[r], turned = turn_then(own, correction);
-    return {turned, root.turn == 0 ? V{} : root.turn * section(ends, own, turned, at_end)};
+    inner.set(root.slot, written(turned));
+    outer.set(r, written(root.turn == 0 ? V{} : root.turn * section(ends, own, turned)));
   }
 
  private:
   /// Between two slip surfaces about the spanwise direction alone, otherwise the turn itself.
-  template <class AtEnd>
-  KOKKOS_INLINE_FUNCTION V section(RootEnds const& ends, V const& own, V const& turned, AtEnd const& at_end) const {
+  KOKKOS_INLINE_FUNCTION V section(RootEnds const& ends, V const& own, V const& turned) const {
     if (!(ends.fraction >= 0)) return turned;
     V before{}, after{};
     for (int m = 0; m < 2; ++m) {

@@ -73,6 +73,12 @@ struct SlipEndValues {
     Vec3 const given = in_frame(end.to_node, u_slot), given_rate = in_frame(end.to_node, rate_slot);
     Vec3 wanted = given, wanted_rate = given_rate;
     int const count = end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
+    if constexpr (Rate)
+      if (count == 1 && !(end.tolerance > 0)) {  // needs no displacement for it
+        wanted_rate =
+            surfaces(end.surface[0]).constrain_rate(baseline.position, baseline.own_offset[0], given, given_rate);
+        return in_frame(end.to_chain, wanted_rate - given_rate);
+      }
     constrain_to_all<Rate>(count, Surfaces{surfaces, end}, Offsets{baseline}, baseline.position, wanted, wanted_rate);
     bool const left_alone = norm(wanted - given) <= end.tolerance && end.tolerance > 0;
     Vec3 const d = left_alone ? Vec3{} : (Rate ? wanted_rate - given_rate : wanted - given);

@@ -1,31 +1,18 @@
 // Gradients through rotations of line ends: the transposes of turned_line.hpp, turned_ends.hpp and root_turn.hpp, linearised where the
 // walls are.
 //
-// What a node's displacement asks of the quaternion q = (1 - l, v) that turns its arm y: with A = v x y, B = (1 - l) A + v x A,
-// N = (1 - l)^2 + v.v, c = 2 B / N and the gradient g of c,
+// The rotation of a wall node hands its gradient to its neighbours, and lines of the near field and end walls theirs to the rotations that they
+// depend on; what end walls make of slip surfaces is taken by exact rates (dual.hpp) along the three axes of what it depends on. Every sum is
+// made by one work item in one order.
 //
-//   G = 2 g / N,  n = -(g.c) / N,  a = (1 - l) G + G x v
-//   dJ/dv = A x G + y x a + 2 n v,  dJ/dl = -(G.A + 2 (1 - l) n)
-//
-// Rotations of walls depend on few vectors each; their gradients are taken by exact rates (dual.hpp) along the three axes of every vector
-// that they depend on, item by item of what is depended on: sums come in one order.
+// Cost: per node of a line that turns 70 flops and end; per wall node about twice its rotation.
 #pragma once
 
+#include <gridmorph/kernels/rotation_gradient.hpp>
+#include <gridmorph/kernels/transposed_wall_turn.hpp>
 #include <gridmorph/kernels/turned_ends.hpp>
 
 namespace gridmorph::kernels {
-
-/// Of a TurnedEnd.
-struct TurnedGradient {
-  Vec3 imaginary;
-  double less = 0, stretch = 0;
-
-  KOKKOS_INLINE_FUNCTION void add(double f, TurnedGradient const& g) {
-    imaginary += f * g.imaginary;
-    less += f * g.less;
-    stretch += f * g.stretch;
-  }
-};
 
 /// Of line ends: arrays as those of TurnedEnds, pivots unused.
 struct TurnedEndGradients {
@@ -44,17 +31,6 @@ struct TurnedEndGradients {
     set(end, sum);
   }
 };
-
-/// Of q.turned(y), whose gradient is g.
-KOKKOS_INLINE_FUNCTION TurnedGradient turned_gradient(Quaternion<Vec3> const& q, Vec3 const& y, Vec3 const& g) {
-  Vec3 const& v = q.imaginary;
-  double const real = 1 - q.less, size = real * real + dot(v, v);
-  Vec3 const A = cross(v, y), c = (2 / size) * (real * A + cross(v, A));
-  Vec3 const G = (2 / size) * g;
-  double const n = -dot(g, c) / size;
-  Vec3 const a = real * G + cross(G, v);
-  return {cross(A, G) + cross(y, a) + (2 * n) * v, -(dot(G, A) + 2 * real * n), 0};
-}
 
 /// Of what turned_between() gives a node at x, whose gradient is g: added to those of the two ends.
 KOKKOS_INLINE_FUNCTION void turned_gradient(TurnedEnds<double const> const& ends, Chain const& chain, Index lower,
@@ -79,14 +55,6 @@ KOKKOS_INLINE_FUNCTION void turned_gradient(TurnedEnds<double const> const& ends
   };
   if (chain.turned_ends & 1u) add(lower, f.lower, first);
   if (chain.turned_ends & 2u) add(upper, f.upper, last);
-}
-
-/// Of quaternion_of(r).
-KOKKOS_INLINE_FUNCTION Vec3 rotation_gradient(Vec3 const& r, TurnedGradient const& g) {
-  double const square = dot(r, r), share = 2 / (1 + square);
-  double const of_share = dot(g.imaginary, r) + g.less * square;
-  double const of_square = g.less * share - 0.5 * of_share * share * share;
-  return share * g.imaginary + (2 * of_square) * r;
 }
 
 /// Transpose of TurnEnds: gradients of rotations, from those of what was made of them.
@@ -143,14 +111,90 @@ void pull_back(char const* label, Exec const& exec, Dependents<typename Exec::me
   launch(label, exec, PullBack<typename Exec::memory_space, Function>{on, of, gradient});
 }
 
-/// Root r by the displacement of a slot.
+/// Transpose of RawRootTurn: gradients of the displacements of a root's neighbours, at their places in the table in the frame of the
+/// root's slot, and after those of all roots that of its own slot.
 template <class MemorySpace>
-struct RawTurnBySlot {
-  RawRootTurn<MemorySpace, DualVec3> turn;
+struct RawRootTurnBack {
+  RootTable<MemorySpace> table;
   Field<double const> u, raw;  ///< displacements; gradients
-  KOKKOS_INLINE_FUNCTION double operator()(Index r, Index slot, Vec3 const& direction) const {
-    return dot(turn.at(r, SeededVectors{u, slot, direction}).rate, raw[r]);
+  Field<double> parts;
+
+  [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    Root const& root = table.roots(r);
+    Vec3 const g = raw[r];
+    Index const own = Index(table.neighbours.extent(0)) + r;
+    for (Index k = 0; k < root.n_neighbours; ++k) parts.set(root.first_neighbour + k, {});
+    parts.set(own, {});
+    if (g == Vec3{}) return;
+    Fan const fan{table, root, u, u[root.slot]};
+    auto const before = [&](Index k) { return fan.before(k); };
+    auto const after = [&](Index k) { return fan.after(k); };
+    auto const add = [&](Index k, Vec3 const& of) {
+      Index const at = root.first_neighbour + k;
+      parts.set(at, parts[at] + of);
+    };
+    auto const add_face = [&](Index k, Vec3 const& of) {  // of after(k) x after(k + 1)
+      add(k, cross(after(k + 1), of));
+      add(k + 1, cross(of, after(k)));
+    };
+    Vec3 normal, moved;
+    fan.for_faces([&](Index k, Vec3 const& face, double side) {
+      normal += side * face;
+      moved += side * cross(after(k), after(k + 1));
+    });
+    Vec3 of_turn = g;
+    if (double const size = norm(moved); dot(root.line, root.line) > 0 && size > 0) {
+      Vec3 const swing = turn_between(normal, moved), axis = (1 / size) * moved;
+      Vec3 const free = turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after));
+      auto const face_before = [&](Index k) { return cross(before(2 * k), before(2 * k + 1)); };
+      auto const face_after = [&](Index k) { return cross(after(2 * k), after(2 * k + 1)); };
+      double const share = share_that_keeps_height(root.line, free, root.n_neighbours / 2, face_before, face_after);
+      auto const kept =
+          kept_height_gradient(root.line, free, root.n_neighbours / 2, face_before, face_after, dot(g, free));
+      of_turn = share * g + kept.turn;
+      if (kept.face >= 0) add_face(2 * kept.face, kept.moved);
+    }
+    Vec3 const of_moved = fan_turn_gradient(normal, moved, root.n_neighbours, before, after, of_turn, add);
+    fan.for_faces([&](Index k, Vec3 const&, double side) { add_face(k, side * of_moved); });
+    Vec3 of_own;
+    for (Index k = 0; k < root.n_neighbours; ++k) of_own = of_own - parts[root.first_neighbour + k];
+    parts.set(own, of_own);
   }
+
+ private:
+  /// The arms of a root before and after.
+  struct Fan {
+    RootTable<MemorySpace> const& table;
+    Root const& root;
+    Field<double const> const& u;
+    Vec3 here;
+
+    KOKKOS_INLINE_FUNCTION Vec3 before(Index k) const { return table.neighbours(root.first_neighbour + k).arm; }
+    KOKKOS_INLINE_FUNCTION Vec3 after(Index k) const {
+      RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
+      return other.arm + (table.in_frame(other.matrix, u[other.slot]) - here);
+    }
+    /// visit(k, face before, 1 or -1), the sign as RawRootTurn counts faces that lie on one another.
+    template <class Visit>
+    KOKKOS_INLINE_FUNCTION void for_faces(Visit const& visit) const {
+      Vec3 normal;
+      double area = 0;
+      for (Index k = 0; k < root.n_neighbours; k += 2) {
+        Vec3 const face = cross(before(k), before(k + 1));
+        normal += face;
+        area += norm(face);
+      }
+      bool const folded = !(norm(normal) > folded_walls * area);
+      normal = {};
+      for (Index k = 0; k < root.n_neighbours; k += 2) {
+        Vec3 const face = cross(before(k), before(k + 1));
+        double const side = folded && dot(face, normal) < 0 ? -1 : 1;
+        normal += side * face;
+        visit(k, face, side);
+      }
+    }
+  };
 };
 
 /// End wall e by the displacement of a slot (raw == false), or by the rotation of a root.
@@ -167,41 +211,104 @@ struct EndWallTurnBy {
   }
 };
 
-/// Root r by its raw rotation (by_raw), or by one of the vectors of an end wall.
-template <class MemorySpace, bool by_raw>
-struct NearFieldTurnBy {
-  NearFieldTurn<MemorySpace, DualVec3> turn;
-  Field<double const> raw, at_end;
+/// Transpose of NearFieldTurn: raw(r) is added to; what end walls are handed is left in `parts`, four vectors per root in the frame of its
+/// slot: of alpha and of the normal after, end by end.
+template <class MemorySpace>
+struct NearFieldTurnBack {
+  RootTable<MemorySpace> table;
+  Field<double const> raw_turn;
+  EndWallVectors<Field<double const>> at_end;
   Field<double const> inner, outer;  ///< gradients, per slot and root
-  KOKKOS_INLINE_FUNCTION double operator()(Index r, Index target, Vec3 const& direction) const {
-    if (turn.table.roots(r).stands == 0) return 0;
-    auto const found = turn.at(r, SeededVectors{raw, by_raw ? target : -1, direction},
-                               EndWallVectors<SeededVectors>{{at_end, by_raw ? -1 : target, direction}});
-    return dot(found.inner.rate, inner[turn.table.roots(r).slot]) + dot(found.outer.rate, outer[r]);
-  }
-};
+  Field<double> raw, parts;
 
-/// One of what a line of the near field depends on: the rotations of its root.
-enum class LineInput { inner, raw, outer };
-template <class MemorySpace, LineInput input>
-struct NearFieldLineBy {
-  TurnNearField<MemorySpace, DualVec3> turn;
-  Field<double const> inner, raw, outer;
-  Field<double const> turns;  ///< gradients of rotations of ends
-  TurnedEndGradients turned;
-  KOKKOS_INLINE_FUNCTION double operator()(Index n, Index target, Vec3 const& direction) const {
-    auto const seeded = [&](LineInput which) { return which == input ? target : -1; };
-    NearFieldLine const& line = turn.lines(n);
-    auto const found = turn.at(line, SeededVectors{inner, seeded(LineInput::inner), direction},
-                               SeededVectors{raw, seeded(LineInput::raw), direction},
-                               SeededVectors{outer, seeded(LineInput::outer), direction});
-    return dot(found.in.rate, turns[line.lower]) + dot(found.out.rate, turns[line.upper]) +
-           rate_of(found.lower, turned[line.lower]) + rate_of(found.upper, turned[line.upper]);
+  [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    for (Index k = 0; k < 4; ++k) parts.set(4 * r + k, {});
+    Root const& root = table.roots(r);
+    if (root.stands == 0) return;
+    RootEnds const& ends = table.ends(r);
+    Vec3 const own = raw_turn[r];
+    Vec3 correction, of_own, of_correction;
+    for (RootEnd const& end : ends.end)
+      if (end.end >= 0 && end.share > 0)
+        correction = correction + end.share * table.in_frame(end.to_root, at_end.alpha(end.end));
+    Vec3 const of_outer = root.turn * outer[r];
+    bool const has_section = runs_between_surfaces(ends);
+    add_turn_then(own, correction, has_section ? inner[root.slot] : inner[root.slot] + of_outer, of_own, of_correction);
+    for (int m = 0; m < 2; ++m)
+      if (ends.end[m].end >= 0 && ends.end[m].share > 0) parts.set(4 * r + 2 * m, ends.end[m].share * of_correction);
+    if (has_section) add_section(r, ends, own, of_outer, of_own);
+    raw.set(r, raw[r] + of_own);
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION static double rate_of(TurnedEnd<DualVec3> const& e, TurnedGradient const& g) {
-    return dot(e.q.imaginary.rate, g.imaginary) + e.q.less.rate * g.less + e.stretch.rate * g.stretch;
+  KOKKOS_INLINE_FUNCTION bool runs_between_surfaces(RootEnds const& ends) const {
+    return ends.fraction >= 0 && table.end_walls(ends.end[0].end).surface >= 0 &&
+           table.end_walls(ends.end[1].end).surface >= 0;
+  }
+  KOKKOS_INLINE_FUNCTION void add_section(Index r, RootEnds const& ends, Vec3 const& own, Vec3 const& g,
+                                          Vec3& of_own) const {
+    Vec3 before, after;
+    double share[2];
+    for (int m = 0; m < 2; ++m) {
+      Vec3 const n = table.in_frame(ends.end[m].to_root, at_end.normal(ends.end[m].end));
+      share[m] = m == 0 ? 1 - ends.fraction : ends.fraction;
+      if (m == 1 && dot(n, before) < 0) share[m] = -share[m];
+      before += share[m] * n;
+      after += share[m] * table.in_frame(ends.end[m].to_root, at_end.moved(ends.end[m].end));
+    }
+    Vec3 const carried = before + turned_by(own, before);
+    Vec3 of_swing;
+    add_turn_then(own, turn_between(carried, after), g, of_own, of_swing);
+    // The other way round it is the same rotation backwards.
+    of_own += turned_by_gradient(own, before, turn_between_gradient(after, carried, -of_swing));
+    Vec3 const of_after = turn_between_gradient(carried, after, of_swing);
+    for (int m = 0; m < 2; ++m) parts.set(4 * r + 2 * m + 1, share[m] * of_after);
+  }
+};
+
+/// Transpose of TurnNearField, root by root: the rotations that lines of the near field begin and end with, and what keeps their heights.
+template <class MemorySpace>
+struct NearFieldLinesBack {
+  Dependents<MemorySpace> lines_of_root;
+  TurnNearField<MemorySpace, Vec3> turn;
+  Field<double const> turns;  ///< gradients of rotations of ends
+  TurnedEndGradients turned;
+  Field<double> inner, raw, outer;  ///< gradients, added to
+
+  [[nodiscard]] Index size() const { return Index(lines_of_root.target.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
+    Index const r = lines_of_root.target(n), slot = turn.table.roots(r).slot;
+    Vec3 of_inner = inner[slot], of_raw = raw[r], of_outer = outer[r];
+    for (Index k = lines_of_root.first(n); k < lines_of_root.first(n + 1); ++k)
+      add(turn.lines(lines_of_root.dependent(k)), of_inner, of_raw, of_outer);
+    inner.set(slot, of_inner);
+    raw.set(r, of_raw);
+    outer.set(r, of_outer);
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION void add(NearFieldLine const& line, Vec3& of_inner, Vec3& of_raw, Vec3& of_outer) const {
+    auto const found = turn.at(line, turn.inner, turn.raw, turn.outer);
+    TurnedGradient wall = turned[line.lower], edge = turned[line.upper];
+    auto const first = Quaternion<Vec3>::between(found.upper.q, found.lower.q, line.f0);
+    Vec3 const rotation = turn.table.in_frame(line.matrix, turn.raw[line.root]);
+    Vec3 const normal = line.normal + turned_by(rotation, line.normal), moved = first.turned(line.edge);
+    double const height = dot(normal, line.edge + moved);
+    if (turn.keeps_height(line, height)) {
+      double const of_missing = wall.stretch / (line.f0 * height);
+      double const of_height = -wall.stretch * found.lower.stretch / height;
+      Vec3 const of_normal = of_height * (line.edge + moved) + (-of_missing) * moved;
+      of_raw += turn.table.back(line.matrix,
+                                turned_by_gradient(rotation, line.normal, of_normal + (-of_missing) * line.edge));
+      TurnedGradient const of_first = turned_gradient(first, line.edge, (of_height - of_missing) * normal);
+      wall.add(line.f0, of_first);
+      edge.add(1 - line.f0, of_first);
+    }
+    // The other sign of the edge's quaternion, where that is nearer to the wall's.
+    if (turn.edge_is_turned_round(found)) edge = {-edge.imaginary, -edge.less, 0};
+    of_inner += turn.table.back(line.matrix, turns[line.lower] + rotation_gradient(found.in, wall));
+    of_outer += turn.table.back(line.matrix, turns[line.upper] + rotation_gradient(found.out, edge));
   }
 };
 

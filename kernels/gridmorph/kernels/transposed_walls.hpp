@@ -1,21 +1,18 @@
 // Transposes of how walls of elements turn and what stands on them: wall_turn.hpp, column_motion.hpp, layer_motion.hpp's seeds; and of
 // bodies that turn as wholes: body_turn.hpp. Rotations are linearised where the walls are.
 //
-// Cost: per column node as forwards; per wall node and neighbour three rates of the wall's rotation; per node and body that turns about
+// Cost: per column node as forwards; per wall node twice its rotation; per node and body that turns about
 // 150 flops, 16 bytes of shares, 48 read.
 #pragma once
 
 #include <gridmorph/kernels/body_turn.hpp>
 #include <gridmorph/kernels/column_motion.hpp>
+#include <gridmorph/kernels/rotation_gradient.hpp>
 #include <gridmorph/kernels/transposed_rows.hpp>
-#include <gridmorph/kernels/transposed_turns.hpp>
+#include <gridmorph/kernels/transposed_wall_turn.hpp>
 
 namespace gridmorph::kernels {
 
-/// Of turned_by(r, y), whose gradient is g.
-KOKKOS_INLINE_FUNCTION Vec3 turned_by_gradient(Vec3 const& r, Vec3 const& y, Vec3 const& g) {
-  return rotation_gradient(r, turned_gradient(quaternion_of(r), y, g));
-}
 KOKKOS_INLINE_FUNCTION Vec3 unit_vector(int a) { return {a == 0 ? 1.0 : 0.0, a == 1 ? 1.0 : 0.0, a == 2 ? 1.0 : 0.0}; }
 KOKKOS_INLINE_FUNCTION Vec3 column_of(Mat3 const& m, int j) { return {m.m[0][j], m.m[1][j], m.m[2][j]}; }
 
@@ -76,35 +73,85 @@ struct SeedMotionsBack {
   }
 };
 
-/// Places of which one moves along a direction while the others stay where they are.
-struct SeededPlaces {
-  Field<double const> x;
-  Vec3 const* u;
-  Index seeded;
-  Vec3 direction;
-  KOKKOS_INLINE_FUNCTION DualVec3 operator[](Index n) const { return {x[n] + u[n], n == seeded ? direction : Vec3{}}; }
-};
-/// u(node) += what the rotations of wall nodes around it hand back. of: node -> wall nodes whose rotation depends on it.
+/// Transpose of WallTurn: gradients of the displacements of the nodes around each wall node, at their places in WallTable::around, and after
+/// them all those of the wall nodes themselves.
 template <class MemorySpace>
 struct WallTurnBack {
-  TransposedRows<MemorySpace> of;
-  WallTurn<MemorySpace, DualVec3> turn;
+  WallTable<MemorySpace> wall;
   Field<double const> x;
-  Vec3 const *displacement, *turn_gradient;
-  Vec3* u;
+  Vec3 const *u, *turn_gradient;
+  Vec3* parts;
 
-  [[nodiscard]] Index size() const { return of.size(); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
-    Index const node = of.source(n);
-    Vec3 sum = u[node];
-    for (Index k = of.first(n); k < of.first(n + 1); ++k) {
-      Index const r = of.target(k);
-      auto const along = [&](Vec3 const& direction) {
-        return dot(turn.at(r, SeededPlaces{x, displacement, node, direction}).rate, turn_gradient[r]);
-      };
-      sum += {along({1, 0, 0}), along({0, 1, 0}), along({0, 0, 1})};
+  [[nodiscard]] Index size() const { return Index(wall.node.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    Index const first = wall.first(r), n = wall.first(r + 1) - first, own = Index(wall.around.extent(0)) + r;
+    for (Index k = first; k < first + n; ++k) parts[k] = {};
+    parts[own] = {};
+    Vec3 const g = turn_gradient[r];
+    if (wall.turns(r) == 0 || g == Vec3{}) return;
+    Index const here = wall.node(r);
+    auto const before = [&](Index k) { return x[wall.around(first + k)] - x[here]; };
+    auto const after = [&](Index k) {
+      Index const there = wall.around(first + k);
+      return (x[there] + u[there]) - (x[here] + u[here]);
+    };
+    auto const face_of = [&](Vec3 const& a, Vec3 const& b) {
+      return wall.flat ? cross(b - a, wall.across) : cross(a, b);
+    };
+    auto const face_before = [&](Index f) { return face_of(before(2 * f), before(2 * f + 1)); };
+    auto const face_after = [&](Index f) { return face_of(after(2 * f), after(2 * f + 1)); };
+    auto const add = [&](Index k, Vec3 const& of) { parts[first + k] += of; };
+    auto const add_face = [&](Index f, Vec3 const& of) {
+      Vec3 const across = cross(wall.across, of);
+      add(2 * f, wall.flat ? -across : cross(after(2 * f + 1), of));
+      add(2 * f + 1, wall.flat ? across : cross(of, after(2 * f)));
+    };
+    Vec3 normal, moved;
+    for (Index f = 0; 2 * f < n; ++f) {
+      normal += face_before(f);
+      moved += face_after(f);
     }
-    u[node] = sum;
+    Vec3 const of_turn =
+        through_lines(r, n / 2, free_turn(normal, moved, n, before, after), g, face_before, face_after, add_face);
+    Vec3 of_moved;
+    if (wall.flat)
+      of_moved =
+          turn_between_gradient(normal, moved, settled_gradient(turn_between(normal, moved, wall.across), of_turn));
+    else
+      of_moved = fan_turn_gradient(normal, moved, n, before, after, of_turn, add);
+    for (Index f = 0; 2 * f < n; ++f) add_face(f, of_moved);
+    for (Index k = first; k < first + n; ++k) parts[own] = parts[own] - parts[k];
+  }
+
+ private:
+  template <class Before, class After>
+  KOKKOS_INLINE_FUNCTION Vec3 free_turn(Vec3 const& normal, Vec3 const& moved, Index n, Before const& before,
+                                        After const& after) const {
+    if (wall.flat) return settled(turn_between(normal, moved, wall.across));
+    Vec3 const swing = turn_between(normal, moved);
+    double const size = norm(moved);
+    if (!(size > 0)) return swing;
+    return turn_then(swing, twist_about((1 / size) * moved, swing, n, before, after));
+  }
+  /// Of the turn before the lines on the node held it back: of that which did so most.
+  template <class Before, class After, class AddFace>
+  KOKKOS_INLINE_FUNCTION Vec3 through_lines(Index r, Index n_faces, Vec3 const& turn, Vec3 const& g,
+                                            Before const& before, After const& after, AddFace const& add_face) const {
+    if (wall.lines.extent(0) == 0) return g;
+    double least = norm(turn), share = 1;
+    Index holds = -1;
+    for (Index k = wall.first_line(r); k < wall.first_line(r + 1); ++k) {
+      double const kept = share_that_keeps_height(wall.lines(k), turn, n_faces, before, after),
+                   size = norm(kept * turn);
+      if (!(least - size > 0)) continue;
+      least = size;
+      share = kept;
+      holds = k;
+    }
+    if (holds < 0) return g;
+    auto const kept = kept_height_gradient(wall.lines(holds), turn, n_faces, before, after, dot(g, turn));
+    if (kept.face >= 0) add_face(kept.face, kept.moved);
+    return share * g + kept.turn;
   }
 };
 

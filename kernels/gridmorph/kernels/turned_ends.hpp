@@ -79,6 +79,20 @@ struct TurnNearField {
     return {in, out, {wall, pivot, s}, {edge, pivot}};
   }
 
+  /// Lines along the wall have no height to keep, and a near field of one cell has none to give. inner_height: (n'.R(f0) l) of the head of this file.
+  KOKKOS_INLINE_FUNCTION static bool keeps_height(NearFieldLine const& line, double inner_height) {
+    double const height = dot(line.normal, line.edge);
+    return line.f0 > 0.1 && height * height > 0.01 * dot(line.edge, line.edge) &&
+           height * inner_height > 0.1 * height * height;
+  }
+  /// Whether the quaternion of the upper end is that of its rotation with the other sign.
+  KOKKOS_INLINE_FUNCTION static bool edge_is_turned_round(Found const& found) {
+    Quaternion<V> const q = quaternion_of(found.out);
+    return value_of(dot(q.imaginary, found.upper.q.imaginary)) +
+               (1 - value_of(q.less)) * (1 - value_of(found.upper.q.less)) <
+           0;
+  }
+
  private:
   using Q = Quaternion<V>;
 
@@ -93,11 +107,7 @@ struct TurnNearField {
     V const change = turned_by(wall, V{line.normal}), normal = V{line.normal} + change;
     V const edge{line.edge}, moved = first.turned(edge);
     Scalar const inner_height = dot(normal, edge + moved), missing = -dot(change, edge) - dot(normal, moved);
-    double const height = dot(line.normal, line.edge);
-    // Lines along the wall have no height to keep, and a near field of one cell has none to give.
-    bool const none = !(line.f0 > 0.1) || !(height * height > 0.01 * dot(line.edge, line.edge)) ||
-                      !(height * inner_height > 0.1 * height * height);
-    if (none) return {};
+    if (!keeps_height(line, value_of(inner_height))) return {};
     return missing / (line.f0 * inner_height);
   }
 };

@@ -82,16 +82,16 @@ struct WallTable {
   Kokkos::View<Vec3 const*, MemorySpace> lines;
 
   /// Of one of the faces around node r, `pair` the number of its first neighbour; x: the node there.
-  template <class V, class Places>
-  KOKKOS_INLINE_FUNCTION V face(Index pair, V const& x, Places const& at) const {
+  template <class V>
+  KOKKOS_INLINE_FUNCTION V face(Index pair, V const& x, Positions<V> const& at) const {
     V const a = at[around(pair)], b = at[around(pair + 1)];
     return flat ? cross(b - a, V{across}) : cross(a - x, b - x);
   }
   /// Weighted by area.
-  template <class Places>
-  KOKKOS_INLINE_FUNCTION auto normal(Index r, Places const& at) const {
-    auto const x = at[node(r)];
-    std::decay_t<decltype(x)> sum{};
+  template <class V>
+  KOKKOS_INLINE_FUNCTION V normal(Index r, Positions<V> const& at) const {
+    V const x = at[node(r)];
+    V sum{};
     for (Index k = first(r); k < first(r + 1); k += 2) sum = sum + face(k, x, at);
     return sum;
   }
@@ -105,18 +105,16 @@ struct WallTurn {
 
   [[nodiscard]] Index size() const { return Index(wall.node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
-    V const found = at(r, moved);
+    V const found = wall.turns(r) == 0 ? V{} : turn_at(r);
     if constexpr (has_rate<V>)
       turn[r] = found.rate;
     else
       turn[r] = found;
   }
 
-  /// Of places `moved`, Positions or others that give a V each.
-  template <class Places>
-  KOKKOS_INLINE_FUNCTION V at(Index r, Places const& moved) const {
-    if (wall.turns(r) == 0) return {};
-    V const turn = turn_of_faces(r, moved);
+ private:
+  KOKKOS_INLINE_FUNCTION V turn_at(Index r) const {
+    V const turn = turn_of_faces(r);
     if (wall.lines.extent(0) == 0) return turn;
     V const x = baseline[wall.node(r)], y = moved[wall.node(r)];
     Index const first = wall.first(r), n_faces = (wall.first(r + 1) - first) / 2;
@@ -136,9 +134,7 @@ struct WallTurn {
     return kept;
   }
 
- private:
-  template <class Places>
-  KOKKOS_INLINE_FUNCTION V turn_of_faces(Index r, Places const& moved) const {
+  KOKKOS_INLINE_FUNCTION V turn_of_faces(Index r) const {
     V const after = wall.normal(r, moved);
     V const before = wall.normal(r, baseline);
     if (wall.flat) return settled(turn_between(before, after, wall.across));

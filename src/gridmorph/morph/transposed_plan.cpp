@@ -44,6 +44,15 @@ Rows rows_of(std::vector<Pair> pairs) {
 }
 
 template <class Exec>
+kernels::CopiesOf<typename Exec::memory_space> copies_of(Exec const& exec, std::vector<Pair> pairs) {
+  Rows const rows = rows_of(std::move(pairs));
+  kernels::CopiesOf<typename Exec::memory_space> const out{
+      table(exec, rows.of, "transposed::sources"), table(exec, rows.first, "transposed::first"),
+      table(exec, rows.item, "transposed::copies"), table(exec, rows.matrix, "transposed::matrices")};
+  compat::fence(exec, "gridmorph::Morpher (host tables may go)");
+  return out;
+}
+template <class Exec>
 kernels::CopiesOf<typename Exec::memory_space> copies_of(Exec const& exec,
                                                          std::vector<kernels::NodeCopy> const& copies) {
   std::vector<Pair> pairs;
@@ -56,12 +65,7 @@ kernels::CopiesOf<typename Exec::memory_space> copies_of(Exec const& exec,
   std::stable_sort(pairs.begin(), pairs.end(), [](Pair const& a, Pair const& b) { return a.item < b.item; });
   pairs.erase(std::unique(pairs.begin(), pairs.end(), [](Pair const& a, Pair const& b) { return a.item == b.item; }),
               pairs.end());
-  Rows const rows = rows_of(std::move(pairs));
-  kernels::CopiesOf<typename Exec::memory_space> const out{
-      table(exec, rows.of, "transposed::sources"), table(exec, rows.first, "transposed::first"),
-      table(exec, rows.item, "transposed::copies"), table(exec, rows.matrix, "transposed::matrices")};
-  compat::fence(exec, "gridmorph::Morpher (host tables may go)");
-  return out;
+  return copies_of(exec, std::move(pairs));
 }
 
 /// Targets and what depends on them; each pair counts once.
@@ -309,14 +313,18 @@ TransposedTurns<Exec> turns_of(Exec const& exec, DeviceTurns<Exec> const& turns)
   auto const neighbours = on_host(turns.table.neighbours);
   auto const ends = on_host(turns.table.ends);
   auto const end_walls = on_host(turns.table.end_walls);
-  Dependencies by_slot, walls_by_slot, walls_by_root, own, by_end;
+  std::vector<Pair> parts, of_ends;
+  Dependencies walls_by_slot, walls_by_root;
   for (std::size_t r = 0; r < roots.size(); ++r) {
-    by_slot.push_back({roots[r].slot, r});
-    for (Index k = 0; k < roots[r].n_neighbours; ++k)
-      by_slot.push_back({neighbours[std::size_t(roots[r].first_neighbour + k)].slot, r});
-    own.push_back({r, r});
-    for (kernels::RootEnd const& end : ends[r].end)
-      for (Index c = 0; end.end >= 0 && c < 3; ++c) by_end.push_back({3 * Index(end.end) + c, r});
+    for (Index k = roots[r].first_neighbour; k < roots[r].first_neighbour + roots[r].n_neighbours; ++k)
+      parts.push_back({neighbours[std::size_t(k)].slot, k, neighbours[std::size_t(k)].matrix});
+    parts.push_back({roots[r].slot, Index(neighbours.size() + r)});
+    for (Index m = 0; m < 2; ++m) {
+      kernels::RootEnd const& end = ends[r].end[m];
+      if (end.end < 0) continue;
+      of_ends.push_back({3 * Index(end.end), 4 * Index(r) + 2 * m, end.to_root});
+      of_ends.push_back({3 * Index(end.end) + 2, 4 * Index(r) + 2 * m + 1, end.to_root});
+    }
   }
   for (std::size_t e = 0; e < end_walls.size(); ++e) {
     walls_by_root.push_back({end_walls[e].root, e});
@@ -325,8 +333,8 @@ TransposedTurns<Exec> turns_of(Exec const& exec, DeviceTurns<Exec> const& turns)
     else
       walls_by_slot.push_back({roots[std::size_t(end_walls[e].root)].slot, e});
   }
-  return {dependents(exec, by_slot), dependents(exec, walls_by_slot), dependents(exec, walls_by_root),
-          dependents(exec, own), dependents(exec, by_end)};
+  return {copies_of(exec, std::move(parts)), copies_of(exec, std::move(of_ends)), dependents(exec, walls_by_slot),
+          dependents(exec, walls_by_root)};
 }
 
 }  // namespace
@@ -335,7 +343,6 @@ template <class Exec>
 TransposedPlan<Exec>::TransposedPlan(Exec const& exec, DevicePlan<Exec> const& plan) {
   compat::fence(exec, "gridmorph::Morpher (tables are read back)");
   HostPlan const host(plan);
-  auto const roots = on_host(plan.turns.table.roots);
   Index room_for_edges = 0;
   for (DeviceStage<Exec> const& stage : plan.stages) {
     TransposedStage<Exec> t;
@@ -345,15 +352,13 @@ TransposedPlan<Exec>::TransposedPlan(Exec const& exec, DevicePlan<Exec> const& p
     t.ends = copies_of(exec, on_host(stage.ends.entries));
     t.gathers = copies_of(exec, on_host(stage.gathers.entries));
     room_for_edges = std::max(room_for_edges, add_slabs(exec, host, groups.groups, on_host(stage.corrected), t));
-    Dependencies of_slot, of_root;
+    Dependencies of_root;
     auto const lines = on_host(stage.near_field);
     std::set<Index> seen;  // lines between two tubes are listed with both
     for (std::size_t n = 0; n < lines.size(); ++n) {
       if (!seen.insert(lines[n].lower).second) continue;
-      of_slot.push_back({roots[std::size_t(lines[n].root)].slot, n});
       of_root.push_back({lines[n].root, n});
     }
-    t.lines_of_slot = dependents(exec, of_slot);
     t.lines_of_root = dependents(exec, of_root);
     stages.push_back(std::move(t));
   }
@@ -371,6 +376,9 @@ TransposedPlan<Exec>::TransposedPlan(Exec const& exec, DevicePlan<Exec> const& p
   boundary_projections = copies_of(exec, on_host(plan.boundary_projections.entries));
   skeleton_nodes = copies_of(exec, on_host(plan.skeleton_nodes.entries));
   between = Workspace<Memory>(exec, plan.residuals.n, 1, "transposed::between_edges");
+  Index const n_roots = Index(plan.turns.table.roots.extent(0)),
+              n_neighbours = Index(plan.turns.table.neighbours.extent(0));
+  turn_parts = Workspace<Memory>(exec, std::max(n_neighbours + n_roots, 4 * n_roots), 1, "transposed::turn_parts");
   edges = Workspace<Memory>(exec, room_for_edges, 1, "transposed::edges");
 }
 

@@ -32,10 +32,18 @@ class BlockTurnGradients {
   void of_ends(Exec const& exec, DeviceStage<Exec> const& stage, TransposedStage<Exec> const& back,
                kernels::Field<double> const& u) const {
     if (!stage.turns) return;
-    using kernels::LineInput;
-    of_near_field<LineInput::inner>(exec, stage, back.lines_of_slot, turns_.slots);
-    of_near_field<LineInput::raw>(exec, stage, back.lines_of_root, turns_.raw);
-    of_near_field<LineInput::outer>(exec, stage, back.lines_of_root, turns_.outer);
+    kernels::TurnNearField<Memory, Vec3> const lines{stage.near_field,
+                                                     turns_.table,
+                                                     values(turns_.slots),
+                                                     values(turns_.raw),
+                                                     values(turns_.outer),
+                                                     turns_.end_position.read()[0],
+                                                     none(),
+                                                     {}};
+    kernels::launch("gridmorph::transposed::near_field_lines", exec,
+                    kernels::NearFieldLinesBack<Memory>{back.lines_of_root, lines, turns_.end_turns.read()[g_],
+                                                        turned(), turns_.slots.batch()[g_], turns_.raw.batch()[g_],
+                                                        turns_.outer.batch()[g_]});
     if (2 * Index(stage.near_field.extent(0)) == stage.n_end_values) return;
     kernels::launch("gridmorph::transposed::near_field_done", exec,
                     kernels::ClearLineGradients<Memory>{stage.near_field, cleared()});
@@ -60,22 +68,23 @@ class BlockTurnGradients {
     auto const& table = turns_.table;
     auto const raw = turns_.raw.read()[f_], at_end = turns_.at_end.read()[f_], u = plan_.skeleton.read()[f_];
     auto const raw_gradient = turns_.raw.batch()[g_], slots = plan_.skeleton.batch()[g_];
-    kernels::NearFieldTurn<Memory, DualVec3> const near_field{table, {}, {}, none(), none()};
-    auto const inner = turns_.slots.read()[g_], outer = turns_.outer.read()[g_];
-    pull_back("gridmorph::transposed::near_field", exec, back.own_root,
-              kernels::NearFieldTurnBy<Memory, true>{near_field, raw, at_end, inner, outer}, raw_gradient);
-    pull_back("gridmorph::transposed::near_field_ends", exec, back.roots_of_end,
-              kernels::NearFieldTurnBy<Memory, false>{near_field, raw, at_end, inner, outer},
-              turns_.at_end.batch()[g_]);
+    auto const& parts = plan_.transposed->turn_parts;
+    kernels::launch(
+        "gridmorph::transposed::near_field", exec,
+        kernels::NearFieldTurnBack<Memory>{
+            table, raw, {at_end}, turns_.slots.read()[g_], turns_.outer.read()[g_], raw_gradient, parts.batch()[0]});
+    kernels::copy_back<true>("gridmorph::transposed::near_field_ends", exec, back.parts_of_end, plan_.rotations,
+                             parts.read()[0], turns_.at_end.batch()[g_]);
     kernels::EndWallTurn<Memory, DualVec3> const end_walls{table, {}, {}, none()};
     auto const of_ends = turns_.at_end.read()[g_];
     pull_back("gridmorph::transposed::end_walls", exec, back.end_walls_of_slot,
               kernels::EndWallTurnBy<Memory, false>{end_walls, u, raw, of_ends}, slots);
     pull_back("gridmorph::transposed::end_wall_turns", exec, back.end_walls_of_root,
               kernels::EndWallTurnBy<Memory, true>{end_walls, u, raw, of_ends}, raw_gradient);
-    kernels::RawRootTurn<Memory, DualVec3> const walls{table, {}, none()};
-    pull_back("gridmorph::transposed::walls", exec, back.roots_of_slot,
-              kernels::RawTurnBySlot<Memory>{walls, u, turns_.raw.read()[g_]}, slots);
+    kernels::launch("gridmorph::transposed::walls", exec,
+                    kernels::RawRootTurnBack<Memory>{table, u, turns_.raw.read()[g_], parts.batch()[0]});
+    kernels::copy_back<true>("gridmorph::transposed::wall_slots", exec, back.parts_of_slot, plan_.rotations,
+                             parts.read()[0], slots);
   }
 
  private:
@@ -83,16 +92,8 @@ class BlockTurnGradients {
   [[nodiscard]] kernels::TurnedEndGradients turned() const { return {turns_.ends_of(g_)}; }
   [[nodiscard]] kernels::ClearEndGradients cleared() const { return {turns_.end_turns.batch()[g_], turned()}; }
 
-  template <kernels::LineInput input>
-  void of_near_field(Exec const& exec, DeviceStage<Exec> const& stage, kernels::Dependents<Memory> const& on,
-                     Workspace<Memory> const& to) const {
-    kernels::TurnNearField<Memory, kernels::DualVec3> const lines{
-        stage.near_field, turns_.table, {}, {}, {}, turns_.end_position.read()[0], none(), {}};
-    kernels::pull_back(
-        "gridmorph::transposed::near_field_lines", exec, on,
-        kernels::NearFieldLineBy<Memory, input>{lines, turns_.slots.read()[f_], turns_.raw.read()[f_],
-                                                turns_.outer.read()[f_], turns_.end_turns.read()[g_], turned()},
-        to.batch()[g_]);
+  [[nodiscard]] kernels::VectorsWithRates<Vec3> values(Workspace<Memory> const& work) const {
+    return {work.read()[f_], {nullptr, nullptr, nullptr}};
   }
 
   DevicePlan<Exec> const& plan_;

@@ -24,9 +24,9 @@ struct TransposedStage {
   TransposedLines<Exec> lines;
   kernels::CopiesOf<Memory> ends, gathers;
   Kokkos::View<kernels::SideSlab*, Memory> slabs;
-  Kokkos::View<Index*, Memory> first_part;                   ///< kernels::EdgeSums
-  Index first_side_node = 0, n_side_nodes = 0;               ///< of its corrected chains
-  kernels::Dependents<Memory> lines_of_slot, lines_of_root;  ///< of the near field
+  Kokkos::View<Index*, Memory> first_part;      ///< kernels::EdgeSums
+  Index first_side_node = 0, n_side_nodes = 0;  ///< of its corrected chains
+  kernels::Dependents<Memory> lines_of_root;    ///< of the near field
 };
 
 template <class Exec>
@@ -41,7 +41,9 @@ struct TransposedSpread {
 template <class Exec>
 struct TransposedTurns {
   using Memory = typename Exec::memory_space;
-  kernels::Dependents<Memory> roots_of_slot, end_walls_of_slot, end_walls_of_root, own_root, roots_of_end;
+  kernels::CopiesOf<Memory> parts_of_slot;  ///< kernels::RawRootTurnBack
+  kernels::CopiesOf<Memory> parts_of_end;   ///< kernels::NearFieldTurnBack
+  kernels::Dependents<Memory> end_walls_of_slot, end_walls_of_root;
 };
 
 /// Memory: about 50 bytes per node of the skeleton, and 100 to 200 bytes per patch of lines. The plan has room for two fields.
@@ -52,8 +54,9 @@ struct TransposedPlan {
   std::vector<TransposedSpread<Exec>> spreads;
   TransposedTurns<Exec> turns;
   kernels::CopiesOf<Memory> boundary_projections, skeleton_nodes;
-  Workspace<Memory> between;  ///< per side node
-  Workspace<Memory> edges;    ///< parts of edges; of one stage at a time
+  Workspace<Memory> between;     ///< per side node
+  Workspace<Memory> edges;       ///< parts of edges; of one stage at a time
+  Workspace<Memory> turn_parts;  ///< of the walls' rotations
 
   TransposedPlan(Exec const& exec, DevicePlan<Exec> const& plan);
 };

@@ -36,16 +36,12 @@ class WallMotion {
     if (back == nullptr) return;
     columns_of_ = columns_of_walls(exec, plan);
     turn_gradient_ = room_for<Vec3>(exec, plan.driving.size(), name("turn_gradient"));
-    TransposedEntries around;
-    for (std::size_t r = 0; r < plan.driving.size(); ++r) {
-      std::vector<Index32> nodes{plan.driving[r]};
-      for (Index k = plan.one_rings.first[r]; k < plan.one_rings.first[r + 1]; ++k)
-        nodes.push_back(plan.one_rings.item[std::size_t(k)]);
-      std::sort(nodes.begin(), nodes.end());
-      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-      for (Index32 const n : nodes) around.add(n, Index32(r), 1);
-    }
-    turned_by_ = upload(exec, around, {}, name("around")).rows;
+    TransposedEntries parts;
+    auto const n_around = Index32(plan.one_rings.item.size());
+    for (Index32 k = 0; k < n_around; ++k) parts.add(plan.one_rings.item[std::size_t(k)], k, 1);
+    for (std::size_t r = 0; r < plan.driving.size(); ++r) parts.add(plan.driving[r], n_around + Index32(r), 1);
+    turn_parts_ = room_for<Vec3>(exec, std::size_t(n_around) + plan.driving.size(), name("turn_parts"));
+    parts_of_node_ = upload(exec, parts, {}, name("parts_of_node")).rows;
   }
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
@@ -62,15 +58,15 @@ class WallMotion {
 
   /// The last one: g.boundary is written.
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& g) const {
-    using kernels::DualVec3;
     using kernels::launch;
     launch("gridmorph::transposed::wall_motion", exec,
            kernels::WallBack<Memory>{columns_, columns_of_, wall_.node, turn_.data(), x, g.frames.data(), g.u.data(),
                                      turn_gradient_.data()});
-    kernels::WallTurn<Memory, DualVec3> const turn{wall_, {x}, {x}, nullptr};
     set(exec, f);  // where the walls were when they turned
     launch("gridmorph::transposed::wall_turn", exec,
-           kernels::WallTurnBack<Memory>{turned_by_, turn, x, f.u.data(), turn_gradient_.data(), g.u.data()});
+           kernels::WallTurnBack<Memory>{wall_, x, f.u.data(), turn_gradient_.data(), turn_parts_.data()});
+    kernels::gather_rows("gridmorph::transposed::wall_turn::nodes", exec, parts_of_node_, turn_parts_.data(),
+                         g.u.data());
     launch("gridmorph::transposed::moving_walls", exec,
            kernels::AddToSlots<Memory>{slots_, known_, g.u.data(), g.given.data()});
     launch("gridmorph::transposed::slots", exec, 0, Index(g.given.extent(0)),
@@ -104,7 +100,8 @@ class WallMotion {
   kernels::ColumnTable<Memory> columns_;
   List<Exec, Vec3> turn_, turn_rate_, turn_gradient_;
   kernels::ColumnsOf<Memory> columns_of_;
-  kernels::TransposedRows<Memory> turned_by_;  ///< node: the wall nodes whose rotation depends on it
+  List<Exec, Vec3> turn_parts_;  ///< kernels::WallTurnBack
+  kernels::TransposedRows<Memory> parts_of_node_;
 };
 
 }  // namespace gridmorph::stages
