@@ -2,6 +2,7 @@
 // of topology.
 #include "invariants/cases.hpp"
 #include "support/morph_run.hpp"
+#include "support/transpose_check.hpp"
 #include "support/with_and_without.hpp"
 
 #include <gridmorph/boundary/link_nodes.hpp>
@@ -89,6 +90,8 @@ TEST_P(FrozenGuard, GivesBackWhatWasRecordedAndIsLinear) {
     error = std::max(error, norm(v[n] - (0.5 / h) * (after[n] - before[n])));
   }
   EXPECT_LT(error, 1e-5 * fastest);
+  for (Vectors const& at : {run.boundary, part, Vectors(part.size())})
+    EXPECT_LE(product_error(LinearisedMorph<Exec>(run.plan(), mesh.coordinates, at, map), 1), 1e-13) << "its transpose";
 }
 
 TEST_P(FrozenGuard, KeepsPeriodicPairsSlipSurfacesAndWhatStays) {

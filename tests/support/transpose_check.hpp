@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ struct LinearisedMorph {
   Index n_nodes;
 
   template <class AnyPlan>
-  LinearisedMorph(AnyPlan const& plan, Coordinates const& baseline, std::vector<Vec3> const& at)
-      : morpher(Exec(), plan, baseline, {.velocity = true, .transpose = true}),
+  LinearisedMorph(AnyPlan const& plan, Coordinates const& baseline, std::vector<Vec3> const& at,
+                  std::shared_ptr<SmoothingMap const> const& smoothing = nullptr)
+      : morpher(Exec(), plan, baseline, {.velocity = true, .smoothing = smoothing, .transpose = true}),
         boundary(coordinates_of(at)),
         n_nodes(baseline.size()) {}
 

@@ -2,6 +2,7 @@
 #include "support/made_bodies.hpp"
 #include "support/morph_run.hpp"
 #include "support/random.hpp"
+#include "support/transpose_check.hpp"
 #include "support/unstructured_case.hpp"
 #include "support/with_and_without.hpp"
 
@@ -66,6 +67,7 @@ TEST(FrozenGuardOfElements, SeveralDisplacementsComeBackAndAddUp) {
   Coordinates const v = both.velocities(one, other);
   Coordinates const bare_v = bare.velocities(one, other);
   for (Index n = 0; n < v.size(); ++n) ASSERT_LT(norm(v[n] - bare_v[n] - b[n]), 1e-11) << "the rate of a linear map";
+  EXPECT_LE(product_error(LinearisedMorph<Exec>(plan, mesh.coordinates, one, map)), 1e-13);
   // A third one between them adds no direction; what it asks for is met as well as the other two let it.
   record.add(sum(scaled(0.5, one), scaled(0.5, other)),
              bare.positions(bare.plain, sum(scaled(0.5, one), scaled(0.5, other))),

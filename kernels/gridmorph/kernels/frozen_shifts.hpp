@@ -109,18 +109,28 @@ struct AddSlidingShifts {
     Vec3 const before = in_frame(slide.to_node, u[slide.slot]);
     Vec3 const rate_before = Rate ? in_frame(slide.to_node, rate[slide.slot]) : Vec3{};
     Vec3 wanted = before + s, wanted_rate = rate_before + s_rate;
-    int const count = slide.surface[1] < 0 ? 1 : slide.surface[2] < 0 ? 2 : 3;
-    constrain_to_all<Rate>(
-        count, [&](int m) -> SlipSurfaceView const& { return surfaces(slide.surface[m]); },
-        [&](int m) { return slide.own_offset[m]; }, slide.position, wanted, wanted_rate);
+    constrain(slide, wanted, wanted_rate);
     Vec3 const more = Rate ? wanted_rate - rate_before : wanted - before;
     Vec3 const of_slot = slide.to_node < 0 ? more : transpose(matrices(slide.to_node)) * more;
     out.set(at.node, out[at.node] + in_frame(at.to_node, of_slot));
   }
 
- private:
+  /// The rate with which a point that slides moves where what it is asked to does by `rate`, in the frame of SlidingShift::node.
+  KOKKOS_INLINE_FUNCTION Vec3 rate_at(Index slide, Vec3 rate) const {
+    Vec3 wanted = in_frame(slides(slide).to_node, u[slides(slide).slot]) + shift(slide);
+    constrain(slides(slide), wanted, rate);
+    return rate;
+  }
   KOKKOS_INLINE_FUNCTION Vec3 in_frame(std::int32_t matrix, Vec3 const& v) const {
     return matrix < 0 ? v : matrices(matrix) * v;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION void constrain(SlidingShift const& slide, Vec3& wanted, Vec3& rate) const {
+    int const count = slide.surface[1] < 0 ? 1 : slide.surface[2] < 0 ? 2 : 3;
+    constrain_to_all<Rate>(
+        count, [&](int m) -> SlipSurfaceView const& { return surfaces(slide.surface[m]); },
+        [&](int m) { return slide.own_offset[m]; }, slide.position, wanted, rate);
   }
 };
 

@@ -57,6 +57,20 @@ void gather_layers(char const* label, Exec const& exec, TransposedLayers<typenam
            GatherRows<typename Exec::memory_space, Value*, Value*>{layers.rows, value, value});
 }
 
+/// The same where sources are three arrays.
+template <class MemorySpace>
+struct AddToField {
+  TransposedRows<MemorySpace> rows;
+  Vec3 const* targets;
+  Field<double> sources;
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
+    Index const source = rows.source(n);
+    Vec3 sum = sources[source];
+    for (Index k = rows.first(n); k < rows.first(n + 1); ++k) sum += rows.weight(k) * targets[rows.target(k)];
+    sources.set(source, sum);
+  }
+};
+
 template <class Value>
 struct ClearValues {
   Value* value;

@@ -36,7 +36,6 @@ struct Morpher<Exec>::State {
         flat(exec, x),
         list(stages::stage_list(exec, plan, flat.field, options)),
         transposed(options.transpose) {
-    require_no_shifts();
     flat = {};  // line parameters have been made of it; the pass through the volume reads the caller's arrays
   }
   State(Exec const& exec, UnstructuredPlan const& plan, In const& x, MorpherOptions const& options)
@@ -45,16 +44,7 @@ struct Morpher<Exec>::State {
         baseline(x),
         flat(exec, x),
         list(stages::stage_list(exec, plan, flat.field, options)),
-        transposed(options.transpose) {
-    require_no_shifts();
-  }
-
-  void require_no_shifts() const {
-    if (transposed && list.shifts)
-      throw ConfigError(
-          "gridmorph::Morpher: MorpherOptions::transpose does not know what a guard did (MorphPlan::with()); "
-          "leave one of both out");
-  }
+        transposed(options.transpose) {}
 
   /// All that can be asked before anything is enqueued.
   void require(char const* who, std::span<In const> boundary, std::span<Out const> out) const {
@@ -139,6 +129,10 @@ struct Morpher<Exec>::State {
         stage.enqueue(exec, flat.field, f);
     });
     std::visit([&](auto const& writer) { writer.transpose(exec, g); }, list.writer);
+    if (list.shifts) {
+      ProfilingRegion const region(list.shifts->region);
+      list.shifts->transpose_nodes(exec, f, g);
+    }
     for (auto any = list.stages.rbegin(); any != list.stages.rend(); ++any)
       std::visit(
           [&](auto const& stage) {
@@ -146,6 +140,7 @@ struct Morpher<Exec>::State {
             stage.transpose(exec, flat.field, f, g);
           },
           *any);
+    if (list.shifts) list.shifts->transpose_boundary(exec, g);
   }
 };
 

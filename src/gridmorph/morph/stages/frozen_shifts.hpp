@@ -4,8 +4,10 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/kernels/frozen_shifts.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/kernels/transposed_shifts.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
+#include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
 
 #include <string>
@@ -20,7 +22,7 @@ class FrozenShifts {
 
   /// n_boundary, n_nodes: of the plan. rotations: Plan::rotations, none for elements. Throws ConfigError where the map is another plan's.
   FrozenShifts(Exec const& exec, SmoothingMap const& map, Index n_boundary, Index n_nodes,
-               Kokkos::View<Mat3*, typename Exec::memory_space> const& rotations)
+               Kokkos::View<Mat3*, typename Exec::memory_space> const& rotations, bool back)
       : n_modes_(map.n_modes),
         n_boundary_(checked(map, n_boundary, n_nodes)),
         n_chunks_((n_boundary + kernels::amplitude_chunk - 1) / kernels::amplitude_chunk),
@@ -34,6 +36,16 @@ class FrozenShifts {
         surfaces_(exec, map.surfaces),
         partial_(room_for<double>(exec, std::size_t(n_modes_ * n_chunks_), name("partial"))),
         amplitude_(room_for<double>(exec, std::size_t(2 * n_modes_), name("amplitude"))) {
+    if (back) {
+      n_moved_chunks_ = (map.n_moved() + kernels::amplitude_chunk - 1) / kernels::amplitude_chunk;
+      partial_gradient_ = room_for<double>(exec, std::size_t(n_modes_ * n_moved_chunks_), name("partial_gradient"));
+      of_shift_ = room_for<Vec3>(exec, map.slide_nodes.size(), name("of_shift"));
+      of_slot_ = room_for<Vec3>(exec, map.slide_nodes.size(), name("of_slot"));
+      TransposedEntries of_slots;
+      for (std::size_t k = 0; k < map.slide_nodes.size(); ++k)
+        of_slots.add(Index32(map.slides[std::size_t(map.slide_nodes[k].slide)].slot), Index32(k), 1);
+      slots_ = upload(exec, of_slots, {}, name("slots")).rows;
+    }
     compat::fence(exec, "gridmorph::FrozenShifts (host tables may go)");
   }
 
@@ -51,6 +63,38 @@ class FrozenShifts {
     kernels::launch("gridmorph::frozen_shifts::add", exec,
                     kernels::AddShifts<Memory>{node_, of(shift_, n_modes_), out.array()});
     slide<true>(exec, f, r, out);
+  }
+
+  /// Before the stages: gradients of nodes, to slots where nodes slide, and to the amplitudes.
+  void transpose_nodes(Exec const& exec, StageField<Exec> const& f, StageField<Exec> const& g) const {
+    using kernels::launch;
+    measure(exec, f, amplitude_.data());
+    kernels::AddSlidingShifts<Memory, true> const sliding{slide_nodes_,
+                                                          slides_,
+                                                          surfaces_.surfaces,
+                                                          rotations_,
+                                                          of(slide_shift_, 0),
+                                                          of(slide_shift_, 0),
+                                                          as_read(f.skeleton),
+                                                          as_read(f.skeleton),
+                                                          {}};
+    if (slide_nodes_.extent(0) > 0) {
+      launch("gridmorph::transposed::shifts::slide", exec,
+             kernels::SlidingShiftsBack<Memory>{sliding, g.nodes, of_shift_.data(), as_field(of_slot_.data())});
+      launch("gridmorph::transposed::shifts::slots", exec, 0, slots_.size(),
+             kernels::AddToField<Memory>{slots_, of_slot_.data(), g.skeleton});
+    }
+    launch("gridmorph::transposed::shifts::partial", exec,
+           kernels::PartialShiftGradients<Memory>{node_, shift_, slide_nodes_, slide_shift_, g.nodes, of_shift_.data(),
+                                                  n_modes_, n_moved_chunks_, partial_gradient_.data()});
+    launch("gridmorph::transposed::shifts::sum", exec, 0, n_modes_,
+           kernels::SumAmplitudes{partial_gradient_.data(), n_moved_chunks_, amplitude_.data() + n_modes_});
+  }
+  /// After them: from the amplitudes to the boundary.
+  void transpose_boundary(Exec const& exec, StageField<Exec> const& g) const {
+    kernels::launch(
+        "gridmorph::transposed::shifts::gauges", exec, 0, n_boundary_,
+        kernels::AddGauges<Memory>{gauge_, amplitude_.data() + n_modes_, n_boundary_, n_modes_, g.boundary});
   }
 
  private:
@@ -76,12 +120,12 @@ class FrozenShifts {
   }
   template <bool Rate>
   void slide(Exec const& exec, StageField<Exec> const& f, StageField<Exec> const& r, Out const& out) const {
-    auto const read = [](kernels::Field<double> const& of) { return Baseline{of.x, of.y, of.z, of.stride}; };
     kernels::launch("gridmorph::frozen_shifts::slide", exec,
                     kernels::AddSlidingShifts<Memory, Rate>{slide_nodes_, slides_, surfaces_.surfaces, rotations_,
                                                             of(slide_shift_, 0), of(slide_shift_, Rate ? n_modes_ : 0),
-                                                            read(f.skeleton), read(r.skeleton), out.array()});
+                                                            as_read(f.skeleton), as_read(r.skeleton), out.array()});
   }
+  static Baseline as_read(kernels::Field<double> const& of) { return {of.x, of.y, of.z, of.stride}; }
 
   int n_modes_;
   Index n_boundary_, n_chunks_;
@@ -91,7 +135,12 @@ class FrozenShifts {
   List<Exec, kernels::SlidingShift> slides_;
   List<Exec, kernels::SlidingNode> slide_nodes_;
   SlipSurfaceTable<Memory> surfaces_;
-  List<Exec, double> partial_, amplitude_;  ///< the latter: of the field, of the rate
+  List<Exec, double> partial_, amplitude_;  ///< the latter: of the field, of the rate or the gradient
+  // Of transposes.
+  Index n_moved_chunks_ = 0;
+  List<Exec, double> partial_gradient_;
+  List<Exec, Vec3> of_shift_, of_slot_;  ///< per node that slides
+  kernels::TransposedRows<Memory> slots_;
 };
 
 }  // namespace gridmorph::stages

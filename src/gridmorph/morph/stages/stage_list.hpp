@@ -55,7 +55,8 @@ StageList<Exec> stage_list(Exec const& exec, Plan const& plan, Baseline const& x
     out.fields.push_back(field);
   }
   if (options.smoothing && options.smoothing->n_modes > 0)
-    out.shifts.emplace(exec, *options.smoothing, Index(plan.boundary_nodes.size()), plan.n_nodes, tables->rotations);
+    out.shifts.emplace(exec, *options.smoothing, Index(plan.boundary_nodes.size()), plan.n_nodes, tables->rotations,
+                       options.transpose);
   return out;
 }
 
@@ -95,7 +96,7 @@ StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Basel
   }
   if (options.smoothing && options.smoothing->n_modes > 0)
     out.shifts.emplace(exec, *options.smoothing, Index(plan.known.size()), plan.n_nodes,
-                       Kokkos::View<Mat3*, typename Exec::memory_space>());
+                       Kokkos::View<Mat3*, typename Exec::memory_space>(), options.transpose);
   compat::fence(exec, "gridmorph::Morpher (host tables of the plan may go)");
   return out;
 }
