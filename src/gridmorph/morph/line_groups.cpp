@@ -1,0 +1,147 @@
+#include <gridmorph/morph/detail/line_groups.hpp>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace gridmorph::detail {
+namespace {
+
+/// Up to three directions of nodes, as they are stored, on the lines of a chain.
+struct Nodes {
+  int n[3] = {1, 1, 1};
+  Index3 origin{};      ///< (s, a, b) of node (0, 0, 0)
+  Index3 step[3] = {};  ///< along each direction
+  Index value = 0, value_step[3] = {};
+  Index t = -1, t_step[3] = {};
+  Index x = 0, x_step[3] = {};
+};
+
+/// Directions that run against the chain's are turned round.
+PlacedPatch placed(Nodes nodes) {
+  PlacedPatch out{{}, {nodes.origin[1], nodes.origin[2]}, {1, 1}};
+  kernels::LinePatch& p = out.patch;
+  p.n_s = 1;
+  p.matrix = -1;
+  p.in_volume = 0;
+  Index steps[3][3] = {};
+  Index3 begin = nodes.origin, count{1, 1, 1};
+  Index value = nodes.value, t = nodes.t, x = nodes.x;
+  for (int d = 0; d < 3; ++d) {
+    if (nodes.n[d] == 1) continue;
+    int const axis = nodes.step[d][0] != 0 ? 0 : nodes.step[d][1] != 0 ? 1 : 2;
+    int const sign = nodes.step[d][axis];
+    count[axis] = nodes.n[d];
+    Index const last = nodes.n[d] - 1;
+    if (sign < 0) {
+      begin[axis] -= int(last);
+      value += last * nodes.value_step[d];
+      if (t >= 0) t += last * nodes.t_step[d];
+      x += last * nodes.x_step[d];
+    }
+    steps[0][axis] = sign * nodes.value_step[d];
+    steps[1][axis] = sign * nodes.t_step[d];
+    steps[2][axis] = sign * nodes.x_step[d];
+  }
+  auto const step = [&](int of) { return kernels::LineStep{steps[of][0], steps[of][1], steps[of][2]}; };
+  p.s = begin[0];
+  p.n_s = count[0];
+  p.value = value;
+  p.value_step = step(0);
+  p.t = t;
+  p.t_step = step(1);
+  p.x = x;
+  p.x_step = step(2);
+  out.first = {begin[1], begin[2]};
+  out.n = {count[1], count[2]};
+  return out;
+}
+
+/// The part of a patch between two lines along a (axis 0) or b.
+PlacedPatch part(PlacedPatch p, int axis, int first, int end) {
+  Index const skip = first - p.first[std::size_t(axis)];
+  auto const along = [&](kernels::LineStep const& s) { return axis == 0 ? s.a : s.b; };
+  p.patch.value += skip * along(p.patch.value_step);
+  if (p.patch.t >= 0) p.patch.t += skip * along(p.patch.t_step);
+  p.patch.x += skip * along(p.patch.x_step);
+  p.first[std::size_t(axis)] = first;
+  p.n[std::size_t(axis)] = end - first;
+  return p;
+}
+
+/// Cut where any of them begins or ends, so that two of them have the same lines or none in common.
+std::vector<PlacedPatch> cut_alike(std::vector<PlacedPatch> patches) {
+  for (int axis = 0; axis < 2; ++axis) {
+    auto const d = std::size_t(axis);
+    std::set<int> cuts;
+    for (PlacedPatch const& p : patches) cuts.insert({p.first[d], p.first[d] + p.n[d]});
+    std::vector<PlacedPatch> pieces;
+    for (PlacedPatch const& p : patches) {
+      int first = p.first[d];
+      for (auto cut = cuts.upper_bound(first); first < p.first[d] + p.n[d]; first = *cut++)
+        pieces.push_back(part(p, axis, first, *cut));
+    }
+    patches = std::move(pieces);
+  }
+  return patches;
+}
+
+}  // namespace
+
+PlacedPatch patch_of(kernels::SkeletonSweep const& sweep) {
+  Nodes nodes;
+  nodes.n[0] = sweep.n_p;
+  nodes.n[1] = sweep.n_q;
+  nodes.origin = {sweep.s[0], sweep.a[0], sweep.b[0]};
+  for (int d = 0; d < 2; ++d) nodes.step[d] = {sweep.s[1 + d], sweep.a[1 + d], sweep.b[1 + d]};
+  nodes.value = sweep.slot;
+  nodes.value_step[0] = 1;
+  nodes.value_step[1] = sweep.slot_q;
+  nodes.t = sweep.t;
+  nodes.t_step[0] = sweep.t_p;
+  nodes.t_step[1] = sweep.t_q;
+  nodes.x = sweep.x;
+  nodes.x_step[0] = 1;
+  nodes.x_step[1] = sweep.n_p;
+  PlacedPatch out = placed(nodes);
+  out.patch.matrix = sweep.matrix;
+  return out;
+}
+
+PlacedPatch patch_of(kernels::VolumeBox const& box, kernels::VolumeTerm const& term) {
+  Nodes nodes;
+  nodes.origin = {term.s[0], term.a[0], term.b[0]};
+  nodes.value = box.first;
+  nodes.t = term.t;
+  Index const value_step[3] = {1, box.stride_j, box.stride_k}, t_step[3] = {1, box.n[0], Index(box.n[0]) * box.n[1]};
+  for (int d = 0; d < 3; ++d) {
+    nodes.n[d] = box.n[d];
+    nodes.step[d] = {term.s[1 + d], term.a[1 + d], term.b[1 + d]};
+    nodes.value_step[d] = nodes.x_step[d] = value_step[d];
+    nodes.t_step[d] = t_step[d];
+  }
+  nodes.x = box.first;
+  PlacedPatch out = placed(nodes);
+  out.patch.matrix = term.matrix;
+  out.patch.in_volume = 1;
+  out.patch.offset = term.offset;
+  return out;
+}
+
+LineGroups groups_of(PatchesOfChains const& of_chains) {
+  LineGroups out;
+  for (auto const& [chain, patches] : of_chains) {
+    using Place = std::array<int, 4>;  // b first: neighbours in memory follow one another
+    std::map<Place, std::vector<kernels::LinePatch>> places;
+    for (PlacedPatch const& p : cut_alike(patches)) places[{p.first[1], p.first[0], p.n[1], p.n[0]}].push_back(p.patch);
+    for (auto& [place, list] : places) {
+      std::stable_sort(list.begin(), list.end(), [](auto const& a, auto const& b) { return a.s < b.s; });
+      out.groups.push_back(
+          {chain, place[1], place[0], place[3], place[2], std::int32_t(out.patches.size()), std::int32_t(list.size())});
+      out.patches.insert(out.patches.end(), list.begin(), list.end());
+    }
+  }
+  return out;
+}
+
+}  // namespace gridmorph::detail
