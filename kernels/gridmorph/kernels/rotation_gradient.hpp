@@ -6,7 +6,7 @@
 //   G = 2 g / N,  n = -(g.c) / N,  a = (1 - l) G + G x v
 //   dJ/dv = A x G + y x a + 2 n v,  dJ/dl = -(G.A + 2 (1 - l) n)
 //
-// Cost: about 70 flops.
+// Cost: about 100 flops.
 #pragma once
 
 #include <gridmorph/kernels/rotation.hpp>

@@ -6,12 +6,12 @@
 // and likewise for rotations at its ends (turned_line.hpp), linearised where the ends are: the transpose of skeleton_sweep.hpp and
 // volume_pass.hpp without their correction (transposed_sides.hpp).
 //
-// Nodes of a chain are listed as patches: boxes (s, a, b) of slots of the skeleton or of nodes inside a piece. A group is a rectangle
-// (a, b) of lines that run through the same patches, so that one work item has its lines to itself: sums come in one order whatever the
+// Nodes of a chain are listed as bundles: boxes (s, a, b) of slots of the skeleton or of nodes inside a piece. A group is a rectangle
+// (a, b) of lines that run through the same bundles, so that one work item has its lines to itself: sums come in one order whatever the
 // number of threads.
 //
-// Cost per node and chain through it: 24 bytes of gradient and 8 of line parameter read; where the chain turns 24 more, about 150
-// flops. Nothing is written but at the ends.
+// Cost per node and chain through it: 24 bytes of gradient and 8 of line parameter read; where the chain turns 24 more, about 100
+// flops per end that turns. Nothing is written but at the ends.
 #pragma once
 
 #include <gridmorph/kernels/row_correction.hpp>
@@ -26,7 +26,7 @@ struct LineStep {
   Index s, a, b;
 };
 
-struct LinePatch {
+struct LineBundle {
   std::int32_t s, n_s;     ///< positions on the chain
   std::int32_t matrix;     ///< chain frame -> frame of its values, -1: the same
   std::int32_t in_volume;  ///< values of nodes, otherwise of slots
@@ -42,13 +42,13 @@ struct LinePatch {
 struct LineGroup {
   std::int32_t chain;
   std::int32_t a, b, n_a, n_b;
-  std::int32_t first_patch, n_patches;
+  std::int32_t first_bundle, n_bundles;
 };
 
-/// Gradients of the nodes of patches, and where these nodes are.
+/// Gradients of the nodes of bundles, and where these nodes are.
 template <class MemorySpace>
-struct PatchGradients {
-  Kokkos::View<LinePatch const*, MemorySpace> patches;
+struct BundleGradients {
+  Kokkos::View<LineBundle const*, MemorySpace> bundles;
   Kokkos::View<Mat3 const*, MemorySpace> matrices;
   double const* t;
   Field<double const> slots;
@@ -59,25 +59,25 @@ struct PatchGradients {
   KOKKOS_INLINE_FUNCTION static Index at(Index first, LineStep const& step, int s, int a, int b) {
     return first + s * step.s + a * step.a + b * step.b;
   }
-  /// (s, a, b): from the first of the patch. All in the frame of the chain.
-  KOKKOS_INLINE_FUNCTION Vec3 gradient(LinePatch const& p, int s, int a, int b) const {
+  /// (s, a, b): from the first of the bundle. All in the frame of the chain.
+  KOKKOS_INLINE_FUNCTION Vec3 gradient(LineBundle const& p, int s, int a, int b) const {
     Index const n = at(p.value, p.value_step, s, a, b);
     return in_chain(p, p.in_volume != 0 ? nodes[n] : slots[n]);
   }
-  KOKKOS_INLINE_FUNCTION double parameter(LinePatch const& p, int s, int a, int b) const {
+  KOKKOS_INLINE_FUNCTION double parameter(LineBundle const& p, int s, int a, int b) const {
     return p.t < 0 ? 0 : t[at(p.t, p.t_step, s, a, b)];
   }
-  KOKKOS_INLINE_FUNCTION Vec3 place(LinePatch const& p, int s, int a, int b) const {
+  KOKKOS_INLINE_FUNCTION Vec3 place(LineBundle const& p, int s, int a, int b) const {
     Index const n = at(p.x, p.x_step, s, a, b);
     return p.in_volume != 0 ? in_chain(p, baseline[n]) + p.offset : position[n];
   }
-  /// Of the slot's rotation; patches of slots.
-  KOKKOS_INLINE_FUNCTION Vec3 turn_gradient(LinePatch const& p, int s, int a, int b) const {
+  /// Of the slot's rotation; bundles of slots.
+  KOKKOS_INLINE_FUNCTION Vec3 turn_gradient(LineBundle const& p, int s, int a, int b) const {
     return in_chain(p, slot_turns[at(p.value, p.value_step, s, a, b)]);
   }
   /// The gradients of n neighbouring lines from a on.
   template <int width>
-  KOKKOS_INLINE_FUNCTION void row(LinePatch const& p, int s, int a, int b, int n, VectorRow<width>& g) const {
+  KOKKOS_INLINE_FUNCTION void row(LineBundle const& p, int s, int a, int b, int n, VectorRow<width>& g) const {
     Index const first = at(p.value, p.value_step, s, a, b), step = p.value_step.a;
     auto const read = [&](auto const& x, auto const& y, auto const& z, Index stride) {
       for (int w = 0; w < n; ++w) {
@@ -109,7 +109,7 @@ struct PatchGradients {
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION Vec3 in_chain(LinePatch const& p, Vec3 const& v) const {
+  KOKKOS_INLINE_FUNCTION Vec3 in_chain(LineBundle const& p, Vec3 const& v) const {
     return p.matrix < 0 ? v : transpose(matrices(p.matrix)) * v;
   }
 };
@@ -127,7 +127,7 @@ struct LineGradients {
   Kokkos::View<LineGroup const*, MemorySpace> groups;
   Kokkos::View<Index const*, MemorySpace> first_item;  ///< per group, and one past the last
   Kokkos::View<Chain const*, MemorySpace> chains;
-  PatchGradients<MemorySpace> from;
+  BundleGradients<MemorySpace> from;
   double const* law_knots;
   TurnedEnds<double const> ends;
   EndGradients to;
@@ -160,8 +160,8 @@ struct LineGradients {
     double weight[Width];
     for (int w = 0; w < lines.n; ++w) first.x[w] = first.y[w] = first.z[w] = last.x[w] = last.y[w] = last.z[w] = 0;
     bool const constant = chain.law == LineLaw::constant;
-    for (int m = 0; m < group.n_patches; ++m) {
-      LinePatch const& p = from.patches(group.first_patch + m);
+    for (int m = 0; m < group.n_bundles; ++m) {
+      LineBundle const& p = from.bundles(group.first_bundle + m);
       for (int s = 0; s < p.n_s; ++s) {
         from.row(p, s, lines.a, lines.b, lines.n, g);
         if (!constant) weights(chain, p, s, lines, weight);
@@ -182,7 +182,7 @@ struct LineGradients {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void weights(Chain const& chain, LinePatch const& p, int s, Lines const& lines,
+  KOKKOS_INLINE_FUNCTION void weights(Chain const& chain, LineBundle const& p, int s, Lines const& lines,
                                       double* weight) const {
     if (p.t < 0) {
       for (int w = 0; w < lines.n; ++w) weight[w] = law_weight(chain, law_knots, 0);
@@ -204,8 +204,8 @@ struct LineGradients {
     Index const upper = lower + chain.section_size();
     TurnedGradient first, last;
     Vec3 first_turn, last_turn;
-    for (int m = 0; m < group.n_patches; ++m) {
-      LinePatch const& p = from.patches(group.first_patch + m);
+    for (int m = 0; m < group.n_bundles; ++m) {
+      LineBundle const& p = from.bundles(group.first_bundle + m);
       for (int s = 0; s < p.n_s; ++s) {
         double const t = from.parameter(p, s, a, b);
         turned_gradient(ends, chain, lower, upper, t, from.place(p, s, a, b), from.gradient(p, s, a, b), first, last);

@@ -46,7 +46,7 @@ struct SideGradients {
   Kokkos::View<LineGroup const*, MemorySpace> groups;
   Kokkos::View<Chain const*, MemorySpace> chains;
   SideTable<MemorySpace> sides;
-  PatchGradients<MemorySpace> from;
+  BundleGradients<MemorySpace> from;
   Field<double> c;      ///< per side node
   Field<double> edges;  ///< parts
 
@@ -59,23 +59,23 @@ struct SideGradients {
       int const first = slab.direction == 0 ? group.b : group.a, n = slab.direction == 0 ? group.n_b : group.n_a;
       if (slab.w < first || slab.w >= first + n) continue;
       int const along = slab.direction == 0 ? group.n_a : group.n_b;
-      for (int p = 0; p < group.n_patches; ++p) {
-        LinePatch const& patch = from.patches(group.first_patch + p);
-        for (int s = 0; s < patch.n_s; ++s)
+      for (int p = 0; p < group.n_bundles; ++p) {
+        LineBundle const& bundle = from.bundles(group.first_bundle + p);
+        for (int s = 0; s < bundle.n_s; ++s)
           for (int k = 0; k < along; ++k)
-            add(slab, chain, patch, s, slab.direction == 0 ? k : slab.w - first,
+            add(slab, chain, bundle, s, slab.direction == 0 ? k : slab.w - first,
                 slab.direction == 0 ? slab.w - first : k, group);
       }
     }
   }
 
  private:
-  /// Node (s, a, b) counted from the first of its patch.
-  KOKKOS_INLINE_FUNCTION void add(SideSlab const& slab, Chain const& chain, LinePatch const& patch, int s, int a, int b,
-                                  LineGroup const& group) const {
-    Vec3 const g = from.gradient(patch, s, a, b);
-    double const t = from.parameter(patch, s, a, b);
-    int const on_a = group.a + a, on_b = group.b + b, on_s = patch.s + s;
+  /// Node (s, a, b) counted from the first of its bundle.
+  KOKKOS_INLINE_FUNCTION void add(SideSlab const& slab, Chain const& chain, LineBundle const& bundle, int s, int a,
+                                  int b, LineGroup const& group) const {
+    Vec3 const g = from.gradient(bundle, s, a, b);
+    double const t = from.parameter(bundle, s, a, b);
+    int const on_a = group.a + a, on_b = group.b + b, on_s = bundle.s + s;
     bool const across_a = slab.direction == 0, one_pair = chain.blends_along(0) || chain.blends_along(1);
     if (one_pair && !chain.blends_along(slab.direction)) return;
     double const own = sides.across(chain, slab.direction, on_a, on_b, t);

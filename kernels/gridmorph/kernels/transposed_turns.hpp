@@ -5,7 +5,7 @@
 // depend on; what end walls make of slip surfaces is taken by exact rates (dual.hpp) along the three axes of what it depends on. Every sum is
 // made by one work item in one order.
 //
-// Cost: per node of a line that turns 70 flops and end; per wall node about twice its rotation.
+// Cost: about 100 flops per node and end that turns; per wall node about twice its rotation.
 #pragma once
 
 #include <gridmorph/kernels/rotation_gradient.hpp>

@@ -18,9 +18,9 @@ struct Nodes {
 };
 
 /// Directions that run against the chain's are turned round.
-PlacedPatch placed(Nodes nodes) {
-  PlacedPatch out{{}, {nodes.origin[1], nodes.origin[2]}, {1, 1}};
-  kernels::LinePatch& p = out.patch;
+PlacedBundle placed(Nodes nodes) {
+  PlacedBundle out{{}, {nodes.origin[1], nodes.origin[2]}, {1, 1}};
+  kernels::LineBundle& p = out.bundle;
   p.n_s = 1;
   p.matrix = -1;
   p.in_volume = 0;
@@ -57,38 +57,38 @@ PlacedPatch placed(Nodes nodes) {
   return out;
 }
 
-/// The part of a patch between two lines along a (axis 0) or b.
-PlacedPatch part(PlacedPatch p, int axis, int first, int end) {
+/// The part of a bundle between two lines along a (axis 0) or b.
+PlacedBundle part(PlacedBundle p, int axis, int first, int end) {
   Index const skip = first - p.first[std::size_t(axis)];
   auto const along = [&](kernels::LineStep const& s) { return axis == 0 ? s.a : s.b; };
-  p.patch.value += skip * along(p.patch.value_step);
-  if (p.patch.t >= 0) p.patch.t += skip * along(p.patch.t_step);
-  p.patch.x += skip * along(p.patch.x_step);
+  p.bundle.value += skip * along(p.bundle.value_step);
+  if (p.bundle.t >= 0) p.bundle.t += skip * along(p.bundle.t_step);
+  p.bundle.x += skip * along(p.bundle.x_step);
   p.first[std::size_t(axis)] = first;
   p.n[std::size_t(axis)] = end - first;
   return p;
 }
 
 /// Cut where any of them begins or ends, so that two of them have the same lines or none in common.
-std::vector<PlacedPatch> cut_alike(std::vector<PlacedPatch> patches) {
+std::vector<PlacedBundle> cut_alike(std::vector<PlacedBundle> bundles) {
   for (int axis = 0; axis < 2; ++axis) {
     auto const d = std::size_t(axis);
     std::set<int> cuts;
-    for (PlacedPatch const& p : patches) cuts.insert({p.first[d], p.first[d] + p.n[d]});
-    std::vector<PlacedPatch> pieces;
-    for (PlacedPatch const& p : patches) {
+    for (PlacedBundle const& p : bundles) cuts.insert({p.first[d], p.first[d] + p.n[d]});
+    std::vector<PlacedBundle> pieces;
+    for (PlacedBundle const& p : bundles) {
       int first = p.first[d];
       for (auto cut = cuts.upper_bound(first); first < p.first[d] + p.n[d]; first = *cut++)
         pieces.push_back(part(p, axis, first, *cut));
     }
-    patches = std::move(pieces);
+    bundles = std::move(pieces);
   }
-  return patches;
+  return bundles;
 }
 
 }  // namespace
 
-PlacedPatch patch_of(kernels::SkeletonSweep const& sweep) {
+PlacedBundle bundle_of(kernels::SkeletonSweep const& sweep) {
   Nodes nodes;
   nodes.n[0] = sweep.n_p;
   nodes.n[1] = sweep.n_q;
@@ -103,12 +103,12 @@ PlacedPatch patch_of(kernels::SkeletonSweep const& sweep) {
   nodes.x = sweep.x;
   nodes.x_step[0] = 1;
   nodes.x_step[1] = sweep.n_p;
-  PlacedPatch out = placed(nodes);
-  out.patch.matrix = sweep.matrix;
+  PlacedBundle out = placed(nodes);
+  out.bundle.matrix = sweep.matrix;
   return out;
 }
 
-PlacedPatch patch_of(kernels::VolumeBox const& box, kernels::VolumeTerm const& term) {
+PlacedBundle bundle_of(kernels::VolumeBox const& box, kernels::VolumeTerm const& term) {
   Nodes nodes;
   nodes.origin = {term.s[0], term.a[0], term.b[0]};
   nodes.value = box.first;
@@ -121,24 +121,25 @@ PlacedPatch patch_of(kernels::VolumeBox const& box, kernels::VolumeTerm const& t
     nodes.t_step[d] = t_step[d];
   }
   nodes.x = box.first;
-  PlacedPatch out = placed(nodes);
-  out.patch.matrix = term.matrix;
-  out.patch.in_volume = 1;
-  out.patch.offset = term.offset;
+  PlacedBundle out = placed(nodes);
+  out.bundle.matrix = term.matrix;
+  out.bundle.in_volume = 1;
+  out.bundle.offset = term.offset;
   return out;
 }
 
-LineGroups groups_of(PatchesOfChains const& of_chains) {
+LineGroups groups_of(BundlesOfChains const& of_chains) {
   LineGroups out;
-  for (auto const& [chain, patches] : of_chains) {
+  for (auto const& [chain, bundles] : of_chains) {
     using Place = std::array<int, 4>;  // b first: neighbours in memory follow one another
-    std::map<Place, std::vector<kernels::LinePatch>> places;
-    for (PlacedPatch const& p : cut_alike(patches)) places[{p.first[1], p.first[0], p.n[1], p.n[0]}].push_back(p.patch);
+    std::map<Place, std::vector<kernels::LineBundle>> places;
+    for (PlacedBundle const& p : cut_alike(bundles))
+      places[{p.first[1], p.first[0], p.n[1], p.n[0]}].push_back(p.bundle);
     for (auto& [place, list] : places) {
       std::stable_sort(list.begin(), list.end(), [](auto const& a, auto const& b) { return a.s < b.s; });
       out.groups.push_back(
-          {chain, place[1], place[0], place[3], place[2], std::int32_t(out.patches.size()), std::int32_t(list.size())});
-      out.patches.insert(out.patches.end(), list.begin(), list.end());
+          {chain, place[1], place[0], place[3], place[2], std::int32_t(out.bundles.size()), std::int32_t(list.size())});
+      out.bundles.insert(out.bundles.end(), list.begin(), list.end());
     }
   }
   return out;

@@ -90,7 +90,7 @@ TransposedLines<Exec> lines_of(Exec const& exec, LineGroups const& host) {
   TransposedLines<Exec> out;
   out.groups = WorkList<kernels::LineGroup, Memory>(
       exec, host.groups, kernels::LineGradients<Memory, kernels::TileShape<Exec>::lines>::items, "transposed::groups");
-  out.patches = table(exec, host.patches, "transposed::patches");
+  out.bundles = table(exec, host.bundles, "transposed::bundles");
   compat::fence(exec, "gridmorph::Morpher (host tables may go)");
   return out;
 }
@@ -99,7 +99,7 @@ TransposedLines<Exec> lines_of(Exec const& exec, LineGroups const& host) {
 struct HostPlan {
   std::vector<kernels::Chain> chains;
   std::vector<kernels::Side> sides;
-  PatchesOfChains volume;
+  BundlesOfChains volume;
 
   template <class Exec>
   explicit HostPlan(DevicePlan<Exec> const& plan)
@@ -108,15 +108,15 @@ struct HostPlan {
     for (kernels::VolumeBox const& box : on_host(plan.boxes.entries))
       for (int m = 0; m < box.n_terms; ++m) {
         kernels::VolumeTerm const& term = terms[std::size_t(box.first_term + m)];
-        if (box.n[0] > 0 && box.n[1] > 0 && box.n[2] > 0) volume[term.chain].push_back(patch_of(box, term));
+        if (box.n[0] > 0 && box.n[1] > 0 && box.n[2] > 0) volume[term.chain].push_back(bundle_of(box, term));
       }
   }
 
   /// All nodes that the chains with these end values give something to.
-  [[nodiscard]] PatchesOfChains patches(std::vector<kernels::SkeletonSweep> const& sweeps, Index first_end,
+  [[nodiscard]] BundlesOfChains bundles(std::vector<kernels::SkeletonSweep> const& sweeps, Index first_end,
                                         Index n_ends) const {
-    PatchesOfChains out;
-    for (kernels::SkeletonSweep const& sweep : sweeps) out[sweep.chain].push_back(patch_of(sweep));
+    BundlesOfChains out;
+    for (kernels::SkeletonSweep const& sweep : sweeps) out[sweep.chain].push_back(bundle_of(sweep));
     for (auto const& [chain, list] : volume) {
       Index const first = chains[std::size_t(chain)].first_end_value;
       if (first >= first_end && first < first_end + n_ends)
@@ -198,7 +198,7 @@ TransposedPlan<Exec>::TransposedPlan(Exec const& exec, DevicePlan<Exec> const& p
   for (DeviceStage<Exec> const& stage : plan.stages) {
     TransposedStage<Exec> t;
     LineGroups const groups =
-        groups_of(host.patches(on_host(stage.sweeps.entries), stage.first_end_value, stage.n_end_values));
+        groups_of(host.bundles(on_host(stage.sweeps.entries), stage.first_end_value, stage.n_end_values));
     t.lines = lines_of(exec, groups);
     t.ends = copies_of(exec, on_host(stage.ends.entries));
     t.gathers = copies_of(exec, on_host(stage.gathers.entries));
@@ -215,7 +215,7 @@ TransposedPlan<Exec>::TransposedPlan(Exec const& exec, DevicePlan<Exec> const& p
   }
   for (DeviceSpread<Exec> const& pass : plan.spreads) {
     TransposedSpread<Exec> t;
-    t.lines = lines_of(exec, groups_of(host.patches(on_host(pass.sweeps.entries), pass.first_value, pass.n_values)));
+    t.lines = lines_of(exec, groups_of(host.bundles(on_host(pass.sweeps.entries), pass.first_value, pass.n_values)));
     auto const ends = on_host(pass.ends);
     Dependencies of_slot;
     for (std::size_t n = 0; n < ends.size(); ++n) of_slot.push_back({ends[n].slot, n});

@@ -10,23 +10,23 @@
 
 namespace gridmorph::detail {
 
-/// A patch, and where its lines lie on the chain.
-struct PlacedPatch {
-  kernels::LinePatch patch;
+/// A bundle, and where its lines lie on the chain.
+struct PlacedBundle {
+  kernels::LineBundle bundle;
   std::array<int, 2> first, n;  ///< a, b
 };
 
-PlacedPatch patch_of(kernels::SkeletonSweep const& sweep);
-PlacedPatch patch_of(kernels::VolumeBox const& box, kernels::VolumeTerm const& term);
+PlacedBundle bundle_of(kernels::SkeletonSweep const& sweep);
+PlacedBundle bundle_of(kernels::VolumeBox const& box, kernels::VolumeTerm const& term);
 
 /// Per chain of a stage or pass, in the order of its chains.
-using PatchesOfChains = std::map<std::int32_t, std::vector<PlacedPatch>>;
+using BundlesOfChains = std::map<std::int32_t, std::vector<PlacedBundle>>;
 
 struct LineGroups {
   std::vector<kernels::LineGroup> groups;
-  std::vector<kernels::LinePatch> patches;
+  std::vector<kernels::LineBundle> bundles;
 };
-/// Patches cut so that two of them have the same lines or none in common, and put together by their lines. Cost: linear in patches, but for sorts.
-LineGroups groups_of(PatchesOfChains const& of_chains);
+/// Bundles cut so that two of them have the same lines or none in common, and put together by their lines. Cost: linear in bundles, but for sorts.
+LineGroups groups_of(BundlesOfChains const& of_chains);
 
 }  // namespace gridmorph::detail

@@ -15,7 +15,7 @@ template <class Exec>
 struct TransposedLines {
   using Memory = typename Exec::memory_space;
   WorkList<kernels::LineGroup, Memory> groups;
-  Kokkos::View<kernels::LinePatch*, Memory> patches;
+  Kokkos::View<kernels::LineBundle*, Memory> bundles;
 };
 
 template <class Exec>
@@ -46,7 +46,7 @@ struct TransposedTurns {
   kernels::Dependents<Memory> end_walls_of_slot, end_walls_of_root;
 };
 
-/// Memory: about 50 bytes per node of the skeleton, and 100 to 200 bytes per patch of lines. The plan has room for two fields.
+/// Memory: about 50 bytes per node of the skeleton, and 100 to 200 bytes per bundle of lines. The plan has room for two fields.
 template <class Exec>
 struct TransposedPlan {
   using Memory = typename Exec::memory_space;

@@ -46,10 +46,10 @@ class OnSkeleton {
   }
 
   /// Where the transposes of sweeps and of the volume read gradients.
-  [[nodiscard]] kernels::PatchGradients<Memory> gradients(detail::TransposedLines<Exec> const& lines,
-                                                          StageField<Exec> const& g) const {
-    kernels::PatchGradients<Memory> from{lines.patches, plan().rotations, plan().t.data(), read(g.skeleton),
-                                         g.nodes,       no_field(),       no_field(),      g.baseline};
+  [[nodiscard]] kernels::BundleGradients<Memory> gradients(detail::TransposedLines<Exec> const& lines,
+                                                           StageField<Exec> const& g) const {
+    kernels::BundleGradients<Memory> from{lines.bundles, plan().rotations, plan().t.data(), read(g.skeleton),
+                                          g.nodes,       no_field(),       no_field(),      g.baseline};
     if (plan().turns.any()) {
       from.slot_turns = plan().turns.slots.read()[g.number];
       from.position = plan().turns.swept_position.read()[0];
