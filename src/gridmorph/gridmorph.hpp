@@ -9,6 +9,7 @@
 #include <gridmorph/mesh/point_ranges.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/parameter_gradient.hpp>
 #include <gridmorph/morph/prediction.hpp>
 #include <gridmorph/motion/bulbs.hpp>
 #include <gridmorph/motion/height_table.hpp>

@@ -63,6 +63,12 @@ std::vector<BoundaryPlace> MorphPlan::boundary_places() const {
 
 std::vector<Vec3> const& MorphPlan::boundary_displacement() const { return state_->displacement; }
 
+std::vector<Vec3> MorphPlan::boundary_displacement(Motion const& motion) const {
+  if (elements()) return evaluate(elements()->boundary, motion);
+  PreparedMorph const& prepared = *blocks();
+  return evaluate(prepared.mesh, prepared.planned.boundary, prepared.surface.with(motion), prepared.plan().rotations);
+}
+
 std::vector<std::string> MorphPlan::notes() const {
   if (elements()) return elements()->notes;
   std::vector<std::string> out = blocks()->mesh.notes;

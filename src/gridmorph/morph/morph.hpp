@@ -44,6 +44,9 @@ class MorphPlan {
   [[nodiscard]] std::vector<BoundaryPlace> boundary_places() const;
   /// What the rules give them, each in the frame of its node; zero where a PrescribedRule leaves it to the caller.
   [[nodiscard]] std::vector<Vec3> const& boundary_displacement() const;
+  /// What other rules give them: the same rules for the same patches, whose displacements alone differ. Throws MotionError. Cost: an
+  /// evaluation of the rules at the boundary's nodes; nothing is planned.
+  [[nodiscard]] std::vector<Vec3> boundary_displacement(Motion const& motion) const;
   /// Defaults taken and facts found on the way, for users.
   [[nodiscard]] std::vector<std::string> notes() const;
 

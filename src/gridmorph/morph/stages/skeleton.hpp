@@ -100,6 +100,9 @@ class BoundaryValues : OnSkeleton<Exec> {
   /// g.boundary is written: gradients of the boundary's displacement.
   void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
     auto const& plan = this->plan();
+    scatter(
+        exec,
+        f);  // where the walls were when they turned: passes over slip surfaces have trimmed some of their nodes since
     detail::BlockTurnGradients<Exec>(plan, f.number, g.number).of_walls(exec);
     kernels::copy_back<false>("gridmorph::transposed::axis", exec, plan.transposed->boundary_projections,
                               plan.rotations, read(g.skeleton), g.skeleton);
@@ -109,10 +112,13 @@ class BoundaryValues : OnSkeleton<Exec> {
   }
 
  private:
-  template <bool Rate>
-  void set(Exec const& exec, StageField<Exec> const& f) const {
+  void scatter(Exec const& exec, StageField<Exec> const& f) const {
     kernels::scatter_boundary(exec, this->plan().boundary_slots, f.boundary, f.skeleton);
     this->copy("gridmorph::boundary::axis", exec, this->plan().boundary_projections, f.skeleton, f.skeleton);
+  }
+  template <bool Rate>
+  void set(Exec const& exec, StageField<Exec> const& f) const {
+    scatter(exec, f);
     detail::BlockTurns<Exec, Rate>(this->plan(), f.number, f.of).of_walls(exec);
   }
 };
