@@ -1,0 +1,190 @@
+#include "objects.hpp"
+
+#include <gridmorph/guard/smoothing_record.hpp>
+#include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/parameter_gradient.hpp>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace gridmorph::python {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+using Result = nb::object;
+
+/// A plan on the host's threads. Its arrays for boundary displacements are the caller's, read where they lie.
+class PyPlan {
+ public:
+  PyPlan(PyMesh const& mesh, PyMotion const& motion, bool freeze) : session_(Session::get()), mesh_(mesh.mesh) {
+    Call const call;
+    HostInstance const host;
+    plan_.emplace(host, *mesh_, motion.file.motion, motion.file.plan);
+    if (freeze) {
+      std::vector<std::vector<Vec3>> const once{plan_->boundary_displacement()};
+      plan_ = freeze_guard(host, *mesh_, *plan_, once);
+    }
+    for (Index const n : plan_->boundary_nodes()) boundary_nodes_.push_back(n);
+    morpher_.emplace(exec_, *plan_, mesh_->coordinates, MorpherOptions{.velocity = true, .transpose = true});
+  }
+
+  [[nodiscard]] Index n_nodes() const { return plan_->n_nodes(); }
+  [[nodiscard]] Index n_boundary() const { return Index(boundary_nodes_.size()); }
+  [[nodiscard]] std::vector<std::int64_t> const& boundary_nodes() const { return boundary_nodes_; }
+  [[nodiscard]] std::vector<std::string> notes() const { return plan_->notes(); }
+  [[nodiscard]] std::vector<Vec3> const& rules() const { return plan_->boundary_displacement(); }
+  [[nodiscard]] std::vector<Vec3> rules(PyMotion const& motion) const {
+    Call const call;
+    return plan_->boundary_displacement(motion.file.motion);
+  }
+
+  Result positions(std::optional<Vectors> const& u, std::optional<Vectors> const& out) {
+    return with_result(out, n_nodes(), [&](Out const& moved) {
+      with_boundary(u, [&](In const& b) { morpher_->positions(exec_, b, moved); });
+    });
+  }
+  Result displacements(std::optional<Vectors> const& u, std::optional<Vectors> const& out) {
+    return with_result(out, n_nodes(), [&](Out const& d) {
+      with_boundary(u, [&](In const& b) { morpher_->displacements(exec_, b, d); });
+    });
+  }
+  Result velocities(Vectors const& rate, std::optional<Vectors> const& u, std::optional<Vectors> const& out) {
+    check_vectors(rate, n_boundary(), "rate");
+    return with_result(out, n_nodes(), [&](Out const& v) {
+      with_boundary(u, [&](In const& b) { read(rate, [&](In const& r) { morpher_->velocities(exec_, b, r, v); }); });
+    });
+  }
+  Result transpose(Vectors const& gradient, std::optional<Vectors> const& u, std::optional<Vectors> const& out) {
+    check_vectors(gradient, n_nodes(), "gradient");
+    return with_result(out, n_boundary(), [&](Out const& g) {
+      with_boundary(u, [&](In const& b) { read(gradient, [&](In const& d) { morpher_->transpose(exec_, b, d, g); }); });
+    });
+  }
+
+ private:
+  using Memory = Exec::memory_space;
+  using In = ConstVectorView<Memory>;
+  using Out = VectorView<Memory>;
+  template <class T>
+  using Strided = Kokkos::View<T* [3], Kokkos::LayoutStride, Memory, Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
+
+  template <class T>
+  static Strided<T> strided(Vectors const& v) {
+    return Strided<T>(static_cast<T*>(v.data()),
+                      Kokkos::LayoutStride(v.shape(0), std::size_t(v.stride(0)), 3, std::size_t(v.stride(1))));
+  }
+
+  template <class Use>
+  static void read(Vectors const& v, Use const& use) {
+    if (v.dtype() == nb::dtype<double>())
+      use(In(strided<double>(v)));
+    else
+      use(In(strided<float>(v)));
+  }
+
+  /// The caller's displacement, or that of the rules.
+  template <class Use>
+  void with_boundary(std::optional<Vectors> const& u, Use const& use) const {
+    if (u) return read(*u, use);
+    auto const& rules = plan_->boundary_displacement();
+    use(In(Kokkos::View<Vec3 const*, Memory, Kokkos::MemoryTraits<Kokkos::Unmanaged>>(rules.data(), rules.size())));
+  }
+
+  /// `out` or a new array, filled without the interpreter's lock.
+  template <class Fill>
+  Result with_result(std::optional<Vectors> const& given, Index n, Fill const& fill) const {
+    if (given) {
+      check_vectors(*given, n, "out", true);
+      in_call([&] { fill(Out(strided<double>(*given))); });
+      return nb::cast(*given);
+    }
+    auto made = new_vectors(n);
+    in_call([&] {
+      fill(Out(Kokkos::View<double* [3], Kokkos::LayoutRight, Memory, Kokkos::MemoryTraits<Kokkos::Unmanaged>>(
+          made.data(), std::size_t(n))));
+    });
+    return nb::cast(made);
+  }
+  template <class Do>
+  void in_call(Do const& work) const {
+    Call const call;
+    work();
+    exec_.fence();
+  }
+
+  std::shared_ptr<Session> session_;  // first: the last to go
+  std::shared_ptr<Mesh> mesh_;
+  Exec exec_;
+  std::optional<MorphPlan> plan_;
+  std::optional<Morpher<Exec>> morpher_;
+  std::vector<std::int64_t> boundary_nodes_;
+};
+
+void check_boundary(PyPlan const& plan, std::optional<Vectors> const& u) {
+  if (u) check_vectors(*u, plan.n_boundary(), "u");
+}
+
+}  // namespace
+
+void bind_plan(nb::module_& m) {
+  nb::class_<PyPlan>(m, "Plan",
+                     "How the nodes of a mesh follow its boundary: made once, applied many times.\n\n"
+                     "u, rate and what transpose() returns have one row for each of boundary_nodes; u absent: what the "
+                     "rules say. Other arrays have one "
+                     "row per node of the mesh. float64 or float32, (n, 3), any positive strides, read in place; "
+                     "results are float64, new or in `out`.")
+      .def(nb::init<PyMesh const&, PyMotion const&, bool>(), nb::arg("mesh"), nb::arg("motion"), nb::kw_only(),
+           nb::arg("freeze_guard") = false,
+           "Connects the zones, checks boundary and rules, plans. Raises MeshError, MotionError, PlanError.\n\n"
+           "freeze_guard: what smoothing does to the rules' morph becomes a linear part of all morphs.")
+      .def_prop_ro("n_nodes", &PyPlan::n_nodes)
+      .def_prop_ro("notes", &PyPlan::notes, "Defaults taken and facts found.")
+      .def_prop_ro(
+          "boundary_nodes", [](PyPlan const& p) { return new_numbers(p.boundary_nodes()); }, nb::rv_policy::reference,
+          "(m,) int64: nodes whose displacement is given, in the order of u.")
+      .def_prop_ro(
+          "boundary_displacement", [](PyPlan const& p) { return as_array(p.rules()); }, nb::rv_policy::reference,
+          "(m, 3): what the rules give them [length].")
+      .def(
+          "boundary_displacement_of", [](PyPlan const& p, PyMotion const& motion) { return as_array(p.rules(motion)); },
+          nb::arg("motion"),
+          "(m, 3): what other rules of the same patches give them. Nothing is planned. Raises MotionError.")
+      .def(
+          "positions",
+          [](PyPlan& p, std::optional<Vectors> u, std::optional<Vectors> out) {
+            check_boundary(p, u);
+            return p.positions(u, out);
+          },
+          nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          "(n, 3): x + displacements(u) of every node [length].")
+      .def(
+          "displacements",
+          [](PyPlan& p, std::optional<Vectors> u, std::optional<Vectors> out) {
+            check_boundary(p, u);
+            return p.displacements(u, out);
+          },
+          nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          "(n, 3): displacement of every node [length].")
+      .def(
+          "velocities",
+          [](PyPlan& p, Vectors rate, std::optional<Vectors> u, std::optional<Vectors> out) {
+            check_boundary(p, u);
+            return p.velocities(rate, u, out);
+          },
+          nb::arg("rate"), nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          "(n, 3): derivative of displacements() at u in the direction `rate` [length / time], exact.")
+      .def(
+          "transpose",
+          [](PyPlan& p, Vectors gradient, std::optional<Vectors> u, std::optional<Vectors> out) {
+            check_boundary(p, u);
+            return p.transpose(gradient, u, out);
+          },
+          nb::arg("gradient"), nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          "(m, 3): dJ/du of the boundary nodes from `gradient` = dJ/dx of all nodes (n, 3), at u: the exact transpose "
+          "of velocities().");
+}
+
+}  // namespace gridmorph::python

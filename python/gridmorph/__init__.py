@@ -1,0 +1,161 @@
+"""Explicit, interpolation-based morphing of CFD meshes.
+
+    import gridmorph
+    mesh = gridmorph.Mesh.read("passage.cgns")
+    motion = gridmorph.Motion({"motion": [{"patches": ["blade"], "rule": "rigid", "axis": [1, 0, 0], "angle_deg": 5}]})
+    plan = gridmorph.Plan(mesh, motion)
+    moved = plan.positions()             # (n, 3), every node
+    print(mesh.quality(moved)["certificate"])
+    mesh.write("moved.cgns", moved)
+
+Arrays are NumPy's: (n, 3), float64 or float32, any positive strides, lengths in units of the mesh. Nodes count from 0. Calls let other
+threads of Python run, and wait for one another. docs/python.md of the project has the rest.
+"""
+import json
+import os
+
+import numpy
+
+from ._core import (ConfigError, Error, IoError, MachineError, Mesh, MeshError, Motion, MotionError, Plan, PlanError,
+                    __version__, kokkos_version, set_threads)
+
+__all__ = ["ConfigError", "Error", "IoError", "MachineError", "Mesh", "MeshError", "Motion", "MotionError", "Plan", "PlanError",
+           "kokkos_version", "set_threads"]
+
+
+def _selectors(patches):
+    return [patches] if isinstance(patches, str) else [str(p) for p in patches]
+
+
+def _plain(value):
+    """Numbers and paths of others as what TOML has."""
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items() if item is not None}
+    if isinstance(value, (numpy.ndarray, numpy.generic)):
+        return _plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
+# ---------------------------------------------------------------------------------------------------------------- meshes
+
+
+def _read(path, side_file=None, leave_out=()):
+    """Reads a mesh: CGNS (HDF5, ADF), PLOT3D, SU2, OpenFOAM, Gmsh, VTK, UGRID, with the side file beside it or the one given.
+
+    leave_out: bases and zones that are no part of the mesh, by name or glob. Raises IoError, MeshError, ConfigError.
+    """
+    return Mesh._read(os.fspath(path), None if side_file is None else os.fspath(side_file), _selectors(leave_out))
+
+
+def _from_blocks(blocks, boundaries=None, match=True):
+    """A structured mesh from arrays, with no file.
+
+    blocks: {name: (ni, nj, nk, 3) array}, copied; indices i, j, k in the order of the array's axes.
+    boundaries: a dict as a side file has it (docs/formats.md): {"patch": [{"name": ..., "zone": ..., "face": "k_min", "kind": "wall"}], ...}.
+    match: find the interfaces, periodic ones too, that coincident nodes say (Mesh.match). Raises MeshError, ConfigError.
+    """
+    import tomli_w
+
+    mesh = Mesh._from_blocks([(name, numpy.asarray(array, dtype=float)) for name, array in blocks.items()])
+    if boundaries:
+        mesh._add_side_text(tomli_w.dumps(_plain(boundaries)), "boundaries")
+    if match:
+        mesh.match()
+    return mesh
+
+
+def _coordinates(self):
+    """(n_nodes, 3) [length], a copy; x, y and z are the mesh's own."""
+    return numpy.stack([self.x, self.y, self.z], axis=1)
+
+
+def _write(self, path, coordinates=None):
+    """Writes the mesh, with other coordinates (n_nodes, 3) where they are given.
+
+    A mesh that was read comes out as its file, everything but the coordinates unchanged; others as a new CGNS file. The file appears whole or
+    not at all. Raises IoError, MeshError, MachineError.
+    """
+    self._write(os.fspath(path), coordinates)
+
+
+def _write_vtk(self, path, coordinates=None):
+    """Writes a .vtu file for viewers, with the displacement where coordinates are given."""
+    self._write_vtk(os.fspath(path), coordinates)
+
+
+def _quality(self, coordinates=None, *, fast=False, cells=False):
+    """Quality of the mesh, or of other coordinates (n_nodes, 3) against it, as the dict that JSON reports have.
+
+    "inverted": cells that are inside out; "near_field" / "far_field" (everything is in the far field here), "walls"; with coordinates
+    "certificate": whether every cell is valid between its corners too. fast: a verdict only. cells: also "cell_values", a dict of (n_cells,)
+    arrays (aspect ratio, 3x3x3 determinant, smallest angle, skewness).
+    """
+    text, arrays = self._quality(coordinates, fast, cells)
+    report = json.loads(text)
+    if cells:
+        report["cell_values"] = arrays
+    return report
+
+
+Mesh.read = staticmethod(_read)
+Mesh.from_blocks = staticmethod(_from_blocks)
+Mesh.coordinates = property(_coordinates)
+Mesh.write = _write
+Mesh.write_vtk = _write_vtk
+Mesh.quality = _quality
+
+# --------------------------------------------------------------------------------------------------------------- motions
+
+
+def _read_motion(path):
+    """The rules and options of a case file. Raises one ConfigError that lists every problem of it."""
+    return Motion._read(os.fspath(path))
+
+
+def _motion_text(tables, more):
+    """Tables of a Motion as the text of a case file."""
+    import tomli_w
+
+    tables = {**_plain(tables or {}), **_plain(more)}
+    tables.setdefault("motion", [])
+    mesh = tables.pop("mesh", {})
+    tables["mesh"] = {"input": "mesh", **mesh}
+    # Single values first: what stands behind a table is part of it.
+    ordered = dict(sorted(tables.items(), key=lambda item: isinstance(item[1], dict) or item[0] in ("motion", "region", "clearance")))
+    return tomli_w.dumps(ordered)
+
+
+def _function(self, patches, function, rank=0):
+    """Adds a rule: function(points (k, 3)) -> displacement (k, 3), of baseline positions, equal for equal points. Returns the motion."""
+    self._function(_selectors(patches), function, rank)
+    return self
+
+
+def _field(self, patches, points, displacement, rank=0, max_distance=0.0):
+    """Adds a rule: displacements (k, 3) at points (k, 3), exact there and interpolated between. Returns the motion.
+
+    max_distance: a node farther than that from every point is a MotionError; 0: no limit.
+    """
+    self._field(_selectors(patches), numpy.asarray(points), numpy.asarray(displacement), rank, max_distance)
+    return self
+
+
+def _rigid(self, patches, matrix=((1, 0, 0), (0, 1, 0), (0, 0, 1)), translation=(0, 0, 0), rank=0):
+    """Adds a rule: x' = matrix x + translation. Returns the motion."""
+    self._rigid(_selectors(patches), numpy.ravel(matrix).astype(float).tolist(), numpy.ravel(translation).astype(float).tolist(), rank)
+    return self
+
+
+def _prescribed(self, patches, rank=0):
+    """Adds a rule: whatever u of a plan's calls gives these nodes. Returns the motion."""
+    self._prescribed(_selectors(patches), rank)
+    return self
+
+
+Motion.read = staticmethod(_read_motion)
+Motion.function = _function
+Motion.field = _field
+Motion.rigid = _rigid
+Motion.prescribed = _prescribed

@@ -1,0 +1,144 @@
+"""The package on meshes made here, without files, and on one that it writes itself."""
+import threading
+
+import numpy as np
+import pytest
+
+import gridmorph
+
+N = 9
+FACES = {"i_min": "sides", "i_max": "sides", "j_min": "sides", "j_max": "sides"}
+
+
+def box(z0):
+    """(N, N, N, 3): a unit box from z0 up."""
+    x = np.linspace(0.0, 1.0, N)
+    return np.stack(np.meshgrid(x, x, z0 + x, indexing="ij"), axis=-1)
+
+
+def two_boxes():
+    patches = [{"name": name, "zone": zone, "face": face, "kind": "wall"}
+               for zone in ("lower", "upper") for face, name in FACES.items()]
+    patches += [{"name": "floor", "zone": "lower", "face": "k_min", "kind": "wall"},
+                {"name": "roof", "zone": "upper", "face": "k_max", "kind": "wall"}]
+    return gridmorph.Mesh.from_blocks({"lower": box(0.0), "upper": box(1.0)}, {"patch": patches})
+
+
+def bump(points):
+    u = np.zeros_like(points)
+    u[:, 2] = 0.1 * np.sin(np.pi * points[:, 0]) ** 2 * np.sin(np.pi * points[:, 1]) ** 2
+    return u
+
+
+@pytest.fixture(scope="module")
+def mesh():
+    return two_boxes()
+
+
+@pytest.fixture(scope="module")
+def plan(mesh):
+    return gridmorph.Plan(mesh, gridmorph.Motion().function("floor", bump))
+
+
+def test_blocks_keep_the_indices_of_arrays(mesh):
+    assert mesh.n_nodes == 2 * N**3 and mesh.is_structured
+    for zone, z0 in enumerate((0.0, 1.0)):
+        for component, values in enumerate(mesh.zone_coordinates(zone)):
+            np.testing.assert_array_equal(values, box(z0)[..., component])
+
+
+def test_coordinates_are_views_that_outlive_the_mesh():
+    mesh = two_boxes()
+    x = mesh.x
+    mesh.zone_coordinates(0)[0][2, 3, 4] = 7.0
+    assert x[2 + N * (3 + N * 4)] == 7.0
+    del mesh
+    assert x.sum() > 0
+
+
+def test_known_nodes_take_their_displacement_and_others_follow(mesh, plan):
+    u = plan.displacements()
+    floor = mesh.nodes_of(["floor"])
+    np.testing.assert_allclose(u[floor], bump(mesh.coordinates[floor]), atol=1e-15)
+    assert not u[mesh.nodes_of(["roof"])].any()
+    np.testing.assert_allclose(plan.positions(), mesh.coordinates + u, atol=1e-15)
+    assert mesh.quality(plan.positions())["certificate"]["holds"]
+
+
+def test_transpose_is_that_of_velocities(plan):
+    random = np.random.default_rng(7)
+    rate = random.standard_normal((len(plan.boundary_nodes), 3))
+    gradient = random.standard_normal((plan.n_nodes, 3))
+    forwards = np.vdot(gradient, plan.velocities(rate))
+    backwards = np.vdot(plan.transpose(gradient), rate)
+    assert abs(forwards - backwards) < 1e-12 * np.abs(gradient).sum()
+
+
+def test_strides_single_precision_and_out(plan):
+    u = plan.boundary_displacement
+    expected = plan.displacements(u)
+    np.testing.assert_array_equal(plan.displacements(np.asfortranarray(u)), expected)
+    np.testing.assert_array_equal(plan.displacements(u.astype(np.float32)), plan.displacements(u.astype(np.float32).astype(float)))
+    out = np.full((plan.n_nodes, 6), np.nan)[:, ::2]
+    plan.displacements(u, out=out)
+    np.testing.assert_array_equal(out, expected)
+
+
+@pytest.mark.parametrize("wrong, found", [(np.zeros((4, 3)), r"found \(4, 3\)"), (np.zeros((5, 2)), r"found \(5, 2\)"),
+                                          (np.zeros((4, 3), dtype=int), "found")])
+def test_wrong_arrays_are_named(plan, wrong, found):
+    with pytest.raises(gridmorph.ConfigError, match=found):
+        plan.displacements(wrong)
+
+
+def test_rules_of_a_dict_are_read_as_case_files_are(mesh):
+    motion = gridmorph.Motion({"motion": [{"patches": ["floor"], "rule": "formula", "dz": "0.1 * sin(pi * x)^2 * sin(pi * y)^2"}]})
+    np.testing.assert_allclose(gridmorph.Plan(mesh, motion).boundary_displacement.max(), 0.1)
+    with pytest.raises(gridmorph.ConfigError, match="dq"):
+        gridmorph.Motion({"motion": [{"patches": ["floor"], "rule": "formula", "dq": "1"}]})
+    with pytest.raises(gridmorph.MotionError, match="flor"):
+        gridmorph.Plan(mesh, gridmorph.Motion().prescribed("flor"))
+
+
+def test_fields_of_points_are_exact_on_them(mesh, plan):
+    points = mesh.coordinates[mesh.nodes_of(["floor"])]
+    by_points = gridmorph.Plan(mesh, gridmorph.Motion().field("floor", points, bump(points)))
+    np.testing.assert_array_equal(by_points.displacements(), plan.displacements())
+
+
+def test_errors_of_functions_come_through(mesh):
+    def fails(points):
+        raise ValueError("not today")
+
+    with pytest.raises(ValueError, match="not today"):
+        gridmorph.Plan(mesh, gridmorph.Motion().function("floor", fails))
+
+
+def test_files_come_back(tmp_path, mesh, plan):
+    path = tmp_path / "boxes.cgns"
+    mesh.write(path, plan.positions())
+    again = gridmorph.Mesh.read(path)
+    np.testing.assert_array_equal(again.coordinates, plan.positions())
+    again.write(tmp_path / "copy.cgns", mesh.coordinates)
+    np.testing.assert_array_equal(gridmorph.Mesh.read(tmp_path / "copy.cgns").coordinates, mesh.coordinates)
+    with pytest.raises(gridmorph.IoError, match="nothing.cgns"):
+        gridmorph.Mesh.read(tmp_path / "nothing.cgns")
+
+
+def test_other_threads_get_the_same_or_are_refused_clearly(plan):
+    expected, got = plan.displacements(), []
+
+    def work():
+        try:
+            got.append(plan.displacements())
+        except gridmorph.ConfigError as error:
+            got.append(str(error))
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    [t.start() for t in threads]
+    [t.join() for t in threads]
+    for result in got:
+        if isinstance(result, str):
+            assert "takes calls from the thread alone" in result
+        else:
+            np.testing.assert_array_equal(result, expected)
