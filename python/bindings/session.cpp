@@ -27,22 +27,7 @@ constexpr bool any_thread_may_call = KOKKOS_VERSION >= 40000;
 }  // namespace
 
 Session::Session(int threads) {
-  if (Kokkos::is_initialized()) return;
-#if KOKKOS_VERSION >= 30700
-  Kokkos::InitializationSettings settings;
-  settings.set_disable_warnings(true);
-  if (threads > 0) settings.set_num_threads(threads);
-#else
-  Kokkos::InitArguments settings;
-  settings.disable_warnings = true;
-  if (threads > 0) settings.num_threads = threads;
-#endif
-  Kokkos::initialize(settings);
-  owner_ = true;
-}
-
-Session::~Session() {
-  if (owner_) Kokkos::finalize();
+  if (!Kokkos::is_initialized()) own_.emplace(threads);
 }
 
 std::shared_ptr<Session> Session::get(int threads) {

@@ -1,10 +1,13 @@
 // Kokkos for the length of a Python program, and one call at a time.
 #pragma once
 
+#include <gridmorph/app/cli/kokkos_session.hpp>
+
 #include <nanobind/nanobind.h>
 
 #include <memory>
 #include <mutex>
+#include <optional>
 
 namespace gridmorph::python {
 
@@ -12,7 +15,6 @@ namespace gridmorph::python {
 /// interpreter's exit handlers. Where the program runs this Kokkos already it is left alone.
 class Session {
  public:
-  ~Session();
   Session(Session const&) = delete;
   Session& operator=(Session const&) = delete;
 
@@ -24,7 +26,7 @@ class Session {
 
  private:
   explicit Session(int threads);
-  bool owner_ = false;
+  std::optional<cli::KokkosSession> own_;
 };
 
 /// For the length of a call: the interpreter goes on with other threads, other calls wait. A call uses all threads of Kokkos, and the CGNS
