@@ -1,5 +1,6 @@
 #include <gridmorph/plan/blocks/cuts.hpp>
 
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 
