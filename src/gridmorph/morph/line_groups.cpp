@@ -1,5 +1,7 @@
 #include <gridmorph/morph/detail/line_groups.hpp>
 
+#include <gridmorph/core/index.hpp>
+
 #include <algorithm>
 #include <set>
 #include <utility>
