@@ -4,6 +4,10 @@
 
 #include <Kokkos_Core.hpp>
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 #include <string>
 #include <thread>
 
@@ -24,10 +28,31 @@ std::recursive_mutex& one_call() {
 /// Since 4.0 threads of a host program may call one after another; before, tables of OpenMP's threads belong to the one that started it.
 constexpr bool any_thread_may_call = KOKKOS_VERSION >= 40000;
 
+/// Kokkos sets how many threads the calling thread's OpenMP regions have, for the whole process where libraries share one OpenMP.
+/// Its own regions name theirs, so that the number can go back to what others of the program had.
+class OthersThreads {
+ public:
+  OthersThreads() = default;
+  OthersThreads(OthersThreads const&) = delete;
+  OthersThreads& operator=(OthersThreads const&) = delete;
+#ifdef _OPENMP
+  ~OthersThreads() { omp_set_num_threads(number_); }
+
+ private:
+  int number_ = omp_get_max_threads();
+#endif
+};
+
 }  // namespace
 
 Session::Session(int threads) {
+  OthersThreads const kept;
   if (!Kokkos::is_initialized()) own_.emplace(threads);
+}
+
+Session::~Session() {
+  OthersThreads const kept;
+  own_.reset();
 }
 
 std::shared_ptr<Session> Session::get(int threads) {

@@ -17,6 +17,7 @@ class Session {
  public:
   Session(Session const&) = delete;
   Session& operator=(Session const&) = delete;
+  ~Session();
 
   /// Starts Kokkos where it does not run. `threads` 0: OMP_NUM_THREADS, else all that the machine has. Throws ConfigError for another number than that of
   /// a session that runs, and on a thread that an old Kokkos does not take calls from.

