@@ -1,34 +1,47 @@
 # Install and package files: find_package(gridmorph [COMPONENTS core io]).
+#
+# Components of cmake --install: `runtime` (the command, shared libraries, manual page, completion, scripts that draw),
+# `development` (headers, static libraries, package files) and `documentation` (pages, examples with their meshes).
 include(CMakePackageConfigHelpers)
 
 set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/gridmorph")
+set(data_folder "${CMAKE_INSTALL_DATADIR}/gridmorph")
+set(doc_folder "${CMAKE_INSTALL_DOCDIR}")
+if(NOT PROJECT_IS_TOP_LEVEL)
+  set(doc_folder "${CMAKE_INSTALL_DATAROOTDIR}/doc/gridmorph") # the other one is the parent project's
+endif()
 
-# One export set per component, so that a user of the core never hears of CGNS.
+# One export set per component of find_package, so that a user of the core never hears of CGNS.
 function(gridmorph_install component)
   install(
     TARGETS ${ARGN}
     EXPORT gridmorph_${component}
-    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+    RUNTIME COMPONENT runtime
+    LIBRARY COMPONENT runtime NAMELINK_COMPONENT development
+    ARCHIVE COMPONENT development
+    FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development
     INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-  install(EXPORT gridmorph_${component} FILE gridmorph_${component}.cmake NAMESPACE gridmorph:: DESTINATION "${package_folder}")
+  install(EXPORT gridmorph_${component} FILE gridmorph_${component}.cmake NAMESPACE gridmorph:: DESTINATION "${package_folder}"
+          COMPONENT development)
 endfunction()
 
 gridmorph_install(core gridmorph_kernels gridmorph)
 if(GRIDMORPH_ENABLE_IO)
   gridmorph_install(io gridmorph_io)
-  install(FILES "${PROJECT_SOURCE_DIR}/cmake/FindCGNS.cmake" DESTINATION "${package_folder}")
+  install(FILES "${PROJECT_SOURCE_DIR}/cmake/FindCGNS.cmake" DESTINATION "${package_folder}" COMPONENT development)
 endif()
 if(GRIDMORPH_ENABLE_CLI)
-  install(TARGETS gridmorph_cli)
+  install(TARGETS gridmorph_cli COMPONENT runtime)
   if(BUILD_SHARED_LIBS)
-    install(TARGETS gridmorph_app)
+    install(TARGETS gridmorph_app LIBRARY COMPONENT runtime NAMELINK_SKIP)
   endif()
-  install(FILES "${PROJECT_SOURCE_DIR}/docs/gridmorph.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+  install(FILES "${PROJECT_SOURCE_DIR}/docs/gridmorph.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT runtime)
   install(FILES "${PROJECT_SOURCE_DIR}/scripts/completion/gridmorph.bash"
-          DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME gridmorph)
-  # What --help refers to.
-  install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs/" DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
-  install(FILES "${PROJECT_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+          DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME gridmorph COMPONENT runtime)
+  # Scripts for users of the command; the others are for work on gridmorph.
+  set(scripts convert-mesh picture picture-fillet picture-unstructured)
+  list(TRANSFORM scripts PREPEND "${PROJECT_SOURCE_DIR}/scripts/")
+  install(PROGRAMS ${scripts} DESTINATION "${data_folder}/scripts" COMPONENT runtime)
 endif()
 
 configure_package_config_file(
@@ -39,5 +52,30 @@ write_basic_package_version_file(
 install(
   FILES "${PROJECT_BINARY_DIR}/gridmorphConfig.cmake" "${PROJECT_BINARY_DIR}/gridmorphConfigVersion.cmake"
         "${PROJECT_SOURCE_DIR}/cmake/gridmorphCheckKokkos.cmake"
-  DESTINATION "${package_folder}")
-install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+  DESTINATION "${package_folder}" COMPONENT development)
+
+# Licence and notices go along with either half of the program.
+foreach(component IN ITEMS runtime development)
+  install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${doc_folder}" COMPONENT ${component})
+  install(FILES "${PROJECT_SOURCE_DIR}/docs/dependencies.md" DESTINATION "${doc_folder}/docs" COMPONENT ${component})
+endforeach()
+
+if(PROJECT_IS_TOP_LEVEL)
+  # Pages lie as in the source tree, so that links between them, to images and to examples hold.
+  foreach(page IN ITEMS README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE)
+    install(FILES "${PROJECT_SOURCE_DIR}/${page}" DESTINATION "${doc_folder}" COMPONENT documentation)
+  endforeach()
+  install(
+    DIRECTORY "${PROJECT_SOURCE_DIR}/docs/" DESTINATION "${doc_folder}/docs" COMPONENT documentation
+    FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+  # Examples are run where they lie, so they are data; what the pages call examples/ is a link to them.
+  install(
+    DIRECTORY "${PROJECT_SOURCE_DIR}/examples/" DESTINATION "${data_folder}/examples" USE_SOURCE_PERMISSIONS
+    COMPONENT documentation PATTERN generators EXCLUDE)
+  cmake_path(ABSOLUTE_PATH data_folder BASE_DIRECTORY "/" OUTPUT_VARIABLE from_root)
+  cmake_path(ABSOLUTE_PATH doc_folder BASE_DIRECTORY "/" OUTPUT_VARIABLE doc_from_root)
+  file(RELATIVE_PATH target "${doc_from_root}" "${from_root}/examples")
+  file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/generated/doc")
+  file(CREATE_LINK "${target}" "${PROJECT_BINARY_DIR}/generated/doc/examples" SYMBOLIC)
+  install(FILES "${PROJECT_BINARY_DIR}/generated/doc/examples" DESTINATION "${doc_folder}" COMPONENT documentation)
+endif()

@@ -61,7 +61,7 @@ std::string docs_folder() {
   auto const program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (!error)
     for (auto folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
-      for (char const* name : {"share/doc/gridmorph", "docs"})
+      for (char const* name : {"share/doc/gridmorph/docs", "docs"})
         if (std::filesystem::exists(folder / name / "case_file.md", error)) return (folder / name).string();
   return "docs";
 }
