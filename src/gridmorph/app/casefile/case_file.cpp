@@ -10,7 +10,6 @@
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
-#include <toml.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,7 +17,6 @@
 #include <cstddef>
 #include <functional>
 #include <map>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -32,97 +30,8 @@ using casefile::TableReader;
 
 /// A case file is written by hand; anything larger is some other file.
 constexpr std::uintmax_t largest_case_file = 4u << 20;
-/// The parser recurses into brackets; nobody nests them this deep.
-constexpr int deepest_nesting = 64;
 /// Steps are numbered with up to five digits.
 constexpr int largest_sequence = 99999;
-
-/// Refuses what is no text at all, and brackets nested so deep that a recursive parser would run out of stack.
-void check_text(std::string const& text, std::string const& file) {
-  if (text.find('\0') != std::string::npos)
-    throw ConfigError(fmt::format("{}: not a text file; a case file (TOML) is wanted, not a mesh", file));
-  int line = 1, depth = 0;
-  char quote = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    char const c = text[i];
-    if (c == '\n') {
-      ++line;
-      quote = 0;  // one-line strings end here at the latest; longer ones only make the count of brackets less strict
-    } else if (quote != 0) {
-      if (c == '\\' && quote == '"')
-        ++i;
-      else if (c == quote)
-        quote = 0;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '#') {
-      while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
-    } else if (c == '[' || c == '{') {
-      if (++depth > deepest_nesting)
-        throw ConfigError(
-            fmt::format("{}:{}: not valid TOML: brackets nested more than {} deep", file, line, deepest_nesting));
-    } else if ((c == ']' || c == '}') && depth > 0) {
-      --depth;
-    }
-  }
-}
-
-/// toml11 draws its messages over several lines; one line says the same.
-std::string one_line(std::string_view drawn) {
-  auto const first_line = [](std::string_view text) { return text.substr(0, text.find('\n')); };
-  std::string_view what = first_line(drawn);
-  if (what.starts_with("[error] ")) what.remove_prefix(8);
-  if (what.starts_with("toml::"))
-    if (auto const colon = what.find(": "); colon != std::string_view::npos) what.remove_prefix(colon + 2);
-  std::string out(what);
-  while (!out.empty() && out.back() == '.') out.pop_back();
-  if (auto const mark = drawn.rfind("^--- "); mark != std::string_view::npos)
-    out += fmt::format(" ({})", first_line(drawn.substr(mark + 5)));
-  return out;
-}
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// The value that the parser could not read, for messages that do not show it. TOML asks for digits on both sides of a
-/// point, other languages do not.
-std::string unreadable_value(std::string_view what, toml::source_location const& place) {
-  if (!what.starts_with("bad ") && !what.starts_with("value having invalid format")) return {};
-  std::string const& line = place.line_str();
-  if (place.column() == 0 || place.column() > line.size()) return {};
-  std::string_view rest = std::string_view(line).substr(place.column() - 1);
-  if (auto const equals = rest.find('='); equals != std::string_view::npos) rest.remove_prefix(equals + 1);
-  rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
-  std::string_view const value = rest.substr(0, rest.find_first_of(",]} \t\r#"));
-  if (value.empty()) return {};
-  std::string_view const number = value.substr(value.front() == '-' || value.front() == '+' ? 1 : 0);
-  bool const bare_point = number.size() > 1 && ((number.front() == '.' && is_digit(number[1])) ||
-                                                (number.back() == '.' && is_digit(number.front())));
-  return fmt::format("; found {}{}", value, bare_point ? ", write a digit on both sides of the point, as in 0.5" : "");
-}
-
-toml::value parse_toml(std::string const& text, std::string const& file) {
-  check_text(text, file);
-  std::istringstream in(text);
-  try {
-    return toml::parse(in, file);
-  } catch (toml::exception const& e) {
-    std::string const what = one_line(e.what());
-    throw ConfigError(fmt::format("{}:{}: not valid TOML: {}{}", file, e.location().line(), what,
-                                  unreadable_value(what, e.location())));
-  } catch (std::exception const& e) {
-    throw ConfigError(fmt::format("{}: not valid TOML: {}", file, one_line(e.what())));
-  }
-}
-
-}  // namespace
-
-namespace casefile {
-
-toml::value parse_toml_text(std::string const& text, std::string const& file) { return parse_toml(text, file); }
-
-}  // namespace casefile
-
-namespace {
 
 void read_mesh(TableReader& root, CaseFile& out) {
   root.require("mesh", "[mesh] with input = \"mesh.cgns\"");
@@ -438,7 +347,8 @@ CaseDocument::CaseDocument(std::filesystem::path const& path)
     : CaseDocument(mapping::read_text_file(path, "case file", largest_case_file), path) {}
 
 CaseDocument::CaseDocument(std::string const& text, std::filesystem::path path)
-    : path_(std::move(path)), root_(std::make_shared<Root const>(Root{parse_toml(text, path_.string())})) {}
+    : path_(std::move(path)),
+      root_(std::make_shared<Root const>(Root{casefile::parse_toml_text(text, path_.string())})) {}
 
 std::optional<std::filesystem::path> CaseDocument::mesh() const {
   try {

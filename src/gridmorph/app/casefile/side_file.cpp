@@ -60,12 +60,12 @@ class Reader {
     if (value == nullptr) return std::nullopt;
     if (value->is_string()) {
       for (int z = 0; z < int(mesh_.zones.size()); ++z)
-        if (mesh_.zones[z].name == value->as_string().str) return z;
+        if (mesh_.zones[z].name == casefile::string_of(*value)) return z;
       std::vector<std::string> names;
       for (auto const& z : mesh_.zones) names.push_back(z.name);
       if (names.size() > 20) names.resize(20);
-      table.problem(key, fmt::format("there is no zone '{}'{}", value->as_string().str,
-                                     suggestion(value->as_string().str, names)));
+      table.problem(key, fmt::format("there is no zone '{}'{}", casefile::string_of(*value),
+                                     suggestion(casefile::string_of(*value), names)));
       return std::nullopt;
     }
     auto const number = table.integer(key);
@@ -254,7 +254,7 @@ Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem:
   std::string const text = read_text(*side);
   auto const document = casefile::parse_toml_text(text, side->string());
   if (document.is_table() && document.contains("format") && document.at("format").is_string())
-    options.plot3d_format = document.at("format").as_string().str;
+    options.plot3d_format = casefile::string_of(document.at("format"));
   Mesh out = read_mesh(mesh.string(), options);
   add_side_file(text, *side, out);
   out.notes.push_back(fmt::format(

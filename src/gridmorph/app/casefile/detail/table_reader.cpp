@@ -13,14 +13,12 @@ namespace gridmorph::casefile {
 /// Unknown keys of one table that are listed.
 constexpr std::size_t most_unknown_keys = 20;
 
-unsigned line_of(toml::value const& value) { return value.location().line(); }
-
 std::string describe_value(toml::value const& value) {
   switch (value.type()) {
     case toml::value_t::boolean: return value.as_boolean() ? "true" : "false";
     case toml::value_t::integer: return fmt::format("the number {}", value.as_integer());
     case toml::value_t::floating: return fmt::format("the number {}", value.as_floating());
-    case toml::value_t::string: return fmt::format("the string \"{}\"", value.as_string().str);
+    case toml::value_t::string: return fmt::format("the string \"{}\"", string_of(value));
     case toml::value_t::array: return fmt::format("an array of {}", value.as_array().size());
     case toml::value_t::table: return "a table";
     case toml::value_t::empty: return "nothing";
@@ -68,11 +66,11 @@ std::optional<std::string> TableReader::string(std::string const& key) {
     problem(key, fmt::format("expected a string, found {}; write {} = \"...\"", describe_value(*value), key));
     return std::nullopt;
   }
-  if (value->as_string().str.empty()) {
+  if (string_of(*value).empty()) {
     problem(key, "the string is empty; give a value or remove the key");
     return std::nullopt;
   }
-  return value->as_string().str;
+  return string_of(*value);
 }
 
 std::optional<bool> TableReader::boolean(std::string const& key) {
@@ -153,14 +151,14 @@ std::optional<std::vector<std::string>> TableReader::strings(std::string const& 
   if (value == nullptr) return std::nullopt;
   std::vector<std::string> out;
   if (value->is_string())
-    out.push_back(value->as_string().str);
+    out.push_back(string_of(*value));
   else if (value->is_array()) {
     for (auto const& item : value->as_array()) {
       if (!item.is_string()) {
         problem(key, fmt::format("expected strings, found {} among them", describe_value(item)));
         return std::nullopt;
       }
-      out.push_back(item.as_string().str);
+      out.push_back(string_of(item));
     }
   } else {
     problem(key, fmt::format("expected a string or an array of strings, found {}", describe_value(*value)));

@@ -3,10 +3,9 @@
 #pragma once
 
 #include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/casefile/detail/toml.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/kernels/vec3.hpp>
-
-#include <toml.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -16,9 +15,6 @@
 #include <vector>
 
 namespace gridmorph::casefile {
-
-/// Line of a value in the case file. Cost: the text before it is read.
-unsigned line_of(toml::value const& value);
 
 /// Where problems of one case file go.
 struct Context {
@@ -85,8 +81,5 @@ class TableReader {
 
 /// "a string", "an array", ... for messages, with the value if it is short.
 std::string describe_value(toml::value const& value);
-
-/// The tables of a TOML text; ConfigError with file and line when it is none.
-toml::value parse_toml_text(std::string const& text, std::string const& file);
 
 }  // namespace gridmorph::casefile
