@@ -44,6 +44,12 @@ function(gridmorph_precompile_headers target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess -Wno-stringop-overflow -Wno-array-bounds>)
 endfunction()
 
+# What libraries and command add to that: they read what the core has read. Compilers other than g++ refuse it where definitions differ.
+set(gridmorph_reuse_core "")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(gridmorph_reuse_core REUSE_FROM gridmorph)
+endif()
+
 # gridmorph_add_library(<target> EXPORT_NAME <name> FOLDERS <folder> ... HEADERS <header> ...)
 #
 # Makes the library <target>, known outside as gridmorph::<name>, from folders of src/gridmorph. The sources are listed in
@@ -53,7 +59,11 @@ function(gridmorph_add_library target)
   add_library(${target})
   add_library(gridmorph::${arg_EXPORT_NAME} ALIAS ${target})
   gridmorph_target_defaults(${target})
-  gridmorph_precompile_headers(${target})
+  if(target STREQUAL "gridmorph")
+    gridmorph_precompile_headers(${target})
+  else()
+    gridmorph_precompile_headers(${target} ${gridmorph_reuse_core})
+  endif()
   set_target_properties(
     ${target} PROPERTIES EXPORT_NAME ${arg_EXPORT_NAME} VERSION ${PROJECT_VERSION}
                          SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})

@@ -5,6 +5,22 @@ apt_updated=no
 
 have_apt() { command -v apt-get >/dev/null 2>&1; }
 
+apt_update() {
+  [ $apt_updated = no ] || return 0
+  say "updating the list of Debian packages"
+  apt-get -q update >&2
+  apt_updated=yes
+}
+
+# apt_offers PACKAGE VERSION: whether root could install that version of the package or a newer one.
+apt_offers() {
+  local version
+  have_apt && [ "$(id -u)" -eq 0 ] || return 1
+  apt_update
+  version=$(LC_ALL=C apt-cache policy "$1" | sed -n 's/^ *Candidate: //p')
+  [ -n "$version" ] && [ "$version" != "(none)" ] && dpkg --compare-versions "$version" ge "$2"
+}
+
 # apt_install PACKAGE...: installs what dpkg does not know yet. Root only.
 apt_install() {
   local missing=() package
@@ -17,27 +33,23 @@ apt_install() {
   [ ${#missing[@]} -gt 0 ] || return 0
   have_apt || fail "these are missing and there is no apt-get here to install them; install what they stand for: ${missing[*]}"
   [ "$(id -u)" -eq 0 ] || fail "these Debian packages are missing; run as root: apt-get install ${missing[*]}"
-  if [ $apt_updated = no ]; then
-    say "updating the list of Debian packages"
-    apt-get -q update >&2
-    apt_updated=yes
-  fi
+  apt_update
   say "installing Debian packages: ${missing[*]}"
   DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install "${missing[@]}" >&2
 }
 
 # debian_source_entry SUITE: the machine's own entry for the Debian archive, rewritten to source packages of SUITE.
-# Prints deb822 or one-line format; the entry taken is the one that lists the machine's own release.
+# Prints deb822 or one-line format; the entry taken is the one that lists the machine's own release, by its name or by what Debian calls it now.
 debian_source_entry() {
   local suite=$1 own file
-  own=$(. /etc/os-release && echo "${VERSION_CODENAME:-stable}")
+  own="$(. /etc/os-release && echo "${VERSION_CODENAME:-stable}")|stable|testing|unstable|sid"
   for file in /etc/apt/sources.list.d/*.sources; do
     [ -e "$file" ] || continue
     sed '/^#/d' "$file" | awk -v own="$own" -v suite="$suite" '
       BEGIN { RS = ""; FS = "\n" }
       /(^|\n)Types:[^\n]*deb([ \n]|$)/ && !/(^|\n)Enabled: *no/ {
         found = 0
-        for (i = 1; i <= NF; i++) if ($i ~ "^Suites:" && ($i " ") ~ "[ \t](" own "|stable)[ \t]") found = 1
+        for (i = 1; i <= NF; i++) if ($i ~ "^Suites:" && ($i " ") ~ "[ \t](" own ")[ \t]") found = 1
         if (!found) next
         for (i = 1; i <= NF; i++) {
           if ($i ~ /^Types:/) $i = "Types: deb-src"
@@ -53,7 +65,7 @@ debian_source_entry() {
     return 0
   fi
   cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list 2>/dev/null |
-    sed -nE "s/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]+)[[:space:]]+($own|stable)[[:space:]].*/deb-src \1\2 $suite main/p" |
+    sed -nE "s/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]+)[[:space:]]+($own)[[:space:]].*/deb-src \1\2 $suite main/p" |
     head -n 1 >"$entry_file.list"
   [ -s "$entry_file.list" ] || return 1
   echo "$entry_file.list"

@@ -61,7 +61,8 @@ unpack() {
 
 # fetch_release URL SHA256 FILE: downloads with CMake, which is always there, and refuses a file with another hash.
 fetch_release() {
-  cat >"$work/fetch.cmake" <<EOF
+  local script="$3.cmake" log="$3.log"
+  cat >"$script" <<EOF
 file(DOWNLOAD "$1" "$3" INACTIVITY_TIMEOUT 10 TIMEOUT 300 STATUS status)
 list(GET status 0 code)
 if(NOT code EQUAL 0)
@@ -72,8 +73,8 @@ if(NOT hash STREQUAL "$2")
   message(FATAL_ERROR "the SHA-256 hash of the download is \${hash}, not $2")
 endif()
 EOF
-  if ! cmake -P "$work/fetch.cmake" >"$work/fetch.log" 2>&1; then
-    say "no download of $1: $(sed -n '/^  /{s/^ *//p;q}' "$work/fetch.log")"
+  if ! cmake -P "$script" >"$log" 2>&1; then
+    say "no download of $1: $(sed -n '/^  /{s/^ *//p;q}' "$log")"
     return 1
   fi
 }

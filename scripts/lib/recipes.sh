@@ -1,4 +1,4 @@
-# How Kokkos and CGNS are obtained where they are not installed: Debian 12 has neither in a form that gridmorph can use.
+# How Kokkos and CGNS are obtained where they are not installed: Debian 12 and 13 have neither in a form that gridmorph can use.
 # Source this file; it needs apt.sh and build.sh.
 
 kokkos_options=(-DCMAKE_BUILD_TYPE=Release -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DKokkos_ENABLE_SERIAL=ON
@@ -15,6 +15,8 @@ kokkos_release() {
 }
 kokkos_debian() { unpack_debian_source kokkos unstable; }
 kokkos_trilinos() { unpack_debian_source trilinos bookworm packages/kokkos; } # Kokkos 3.4.1
+# It leaves an include to the standard library of g++ 12 and older. No part of cache_prefix: what is built with it or without is the same.
+kokkos_trilinos_more=(-DCMAKE_CXX_FLAGS="-include cstdint")
 
 cgns_routes=(release debian)
 cgns_release() {
@@ -24,7 +26,10 @@ cgns_release() {
 cgns_debian() { unpack_debian_source libcgns testing; }
 
 # unpack_release URL SHA256
-unpack_release() { fetch_release "$1" "$2" "$work/release.tar.gz" && unpack "$work/release.tar.gz"; }
+unpack_release() {
+  local archive
+  archive=$(mktemp "$work/release.XXXXXX") && fetch_release "$1" "$2" "$archive" && unpack "$archive"
+}
 
 # unpack_debian_source PACKAGE SUITE [PATH]
 unpack_debian_source() {
@@ -32,25 +37,38 @@ unpack_debian_source() {
   archive=$(fetch_debian_source "$1" "$2" "$work/$1") && unpack "$archive" "${3:-}"
 }
 
-# provide NAME: prints the prefix of a build of kokkos or cgns; looks for a finished one on every route before it makes one.
-provide() {
-  local name=$1 route prefix source
-  local -n routes=${name}_routes options=${name}_options
-  local -A prefixes
-  for route in "${routes[@]}"; do
-    prefix=$(cache_prefix "$name-$route" "$(declare -f "${name}_$route")" "${options[@]}")
-    prefixes[$route]=$prefix
+# route_prefix NAME ROUTE: where the build by that route is kept.
+route_prefix() {
+  local -n of_name=${1}_options
+  cache_prefix "$1-$2" "$(declare -f "${1}_$2")" "${of_name[@]}"
+}
+
+# is_provided NAME: whether there is a finished build of it; prints its prefix.
+is_provided() {
+  local route prefix
+  local -n routes_of_name=${1}_routes
+  for route in "${routes_of_name[@]}"; do
+    prefix=$(route_prefix "$1" "$route")
     if is_built "$prefix"; then
       echo "$prefix"
       return 0
     fi
   done
+  return 1
+}
+
+# provide NAME: prints the prefix of a build of kokkos or cgns; looks for a finished one on every route before it makes one.
+provide() {
+  local name=$1 route prefix source more
+  local -n routes=${name}_routes options=${name}_options
+  is_provided "$name" && return 0
   for route in "${routes[@]}"; do
-    prefix=${prefixes[$route]}
+    prefix=$(route_prefix "$name" "$route")
     say "$name: looking for the sources ($route)"
     source=$("${name}_$route") || continue
     say "$name: building $prefix (once, about a minute on two cores)"
-    if build_with_cmake "$name" "$source" "$prefix" "${options[@]}"; then
+    more="${name}_${route}_more[@]"
+    if build_with_cmake "$name" "$source" "$prefix" "${options[@]}" "${!more}"; then
       echo "$prefix"
       return 0
     fi

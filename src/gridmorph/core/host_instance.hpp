@@ -1,6 +1,7 @@
 // The instance of a host execution space that host code launches on.
 #pragma once
 
+#include <gridmorph/core/host_spaces.hpp>
 #include <gridmorph/core/require_kokkos.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -17,10 +18,10 @@ class HostInstance {
  public:
   /// The default instance of the default host space. Throws ConfigError where Kokkos is not running.
   HostInstance() : instance_(running()) {}
-#ifdef KOKKOS_ENABLE_SERIAL
+#ifdef GRIDMORPH_WITH_SERIAL
   HostInstance(Kokkos::Serial const& exec) : instance_(exec) {}
 #endif
-#ifdef KOKKOS_ENABLE_OPENMP
+#ifdef GRIDMORPH_WITH_OPENMP
   HostInstance(Kokkos::OpenMP const& exec) : instance_(exec) {}
 #endif
 
@@ -39,7 +40,7 @@ class HostInstance {
     return {};
   }
 
-#if defined(KOKKOS_ENABLE_SERIAL) && defined(KOKKOS_ENABLE_OPENMP)
+#if defined(GRIDMORPH_WITH_SERIAL) && defined(GRIDMORPH_WITH_OPENMP)
   std::variant<Kokkos::Serial, Kokkos::OpenMP> instance_;
 #else
   std::variant<Kokkos::DefaultHostExecutionSpace> instance_;

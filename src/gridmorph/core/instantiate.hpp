@@ -14,20 +14,22 @@
 //   GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 //   #undef GRIDMORPH_INSTANTIATE
 //
-// Code that calls such a function with another space fails at link time; it can include gridmorph/kernels/ instead.
+// Code that calls such a function with another space fails at link time; it can include gridmorph/kernels/ instead. With
+// GRIDMORPH_DEFAULT_SPACES the list is that of core/host_spaces.hpp and the device's.
 #pragma once
 
+#include <gridmorph/core/host_spaces.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 
 #include <Kokkos_Core.hpp>
 
-#ifdef KOKKOS_ENABLE_SERIAL
+#ifdef GRIDMORPH_WITH_SERIAL
 #define GRIDMORPH_DETAIL_SERIAL(APPLY) APPLY(Kokkos::Serial)
 #else
 #define GRIDMORPH_DETAIL_SERIAL(APPLY)
 #endif
 
-#ifdef KOKKOS_ENABLE_OPENMP
+#ifdef GRIDMORPH_WITH_OPENMP
 #define GRIDMORPH_DETAIL_OPENMP(APPLY) APPLY(Kokkos::OpenMP)
 #else
 #define GRIDMORPH_DETAIL_OPENMP(APPLY)
