@@ -7,6 +7,7 @@
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/point_ranges.hpp>
+#include <gridmorph/morph/ffd_gradient.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/parameter_gradient.hpp>

@@ -1,5 +1,6 @@
 // Every example runs through and does what its case file says, measured with the formulas of the case files written anew.
 #include "example_run.hpp"
+#include "motion/plain_splines.hpp"
 #include "support/reduced.hpp"
 
 #include <gridmorph/motion/motion.hpp>
@@ -403,6 +404,66 @@ TEST_F(Example, WingRedesignChangesChordAlongTheSpanAndLeavesTheRoot) {
     ++checked;
   }
   EXPECT_GT(checked, 5);
+}
+
+TEST_F(Example, WingGoesWithItsLatticeOfControlPoints) {
+  ASSERT_NO_FATAL_FAILURE(morph("wing_ffd", "mdo_tutorial_000_vol.cgns"));
+  // The lattice: x from the leading edge on, y across, z along the span; chords shrink linearly with z.
+  auto const chord = [](double z) { return 5 - 0.25 * z; };
+  auto const control_point = [&](int i, int j, int k) {
+    double const z = 2.86 * k, c = chord(z);
+    return Vec3{0.53 * z - 0.06 * c + 0.28 * c * i, (j == 0 ? -0.13 : 0.13) * c, z};
+  };
+  auto const displaced = [&](int i, int j, int k) {
+    Vec3 const p = control_point(i, j, k);
+    Vec3 d{};
+    auto const turn = [&](double x0, double angle, Vec3 const& shift) {
+      double const c = std::cos(angle * deg) - 1, s = std::sin(angle * deg), x = p.x - x0;
+      d += Vec3{c * x - s * p.y, s * x + c * p.y, 0} + shift;
+    };
+    if (k == 5) turn(7.9, -6, {0.8, 0.6, 0});
+    if (k == 4) turn(6.7, -3, {0.2, 0.2, 0});
+    if ((i == 1 || i == 2) && k >= 1 && k <= 3) d += Vec3{0, j == 1 ? 0.12 : -0.06, 0};
+    return d;
+  };
+  // Cubic B-splines of 5 and 6 points: one knot between, and two.
+  auto const along_chord = [](int n, double s) {
+    return test::plain_splines(test::plain_knots(5, 3), 3, s)[std::size_t(n)];
+  };
+  auto const along_span = [](int n, double w) {
+    return test::plain_splines(test::plain_knots(6, 3), 3, w)[std::size_t(n)];
+  };
+  auto const solve = [](auto const& rising, double value) {
+    double low = 0, high = 1;
+    for (int n = 0; n < 60; ++n) (rising(0.5 * (low + high)) < value ? low : high) = 0.5 * (low + high);
+    return 0.5 * (low + high);
+  };
+  expect_motion("wall", "", [&](Vec3 const& p) {
+    double const c = chord(p.z), at = (p.x - 0.53 * p.z + 0.06 * c) / (0.28 * c), t = 0.5 + p.y / (0.26 * c);
+    double const s = solve(
+        [&](double v) {
+          double sum = 0;
+          for (int i = 0; i < 5; ++i) sum += i * along_chord(i, v);
+          return sum;
+        },
+        at);
+    double const w = solve(
+        [&](double v) {
+          double sum = 0;
+          for (int k = 0; k < 6; ++k) sum += 2.86 * k * along_span(k, v);
+          return sum;
+        },
+        p.z);
+    EXPECT_TRUE(at > 0 && at < 4 && t > 0 && t < 1 && p.z < 14.3);
+    Vec3 u{};
+    for (int k = 0; k < 6; ++k)
+      for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 5; ++i)
+          u += along_chord(i, s) * (j == 0 ? 1 - t : t) * along_span(k, w) * displaced(i, j, k);
+    return u;
+  });
+  expect_fixed("far");
+  for_patch("sym", "", [&](Index n) { EXPECT_NEAR(after.coordinates.z(n), before.coordinates.z(n), 1e-15); });
 }
 
 TEST_F(Example, TipVortexCellsGoAlongWithTheTipAndKeepTheirSpacing) {

@@ -1,5 +1,6 @@
 // Surfaces offset along their normals: against planes, cubes, cylinders and spheres, whichever way the mesh is stored.
 #include "annulus.hpp"
+#include "moved_nodes.hpp"
 #include "support/expect_error.hpp"
 #include "support/motions.hpp"
 #include "support/periodic_match.hpp"
@@ -7,7 +8,6 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/motion/height_table.hpp>
 #include <gridmorph/motion/inflation/surface_offset.hpp>
 
@@ -35,39 +35,6 @@ InflateRule by(std::function<double(SurfacePlace const&)> height) {
   out.height = [height = std::move(height)](std::span<SurfacePlace const> places, std::span<double> h) {
     for (std::size_t n = 0; n < places.size(); ++n) h[n] = height(places[n]);
   };
-  return out;
-}
-
-std::shared_ptr<Boundary const> boundary_of(Mesh const& mesh) {
-  if (mesh.elements.size() == 0) return std::make_shared<Boundary const>(mesh);
-  UnstructuredTopology const topology = make_topology(mesh);
-  return std::make_shared<Boundary const>(mesh, topology, find_face_patches(mesh, topology));
-}
-
-struct MovedNode {
-  Index node;
-  Vec3 at, u;
-};
-
-/// Displacements of the nodes of the patches that the first rule names.
-std::vector<MovedNode> inflated(Mesh const& mesh, Motion const& motion) {
-  auto const boundary = boundary_of(mesh);
-  ResolvedMotion const resolved = resolve(boundary->mesh(), motion);
-  BoundaryMotion const moves(boundary, resolved);
-  EXPECT_TRUE(moves.is_explicit(0));
-  std::vector<MovedNode> out;
-  for (std::size_t p = 0; p < resolved.patch.size(); ++p) {
-    if (resolved.patch[p].rule != 0) continue;
-    std::vector<Vec3> const at = [&] {
-      std::vector<Vec3> list;
-      for (Index const n : boundary->surface(int(p)).nodes) list.push_back(mesh.coordinates[n]);
-      return list;
-    }();
-    std::vector<Vec3> u(at.size());
-    moves.displacement(0, at, u);
-    for (std::size_t n = 0; n < at.size(); ++n) out.push_back({boundary->surface(int(p)).nodes[n], at[n], u[n]});
-  }
-  EXPECT_FALSE(out.empty());
   return out;
 }
 
@@ -106,14 +73,14 @@ Vec3 on_sphere(double radius, double a, double b) {
 
 TEST(Inflate, AFlatWallMovesByTheHeightIntoTheMesh) {
   Mesh const mesh = box({3, 5, 4}, Shape::straight, 1);
-  for (auto const& [n, at, u] : inflated(mesh, motion({rule({"u_max"}, by(0.01))})))
+  for (auto const& [n, at, u] : moved_nodes(mesh, motion({rule({"u_max"}, by(0.01))})))
     EXPECT_LE(distance(u, {-0.01, 0, 0}), 1e-16);
 }
 
 TEST(Inflate, ACubeStaysACubeAtItsEdgesAndCorners) {
   Mesh const mesh = around_a_cube();
   double const h = 0.3;
-  for (auto const& [n, at, u] : inflated(mesh, motion({rule({"step"}, by(h))}))) {
+  for (auto const& [n, at, u] : moved_nodes(mesh, motion({rule({"step"}, by(h))}))) {
     auto const grown = [&](double x) { return std::abs(std::abs(x) - 1) < 1e-9 ? std::copysign(h, x) : 0.0; };
     EXPECT_LE(distance(u, {grown(at.x), grown(at.y), grown(at.z)}), 1e-14);
   }
@@ -124,9 +91,9 @@ TEST(Inflate, QuadrilateralsCutIntoTrianglesMoveAlikeOnFlatFaces) {
   Motion const grown = motion({rule({"step"}, by([](SurfacePlace const& p) { return 0.1 + 0.02 * p.point.x; }))});
   PointNumbers numbers(1e-9);
   std::vector<Vec3> displacement;
-  for (auto const& [n, at, u] : inflated(blocks, grown))
+  for (auto const& [n, at, u] : moved_nodes(blocks, grown))
     if (numbers.find_or_add(at, int(displacement.size())) == int(displacement.size())) displacement.push_back(u);
-  for (auto const& [n, at, u] : inflated(elements, grown)) {
+  for (auto const& [n, at, u] : moved_nodes(elements, grown)) {
     int const v = numbers.find(at);
     ASSERT_GE(v, 0);
     EXPECT_LE(distance(u, displacement[std::size_t(v)]), 1e-14);
@@ -139,7 +106,7 @@ TEST(Inflate, SpheresStaySpheresToSecondOrderFromInsideAndOutside) {
     for (int const n : {9, 17, 33}) {
       Mesh const mesh = shell(n, [&](double a, double b, double off) { return on_sphere(2 + into * 0.5 * off, a, b); });
       double worst = 0;
-      for (auto const& [node, at, u] : inflated(mesh, motion({rule({"body"}, by(0.25))}))) {
+      for (auto const& [node, at, u] : moved_nodes(mesh, motion({rule({"body"}, by(0.25))}))) {
         Index3 const place{int(node % n), int(node / n), 0};
         if (place[0] % (n - 1) == 0 || place[1] % (n - 1) == 0) continue;  // faces on one side only
         worst = std::max(worst, std::abs(norm(at + u) - (2 + into * 0.25)));
@@ -160,10 +127,10 @@ TEST(Inflate, NothingDependsOnHowZonesAreStored) {
                    rule({"inlet", "outlet"}, SlipRule{})});
   };
   std::map<Index, Vec3> expected;
-  for (auto const& [n, at, u] : inflated(mesh, motion_of())) expected[n] = u;
+  for (auto const& [n, at, u] : moved_nodes(mesh, motion_of())) expected[n] = u;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     ScrambledMesh const other = scramble(mesh, {.seed = seed, .cuts = 2});
-    for (auto const& [n, at, u] : inflated(other.mesh, motion_of()))
+    for (auto const& [n, at, u] : moved_nodes(other.mesh, motion_of()))
       EXPECT_LE(distance(u, expected.at(other.old_node[std::size_t(n)])), 1e-13) << seed;
   }
 }
@@ -173,7 +140,7 @@ TEST(Inflate, PeriodicCopiesMoveAlikeAndTheHubStaysRound) {
   Mesh const mesh = annulus_sector(sector, 3);
   double const h = 0.05;
   std::map<Index, Vec3> u;
-  for (auto const& node : inflated(mesh, motion({rule({"hub"}, by(h)), rule({"inlet", "outlet"}, SlipRule{})}))) {
+  for (auto const& node : moved_nodes(mesh, motion({rule({"hub"}, by(h)), rule({"inlet", "outlet"}, SlipRule{})}))) {
     u[node.node] = node.u;
     Vec3 const before = sector_coordinates(sector, node.at), after = sector_coordinates(sector, node.at + node.u);
     EXPECT_NEAR(after.y, before.y + h, 2e-3 * h);  // the hub's facets are chords of the circle
@@ -190,7 +157,7 @@ TEST(Inflate, NodesOfSlipWallsStayOnThemAndAllFacesAreOffsetByTheHeight) {
   Mesh const mesh = shell(6, [&](double a, double b, double off) {
     return Vec3{a, b * std::cos(lean), b * std::sin(lean)} + off * Vec3{0, 0, 1};
   });
-  for (auto const& [n, at, u] : inflated(mesh, motion({rule({"body"}, by(h)), rule({"b_min"}, SlipRule{})}))) {
+  for (auto const& [n, at, u] : moved_nodes(mesh, motion({rule({"body"}, by(h)), rule({"b_min"}, SlipRule{})}))) {
     EXPECT_NEAR(dot(u, normal), h, 1e-15);
     if (at.y == 0) {
       EXPECT_LE(std::abs(u.y), 1e-16);
@@ -209,7 +176,7 @@ TEST(Inflate, NodesOfWallsOfRevolutionThatTurnStayOnThem) {
   m.axis = {sector.origin, sector.axis};
   BoundaryMotion const moves(mesh, resolve(mesh, m));
   int on_walls = 0;
-  for (auto const& [n, at, u] : inflated(mesh, m)) {
+  for (auto const& [n, at, u] : moved_nodes(mesh, m)) {
     EXPECT_NEAR(norm(u), 0.1, 0.02);
     for (SlipSurface const& wall : moves.slip_surfaces()) {
       if (distance(wall.view().project(at), at) > 1e-6) continue;
@@ -222,9 +189,9 @@ TEST(Inflate, NodesOfWallsOfRevolutionThatTurnStayOnThem) {
 
 TEST(Inflate, OfAPlaneMeshGoesAcrossItsLines) {
   Mesh const mesh = flat_box(5, 4, 2);
-  for (auto const& [n, at, u] : inflated(mesh, motion({rule({"j_max"}, by(0.25))})))
+  for (auto const& [n, at, u] : moved_nodes(mesh, motion({rule({"j_max"}, by(0.25))})))
     EXPECT_LE(distance(u, {0, -0.25, 0}), 1e-16);
-  for (auto const& [n, at, u] : inflated(mesh, motion({rule({"i_min", "j_min"}, by(0.25))})))
+  for (auto const& [n, at, u] : moved_nodes(mesh, motion({rule({"i_min", "j_min"}, by(0.25))})))
     EXPECT_LE(distance(u, {at.x == 0 ? 0.25 : 0, at.y == 0 ? 0.25 : 0, 0}), 1e-15);
 }
 
@@ -245,11 +212,12 @@ TEST(Inflate, NodesBetweenTheCornersOfCurvedFacesGoAlongWithThem) {
 
 TEST(Inflate, ZeroIsZeroBitForBitAndAShareIsAShare) {
   Mesh const mesh = annulus_sector({}, 3);
-  for (auto const& [n, at, u] : inflated(mesh, motion({rule({"hub"}, by(0)), rule({"inlet"}, SlipRule{})})))
+  for (auto const& [n, at, u] : moved_nodes(mesh, motion({rule({"hub"}, by(0)), rule({"inlet"}, SlipRule{})})))
     EXPECT_EQ(u, Vec3{});
   InflateRule half = by(0.5);
   half.share = 0.5;
-  auto const a = inflated(mesh, motion({rule({"case"}, half)})), b = inflated(mesh, motion({rule({"case"}, by(0.25))}));
+  auto const a = moved_nodes(mesh, motion({rule({"case"}, half)})),
+             b = moved_nodes(mesh, motion({rule({"case"}, by(0.25))}));
   for (std::size_t n = 0; n < a.size(); ++n) EXPECT_EQ(a[n].u, b[n].u);
 }
 
@@ -258,7 +226,7 @@ TEST(Inflate, AnotherMotionOfTheSameRulesTakesTheOtherHeight) {
   Motion const first = motion({rule({"case"}, by(0.1))}), second = motion({rule({"case"}, by(0.2))});
   BoundaryMotion const moves(mesh, resolve(mesh, first));
   BoundaryMotion const other = moves.with(second);
-  for (auto const& [n, at, u] : inflated(mesh, second)) {
+  for (auto const& [n, at, u] : moved_nodes(mesh, second)) {
     Vec3 v;
     other.displacement(0, {&at, 1}, {&v, 1});
     EXPECT_EQ(v, u);
@@ -270,7 +238,7 @@ TEST(Inflate, WhatFoldsIsRefusedWithTheShareThatWouldDo) {
   Mesh const mesh = shell(9, [](double a, double b, double off) {
     return Vec3{b, (1 - 0.1 * off) * std::cos(1.5 * a), (1 - 0.1 * off) * std::sin(1.5 * a)};
   });
-  auto const grow = [&](double h) { (void)inflated(mesh, motion({rule({"body"}, by(h))})); };
+  auto const grow = [&](double h) { (void)moved_nodes(mesh, motion({rule({"body"}, by(h))})); };
   std::string const message = message_of<MotionError>([&] { grow(2); });
   expect_all_in(message, {"inflate", "folds at", "height is 2", "of the height would do"});
   double const share = std::stod(message.substr(message.find("up to ") + 6));
@@ -325,7 +293,7 @@ TEST(Inflate, PlacesOnABladeAreSpanChordAndSide) {
   Motion m =
       motion({rule({"blade"}, raise), rule({"hub", "case"}, SlipRule{.surface = SlipRule::Surface::revolution})});
   m.axis = {{0, 0, 0}, {1, 0, 0}};
-  for (auto const& [n, at, u] : inflated(mesh, m)) EXPECT_LE(norm(u), 0.0041);
+  for (auto const& [n, at, u] : moved_nodes(mesh, m)) EXPECT_LE(norm(u), 0.0041);
   EXPECT_GT(checked, 80 * 41);
 }
 
@@ -339,7 +307,7 @@ TEST(Inflate, HeightsAboveTheChordAreRefusedWhereTheyAreLimitedByIt) {
   Motion m = motion({rule({"blade"}, raise)});
   m.axis = {{0, 0, 0}, {1, 0, 0}};
   Mesh const mesh = row.finish();
-  std::string const message = message_of<MotionError>([&] { (void)inflated(mesh, m); });
+  std::string const message = message_of<MotionError>([&] { (void)moved_nodes(mesh, m); });
   expect_all_in(message, {"more than the chord", "would do"});
 }
 

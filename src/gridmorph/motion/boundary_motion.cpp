@@ -6,6 +6,7 @@
 #include <gridmorph/motion/attached_motion.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 #include <gridmorph/motion/end_walls/wall_shift.hpp>
+#include <gridmorph/motion/ffd/ffd_motion.hpp>
 #include <gridmorph/motion/inflation/inflate_motion.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/motion/target/target_motion.hpp>
@@ -41,6 +42,7 @@ struct BoundaryMotion::Impl {
   std::vector<std::unique_ptr<SectionMotion>> sections_of_rule;  ///< per rule, null for other rules
   std::map<int, std::shared_ptr<TargetMotion const>> targets;    ///< by rule
   std::map<int, InflateMotion> inflations;                       ///< by rule
+  std::map<int, FfdMotion> lattices;                             ///< by rule
   std::map<int, MovedWall> moved_walls;                          ///< by rule, those that blades are extended to
   std::map<int, ExtensionMotion> extensions;                     ///< by rule
   std::map<int, WallShift> wall_shifts;                          ///< by the rule of the wall
@@ -53,6 +55,8 @@ struct BoundaryMotion::Impl {
         slip(std::make_shared<SlipSurfaces const>(*boundary, motion, notes)) {
     make_targets();
     inflate();
+    each<FfdRule>(
+        [&](int r, FfdRule const& rule) { lattices.try_emplace(r, *boundary, patches_of(r), rule, label(r), notes); });
     extend(notes);
     make_blades();
     attach(notes);
@@ -63,8 +67,9 @@ struct BoundaryMotion::Impl {
     for (auto const& [r, target] : other.targets)
       targets[r] =
           std::make_shared<TargetMotion const>(*target, std::get<TargetRule>(rules[std::size_t(r)].rule).share);
-    each_inflation(
+    each<InflateRule>(
         [&](int r, InflateRule const& rule) { inflations.try_emplace(r, other.inflations.at(r), rule, label(r)); });
+    each<FfdRule>([&](int r, FfdRule const& rule) { lattices.try_emplace(r, other.lattices.at(r), rule, label(r)); });
     std::vector<std::string> said;  // with the notes of the first motion
     extend(said);
     make_blades();
@@ -116,11 +121,12 @@ struct BoundaryMotion::Impl {
     problems.throw_if_any<MotionError>();
   }
 
-  template <class Make>
-  void each_inflation(Make const& make) {
+  /// make(number, rule) for the rules of a kind.
+  template <class Kind, class Make>
+  void each(Make const& make) {
     Problems problems;
     for (std::size_t r = 0; r < rules.size(); ++r) {
-      auto const* rule = std::get_if<InflateRule>(&rules[r].rule);
+      auto const* rule = std::get_if<Kind>(&rules[r].rule);
       if (rule == nullptr) continue;
       try {
         make(int(r), *rule);
@@ -133,7 +139,7 @@ struct BoundaryMotion::Impl {
 
   /// Before the blade rows, which may follow a blade that is inflated.
   void inflate() {
-    each_inflation([&](int r, InflateRule const& rule) {
+    each<InflateRule>([&](int r, InflateRule const& rule) {
       inflations.try_emplace(r, *boundary, motion, patches_of(r), rule, slip, label(r), notes);
     });
   }
@@ -209,7 +215,7 @@ struct BoundaryMotion::Impl {
         throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
                           std::string(rule_name(rule)) +
                           "', whose displacement is not known beforehand; give "
-                          "it fixed, rigid, formula, field, sections, target or inflate");
+                          "it fixed, rigid, formula, field, sections, target, inflate or ffd");
     if (patches.empty()) throw MotionError("of: names no patch");
   }
 
@@ -225,7 +231,8 @@ struct BoundaryMotion::Impl {
   static bool is_direct(Rule const& rule) {
     return std::holds_alternative<FixedRule>(rule) || std::holds_alternative<RigidRule>(rule) ||
            std::holds_alternative<FunctionRule>(rule) || std::holds_alternative<SectionsRule>(rule) ||
-           std::holds_alternative<TargetRule>(rule) || std::holds_alternative<InflateRule>(rule);
+           std::holds_alternative<TargetRule>(rule) || std::holds_alternative<InflateRule>(rule) ||
+           std::holds_alternative<FfdRule>(rule);
   }
 
   [[nodiscard]] std::vector<int> patches_of(int r) const {
@@ -245,6 +252,8 @@ struct BoundaryMotion::Impl {
       text += ": " + target->description;
     if (auto const* inflate = std::get_if<InflateRule>(&rule.rule); inflate != nullptr && !inflate->description.empty())
       text += ": " + inflate->description;
+    if (auto const* ffd = std::get_if<FfdRule>(&rule.rule); ffd != nullptr && !ffd->description.empty())
+      text += ": " + ffd->description;
     return text + (rule.where.empty() ? "" : ", " + rule.where) + ")";
   }
 
@@ -271,6 +280,8 @@ struct BoundaryMotion::Impl {
       targets.at(r)->displacement(points, out);
     } else if (std::holds_alternative<InflateRule>(rule)) {
       inflations.at(r).displacement(points, out);
+    } else if (std::holds_alternative<FfdRule>(rule)) {
+      lattices.at(r).displacement(points, out);
     } else if (std::holds_alternative<ExtendRule>(rule)) {
       extensions.at(r).displacement(points, out);
     } else if (std::holds_alternative<AttachedRule>(rule)) {
@@ -345,6 +356,13 @@ bool BoundaryMotion::gives_way(int rule, int patch) const {
   RowMotion const* row = impl_->row_of_rule[std::size_t(rule)];
   return row != nullptr && patch >= 0 && row->gives_way_to(patch);
 }
+
+FfdMotion const* BoundaryMotion::lattice(int rule) const {
+  auto const found = impl_->lattices.find(rule);
+  return found == impl_->lattices.end() ? nullptr : &found->second;
+}
+
+bool BoundaryMotion::alone(int rule) const { return impl_->wall_shifts.count(rule) == 0; }
 
 std::vector<TargetReach> BoundaryMotion::target_reach(Coordinates const& morphed) const {
   std::vector<TargetReach> out;

@@ -12,6 +12,8 @@
 
 namespace gridmorph {
 
+class FfdMotion;
+
 /// Turns resolved rules into numbers. Construction does what is shared between nodes (blade sections and mid-camber
 /// motion for slide and follow, profiles for slip); evaluation is then independent per point.
 ///
@@ -34,7 +36,7 @@ class BoundaryMotion {
   [[nodiscard]] ResolvedMotion const& motion() const;
 
   /// Whether rule number r (in ResolvedMotion::rules) fixes displacements before the volume stage (fixed, rigid,
-  /// function, sections, target, inflate, extend, circumferential-slide, follow, attached, wake, prescribed).
+  /// function, sections, target, inflate, ffd, extend, circumferential-slide, follow, attached, wake, prescribed).
   [[nodiscard]] bool is_explicit(int rule) const;
 
   /// Displacement that rule number r gives to baseline points; zero where the caller prescribes it. Throws MotionError (rule, point
@@ -54,6 +56,11 @@ class BoundaryMotion {
   /// Whether what rule number r gives to nodes of a patch is the rule of that patch, seen through sections cut from its facets: the patch's
   /// own rule says it better.
   [[nodiscard]] bool gives_way(int rule, int patch) const;
+
+  /// Of rule number r, an ffd rule; null for others.
+  [[nodiscard]] FfdMotion const* lattice(int rule) const;
+  /// Whether rule number r alone displaces its points: no blades are extended to them.
+  [[nodiscard]] bool alone(int rule) const;
 
   /// How far the nodes of each target rule ended from their target; rules in order, without those that go a share of the way only.
   [[nodiscard]] std::vector<TargetReach> target_reach(Coordinates const& morphed) const;

@@ -50,6 +50,8 @@ class Evaluation {
     if (gap > c.size) c = {gap, given_by, Index(n), c.count, values_[node], value};
   }
 
+  [[nodiscard]] std::vector<Index> const& given_by() const { return given_by_; }
+
   std::vector<Vec3> result() {
     Problems problems;
     for (auto const& [who, c] : conflicts_) {
@@ -120,6 +122,12 @@ std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, B
     }
   }
   return evaluation.result();
+}
+
+std::vector<Index> deciding_requests(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion) {
+  Evaluation evaluation(mesh, boundary, motion);
+  for (std::size_t n = 0; n < boundary.requests.size(); ++n) evaluation.take(n, {});  // ranks decide, not values
+  return evaluation.given_by();
 }
 
 }  // namespace gridmorph

@@ -35,4 +35,7 @@ struct BoundaryRequests {
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                            std::vector<Mat3> const& rotations);
 
+/// The request that gives every boundary node its value there, by its number; -1: none. Cost O(requests); no rule is evaluated.
+std::vector<Index> deciding_requests(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion);
+
 }  // namespace gridmorph

@@ -2,7 +2,7 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// inflate, extend, circumferential slide, follow, attached, wake, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// inflate, ffd, extend, circumferential slide, follow, attached, wake, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface). Regions inside the domain are addressed by their names
 // and take explicit rules that need no surface.
 #pragma once
@@ -10,6 +10,7 @@
 #include <gridmorph/boundary/regions.hpp>
 #include <gridmorph/geometry/axis.hpp>
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/motion/ffd_rule.hpp>
 #include <gridmorph/motion/target_rule.hpp>
 
 #include <functional>
@@ -177,7 +178,7 @@ struct ExtendRule {
 };
 
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
-                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule, ExtendRule, WakeRule>;
+                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule, ExtendRule, WakeRule, FfdRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").

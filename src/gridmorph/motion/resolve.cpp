@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/ffd/check_ffd.hpp>
 #include <gridmorph/motion/motion.hpp>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ bool is(Rule const& rule) {
 /// Displacements that need no other patch: what a blade must have for others to follow it.
 bool is_direct(Rule const& rule) {
   return is<FixedRule>(rule) || is<RigidRule>(rule) || is<FunctionRule>(rule) || is<SectionsRule>(rule) ||
-         is<TargetRule>(rule) || is<InflateRule>(rule);
+         is<TargetRule>(rule) || is<InflateRule>(rule) || is<FfdRule>(rule);
 }
 
 /// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
@@ -148,6 +149,8 @@ class Resolver {
       if (!(inflate->crease_angle_deg > 0 && inflate->crease_angle_deg <= 180))
         problems_.add(label(r) + ": the crease angle is " + std::to_string(inflate->crease_angle_deg) +
                       " degrees; give one above 0 and up to 180");
+    } else if (auto const* ffd = std::get_if<FfdRule>(&rule)) {
+      check_ffd(*ffd, label(r), problems_);
     }
   }
 
@@ -211,7 +214,7 @@ class Resolver {
     Rule const& rule = motion_.rules[r].rule;
     auto const* free = std::get_if<FreeRule>(&rule);
     if (is<SlipRule>(rule) || is<SectionsRule>(rule) || is<TargetRule>(rule) || is<AttachedRule>(rule) ||
-        is<InflateRule>(rule) || is<ExtendRule>(rule) ||
+        is<InflateRule>(rule) || is<ExtendRule>(rule) || is<FfdRule>(rule) ||
         (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
       problems_.add(label(r) + " names the periodic " + name +
                     "; periodic interfaces take free without constraint, "
@@ -321,7 +324,7 @@ class Resolver {
       problems_.add(label(r) + ": of: " + quote_list(names_of(mesh_, patches)) + " has the rule '" +
                     std::string(rule_name(result_.rules[own].rule)) +
                     "', whose displacement is not known beforehand; give it "
-                    "fixed, rigid, formula, field, sections, target or inflate");
+                    "fixed, rigid, formula, field, sections, target, inflate or ffd");
   }
 
   /// What is asked for at places inside the domain, with no surface to go by.
@@ -356,7 +359,7 @@ std::string_view rule_name(Rule const& rule) {
       "fixed",  "rigid",      "function", "circumferential-slide",
       "follow", "slip",       "free",     "sections",
       "target", "prescribed", "attached", "inflate",
-      "extend", "wake"};
+      "extend", "wake",       "ffd"};
   return names[rule.index()];
 }
 

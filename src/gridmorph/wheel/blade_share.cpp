@@ -76,7 +76,7 @@ class Row {
       if ((mesh_.patches[p].kind == PatchKind::wall || mesh_.patches[p].kind == PatchKind::other) &&
           (std::holds_alternative<RigidRule>(rule) || std::holds_alternative<FunctionRule>(rule) ||
            std::holds_alternative<SectionsRule>(rule) || std::holds_alternative<TargetRule>(rule) ||
-           std::holds_alternative<InflateRule>(rule)))
+           std::holds_alternative<InflateRule>(rule) || std::holds_alternative<FfdRule>(rule)))
         add(p);
     }
     return {out.begin(), out.end()};

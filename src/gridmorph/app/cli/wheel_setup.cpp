@@ -265,8 +265,8 @@ class Setup {
       }
     }
     problems_.add(
-        fmt::format("{}: patches {} are those of no rule fixed, rigid, formula, field, sections, target, inflate or "
-                    "bulb in [[motion]]; a blade replaces such a rule with the same patches",
+        fmt::format("{}: patches {} are those of no rule fixed, rigid, formula, field, sections, target, inflate, "
+                    "bulb or ffd in [[motion]]; a blade replaces such a rule with the same patches",
                     rule.where, quote_list(rule.patches)));
   }
 

@@ -1,14 +1,14 @@
 #include <gridmorph/app/casefile/detail/inflate_reader.hpp>
+#include <gridmorph/app/casefile/detail/number_table.hpp>
 #include <gridmorph/app/casefile/detail/sections_reader.hpp>
 #include <gridmorph/app/casefile/formula.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -91,60 +91,15 @@ Height read_height(TableReader& table, RuleContext const& shared) {
 }  // namespace
 
 std::vector<HeightTable::Station> parse_heights(std::string_view text, std::string const& source) {
-  std::vector<std::string> const known{"span", "chord", "height", "side"};
-  std::array<int, 4> column{-1, -1, -1, -1};
-  std::size_t columns = 0;
+  auto const fraction = [](double value) { return value >= 0 && value <= 1; };
+  std::vector<NumberColumn> const columns{
+      {"span", "a fraction from 0 to 1", fraction},
+      {"chord", "a fraction from 0 to 1", fraction},
+      {"height", "a number"},
+      {"side", "1 or -1, or empty for both", [](double value) { return std::abs(value) == 1; }, false, 0.0}};
   std::vector<HeightTable::Station> out;
-  std::vector<std::string_view> cells;
-  Problems problems;
-  for (mapping::Lines lines(text); problems.messages().size() < mapping::most_problems_per_file && lines.next();) {
-    std::string const where = fmt::format("{}:{}", source, lines.number());
-    mapping::split(lines.line(), mapping::separator_of(lines.line()), cells);
-    if (columns == 0) {
-      columns = cells.size();
-      if (columns > mapping::most_columns)
-        throw ConfigError(fmt::format("{}: more than {} columns; is it a table?", where, mapping::most_columns));
-      for (std::size_t c = 0; c < columns; ++c) {
-        std::string const name = mapping::plain_name(cells[c]);
-        auto const at = std::find(known.begin(), known.end(), name);
-        if (at == known.end())
-          problems.add(fmt::format("{}: the header names a column '{}', which is none of span, chord, height, side{}",
-                                   where, name.substr(0, 40), suggestion(name, known)));
-        else if (std::exchange(column[std::size_t(at - known.begin())], int(c)) >= 0)
-          problems.add(fmt::format("{}: the header names column '{}' twice", where, name));
-      }
-      for (std::size_t k = 0; k < 3; ++k)
-        if (column[k] < 0) problems.add(fmt::format("{}: the header names no column '{}'", where, known[k]));
-      problems.throw_if_any<ConfigError>();
-      continue;
-    }
-    if (cells.size() != columns) {
-      problems.add(fmt::format("{}: expected {} columns, found {}", where, columns, cells.size()));
-      continue;
-    }
-    std::array<double, 4> value{};
-    bool good = true;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (column[k] < 0) continue;
-      auto const cell = cells[std::size_t(column[k])];
-      if (k == 3 && cell.empty()) continue;
-      auto const number = finite_number(cell);
-      bool const fits = number && (k == 2 || (k < 2 ? *number >= 0 && *number <= 1 : std::abs(*number) == 1));
-      if (!fits) {
-        static constexpr std::array wanted{"a fraction from 0 to 1", "a fraction from 0 to 1", "a number",
-                                           "1 or -1, or empty for both"};
-        problems.add(fmt::format("{}: {} = \"{}\" is not {}", where, known[k], cell.substr(0, 40), wanted[k]));
-        good = false;
-        continue;
-      }
-      value[k] = *number;
-    }
-    if (good) out.push_back({value[0], value[1], value[3], value[2]});
-  }
-  problems.throw_if_any<ConfigError>();
-  if (columns == 0 || out.empty())
-    throw ConfigError(source +
-                      ": holds no heights; expected a header line such as span,chord,height and lines of numbers");
+  for (auto const& [where, value] : read_number_table(text, source, columns, "heights"))
+    out.push_back({value[0], value[1], value[3], value[2]});
   return out;
 }
 

@@ -1,4 +1,5 @@
 #include <gridmorph/app/casefile/detail/bulb_reader.hpp>
+#include <gridmorph/app/casefile/detail/ffd_reader.hpp>
 #include <gridmorph/app/casefile/detail/field_reader.hpp>
 #include <gridmorph/app/casefile/detail/inflate_reader.hpp>
 #include <gridmorph/app/casefile/detail/rule_reader.hpp>
@@ -27,7 +28,7 @@ namespace {
 std::vector<std::string> const rule_names{"fixed",   "rigid",    "formula", "field",    "circumferential-slide",
                                           "follow",  "slip",     "free",    "sections", "target",
                                           "contour", "attached", "inflate", "bulb",     "extend",
-                                          "wake"};
+                                          "wake",    "ffd"};
 
 /// scale = 0.95, scale = [sx, sy, sz], or scale = { factor = one of these, origin = [x, y, z] }.
 void read_scale(TableReader& step, RigidSteps& rigid) {
@@ -63,25 +64,14 @@ void read_scale(TableReader& step, RigidSteps& rigid) {
   rigid.scale_center = origin;
 }
 
-/// Scale, then rotation, then translation, as far as given. False when none is.
-bool read_step(TableReader& step, RuleContext const& shared, std::vector<RigidSteps>& all) {
-  bool const any = step.has("scale") || step.has("rotation") || step.has("translation");
-  RigidSteps rigid;
-  read_scale(step, rigid);
-  read_rotation(step, shared, rigid);
-  if (auto const shift = step.vector("translation")) rigid.translation = *shift;
-  if (any) all.push_back(rigid);
-  return any;
-}
-
 TimedRule read_rigid(TableReader& table, RuleContext const& shared) {
   std::vector<RigidSteps> all;
-  bool const any = read_step(table, shared, all);
+  bool const any = read_rigid_step(table, shared, all);
   auto steps = table.tables("steps");
   if (any && !steps.empty())
     table.problem("steps", "cannot stand beside scale, rotation or translation; put these into a step of their own");
   for (auto& step : steps) {
-    if (!read_step(step, shared, all))
+    if (!read_rigid_step(step, shared, all))
       step.context().problem(step.line(), "[[motion]] steps: a step needs scale, rotation or translation");
     step.finish();
   }
@@ -349,6 +339,7 @@ std::optional<TimedRule> read_explicit(std::size_t number, TableReader& table, R
     case 10: needs_axis(table, shared, rule_names[number]); return read_contour(table, shared);
     case 12: return read_inflate(table, shared);
     case 13: return read_bulbs(table, shared);
+    case 16: return read_ffd(table, shared);
     default: return std::nullopt;
   }
 }
@@ -405,6 +396,16 @@ Rule read_other(std::size_t number, TableReader& table, RuleContext const& share
 }
 
 }  // namespace
+
+bool read_rigid_step(TableReader& step, RuleContext const& shared, std::vector<RigidSteps>& all) {
+  bool const any = step.has("scale") || step.has("rotation") || step.has("translation");
+  RigidSteps rigid;
+  read_scale(step, rigid);
+  read_rotation(step, shared, rigid);
+  if (auto const shift = step.vector("translation")) rigid.translation = *shift;
+  if (any) all.push_back(rigid);
+  return any;
+}
 
 void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid) {
   auto table = step.table("rotation");

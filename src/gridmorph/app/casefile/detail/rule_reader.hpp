@@ -30,6 +30,9 @@ void needs_sequence(TableReader& table, RuleContext const& shared, std::string c
 /// rotation = { axis, origin, angle_deg } of a table; without axis and origin about the machine axis.
 void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rigid);
 
+/// Scale, then rotation, then translation, as far as given, at the end of the list. False when none is.
+bool read_rigid_step(TableReader& step, RuleContext const& shared, std::vector<RigidSteps>& all);
+
 /// Constants of formulas: a table of names and numbers.
 void read_constants(TableReader& table, std::string const& key, std::map<std::string, double>& constants);
 

@@ -28,7 +28,7 @@ WheelBlade read_blade(TableReader& table, RuleContext const& shared, CaseFile& o
     if (!fragment.timed[r].at && !std::holds_alternative<FixedRule>(rule))
       table.problem("motion",
                     fmt::format("a blade can have the rules fixed, rigid, formula, field, sections, target, "
-                                "inflate and bulb, found {}; what follows from the blade belongs to [[motion]]",
+                                "inflate, bulb and ffd, found {}; what follows from the blade belongs to [[motion]]",
                                 rule_name(rule)));
   }
   blade.rules = std::move(fragment.motion.rules);
