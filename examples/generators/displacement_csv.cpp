@@ -13,11 +13,13 @@
 
 namespace gridmorph {
 
-void write_displacement_csv(std::string const& path, Mesh const& mesh, std::string const& family,
+void write_displacement_csv(std::string const& path, Mesh const& mesh, std::vector<std::string> const& families,
                             std::function<Vec3(Vec3 const&)> const& displacement) {
   std::vector<std::array<double, 3>> points;
   for (Patch const& patch : mesh.patches) {
-    if (std::find(patch.families.begin(), patch.families.end(), family) == patch.families.end()) continue;
+    if (std::find_first_of(patch.families.begin(), patch.families.end(), families.begin(), families.end()) ==
+        patch.families.end())
+      continue;
     IndexRange const& r = patch.range;
     for (int k = r.begin[2]; k < r.end[2]; ++k)
       for (int j = r.begin[1]; j < r.end[1]; ++j)
@@ -27,8 +29,8 @@ void write_displacement_csv(std::string const& path, Mesh const& mesh, std::stri
         }
   }
   if (points.empty())
-    throw MeshError("displacement file '" + path + "': no patch of " + mesh.source + " has the family '" + family +
-                    "'");
+    throw MeshError("displacement file '" + path + "': no patch of " + mesh.source + " has the family '" +
+                    families.front() + "'");
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
 

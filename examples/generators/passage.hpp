@@ -13,13 +13,26 @@
 //   +----------+----------------+----------+
 //        periodic (lower)
 //
-// Families: blade, hub, case (BCWallViscous), inlet (BCInflow), outlet (BCOutflow). The axis of the machine is x, moved
+// With a tip gap (BladeTip) the ring goes on over the tip, and an O of four pieces round a core fills the section of the blade:
+//
+//   ring_upper       +-----------------------+       tip_upper      i: round the blade, as in the ring, or axial in the core
+//                   /  \      tip_upper    /  \                    k: from the core outwards, or along the pitch in the core
+//   ring_le        | tip_le+------------+tip_te |
+//                  |       |  tip_core  |       |     squealer: the core is a pocket; the O is its rim
+//                   \      +------------+      /      groove: tip_le, core and tip_te are one, open to the ring at both ends
+//   ring_lower       +-----------------------+
+//
+// Families: blade, hub, case (BCWallViscous), inlet (BCInflow), outlet (BCOutflow); tip, and squealer
+// or groove for the floor and the walls of what is cut into the tip. The axis of the machine is x, moved
 // by PassageOptions::placement. The mesh generator is algebraic: cost and memory are linear in the nodes.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <array>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace gridmorph {
 
@@ -53,13 +66,25 @@ struct PassageCounts {
   int layers = 0;                              ///< ring, off the wall
   int upper = 0, lower = 0;                    ///< between ring and periodic
   int inlet = 0, outlet = 0;                   ///< axial
-  int span = 0;
+  int span = 0;                                ///< all of it, with the two that follow
+  int gap = 0;                                 ///< between tip and case
+  int cavity = 0;                              ///< between the floor of a squealer or groove and the tip
+  int rim = 0;                                 ///< over the tip, from the core to the contour
 };
+
+/// The end of the blade at the case: it reaches it, or there is a gap over a tip that is flat, has a pocket with a rim all round, or a
+/// groove between two rails, open at the leading and the trailing edge.
+enum class BladeTip { none, flat, squealer, groove };
+/// By name. Throws ConfigError that lists them.
+BladeTip blade_tip(std::string const& name);
+std::string_view name(BladeTip tip);
+/// Families of the blade: its sides, its tip, and what is cut into that.
+std::vector<std::string> blade_families(BladeTip tip);
 
 struct PassageOptions {
   enum class Layout {
-    whole_faces,  ///< 12 zones: every zone face is one boundary or one interface
-    five_zones    ///< ring (closing on itself), inlet, outlet, upper, lower: interfaces on parts of faces
+    whole_faces,  ///< 12 zones, with a tip gap 12 per layer and those over the tip: every zone face is one boundary or one interface
+    five_zones  ///< ring (closing on itself), inlet, outlet, upper, lower, and five over the tip: interfaces on parts of faces
   };
 
   Index nodes = 200'000;  ///< wanted, all zones together; met within a few percent (at least 10,000)
@@ -77,6 +102,11 @@ struct PassageOptions {
   double max_growth = 1.5;
   double end_wall_first_cell = 2e-4;
   double end_wall_max_growth = 1.25;
+  BladeTip tip = BladeTip::none;
+  double tip_gap = 0.015;   ///< in span
+  double tip_depth = 0.03;  ///< of the pocket or groove, in span
+  double tip_core =
+      0.55;  ///< width of pocket or groove (of a flat tip: of the core of its mesh), in thicknesses of the blade
   Layout layout = Layout::whole_faces;
   /// Mirrors the index system (j from case to hub), not the geometry.
   bool left_handed = false;
@@ -88,7 +118,7 @@ struct PassageOptions {
 PassageCounts passage_counts(PassageOptions const& options);
 
 /// The mesh. Coincident nodes of different zones are bit-identical; the upper periodic nodes are the lower ones,
-/// rotated; hub and case nodes lie on their surface to round-off. Right-handed unless asked otherwise.
+/// rotated; hub and case nodes lie on their surface to round-off. With a gap, tip and floor lie at constant span fraction. Right-handed unless asked otherwise.
 /// Throws ConfigError when the options make no passage, naming every option that is wrong.
 Mesh make_passage(PassageOptions const& options);
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace gridmorph {
 
@@ -17,6 +18,18 @@ std::string vector_text(Vec3 const& v) {
   std::snprintf(text.data(), text.size(), "[%.17g, %.17g, %.17g]", v.x + 0.0, v.y + 0.0, v.z + 0.0);
   return text.data();
 }
+
+std::string list_text(std::vector<std::string> const& names) {
+  std::string text;
+  for (std::string const& n : names) text += (text.empty() ? "[\"" : ", \"") + n + "\"";
+  return text + "]";
+}
+
+constexpr char const* clearance_text =
+    "\n"
+    "[[clearance]]                       # between tip and case, in the table and the report\n"
+    "tips  = [\"tip\"]\n"
+    "walls = [\"case\"]\n";
 
 }  // namespace
 
@@ -36,7 +49,9 @@ std::string passage_case_file(PassageOptions const& options, PassageFiles const&
          " }\n"
          "\n"
          "[[motion]]                          # airfoil: given node by node\n"
-         "patches = [\"blade\"]\n"
+         "patches = " +
+         list_text(blade_families(options.tip)) +
+         "\n"
          "rule    = \"field\"\n"
          "file    = \"" +
          files.displacement.filename().string() +
@@ -66,7 +81,8 @@ std::string passage_case_file(PassageOptions const& options, PassageFiles const&
          "law = \"linear\"\n"
          "priority = [ { rule = \"boundary\", order = [\"wall\", \"periodic\", \"inflow\", \"outflow\"] },\n"
          "             { rule = \"quality\" },\n"
-         "             { rule = \"aspect-ratio\" } ]\n";
+         "             { rule = \"aspect-ratio\" } ]\n" +
+         (options.tip == BladeTip::none ? "" : clearance_text);
 }
 
 PassageFiles passage_files(std::filesystem::path const& folder, PassageMotion const& motion) {
@@ -84,7 +100,7 @@ PassageFiles write_passage_demo(std::filesystem::path const& folder, PassageOpti
   make_folder(folder);
   PassageFiles files = passage_files(folder, motion);
   if (mesh_file == MeshFile::write) write_mesh(files.mesh.string(), mesh);
-  write_displacement_csv(files.displacement.string(), mesh, "blade",
+  write_displacement_csv(files.displacement.string(), mesh, blade_families(options.tip),
                          [&](Vec3 const& p) { return passage_displacement(options, motion, p); });
   write_text_file(files.case_file, passage_case_file(options, files), "case file");
   return files;

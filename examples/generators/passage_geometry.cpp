@@ -5,8 +5,30 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
+#include <vector>
 
-namespace gridmorph::passage {
+namespace gridmorph {
+
+BladeTip blade_tip(std::string const& wanted) {
+  for (BladeTip const tip : {BladeTip::none, BladeTip::flat, BladeTip::squealer, BladeTip::groove})
+    if (name(tip) == wanted) return tip;
+  throw ConfigError("passage demo: there is no tip '" + wanted + "'; choose 'none', 'flat', 'squealer' or 'groove'");
+}
+
+std::string_view name(BladeTip tip) {
+  static constexpr std::array<std::string_view, 4> names{"none", "flat", "squealer", "groove"};
+  return names[std::size_t(tip)];
+}
+
+std::vector<std::string> blade_families(BladeTip tip) {
+  std::vector<std::string> families{"blade"};
+  if (tip != BladeTip::none) families.emplace_back("tip");
+  if (tip == BladeTip::squealer || tip == BladeTip::groove) families.emplace_back(name(tip));
+  return families;
+}
+
+namespace passage {
 
 namespace {
 
@@ -29,6 +51,17 @@ void check_section(BladeSection const& s, std::string const& where, Problems& pr
   if (!(s.leading_radius > 0 && s.leading_radius <= 0.1) || !(s.trailing_radius > 0 && s.trailing_radius <= 0.1))
     problems.add(where + " edge radii are " + std::to_string(s.leading_radius) + " and " +
                  std::to_string(s.trailing_radius) + " chords; they must lie within 0 and 0.1");
+}
+
+void check_tip(PassageOptions const& o, Problems& problems) {
+  if (!(o.tip_gap > 0 && o.tip_gap <= 0.2))
+    problems.add("passage: the tip gap is " + std::to_string(o.tip_gap) + " of the span; it must lie within 0 and 0.2");
+  if (!(o.tip_depth > 0 && o.tip_depth <= 0.3))
+    problems.add("passage: the depth at the tip is " + std::to_string(o.tip_depth) +
+                 " of the span; it must lie within 0 and 0.3");
+  if (!(o.tip_core >= 0.1 && o.tip_core <= 0.9))
+    problems.add("passage: the width at the tip is " + std::to_string(o.tip_core) +
+                 " of the thickness; it must lie within 0.1 and 0.9");
 }
 
 }  // namespace
@@ -54,6 +87,7 @@ void check(PassageOptions const& o) {
   if (!(o.max_growth > 1) || !(o.end_wall_max_growth > 1))
     problems.add("passage: max_growth is " + std::to_string(o.max_growth) + " and end_wall_max_growth " +
                  std::to_string(o.end_wall_max_growth) + "; both must exceed 1");
+  if (o.tip != BladeTip::none) check_tip(o, problems);
   static constexpr std::array<char const*, 3> place{"passage: hub section", "passage: mid-span section",
                                                     "passage: case section"};
   for (std::size_t n = 0; n < 3; ++n) check_section(o.sections[n], place[n], problems);
@@ -124,12 +158,17 @@ Point2 Airfoil::camber_point(double u) const {
   return arc_ * u * sinc(half_turn) * direction(inlet_angle_ + half_turn) - 0.5 * chord_ * direction(stagger());
 }
 
-Point2 Airfoil::point(double phi) const {
+double Airfoil::half_thickness(double phi) const {
   double const u = 0.5 * (1 - std::cos(phi));
-  double const half = 0.5 * chord_ * std::sin(phi) * (a_ + b_ * u + c_ * u * (1 - u));
-  double const angle = inlet_angle_ + (outlet_angle_ - inlet_angle_) * u;
-  return camber_point(u) + half * Point2{-std::sin(angle), std::cos(angle)};
+  return 0.5 * chord_ * std::sin(phi) * (a_ + b_ * u + c_ * u * (1 - u));
 }
+
+Point2 Airfoil::off_camber(double u, double distance) const {
+  double const angle = inlet_angle_ + (outlet_angle_ - inlet_angle_) * u;
+  return camber_point(u) + distance * Point2{-std::sin(angle), std::cos(angle)};
+}
+
+Point2 Airfoil::point(double phi) const { return off_camber(0.5 * (1 - std::cos(phi)), half_thickness(phi)); }
 
 Point2 Airfoil::tangent(double phi) const {
   double const u = 0.5 * (1 - std::cos(phi)), du = 0.5 * std::sin(phi);
@@ -150,4 +189,6 @@ double Airfoil::camber(double axial) const {
   return edge.y + (axial - edge.x) * std::tan(0.5 * (inlet_angle_ + std::asin(std::clamp(s, -1.0, 1.0))));
 }
 
-}  // namespace gridmorph::passage
+}  // namespace passage
+
+}  // namespace gridmorph

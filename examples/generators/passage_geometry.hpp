@@ -54,6 +54,10 @@ class Airfoil {
   [[nodiscard]] Point2 point(double phi) const;
   /// d point / d phi; never zero.
   [[nodiscard]] Point2 tangent(double phi) const;
+  /// Signed: positive on the upper side.
+  [[nodiscard]] double half_thickness(double phi) const;
+  /// At a fraction of the arc of the camber line, so far off it towards the upper side.
+  [[nodiscard]] Point2 off_camber(double u, double distance) const;
   /// Camber line, continued straight upstream and downstream of the blade.
   [[nodiscard]] double camber(double axial) const;
 

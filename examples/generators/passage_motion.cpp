@@ -36,14 +36,16 @@ double slope(Stations const& s, std::size_t n) {
 
 }  // namespace
 
-PassageMotion rotated_sections() { return {"rotation", -10, {{0.5, 0.95}}}; }
+PassageMotion rotated_sections() { return {"rotation", -10, {{0.5, 0.95}}, 1}; }
 
-PassageMotion chord_redesign() { return {"chord", 0, {{0, 1}, {0.15, 0.9}, {0.5, 1.1}, {0.9, 0.9}, {1, 1}}}; }
+PassageMotion chord_redesign() { return {"chord", 0, {{0, 1}, {0.15, 0.9}, {0.5, 1.1}, {0.9, 0.9}, {1, 1}}, 1}; }
+
+PassageMotion gap_halved() { return {"gap", 0, {}, 0.5}; }
 
 PassageMotion passage_motion(std::string const& name) {
-  for (PassageMotion const& motion : {rotated_sections(), chord_redesign()})
+  for (PassageMotion const& motion : {rotated_sections(), chord_redesign(), gap_halved()})
     if (motion.name == name) return motion;
-  throw ConfigError("passage demo: there is no motion '" + name + "'; choose 'rotation' or 'chord'");
+  throw ConfigError("passage demo: there is no motion '" + name + "'; choose 'rotation', 'chord' or 'gap'");
 }
 
 double chord_factor(PassageMotion const& motion, double span) {
@@ -69,8 +71,10 @@ Vec3 passage_displacement(PassageOptions const& options, PassageMotion const& mo
   passage::Point2 const new_along = passage::direction(turned), new_across{-new_along.y, new_along.x};
   double const u = flat.x * along.x + flat.y * along.y, v = flat.x * across.x + flat.y * across.y;
   passage::Point2 const moved = (chord_factor(motion, span) * u) * new_along + v * new_across;
+  double const growth = (1 - motion.gap_factor * options.tip_gap) / (1 - options.tip_gap);
+  double const new_span = options.tip == BladeTip::none ? span : growth * span;
   // The difference is turned, not the two ends: displacements far smaller than the coordinates keep their digits.
-  return options.placement.rotation * (annulus.unroll(moved, span, radius) - annulus.unroll(flat, span, radius));
+  return options.placement.rotation * (annulus.unroll(moved, new_span, radius) - annulus.unroll(flat, span, radius));
 }
 
 }  // namespace gridmorph

@@ -107,7 +107,8 @@ void fill(PieceNodes& nodes, Line const& bottom, Line const& top, Line const& le
 std::string_view name(Piece piece) {
   static constexpr std::array<std::string_view, n_pieces> names{
       "ring_le",     "ring_upper", "ring_te", "ring_lower",   "inlet_lower",   "inlet_middle",
-      "inlet_upper", "lower",      "upper",   "outlet_lower", "outlet_middle", "outlet_upper"};
+      "inlet_upper", "lower",      "upper",   "outlet_lower", "outlet_middle", "outlet_upper",
+      "tip_le",      "tip_upper",  "tip_te",  "tip_lower",    "tip_core"};
   return names[piece];
 }
 
@@ -126,6 +127,11 @@ std::array<int, 2> piece_cells(PassageCounts const& c, Piece piece) {
     case outlet_lower: return {c.outlet, c.lower};
     case outlet_middle: return {c.outlet, te};
     case outlet_upper: return {c.outlet, c.upper};
+    case tip_le: return {le, c.rim};
+    case tip_te: return {te, c.rim};
+    case tip_upper:
+    case tip_lower: return {c.side, c.rim};
+    case tip_core: return {c.side, le};
     case n_pieces: break;
   }
   return {0, 0};
@@ -173,8 +179,10 @@ std::array<PieceNodes, n_pieces> const& SectionMesher::operator()(double span) {
   double const last_layer = thickness * (1 - off_wall[c.layers - 1]);
   auto const ring = [&](Piece piece, auto phi_of) {
     PieceNodes& nodes = pieces_[piece];
+    std::vector<double>& places = ring_phi_[piece];
+    places.resize(std::size_t(nodes.ni));
     for (int i = 0; i < nodes.ni; ++i) {
-      double const phi = phi_of(i);
+      double const phi = places[std::size_t(i)] = phi_of(i);
       Point2 const wall = airfoil.point(phi), t = unit(airfoil.tangent(phi)), normal{-t.y, t.x};
       for (int k = 0; k < nodes.nk; ++k) nodes.at(i, k) = wall + (off_wall[k] * thickness) * normal;
     }
@@ -274,6 +282,7 @@ std::array<PieceNodes, n_pieces> const& SectionMesher::operator()(double span) {
   fill(pieces_[outlet_middle], outlet_low, outlet_up, reversed(te), out_mid);
   fill(pieces_[outlet_upper], outlet_up, periodic_line(x_down, x_out, out, 1), upper_2, out_up);
   fill(pieces_[outlet_lower], periodic_line(x_down, x_out, out, -1), outlet_low, lower_2, out_low);
+  if (options_.tip != BladeTip::none) fill_tip(options_, airfoil, ring_phi_, pieces_);
   return pieces_;
 }
 

@@ -23,8 +23,16 @@ enum Piece {
   outlet_lower,
   outlet_middle,
   outlet_upper,
+  tip_le,  // these five over a tip only
+  tip_upper,
+  tip_te,
+  tip_lower,
+  tip_core,
   n_pieces
 };
+constexpr int n_row_pieces = tip_le;
+/// What lies beside a piece of the ring, over the tip.
+constexpr Piece over_tip(Piece ring) { return Piece(tip_le + (ring - ring_le)); }
 
 std::string_view name(Piece piece);
 
@@ -55,7 +63,12 @@ class SectionMesher {
   PassageCounts counts_;
   Annulus annulus_;
   std::array<PieceNodes, n_pieces> pieces_;
+  std::array<std::vector<double>, 4> ring_phi_;  ///< where the wall's nodes are on the contour, see Airfoil
 };
+
+/// Fills the pieces over the tip inside of the ring's, whose wall nodes are at these places of the contour.
+void fill_tip(PassageOptions const& options, Airfoil const& airfoil, std::array<std::vector<double>, 4> const& ring_phi,
+              std::array<PieceNodes, n_pieces>& pieces);
 
 /// How much of either half of the blade contour, measured as its nodes are spread, lies between leading edge and upper,
 /// leading edge and lower, upper corner and trailing edge, lower corner and trailing edge (at mid span).

@@ -50,4 +50,18 @@ std::vector<double> tanh_spacing(int n, double first) {
   return s;
 }
 
+std::vector<double> two_sided_spacing(int n, double first, double last) {
+  double const ratio = std::sqrt(last / first), wanted = 1 / (n * std::sqrt(first * last));
+  double const d = wanted <= 1 ? 0 : bisect(1e-9, 100, [&](double trial) { return wanted - std::sinh(trial) / trial; });
+  std::vector<double> s(n + 1);
+  for (int i = 0; i <= n; ++i) {
+    double const t = double(i) / n;
+    double const u = d < 1e-6 ? t : 0.5 * (1 + std::tanh(d * (t - 0.5)) / std::tanh(0.5 * d));
+    s[i] = u / (ratio + (1 - ratio) * u);
+  }
+  s.front() = 0;
+  s.back() = 1;
+  return s;
+}
+
 }  // namespace gridmorph::demo

@@ -12,6 +12,10 @@ std::vector<double> geometric_spacing(int n, double first);
 /// cell are `first` long; uniform when first >= 1/n.
 std::vector<double> tanh_spacing(int n, double first);
 
+/// n cells, the first and the last one nearly this long (Vinokur 1983): u / (A + (1 - A) u) of an odd tanh u about the middle, with
+/// A^2 = last / first; without the tanh when n cells of the mean of both, sqrt(first last), are longer than the interval.
+std::vector<double> two_sided_spacing(int n, double first, double last);
+
 /// Length of the first of n cells in geometric progression with this growth ratio.
 double first_of_geometric(int n, double growth);
 

@@ -53,7 +53,7 @@ TEST_F(PassageDemo, CsvHoldsEveryBladeNodeOnceAndReadsBackExactly) {
   Mesh const mesh = make_passage(options);
   std::filesystem::create_directories(folder);
   auto const displacement = [&](Vec3 const& p) { return passage_displacement(options, rotated_sections(), p); };
-  write_displacement_csv((folder / "blade.csv").string(), mesh, "blade", displacement);
+  write_displacement_csv((folder / "blade.csv").string(), mesh, {"blade"}, displacement);
   auto rows = read_csv(folder / "blade.csv");
   std::size_t const n_rows = rows.size();
   std::map<std::array<double, 3>, Vec3> nodes;
@@ -74,8 +74,8 @@ TEST_F(PassageDemo, CsvHoldsEveryBladeNodeOnceAndReadsBackExactly) {
 TEST_F(PassageDemo, UnknownFamilyAndUnwritableFilesAreErrors) {
   Mesh const mesh = make_passage(small());
   auto const zero = [](Vec3 const&) { return Vec3{}; };
-  EXPECT_THROW(write_displacement_csv((folder / "x.csv").string(), mesh, "wing", zero), MeshError);
-  EXPECT_THROW(write_displacement_csv((folder / "missing" / "x.csv").string(), mesh, "blade", zero), MachineError);
+  EXPECT_THROW(write_displacement_csv((folder / "x.csv").string(), mesh, {"wing"}, zero), MeshError);
+  EXPECT_THROW(write_displacement_csv((folder / "missing" / "x.csv").string(), mesh, {"blade"}, zero), MachineError);
 }
 
 TEST_F(PassageDemo, WritesAMeshThatReadsBackBitForBit) {

@@ -22,8 +22,10 @@ struct Variant {
 };
 
 std::vector<Variant> variants() {
-  std::vector<Variant> all{{"default", small()},     {"five_zones", small()},  {"placed", small()},
-                           {"left_handed", small()}, {"cylindrical", small()}, {"bulged", small()}};
+  std::vector<Variant> all{{"default", small()},        {"five_zones", small()},  {"placed", small()},
+                           {"left_handed", small()},    {"cylindrical", small()}, {"bulged", small()},
+                           {"flat_tip", small()},       {"squealer", small()},    {"groove", small()},
+                           {"groove_in_zones", small()}};
   all[1].options.layout = PassageOptions::Layout::five_zones;
   all[2].options.placement = skew_placement();
   all[2].options.layout = PassageOptions::Layout::five_zones;
@@ -32,6 +34,14 @@ std::vector<Variant> variants() {
   all[4].options.casing = {0.66, 0.66, 0, 0};
   all[5].options.hub = {0.43, 0.47, 0, 0.01};
   all[5].options.casing = {0.68, 0.65, 0.5, -0.01};
+  all[6].options.tip = BladeTip::flat;
+  all[7].options.tip = BladeTip::squealer;
+  all[7].options.layout = PassageOptions::Layout::five_zones;
+  all[8].options.tip = BladeTip::groove;
+  all[8].options.left_handed = true;
+  all[9].options.tip = BladeTip::groove;
+  all[9].options.layout = PassageOptions::Layout::five_zones;
+  all[9].options.placement = skew_placement();
   return all;
 }
 
@@ -128,7 +138,8 @@ TEST_P(Passage, PeriodicNodesAreRotatedCopies) {
     EXPECT_NEAR(std::acos((trace - 1) / 2), 2 * std::numbers::pi / options.blades, 1e-12);
     EXPECT_LT(distance(i.periodic->declared(i.periodic->rotation_center), i.periodic->rotation_center), 1e-15);
   }
-  EXPECT_EQ(periodic, 6);
+  bool const in_layers = options.layout == PassageOptions::Layout::whole_faces && options.tip != BladeTip::none;
+  EXPECT_EQ(periodic, 6 * (in_layers ? (options.tip == BladeTip::flat ? 2 : 3) : 1));
 }
 
 TEST_P(Passage, StoresEveryInterfaceFromBothSides) {
@@ -188,11 +199,12 @@ TEST_P(Passage, NamesItsFamiliesWithTheirBoundaryTypes) {
     EXPECT_TRUE(names.insert(p.name).second) << p.name;
     EXPECT_LE(p.name.size(), 32u) << "CGNS names";
   }
-  std::map<std::string, std::set<std::string>> const expected{{"blade", {"BCWallViscous"}},
-                                                              {"hub", {"BCWallViscous"}},
-                                                              {"case", {"BCWallViscous"}},
-                                                              {"inlet", {"BCInflow"}},
-                                                              {"outlet", {"BCOutflow"}}};
+  std::map<std::string, std::set<std::string>> expected{{"blade", {"BCWallViscous"}},
+                                                        {"hub", {"BCWallViscous"}},
+                                                        {"case", {"BCWallViscous"}},
+                                                        {"inlet", {"BCInflow"}},
+                                                        {"outlet", {"BCOutflow"}}};
+  for (std::string const& family : blade_families(options.tip)) expected[family] = {"BCWallViscous"};
   EXPECT_EQ(types, expected);
   for (auto const& i : mesh.interfaces) EXPECT_LE(i.name.size(), 32u) << "CGNS names";
   // Zones and families are children of one CGNS node.
