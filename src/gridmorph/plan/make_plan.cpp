@@ -104,8 +104,8 @@ struct HandedOn {
 
 class Scheduler {
  public:
-  Scheduler(PlanContext const& context, Priority& priority, ChainLaws const& laws, BoundaryMotion const& surface,
-            PlanOptions const& options, Plan& plan, Known& known)
+  Scheduler(PlanContext const& context, Priority& priority, ChainLaws const& laws, Gaps const& gaps,
+            BoundaryMotion const& surface, PlanOptions const& options, Plan& plan, Known& known)
       : context_(context),
         surface_(surface),
         mesh_(context.mesh),
@@ -115,7 +115,8 @@ class Scheduler {
         plan_(plan),
         known_(known),
         priority_(priority),
-        laws_(laws) {}
+        laws_(laws),
+        gaps_(gaps) {}
 
   /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of walls
   /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
@@ -160,9 +161,9 @@ class Scheduler {
   /// bodies, as far as the bodies' own motion does; none otherwise, as what turns differently from line to line tears far from the
   /// wall.
   HandedOn hand_on(std::vector<NearField> const& fields, WallRoots const& roots) {
-    bool open = false, any = false;
+    bool any = false;
     HandedOn const between_moving{options_.volume.turn.value_or(passage_turn), kernels::TurnLaw::square};
-    for (RankedChain const& ranked : collect(open)) {
+    for (RankedChain const& ranked : collect(Ends::both)) {
       auto const begins = [&](Chain const& chain) {
         auto const faces = topology_.blocks.face_entities(topology_.lattice, end_face(chain.steps.front(), 0));
         return std::any_of(faces.begin(), faces.end(),
@@ -203,9 +204,11 @@ class Scheduler {
         if (!now.empty() && along != now.front().law) continue;
         if (!independent.add(chain, along.is_directed())) continue;
         order.back().push_back(ranked.place);
-        description.push_back(described(ranked) +
+        bool const across_gap = open && gaps_.runs_across(chain);
+        description.push_back(described(ranked) + (across_gap ? ", across the gap" : "") +
                               (open || law.choice == laws_.usual() ? "" : ", law " + laws_.name(law.choice)));
-        now.push_back({chain, along, open, turn_law, handed_on.reach});
+        now.push_back(
+            {chain, along, open, across_gap ? kernels::TurnLaw::none : turn_law, across_gap ? 0 : handed_on.reach});
       }
       Stage stage = build_stage(context_, now, known_, priority_.kind_order());
       stage.name = std::to_string(number);
@@ -218,10 +221,20 @@ class Scheduler {
  private:
   /// The chains of the best rank, best first.
   std::vector<RankedChain> best_chains(bool& open) {
-    std::vector<RankedChain> chains = collect(open);
+    std::vector<RankedChain> chains = collect(Ends::both);
+    if (chains.empty()) {
+      chains = collect(Ends::across_gap);
+      open = !chains.empty();
+    }
+    if (open) {
+      // All at once: none of them says more about a gap than the others.
+      priority_.sort(chains);
+      return chains;
+    }
+    if (chains.empty()) chains = collect(Ends::through_gap);
     if (chains.empty()) {
       open = true;
-      chains = collect(open);
+      chains = collect(Ends::one);
     }
     if (chains.empty()) throw PlanError(unreachable());
     // A measure that comes first ranks all chains; one that breaks ties is found where there are some.
@@ -240,8 +253,9 @@ class Scheduler {
   }
   /// What could be the next stage: all chains of one rank, in either order where they compete, and each chain by itself.
   ChainOrder alternatives() {
-    std::vector<RankedChain> chains = collect(false);
-    if (chains.empty()) chains = collect(true);
+    std::vector<RankedChain> chains = collect(Ends::both);
+    for (Ends const ends : {Ends::across_gap, Ends::through_gap, Ends::one})
+      if (chains.empty()) chains = collect(ends);
     priority_.add_quality(chains);
     priority_.sort(chains);
     std::map<std::array<int, 2>, std::vector<ChainPlace>> of_rank;
@@ -340,8 +354,14 @@ class Scheduler {
     return std::all_of(chains.begin(), chains.end(), [&](RankedChain const& c) { return independent.add(c.chain); });
   }
 
-  /// Every chain through active blocks with two known ends (open: one known, the other on the boundary).
-  std::vector<RankedChain> collect(bool open) {
+  enum class Ends {
+    both,         ///< known, and no gap layer passed sideways
+    across_gap,   ///< one known, the other on the wall that slips across a gap
+    through_gap,  ///< both known
+    one           ///< one known, the other on the boundary
+  };
+  /// Every chain through active blocks with such ends, in the order of these: lines across gaps come before all that would cross them.
+  std::vector<RankedChain> collect(Ends ends) {
     std::vector<RankedChain> chains;
     std::set<std::pair<int, int>> seen;
     for (int block = 0; block < topology_.blocks.size(); ++block) {
@@ -352,7 +372,9 @@ class Scheduler {
         if (!chain) continue;
         for (ChainStep const& step : chain->steps) seen.insert({step.block, step.to_chain.inverse().axis[0]});
         int const known_ends = int(chain->first.known) + int(chain->last.known);
-        if (known_ends != (open ? 1 : 2)) continue;
+        if (known_ends != (ends == Ends::both || ends == Ends::through_gap ? 2 : 1)) continue;
+        if (ends == Ends::both && gaps_.is_crossed_by(*chain)) continue;
+        if (ends == Ends::across_gap && !gaps_.runs_across(*chain)) continue;
         chains.push_back(priority_.rank(std::move(*chain)));
         chains.back().place = {block, axis};
       }
@@ -381,6 +403,7 @@ class Scheduler {
   Known& known_;
   Priority& priority_;
   ChainLaws const& laws_;
+  Gaps const& gaps_;
   std::vector<char> before_near_field_, after_near_field_;  ///< what was known, per entity class
 };
 
@@ -434,7 +457,8 @@ PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const&
   std::vector<std::string> notes;
   std::vector<PatchKind> kinds = ranked_kinds(mesh, links, surface, options.boundary_layers, notes);
   std::vector<EndKind> ends = ranked_ends(mesh, kinds, options.volume);
-  std::vector<NearField> fields = near_fields(mesh, links, surface, kinds, options.boundary_layers);
+  std::vector<char> const at_gap = gap_walls(mesh, links, surface, kinds);
+  std::vector<NearField> fields = near_fields(mesh, links, surface, kinds, at_gap, options.boundary_layers);
   ChainLaws laws(mesh, options.volume);
   notes.insert(notes.end(), laws.notes().begin(), laws.notes().end());
   std::vector<CutPlane> planes = near_field_limits(mesh, links, fields);
@@ -443,6 +467,7 @@ PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const&
   planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
   MergeLimits limits = merge_limits(mesh, surface.motion(), ends, laws, fields, std::move(planes));
   Topology topology = build_topology(mesh, links, limits);
+  Gaps gaps(mesh, topology, surface.motion(), at_gap);
   return {mesh,
           std::move(notes),
           std::move(kinds),
@@ -450,7 +475,8 @@ PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const&
           std::move(fields),
           std::move(laws),
           std::move(limits),
-          std::move(topology)};
+          std::move(topology),
+          std::move(gaps)};
 }
 
 PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines const& lines,
@@ -477,7 +503,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   WallRoots roots(context);
   context.roots = &roots;
   Known known(topology.lattice.n_classes());
-  Scheduler scheduler(context, priority, basis.laws, surface, options, plan, known);
+  Scheduler scheduler(context, priority, basis.laws, basis.gaps, surface, options, plan, known);
   std::vector<std::string> const& kind_order = priority.kind_order();
   planned.boundary = collect_boundary(context, surface, kind_order, known, plan);
   Known const given = known;
@@ -505,7 +531,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
         std::none_of(roots.nodes().begin(), roots.nodes().end(), [](RootNode const& n) { return n.turn > 0; });
     if (!blends || handed_on.turn == 0) plan.notes.push_back(turn_note(handed_on, options.volume.turn.has_value()));
   }
-  plan_spreads(context, motion, surface_of_patch, given, plan);
+  plan_spreads(context, motion, surface_of_patch, given, basis.gaps, plan);
   plan.skeleton_nodes = skeleton.to_nodes(rotations);
   for (int piece = 0; piece < int(topology.lattice.pieces().size()); ++piece) {
     int const region = topology.blocks.region_of(piece);

@@ -45,7 +45,8 @@ bool is_region(Mesh const& mesh, int patch) { return patch >= 0 && mesh.patches[
 }  // namespace
 
 std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
-                                   std::vector<PatchKind> const& kinds, std::vector<BoundaryLayer> const& options) {
+                                   std::vector<PatchKind> const& kinds, std::vector<char> const& at_gap,
+                                   std::vector<BoundaryLayer> const& options) {
   ResolvedMotion const& motion = surface.motion();
   std::vector<NearField> fields;
   for (BoundaryLayer const& option : options) {
@@ -72,6 +73,8 @@ std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, Boundar
                           std::string(rule_name(motion.patch_rule(p))) + "'); near fields need walls that are moved");
       }
     }
+    std::erase_if(field.walls, [&](int p) { return at_gap[std::size_t(p)] != 0; });
+    if (field.walls.empty()) continue;
     switch (option.extent) {
       case BoundaryLayer::Extent::block: break;
       case BoundaryLayer::Extent::layers: field.layers = std::max(1, option.layers); break;
@@ -110,6 +113,8 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
   Lattice const& lattice = topology.lattice;
   // Nothing stops a walk off the wall but the domain's boundary.
   Known const nothing(lattice.n_classes());
+  std::set<int> all_walls;
+  for (NearField const& field : fields) all_walls.insert(field.walls.begin(), field.walls.end());
   for (NearField const& field : fields) {
     std::set<int> const walls(field.walls.begin(), field.walls.end());
     for (int c = 0; c < lattice.n_classes(); ++c) {
@@ -128,6 +133,7 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
       });
       int beyond = chain ? patch_at_end(topology, *chain) : -1;
       if (is_region(mesh, beyond)) beyond = -1;
+      if (beyond >= 0 && field.layers == 0 && all_walls.contains(beyond)) continue;
       if (!chain || beyond >= 0)
         throw PlanError("the near field of wall " + describe_patch(mesh, mesh.patches[patch]) +
                         (beyond >= 0 ? " reaches patch " + describe_patch(mesh, mesh.patches[beyond])

@@ -18,15 +18,17 @@ struct NearField {
 inline bool turns(NearField const& field) { return field.mode != BoundaryLayer::Mode::translate; }
 
 /// Walls and layer counts from the options: an empty wall list takes every patch that ranks as a wall (`kinds`, see
-/// ranked_kinds()) and that an explicit rule other than `fixed` moves; a thickness becomes the median, over all wall nodes, of the layers that reach it.
+/// ranked_kinds()) and that an explicit rule other than `fixed` moves; walls at gaps (`at_gap`, see gap_walls()) have none. A thickness becomes the median, over all wall nodes, of the layers that reach it.
 /// Throws PlanError for selectors that match no patch and near fields that reach another boundary.
 std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
-                                   std::vector<PatchKind> const& kinds, std::vector<BoundaryLayer> const& options);
+                                   std::vector<PatchKind> const& kinds, std::vector<char> const& at_gap,
+                                   std::vector<BoundaryLayer> const& options);
 
 /// Planes that bound the near fields: to be cut, and kept when blocks are merged.
 std::vector<CutPlane> near_field_limits(Mesh const& mesh, Links const& links, std::vector<NearField> const& fields);
 
-/// Chains off the walls through the near fields, walls first. Throws PlanError when a near field has no opposite face.
+/// Chains off the walls through the near fields, walls first. Blocks between two walls with near fields have none: what moves both is
+/// interpolated between them. Throws PlanError when a near field has no opposite face.
 std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topology, Known const& known,
                                           std::vector<NearField> const& fields);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/plan/blocks/chain_laws.hpp>
+#include <gridmorph/plan/blocks/gaps.hpp>
 #include <gridmorph/plan/blocks/grid_lengths.hpp>
 #include <gridmorph/plan/blocks/near_field.hpp>
 #include <gridmorph/plan/blocks/priority.hpp>
@@ -21,6 +22,7 @@ struct PlanBasis {
   ChainLaws laws;
   MergeLimits limits;
   Topology topology;
+  Gaps gaps;
 };
 
 /// Borrows the mesh. Throws as make_plan() does.

@@ -16,6 +16,7 @@ struct Candidate {
   bool curved = false;
   Chain chain;
   int steps = 0;
+  bool across_gap = false;
   [[nodiscard]] bool whole() const { return steps == int(chain.steps.size()); }
 };
 
@@ -74,8 +75,16 @@ class Held {
   bool any_ = false;
 };
 
+/// How many steps of a chain are in one gap layer, or come before one.
+int steps_to_gap(Gaps const& gaps, Chain const& chain) {
+  bool const within = gaps.runs_across(chain.steps.front());
+  auto const end = std::find_if(chain.steps.begin(), chain.steps.end(),
+                                [&](ChainStep const& step) { return gaps.runs_across(step) != within; });
+  return int(end - chain.steps.begin());
+}
+
 std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion,
-                                       std::vector<int> const& surface_of_patch,
+                                       Gaps const& gaps, std::vector<int> const& surface_of_patch,
                                        std::vector<SlipSurface> const& surfaces) {
   Lattice const& lattice = topology.lattice;
   Blocks const& blocks = topology.blocks;
@@ -97,10 +106,11 @@ std::vector<Candidate> find_candidates(Mesh const& mesh, Topology const& topolog
       if (!one) continue;
       chain = std::move(*one);
     }
-    int const steps = held.free_steps(chain);
+    int const steps = std::min(held.free_steps(chain), steps_to_gap(gaps, chain));
+    bool const across_gap = gaps.runs_across(chain.steps.front());
     SlipKind const kind = surfaces[surface_of_patch[patch]].kind;
     bool const curved = kind == SlipKind::revolution || kind == SlipKind::meridional || kind == SlipKind::facets;
-    candidates.push_back({motion.patch[patch].rule, curved, std::move(chain), steps});
+    candidates.push_back({motion.patch[patch].rule, curved, std::move(chain), steps, across_gap});
   }
   return candidates;
 }
@@ -156,9 +166,13 @@ Chain used_part(Candidate const& c) {
 
 /// The chains of one rule, or of two rules whose chains are the same from end to end (hub and case).
 struct RuleChains {
+  struct Entry {
+    Chain chain;
+    bool across_gap = false;
+  };
   std::set<int> rules;
   bool curved = false;
-  std::vector<Chain> chains;
+  std::vector<Entry> chains;
 };
 
 /// In the order they are to be spread. Planes and axial constraints come first: their corrections leave other planes
@@ -202,7 +216,7 @@ std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion 
       bool const same_rule = chain.last.patch >= 0 && surface_of_patch[chain.last.patch] >= 0 &&
                              motion.patch[chain.last.patch].rule == key.second;
       if (whole_blocks.at(key).empty() && !same_rule) chain.last = {};
-      list.chains.push_back(std::move(chain));
+      list.chains.push_back({std::move(chain), c->across_gap});
     }
     lists.push_back(std::move(list));
   }
@@ -239,12 +253,12 @@ std::vector<int> slip_surface_numbers(Mesh const& mesh, BoundaryMotion const& mo
 }
 
 void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, std::vector<int> const& surface_of_patch,
-                  Known const& given, Plan& plan) {
+                  Known const& given, Gaps const& gaps, Plan& plan) {
   Mesh const& mesh = context.mesh;
   Topology const& topology = context.topology;
   if (plan.surfaces.empty()) return;
   Known const nothing(topology.lattice.n_classes());
-  std::vector<Candidate> candidates = find_candidates(mesh, topology, motion, surface_of_patch, plan.surfaces);
+  std::vector<Candidate> candidates = find_candidates(mesh, topology, motion, gaps, surface_of_patch, plan.surfaces);
   // A node on several surfaces is put on those of earlier passes and its own: each correction is spread along the lines
   // of its own rule.
   std::vector<int> surface_so_far(mesh.patches.size(), -1);
@@ -255,9 +269,17 @@ void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, std:
       if (list.rules.contains(motion.patch[p].rule)) surface_so_far[p] = surface_of_patch[p];
     while (!list.chains.empty()) {
       IndependentChains independent(topology, nothing);
-      std::vector<Chain> now, later;
-      for (Chain& chain : list.chains) (independent.add(chain) ? now : later).push_back(std::move(chain));
-      SpreadPass pass = build_spread(context, now, surface_so_far, given, plan);
+      std::vector<Chain> now;
+      std::vector<RuleChains::Entry> later;
+      bool const across_gap = list.chains.front().across_gap;
+      for (RuleChains::Entry& entry : list.chains)
+        if (entry.across_gap == across_gap && independent.add(entry.chain))
+          now.push_back(std::move(entry.chain));
+        else
+          later.push_back(std::move(entry));
+      // Zero slope at both ends keeps the first spacings at end walls; across a gap all cells share what it opens or closes by.
+      kernels::LineLaw const law = across_gap ? kernels::LineLaw::linear : kernels::LineLaw::c1;
+      SpreadPass pass = build_spread(context, now, law, surface_so_far, given, plan);
       std::map<std::pair<std::string, std::string>, int> ends;
       for (Chain const& chain : now) {
         auto name = [&](ChainEnd const& end) {
@@ -268,7 +290,8 @@ void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, std:
         ++ends[{name(chain.first), name(chain.last)}];
       }
       for (auto const& [who, count] : ends)
-        pass.description.push_back(std::to_string(count) + " chains from " + who.first + " to " + who.second);
+        pass.description.push_back(std::to_string(count) + " chains from " + who.first + " to " + who.second +
+                                   (across_gap ? ", across the gap" : ""));
       plan.spreads.push_back(std::move(pass));
       list.chains = std::move(later);
     }

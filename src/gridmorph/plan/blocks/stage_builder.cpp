@@ -301,7 +301,7 @@ double given_tolerance(std::vector<int> const& surfaces, Plan const& plan) {
 
 }  // namespace
 
-SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains,
+SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains, kernels::LineLaw law,
                         std::vector<int> const& surface_of_patch, Known const& given, Plan const& plan) {
   SpreadPass pass;
   Lattice const& lattice = context.topology.lattice;
@@ -312,8 +312,7 @@ SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& ch
     ChainLayout const layout = lay_out(context.topology, chain);
     int const number = int(pass.lines.chains.size());
     std::size_t const first_segment = pass.lines.segments.size();
-    // Zero slope at both ends: the first spacings at the end walls keep their size.
-    kernels::Chain device = device_chain(layout, kernels::LineLaw::c1, false);
+    kernels::Chain device = device_chain(layout, law, false);
     device.first_end_value = pass.lines.n_end_values;
     pass.lines.n_end_values += 2 * device.section_size();
     pass.lines.chains.push_back(device);
