@@ -24,8 +24,9 @@ _gridmorph() {
     -q | --quiet | --json | --dry-run | --optimise | --all | --match | --no-periodic | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
   esac
   case $previous in
-    -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out | --matching-tolerance | --open-faces) return ;;
-    -m | --motion) mapfile -t COMPREPLY < <(compgen -W "rotation chord all" -- "$current") ;;
+    -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --gap | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out | --matching-tolerance | --open-faces) return ;;
+    -m | --motion) mapfile -t COMPREPLY < <(compgen -W "rotation chord gap all" -- "$current") ;;
+    --tip) mapfile -t COMPREPLY < <(compgen -W "none flat squealer groove" -- "$current") ;;
     -d | --directory) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     -*) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
     *)

@@ -133,6 +133,17 @@ void add_rest_of_body(MeshSummary const& s, int body, std::vector<Role>& roles) 
   }
 }
 
+/// A wall of revolution that touches walls that move, and nothing beside them, is the tip of a blade, not an end wall.
+void add_tips(MeshSummary const& s, std::vector<Role>& roles) {
+  for (std::size_t b = 0; b < s.boundaries.size(); ++b) {
+    if (roles[b] != Role::end_wall) continue;
+    auto const& touches = s.boundaries[b].touches;
+    if (!touches.empty() &&
+        std::all_of(touches.begin(), touches.end(), [&](int t) { return roles[std::size_t(t)] == Role::moving; }))
+      roles[b] = Role::moving;
+  }
+}
+
 /// Boundaries of one role that are joined, directly or through each other: each group ascending.
 std::vector<std::vector<int>> joined(MeshSummary const& s, std::vector<Role> const& roles, Role role) {
   std::vector<std::vector<int>> out;
@@ -177,6 +188,7 @@ class Snippet {
     for (auto const& b : s.boundaries) roles_.push_back(role_of(b, s));
     for (std::size_t b = 0; b < s.boundaries.size(); ++b)
       if (is_kind(s.boundaries[b], PatchKind::degenerate)) roles_[b] = Role::paired;
+    if (s.axis) add_tips(s, roles_);
     if (std::find(roles_.begin(), roles_.end(), Role::moving) == roles_.end())
       if (int const body = most_like_a_body(s, roles_); body >= 0) {
         guessed_ = true;
@@ -190,6 +202,7 @@ class Snippet {
     for (std::size_t b = 0; any_body && b < roles_.size(); ++b)
       if (roles_[b] == Role::moving && looks_like(s.boundaries[b], "reaches round")) roles_[b] = Role::still;
     bodies_ = joined(s, roles_, Role::moving);
+    if (s.axis && !s.unstructured && !guessed_ && bodies_.size() == 1) blade_ = blade_of(bodies_.front());
   }
 
   std::string text() {
@@ -245,6 +258,18 @@ class Snippet {
     rule(names(body), comment, "rule = \"rigid\"\ntranslation = [0, 0, 0]");
   }
 
+  /// What stands on an end wall, of a body that is alone or has a tip as well; -1: nothing, or several.
+  [[nodiscard]] int blade_of(std::vector<int> const& body) const {
+    std::vector<int> standing;
+    for (int const b : body) {
+      auto const& boundary = s_.boundaries[std::size_t(b)];
+      bool const stands = std::any_of(boundary.touches.begin(), boundary.touches.end(),
+                                      [&](int t) { return roles_[std::size_t(t)] == Role::end_wall; });
+      if ((stands || body.size() == 1) && !looks_like(boundary, "surface of revolution")) standing.push_back(b);
+    }
+    return standing.size() == 1 ? standing.front() : -1;
+  }
+
   [[nodiscard]] bool meets_a_moving_one(int b) const {
     auto const& touches = s_.boundaries[std::size_t(b)].touches;
     return std::any_of(touches.begin(), touches.end(), [&](int t) { return roles_[std::size_t(t)] == Role::moving; });
@@ -261,9 +286,7 @@ class Snippet {
   [[nodiscard]] bool has_facets() const { return !s_.two_dimensional; }
 
   void others() {
-    bool const one_blade = s_.axis && !s_.unstructured && !guessed_ && bodies_.size() == 1 &&
-                           bodies_.front().size() == 1 &&
-                           !looks_like(s_.boundaries[std::size_t(bodies_.front().front())], "surface of revolution");
+    bool const one_blade = blade_ >= 0;
     std::vector<int> planes, surfaces, far, rest, ranked, slides;
     auto const sort_in = [&](int b, std::vector<int>& standing) {
       bool const meets = meets_a_moving_one(b);
@@ -284,7 +307,7 @@ class Snippet {
     for (int const b : of_role(Role::still)) sort_in(b, rest);
 
     rule(names(of_role(Role::end_wall)), "nodes slide on the wall", "rule = \"slip\"\nsurface = \"revolution\"");
-    std::string const of_blade = one_blade ? "\nof = " + toml_string(names(bodies_.front()).front()) : "";
+    std::string const of_blade = one_blade ? "\nof = " + toml_string(names({blade_}).front()) : "";
     rule(names(slides), "", "rule = \"circumferential-slide\"" + of_blade);
     if (one_blade && !s_.periodics.empty()) rule({"type:periodic"}, "", "rule = \"follow\"" + of_blade);
     rule(names(planes), "nodes slide on the plane", "rule = \"slip\"\nsurface = \"plane\"");
@@ -316,6 +339,8 @@ class Snippet {
     for (auto const& body : bodies_)
       for (int const b : body) {
         auto const& boundary = s_.boundaries[std::size_t(b)];
+        // Over a tip there is a gap, and no near field.
+        if (blade_ >= 0 && b != blade_) continue;
         all.push_back(b);
         if (boundary.cells_across > 0)
           across = across == 0 ? boundary.cells_across : std::min(across, boundary.cells_across);
@@ -336,6 +361,7 @@ class Snippet {
   std::vector<Role> roles_;
   std::vector<std::vector<int>> bodies_;  ///< moving boundaries that are joined
   bool guessed_ = false;
+  int blade_ = -1;                  ///< the one of a blade row
   std::vector<std::string> named_;  ///< patches that have a rule
   std::string text_;
 };

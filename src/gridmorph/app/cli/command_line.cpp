@@ -154,7 +154,11 @@ CLI::App* add_demo(CLI::App& app, CommandLine& out) {
       ->required();
   demo->add_option("-n,--nodes", out.demo_nodes, "passage, aircraft: nodes of the mesh (default 200000, 500000)")
       ->check(CLI::Range(Index(10'000), Index(400'000'000)));
-  demo->add_option("-m,--motion", out.demo_motion, "passage: rotation, chord, or all (default)");
+  demo->add_option("-m,--motion", out.demo_motion, "passage: rotation, chord, gap (with --tip), or all (default)");
+  demo->add_option(
+      "--tip", out.demo_tip,
+      "passage: flat, squealer or groove: the end of the blade below a gap; none (default): it reaches the case");
+  demo->add_option("--gap", out.demo_gap, "passage with --tip: height of the gap, in span (default 0.015)");
   demo->add_option("-e,--elements", out.demo_elements, "ball: elements of the mesh (default 500000)")
       ->check(CLI::Range(Index(50'000), Index(50'000'000)));
   demo->add_option("-a,--angle", out.demo_angle_deg,

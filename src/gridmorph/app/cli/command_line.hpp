@@ -49,6 +49,8 @@ struct CommandLine {
 
   std::string demo_name;
   std::optional<std::string> demo_motion;  ///< passage
+  std::optional<std::string> demo_tip;     ///< passage
+  std::optional<double> demo_gap;          ///< passage, in span
   std::optional<Index> demo_nodes;         ///< passage, aircraft
   std::optional<Index> demo_elements;      ///< ball
   std::optional<double> demo_angle_deg;    ///< ball

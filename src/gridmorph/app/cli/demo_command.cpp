@@ -40,12 +40,21 @@ int morph_demo(std::filesystem::path const& path, std::filesystem::path const& m
 }
 
 int demo_passage(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
+  PassageOptions passage;
+  passage.nodes = options.demo_nodes.value_or(passage.nodes);
+  passage.tip = blade_tip(options.demo_tip.value_or("none"));
+  bool const has_gap = passage.tip != BladeTip::none;
+  if (options.demo_gap && !has_gap) throw ConfigError("--gap goes with --tip flat, squealer or groove");
+  passage.tip_gap = options.demo_gap.value_or(passage.tip_gap);
   std::vector<PassageMotion> motions;
   std::string const motion = options.demo_motion.value_or("all");
   if (motion == "all")
     motions = {rotated_sections(), chord_redesign()};
   else
     motions = {passage_motion(motion)};
+  if (motion == "all" && has_gap) motions.push_back(gap_halved());
+  if (motion == gap_halved().name && !has_gap)
+    throw ConfigError("motion 'gap' goes with --tip flat, squealer or groove");
 
   std::vector<std::filesystem::path> outputs{folder / "passage.cgns"};
   for (auto const& m : motions) {
@@ -53,8 +62,6 @@ int demo_passage(CommandLine const& options, std::filesystem::path const& folder
     outputs.insert(outputs.end(), {f.displacement, f.case_file, f.morphed, report_of(f.morphed)});
   }
   check_demo_files(outputs);
-  PassageOptions passage;
-  passage.nodes = options.demo_nodes.value_or(passage.nodes);
   int status = done;
   for (std::size_t m = 0; m < motions.size(); ++m) {
     terminal.progress(fmt::format("making the passage mesh with {} nodes", passage.nodes));
@@ -117,6 +124,9 @@ namespace {
 
 int run_demo(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
   std::string const& name = options.demo_name;
+  std::vector<std::pair<char const*, bool>> const passage_options{{"--motion", options.demo_motion.has_value()},
+                                                                  {"--tip", options.demo_tip.has_value()},
+                                                                  {"--gap", options.demo_gap.has_value()}};
   if (name == "passage") {
     refuse_options_of(
         "ball", name,
@@ -124,20 +134,20 @@ int run_demo(CommandLine const& options, std::filesystem::path const& folder, Te
     return demo_passage(options, folder, terminal);
   }
   if (name == "ball") {
-    refuse_options_of("passage", name,
-                      {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
+    refuse_options_of("passage", name, {{"--nodes", options.demo_nodes.has_value()}});
+    refuse_options_of("passage", name, passage_options);
     return demo_ball(options, folder, terminal);
   }
   if (name == "aircraft") {
-    refuse_options_of("passage", name, {{"--motion", options.demo_motion.has_value()}});
+    refuse_options_of("passage", name, passage_options);
     refuse_options_of(
         "ball", name,
         {{"--elements", options.demo_elements.has_value()}, {"--angle", options.demo_angle_deg.has_value()}});
     return demo_aircraft(options, folder, terminal);
   }
   if (auto const& meshes = stand_in_names(); std::find(meshes.begin(), meshes.end(), name) != meshes.end()) {
-    refuse_options_of("passage", name,
-                      {{"--nodes", options.demo_nodes.has_value()}, {"--motion", options.demo_motion.has_value()}});
+    refuse_options_of("passage", name, {{"--nodes", options.demo_nodes.has_value()}});
+    refuse_options_of("passage", name, passage_options);
     refuse_options_of(
         "ball", name,
         {{"--elements", options.demo_elements.has_value()}, {"--angle", options.demo_angle_deg.has_value()}});
