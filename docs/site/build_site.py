@@ -19,7 +19,11 @@ def main():
     options = parser.parse_args()
     out = Path(options.out).resolve()
     environment = {**os.environ, "GRIDMORPH": os.path.abspath(options.gridmorph), "NO_MKDOCS_2_WARNING": "1", "PYTHONDONTWRITEBYTECODE": "1"}
-    built = subprocess.run([sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--clean", "-f", HERE / "mkdocs.yml", "-d", out], env=environment)
+    # Not --quiet: what is not said does not count as a warning.
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--clean", "-f", HERE / "mkdocs.yml", "-d", out]
+    built = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if built.returncode != 0:
+        print(built.stdout, file=sys.stderr)
     found = list(problems(out)) if built.returncode == 0 else []
     for line in found:
         print("site:", line, file=sys.stderr)

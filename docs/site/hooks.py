@@ -5,6 +5,7 @@ import posixpath
 import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import latex2mathml.converter
@@ -121,8 +122,13 @@ def command_line():
     if not program:
         raise PluginError("GRIDMORPH names no gridmorph executable, whose --help is a page of the site; scripts/docs sets it")
 
+    def wrapped(line):
+        indent = 34 if re.match(r"  [-\w]", line) else len(line) - len(line.lstrip())
+        return textwrap.fill(line, 84, subsequent_indent=" " * indent, break_on_hyphens=False) if len(line) > 84 and not line.startswith("  gridmorph ") else line
+
     def ask(*words):
-        return subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "100"}).stdout.rstrip()
+        said = subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True).stdout
+        return "\n".join(wrapped(line.replace(str(REPOSITORY / "docs"), "docs")) for line in said.rstrip().split("\n"))
 
     overview = ask()
     listed = overview[overview.index("Subcommands:"):]
