@@ -81,5 +81,26 @@ class KeysOfCaseFiles(unittest.TestCase):
             self.assertEqual(index.count(f"(case_file.md#{name})"), 1, name)
 
 
+class PagesOfAlgorithms(unittest.TestCase):
+    pages = sorted(path for path in (DOCS / "algorithms").glob("*.md") if path.name != "index.md")
+
+    def test_each_has_a_formula_or_rule_a_source_and_facts(self):
+        self.assertGreater(len(self.pages), 10)
+        for page in self.pages:
+            text = page.read_text(encoding="utf-8")
+            with self.subTest(page=page.name):
+                self.assertRegex(text, r"\n## (Formula|Rule|Steps)\n")
+                self.assertIn("\n## Source\n", text)
+                for fact in ("in", "out", "cost", "code", "test", "benchmark"):
+                    self.assertEqual(text.count(f"\n| {fact} | "), 1, fact)
+
+    def test_each_is_in_the_list_and_has_its_place(self):
+        index = (DOCS / "algorithms/index.md").read_text(encoding="utf-8")
+        places = (DOCS / "site/mkdocs.yml").read_text(encoding="utf-8")
+        for page in self.pages:
+            self.assertEqual(index.count(f"]({page.name})"), 1, page.name)
+            self.assertEqual(places.count(f"- algorithms/{page.name}\n"), 1, page.name)
+
+
 if __name__ == "__main__":
     unittest.main()
