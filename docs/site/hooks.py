@@ -18,6 +18,7 @@ from case_keys import index_page, with_anchors  # noqa: E402
 REPOSITORY = Path(__file__).resolve().parents[2]
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".toml": "toml", ".py": "python", ".cmake": "cmake", ".txt": "text", ".awk": "awk", ".csv": "text"}
 LINK = re.compile(r"(?<=\]\()(?![a-z]+:|#|/)([^)#\s]+)(?=[)#])")
+FILE_AS_TEXT = re.compile(r"\[(?:[\w./-]*/)?([\w-]+\.md)\](?=\(([^)#\s]*\1)(?:#[^)\s]*)?\))")
 CODE = re.compile(r"(^(`{3,}).*?^\2`*[ \t]*$|`[^`\n]+`)", re.M | re.S)
 FORMULA = re.compile(r'<(span|div) class="arithmatex">(\\\(|\\\[)(.*?)(\\\)|\\\])</\1>', re.S)
 HIDDEN = "---\nsearch:\n  exclude: true\n---\n"  # what the search would find too much of
@@ -102,7 +103,13 @@ def on_page_markdown(markdown, page, config, files):
             return match[0]
         return posixpath.relpath(page_of(target), folder or ".")
 
-    text = outside_code(markdown, lambda part: LINK.sub(in_site, part))
+    def title(match):
+        """Pages in place of files: what a repository's web view calls method.md is called by its title here."""
+        target = REPOSITORY / posixpath.normpath(posixpath.join(posixpath.dirname(here), match[2]))
+        first = target.read_text(encoding="utf-8").split("\n", 1)[0] if target.is_file() else ""
+        return f"[{first[2:]}]" if first.startswith("# ") else match[0]
+
+    text = outside_code(markdown, lambda part: LINK.sub(in_site, FILE_AS_TEXT.sub(title, part)))
     return with_anchors(text) if here == "docs/case_file.md" else text
 
 
