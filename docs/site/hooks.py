@@ -14,8 +14,8 @@ from mkdocs.structure.files import File
 
 sys.path.insert(0, str(Path(__file__).parent))
 from case_keys import index_page, with_anchors  # noqa: E402
+from named_files import NAMED_FILE, REPOSITORY, file_named  # noqa: E402
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".toml": "toml", ".py": "python", ".cmake": "cmake", ".txt": "text", ".awk": "awk", ".csv": "text"}
 LINK = re.compile(r"(?<=\]\()(?![a-z]+:|#|/)([^)#\s]+)(?=[)#])")
 FILE_AS_TEXT = re.compile(r"\[(?:[\w./-]*/)?([\w-]+\.md)\](?=\(([^)#\s]*\1)(?:#[^)\s]*)?\))")
@@ -48,11 +48,23 @@ def path_of(page):
     return page[len("repository/"):] if page.startswith("repository/") else f"docs/{page}"
 
 
+def without_fences(text, change):
+    """The text, with change(line) in place of all lines that are neither code blocks nor headings."""
+    inside, lines = False, text.split("\n")
+    for n, line in enumerate(lines):
+        fence = line.lstrip().startswith("```")
+        inside ^= fence
+        if not (inside or fence or line.startswith("#")):
+            lines[n] = change(line)
+    return "\n".join(lines)
+
+
 def links_of(path, text):
-    """Files and folders of the repository that Markdown at path links to."""
+    """Files and folders of the repository that Markdown at path links to, or names in code."""
     found = []
     outside_code(text, lambda part: found.extend(LINK.findall(part)) or part)
-    targets = (posixpath.normpath(posixpath.join(posixpath.dirname(path), link)) for link in found)
+    targets = [posixpath.normpath(posixpath.join(posixpath.dirname(path), link)) for link in found]
+    without_fences(text, lambda line: targets.extend(filter(None, map(file_named, NAMED_FILE.findall(line)))) or line)
     return [target for target in targets if not target.startswith("..") and (REPOSITORY / target).exists()]
 
 
@@ -94,7 +106,7 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, config, files):
-    """Links lead to where the site has what they name."""
+    """Links lead to where the site has what they name, and files that are named in code are links."""
     here, folder = path_of(page.file.src_uri), posixpath.dirname(page.file.src_uri)
 
     def in_site(match):
@@ -109,7 +121,12 @@ def on_page_markdown(markdown, page, config, files):
         first = target.read_text(encoding="utf-8").split("\n", 1)[0] if target.is_file() else ""
         return f"[{first[2:]}]" if first.startswith("# ") else match[0]
 
+    def linked(match):
+        target = file_named(match[1])
+        return f"[{match[0]}]({posixpath.relpath(page_of(target), folder or '.')})" if target else match[0]
+
     text = outside_code(markdown, lambda part: LINK.sub(in_site, FILE_AS_TEXT.sub(title, part)))
+    text = without_fences(text, lambda line: NAMED_FILE.sub(linked, line))
     return with_anchors(text) if here == "docs/case_file.md" else text
 
 

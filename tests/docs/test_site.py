@@ -8,6 +8,7 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 sys.path.insert(0, str(DOCS / "site"))
 from case_keys import anchor, index_page, rows, with_anchors  # noqa: E402
 from check_site import problems  # noqa: E402
+from named_files import NAMED_FILE, file_named  # noqa: E402
 
 PAGE = '<html><head><link rel="stylesheet" href="style.css"><script src="search.js"></script></head><body>{}<h1 id="top">A</h1></body></html>'
 
@@ -93,6 +94,11 @@ class PagesOfAlgorithms(unittest.TestCase):
                 self.assertIn("\n## Source\n", text)
                 for fact in ("in", "out", "cost", "code", "test", "benchmark"):
                     self.assertEqual(text.count(f"\n| {fact} | "), 1, fact)
+
+    def test_files_that_they_name_are_there(self):
+        named = {name for page in self.pages for name in NAMED_FILE.findall(page.read_text(encoding="utf-8"))}
+        self.assertGreater(len(named), 100)
+        self.assertEqual([name for name in sorted(named) if file_named(name) is None], [])
 
     def test_each_is_in_the_list_and_has_its_place(self):
         index = (DOCS / "algorithms/index.md").read_text(encoding="utf-8")
