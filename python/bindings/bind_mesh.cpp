@@ -82,6 +82,7 @@ void write_vtk_file(PyMesh const& self, std::string const& path, std::optional<V
 
 nb::list zones(PyMesh const& self) {
   nb::list out;
+  Index first_cell = 0;
   for (Zone const& zone : self.mesh->zones) {
     nb::dict d;
     d["name"] = zone.name;
@@ -89,6 +90,12 @@ nb::list zones(PyMesh const& self) {
         zone.is_block() ? nb::object(nb::make_tuple(zone.extent[0], zone.extent[1], zone.extent[2])) : nb::none();
     d["first_node"] = zone.first_node;
     d["n_nodes"] = zone.size();
+    Index const n_cells = self.mesh->is_structured()
+                              ? Index(zone.extent[0] - 1) * (zone.extent[1] - 1) * (zone.extent[2] - 1)
+                              : zone.n_elements;
+    d["first_cell"] = first_cell;
+    d["n_cells"] = n_cells;
+    first_cell += n_cells;
     out.append(d);
   }
   return out;
@@ -277,9 +284,9 @@ std::vector<std::string> match(PyMesh& self, double tolerance, bool periodic) {
 }  // namespace
 
 void bind_mesh(nb::module_& m) {
-  nb::class_<PyMesh>(m, "Mesh",
-                     "A mesh of blocks or of elements as it stands in a file, numbered as the file numbers it, from 0.")
-      .def_static("_read", &read)
+  nb::class_<PyMesh> mesh(m, "Mesh",
+                     "A mesh of blocks or of elements as it stands in a file, numbered as the file numbers it, from 0.");
+  mesh.def_static("_read", &read)
       .def_static("_from_blocks", &from_blocks)
       .def("_add_side_text", &add_side_text)
       .def("_write", &write, nb::arg("path"), nb::arg("coordinates").none())
@@ -299,7 +306,8 @@ void bind_mesh(nb::module_& m) {
           "notes", [](PyMesh const& s) { return s.mesh->notes; }, "What the reader skipped or assumed.")
       .def_prop_ro("families", [](PyMesh const& s) { return s.mesh->families; })
       .def_prop_ro("zones", &zones,
-                   "One dict per zone: name, shape (ni, nj, nk; None for elements), first_node, n_nodes.")
+                   "One dict per zone: name, shape (ni, nj, nk; None for elements), first_node, "
+                   "n_nodes, first_cell, n_cells.")
       .def_prop_ro("patches", &patches, "One dict per boundary condition: name, bc_type, kind, families, zone.")
       .def_prop_ro(
           "x", [](PyMesh const& s) { return component_array(s, 0); }, nb::rv_policy::reference,
@@ -317,12 +325,22 @@ void bind_mesh(nb::module_& m) {
           [](PyMesh const& s, Strings const& selectors) { return new_numbers(nodes_of(*s.mesh, selectors)); },
           nb::arg("patches"),
           "Nodes of the patches that selectors name, ascending, (n,) int64. Raises MotionError where one names none.")
+      .def(
+          "patch_numbers",
+          [](PyMesh const& s, Strings const& selectors) {
+            auto const numbers = select_patches(*s.mesh, selectors);
+            return new_numbers(std::vector<std::int64_t>(numbers.begin(), numbers.end()));
+          },
+          nb::arg("patches"),
+          "(k,) int64: places in `patches` of those that selectors name, ascending. Raises MotionError where one names "
+          "none.")
       .def("facets", &facets, nb::arg("patches"),
            "Faces of patches: (offsets, nodes), face f having nodes[offsets[f]:offsets[f + 1]] around it.")
       .def("__repr__", [](PyMesh const& s) {
         return "<gridmorph.Mesh '" + s.mesh->source + "': " + std::to_string(s.mesh->zones.size()) + " zones, " +
                std::to_string(s.mesh->n_nodes()) + " nodes>";
       });
+  bind_elements(mesh);
 }
 
 }  // namespace gridmorph::python

@@ -116,6 +116,8 @@ void bind_motion(nb::module_& m) {
           "input", [](PyMotion const& s) { return s.file.input.string(); }, "Mesh that the case file names.")
       .def_prop_ro(
           "output", [](PyMotion const& s) { return s.file.output.string(); }, "Output that it names, or ''.")
+      .def(
+          "copy", [](PyMotion const& s) { return s; }, "The same rules and options, for further ones to be added.")
       .def("__len__", [](PyMotion const& s) { return s.file.motion.rules.size(); })
       .def("__repr__", [](PyMotion const& s) {
         std::string text = "<gridmorph.Motion";

@@ -35,6 +35,21 @@ class PyPlan {
   [[nodiscard]] Index n_boundary() const { return Index(boundary_nodes_.size()); }
   [[nodiscard]] std::vector<std::int64_t> const& boundary_nodes() const { return boundary_nodes_; }
   [[nodiscard]] std::vector<std::string> notes() const { return plan_->notes(); }
+  /// Row of u, node of the mesh, patch, rotation: one of each for every place.
+  [[nodiscard]] nb::tuple places() const {
+    auto const found = plan_->boundary_places();
+    std::vector<std::int64_t> row, node, patch;
+    std::vector<double> rotation;
+    for (BoundaryPlace const& place : found) {
+      Zone const& zone = mesh_->zones[std::size_t(place.zone)];
+      row.push_back(place.boundary_node);
+      node.push_back(zone.is_block() ? zone.node(place.index) : zone.first_node + place.index[0]);
+      patch.push_back(place.patch);
+      for (auto const& line : place.rotation.m) rotation.insert(rotation.end(), std::begin(line), std::end(line));
+    }
+    return nb::make_tuple(new_numbers(std::move(row)), new_numbers(std::move(node)), new_numbers(std::move(patch)),
+                          nb::cast(new_numbers(std::move(rotation))).attr("reshape")(-1, 3, 3));
+  }
   [[nodiscard]] std::vector<Vec3> const& rules() const { return plan_->boundary_displacement(); }
   [[nodiscard]] std::vector<Vec3> rules(PyMotion const& motion) const {
     Call const call;
@@ -148,6 +163,12 @@ void bind_plan(nb::module_& m) {
       .def_prop_ro(
           "boundary_displacement", [](PyPlan const& p) { return as_array(p.rules()); }, nb::rv_policy::reference,
           "(m, 3): what the rules give them [length].")
+      .def_prop_ro("boundary_places", &PyPlan::places,
+                   "Where the rows of u lie: (row, node, patch, rotation), one entry for each patch that has the node "
+                   "and an explicit rule.\n\n"
+                   "row, node, patch: (k,) int64; nodes that coincide in several zones are one row and several "
+                   "entries. patch: number in Mesh.patches, -1 of a periodic connection. rotation (k, 3, 3): "
+                   "displacement of the row -> that of a periodic copy, else the identity.")
       .def(
           "boundary_displacement_of", [](PyPlan const& p, PyMotion const& motion) { return as_array(p.rules(motion)); },
           nb::arg("motion"),
@@ -159,6 +180,8 @@ void bind_plan(nb::module_& m) {
             return p.positions(u, out);
           },
           nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          nb::sig("def positions(self, u: numpy.typing.ArrayLike | None = None, *, out: numpy.typing.ArrayLike | None = "
+                  "None) -> numpy.typing.NDArray[numpy.float64]"),
           "(n, 3): x + displacements(u) of every node [length].")
       .def(
           "displacements",
@@ -167,6 +190,8 @@ void bind_plan(nb::module_& m) {
             return p.displacements(u, out);
           },
           nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          nb::sig("def displacements(self, u: numpy.typing.ArrayLike | None = None, *, out: numpy.typing.ArrayLike | "
+                  "None = None) -> numpy.typing.NDArray[numpy.float64]"),
           "(n, 3): displacement of every node [length].")
       .def(
           "velocities",
@@ -175,6 +200,8 @@ void bind_plan(nb::module_& m) {
             return p.velocities(rate, u, out);
           },
           nb::arg("rate"), nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          nb::sig("def velocities(self, rate: numpy.typing.ArrayLike, u: numpy.typing.ArrayLike | None = None, *, out: "
+                  "numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]"),
           "(n, 3): derivative of displacements() at u in the direction `rate` [length / time], exact.")
       .def(
           "transpose",
@@ -183,6 +210,8 @@ void bind_plan(nb::module_& m) {
             return p.transpose(gradient, u, out);
           },
           nb::arg("gradient"), nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          nb::sig("def transpose(self, gradient: numpy.typing.ArrayLike, u: numpy.typing.ArrayLike | None = None, *, "
+                  "out: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]"),
           "(m, 3): dJ/du of the boundary nodes from `gradient` = dJ/dx of all nodes (n, 3), at u: the exact transpose "
           "of velocities().");
 }

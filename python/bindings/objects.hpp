@@ -57,6 +57,7 @@ void check_vectors(Vectors const& v, Index n, char const* name, bool written = f
 /// Copies, in double.
 std::vector<Vec3> as_vectors(Vectors const& v, char const* name);
 
+void bind_elements(nb::class_<PyMesh>& mesh);
 void bind_mesh(nb::module_& m);
 void bind_motion(nb::module_& m);
 void bind_plan(nb::module_& m);

@@ -11,17 +11,27 @@
 Arrays are NumPy's: (n, 3), float64 or float32, any positive strides, lengths in units of the mesh. Nodes count from 0. Calls let other
 threads of Python run, and wait for one another. docs/python.md of the project has the rest.
 """
+from __future__ import annotations
+
 import json
 import os
+import typing
 
 import numpy
+import numpy.typing
 
+from . import _elements, _pyvista
 from ._core import (ConfigError, Error, IoError, MachineError, Mesh, MeshError, Motion, MotionError, Plan, PlanError,
                     __version__, kokkos_version, set_threads)
 
 __all__ = ["ConfigError", "Error", "IoError", "MachineError", "Mesh", "MeshError", "Motion", "MotionError", "Plan", "PlanError",
            "kokkos_version", "set_threads"]
 
+Path = typing.Union[str, "os.PathLike[str]"]
+Selectors = typing.Union[str, typing.Sequence[str]]
+Array = numpy.typing.NDArray[numpy.float64]
+ArrayLike = numpy.typing.ArrayLike
+Function = typing.Callable[[Array], ArrayLike]
 
 def _selectors(patches):
     return [patches] if isinstance(patches, str) else [str(p) for p in patches]
@@ -41,7 +51,7 @@ def _plain(value):
 # ---------------------------------------------------------------------------------------------------------------- meshes
 
 
-def _read(path, side_file=None, leave_out=()):
+def _read(path: Path, side_file: Path | None = None, leave_out: Selectors = ()) -> Mesh:
     """Reads a mesh: CGNS (HDF5, ADF), PLOT3D, SU2, OpenFOAM, Gmsh, VTK, UGRID, with the side file beside it or the one given.
 
     leave_out: bases and zones that are no part of the mesh, by name or glob. Raises IoError, MeshError, ConfigError.
@@ -49,7 +59,7 @@ def _read(path, side_file=None, leave_out=()):
     return Mesh._read(os.fspath(path), None if side_file is None else os.fspath(side_file), _selectors(leave_out))
 
 
-def _from_blocks(blocks, boundaries=None, match=True):
+def _from_blocks(blocks: typing.Mapping[str, ArrayLike], boundaries: dict[str, typing.Any] | None = None, match: bool = True) -> Mesh:
     """A structured mesh from arrays, with no file.
 
     blocks: {name: (ni, nj, nk, 3) array}, copied; indices i, j, k in the order of the array's axes.
@@ -66,12 +76,12 @@ def _from_blocks(blocks, boundaries=None, match=True):
     return mesh
 
 
-def _coordinates(self):
+def _coordinates(self) -> Array:
     """(n_nodes, 3) [length], a copy; x, y and z are the mesh's own."""
     return numpy.stack([self.x, self.y, self.z], axis=1)
 
 
-def _write(self, path, coordinates=None):
+def _write(self, path: Path, coordinates: ArrayLike | None = None) -> None:
     """Writes the mesh, with other coordinates (n_nodes, 3) where they are given.
 
     A mesh that was read comes out as its file, everything but the coordinates unchanged; others as a new CGNS file. The file appears whole or
@@ -80,12 +90,12 @@ def _write(self, path, coordinates=None):
     self._write(os.fspath(path), coordinates)
 
 
-def _write_vtk(self, path, coordinates=None):
+def _write_vtk(self, path: Path, coordinates: ArrayLike | None = None) -> None:
     """Writes a .vtu file for viewers, with the displacement where coordinates are given."""
     self._write_vtk(os.fspath(path), coordinates)
 
 
-def _quality(self, coordinates=None, *, fast=False, cells=False):
+def _quality(self, coordinates: ArrayLike | None = None, *, fast: bool = False, cells: bool = False) -> dict[str, typing.Any]:
     """Quality of the mesh, or of other coordinates (n_nodes, 3) against it, as the dict that JSON reports have.
 
     "inverted": cells that are inside out; "near_field" / "far_field" (everything is in the far field here), "walls"; with coordinates
@@ -101,15 +111,19 @@ def _quality(self, coordinates=None, *, fast=False, cells=False):
 
 Mesh.read = staticmethod(_read)
 Mesh.from_blocks = staticmethod(_from_blocks)
+Mesh.from_elements = staticmethod(_elements.from_elements)
+Mesh.elements = property(_elements.elements)
 Mesh.coordinates = property(_coordinates)
 Mesh.write = _write
 Mesh.write_vtk = _write_vtk
 Mesh.quality = _quality
+Mesh.to_pyvista = _pyvista.to_pyvista
+Mesh.patches_to_pyvista = _pyvista.patches_to_pyvista
 
 # --------------------------------------------------------------------------------------------------------------- motions
 
 
-def _read_motion(path):
+def _read_motion(path: Path) -> Motion:
     """The rules and options of a case file. Raises one ConfigError that lists every problem of it."""
     return Motion._read(os.fspath(path))
 
@@ -127,13 +141,13 @@ def _motion_text(tables, more):
     return tomli_w.dumps(ordered)
 
 
-def _function(self, patches, function, rank=0):
+def _function(self, patches: Selectors, function: Function, rank: int = 0) -> Motion:
     """Adds a rule: function(points (k, 3)) -> displacement (k, 3), of baseline positions, equal for equal points. Returns the motion."""
     self._function(_selectors(patches), function, rank)
     return self
 
 
-def _field(self, patches, points, displacement, rank=0, max_distance=0.0):
+def _field(self, patches: Selectors, points: ArrayLike, displacement: ArrayLike, rank: int = 0, max_distance: float = 0.0) -> Motion:
     """Adds a rule: displacements (k, 3) at points (k, 3), exact there and interpolated between. Returns the motion.
 
     max_distance: a node farther than that from every point is a MotionError; 0: no limit.
@@ -142,13 +156,14 @@ def _field(self, patches, points, displacement, rank=0, max_distance=0.0):
     return self
 
 
-def _rigid(self, patches, matrix=((1, 0, 0), (0, 1, 0), (0, 0, 1)), translation=(0, 0, 0), rank=0):
+def _rigid(self, patches: Selectors, matrix: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)), translation: ArrayLike = (0, 0, 0),
+           rank: int = 0) -> Motion:
     """Adds a rule: x' = matrix x + translation. Returns the motion."""
     self._rigid(_selectors(patches), numpy.ravel(matrix).astype(float).tolist(), numpy.ravel(translation).astype(float).tolist(), rank)
     return self
 
 
-def _prescribed(self, patches, rank=0):
+def _prescribed(self, patches: Selectors, rank: int = 0) -> Motion:
     """Adds a rule: whatever u of a plan's calls gives these nodes. Returns the motion."""
     self._prescribed(_selectors(patches), rank)
     return self
