@@ -79,8 +79,7 @@ void add_section(Mesh& mesh, Section const& section) {
   std::string const word(to_string(ElementType(type)));
   NodeList nodes(mesh.n_nodes(), word);
   for (std::size_t e = 0; e < table.shape(0); ++e)
-    mesh.add_element(ElementType(type),
-                     nodes({table.data() + e * table.shape(1), table.shape(1)}, e));
+    mesh.add_element(ElementType(type), nodes({table.data() + e * table.shape(1), table.shape(1)}, e));
 }
 
 /// Elements by their faces, in ascending order.

@@ -284,8 +284,8 @@ std::vector<std::string> match(PyMesh& self, double tolerance, bool periodic) {
 }  // namespace
 
 void bind_mesh(nb::module_& m) {
-  nb::class_<PyMesh> mesh(m, "Mesh",
-                     "A mesh of blocks or of elements as it stands in a file, numbered as the file numbers it, from 0.");
+  nb::class_<PyMesh> mesh(
+      m, "Mesh", "A mesh of blocks or of elements as it stands in a file, numbered as the file numbers it, from 0.");
   mesh.def_static("_read", &read)
       .def_static("_from_blocks", &from_blocks)
       .def("_add_side_text", &add_side_text)
@@ -305,10 +305,11 @@ void bind_mesh(nb::module_& m) {
       .def_prop_ro(
           "notes", [](PyMesh const& s) { return s.mesh->notes; }, "What the reader skipped or assumed.")
       .def_prop_ro("families", [](PyMesh const& s) { return s.mesh->families; })
-      .def_prop_ro("zones", &zones,
+      .def_prop_ro("zones", &zones, nb::sig("def zones(self) -> list[dict[str, typing.Any]]"),
                    "One dict per zone: name, shape (ni, nj, nk; None for elements), first_node, "
                    "n_nodes, first_cell, n_cells.")
-      .def_prop_ro("patches", &patches, "One dict per boundary condition: name, bc_type, kind, families, zone.")
+      .def_prop_ro("patches", &patches, nb::sig("def patches(self) -> list[dict[str, typing.Any]]"),
+                   "One dict per boundary condition: name, bc_type, kind, families, zone.")
       .def_prop_ro(
           "x", [](PyMesh const& s) { return component_array(s, 0); }, nb::rv_policy::reference,
           "(n_nodes,) [length], no copy.")
@@ -319,6 +320,8 @@ void bind_mesh(nb::module_& m) {
           "z", [](PyMesh const& s) { return component_array(s, 2); }, nb::rv_policy::reference,
           "(n_nodes,) [length], no copy.")
       .def("zone_coordinates", &zone_coordinates, nb::arg("zone"),
+           nb::sig("def zone_coordinates(self, zone: int) -> tuple[numpy.typing.NDArray[numpy.float64], "
+                   "numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]"),
            "x, y, z of a zone without a copy: (ni, nj, nk) of a block, (n,) of elements.")
       .def(
           "nodes_of",
@@ -335,6 +338,8 @@ void bind_mesh(nb::module_& m) {
           "(k,) int64: places in `patches` of those that selectors name, ascending. Raises MotionError where one names "
           "none.")
       .def("facets", &facets, nb::arg("patches"),
+           nb::sig("def facets(self, patches: typing.Sequence[str]) -> tuple[numpy.typing.NDArray[numpy.int64], "
+                   "numpy.typing.NDArray[numpy.int64]]"),
            "Faces of patches: (offsets, nodes), face f having nodes[offsets[f]:offsets[f + 1]] around it.")
       .def("__repr__", [](PyMesh const& s) {
         return "<gridmorph.Mesh '" + s.mesh->source + "': " + std::to_string(s.mesh->zones.size()) + " zones, " +

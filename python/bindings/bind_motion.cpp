@@ -101,6 +101,8 @@ void bind_motion(nb::module_& m) {
             new (self) PyMotion(parse(nb::cast<std::string>(text), "motion"));
           },
           nb::arg("tables").none() = nb::none(), nb::arg("more"),
+          nb::sig(
+              "def __init__(self, tables: typing.Mapping[str, typing.Any] | None = None, **more: typing.Any) -> None"),
           "Rules and options with the keys of case files (docs/case_file.md): {\"motion\": [{...}, ...], \"volume\": "
           "{...}, ...}, or tables as "
           "keywords.\n\nValues may be NumPy's. Further rules come by function(), field(), rigid() and prescribed(). "

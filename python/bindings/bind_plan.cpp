@@ -79,6 +79,23 @@ class PyPlan {
     });
   }
 
+  /// Seconds of displacements() as a C++ program calls it, on arrays of its own: what calls from Python are measured against.
+  [[nodiscard]] std::vector<double> native_times(int repeats) const {
+    Call const call;
+    Kokkos::View<double* [3], Kokkos::LayoutRight, Memory> const u("gridmorph::python::u", std::size_t(n_boundary()));
+    Kokkos::View<double* [3], Kokkos::LayoutRight, Memory> const d("gridmorph::python::d", std::size_t(n_nodes()));
+    In const in(u);
+    Out const out(d);
+    std::vector<double> seconds;
+    for (int r = 0; r < repeats; ++r) {
+      Kokkos::Timer const timer;
+      morpher_->displacements(exec_, in, out);
+      exec_.fence();
+      seconds.push_back(timer.seconds());
+    }
+    return seconds;
+  }
+
  private:
   using Memory = Exec::memory_space;
   using In = ConstVectorView<Memory>;
@@ -156,6 +173,9 @@ void bind_plan(nb::module_& m) {
            "Connects the zones, checks boundary and rules, plans. Raises MeshError, MotionError, PlanError.\n\n"
            "freeze_guard: what smoothing does to the rules' morph becomes a linear part of all morphs.")
       .def_prop_ro("n_nodes", &PyPlan::n_nodes)
+      .def(
+          "_native_times", [](PyPlan const& p, int repeats) { return new_numbers(p.native_times(repeats)); },
+          nb::arg("repeats"))
       .def_prop_ro("notes", &PyPlan::notes, "Defaults taken and facts found.")
       .def_prop_ro(
           "boundary_nodes", [](PyPlan const& p) { return new_numbers(p.boundary_nodes()); }, nb::rv_policy::reference,
@@ -164,6 +184,9 @@ void bind_plan(nb::module_& m) {
           "boundary_displacement", [](PyPlan const& p) { return as_array(p.rules()); }, nb::rv_policy::reference,
           "(m, 3): what the rules give them [length].")
       .def_prop_ro("boundary_places", &PyPlan::places,
+                   nb::sig("def boundary_places(self) -> tuple[numpy.typing.NDArray[numpy.int64], "
+                           "numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.int64], "
+                           "numpy.typing.NDArray[numpy.float64]]"),
                    "Where the rows of u lie: (row, node, patch, rotation), one entry for each patch that has the node "
                    "and an explicit rule.\n\n"
                    "row, node, patch: (k,) int64; nodes that coincide in several zones are one row and several "
@@ -180,8 +203,9 @@ void bind_plan(nb::module_& m) {
             return p.positions(u, out);
           },
           nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
-          nb::sig("def positions(self, u: numpy.typing.ArrayLike | None = None, *, out: numpy.typing.ArrayLike | None = "
-                  "None) -> numpy.typing.NDArray[numpy.float64]"),
+          nb::sig(
+              "def positions(self, u: numpy.typing.ArrayLike | None = None, *, out: numpy.typing.ArrayLike | None = "
+              "None) -> numpy.typing.NDArray[numpy.float64]"),
           "(n, 3): x + displacements(u) of every node [length].")
       .def(
           "displacements",

@@ -27,11 +27,13 @@ from ._core import (ConfigError, Error, IoError, MachineError, Mesh, MeshError, 
 __all__ = ["ConfigError", "Error", "IoError", "MachineError", "Mesh", "MeshError", "Motion", "MotionError", "Plan", "PlanError",
            "kokkos_version", "set_threads"]
 
-Path = typing.Union[str, "os.PathLike[str]"]
-Selectors = typing.Union[str, typing.Sequence[str]]
-Array = numpy.typing.NDArray[numpy.float64]
-ArrayLike = numpy.typing.ArrayLike
-Function = typing.Callable[[Array], ArrayLike]
+def _attach(owner, **members):
+    """Makes functions of Python methods of a compiled class, which help() and type stubs then show like its own."""
+    for name, member in members.items():
+        for part in (member.fget,) if isinstance(member, property) else {member, getattr(member, "__func__", member)}:
+            part.__module__, part.__name__, part.__qualname__ = owner.__module__, name, f"{owner.__name__}.{name}"
+        setattr(owner, name, member)
+
 
 def _selectors(patches):
     return [patches] if isinstance(patches, str) else [str(p) for p in patches]
@@ -51,7 +53,7 @@ def _plain(value):
 # ---------------------------------------------------------------------------------------------------------------- meshes
 
 
-def _read(path: Path, side_file: Path | None = None, leave_out: Selectors = ()) -> Mesh:
+def _read(path: str | os.PathLike[str], side_file: str | os.PathLike[str] | None = None, leave_out: str | typing.Sequence[str] = ()) -> Mesh:
     """Reads a mesh: CGNS (HDF5, ADF), PLOT3D, SU2, OpenFOAM, Gmsh, VTK, UGRID, with the side file beside it or the one given.
 
     leave_out: bases and zones that are no part of the mesh, by name or glob. Raises IoError, MeshError, ConfigError.
@@ -59,7 +61,7 @@ def _read(path: Path, side_file: Path | None = None, leave_out: Selectors = ()) 
     return Mesh._read(os.fspath(path), None if side_file is None else os.fspath(side_file), _selectors(leave_out))
 
 
-def _from_blocks(blocks: typing.Mapping[str, ArrayLike], boundaries: dict[str, typing.Any] | None = None, match: bool = True) -> Mesh:
+def _from_blocks(blocks: typing.Mapping[str, numpy.typing.ArrayLike], boundaries: dict[str, typing.Any] | None = None, match: bool = True) -> Mesh:
     """A structured mesh from arrays, with no file.
 
     blocks: {name: (ni, nj, nk, 3) array}, copied; indices i, j, k in the order of the array's axes.
@@ -76,12 +78,12 @@ def _from_blocks(blocks: typing.Mapping[str, ArrayLike], boundaries: dict[str, t
     return mesh
 
 
-def _coordinates(self) -> Array:
+def _coordinates(self) -> numpy.typing.NDArray[numpy.float64]:
     """(n_nodes, 3) [length], a copy; x, y and z are the mesh's own."""
     return numpy.stack([self.x, self.y, self.z], axis=1)
 
 
-def _write(self, path: Path, coordinates: ArrayLike | None = None) -> None:
+def _write(self, path: str | os.PathLike[str], coordinates: numpy.typing.ArrayLike | None = None) -> None:
     """Writes the mesh, with other coordinates (n_nodes, 3) where they are given.
 
     A mesh that was read comes out as its file, everything but the coordinates unchanged; others as a new CGNS file. The file appears whole or
@@ -90,12 +92,12 @@ def _write(self, path: Path, coordinates: ArrayLike | None = None) -> None:
     self._write(os.fspath(path), coordinates)
 
 
-def _write_vtk(self, path: Path, coordinates: ArrayLike | None = None) -> None:
+def _write_vtk(self, path: str | os.PathLike[str], coordinates: numpy.typing.ArrayLike | None = None) -> None:
     """Writes a .vtu file for viewers, with the displacement where coordinates are given."""
     self._write_vtk(os.fspath(path), coordinates)
 
 
-def _quality(self, coordinates: ArrayLike | None = None, *, fast: bool = False, cells: bool = False) -> dict[str, typing.Any]:
+def _quality(self, coordinates: numpy.typing.ArrayLike | None = None, *, fast: bool = False, cells: bool = False) -> dict[str, typing.Any]:
     """Quality of the mesh, or of other coordinates (n_nodes, 3) against it, as the dict that JSON reports have.
 
     "inverted": cells that are inside out; "near_field" / "far_field" (everything is in the far field here), "walls"; with coordinates
@@ -109,21 +111,14 @@ def _quality(self, coordinates: ArrayLike | None = None, *, fast: bool = False, 
     return report
 
 
-Mesh.read = staticmethod(_read)
-Mesh.from_blocks = staticmethod(_from_blocks)
-Mesh.from_elements = staticmethod(_elements.from_elements)
-Mesh.elements = property(_elements.elements)
-Mesh.coordinates = property(_coordinates)
-Mesh.write = _write
-Mesh.write_vtk = _write_vtk
-Mesh.quality = _quality
-Mesh.to_pyvista = _pyvista.to_pyvista
-Mesh.patches_to_pyvista = _pyvista.patches_to_pyvista
+_attach(Mesh, read=staticmethod(_read), from_blocks=staticmethod(_from_blocks), from_elements=staticmethod(_elements.from_elements),
+        elements=property(_elements.elements), coordinates=property(_coordinates), write=_write, write_vtk=_write_vtk, quality=_quality,
+        to_pyvista=_pyvista.to_pyvista, patches_to_pyvista=_pyvista.patches_to_pyvista)
 
 # --------------------------------------------------------------------------------------------------------------- motions
 
 
-def _read_motion(path: Path) -> Motion:
+def _read_motion(path: str | os.PathLike[str]) -> Motion:
     """The rules and options of a case file. Raises one ConfigError that lists every problem of it."""
     return Motion._read(os.fspath(path))
 
@@ -141,13 +136,13 @@ def _motion_text(tables, more):
     return tomli_w.dumps(ordered)
 
 
-def _function(self, patches: Selectors, function: Function, rank: int = 0) -> Motion:
+def _function(self, patches: str | typing.Sequence[str], function: typing.Callable[[numpy.typing.NDArray[numpy.float64]], numpy.typing.ArrayLike], rank: int = 0) -> Motion:
     """Adds a rule: function(points (k, 3)) -> displacement (k, 3), of baseline positions, equal for equal points. Returns the motion."""
     self._function(_selectors(patches), function, rank)
     return self
 
 
-def _field(self, patches: Selectors, points: ArrayLike, displacement: ArrayLike, rank: int = 0, max_distance: float = 0.0) -> Motion:
+def _field(self, patches: str | typing.Sequence[str], points: numpy.typing.ArrayLike, displacement: numpy.typing.ArrayLike, rank: int = 0, max_distance: float = 0.0) -> Motion:
     """Adds a rule: displacements (k, 3) at points (k, 3), exact there and interpolated between. Returns the motion.
 
     max_distance: a node farther than that from every point is a MotionError; 0: no limit.
@@ -156,21 +151,17 @@ def _field(self, patches: Selectors, points: ArrayLike, displacement: ArrayLike,
     return self
 
 
-def _rigid(self, patches: Selectors, matrix: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)), translation: ArrayLike = (0, 0, 0),
+def _rigid(self, patches: str | typing.Sequence[str], matrix: numpy.typing.ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)), translation: numpy.typing.ArrayLike = (0, 0, 0),
            rank: int = 0) -> Motion:
     """Adds a rule: x' = matrix x + translation. Returns the motion."""
     self._rigid(_selectors(patches), numpy.ravel(matrix).astype(float).tolist(), numpy.ravel(translation).astype(float).tolist(), rank)
     return self
 
 
-def _prescribed(self, patches: Selectors, rank: int = 0) -> Motion:
+def _prescribed(self, patches: str | typing.Sequence[str], rank: int = 0) -> Motion:
     """Adds a rule: whatever u of a plan's calls gives these nodes. Returns the motion."""
     self._prescribed(_selectors(patches), rank)
     return self
 
 
-Motion.read = staticmethod(_read_motion)
-Motion.function = _function
-Motion.field = _field
-Motion.rigid = _rigid
-Motion.prescribed = _prescribed
+_attach(Motion, read=staticmethod(_read_motion), function=_function, field=_field, rigid=_rigid, prescribed=_prescribed)

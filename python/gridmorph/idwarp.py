@@ -22,7 +22,13 @@ Names, shapes and orders are IDWarp's. What differs:
 - Every process of `comm` holds the whole mesh; surface points and the solver's nodes are shared out as IDWarp has them.
 - Files: whatever gridmorph reads (docs/formats.md), by its content; "fileType" is not needed.
 """
+from __future__ import annotations
+
+import os
+import typing
+
 import numpy
+import numpy.typing
 
 from . import ConfigError, Mesh, Motion, Plan
 from ._surface_points import SlipPlanes, SurfacePoints, coincident
@@ -51,8 +57,8 @@ class USMesh:
 
     options: IDWarp's, upper or lower case: gridFile (a path, or a gridmorph.Mesh), specifiedSurfaces (families or names of boundary
       conditions that move; None: all walls), symmetrySurfaces (names of those that slip on their plane), symmetryPlanes
-      ([[point, normal], ...]: patches in one of these slip on it, other symmetry planes are free; []: all are free), and those of its method, which have no
-      effect.
+      ([[point, normal], ...]: patches in one of these slip on it, other symmetry planes are free; []: all are free), and those of its
+      method, which have no effect.
     comm: an MPI communicator of mpi4py; None: this process alone. debug: taken, without effect.
     tables: tables of a case file (docs/case_file.md) as a dict, for rules of other patches and how the volume is morphed.
     freeze_guard: as in gridmorph.Plan, for the rules of the tables.
@@ -60,7 +66,8 @@ class USMesh:
     Raises ConfigError, IoError, MeshError, MotionError, PlanError. The plan is made at the first call that needs it.
     """
 
-    def __init__(self, options=None, comm=None, debug=False, *, tables=None, freeze_guard=False):
+    def __init__(self, options: typing.Mapping[str, typing.Any] | None = None, comm: typing.Any = None, debug: bool = False, *,
+                 tables: typing.Mapping[str, typing.Any] | None = None, freeze_guard: bool = False) -> None:
         if options is None:
             raise ConfigError("USMesh: options is no option; give a dict with gridFile")
         self.options = {**_OPTIONS, **_OF_ITS_METHOD}
@@ -81,11 +88,11 @@ class USMesh:
 
     # -------------------------------------------------------------------------------------------------------------- options
 
-    def getOption(self, name):
+    def getOption(self, name: str) -> typing.Any:
         """The value of an option."""
         return self.options[self._option(name)]
 
-    def setOption(self, name, value):
+    def setOption(self, name: str, value: typing.Any) -> None:
         """Sets an option, before the first call that needs the surface."""
         self.options[self._option(name)] = value
 
@@ -193,7 +200,7 @@ class USMesh:
         self._connectivity = (numpy.asarray(conn).ravel(), numpy.asarray(face_sizes).ravel())
         self._grid = self._baseline
 
-    def setSurfaceDefinition(self, pts, conn, faceSizes, cgnsBlockID=None):
+    def setSurfaceDefinition(self, pts: numpy.typing.ArrayLike, conn: numpy.typing.ArrayLike, faceSizes: numpy.typing.ArrayLike, cgnsBlockID: object = None) -> None:
         """The surface as a solver has it: pts (M, 3) of this process [length], each a node of the mesh; conn, faceSizes: nodes of its faces.
 
         Patches (of the surfaces in the options) move of which all nodes are among the points. cgnsBlockID: taken, without effect. Raises
@@ -208,26 +215,26 @@ class USMesh:
         numbers = self._make_plan(lambda of_patch: bool(has_point[of_patch].all()))
         self._set_points(points, conn, faceSizes, numbers, "setSurfaceDefinition")
 
-    def setSurfaceDefinitionFromFile(self, surfFile):
+    def setSurfaceDefinitionFromFile(self, surfFile: str | os.PathLike[str]) -> None:
         """setSurfaceDefinition() with the points of a multi-block PLOT3D surface file (text)."""
         points, conn = _plot3d_surface(surfFile) if self.comm.rank == 0 else (numpy.zeros((0, 3)), numpy.zeros((0, 4), int))
         self.setSurfaceDefinition(points, conn, numpy.full(len(conn), 4))
 
-    def setSurfaceFromFile(self, surfFile):
+    def setSurfaceFromFile(self, surfFile: str | os.PathLike[str]) -> None:
         """setSurfaceCoordinates() with the points of such a file, of the blocks of setSurfaceDefinitionFromFile()."""
         self.setSurfaceCoordinates(_plot3d_surface(surfFile)[0] if self.comm.rank == 0 else numpy.zeros((0, 3)))
 
-    def getSurfaceCoordinates(self):
+    def getSurfaceCoordinates(self) -> numpy.typing.NDArray[numpy.float64]:
         """(N, 3) [length]: the surface as it is now. Of several processes each has its own points, (0, 3) where it has none."""
         self._ensure_surface()
         return self._current.copy()
 
-    def getSurfaceConnectivity(self):
+    def getSurfaceConnectivity(self) -> tuple[numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.int64]]:
         """(conn, faceSizes): the faces of the surface, conn (sum of faceSizes,) numbering the rows of getSurfaceCoordinates() from 0."""
         self._ensure_surface()
         return tuple(part.copy() for part in self._connectivity)
 
-    def setSurfaceCoordinates(self, coordinates):
+    def setSurfaceCoordinates(self, coordinates: numpy.typing.ArrayLike) -> None:
         """Where the surface shall be, (N, 3) [length], in the order of getSurfaceCoordinates(). warpMesh() moves the mesh."""
         self._ensure_surface()
         self._current = self._rows(coordinates, "coordinates").copy()
@@ -244,12 +251,12 @@ class USMesh:
 
     # ----------------------------------------------------------------------------------------------------------------- volume
 
-    def warpMesh(self):
+    def warpMesh(self) -> None:
         """Moves all nodes along with the surface."""
         self._ensure_surface()
         self._grid = self.plan.positions(self._boundary(self._current - self._points))
 
-    def setExternalMeshIndices(self, ind):
+    def setExternalMeshIndices(self, ind: numpy.typing.ArrayLike) -> None:
         """Which numbers of the mesh this process's solver has, in its order: (ndof,) int, 3 n + component (0, 1, 2) for node n, from 0.
 
         That is what getSolverMeshIndices() of ADflow gives. Nodes count through the zones of the file, i fastest.
@@ -261,15 +268,15 @@ class USMesh:
                               f"{3 * self.mesh.n_nodes - 1} are coordinates of it")
         self._indices = ind
 
-    def getSolverGrid(self):
+    def getSolverGrid(self) -> numpy.typing.NDArray[numpy.float64]:
         """(ndof,) [length]: the mesh as it is now, in the order of setExternalMeshIndices(); without that, of getCommonGrid()."""
         return self._to_solver(self._grid)
 
-    def getCommonGrid(self):
+    def getCommonGrid(self) -> numpy.typing.NDArray[numpy.float64]:
         """(3 n,) [length]: the mesh as it is now, x y z of each node, in the order of the file."""
         return self._grid.ravel().copy()
 
-    def getWarpGrid(self):
+    def getWarpGrid(self) -> numpy.typing.NDArray[numpy.float64]:
         """The same as getCommonGrid(): no other order is kept."""
         return self.getCommonGrid()
 
@@ -291,23 +298,24 @@ class USMesh:
 
     # ------------------------------------------------------------------------------------------------------------- derivatives
 
-    def warpDeriv(self, dXv, solverVec=True):
+    def warpDeriv(self, dXv: numpy.typing.ArrayLike, solverVec: bool = True) -> None:
         """dJ/dXs of the surface from dXv = dJ/dx (ndof,) of the solver's mesh; getdXs() has it.
 
-        solverVec False: dXv (3 n,) or (n, 3) is in the order of the file, on each process a part of the sum. Exact, at the current surface coordinates. Cost: about one warpMesh().
+        solverVec False: dXv (3 n,) or (n, 3) is in the order of the file, on each process a part of the sum. Exact, at the current surface
+        coordinates. Cost: about one warpMesh().
         """
         self._ensure_surface()
         u = self._boundary(self._current - self._points)
         gradient = self.plan.transpose(self._from_solver(dXv, solverVec), u)
         self._dXs = self._map.to_points(self._planes.project(gradient, transpose=True))[self._mine]
 
-    def getdXs(self):
+    def getdXs(self) -> numpy.typing.NDArray[numpy.float64]:
         """(N, 3): what the last warpDeriv() found, in the order of getSurfaceCoordinates()."""
         if self._dXs is None:
             raise ConfigError("getdXs: no warpDeriv() yet; call it first")
         return self._dXs.copy()
 
-    def warpDerivFwd(self, dXs, solverVec=True):
+    def warpDerivFwd(self, dXs: numpy.typing.ArrayLike, solverVec: bool = True) -> numpy.typing.NDArray[numpy.float64]:
         """(ndof,): how the mesh moves where the surface coordinates move by dXs (N, 3), to first order; exact, at the current ones.
 
         solverVec False: (3 n,), in the order of the file.
@@ -317,7 +325,8 @@ class USMesh:
         moved = self.plan.velocities(self._boundary(self._rows(dXs, "dXs")), u)
         return self._to_solver(moved) if solverVec else moved.ravel()
 
-    def verifyWarpDeriv(self, dXv=None, solverVec=True, dofStart=0, dofEnd=10, h=1e-6, randomSeed=314):
+    def verifyWarpDeriv(self, dXv: numpy.typing.ArrayLike | None = None, solverVec: bool = True, dofStart: int = 0, dofEnd: int = 10,
+                        h: float = 1e-6, randomSeed: int = 314) -> float:
         """Compares warpDeriv() with centred differences for numbers dofStart to dofEnd - 1 of the surface coordinates; prints both.
 
         dXv: as there; None: random, of `randomSeed`. h: step, of the size of the surface. Returns the largest difference, of the largest
@@ -345,7 +354,7 @@ class USMesh:
 
     # ------------------------------------------------------------------------------------------------------------------ output
 
-    def writeGrid(self, fileName=None):
+    def writeGrid(self, fileName: str | os.PathLike[str] | None = None) -> None:
         """Writes the mesh as it is now, in the format of gridFile (docs/formats.md). Without a name: back into an OpenFOAM case alone."""
         if fileName is None:
             if str(self.getOption("fileType")).lower() != "openfoam":

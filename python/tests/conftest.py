@@ -1,6 +1,8 @@
-"""Meshes and examples of the project."""
+"""Meshes and examples of the project, and elements that several tests take."""
+import importlib.util
 import pathlib
 
+import numpy as np
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -12,5 +14,21 @@ def meshes():
 
 
 @pytest.fixture(scope="session")
-def examples():
-    return ROOT / "examples" / "python"
+def example():
+    """example(name): the example as a module."""
+    def load(name):
+        spec = importlib.util.spec_from_file_location(name, ROOT / "examples" / "python" / f"{name}.py")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return module
+
+    return load
+
+
+@pytest.fixture(scope="session")
+def pentagonal_prism():
+    """Points of a prism of five sides and radius and height 1, and its faces, which look outwards."""
+    angle = 2 * np.pi * np.arange(5) / 5
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    points = np.concatenate([np.c_[ring, np.zeros(5)], np.c_[ring, np.ones(5)]])
+    return points, [[4, 3, 2, 1, 0], [5, 6, 7, 8, 9]] + [[i, (i + 1) % 5, 5 + (i + 1) % 5, 5 + i] for i in range(5)]

@@ -80,11 +80,8 @@ def test_polyhedra_by_their_faces_are_the_elements_they_are():
     assert mesh.quality()["inverted"] == 0
 
 
-def test_a_prism_of_five_sides_stays_a_polyhedron():
-    angle = 2 * np.pi * np.arange(5) / 5
-    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    points = np.concatenate([np.c_[ring, np.zeros(5)], np.c_[ring, np.ones(5)]])
-    faces = [[4, 3, 2, 1, 0], [5, 6, 7, 8, 9]] + [[i, (i + 1) % 5, 5 + (i + 1) % 5, 5 + i] for i in range(5)]
+def test_a_prism_of_five_sides_stays_a_polyhedron(pentagonal_prism):
+    points, faces = pentagonal_prism
     offsets = np.cumsum([0] + [len(f) for f in faces])
     mesh = gridmorph.Mesh.from_elements(points, faces=(offsets, np.concatenate(faces), np.zeros(7, int), -np.ones(7, int)),
                                         patches={"walls": faces})

@@ -1,6 +1,4 @@
 """The component of OpenMDAO, and the optimisation that uses it."""
-import sys
-
 import numpy as np
 import pytest
 
@@ -112,14 +110,9 @@ def test_patches_that_nothing_names_are_refused():
 
 
 @pytest.fixture(scope="module")
-def torsion(examples):
+def torsion(example):
     pytest.importorskip("scipy")
-    sys.path.insert(0, str(examples))
-    try:
-        import torsion_optimum
-    finally:
-        sys.path.remove(str(examples))
-    return torsion_optimum
+    return example("torsion_optimum")
 
 
 def test_partials_of_the_torsion_example(torsion):

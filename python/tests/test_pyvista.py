@@ -62,11 +62,8 @@ def test_elements_have_the_volume_that_vtk_sees(kind):
     np.testing.assert_allclose(grid.compute_cell_sizes()["Volume"], volume, rtol=1e-12)
 
 
-def test_polyhedra_are_polyhedra():
-    angle = 2 * np.pi * np.arange(5) / 5
-    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    points = np.concatenate([np.c_[ring, np.zeros(5)], np.c_[ring, np.ones(5)]])
-    faces = [[4, 3, 2, 1, 0], [5, 6, 7, 8, 9]] + [[i, (i + 1) % 5, 5 + (i + 1) % 5, 5 + i] for i in range(5)]
+def test_polyhedra_are_polyhedra(pentagonal_prism):
+    points, faces = pentagonal_prism
     offsets = np.cumsum([0] + [len(f) for f in faces])
     mesh = gridmorph.Mesh.from_elements(np.concatenate([points, [[0, 0, 2.0]]]), [("TETRA_4", [[5, 6, 7, 10]])], {"walls": faces},
                                         faces=(offsets, np.concatenate(faces), np.zeros(7, int), -np.ones(7, int)))

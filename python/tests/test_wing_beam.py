@@ -1,18 +1,11 @@
 """The coupling example at a small size."""
-import sys
-
 import numpy as np
 import pytest
 
 
 @pytest.fixture(scope="module")
-def wing_beam(examples):
-    sys.path.insert(0, str(examples))
-    try:
-        import wing_beam
-    finally:
-        sys.path.remove(str(examples))
-    return wing_beam
+def wing_beam(example):
+    return example("wing_beam")
 
 
 def test_the_beam_has_the_frequencies_and_deflections_of_a_uniform_one(wing_beam):
@@ -22,16 +15,18 @@ def test_the_beam_has_the_frequencies_and_deflections_of_a_uniform_one(wing_beam
     q = np.zeros_like(beam.q)
     q[3:] = np.linalg.solve(beam.K[3:, 3:], beam.load(100.0, 0.0)[3:])
     assert q[-3] == pytest.approx(100.0 * 10**4 / (8 * EI), rel=1e-9)
-    beam.MASS_OFFSET = 0.0
     mass = 1.5 * beam.DENSITY * 2 * wall * (wide + high)
+
     class Uncoupled(wing_beam.Beam):
         MASS_OFFSET = 0.0
+
     assert Uncoupled(10.0, 1.0, 1.0, 24).frequencies[0] == pytest.approx(1.875104**2 / (2 * np.pi) * np.sqrt(EI / (mass * 10**4)), rel=1e-4)
 
 
 def test_newmark_keeps_energy_without_damping(wing_beam):
     class Undamped(wing_beam.Beam):
         DAMPING = 0.0
+
     beam = Undamped(10.0, 2.0, 1.0, 8)
     beam.v[3:] = np.random.default_rng(0).standard_normal(len(beam.v) - 3)
     beam.a[3:] = np.linalg.solve(beam.M[3:, 3:], -(beam.K @ beam.q)[3:])
