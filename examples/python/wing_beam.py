@@ -213,9 +213,13 @@ def run(mesh_path, steps=48, periods=1.5, lift=30e3, moment=-6e3, layers=10):
     motion = gridmorph.Motion({"boundary_layer": [{"walls": ["wall"], "extent": {"layers": layers}}]}).prescribed("wall")
     plan = gridmorph.Plan(mesh, motion)
 
-    # The rows of u that are the wing's.
-    row, _, patch, _ = plan.boundary_places
-    wall = np.unique(row[np.isin(patch, mesh.patch_numbers(["wall"]))])
+    # The rows of u that are the wing's, and the edges of its faces between them.
+    row, node, patch, _ = plan.boundary_places
+    on_wall = np.isin(patch, mesh.patch_numbers(["wall"]))
+    wall = np.unique(row[on_wall])
+    row_of = np.full(mesh.n_nodes, -1)
+    row_of[node[on_wall]] = np.searchsorted(wall, row[on_wall])
+    quads = row_of[mesh.facets(["wall"])[1]].reshape(-1, 4)
     points = mesh.coordinates[plan.boundary_nodes[wall]]
 
     # The beam runs through the middle of the wing, 0.4 chords behind its leading edge.
@@ -252,7 +256,8 @@ def run(mesh_path, steps=48, periods=1.5, lift=30e3, moment=-6e3, layers=10):
                      "smallest volume ratio in the step": ratio, "conservation, swept": exact, "conservation, velocity": by_velocity})
         shapes.append(wing.displacement(beam.q))
         x = moved
-    return rows, {"points": points, "shapes": shapes, "dt": dt, "frequencies": beam.frequencies[:3], "span": tip - root}
+    edges = np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)])
+    return rows, {"points": points, "edges": np.unique(np.sort(edges, axis=1), axis=0), "shapes": shapes, "dt": dt, "frequencies": beam.frequencies[:3], "span": tip - root}
 
 
 def draw(rows, seen, out):
@@ -260,6 +265,7 @@ def draw(rows, seen, out):
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.collections import LineCollection
 
     time = [r["time [s]"] for r in rows]
     figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(7, 5))
@@ -269,14 +275,15 @@ def draw(rows, seen, out):
     lower.set(ylabel="twist of the tip [deg]", xlabel="time [s]")
     figure.savefig(out / "tip.png", dpi=120)
 
-    figure, ax = plt.subplots(figsize=(8, 4))
-    p = seen["points"]
-    for n in np.linspace(0, len(seen["shapes"]) - 1, 5).astype(int):
-        d = seen["shapes"][n]
-        ax.plot(p[:, 2] + d[:, 2], p[:, 1] + d[:, 1], ".", ms=1, label=f"{n * seen['dt']:.2f} s")
-    ax.set(xlabel="along the span [m]", ylabel="up [m]", aspect="equal")
-    ax.legend(markerscale=8)
-    figure.savefig(out / "front.png", dpi=120)
+    figure, ax = plt.subplots(figsize=(9, 3.2))
+    for number, n in enumerate(np.linspace(0, len(seen["shapes"]) - 1, 5).astype(int)):
+        moved = (seen["points"] + seen["shapes"][n])[:, [2, 1]]
+        ax.add_collection(LineCollection(moved[seen["edges"]], linewidths=0.3, colors=f"C{number}"))
+        ax.plot([], [], color=f"C{number}", label=f"{n * seen['dt']:.2f} s")
+    ax.autoscale_view()
+    ax.set(xlabel="along the span [m]", ylabel="up [m]", aspect="equal", title="the wing from the front")
+    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    figure.savefig(out / "front.png", dpi=120, bbox_inches="tight")
 
     figure, ax = plt.subplots(figsize=(7, 4))
     ax.semilogy(time, [r["conservation, swept"] for r in rows], label="swept volumes")

@@ -14,10 +14,10 @@ def meshes():
 
 
 @pytest.fixture(scope="session")
-def example():
-    """example(name): the example as a module."""
-    def load(name):
-        spec = importlib.util.spec_from_file_location(name, ROOT / "examples" / "python" / f"{name}.py")
+def script():
+    """script(path): a script of the project as a module, by its path from the root."""
+    def load(path):
+        spec = importlib.util.spec_from_file_location(pathlib.Path(path).stem, ROOT / path)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         return module

@@ -43,7 +43,7 @@ def test_partials_are_those_of_differences(kind):
     p.set_val(name, p.get_val(name) + u)
     p.run_model()
     found = p.check_partials(out_stream=None, method="fd", form="central", step=1e-4)["mesh"]["x_volume", name]
-    assert max(found["rel error"]) < 1e-8
+    np.testing.assert_allclose(found["J_fwd"], found["J_fd"], atol=1e-8)
     np.testing.assert_allclose(found["J_fwd"], found["J_rev"], atol=1e-13)
     assert np.abs(found["J_fwd"]).max() == pytest.approx(1)
 
@@ -56,12 +56,12 @@ def test_partials_along_directions_of_a_wing(meshes):
     assert component.mesh.quality(p.get_val("x_volume"), fast=True)["inverted"] == 0
     np.testing.assert_allclose(p.get_val("x_volume")[component.surface_nodes], component.mesh.coordinates[component.surface_nodes] + lift(p),
                                atol=1e-12)
-    p.model.mesh.set_check_partial_options("u", directional=True, form="central", step=1e-4)
+    # A small step: near walls whose cells are small, random displacements of the nodes turn the mesh.
+    p.model.mesh.set_check_partial_options("u", directional=True, form="central", step=1e-6)
     found = p.check_partials(out_stream=None)["mesh"]["x_volume", "u"]
-    forward, reverse, between = found["abs error"]
-    size = max(found["magnitude"].fd, 1e-30)
-    assert forward < 1e-6 * size
-    assert all(e is None or e < 1e-6 * size for e in (reverse, between))
+    size = np.abs(found["J_fd"]).max()
+    np.testing.assert_allclose(found["J_fwd"], found["J_fd"], atol=1e-5 * size)
+    assert found["abs error"][2] < 1e-11 * np.linalg.norm(found["J_fd"]) ** 2  # forwards against reverse
 
 
 def test_totals_in_reverse_are_those_forwards(meshes):
@@ -110,9 +110,9 @@ def test_patches_that_nothing_names_are_refused():
 
 
 @pytest.fixture(scope="module")
-def torsion(example):
+def torsion(script):
     pytest.importorskip("scipy")
-    return example("torsion_optimum")
+    return script("examples/python/torsion_optimum.py")
 
 
 def test_partials_of_the_torsion_example(torsion):
@@ -121,8 +121,8 @@ def test_partials_of_the_torsion_example(torsion):
     p.run_model()
     found = p.check_partials(out_stream=None, method="fd", form="central", step=1e-5)
     for component in found.values():
-        for error in component.values():
-            assert max(e for e in error["rel error"] if e is not None and np.isfinite(e)) < 1e-7
+        for partial in component.values():
+            np.testing.assert_allclose(partial["J_fwd"], partial["J_fd"], atol=1e-7 * np.abs(partial["J_fd"]).max())
 
 
 def test_the_stiffest_bar_is_round(torsion):

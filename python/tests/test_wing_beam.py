@@ -4,8 +4,8 @@ import pytest
 
 
 @pytest.fixture(scope="module")
-def wing_beam(example):
-    return example("wing_beam")
+def wing_beam(script):
+    return script("examples/python/wing_beam.py")
 
 
 def test_the_beam_has_the_frequencies_and_deflections_of_a_uniform_one(wing_beam):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a call from Python costs beside the same call in C++: displacements() of one plan, on the same threads, one after the other.
 
-    PYTHONPATH=build/ci/python OMP_NUM_THREADS=2 python3 python/bench_bindings.py [--nodes 1000000] [--repeats 60]
+    PYTHONPATH=build/ci/python OMP_NUM_THREADS=2 python3 bench/bench_bindings.py [--nodes 1000000] [--repeats 60]
 
 The mesh is a box of blocks whose floor is prescribed. "C++": the call and a fence, timed inside the module on arrays of its own. "out":
 plan.displacements(u, out=d), timed around it in Python. "new": without `out`, so with a new array each time, whose pages the system has
