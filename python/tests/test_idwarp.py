@@ -121,6 +121,31 @@ def test_surfaces_of_a_solver_with_copies_at_block_edges(name, meshes):
     assert mesh.warpDerivFwd(seed) @ weight == pytest.approx(np.vdot(mesh.getdXs(), seed), rel=1e-9, abs=1e-9)
 
 
+def test_periodic_copies_of_a_surface_turn_along(meshes):
+    grid = gridmorph.Mesh.read(meshes / "axial_turbine_stage_H.cgns")
+
+    def turned(x):
+        """About the axis, by an angle that depends on the axial position: the same for every passage."""
+        angle = 0.02 * np.sin(7 * x[:, 0]) * (1 + x[:, 0])
+        c, s = np.cos(angle), np.sin(angle)
+        return np.stack([x[:, 0], c * x[:, 1] - s * x[:, 2], s * x[:, 1] + c * x[:, 2]], axis=1)
+
+    mesh = USMesh({"gridFile": grid})
+    x = mesh.getSurfaceCoordinates()
+    assert (np.abs(mesh.plan.boundary_places[3] - np.eye(3)) > 1e-3).any()
+    mesh.setSurfaceCoordinates(turned(x))
+    mesh.warpMesh()
+    wall = grid.nodes_of(["type:wall"])
+    np.testing.assert_allclose(mesh.getSolverGrid().reshape(-1, 3)[wall], turned(grid.coordinates[wall]), atol=1e-14)
+    # Faces are in one passage, and gradients come back to the copies.
+    conn, sizes = mesh.getSurfaceConnectivity()
+    assert set(sizes) == {4} and np.ptp(x[conn].reshape(-1, 4, 3), axis=1).max() < 0.02
+    random = np.random.default_rng(6)
+    seed, weight = random.standard_normal(x.shape), random.standard_normal(3 * grid.n_nodes)
+    mesh.warpDeriv(weight)
+    assert mesh.warpDerivFwd(seed) @ weight == pytest.approx(np.vdot(mesh.getdXs(), seed), rel=1e-10, abs=1e-9)
+
+
 def test_solver_order_and_the_sum_of_its_copies(meshes):
     mesh = USMesh({"gridFile": str(meshes / WINGS[1])})
     indices = np.array([5, 3, 3, 0])
