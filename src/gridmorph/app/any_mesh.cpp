@@ -10,9 +10,6 @@
 
 namespace gridmorph::cli {
 
-namespace {
-
-/// "determinant_2x2x2" -> "Determinant2x2x2", as solution fields of CGNS files are called.
 std::string field_name(Measure measure) {
   std::string out;
   bool upper = true;
@@ -22,8 +19,6 @@ std::string field_name(Measure measure) {
   }
   return out;
 }
-
-}  // namespace
 
 void AnyPlan::record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded) {
   if (!record_) record_.emplace(new_record());

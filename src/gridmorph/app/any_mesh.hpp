@@ -5,6 +5,7 @@
 #include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/app/cli/diagnosis.hpp>
 #include <gridmorph/app/cli/inspect_text.hpp>
+#include <gridmorph/app/page/picture_mesh.hpp>
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/io/mesh_io.hpp>
@@ -47,6 +48,7 @@ struct QualityWanted {
   CellLimits limits = {};
   bool fast = false;                         ///< a verdict is enough
   std::vector<CellField>* fields = nullptr;  ///< those that go into output meshes, filled on the way
+  std::vector<Measure> measures = {};        ///< these as fields; empty: all that a kind of mesh has for output meshes
 };
 
 /// Facets of patches, or their nodes.
@@ -129,6 +131,9 @@ class AnyPlan {
   /// A line or two above the results of a morph; may be empty.
   [[nodiscard]] virtual std::string headline() const { return {}; }
   [[nodiscard]] virtual MeshForMessages for_messages() const = 0;
+  /// The rules on the boundary; numbers of nodes and of the patches of the file are those of the mesh.
+  [[nodiscard]] virtual BoundaryMotion const& rules() const = 0;
+  [[nodiscard]] virtual NearCells const& near() const = 0;
 
  protected:
   /// Of freeze_recorded(), for the morpher; null before.
@@ -142,6 +147,9 @@ class AnyPlan {
   std::optional<SmoothingRecord> record_;
   std::shared_ptr<SmoothingMap const> frozen_map_;
 };
+
+/// "determinant_2x2x2" -> "Determinant2x2x2", as solution fields of CGNS files are called.
+std::string field_name(Measure measure);
 
 /// Room for measures as fields of an output mesh, for measure_quality() to fill.
 CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<Measure const> measures, Index n_cells);
@@ -199,6 +207,9 @@ class AnyMesh {
                          OutputFields const& fields) const = 0;
   [[nodiscard]] virtual SeriesWriter series(std::filesystem::path const& input, std::filesystem::path const& output,
                                             std::vector<double> const& times) const = 0;
+
+  /// As pictures see it; the mesh must outlive it.
+  [[nodiscard]] virtual std::unique_ptr<page::PictureMesh> pictures() const = 0;
 
   /// Connects, checks, resolves rules, plans. The mesh must outlive the plan. Throws MeshError, MotionError, PlanError.
   [[nodiscard]] virtual std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const = 0;

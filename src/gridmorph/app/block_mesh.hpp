@@ -48,6 +48,9 @@ class BlockMesh final : public AnyMesh {
                                     std::vector<double> const& times) const override {
     return {input.string(), output.string(), mesh_, times};
   }
+  [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const override {
+    return page::picture_mesh(mesh_, handedness());
+  }
   [[nodiscard]] std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const override;
 
  private:

@@ -194,6 +194,8 @@ class BlockPlan final : public AnyPlan {
   }
 
   [[nodiscard]] MeshForMessages for_messages() const override { return cli::for_messages(prepared_.mesh); }
+  [[nodiscard]] BoundaryMotion const& rules() const override { return prepared_.surface; }
+  [[nodiscard]] NearCells const& near() const override { return near_; }
 
  private:
   [[nodiscard]] SmoothingRecord new_record() const override { return SmoothingRecord(prepared_); }

@@ -56,6 +56,9 @@ class ElementMesh final : public AnyMesh {
                                     std::vector<double> const& times) const override {
     return {input.string(), output.string(), mesh, times};
   }
+  [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const override {
+    return page::picture_mesh(mesh, topology, face_patches, signs);
+  }
   [[nodiscard]] std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const override;
 
  private:

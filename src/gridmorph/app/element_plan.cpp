@@ -203,6 +203,8 @@ class ElementPlan final : public AnyPlan {
   [[nodiscard]] MeshForMessages for_messages() const override {
     return cli::for_messages(mesh_.mesh, prepared_.boundary);
   }
+  [[nodiscard]] BoundaryMotion const& rules() const override { return *prepared_.boundary.motion; }
+  [[nodiscard]] NearCells const& near() const override { return near_; }
 
  private:
   /// What the background mesh fills.

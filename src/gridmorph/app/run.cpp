@@ -4,6 +4,7 @@
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/app/element_mesh.hpp>
 #include <gridmorph/app/run.hpp>
+#include <gridmorph/app/run_page.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
@@ -70,7 +71,22 @@ Run::Run(CaseFile const& case_file, MeshSource const& file, Terminal& terminal)
 }
 
 void Run::measure_baseline() {
-  if (!wanted_.fast) baseline_ = plan_->measure(wanted_);
+  if (wanted_.fast) return;
+  QualityWanted wanted = wanted_;
+  if (keep_) {
+    wanted.measures.assign(page_measures.begin(), page_measures.end());
+    wanted.fields = &baseline_measures_;
+  }
+  baseline_ = plan_->measure(wanted);
+}
+
+Run::KeptMeasure Run::kept(Measure measure) const {
+  auto const in = [&](std::vector<CellField> const& fields) -> std::vector<double> const* {
+    auto const at = std::find_if(fields.begin(), fields.end(), [&](auto const& f) { return f.name == field_name(measure); });
+    return at == fields.end() ? nullptr : &at->values;
+  };
+  auto const* after = in(result_.measures);
+  return {in(baseline_measures_), after != nullptr ? after : in(result_.fields.cells)};
 }
 
 RelaxReport Run::morph(Moment const* when, StepTimes* took) {
@@ -147,7 +163,12 @@ FrozenIntoPlan Run::freeze_into_plan(std::vector<Moment> const& moments) {
 void Run::measure() {
   QualityWanted wanted = wanted_;
   wanted.morphed = &result_.morphed;
-  if (case_file_.output_options.quality) wanted.fields = &result_.fields.cells;
+  if (case_file_.output_options.quality) {
+    wanted.fields = &result_.fields.cells;
+  } else if (keep_ && !wanted_.fast) {
+    wanted.measures.assign(page_measures.begin(), page_measures.end());
+    wanted.fields = &result_.measures;
+  }
   result_.quality = plan_->measure(wanted);
 }
 
@@ -323,14 +344,19 @@ int conclude(Ending const& ending, Terminal& terminal) {
   };
   // The report waits beside its place until the mesh is there: both appear, or none. It has room to spare for the time
   // that writing the mesh takes.
-  std::optional<PendingFile> pending;
+  std::optional<PendingFile> pending, page;
   if (ending.report) pending.emplace(*ending.report, json_text(report()) + std::string(room_for_a_time, '\n'));
+  if (ending.page) page.emplace(*ending.page, ending.page_text(report()) + std::string(room_for_a_time, '\n'));
   if (ending.written) terminal.progress("writing " + ending.output.string());
   ending.write();
   nlohmann::json const json = report();
   if (pending) {
     pending->replace(json_text(json));
     pending->commit();
+  }
+  if (page) {
+    page->replace(ending.page_text(json));
+    page->commit();
   }
   terminal.say(ending.text() + (ending.written ? ending.wrote : std::string()) + ending.also_wrote);
   terminal.document(json);
@@ -378,17 +404,21 @@ bool is_dot(std::filesystem::path const& path) { return path.extension() == ".do
 
 }  // namespace
 
-int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& terminal) {
+int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& terminal, std::string const& typed) {
   auto const& options = case_file.output_options;
   RunFiles outputs = outputs_of(case_file.output, options.report);
   if (options.stages) {
     auto const stages = stage_files(*options.stages, file.kind, outputs);
     outputs.insert(outputs.end(), stages.begin(), stages.end());
   }
+  if (options.page) outputs.push_back({"page", *options.page});
   if (options.vtk) outputs.push_back({"VTK file", *options.vtk});
   check_run_files(inputs_of(case_file, file), outputs);
   terminal.expect(file.traits().costs);
+  std::optional<RunPage> page;
+  if (options.page) page.emplace(case_file, typed);
   Run run(case_file, file, terminal);
+  if (page) run.keep_measures();
   RelaxReport const relaxed = run.morph(nullptr, &run.times);
   std::vector<std::string> guarded;
   if (relaxed.before > 0)
@@ -449,6 +479,13 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
     advice = valid + ": " + advice;
   }
   auto const shortfalls = run.shortfalls_of(run.quality());
+  if (page) {
+    terminal.progress("drawing the page");
+    watch.lap();
+    page->begin(run);
+    page->finish(run, run.quality());
+    run.times.push_back({"page", watch.lap()});
+  }
   if (written) run.times.push_back({"write", 0, true});
   std::string const vtk = options.vtk ? fmt::format("wrote {}\n", options.vtk->string()) : std::string();
   std::string stages;
@@ -458,6 +495,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                          options.stages->string());
   return conclude({.output = case_file.output,
                    .report = options.report,
+                   .page = options.page,
                    .written = written,
                    .falls_short = any_failure(shortfalls),
                    .json =
@@ -468,6 +506,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                          if (!frozen.is_null()) json["frozen_guard"] = frozen;
                          return json;
                        },
+                   .page_text = [&](nlohmann::json const& report) { return page->text(report); },
                    .write =
                        [&] {
                          watch.lap();
@@ -487,7 +526,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                                 run.tables(run.quality(), outcome);
                        },
                    .wrote = fmt::format("\nwrote {}\n", case_file.output.string()) + vtk,
-                   .also_wrote = wrote_report(options.report) + stages,
+                   .also_wrote = wrote_report(options.report) + wrote_report(options.page) + stages,
                    .warnings = terminal.quiet() ? messages_of(shortfalls) : std::vector<std::string>(),
                    .refusal = [&] { return run.refusal_of(case_file.output, file.traits().cells + " are", advice); }},
                   terminal);

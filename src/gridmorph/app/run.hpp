@@ -10,6 +10,8 @@
 #include <gridmorph/report/shortfalls.hpp>
 #include <gridmorph/report/tip_clearance.hpp>
 
+#include <array>
+
 namespace gridmorph::cli {
 
 /// The mesh file of a case file, once no key of that is without effect on such a mesh and run. Throws ConfigError.
@@ -23,6 +25,10 @@ bool wants_verdict(CaseFile const& case_file, Index cells);
 Index newly_inverted(QualityReport const& quality);
 /// Adds to a step of that name, the last one where there is none.
 void add_time(StepTimes& times, std::string const& step, double seconds, bool every_node = true);
+
+/// Of cells, for report pages: what histograms show and worst cells are chosen by.
+inline constexpr std::array page_measures{Measure::determinant_3x3x3, Measure::minimum_angle_deg,
+                                          Measure::aspect_ratio};
 
 /// What came of morphing in steps.
 struct TriedSteps {
@@ -48,6 +54,8 @@ class Run {
   /// Reads and plans. The case file must outlive the run.
   Run(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
 
+  /// From here on measurements keep `page_measures` of every cell, of the baseline and of the result, unless a verdict is all that is wanted.
+  void keep_measures() { keep_ = true; }
   /// Unless a verdict is all that is wanted.
   void measure_baseline();
   /// Morphs by the rules as they are at a moment, as they stand where there is none, and smooths around cells that came out bad.
@@ -80,6 +88,11 @@ class Run {
   }
   [[nodiscard]] OutputFields const& fields() const { return result_.fields; }
   [[nodiscard]] QualityReport const& quality() const { return result_.quality; }
+  /// One of `page_measures` in every cell of the baseline and of the result; null where it was not kept.
+  struct KeptMeasure {
+    std::vector<double> const *before = nullptr, *after = nullptr;
+  };
+  [[nodiscard]] KeptMeasure kept(Measure measure) const;
 
   /// [[clearance]] of the result, of a moment of a sequence where one is given. Throws MotionError for walls that are not of revolution.
   [[nodiscard]] std::vector<TipClearance> clearances(Moment const* when = nullptr) const;
@@ -109,6 +122,7 @@ class Run {
     Coordinates morphed;
     QualityReport quality;
     OutputFields fields;
+    std::vector<CellField> measures = {};  ///< kept ones, where they are not among the fields
   };
 
   CaseFile const& case_file_;
@@ -117,6 +131,8 @@ class Run {
   std::unique_ptr<CaseFile> recipe_;  ///< that the plan refers to, where it is not the case file
   std::unique_ptr<AnyPlan> plan_;
   QualityWanted wanted_;
+  bool keep_ = false;
+  std::vector<CellField> baseline_measures_;
   QualityReport baseline_;  ///< without cells where only a verdict was asked for
   std::vector<Vec3> displacement_;
   Result result_;
@@ -126,9 +142,11 @@ class Run {
 struct Ending {
   std::filesystem::path output;
   std::optional<std::filesystem::path> report;
+  std::optional<std::filesystem::path> page = {};  ///< the report as a page
   bool written = false;  ///< the meshes are wanted
   bool falls_short = false;
   std::function<nlohmann::json()> json;  ///< the report, less the name of the output
+  std::function<std::string(nlohmann::json const& report)> page_text = {};
   std::function<void()> write;           ///< puts meshes in place, where they are wanted
   std::function<std::string()> text;     ///< for people
   std::string wrote;                     ///< after it, where the meshes are written
@@ -147,10 +165,12 @@ std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls);
 
 /// `gridmorph morph`: one mesh. Writes it and the report, prints the tables. Throws ConfigError before any work when an output
 /// cannot be written where it should.
-int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
+/// typed: the command line, for the page.
+int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& terminal, std::string const& typed = {});
 /// The same for every step of [sequence] from one plan: a table of the steps, the quality of the worst. Nothing is written when a
 /// step has cells inverted that were not in the baseline, unless the case file says so.
-int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
+int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& terminal,
+                   std::string const& typed = {});
 
 struct PlanPrinting {
   std::optional<std::filesystem::path>

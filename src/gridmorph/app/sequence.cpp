@@ -2,6 +2,7 @@
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/app/cli/step_files.hpp>
 #include <gridmorph/app/run.hpp>
+#include <gridmorph/app/run_page.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/report/measure_text.hpp>
@@ -134,6 +135,7 @@ void check_sequence_outputs(CaseFile const& case_file, MeshSource const& file) {
   RunFiles outputs;
   for (int step = 0; step < files; ++step) outputs.push_back({"output", step_path(options, step)});
   if (auto const& report = case_file.output_options.report) outputs.push_back({"report", *report});
+  if (auto const& page = case_file.output_options.page) outputs.push_back({"page", *page});
   check_run_files(inputs_of(case_file, file), outputs);
 }
 
@@ -166,10 +168,13 @@ std::vector<std::string> guard_notes(Index relaxed, std::string const& lost,
 
 }  // namespace
 
-int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& terminal) {
+int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& terminal, std::string const& typed) {
   check_sequence_outputs(case_file, file);
   auto const& options = *case_file.sequence;
+  std::optional<RunPage> page;
+  if (case_file.output_options.page) page.emplace(case_file, typed);
   Run run(case_file, file, terminal);
+  if (page) run.keep_measures();
   run.measure_baseline();
   StepFiles files(case_file, run.mesh());
   std::vector<StepResult> results;
@@ -202,6 +207,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
     guarded.push_back(std::move(freeze.text));
     run.times.push_back({"freeze", part.lap()});
   }
+  if (page) page->begin(run);
   for (int step = 0; step < options.steps; ++step) {
     terminal.progress(fmt::format("step {} of {}", step + 1, options.steps), double(step) / options.steps);
     part.lap();
@@ -222,6 +228,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
       worst = std::size_t(step);
       worst_quality = run.quality();
     }
+    if (page) page->add_step(run, step, options.steps, worst == std::size_t(step));
     part.lap();
     // Once a step cannot be used the files are not needed; the table still says how the others fare.
     if (!inverted || case_file.guard.write_inverted) files.add(run.morphed(), run.fields());
@@ -230,7 +237,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
   bool const written = !inverted || case_file.guard.write_inverted;
   Moment const moment = options.moment(int(worst));
   run.morph(&moment);
-  if (!written) {  // what is said of the worst cell needs it as it came out in the end
+  if (!written || page) {  // what is said of the worst cell needs it as it came out in the end
     run.measure();
     if (!case_file.guard.freeze) (void)run.try_steps();
   }
@@ -238,6 +245,13 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
   run.notes = run.plan().notes();
   run.notes.insert(run.notes.end(), guarded.begin(), guarded.end());
   for (auto& note : guard_notes(relaxed, run.mesh().kind().lost, stepped)) run.notes.push_back(std::move(note));
+
+  if (page) {
+    terminal.progress("drawing the page");
+    part.lap();
+    page->finish(run, worst_quality);
+    run.times.push_back({"page", part.lap()});
+  }
 
   auto const shortfalls = run.shortfalls_of(worst_quality);
   std::string const shortfall = shortfall_text(results);
@@ -248,6 +262,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
   }
   return conclude({.output = options.output,
                    .report = case_file.output_options.report,
+                   .page = case_file.output_options.page,
                    .written = written,
                    .falls_short = !shortfall.empty(),
                    .json =
@@ -257,6 +272,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
                          json.update(of_guard);
                          return json;
                        },
+                   .page_text = [&](nlohmann::json const& report) { return page->text(report); },
                    .write =
                        [&] {
                          if (written) files.commit();
@@ -274,7 +290,8 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
                                 run.tables(worst_quality, outcome);
                        },
                    .wrote = wrote_text(options),
-                   .also_wrote = wrote_report(case_file.output_options.report),
+                   .also_wrote = wrote_report(case_file.output_options.report) +
+                                 wrote_report(case_file.output_options.page),
                    .warnings = std::move(warnings),
                    .refusal =
                        [&] {

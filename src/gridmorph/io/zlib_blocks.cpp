@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/zlib_blocks.hpp>
 
+#include <algorithm>
 #include <utility>
 
 #ifdef GRIDMORPH_WITH_ZLIB
@@ -32,12 +33,34 @@ std::string packed_block(std::string const& path, std::string_view bytes) {
   return out;
 }
 
+std::string zlib_stream(std::string_view bytes) { return packed_block("a stream", bytes); }
+
 #else
 
 std::optional<std::string> unpacked_block(std::string_view, std::size_t) { return std::nullopt; }
 
 std::string packed_block(std::string const& path, std::string_view) {
   throw IoError(path + ": is to be packed by zlib, and this gridmorph was built without it");
+}
+
+std::string zlib_stream(std::string_view bytes) {
+  constexpr std::size_t most = 65535;  // of a stored block, RFC 1951, 3.2.4
+  std::string out("\x78\x01", 2);
+  std::size_t at = 0;
+  do {
+    std::size_t const n = std::min(most, bytes.size() - at);
+    out += char(at + n == bytes.size());
+    for (std::size_t const length : {n, ~n}) out += {char(length & 0xFFU), char(length >> 8U & 0xFFU)};
+    out += bytes.substr(at, n);
+    at += n;
+  } while (at < bytes.size());
+  unsigned a = 1, b = 0;  // Adler-32
+  for (char const c : bytes) {
+    a = (a + static_cast<unsigned char>(c)) % 65521;
+    b = (b + a) % 65521;
+  }
+  for (unsigned const half : {b, a}) out += {char(half >> 8U), char(half & 0xFFU)};
+  return out;
 }
 
 #endif

@@ -14,4 +14,7 @@ std::optional<std::string> unpacked_block(std::string_view packed, std::size_t s
 /// Throws IoError without zlib; `path`: of what file.
 std::string packed_block(std::string const& path, std::string_view bytes);
 
+/// A zlib stream (RFC 1950) of these bytes: packed, or stored as they are without zlib.
+std::string zlib_stream(std::string_view bytes);
+
 }  // namespace gridmorph::io

@@ -331,6 +331,8 @@ void read_results(TableReader& root, CaseFile& out) {
       out.output_options.stages = (output->context().directory / *stages).lexically_normal();
     if (auto const vtk = output->string("vtk"))
       out.output_options.vtk = (output->context().directory / *vtk).lexically_normal();
+    if (auto const page = output->string("html"))
+      out.output_options.page = (output->context().directory / *page).lexically_normal();
     if (auto const report = output->string("report"))
       out.output_options.report = (output->context().directory / *report).lexically_normal();
     output->finish();

@@ -40,6 +40,7 @@ struct OutputOptions {
   bool displacement = false;                    ///< displacement at the nodes, as a solution of the output mesh
   bool quality = false;                         ///< quality measures in the cells, as a solution of the output mesh
   std::optional<std::filesystem::path> report;  ///< JSON report
+  std::optional<std::filesystem::path> page;    ///< the report as a page (HTML)
   std::optional<std::filesystem::path> vtk;     ///< the morphed mesh with these fields, for viewers
   /// Folder for what a morph goes through: the mesh after each stage of blocks; the wrap and the background mesh, before and after, of elements.
   std::optional<std::filesystem::path> stages;

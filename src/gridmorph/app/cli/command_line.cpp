@@ -38,11 +38,31 @@ void add_common(CLI::App& app, CommandLine& out) {
       ->check(CLI::Range(1, 4096));
 }
 
+/// Words as a shell reads them again: quoted where they hold more than letters, digits and what is harmless.
+std::string quoted_words(int argc, char const* const* argv) {
+  std::string out;
+  for (int a = 0; a < argc; ++a) {
+    std::string word = argv[a];
+    if (a == 0) word = word.substr(word.find_last_of('/') + 1);
+    if (a > 0) out += ' ';
+    constexpr char const* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+.,:/@%";
+    if (!word.empty() && word.find_first_not_of(harmless) == std::string::npos) {
+      out += word;
+      continue;
+    }
+    out += '\'';
+    for (char const c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    out += '\'';
+  }
+  return out;
+}
+
 CLI::App* add_morph(CLI::App& app, CommandLine& out) {
   auto* morph = app.add_subcommand("morph", "Morph a mesh as a case file says");
   morph->add_option("case", out.input, "Case file (TOML)")->required();
   morph->add_option("-o,--output", out.output, "Morphed mesh, instead of the case file's output");
   morph->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
+  morph->add_option("--html", out.page, "Report as one page with pictures (HTML), instead of the case file's html");
   add_quality(*morph, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
   morph->add_option("--fraction", out.fraction, "Share of the motion: every rule at that share of its amplitude")
       ->check(CLI::Range(0.0, 1.0));
@@ -172,6 +192,7 @@ CLI::App* add_demo(CLI::App& app, CommandLine& out) {
 std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* argv) {
   using Command = CommandLine::Command;
   CommandLine out;
+  out.typed = quoted_words(argc, argv);
   CLI::App app("gridmorph moves an existing CFD mesh to a new boundary shape and keeps its connectivity and quality.",
                "gridmorph");
   app.formatter(std::make_shared<HelpFormatter>());

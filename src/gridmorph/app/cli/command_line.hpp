@@ -18,11 +18,13 @@ struct CommandLine {
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
 
+  std::string typed;                            ///< the command line, as a shell reads it
   std::filesystem::path input;                  ///< case file or mesh
   std::optional<CaseDocument> case_document;    ///< morph, plan, wheel: `input`, once it is read
   std::optional<std::filesystem::path> second;  ///< quality: morphed mesh
   std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's; what others write
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
+  std::optional<std::filesystem::path> page;    ///< morph: the report as a page, instead of the case file's
   std::optional<double> fraction;               ///< morph: of the motion
   bool dry_run = false;
   bool all = false;                            ///< plan: every chain of however many

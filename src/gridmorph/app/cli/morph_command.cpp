@@ -17,6 +17,7 @@ int run_morph_command(CommandLine const& options, Terminal& terminal) {
   CaseFile case_file = read_case_file(*options.case_document);
   if (options.output) (case_file.sequence ? case_file.sequence->output : case_file.output) = *options.output;
   if (options.report) case_file.output_options.report = *options.report;
+  if (options.page) case_file.output_options.page = *options.page;
   set_quality(case_file, options.quality);
   if (options.fraction) {
     if (case_file.sequence)
@@ -30,12 +31,12 @@ int run_morph_command(CommandLine const& options, Terminal& terminal) {
     return done;
   }
   if (case_file.sequence)
-    return morph_sequence(case_file, checked_mesh_file(case_file, CaseUse::Run::sequence), terminal);
+    return morph_sequence(case_file, checked_mesh_file(case_file, CaseUse::Run::sequence), terminal, options.typed);
   MeshSource const file = checked_mesh_file(case_file, CaseUse::Run::morph);
   if (case_file.output.empty())
     throw ConfigError(fmt::format("{}: no output; add output = \"morphed.cgns\" to [mesh] or give --output FILE",
                                   options.input.string()));
-  return morph_once(case_file, file, terminal);
+  return morph_once(case_file, file, terminal, options.typed);
 }
 
 }  // namespace gridmorph::cli

@@ -50,6 +50,7 @@ std::string unwritable(RunFile const& file, RunFiles const& inputs) {
 /// The format in which an output is written; empty where any name is as good. Meshes keep the format of the input.
 std::string_view format_of(RunFile const& file, RunFiles const& inputs) {
   if (file.what == "report") return "JSON";
+  if (file.what == "page") return "HTML";
   if (file.what == "VTK file") return to_string(MeshFormat::vtk);
   if (file.what == "case file" || file.what == "side file") return "TOML";
   if (file.what == "wheel") return to_string(MeshFormat::cgns);

@@ -1,0 +1,149 @@
+// Histograms and worst cells of a run.
+#include <gridmorph/app/run_page.hpp>
+#include <gridmorph/report/measure_text.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+namespace gridmorph::cli {
+
+namespace {
+
+constexpr Index most_sampled = 100'000;  ///< cells of a sample
+
+/// One measure of the cells that are looked at.
+struct Values {
+  std::vector<double> before, after;
+};
+struct Sample {
+  std::vector<Index> cell;  ///< empty: all
+  std::array<Values, page_measures.size()> value;
+  std::vector<char> near;
+};
+
+double value_of(kernels::CellMeasures const& m, Measure measure) {
+  return measure == Measure::aspect_ratio        ? m.aspect_ratio
+         : measure == Measure::minimum_angle_deg ? m.minimum_angle_deg
+                                                 : m.determinant_3x3x3;
+}
+
+bool is_near(NearCells const& near, Index cell) {
+  return near.cells.extent(0) > 0 && near.cells(std::size_t(cell)) != 0;
+}
+
+/// All cells where the run kept their measures, evenly spaced ones otherwise.
+Sample take_sample(Run const& run, page::PictureMesh const& mesh) {
+  Sample out;
+  bool kept = true;
+  for (std::size_t m = 0; m < page_measures.size(); ++m) {
+    auto const values = run.kept(page_measures[m]);
+    kept = kept && values.before != nullptr && values.after != nullptr;
+    if (kept) out.value[m] = {*values.before, *values.after};
+  }
+  Index const n_cells = mesh.n_cells(), stride = kept ? 1 : (n_cells + most_sampled - 1) / most_sampled;
+  for (Index cell = 0; cell < n_cells; cell += stride) {
+    out.near.push_back(is_near(run.plan().near(), cell) ? 1 : 0);
+    if (kept) continue;
+    out.cell.push_back(cell);
+    auto const before = mesh.measures(cell, run.mesh().coordinates()), after = mesh.measures(cell, run.morphed());
+    for (std::size_t m = 0; m < page_measures.size(); ++m) {
+      out.value[m].before.push_back(value_of(before, page_measures[m]));
+      out.value[m].after.push_back(value_of(after, page_measures[m]));
+    }
+  }
+  return out;
+}
+
+struct Candidate {
+  Index cell = -1;
+  std::string reason;
+};
+
+/// The cells with the smallest keys in a region, the first of equals.
+void add_smallest(std::vector<double> const& key, std::vector<char> const& near, bool in_near, std::size_t many,
+                  std::string const& reason, std::vector<Candidate>& out) {
+  std::vector<Index> cells;
+  for (std::size_t n = 0; n < key.size(); ++n)
+    if ((near[n] != 0) == in_near) cells.push_back(Index(n));
+  many = std::min(many, cells.size());
+  auto const less = [&](Index a, Index b) {
+    return std::pair(key[std::size_t(a)], a) < std::pair(key[std::size_t(b)], b);
+  };
+  std::partial_sort(cells.begin(), cells.begin() + std::ptrdiff_t(many), cells.end(), less);
+  for (std::size_t n = 0; n < many; ++n) out.push_back({cells[n], reason});
+}
+
+std::vector<Candidate> worst_of_all(Sample const& sample) {
+  std::vector<Candidate> out;
+  Values const &determinant = sample.value[0], &angle = sample.value[1];
+  std::vector<double> kept(determinant.after.size());  // as CellLimits::max_loss counts, less 1
+  for (std::size_t n = 0; n < kept.size(); ++n)
+    kept[n] = (determinant.after[n] - determinant.before[n]) / std::max(std::abs(determinant.before[n]), 0.05);
+  for (bool const near : {true, false}) {
+    std::string const field = near ? ", near field" : ", far field";
+    add_smallest(determinant.after, sample.near, near, 2, "smallest determinant" + field, out);
+    add_smallest(angle.after, sample.near, near, 1, "smallest angle" + field, out);
+    add_smallest(kept, sample.near, near, 1, "largest loss of determinant" + field, out);
+  }
+  return out;
+}
+
+/// Of a verdict: those that the report names.
+std::vector<Candidate> worst_of_report(QualityReport const& quality, page::PictureMesh const& mesh) {
+  std::vector<Candidate> out;
+  for (auto const& [region, field] :
+       {std::pair(&quality.near_field, ", near field"), std::pair(&quality.far_field, ", far field")}) {
+    for (auto const& [m, what] : {std::pair(Measure::determinant_3x3x3, "smallest determinant"),
+                                  std::pair(Measure::minimum_angle_deg, "smallest angle")}) {
+      MeasureStatistics const& s = (*region)[m];
+      if (s.worst_zone >= 0) out.push_back({mesh.number_of(s.worst_zone, s.worst_cell), what + std::string(field)});
+    }
+    for (Fall const f : {Fall::inverted, Fall::loss})
+      if ((*region)[f].cells > 0) out.push_back({(*region)[f].number, std::string(to_string(f)) + field});
+  }
+  return out;
+}
+
+std::vector<page::Histogram> histograms_of(Sample const& sample, bool near) {
+  std::vector<char> in(sample.near.size());
+  for (std::size_t n = 0; n < in.size(); ++n) in[n] = (sample.near[n] != 0) == near ? 1 : 0;
+  std::vector<page::Histogram> out;
+  if (std::find(in.begin(), in.end(), 1) == in.end()) return out;
+  for (std::size_t m = 0; m < page_measures.size(); ++m) {
+    out.push_back(page::histogram(page_measures[m], sample.value[m].before, sample.value[m].after, in));
+    out.back().title =
+        std::string(text_of(page_measures[m]).title) + (near ? ", near field" : ", far field");
+  }
+  return out;
+}
+
+}  // namespace
+
+void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh,
+                  page::ReportPage& out) {
+  Sample const sample = take_sample(run, mesh);
+  out.near_histograms = histograms_of(sample, true);
+  out.far_histograms = histograms_of(sample, false);
+  if (!sample.cell.empty())
+    out.histogram_note = fmt::format("A verdict was measured: the histograms are of {} of {} {}, evenly spaced; full quality "
+                                     "(--quality full) has all of them.",
+                                     sample.cell.size(), mesh.n_cells(), out.kind);
+  constexpr std::size_t most_drawn = 6;
+  std::set<Index> seen;
+  for (Candidate const& one : sample.cell.empty() ? worst_of_all(sample) : worst_of_report(quality, mesh)) {
+    if (one.cell < 0 || !seen.insert(one.cell).second) continue;
+    page::WorstCell& worst = out.worst.emplace_back();
+    worst.name = mesh.name(one.cell);
+    worst.reason = one.reason;
+    worst.centre = mesh.centre(one.cell, run.morphed());
+    worst.before = mesh.measures(one.cell, run.mesh().coordinates());
+    worst.after = mesh.measures(one.cell, run.morphed());
+    if (out.worst.size() <= most_drawn)
+      worst.drawing = page::draw_cell(mesh, one.cell, run.mesh().coordinates(), run.morphed());
+  }
+}
+
+}  // namespace gridmorph::cli

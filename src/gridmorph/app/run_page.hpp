@@ -1,0 +1,75 @@
+// The report page of a run: what it shows is gathered here, how it looks is in page/.
+#pragma once
+
+#include <gridmorph/app/page/report_page.hpp>
+#include <gridmorph/app/page/section.hpp>
+#include <gridmorph/app/page/surface_picture.hpp>
+#include <gridmorph/app/run.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+/// Of the patches of a mesh, as rules move them.
+struct PatchRoles {
+  std::vector<signed char> wall;  ///< per patch: 1 a wall that a rule moves, 0 one that stands or slips, -1 none
+};
+
+class RunPage {
+ public:
+  /// Before the run: the case file as it is now. typed: the command line.
+  RunPage(CaseFile const& case_file, std::string typed);
+
+  /// What the mesh looks like, once the run has it. Cost: its boundary.
+  void begin(Run const& run);
+  /// Remembers the surface as the run has it now, of a sequence of `of` steps: of some of them, and of the worst so far.
+  void add_step(Run const& run, int step, int of, bool worst);
+  /// All pictures and numbers of the run as it stands. quality: as the report has it. Cost: facets, cells of sections, pixels.
+  void finish(Run const& run, QualityReport const& quality);
+
+  /// The page with this report. Cost: its length.
+  [[nodiscard]] std::string text(nlohmann::json const& report);
+
+ private:
+  void find_surface(Run const& run);
+  [[nodiscard]] std::vector<Vec3> displacement_of_surface(Run const& run) const;
+  void make_surfaces(Run const& run);
+  void make_sections(Run const& run);
+  void make_steps();
+
+  CaseFile const& case_file_;
+  page::ReportPage page_;
+  std::unique_ptr<page::PictureMesh> pictures_;
+  std::vector<page::Facet> boundary_;
+  PatchRoles roles_;
+  page::Surface surface_;
+  struct Step {
+    int step = 0;
+    std::vector<Vec3> displacement;
+  };
+  std::vector<Step> steps_;
+  std::optional<Step> worst_step_;
+};
+
+// page_rules.cpp
+PatchRoles roles_of(BoundaryMotion const& rules, std::size_t n_patches);
+std::vector<page::RuleRow> rule_rows(BoundaryMotion const& rules, Coordinates const& baseline,
+                                     Coordinates const& morphed);
+/// Periodic match and distance from slip surfaces. Cost: nodes of these.
+page::BoundaryCheck boundary_check(BoundaryMotion const& rules, Coordinates const& baseline,
+                                   Coordinates const& morphed);
+
+// page_cells.cpp
+/// Histograms of near and far field, and the worst cells with drawings.
+void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh,
+                  page::ReportPage& out);
+
+// page_cuts.cpp
+/// Where to cut: a plane mesh is itself; a machine at constant span; anything else at three planes through what moves.
+std::vector<page::Cut> cuts_of(page::PictureMesh const& mesh, BoundaryMotion const& rules,
+                               std::optional<Axis> const& axis, page::Surface const& surface,
+                               std::vector<Vec3> const& displacement);
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,91 @@
+// Report pages of whole runs.
+#include <system/run_command.hpp>
+
+#include <gridmorph/app/page/page_parts.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <regex>
+#include <string>
+
+namespace gridmorph::testing {
+namespace {
+
+using PageRun = CommandTest;
+
+/// Without what differs between two runs of one command: times, dates, paths of the outputs.
+std::string without_times(std::string text) {
+  std::size_t const timings = text.find("<section id=\"timings\"");
+  text = text.substr(0, timings);
+  return std::regex_replace(text, std::regex("<span>time</span><b>[^<]*</b>"), "");
+}
+
+TEST_F(PageRun, HasTheNumbersOfTheReport) {
+  Outcome const run = gridmorph("morph rotation.toml --html page.html --report r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_NE(run.out.find("wrote page.html"), std::string::npos);
+  std::string const text = contents(path("page.html"));
+  auto const report = nlohmann::json::parse(contents(path("r.json")));
+  for (char const* region : {"near_field", "far_field"})
+    for (auto const& [name, measure] : report["morphed"][region]["measures"].items()) {
+      if (name != "determinant_3x3x3" && name != "minimum_angle_deg" && name != "aspect_ratio") continue;
+      EXPECT_NE(text.find(">" + page::number(measure["worst"]["value"]) + "<"), std::string::npos) << name;
+      EXPECT_NE(text.find(">" + page::number(measure["mean"]) + "<"), std::string::npos) << name;
+    }
+  EXPECT_NE(text.find(page::number(100 * report["morphed"]["walls"]["first_height_change"]["max"].get<double>())),
+            std::string::npos);
+  for (auto const& step : report["times"]["steps"])
+    EXPECT_NE(text.find("<td>" + step["step"].get<std::string>() + "</td>"), std::string::npos);
+  EXPECT_NE(text.find("gridmorph morph rotation.toml --html page.html --report r.json"), std::string::npos);
+  EXPECT_NE(text.find("rule    = &quot;circumferential-slide&quot;"), std::string::npos) << "the case file is in it";
+}
+
+TEST_F(PageRun, IsTheSameInEveryRunButForTimes) {
+  ASSERT_EQ(gridmorph("--threads 1 morph rotation.toml --html a.html").status, 0);
+  ASSERT_EQ(gridmorph("--threads 2 morph rotation.toml --html b.html").status, 0);
+  EXPECT_EQ(without_times(contents(path("a.html"))), without_times(contents(path("b.html"))));
+}
+
+TEST_F(PageRun, LeavesTheMeshAndTheReportAsTheyAre) {
+  ASSERT_EQ(gridmorph("morph rotation.toml -o plain.cgns --report plain.json").status, 0);
+  ASSERT_EQ(gridmorph("morph rotation.toml -o paged.cgns --report paged.json --html page.html").status, 0);
+  auto plain = nlohmann::json::parse(contents(path("plain.json"))), paged = nlohmann::json::parse(contents(path("paged.json")));
+  for (auto* report : {&plain, &paged})
+    for (char const* key : {"times", "output"}) report->erase(key);
+  EXPECT_EQ(plain, paged);
+}
+
+TEST_F(PageRun, TellsOfAVerdictAloneWhatItHas) {
+  ASSERT_EQ(gridmorph("morph rotation.toml --quality fast --html page.html").status, 0);
+  std::string const text = contents(path("page.html"));
+  EXPECT_NE(text.find("A verdict was measured"), std::string::npos);
+  EXPECT_NE(text.find("class=\"histogram\""), std::string::npos);
+}
+
+TEST_F(PageRun, IsThereWhereTheMeshIsRefused) {
+  std::string rules = contents(path("rotation.toml"));
+  write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"rigid\"\ntranslation = [0, 0.4, 0]\n"
+                          "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n");
+  Outcome const run = gridmorph("morph case.toml --html page.html");
+  ASSERT_EQ(run.status, 4) << run.err;
+  EXPECT_NE(contents(path("page.html")).find("Inverted: nothing was written"), std::string::npos);
+  expect_nothing_written();
+}
+
+TEST_F(PageRun, IsAKeyOfCaseFiles) {
+  std::string const rules = contents(path("rotation.toml"));
+  write("case.toml", rules + "\n[output]\nhtml = \"made.html\"\n");
+  ASSERT_EQ(gridmorph("morph case.toml").status, 0);
+  EXPECT_NE(contents(path("made.html")).find("</html>"), std::string::npos);
+}
+
+TEST_F(PageRun, RefusesPathsBeforeTheRun) {
+  expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html nowhere/page.html"), {"page 'nowhere/page.html'", "make it first"});
+  expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html rotation.toml"), {"never overwritten"});
+  expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html page.cgns"), {"HTML"});
+  expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html r.json --report r.json"), {"the same file"});
+}
+
+}  // namespace
+}  // namespace gridmorph::testing
