@@ -107,6 +107,25 @@ Vec3 middle(Mesh const& mesh, Zone const& zone, Index3 const& cell) {
   return 0.125 * sum;
 }
 
+/// Calls look(number of the cell in its zone, its indices), i fastest.
+template <class Look>
+void each_cell(Zone const& zone, Look const& look) {
+  Index c = 0;
+  Index3 at{};
+  for (at[2] = 0; at[2] + 1 < zone.extent[2]; ++at[2])
+    for (at[1] = 0; at[1] + 1 < zone.extent[1]; ++at[1])
+      for (at[0] = 0; at[0] + 1 < zone.extent[0]; ++at[0]) look(c++, at);
+}
+
+Index first_cell(Mesh const& mesh, int zone) {
+  Index out = 0;
+  for (int z = 0; z < zone; ++z) {
+    Index3 const& n = mesh.zones[std::size_t(z)].extent;
+    out += Index(n[0] - 1) * (n[1] - 1) * (n[2] - 1);
+  }
+  return out;
+}
+
 /// Names of regions, each once and none of a patch.
 class RegionNames {
  public:
@@ -202,6 +221,9 @@ class Finder {
   }
 
   void add_cells(InnerRegion const& region, std::vector<int> const& zones, std::string const& label) {
+    if (region.cells && Index(region.cells->size()) != mesh_.n_cells())
+      return problems_.add(label + ": it says of " + std::to_string(region.cells->size()) +
+                           " cells whether they lie in it, and the mesh has " + std::to_string(mesh_.n_cells()));
     Index held = 0, taken = 0, looked_at = 0;
     std::size_t boxes = 0;
     std::set<int> in;
@@ -210,12 +232,11 @@ class Finder {
       Index3 const cells{zone.extent[0] - 1, zone.extent[1] - 1, zone.extent[2] - 1};
       std::vector<char> inside(std::size_t(Index(cells[0]) * cells[1] * cells[2]), 1);
       looked_at += Index(inside.size());
-      std::size_t c = 0;
-      Index3 at{};
-      if (region.holds)
-        for (at[2] = 0; at[2] < cells[2]; ++at[2])
-          for (at[1] = 0; at[1] < cells[1]; ++at[1])
-            for (at[0] = 0; at[0] < cells[0]; ++at[0]) inside[c++] = region.holds(middle(mesh_, zone, at)) ? 1 : 0;
+      Index const first = first_cell(mesh_, z);
+      each_cell(zone, [&](Index c, Index3 const& at) {
+        bool const in = !region.cells || (*region.cells)[std::size_t(first + c)] != 0;
+        inside[std::size_t(c)] = in && (!region.holds || region.holds(middle(mesh_, zone, at))) ? 1 : 0;
+      });
       held += std::count(inside.begin(), inside.end(), 1);
       for (IndexRange const& box : boxes_of_cells(cells, inside)) {
         append(region.name, z, box);
@@ -247,6 +268,11 @@ class Finder {
   Problems problems_;
 };
 
+void keep_those(std::vector<std::uint8_t> const& kept, std::vector<std::uint8_t>& of) {
+  for (std::size_t n = 0; n < of.size(); ++n)
+    if (kept[n] == 0) of[n] = 0;
+}
+
 class ElementFinder {
  public:
   ElementFinder(Mesh const& mesh, std::vector<std::string>& notes) : mesh_(mesh), notes_(notes), names_(mesh) {}
@@ -258,10 +284,17 @@ class ElementFinder {
       return problems_.add(label +
                            ": its nodes are i, j and k of a block, and the mesh is one of elements; say which zones "
                            "it lies in, or where");
+    if (region.cells && Index(region.cells->size()) != mesh_.n_elements())
+      return problems_.add(label + ": it says of " + std::to_string(region.cells->size()) +
+                           " elements whether they lie in it, and the mesh has " + std::to_string(mesh_.n_elements()));
     std::vector<std::uint8_t> named(std::size_t(mesh_.n_elements()), region.zones.empty() ? 1 : 0);
     std::vector<int> subsets;
     for (std::string const& name : region.zones)
       if (!name_zone(name, named, subsets)) return problems_.add(no_such_zone(label, name, names_of_zones()));
+    if (region.cells) {
+      keep_those(*region.cells, named);
+      subsets.clear();  // faces are no cells
+    }
     Patch patch{region.name, "", PatchKind::region, {}, 0, {}, {}, {}};
     Index elements = 0, faces = 0;
     auto const take = [&](std::span<Index32 const> nodes) {
@@ -301,6 +334,7 @@ class ElementFinder {
     for (std::string const& name : region.zones)
       if (!name_zone(name, in, subsets)) problems_.add(no_such_zone(label, name, names_of_zones()));
     problems_.throw_if_any<MotionError>();
+    if (region.cells) keep_those(*region.cells, in);
     for (Index e = 0; e < mesh_.n_elements(); ++e)
       if (in[std::size_t(e)] != 0 && !holds(region, mesh_.elements.corners(e))) in[std::size_t(e)] = 0;
     if (region.only_measured && std::count(in.begin(), in.end(), 1) == 0)
@@ -363,6 +397,18 @@ void add_regions(Mesh& mesh, std::span<InnerRegion const> regions) {
   Finder finder(mesh);
   for (InnerRegion const& region : regions) finder.add(region);
   finder.finish();
+}
+
+std::vector<std::uint8_t> cells_of_region(Mesh const& mesh, InnerRegion const& region) {
+  std::vector<std::uint8_t> out;
+  for (Zone const& zone : mesh.zones) {
+    bool const named = region.zones.empty() || std::any_of(region.zones.begin(), region.zones.end(),
+                                                           [&](auto const& z) { return glob_match(z, zone.name); });
+    each_cell(zone, [&](Index, Index3 const& at) {
+      out.push_back(named && (!region.holds || region.holds(middle(mesh, zone, at))) ? 1 : 0);
+    });
+  }
+  return out;
 }
 
 std::vector<std::uint8_t> elements_of_region(Mesh const& mesh, InnerRegion const& region) {

@@ -6,12 +6,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace gridmorph {
+
+struct ShockSearch;  // io/flow_solution and motion/shock: a flow solution, and what of it is a shock
 
 struct InnerRegion {
   std::string name;                ///< what rules call it: neither the name nor the family of a patch
@@ -32,6 +35,11 @@ struct InnerRegion {
     double width = 0;
   };
   std::optional<Wake> wake{};
+  /// Whether each cell of the mesh lies in the region, beside what `holds` says: blocks zone after zone, i fastest; elements by their
+  /// numbers. Nothing: places alone say.
+  std::shared_ptr<std::vector<std::uint8_t> const> cells{};
+  /// Where a flow solution has a shock; whoever reads the solution makes `cells` of it (shock_cells.hpp).
+  std::shared_ptr<ShockSearch const> shock{};
   std::string where;           ///< "case.toml:14", for messages
   bool only_measured = false;  ///< has a row of its own in reports of quality, and is no part of the motion
 };
@@ -51,6 +59,10 @@ inline bool is_box(Patch const& patch) {
 /// MotionError naming every region without cells, whose name is taken, or whose zones or nodes there are not.
 /// Cost: a look at each cell of the zones that regions name without nodes.
 void add_regions(Mesh& mesh, std::span<InnerRegion const> regions);
+
+/// Of a mesh of blocks: whether each cell, zone after zone, i fastest, lies in the zones of the region and where it holds (its middle does);
+/// none where a zone is not there. Cost: a look at each cell.
+std::vector<std::uint8_t> cells_of_region(Mesh const& mesh, InnerRegion const& region);
 
 /// Of a mesh of elements: whether each element lies in the region (its middle does); none of a subset that has faces alone. Throws MotionError
 /// as add_regions() does, for regions without elements where they are only measured.

@@ -9,6 +9,7 @@
 #include <gridmorph/motion/ffd/ffd_motion.hpp>
 #include <gridmorph/motion/inflation/inflate_motion.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
+#include <gridmorph/motion/shock/shock_motion.hpp>
 #include <gridmorph/motion/target/target_motion.hpp>
 #include <gridmorph/motion/turbomachinery/row_motion.hpp>
 #include <gridmorph/motion/turbomachinery/section_motion.hpp>
@@ -48,6 +49,7 @@ struct BoundaryMotion::Impl {
   std::map<int, WallShift> wall_shifts;                          ///< by the rule of the wall
   std::map<int, AttachedMotion> attached;                        ///< by rule
   std::map<int, WakeMotion> wakes;                               ///< by rule
+  std::map<int, ShockMotion> shocks;                             ///< by rule
 
   Impl(std::shared_ptr<Boundary const> of, ResolvedMotion resolved)
       : boundary(std::move(of)),
@@ -202,6 +204,9 @@ struct BoundaryMotion::Impl {
           attached.try_emplace(int(r), *boundary, walls_of(rule->of), *rule, displacement);
         else if (auto const* wake = std::get_if<WakeRule>(&rules[r].rule))
           wakes.try_emplace(int(r), *boundary, motion, *wake, walls_of(wake->of), *slip, displacement, said);
+        else if (auto const* shock = std::get_if<ShockRule>(&rules[r].rule))
+          shocks.try_emplace(int(r), *boundary, *shock, shock->of.empty() ? std::vector<int>() : walls_of(shock->of),
+                             displacement);
       } catch (MotionError const& e) {
         problems.add(label(int(r)) + ": " + e.what());
       }
@@ -291,6 +296,9 @@ struct BoundaryMotion::Impl {
     } else if (std::holds_alternative<WakeRule>(rule)) {
       WakeMotion const& wake = wakes.at(r);
       std::transform(points.begin(), points.end(), out.begin(), [&](Vec3 const& p) { return wake.displacement(p); });
+    } else if (std::holds_alternative<ShockRule>(rule)) {
+      ShockMotion const& shock = shocks.at(r);
+      std::transform(points.begin(), points.end(), out.begin(), [&](Vec3 const& p) { return shock.displacement(p); });
     } else {
       RowMotion const& row = *row_of_rule[r];
       bool const slides = std::holds_alternative<CircumferentialSlideRule>(rule);
@@ -318,8 +326,8 @@ BoundaryMotion& BoundaryMotion::operator=(BoundaryMotion&&) noexcept = default;
 bool BoundaryMotion::is_explicit(int rule) const {
   Rule const& own = impl_->rules[rule].rule;
   return Impl::is_direct(own) || impl_->row_of_rule[rule] != nullptr || std::holds_alternative<AttachedRule>(own) ||
-         std::holds_alternative<WakeRule>(own) || std::holds_alternative<PrescribedRule>(own) ||
-         std::holds_alternative<ExtendRule>(own);
+         std::holds_alternative<WakeRule>(own) || std::holds_alternative<ShockRule>(own) ||
+         std::holds_alternative<PrescribedRule>(own) || std::holds_alternative<ExtendRule>(own);
 }
 
 void BoundaryMotion::displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const {

@@ -2,7 +2,7 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// inflate, ffd, extend, circumferential slide, follow, attached, wake, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// inflate, ffd, extend, circumferential slide, follow, attached, wake, shock, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface). Regions inside the domain are addressed by their names
 // and take explicit rules that need no surface.
 #pragma once
@@ -14,6 +14,7 @@
 #include <gridmorph/motion/target_rule.hpp>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -170,6 +171,16 @@ struct WakeRule {
   double turn = 1;               ///< share of the turn of the edge that the wake takes over
 };
 
+class ShockShift;
+
+/// Goes along with a shock from where one flow solution has it to where another has it (ShockMotion has the formula).
+struct ShockRule {
+  std::vector<std::string> of;  ///< walls with a rule of their own that the shock stands on; may be empty
+  double fade = 0;   ///< distance from these walls within which the motion of the shock fades to theirs [length]
+  double share = 1;  ///< of the way
+  std::shared_ptr<ShockShift const> shift{};  ///< how far the shock goes, place by place
+};
+
 /// Blades on end walls that other rules move: their spanwise grid lines are extended or trimmed along themselves to the moved walls, and the
 /// walls' nodes around them go along.
 struct ExtendRule {
@@ -178,7 +189,8 @@ struct ExtendRule {
 };
 
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
-                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule, ExtendRule, WakeRule, FfdRule>;
+                          SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule, ExtendRule, WakeRule,
+                          FfdRule, ShockRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").

@@ -308,6 +308,7 @@ class Resolver {
     if (auto const* follow = std::get_if<FollowRule>(&rule)) of = &follow->of;
     if (auto const* attached = std::get_if<AttachedRule>(&rule)) of = &attached->of;
     if (auto const* wake = std::get_if<WakeRule>(&rule)) of = &wake->of;
+    if (auto const* shock = std::get_if<ShockRule>(&rule); shock != nullptr && !shock->of.empty()) of = &shock->of;
     if (auto const* extend = std::get_if<ExtendRule>(&rule)) of = &extend->of;
     if (of == nullptr) return;
     if (of->empty()) problems_.add(label(r) + ": `of` is empty; name the walls whose motion it takes up");
@@ -334,12 +335,12 @@ class Resolver {
       if (mesh_.patches[p].kind != PatchKind::region) continue;
       Rule const& rule = result_.rules[std::size_t(result_.patch[p].rule)].rule;
       if (!is<FixedRule>(rule) && !is<RigidRule>(rule) && !is<FunctionRule>(rule) && !is<AttachedRule>(rule) &&
-          !is<WakeRule>(rule) && !is<PrescribedRule>(rule))
+          !is<WakeRule>(rule) && !is<ShockRule>(rule) && !is<PrescribedRule>(rule))
         unfit[result_.patch[p].rule].insert(mesh_.patches[p].name);
     }
     for (auto const& [r, names] : unfit)
       problems_.add(label(r) + " names the region " + quote_list({names.begin(), names.end()}) +
-                    "; regions take fixed, rigid, formula, field, attached or wake");
+                    "; regions take fixed, rigid, formula, field, attached, wake or shock");
   }
 
   Mesh const& mesh_;
@@ -359,7 +360,7 @@ std::string_view rule_name(Rule const& rule) {
       "fixed",  "rigid",      "function", "circumferential-slide",
       "follow", "slip",       "free",     "sections",
       "target", "prescribed", "attached", "inflate",
-      "extend", "wake",       "ffd"};
+      "extend", "wake",       "ffd",      "shock"};
   return names[rule.index()];
 }
 
