@@ -6,6 +6,7 @@
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/slip_end.hpp>
+#include <gridmorph/kernels/transposed_slip.hpp>
 #include <gridmorph/kernels/transposed_turns.hpp>
 
 namespace gridmorph::kernels {
@@ -65,15 +66,34 @@ struct KeepSlipEnds {
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { kept.set(n, u[ends(n).slot]); }
 };
 
-/// By what the end value of a slip end changes where the displacement of its slot does, times the end value's gradient.
+/// Gradient of the displacement of a slip end's slot, by way of its end value.
 template <class MemorySpace>
 struct SlipEndBySlot {
-  SlipEndValues<MemorySpace, true> values;
+  SlipEndValues<MemorySpace, false> values;
   Field<double const> kept;      ///< per end
   Field<double const> gradient;  ///< of end values
 
-  KOKKOS_INLINE_FUNCTION double operator()(Index end, Index, Vec3 const& direction) const {
-    return dot(values.change(end, kept[end], direction), gradient[values.ends(end).value]);
+  KOKKOS_INLINE_FUNCTION Vec3 operator()(Index item, Index) const {
+    SlipEnd const& end = values.ends(item);
+    SlipEndBaseline const& baseline = values.baselines(item);
+    auto const surface = [&](int m) -> SlipSurfaceView const& { return values.surfaces(end.surface[m]); };
+    auto const own = [&](int m) { return baseline.own_offset[m]; };
+    int const count = end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
+    Vec3 const u = in_frame(end.to_node, kept[item]), g = back(end.to_chain, gradient[end.value]);
+    if (end.tolerance > 0) {
+      Vec3 wanted = u, no_rate;
+      constrain_to_all<false>(count, surface, own, baseline.position, wanted, no_rate);
+      if (norm(wanted - u) <= end.tolerance) return {};
+    }
+    return back(end.to_node, constrained_gradient(count, surface, own, baseline.position, u, g) - g);
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION Vec3 in_frame(std::int32_t matrix, Vec3 const& v) const {
+    return matrix < 0 ? v : values.matrices(matrix) * v;
+  }
+  KOKKOS_INLINE_FUNCTION Vec3 back(std::int32_t matrix, Vec3 const& v) const {
+    return matrix < 0 ? v : transpose(values.matrices(matrix)) * v;
   }
 };
 

@@ -10,7 +10,7 @@
 // (a, b) of lines that run through the same bundles, so that one work item has its lines to itself: sums come in one order whatever the
 // number of threads.
 //
-// Cost per node and chain through it: 24 bytes of gradient and 8 of line parameter read; where the chain turns 24 more, about 100
+// Cost per node and chain through it: 24 bytes of gradient and 8 of line parameter read; where the chain turns 24 more, about 90
 // flops per end that turns. Nothing is written but at the ends.
 #pragma once
 
@@ -62,55 +62,83 @@ struct BundleGradients {
   /// (s, a, b): from the first of the bundle. All in the frame of the chain.
   KOKKOS_INLINE_FUNCTION Vec3 gradient(LineBundle const& p, int s, int a, int b) const {
     Index const n = at(p.value, p.value_step, s, a, b);
-    return in_chain(p, p.in_volume != 0 ? nodes[n] : slots[n]);
+    Vec3 const g = p.in_volume != 0 ? nodes[n] : slots[n];
+    return p.matrix < 0 ? g : transpose(matrices(p.matrix)) * g;
   }
   KOKKOS_INLINE_FUNCTION double parameter(LineBundle const& p, int s, int a, int b) const {
     return p.t < 0 ? 0 : t[at(p.t, p.t_step, s, a, b)];
   }
-  KOKKOS_INLINE_FUNCTION Vec3 place(LineBundle const& p, int s, int a, int b) const {
-    Index const n = at(p.x, p.x_step, s, a, b);
-    return p.in_volume != 0 ? in_chain(p, baseline[n]) + p.offset : position[n];
-  }
-  /// Of the slot's rotation; bundles of slots.
-  KOKKOS_INLINE_FUNCTION Vec3 turn_gradient(LineBundle const& p, int s, int a, int b) const {
-    return in_chain(p, slot_turns[at(p.value, p.value_step, s, a, b)]);
-  }
-  /// The gradients of n neighbouring lines from a on.
+
+  /// The gradients of n neighbouring lines from a on; below: where their nodes are, their parameters, the gradients of the rotations of slots.
   template <int width>
   KOKKOS_INLINE_FUNCTION void row(LineBundle const& p, int s, int a, int b, int n, VectorRow<width>& g) const {
-    Index const first = at(p.value, p.value_step, s, a, b), step = p.value_step.a;
-    auto const read = [&](auto const& x, auto const& y, auto const& z, Index stride) {
-      for (int w = 0; w < n; ++w) {
-        g.x[w] = double(x[w * stride]);
-        g.y[w] = double(y[w * stride]);
-        g.z[w] = double(z[w * stride]);
-      }
-    };
-    if (p.in_volume == 0)
-      read(slots.x + first * slots.stride, slots.y + first * slots.stride, slots.z + first * slots.stride,
-           step * slots.stride);
-    else if (nodes.zones == nullptr)
-      nodes.with_row(first, [&](auto const& row) { read(row.x, row.y, row.z, step * row.stride); });
-    else
-      for (int w = 0; w < n; ++w) {
-        Vec3 const v = nodes[first + w * step];
-        g.x[w] = v.x;
-        g.y[w] = v.y;
-        g.z[w] = v.z;
-      }
-    if (p.matrix < 0) return;
-    Mat3 const back = transpose(matrices(p.matrix));
+    Index const first = at(p.value, p.value_step, s, a, b);
+    p.in_volume != 0 ? read(nodes, first, p.value_step.a, n, g) : read(slots, first, p.value_step.a, n, g);
+    turn_back(p, n, g);
+  }
+  template <int width>
+  KOKKOS_INLINE_FUNCTION void places(LineBundle const& p, int s, int a, int b, int n, VectorRow<width>& x) const {
+    Index const first = at(p.x, p.x_step, s, a, b);
+    if (p.in_volume == 0) return read(position, first, p.x_step.a, n, x);
+    read(baseline, first, p.x_step.a, n, x);
+    turn_back(p, n, x);
     for (int w = 0; w < n; ++w) {
-      Vec3 const v = back * Vec3{g.x[w], g.y[w], g.z[w]};
-      g.x[w] = v.x;
-      g.y[w] = v.y;
-      g.z[w] = v.z;
+      x.x[w] += p.offset.x;
+      x.y[w] += p.offset.y;
+      x.z[w] += p.offset.z;
     }
+  }
+  KOKKOS_INLINE_FUNCTION void parameters(LineBundle const& p, int s, int a, int b, int n, double* to) const {
+    double const* const from = t + (p.t < 0 ? 0 : at(p.t, p.t_step, s, a, b));
+    for (int w = 0; w < n; ++w) to[w] = p.t < 0 ? 0 : from[w * p.t_step.a];
+  }
+  template <int width>
+  KOKKOS_INLINE_FUNCTION void turn_gradients(LineBundle const& p, int s, int a, int b, int n,
+                                             VectorRow<width>& g) const {
+    read(slot_turns, at(p.value, p.value_step, s, a, b), p.value_step.a, n, g);
+    turn_back(p, n, g);
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION Vec3 in_chain(LineBundle const& p, Vec3 const& v) const {
-    return p.matrix < 0 ? v : transpose(matrices(p.matrix)) * v;
+  template <class Real, int width>
+  KOKKOS_INLINE_FUNCTION static void read(Real const* x, Real const* y, Real const* z, Index step, int n,
+                                          VectorRow<width>& to) {
+    for (int w = 0; w < n; ++w) {
+      to.x[w] = double(x[w * step]);
+      to.y[w] = double(y[w * step]);
+      to.z[w] = double(z[w * step]);
+    }
+  }
+  template <int width>
+  KOKKOS_INLINE_FUNCTION static void read(Field<double const> const& from, Index first, Index step, int n,
+                                          VectorRow<width>& to) {
+    Index const skip = first * from.stride;
+    read(from.x + skip, from.y + skip, from.z + skip, step * from.stride, n, to);
+  }
+  template <int width>
+  KOKKOS_INLINE_FUNCTION static void read(VectorArray const& from, Index first, Index step, int n,
+                                          VectorRow<width>& to) {
+    if (from.zones == nullptr) {
+      from.with_row(first, [&](auto const& row) { read(row.x, row.y, row.z, step * row.stride, n, to); });
+      return;
+    }
+    for (int w = 0; w < n; ++w) {
+      Vec3 const v = from[first + w * step];
+      to.x[w] = v.x;
+      to.y[w] = v.y;
+      to.z[w] = v.z;
+    }
+  }
+  template <int width>
+  KOKKOS_INLINE_FUNCTION void turn_back(LineBundle const& p, int n, VectorRow<width>& v) const {
+    if (p.matrix < 0) return;
+    Mat3 const back = transpose(matrices(p.matrix));
+    for (int w = 0; w < n; ++w) {
+      Vec3 const turned = back * Vec3{v.x[w], v.y[w], v.z[w]};
+      v.x[w] = turned.x;
+      v.y[w] = turned.y;
+      v.z[w] = turned.z;
+    }
   }
 };
 
@@ -143,9 +171,10 @@ struct LineGradients {
         int(local % per_row) * Width, int(local / per_row),
         group.n_a - int(local % per_row) * Width < Width ? group.n_a - int(local % per_row) * Width : Width};
     Index const lower = chain.first_end_value + group.a + lines.a + Index(chain.n_a) * (group.b + lines.b);
-    add_displacements(group, chain, lines, lower);
-    if (chain.turn != TurnLaw::none)
-      for (int w = 0; w < lines.n; ++w) add_turns(group, chain, lines.a + w, lines.b, lower + w);
+    if (chain.turn == TurnLaw::none)
+      add_displacements(group, chain, lines, lower, [](LineBundle const&, int, Row const&) {});
+    else
+      add_turned(group, chain, lines, lower);
   }
 
  private:
@@ -154,8 +183,10 @@ struct LineGradients {
   };
   using Row = VectorRow<Width>;
 
+  /// visit(bundle, s, gradients) of every row.
+  template <class Visit>
   KOKKOS_INLINE_FUNCTION void add_displacements(LineGroup const& group, Chain const& chain, Lines const& lines,
-                                                Index lower) const {
+                                                Index lower, Visit const& visit) const {
     Row first, last, g;
     double weight[Width];
     for (int w = 0; w < lines.n; ++w) first.x[w] = first.y[w] = first.z[w] = last.x[w] = last.y[w] = last.z[w] = 0;
@@ -174,6 +205,7 @@ struct LineGradients {
           last.y[w] += f * g.y[w];
           last.z[w] += f * g.z[w];
         }
+        visit(p, s, g);
       }
     }
     for (int w = 0; w < lines.n; ++w) {
@@ -200,26 +232,21 @@ struct LineGradients {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void add_turns(LineGroup const& group, Chain const& chain, int a, int b, Index lower) const {
-    Index const upper = lower + chain.section_size();
-    TurnedGradient first, last;
-    Vec3 first_turn, last_turn;
-    for (int m = 0; m < group.n_bundles; ++m) {
-      LineBundle const& p = from.bundles(group.first_bundle + m);
-      for (int s = 0; s < p.n_s; ++s) {
-        double const t = from.parameter(p, s, a, b);
-        turned_gradient(ends, chain, lower, upper, t, from.place(p, s, a, b), from.gradient(p, s, a, b), first, last);
-        if (p.in_volume != 0) continue;
-        Vec3 const g = from.turn_gradient(p, s, a, b);
-        TurnWeights const f = turn_weights(chain, t);
-        if (chain.turned_ends & 1u) first_turn += f.lower * g;
-        if (chain.turned_ends & 2u) last_turn += f.upper * g;
-      }
-    }
-    to.turned.set(lower, first);
-    to.turned.set(upper, last);
-    to.turns.set(lower, first_turn);
-    to.turns.set(upper, last_turn);
+  KOKKOS_INLINE_FUNCTION void add_turned(LineGroup const& group, Chain const& chain, Lines const& lines,
+                                         Index lower) const {
+    TurnedLines<Width> turned(ends, chain, lower, lines.n);
+    add_displacements(group, chain, lines, lower, [&](LineBundle const& p, int s, Row const& g) {
+      double t[Width];
+      Row x;
+      from.parameters(p, s, lines.a, lines.b, lines.n, t);
+      from.places(p, s, lines.a, lines.b, lines.n, x);
+      turned.add(t, x, g);
+      if (p.in_volume != 0) return;
+      Row of_turns;
+      from.turn_gradients(p, s, lines.a, lines.b, lines.n, of_turns);
+      turned.add_turns(t, of_turns);
+    });
+    turned.write(lower, to.turned, to.turns);
   }
 };
 

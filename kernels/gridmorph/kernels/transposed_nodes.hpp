@@ -6,6 +6,7 @@
 #include <gridmorph/kernels/periodic_mean.hpp>
 #include <gridmorph/kernels/slip_nodes.hpp>
 #include <gridmorph/kernels/transposed_rows.hpp>
+#include <gridmorph/kernels/transposed_slip.hpp>
 
 namespace gridmorph::kernels {
 
@@ -189,20 +190,21 @@ struct KeepAsked {
 /// Transpose of AskNodes: to the slots, listed, or to the nodes' own displacements.
 template <class MemorySpace>
 struct AskNodesBack {
-  AskNodes<MemorySpace, true> ask;
+  AskNodes<MemorySpace, false> ask;
   Vec3 const* kept;
   Vec3 *asked, *listed;
   [[nodiscard]] Index size() const { return ask.size(); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Index const n = ask.table.node(k);
     Vec3 g = asked[n];
-    if (ask.table.first(k + 1) > ask.table.first(k)) {
-      auto const along = [&](Vec3 const& direction) {
-        Vec3 u = kept[k], rate = direction;
-        ask.constrain(k, u, rate);
-        return dot(rate, g);
+    if (int const count = int(ask.table.first(k + 1) - ask.table.first(k)); count > 0) {
+      Index const from = ask.table.first(k);
+      Vec3 const baseline = ask.x[n];
+      auto const surface = [&](int m) -> SlipSurfaceView const& {
+        return ask.table.surfaces(ask.table.surface(from + m));
       };
-      g = {along({1, 0, 0}), along({0, 1, 0}), along({0, 0, 1})};
+      auto const own = [&](int m) { return surface(m).own_offset(baseline); };
+      g = constrained_gradient(count, surface, own, baseline, kept[k], g);
     }
     bool const given = ask.table.slot(k) >= 0;
     asked[n] = given ? Vec3{} : g;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <gridmorph/kernels/inverse_distance.hpp>
+#include <gridmorph/kernels/lanes.hpp>
 #include <gridmorph/kernels/lattice_field.hpp>
 
 namespace gridmorph::kernels {
@@ -102,17 +103,19 @@ KOKKOS_INLINE_FUNCTION void add_value_gradient(AffineMotion& to, Vec3 const& g, 
 template <class MemorySpace, class Value>
 struct GroupsFromLattice {
   TransposedRows<MemorySpace> rows;
-  UniformLattice shape;
-  Kokkos::View<Vec3 const*, MemorySpace> centre;
+  Kokkos::View<Vec3 const*, MemorySpace> centre, place;  ///< of groups; of lattice nodes
   Vec3 const* value;
   Value* group;
 
   [[nodiscard]] Index size() const { return rows.size(); }
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
     Index const at = rows.source(n);
+    Vec3 const here = centre(at);
     Value sum = group[at];
-    for (Index k = rows.first(n); k < rows.first(n + 1); ++k)
-      add_value_gradient(sum, value[rows.target(k)], rows.weight(k), centre(at), shape.position(rows.target(k)));
+    for (Index k = rows.first(n); k < rows.first(n + 1); ++k) {
+      Index const from = rows.target(k);
+      add_value_gradient(sum, value[from], rows.weight(k), here, place(from));
+    }
     group[at] = sum;
   }
 };
@@ -128,7 +131,7 @@ struct LatticeReaders {
   Index n_chunks = 0;
 };
 
-/// Item: a chunk. parts: eight per chunk, of the corners of its cell.
+/// Item: a chunk. parts: eight per chunk, of the corners of its cell, which are computed with in lanes.
 template <class MemorySpace>
 struct LatticeParts {
   LatticeReaders<MemorySpace> readers;
@@ -136,13 +139,38 @@ struct LatticeParts {
   Vec3 const* gradient;  ///< of what the nodes read
   Vec3* parts;
   KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
-    Vec3 sum[8];
-    for (Index k = readers.first(c); k < readers.first(c + 1); ++k) {
+    Corners sum[3];
+    Index const begin = readers.first(c), end = readers.first(c + 1);
+    for (Index k = begin; k < end; ++k) {
       Index const n = readers.node(k);
+      Vec3 const g = gradient[n];
       PlaceInCell const at = readers.shape.place(x[n]);
-      for (int corner = 0; corner < 8; ++corner) sum[corner] += at.weight(corner) * gradient[n];
+      for (int m = 0; m < n_lanes; ++m) {
+        T const weight = share<0>(at.t[0], m) * share<1>(at.t[1], m) * share<2>(at.t[2], m);
+        sum[0].of[m] += weight * g.x;
+        sum[1].of[m] += weight * g.y;
+        sum[2].of[m] += weight * g.z;
+      }
     }
-    for (int corner = 0; corner < 8; ++corner) parts[8 * c + corner] = sum[corner];
+    double at_corner[3][8];
+    for (int a = 0; a < 3; ++a)
+      for (int m = 0; m < n_lanes; ++m) store_lanes(at_corner[a] + width * m, sum[a].of[m]);
+    for (int corner = 0; corner < 8; ++corner)
+      parts[8 * c + corner] = {at_corner[0][corner], at_corner[1][corner], at_corner[2][corner]};
+  }
+
+ private:
+  static constexpr int width = native_lanes, n_lanes = 8 / width;
+  using T = Lanes<width>;
+  struct Corners {
+    T of[n_lanes] = {};
+  };
+  /// What PlaceInCell::weight() takes of t along an axis, for the corners from m width on.
+  template <int axis>
+  KOKKOS_FORCEINLINE_FUNCTION static T share(double t, int m) {
+    double upper[width];
+    for (int w = 0; w < width; ++w) upper[w] = ((m * width + w) >> axis) & 1;
+    return load_lanes<T>(upper) > 0 ? broadcast<T>(t) : broadcast<T>(1 - t);
   }
 };
 /// Item: a lattice node, which gathers from the cells around it.

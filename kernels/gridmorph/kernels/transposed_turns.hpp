@@ -8,29 +8,11 @@
 // Cost: about 100 flops per node and end that turns; per wall node about twice its rotation.
 #pragma once
 
-#include <gridmorph/kernels/rotation_gradient.hpp>
+#include <gridmorph/kernels/transposed_turned_row.hpp>
 #include <gridmorph/kernels/transposed_wall_turn.hpp>
 #include <gridmorph/kernels/turned_ends.hpp>
 
 namespace gridmorph::kernels {
-
-/// Of line ends: arrays as those of TurnedEnds, pivots unused.
-struct TurnedEndGradients {
-  TurnedEnds<double> at;
-
-  KOKKOS_INLINE_FUNCTION void set(Index end, TurnedGradient const& g) const {
-    at.set(end, {{g.imaginary, g.less}, {}, g.stretch});
-  }
-  KOKKOS_INLINE_FUNCTION TurnedGradient operator[](Index end) const {
-    TurnedEnd<Vec3> const e = TurnedEnds<double const>{at.first, at.n}[end];
-    return {e.q.imaginary, e.q.less, e.stretch};
-  }
-  KOKKOS_INLINE_FUNCTION void add(Index end, double f, TurnedGradient const& g) const {
-    TurnedGradient sum = (*this)[end];
-    sum.add(f, g);
-    set(end, sum);
-  }
-};
 
 /// Of what turned_between() gives a node at x, whose gradient is g: added to those of the two ends.
 KOKKOS_INLINE_FUNCTION void turned_gradient(TurnedEnds<double const> const& ends, Chain const& chain, Index lower,
@@ -86,8 +68,7 @@ struct SeededVectors {
   KOKKOS_INLINE_FUNCTION DualVec3 operator[](Index n) const { return {values[n], n == seeded ? direction : Vec3{}}; }
 };
 
-/// gradient(target) += sum over what depends on it; of(dependent, target, direction): rate of J by way of one dependent where the target
-/// changes along a direction. One item per target.
+/// gradient(target) += sum of of(dependent, target) over what depends on it: gradients by way of one dependent. One item per target.
 template <class MemorySpace, class Function>
 struct PullBack {
   Dependents<MemorySpace> on;
@@ -98,10 +79,7 @@ struct PullBack {
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
     Index const target = on.target(n);
     Vec3 sum = gradient[target];
-    for (Index m = on.first(n); m < on.first(n + 1); ++m) {
-      Index const d = on.dependent(m);
-      sum += {of(d, target, Vec3{1, 0, 0}), of(d, target, Vec3{0, 1, 0}), of(d, target, Vec3{0, 0, 1})};
-    }
+    for (Index m = on.first(n); m < on.first(n + 1); ++m) sum += of(on.dependent(m), target);
     gradient.set(target, sum);
   }
 };
@@ -124,77 +102,100 @@ struct RawRootTurnBack {
     Root const& root = table.roots(r);
     Vec3 const g = raw[r];
     Index const own = Index(table.neighbours.extent(0)) + r;
-    for (Index k = 0; k < root.n_neighbours; ++k) parts.set(root.first_neighbour + k, {});
-    parts.set(own, {});
-    if (g == Vec3{}) return;
+    if (g == Vec3{}) return clear(root, own);
     Fan const fan{table, root, u, u[root.slot]};
-    auto const before = [&](Index k) { return fan.before(k); };
-    auto const after = [&](Index k) { return fan.after(k); };
-    auto const add = [&](Index k, Vec3 const& of) {
-      Index const at = root.first_neighbour + k;
-      parts.set(at, parts[at] + of);
-    };
-    auto const add_face = [&](Index k, Vec3 const& of) {  // of after(k) x after(k + 1)
-      add(k, cross(after(k + 1), of));
-      add(k + 1, cross(of, after(k)));
-    };
+    FanMoments sums;
     Vec3 normal, moved;
-    fan.for_faces([&](Index k, Vec3 const& face, double side) {
-      normal += side * face;
-      moved += side * cross(after(k), after(k + 1));
+    double area = 0;
+    fan.for_faces(false, [&](Arms const& face, double, Index) {
+      Vec3 const before = cross(face.before[0], face.before[1]);
+      area += norm(before);
+      normal += before;
+      moved += cross(face.after[0], face.after[1]);
+      for (int m = 0; m < 2; ++m) sums.add(face.before[m], face.after[m]);
     });
-    Vec3 of_turn = g;
-    if (double const size = norm(moved); dot(root.line, root.line) > 0 && size > 0) {
-      Vec3 const swing = turn_between(normal, moved), axis = (1 / size) * moved;
-      Vec3 const free = turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after));
-      auto const face_before = [&](Index k) { return cross(before(2 * k), before(2 * k + 1)); };
-      auto const face_after = [&](Index k) { return cross(after(2 * k), after(2 * k + 1)); };
-      double const share = share_that_keeps_height(root.line, free, root.n_neighbours / 2, face_before, face_after);
-      auto const kept =
-          kept_height_gradient(root.line, free, root.n_neighbours / 2, face_before, face_after, dot(g, free));
-      of_turn = share * g + kept.turn;
-      if (kept.face >= 0) add_face(2 * kept.face, kept.moved);
+    bool const folded = !(norm(normal) > folded_walls * area);
+    if (folded) {
+      normal = moved = {};
+      fan.for_faces(true, [&](Arms const& face, double side, Index) {
+        normal += side * cross(face.before[0], face.before[1]);
+        moved += side * cross(face.after[0], face.after[1]);
+      });
     }
-    Vec3 const of_moved = fan_turn_gradient(normal, moved, root.n_neighbours, before, after, of_turn, add);
-    fan.for_faces([&](Index k, Vec3 const&, double side) { add_face(k, side * of_moved); });
-    Vec3 of_own;
-    for (Index k = 0; k < root.n_neighbours; ++k) of_own = of_own - parts[root.first_neighbour + k];
-    parts.set(own, of_own);
+    if (!(norm(moved) > 0)) return clear(root, own);
+    FanTurn const turn(normal, moved, sums);
+    KeptHeightGradient kept;
+    FanTurn::Gradient const of = turn.gradient(through_line(root, fan, turn, g, kept));
+    Vec3 sum;
+    fan.for_faces(folded, [&](Arms const& face, double side, Index k) {
+      Vec3 const of_face = k == 2 * kept.face ? side * of.moved + kept.moved : side * of.moved;
+      Vec3 const first = of.twist.after(face.before[0]) + cross(face.after[1], of_face);
+      Vec3 const next = of.twist.after(face.before[1]) + cross(of_face, face.after[0]);
+      parts.set(root.first_neighbour + k, first);
+      parts.set(root.first_neighbour + k + 1, next);
+      sum = sum - first - next;
+    });
+    parts.set(own, sum);
   }
 
  private:
-  /// The arms of a root before and after.
+  /// Of a face of the wall: two neighbours of its root.
+  struct Arms {
+    Vec3 before[2], after[2];
+  };
   struct Fan {
     RootTable<MemorySpace> const& table;
     Root const& root;
     Field<double const> const& u;
     Vec3 here;
 
-    KOKKOS_INLINE_FUNCTION Vec3 before(Index k) const { return table.neighbours(root.first_neighbour + k).arm; }
-    KOKKOS_INLINE_FUNCTION Vec3 after(Index k) const {
-      RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
+    KOKKOS_INLINE_FUNCTION Arms face(Index k) const {
+      RootNeighbour const &a = table.neighbours(root.first_neighbour + k),
+                          &b = table.neighbours(root.first_neighbour + k + 1);
+      return {{a.arm, b.arm}, {after(a), after(b)}};
+    }
+    [[nodiscard]] KOKKOS_INLINE_FUNCTION Vec3 after(RootNeighbour const& other) const {
       return other.arm + (table.in_frame(other.matrix, u[other.slot]) - here);
     }
-    /// visit(k, face before, 1 or -1), the sign as RawRootTurn counts faces that lie on one another.
+    /// visit(its arms, 1 or -1, k), the sign as RawRootTurn counts faces.
     template <class Visit>
-    KOKKOS_INLINE_FUNCTION void for_faces(Visit const& visit) const {
+    KOKKOS_INLINE_FUNCTION void for_faces(bool folded, Visit const& visit) const {
       Vec3 normal;
-      double area = 0;
       for (Index k = 0; k < root.n_neighbours; k += 2) {
-        Vec3 const face = cross(before(k), before(k + 1));
-        normal += face;
-        area += norm(face);
-      }
-      bool const folded = !(norm(normal) > folded_walls * area);
-      normal = {};
-      for (Index k = 0; k < root.n_neighbours; k += 2) {
-        Vec3 const face = cross(before(k), before(k + 1));
-        double const side = folded && dot(face, normal) < 0 ? -1 : 1;
-        normal += side * face;
-        visit(k, face, side);
+        Arms const arms = face(k);
+        double side = 1;
+        if (folded) {
+          Vec3 const n = cross(arms.before[0], arms.before[1]);
+          side = dot(n, normal) < 0 ? -1 : 1;
+          normal += side * n;
+        }
+        visit(arms, side, k);
       }
     }
   };
+
+  KOKKOS_INLINE_FUNCTION void clear(Root const& root, Index own) const {
+    for (Index k = 0; k < root.n_neighbours; ++k) parts.set(root.first_neighbour + k, {});
+    parts.set(own, {});
+  }
+  /// Of the turn before the line at an edge of the wall held it back; `kept`: of the face that did.
+  KOKKOS_INLINE_FUNCTION static Vec3 through_line(Root const& root, Fan const& fan, FanTurn const& turn, Vec3 const& g,
+                                                  KeptHeightGradient& kept) {
+    if (!(dot(root.line, root.line) > 0)) return g;
+    auto const face_before = [&](Index k) {
+      Arms const face = fan.face(2 * k);
+      return cross(face.before[0], face.before[1]);
+    };
+    auto const face_after = [&](Index k) {
+      Arms const face = fan.face(2 * k);
+      return cross(face.after[0], face.after[1]);
+    };
+    Vec3 const free = turn.rotation();
+    Index const n_faces = root.n_neighbours / 2;
+    double const share = share_that_keeps_height(root.line, free, n_faces, face_before, face_after);
+    kept = kept_height_gradient(root.line, free, n_faces, face_before, face_after, dot(g, free));
+    return share * g + kept.turn;
+  }
 };
 
 /// End wall e by the displacement of a slot (raw == false), or by the rotation of a root.
@@ -203,7 +204,12 @@ struct EndWallTurnBy {
   EndWallTurn<MemorySpace, DualVec3> turn;
   Field<double const> u, raw;
   Field<double const> at_end;  ///< gradients, 3 per end wall
-  KOKKOS_INLINE_FUNCTION double operator()(Index e, Index target, Vec3 const& direction) const {
+  KOKKOS_INLINE_FUNCTION Vec3 operator()(Index e, Index target) const {
+    return {along(e, target, {1, 0, 0}), along(e, target, {0, 1, 0}), along(e, target, {0, 0, 1})};
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION double along(Index e, Index target, Vec3 const& direction) const {
     auto const found = turn.at(e, SeededVectors{u, by_raw ? -1 : target, direction},
                                SeededVectors{raw, by_raw ? target : -1, direction});
     return dot(found.alpha.rate, at_end[3 * e]) + dot(found.before.rate, at_end[3 * e + 1]) +

@@ -2,7 +2,7 @@
 // twist_about() (wall_turn.hpp) and of share_that_keeps_height() (kept_height.hpp). g is the gradient of what each gives; those of what it
 // takes are returned or added.
 //
-// Cost: about twice the rotation itself.
+// Cost: arms are read twice, 40 and 30 flops each; 500 flops besides.
 #pragma once
 
 #include <gridmorph/kernels/rotation_gradient.hpp>
@@ -62,68 +62,103 @@ KOKKOS_INLINE_FUNCTION Vec3 unit_gradient(Vec3 const& v, Vec3 const& g) {
   return (1 / size) * (g - dot(g, u) * u);
 }
 
-/// Of axis, swing and arms after in twist_about(): the first two are added to; add(k, gradient of after(k)).
-template <class Before, class After, class Add>
-KOKKOS_INLINE_FUNCTION void add_twist(Vec3 const& axis, Vec3 const& swing, Index n, Before const& before,
-                                      After const& after, Vec3 const& g, Vec3& of_axis, Vec3& of_swing,
-                                      Add const& add) {
-  double const x = axis.x < 0 ? -axis.x : axis.x, y = axis.y < 0 ? -axis.y : axis.y, z = axis.z < 0 ? -axis.z : axis.z;
-  Vec3 const least = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
-  Vec3 const across = least - dot(least, axis) * axis;
-  Vec3 const t1 = (1 / norm(across)) * across, t2 = cross(axis, t1);
-  double c11 = 0, c12 = 0, c22 = 0, b11 = 0, b12 = 0, b21 = 0, b22 = 0;
-  auto const turned_arm = [&](Index k) {
-    Vec3 const arm = before(k);
-    return arm + turned_by(swing, arm);
-  };
-  for (Index k = 0; k < n; ++k) {
-    Vec3 const p = turned_arm(k), q = after(k);
-    double const p1 = dot(p, t1), p2 = dot(p, t2), q1 = dot(q, t1), q2 = dot(q, t2);
-    c11 += p1 * p1;
-    c12 += p1 * p2;
-    c22 += p2 * p2;
-    b11 += q1 * p1;
-    b12 += q1 * p2;
-    b21 += q2 * p1;
-    b22 += q2 * p2;
+/// Sums over the arms p of a fan before and q after.
+struct FanMoments {
+  Mat3 before{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, after = before;  ///< of p p^T and q p^T
+
+  KOKKOS_INLINE_FUNCTION void add(Vec3 const& p, Vec3 const& q) {
+    add_product(before, p, p);
+    add_product(after, q, p);
   }
-  double const size = c11 + c22;
-  bool const on_a_line = !((c11 * c22 - c12 * c12 - 1e-12 * (size * size)) > 0);
-  double const sine = on_a_line ? b21 - b12 : b21 * c22 - b22 * c12 - b12 * c11 + b11 * c12;
-  double const cosine = on_a_line ? b11 + b22 : b11 * c22 - b12 * c12 + b22 * c11 - b21 * c12;
-  double const whole = sine * sine + cosine * cosine;
-  if (!(whole > 0)) return;
-  double const twist = quarter_tangent(sine, cosine);
-  of_axis += twist * g;
-  double const of_angle = dot(g, axis) * (1 + twist * twist) / 4;
-  double const of_sine = of_angle * cosine / whole, of_cosine = -of_angle * sine / whole;
-  double of_c11 = 0, of_c12 = 0, of_c22 = 0, of_b11 = of_cosine, of_b12 = -of_sine, of_b21 = of_sine,
-         of_b22 = of_cosine;
-  if (!on_a_line) {
-    of_c11 = -of_sine * b12 + of_cosine * b22;
-    of_c22 = of_sine * b21 + of_cosine * b11;
-    of_c12 = of_sine * (b11 - b22) - of_cosine * (b12 + b21);
-    of_b11 = of_sine * c12 + of_cosine * c22;
-    of_b12 = -of_sine * c11 - of_cosine * c12;
-    of_b21 = of_sine * c22 - of_cosine * c12;
-    of_b22 = -of_sine * c12 + of_cosine * c11;
+
+ private:
+  KOKKOS_INLINE_FUNCTION static void add_product(Mat3& to, Vec3 const& a, Vec3 const& b) {
+    double const left[3] = {a.x, a.y, a.z}, right[3] = {b.x, b.y, b.z};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) to.m[i][j] += left[i] * right[j];
   }
-  Vec3 of_t1, of_t2;
-  for (Index k = 0; k < n; ++k) {
-    Vec3 const p = turned_arm(k), q = after(k);
-    double const p1 = dot(p, t1), p2 = dot(p, t2), q1 = dot(q, t1), q2 = dot(q, t2);
-    double const of_p1 = 2 * of_c11 * p1 + of_c12 * p2 + of_b11 * q1 + of_b21 * q2;
-    double const of_p2 = 2 * of_c22 * p2 + of_c12 * p1 + of_b12 * q1 + of_b22 * q2;
-    double const of_q1 = of_b11 * p1 + of_b12 * p2, of_q2 = of_b21 * p1 + of_b22 * p2;
-    of_t1 += of_p1 * p + of_q1 * q;
-    of_t2 += of_p2 * p + of_q2 * q;
-    of_swing += turned_by_gradient(swing, before(k), of_p1 * t1 + of_p2 * t2);
-    add(k, of_q1 * t1 + of_q2 * t2);
+};
+
+/// Of what twist_about() takes: of axis and swing, and of each arm after, linear in that before.
+struct TwistGradient {
+  Vec3 axis, swing;
+  Vec3 t1, t2, by1, by2;
+  KOKKOS_INLINE_FUNCTION Vec3 after(Vec3 const& before) const { return dot(by1, before) * t1 + dot(by2, before) * t2; }
+};
+
+/// twist_about() of a fan and its gradients, from sums over the fan alone: with t1, t2 across the axis and T1, T2 the same turned back by the
+/// swing, all that it sums up are components of the moments along these.
+struct FanTwist {
+  Vec3 axis, swing;
+  FanMoments sums;
+
+  KOKKOS_INLINE_FUNCTION FanTwist(Vec3 const& axis_, Vec3 const& swing_, FanMoments const& sums_)
+      : axis(axis_), swing(swing_), sums(sums_) {
+    double const x = axis.x < 0 ? -axis.x : axis.x, y = axis.y < 0 ? -axis.y : axis.y,
+                 z = axis.z < 0 ? -axis.z : axis.z;
+    least = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+    across = least - dot(least, axis) * axis;
+    t1 = (1 / norm(across)) * across;
+    t2 = cross(axis, t1);
+    T1 = t1 + turned_by(-swing, t1);
+    T2 = t2 + turned_by(-swing, t2);
+    P1 = sums.before * T1;
+    P2 = sums.before * T2;
+    Q1 = sums.after * T1;
+    Q2 = sums.after * T2;
+    c11 = dot(T1, P1);
+    c12 = dot(T1, P2);
+    c22 = dot(T2, P2);
+    b11 = dot(t1, Q1);
+    b12 = dot(t1, Q2);
+    b21 = dot(t2, Q1);
+    b22 = dot(t2, Q2);
+    double const size = c11 + c22;
+    on_a_line = !((c11 * c22 - c12 * c12 - 1e-12 * (size * size)) > 0);
+    sine = on_a_line ? b21 - b12 : b21 * c22 - b22 * c12 - b12 * c11 + b11 * c12;
+    cosine = on_a_line ? b11 + b22 : b11 * c22 - b12 * c12 + b22 * c11 - b21 * c12;
+    twist = quarter_tangent(sine, cosine);
   }
-  of_t1 += cross(of_t2, axis);
-  Vec3 const of_across = unit_gradient(across, of_t1);
-  of_axis += cross(t1, of_t2) - dot(least, axis) * of_across - dot(of_across, axis) * least;
-}
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Vec3 rotation() const { return twist * axis; }
+  /// g: gradient of rotation().
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION TwistGradient gradient(Vec3 const& g) const {
+    TwistGradient of;
+    double const whole = sine * sine + cosine * cosine;
+    if (!(whole > 0)) return of;
+    double const of_angle = dot(g, axis) * (1 + twist * twist) / 4;
+    double const of_sine = of_angle * cosine / whole, of_cosine = -of_angle * sine / whole;
+    double of_c11 = 0, of_c12 = 0, of_c22 = 0, of_b11 = of_cosine, of_b12 = -of_sine, of_b21 = of_sine,
+           of_b22 = of_cosine;
+    if (!on_a_line) {
+      of_c11 = -of_sine * b12 + of_cosine * b22;
+      of_c22 = of_sine * b21 + of_cosine * b11;
+      of_c12 = of_sine * (b11 - b22) - of_cosine * (b12 + b21);
+      of_b11 = of_sine * c12 + of_cosine * c22;
+      of_b12 = -of_sine * c11 - of_cosine * c12;
+      of_b21 = of_sine * c22 - of_cosine * c12;
+      of_b22 = -of_sine * c12 + of_cosine * c11;
+    }
+    Mat3 const back = transpose(sums.after);
+    Vec3 const m1 = (2 * of_c11) * P1 + of_c12 * P2 + back * (of_b11 * t1 + of_b21 * t2);
+    Vec3 const m2 = (2 * of_c22) * P2 + of_c12 * P1 + back * (of_b12 * t1 + of_b22 * t2);
+    Vec3 const of_t2 = m2 + turned_by(swing, m2) + of_b21 * Q1 + of_b22 * Q2;
+    Vec3 const of_t1 = m1 + turned_by(swing, m1) + of_b11 * Q1 + of_b12 * Q2 + cross(of_t2, axis);
+    Vec3 const of_across = unit_gradient(across, of_t1);
+    of.axis = twist * g + cross(t1, of_t2) - dot(least, axis) * of_across - dot(of_across, axis) * least;
+    of.swing = turned_by_gradient(swing, m1, t1) + turned_by_gradient(swing, m2, t2);
+    of.t1 = t1;
+    of.t2 = t2;
+    of.by1 = of_b11 * T1 + of_b12 * T2;
+    of.by2 = of_b21 * T1 + of_b22 * T2;
+    return of;
+  }
+
+ private:
+  Vec3 least, across, t1, t2, T1, T2, P1, P2, Q1, Q2;
+  double c11, c12, c22, b11, b12, b21, b22, sine, cosine, twist;
+  bool on_a_line;
+};
 
 /// Of the turn in share_that_keeps_height() and of the face that decides, where one does.
 struct KeptHeightGradient {
@@ -165,18 +200,31 @@ KOKKOS_INLINE_FUNCTION KeptHeightGradient kept_height_gradient(Vec3 const& line,
   return out;
 }
 
-/// Of swing and twist of a fan: of its normal `moved` (returned) and of its arms (added).
-template <class Before, class After, class Add>
-KOKKOS_INLINE_FUNCTION Vec3 fan_turn_gradient(Vec3 const& normal, Vec3 const& moved, Index n, Before const& before,
-                                              After const& after, Vec3 const& g, Add const& add) {
-  Vec3 const swing = turn_between(normal, moved);
-  double const size = norm(moved);
-  if (!(size > 0)) return {};
-  Vec3 const axis = (1 / size) * moved;
-  Vec3 of_swing, of_twist, of_axis;
-  add_turn_then(swing, twist_about(axis, swing, n, before, after), g, of_swing, of_twist);
-  add_twist(axis, swing, n, before, after, of_twist, of_axis, of_swing, add);
-  return turn_between_gradient(normal, moved, of_swing) + unit_gradient(moved, of_axis);
-}
+/// Rotation of a fan, its swing from one normal to the other and its twist, and the gradients of what it takes.
+class FanTurn {
+ public:
+  /// moved: not zero.
+  KOKKOS_INLINE_FUNCTION FanTurn(Vec3 const& normal, Vec3 const& moved, FanMoments const& sums)
+      : normal_(normal), moved_(moved), twist_((1 / norm(moved)) * moved, turn_between(normal, moved), sums) {}
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Vec3 rotation() const { return turn_then(twist_.swing, twist_.rotation()); }
+
+  struct Gradient {
+    Vec3 moved;           ///< of the normal after
+    TwistGradient twist;  ///< of arms
+  };
+  /// g: of rotation().
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Gradient gradient(Vec3 const& g) const {
+    Vec3 of_swing, of_twist;
+    add_turn_then(twist_.swing, twist_.rotation(), g, of_swing, of_twist);
+    Gradient of{{}, twist_.gradient(of_twist)};
+    of.moved = turn_between_gradient(normal_, moved_, of_swing + of.twist.swing) + unit_gradient(moved_, of.twist.axis);
+    return of;
+  }
+
+ private:
+  Vec3 normal_, moved_;
+  FanTwist twist_;
+};
 
 }  // namespace gridmorph::kernels

@@ -90,67 +90,73 @@ struct WallTurnBack {
     Vec3 const g = turn_gradient[r];
     if (wall.turns(r) == 0 || g == Vec3{}) return;
     Index const here = wall.node(r);
-    auto const before = [&](Index k) { return x[wall.around(first + k)] - x[here]; };
+    Vec3 const x_here = x[here], y_here = x_here + u[here];
+    auto const before = [&](Index k) { return x[wall.around(first + k)] - x_here; };
     auto const after = [&](Index k) {
       Index const there = wall.around(first + k);
-      return (x[there] + u[there]) - (x[here] + u[here]);
+      return (x[there] + u[there]) - y_here;
     };
     auto const face_of = [&](Vec3 const& a, Vec3 const& b) {
       return wall.flat ? cross(b - a, wall.across) : cross(a, b);
     };
     auto const face_before = [&](Index f) { return face_of(before(2 * f), before(2 * f + 1)); };
     auto const face_after = [&](Index f) { return face_of(after(2 * f), after(2 * f + 1)); };
-    auto const add = [&](Index k, Vec3 const& of) { parts[first + k] += of; };
-    auto const add_face = [&](Index f, Vec3 const& of) {
-      Vec3 const across = cross(wall.across, of);
-      add(2 * f, wall.flat ? -across : cross(after(2 * f + 1), of));
-      add(2 * f + 1, wall.flat ? across : cross(of, after(2 * f)));
-    };
     Vec3 normal, moved;
-    for (Index f = 0; 2 * f < n; ++f) {
-      normal += face_before(f);
-      moved += face_after(f);
+    FanMoments sums;
+    for (Index k = 0; k < n; k += 2) {
+      Vec3 const p[2] = {before(k), before(k + 1)}, q[2] = {after(k), after(k + 1)};
+      normal += face_of(p[0], p[1]);
+      moved += face_of(q[0], q[1]);
+      if (wall.flat) continue;
+      for (int m = 0; m < 2; ++m) sums.add(p[m], q[m]);
     }
-    Vec3 const of_turn =
-        through_lines(r, n / 2, free_turn(normal, moved, n, before, after), g, face_before, face_after, add_face);
+    if (!(norm(moved) > 0)) return;
+    KeptHeightGradient kept;
     Vec3 of_moved;
-    if (wall.flat)
-      of_moved =
-          turn_between_gradient(normal, moved, settled_gradient(turn_between(normal, moved, wall.across), of_turn));
-    else
-      of_moved = fan_turn_gradient(normal, moved, n, before, after, of_turn, add);
-    for (Index f = 0; 2 * f < n; ++f) add_face(f, of_moved);
-    for (Index k = first; k < first + n; ++k) parts[own] = parts[own] - parts[k];
+    TwistGradient of_arms;
+    if (wall.flat) {
+      Vec3 const turn = turn_between(normal, moved, wall.across);
+      of_moved = turn_between_gradient(
+          normal, moved,
+          settled_gradient(turn, through_lines(r, n / 2, settled(turn), g, face_before, face_after, kept)));
+    } else {
+      FanTurn const turn(normal, moved, sums);
+      auto const of = turn.gradient(through_lines(r, n / 2, turn.rotation(), g, face_before, face_after, kept));
+      of_moved = of.moved;
+      of_arms = of.twist;
+    }
+    Vec3 sum;
+    for (Index k = 0; k < n; k += 2) {
+      Vec3 const of_face = k == 2 * kept.face ? of_moved + kept.moved : of_moved;
+      Vec3 const across = cross(wall.across, of_face);
+      Vec3 const first_arm = wall.flat ? -across : of_arms.after(before(k)) + cross(after(k + 1), of_face);
+      Vec3 const next_arm = wall.flat ? across : of_arms.after(before(k + 1)) + cross(of_face, after(k));
+      parts[first + k] = first_arm;
+      parts[first + k + 1] = next_arm;
+      sum = sum - first_arm - next_arm;
+    }
+    parts[own] = sum;
   }
 
  private:
-  template <class Before, class After>
-  KOKKOS_INLINE_FUNCTION Vec3 free_turn(Vec3 const& normal, Vec3 const& moved, Index n, Before const& before,
-                                        After const& after) const {
-    if (wall.flat) return settled(turn_between(normal, moved, wall.across));
-    Vec3 const swing = turn_between(normal, moved);
-    double const size = norm(moved);
-    if (!(size > 0)) return swing;
-    return turn_then(swing, twist_about((1 / size) * moved, swing, n, before, after));
-  }
   /// Of the turn before the lines on the node held it back: of that which did so most.
-  template <class Before, class After, class AddFace>
+  /// `kept`: of the face that decided.
+  template <class Before, class After>
   KOKKOS_INLINE_FUNCTION Vec3 through_lines(Index r, Index n_faces, Vec3 const& turn, Vec3 const& g,
-                                            Before const& before, After const& after, AddFace const& add_face) const {
+                                            Before const& before, After const& after, KeptHeightGradient& kept) const {
     if (wall.lines.extent(0) == 0) return g;
     double least = norm(turn), share = 1;
     Index holds = -1;
     for (Index k = wall.first_line(r); k < wall.first_line(r + 1); ++k) {
-      double const kept = share_that_keeps_height(wall.lines(k), turn, n_faces, before, after),
-                   size = norm(kept * turn);
+      double const left = share_that_keeps_height(wall.lines(k), turn, n_faces, before, after),
+                   size = norm(left * turn);
       if (!(least - size > 0)) continue;
       least = size;
-      share = kept;
+      share = left;
       holds = k;
     }
     if (holds < 0) return g;
-    auto const kept = kept_height_gradient(wall.lines(holds), turn, n_faces, before, after, dot(g, turn));
-    if (kept.face >= 0) add_face(kept.face, kept.moved);
+    kept = kept_height_gradient(wall.lines(holds), turn, n_faces, before, after, dot(g, turn));
     return share * g + kept.turn;
   }
 };

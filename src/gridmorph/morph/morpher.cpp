@@ -116,18 +116,46 @@ struct Morpher<Exec>::State {
     list.shifts->add_rate(exec, f, r, v);
   }
 
+  /// How many stages come up to the last one whose derivative depends on where the mesh is.
+  [[nodiscard]] std::size_t n_that_bend() const {
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < list.stages.size(); ++k)
+      std::visit(
+          [&](auto const& stage) {
+            if constexpr (requires { stage.bends(); })
+              if (stage.bends()) n = k + 1;
+          },
+          list.stages[k]);
+    return n;
+  }
+
+  /// What transposes are taken at, forwards; nothing that no transpose asks for.
+  void linearise(Exec const& exec, Field const& f) const {
+    bool const all = list.shifts && list.shifts->bends();
+    std::size_t const n = all ? list.stages.size() : n_that_bend();
+    for (std::size_t k = 0; k < n; ++k)
+      std::visit(
+          [&](auto const& stage) {
+            ProfilingRegion const region(stage.region);
+            constexpr bool keeps = requires { stage.keep(exec, flat.field, f); };
+            if (keeps && k + 1 == n && !all) {
+              if constexpr (keeps) stage.keep(exec, flat.field, f);
+            } else if constexpr (requires { stage.enqueue_kept(exec, flat.field, f); }) {
+              stage.enqueue_kept(exec, flat.field, f);
+            } else {
+              stage.enqueue(exec, flat.field, f);
+            }
+          },
+          list.stages[k]);
+  }
+
   void run_transpose(Exec const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const {
     Field f = list.fields[0], g = list.fields[1];
     f.boundary = boundary.array();
     g.nodes = dJ_du.array();
     g.baseline = baseline.array();
     g.boundary = dJ_db.array();
-    for_each_stage([&](auto const& stage) {
-      if constexpr (requires { stage.enqueue_kept(exec, flat.field, f); })
-        stage.enqueue_kept(exec, flat.field, f);
-      else
-        stage.enqueue(exec, flat.field, f);
-    });
+    linearise(exec, f);
     std::visit([&](auto const& writer) { writer.transpose(exec, g); }, list.writer);
     if (list.shifts) {
       ProfilingRegion const region(list.shifts->region);

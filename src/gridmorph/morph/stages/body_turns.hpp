@@ -119,6 +119,11 @@ class TakeTurns {
     take<kernels::DualVec3>(exec, x, r);
   }
 
+  [[nodiscard]] static bool bends() { return true; }
+  void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
+    sum(exec, f, tables_->sum);
+    turn<Vec3>(exec, tables_->half);
+  }
   /// Adds to what the transpose of AddTurns has left.
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
     using kernels::launch;

@@ -26,6 +26,8 @@ class FarField {
         morpher_(exec, plan.background_morph->plan(), uploaded(exec, plan.background->mesh.coordinates).vectors(),
                  {1, with_rate, nullptr, back}) {
     if (!back) return;
+    Plan const& background = plan.background_morph->plan();
+    bends_ = !background.turns.roots.empty() || !background.spreads.empty();
     wrap_back_ = transposed(exec, plan.wrap, name("wrap_back"));
     outer_back_ = transposed(exec, plan.outer, name("outer_back"));
     far_back_ = transposed(exec, plan.far, name("far_back"));
@@ -47,6 +49,8 @@ class FarField {
     enqueue(exec, x, f);
   }
 
+  [[nodiscard]] bool bends() const { return bends_; }
+  void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const { set_boundary(exec, f, boundary_); }
   void transpose(Exec const& exec, Baseline const&, StageField<Exec> const&, StageField<Exec> const& g) const {
     clear<Vec3>(exec, node_gradient_);
     kernels::gather_rows("gridmorph::transposed::far", exec, far_back_, g.u.data(), node_gradient_.data());
@@ -98,6 +102,7 @@ class FarField {
   Arrays u_;
   List<Exec, Vec3> boundary_, rate_;
   Morpher<Exec> morpher_;
+  bool bends_ = false;  ///< whether anything of the background turns or slides
   kernels::TransposedRows<Memory> wrap_back_, outer_back_, far_back_;
   List<Exec, Vec3> node_gradient_, boundary_gradient_;
 };

@@ -65,6 +65,8 @@ class FrozenShifts {
     slide<true>(exec, f, r, out);
   }
 
+  /// Whether its transpose depends on where the stages have put the nodes.
+  [[nodiscard]] bool bends() const { return slide_nodes_.extent(0) > 0; }
   /// Before the stages: gradients of nodes, to slots where nodes slide, and to the amplitudes.
   void transpose_nodes(Exec const& exec, StageField<Exec> const& f, StageField<Exec> const& g) const {
     using kernels::launch;

@@ -30,7 +30,7 @@ class JoinedNodes {
     if (!back) return;
     middle_back_ = transposed(exec, plan.middle, name("middle_back"));
     copies_back_ = transposed(exec, plan.copied, &plan.copies, name("copies_back"));
-    asked_back_ = AskedBack<Exec>(exec, at.slot, name("asked_back"));
+    asked_back_ = AskedBack<Exec>(exec, at.slot, at.surfaces.item.size() > 0, name("asked_back"));
   }
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
@@ -39,15 +39,11 @@ class JoinedNodes {
                     kernels::AskNodes<Memory, false>{boundary_, f.boundary, {}, x, f.u.data(), nullptr});
     join(exec, f);
   }
-  /// The same, kept for the transpose.
-  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+  [[nodiscard]] bool bends() const { return asked_back_.bends(); }
+  void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
     follow_corners(exec, f);
     asked_back_.keep(exec, boundary_, f.boundary, f.u);
-    kernels::launch("gridmorph::middle::boundary", exec,
-                    kernels::AskNodes<Memory, false>{boundary_, f.boundary, {}, x, f.u.data(), nullptr});
-    join(exec, f);
   }
-
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
     using kernels::launch;
     kernels::gather_rows("gridmorph::transposed::copies", exec, copies_back_, g.u.data(), g.u.data());

@@ -37,7 +37,7 @@ class OtherBoundaries {
             upload_sources(exec, plan.residual_nodes, plan.residual_detail, plan.n_nodes, name("detail_begins"))),
         detail_fade_(upload(exec, plan.detail_fade, name("detail_fade"))) {
     if (back == nullptr) return;
-    asked_back_ = AskedBack<Exec>(exec, plan.residual_slot, name("asked_back"));
+    asked_back_ = AskedBack<Exec>(exec, plan.residual_slot, plan.residual_surfaces.item.size() > 0, name("asked_back"));
     sliding_back_ = transposed(exec, plan.sliding_root, &plan.sliding, name("sliding_back"));
     if (residual_.empty()) return;
     std::vector<Index32> readers;
@@ -56,11 +56,15 @@ class OtherBoundaries {
   }
   /// The same, kept for the transpose.
   void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
-    start_.enqueue(exec, x, f);
-    asked_back_.keep(exec, nodes_, f.boundary, f.work);
+    keep(exec, x, f);
     kernels::launch("gridmorph::residual_nodes", exec,
                     kernels::AskNodes<Memory, false>{nodes_, f.boundary, {}, x, f.work.data(), nullptr});
     take(exec, x, f);
+  }
+  [[nodiscard]] bool bends() const { return asked_back_.bends(); }
+  void keep(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    start_.enqueue(exec, x, f);
+    asked_back_.keep(exec, nodes_, f.boundary, f.work);
   }
 
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {

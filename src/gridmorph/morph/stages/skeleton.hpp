@@ -97,6 +97,7 @@ class BoundaryValues : OnSkeleton<Exec> {
     set<false>(exec, f);
     set<true>(exec, r);
   }
+  [[nodiscard]] bool bends() const { return this->plan().turns.any(); }
   /// g.boundary is written: gradients of the boundary's displacement.
   void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
     auto const& plan = this->plan();
@@ -137,6 +138,10 @@ class LineSweep : OnSkeleton<Exec> {
   void rate(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& r) const {
     run<false>(exec, f);
     run<true>(exec, r);
+  }
+  [[nodiscard]] bool bends() const { return this->plan().stages[number_].turns; }
+  void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
+    detail::BlockTurns<Exec, false>(this->plan(), f.number, f.of).of_ends(exec, this->plan().stages[number_]);
   }
   void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
     auto const& stage = this->plan().stages[number_];
@@ -222,21 +227,24 @@ class SlipSpread : OnSkeleton<Exec> {
     this->template sweep<true>(exec, pass().sweeps, r);
   }
 
-  /// The same, and what its transpose is linearised at is kept.
-  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+  [[nodiscard]] static bool bends() { return true; }
+  void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
     kernels::launch("gridmorph::transposed::keep_slip_ends", exec,
                     kernels::KeepSlipEnds<Memory>{pass().ends, read(f.skeleton), back().kept.batch()[0]});
+  }
+  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    keep(exec, x, f);
     enqueue(exec, x, f);
   }
   void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
     this->sum_lines(exec, back().lines, pass().first_value, pass().n_values, f, g);
-    kernels::SlipEndValues<Memory, true> const values{pass().ends,
-                                                      pass().baselines,
-                                                      this->plan().surfaces.surfaces,
-                                                      this->plan().rotations,
-                                                      read(f.skeleton),
-                                                      read(f.skeleton),
-                                                      g.ends};
+    kernels::SlipEndValues<Memory, false> const values{pass().ends,
+                                                       pass().baselines,
+                                                       this->plan().surfaces.surfaces,
+                                                       this->plan().rotations,
+                                                       read(f.skeleton),
+                                                       read(f.skeleton),
+                                                       g.ends};
     kernels::pull_back("gridmorph::transposed::slip_ends", exec, back().ends_of_slot,
                        kernels::SlipEndBySlot<Memory>{values, back().kept.read()[0], read(g.ends)}, g.skeleton);
   }

@@ -176,6 +176,9 @@ class SmoothFieldBack {
     groups_ = transposed(exec, plan.groups, plan.n_groups, label);
     lattice_ = transposed(exec, plan.lattice, label);
     centre_ = upload(exec, plan.centre, label);
+    std::vector<Vec3> place;
+    for (Index n = 0; n < plan.shape.size(); ++n) place.push_back(plan.shape.position(n));
+    place_ = upload(exec, place, label);
     readers_ = lattice_readers(exec, plan.shape, std::move(readers), x, label);
     group_ = room_for<Value>(exec, std::size_t(plan.n_groups), label);
     value_ = room_for<Vec3>(exec, std::size_t(plan.shape.size()), label);
@@ -190,7 +193,7 @@ class SmoothFieldBack {
     launch("gridmorph::transposed::clear_groups", exec, 0, Index(group_.extent(0)),
            kernels::ClearValues<Value>{group_.data()});
     launch("gridmorph::transposed::groups_of_lattice", exec,
-           kernels::GroupsFromLattice<Memory, Value>{lattice_, readers_.shape, centre_, value_.data(), group_.data()});
+           kernels::GroupsFromLattice<Memory, Value>{lattice_, centre_, place_, value_.data(), group_.data()});
     kernels::gather_layers("gridmorph::transposed::groups", exec, groups_, group_.data());
     kernels::gather_rows("gridmorph::transposed::leaves", exec, leaves_, static_cast<Value const*>(group_.data()),
                          given);
@@ -200,7 +203,7 @@ class SmoothFieldBack {
   using Memory = typename Exec::memory_space;
   kernels::TransposedRows<Memory> leaves_, lattice_;
   kernels::TransposedLayers<Memory> groups_;
-  List<Exec, Vec3> centre_;
+  List<Exec, Vec3> centre_, place_;
   kernels::LatticeReaders<Memory> readers_;
   List<Exec, Value> group_;
   List<Exec, Vec3> value_, parts_;

@@ -56,6 +56,11 @@ class WallMotion {
     follow<kernels::DualVec3>(exec, {x}, {x, f.u.data(), r.u.data()}, turn_rate_, x, r);
   }
 
+  [[nodiscard]] static bool bends() { return true; }
+  void keep(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    set(exec, f);
+    turn<Vec3>(exec, {x}, {x, f.u.data()}, turn_);
+  }
   /// The last one: g.boundary is written.
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& g) const {
     using kernels::launch;
@@ -84,11 +89,16 @@ class WallMotion {
   }
 
   template <class V>
+  void turn(Exec const& exec, kernels::Positions<V> const& baseline, kernels::Positions<V> const& moved,
+            List<Exec, Vec3> const& to) const {
+    kernels::launch("gridmorph::wall_turn", exec, kernels::WallTurn<Memory, V>{wall_, baseline, moved, to.data()});
+  }
+  template <class V>
   void follow(Exec const& exec, kernels::Positions<V> const& baseline, kernels::Positions<V> const& moved,
               List<Exec, Vec3> const& turn, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
     Vec3 const *const turns = turn_.data(), *const rates = turn_rate_.data();
-    launch("gridmorph::wall_turn", exec, kernels::WallTurn<Memory, V>{wall_, baseline, moved, turn.data()});
+    this->turn(exec, baseline, moved, turn);
     launch("gridmorph::wall_frames", exec,
            kernels::WallFrames<Memory, V>{wall_, turns, rates, f.u.data(), f.frames.data()});
     launch("gridmorph::columns", exec,
