@@ -68,14 +68,20 @@ if(PROJECT_IS_TOP_LEVEL)
   install(
     DIRECTORY "${PROJECT_SOURCE_DIR}/docs/" DESTINATION "${doc_folder}/docs" COMPONENT documentation
     FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
-  # Examples are run where they lie, so they are data; what the pages call examples/ is a link to them.
+  # Examples are run where they lie, so they are data; what pages call ../examples is a link to them.
   install(
     DIRECTORY "${PROJECT_SOURCE_DIR}/examples/" DESTINATION "${data_folder}/examples" USE_SOURCE_PERMISSIONS
     COMPONENT documentation PATTERN generators EXCLUDE)
-  cmake_path(ABSOLUTE_PATH data_folder BASE_DIRECTORY "/" OUTPUT_VARIABLE from_root)
-  cmake_path(ABSOLUTE_PATH doc_folder BASE_DIRECTORY "/" OUTPUT_VARIABLE doc_from_root)
-  file(RELATIVE_PATH target "${doc_from_root}" "${from_root}/examples")
-  file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/generated/doc")
-  file(CREATE_LINK "${target}" "${PROJECT_BINARY_DIR}/generated/doc/examples" SYMBOLIC)
-  install(FILES "${PROJECT_BINARY_DIR}/generated/doc/examples" DESTINATION "${doc_folder}" COMPONENT documentation)
+  foreach(folder IN ITEMS data doc)
+    cmake_path(ABSOLUTE_PATH ${folder}_folder BASE_DIRECTORY "/" OUTPUT_VARIABLE ${folder}_from_root)
+  endforeach()
+  set(links "${PROJECT_BINARY_DIR}/generated/links")
+  file(MAKE_DIRECTORY "${links}")
+  file(RELATIVE_PATH examples "${doc_from_root}" "${data_from_root}/examples")
+  file(CREATE_LINK "${examples}" "${links}/examples" SYMBOLIC)
+  install(FILES "${links}/examples" DESTINATION "${doc_folder}" COMPONENT documentation)
+  # So that links from examples to pages hold too.
+  file(RELATIVE_PATH docs "${data_from_root}" "${doc_from_root}/docs")
+  file(CREATE_LINK "${docs}" "${links}/docs" SYMBOLIC)
+  install(FILES "${links}/docs" DESTINATION "${data_folder}" COMPONENT documentation)
 endif()

@@ -11,7 +11,8 @@ import sys
 import tempfile
 import unittest
 
-PREFIX, BUILD, CMAKE = (os.path.realpath(argument) if os.path.exists(argument) else argument for argument in sys.argv[1:4])
+PREFIX, BUILD = (os.path.realpath(argument) for argument in sys.argv[1:3])
+CMAKE = sys.argv[3]
 SHARE = os.path.join(PREFIX, "share")
 DOC = os.path.join(SHARE, "doc", "gridmorph")
 COMMAND = os.path.join(PREFIX, "bin", "gridmorph")
@@ -36,11 +37,12 @@ def relative_links(page):
 
 
 def anchors(page):
-    """What a link can name of `page`: its headings as web pages of Markdown write them."""
+    """What a link can name of `page`: its headings as web pages of Markdown write them, and places with an id."""
     with open(page, encoding="utf-8") as file:
         text = re.sub(r"```.*?```", "", file.read(), flags=re.DOTALL)
     headings = [re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading) for heading in re.findall(r"^#+ +(.*)$", text, flags=re.MULTILINE)]
-    return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in headings}
+    names = {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in headings}
+    return names | set(re.findall(r'<a id="([^"]*)">', text))
 
 
 class InstalledTree(unittest.TestCase):
