@@ -1,9 +1,14 @@
 """Meshes and examples of the project, and elements that several tests take."""
 import importlib.util
+import os
 import pathlib
 
 import numpy as np
 import pytest
+
+# Tests run side by side with others: threads that wait let them. Before anything starts threads.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+os.environ.setdefault("OMP_NUM_THREADS", "2")
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 

@@ -116,7 +116,7 @@ def torsion(script):
 
 
 def test_partials_of_the_torsion_example(torsion):
-    p = torsion.problem(4)
+    p = torsion.problem(3)
     p.set_val("p", [0.02, 0.03, -0.04, 0.01, 0.02])
     p.run_model()
     found = p.check_partials(out_stream=None, method="fd", form="central", step=1e-5)
