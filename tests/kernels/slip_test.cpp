@@ -5,6 +5,8 @@
 #include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/kernels/slip_end.hpp>
 #include <gridmorph/kernels/slip_nodes.hpp>
+#include <gridmorph/kernels/transposed_copies.hpp>
+#include <gridmorph/kernels/transposed_nodes.hpp>
 
 #include <gtest/gtest.h>
 
@@ -32,6 +34,14 @@ SlipSurface bulge() {
   std::vector<std::pair<double, double>> points;
   for (int k = -50; k <= 50; ++k) points.emplace_back(0.04 * k, 1 + 0.0004 * k * k);
   s.profile = RevolutionProfile::from_points(points);
+  return s;
+}
+
+/// The same curve in a frame that is turned by an angle.
+SlipSurface turned_bulge(double angle) {
+  SlipSurface s = bulge();
+  s.kind = SlipKind::meridional;
+  s.frame = {std::cos(angle), std::sin(angle)};
   return s;
 }
 
@@ -70,6 +80,19 @@ class Node {
     (*this)(after, unused);
     (*this)(at, found);
     EXPECT_LT(distance(found, (0.5 / h) * (after - before)), tolerance);
+  }
+  /// Gradients by both transposes: g . (rate of what is asked) = (gradient) . rate.
+  void expect_transposed(Vec3 const& u, Vec3 const& rate, Vec3 const& g) const {
+    Vec3 at = u, found = rate;
+    (*this)(at, found);
+    Vec3 of_node = g, unlisted;
+    kernels::AskNodes<Host, false> const ask{table_, {}, {}, {&x_.x, &x_.y, &x_.z}, nullptr, nullptr};
+    kernels::AskNodesBack<Host>{ask, &u, &of_node, &unlisted}(0);
+    EXPECT_NEAR(dot(of_node, rate), dot(g, found), 1e-13);
+    kernels::Field<double const> const kept{&u.x, &u.y, &u.z}, of_end{&g.x, &g.y, &g.z};
+    kernels::SlipEndValues<Host, false> const ends{ends_, baselines_, table_.surfaces, {}, kept, kept, {}};
+    Vec3 const of_slot = kernels::SlipEndBySlot<Host>{ends, kept, of_end}(0, 0);
+    EXPECT_NEAR(dot(of_slot + g, rate), dot(g, found), 1e-13);
   }
 
  private:
@@ -155,6 +178,21 @@ TEST(Slip, WhereASurfaceOfRevolutionEndsInAPlaneStaysOnBoth) {
     Vec3 const moved = x + u;
     EXPECT_NEAR(std::hypot(moved.y, moved.z), 1 + moved.x * moved.x / 4, 1e-10);
     EXPECT_NEAR(dot(moved, cross({1, 0, 0}, along)), 0, 1e-12);
+  }
+}
+
+TEST(Slip, GradientsAreTheTransposeOfRates) {
+  Random random(25);
+  Vec3 const x{0.4, 1.07 * std::cos(0.7), 1.07 * std::sin(0.7)}, along{0, std::cos(0.7), std::sin(0.7)};
+  SlipSurface axial = plane({1, 0, 0});
+  axial.kind = SlipKind::axial;
+  std::vector<std::vector<SlipSurface>> const all{{plane({1, 2, -1})}, {axial},
+                                                  {bulge()},           {turned_bulge(0)},
+                                                  {turned_bulge(0.3)}, {bulge(), plane(cross({1, 0, 0}, along))}};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    SCOPED_TRACE(k);
+    Node const node{x, all[k]};
+    for (int n = 0; n < 20; ++n) node.expect_transposed(random.vector(0.3), random.vector(1), random.vector(1));
   }
 }
 

@@ -24,19 +24,21 @@ struct TurnedGradient {
   }
 };
 
-/// Of q.turned(y), whose gradient is g; `along`: g . q.turned(y).
+/// Of q.turned(y), whose gradient is g, without the factor k; `along`: g . q.turned(y).
 KOKKOS_FORCEINLINE_FUNCTION TurnedGradient turned_gradient(Quaternion<Vec3> const& q, Vec3 const& y, Vec3 const& g,
-                                                           double& along) {
+                                                           double& scale, double& along) {
   Vec3 const& v = q.imaginary;
-  double const real = 1 - q.less, square = dot(v, v), scale = 2 / (real * real + square);
+  double const real = 1 - q.less, square = dot(v, v);
+  scale = 2 / (real * real + square);
   Vec3 const across = cross(y, g);
   double const triple = dot(v, across), v_y = dot(v, y), v_g = dot(v, g), y_g = dot(y, g);
   along = scale * (real * triple + v_g * v_y - square * y_g);
-  return {scale * (real * across + v_y * g + v_g * y + (-2 * y_g - along) * v), scale * (real * along - triple), 0};
+  return {real * across + v_y * g + v_g * y + (-2 * y_g - along) * v, real * along - triple, 0};
 }
 KOKKOS_INLINE_FUNCTION TurnedGradient turned_gradient(Quaternion<Vec3> const& q, Vec3 const& y, Vec3 const& g) {
-  double along = 0;
-  return turned_gradient(q, y, g, along);
+  double scale = 0, along = 0;
+  TurnedGradient const of = turned_gradient(q, y, g, scale, along);
+  return {scale * of.imaginary, scale * of.less, 0};
 }
 
 /// Of quaternion_of(r).

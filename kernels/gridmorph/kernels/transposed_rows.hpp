@@ -125,9 +125,11 @@ constexpr Index lattice_chunk = 256;
 template <class MemorySpace>
 struct LatticeReaders {
   UniformLattice shape;
-  Kokkos::View<std::int32_t const*, MemorySpace> node;  ///< those of chunk c from first(c) on
-  Kokkos::View<Index const*, MemorySpace> first;        ///< (chunks + 1)
-  Kokkos::View<Index const*, MemorySpace> first_chunk;  ///< (cells + 1)
+  Kokkos::View<std::int32_t const*, MemorySpace> node;          ///< those of chunk c from first(c) on
+  Kokkos::View<Index const*, MemorySpace> first;                ///< (chunks + 1)
+  Kokkos::View<std::int32_t const*, MemorySpace> lattice_node;  ///< of cells that hold any of them
+  Kokkos::View<Index const*, MemorySpace> first_part;           ///< of those, and one past the last
+  Kokkos::View<std::int32_t const*, MemorySpace> part;          ///< LatticeParts::parts, cell by cell
   Index n_chunks = 0;
 };
 
@@ -173,29 +175,16 @@ struct LatticeParts {
     return load_lanes<T>(upper) > 0 ? broadcast<T>(t) : broadcast<T>(1 - t);
   }
 };
-/// Item: a lattice node, which gathers from the cells around it.
+/// Item: a lattice node that is read, which gathers from the cells around it; the others stay zero.
 template <class MemorySpace>
 struct LatticeSums {
   LatticeReaders<MemorySpace> readers;
   Vec3 const* parts;
   Vec3* value;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
-    std::int32_t const* const nodes = readers.shape.nodes;
-    Index const at[3] = {n % nodes[0], n / nodes[0] % nodes[1], n / (Index(nodes[0]) * nodes[1])};
-    Index cells[3], cell[3];
-    for (int a = 0; a < 3; ++a) cells[a] = nodes[a] > 1 ? nodes[a] - 1 : 1;
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Vec3 sum;
-    for (int corner = 0; corner < 8; ++corner) {
-      bool inside = true;
-      for (int a = 0; a < 3; ++a) {
-        cell[a] = at[a] - ((corner >> a) & 1);
-        inside = inside && cell[a] >= 0 && cell[a] < cells[a];
-      }
-      if (!inside) continue;
-      Index const c = cell[0] + cells[0] * (cell[1] + cells[1] * cell[2]);
-      for (Index k = readers.first_chunk(c); k < readers.first_chunk(c + 1); ++k) sum += parts[8 * k + corner];
-    }
-    value[n] = sum;
+    for (Index m = readers.first_part(k); m < readers.first_part(k + 1); ++m) sum += parts[readers.part(m)];
+    value[readers.lattice_node(k)] = sum;
   }
 };
 /// value: gradients of lattice nodes, from those of what nodes read; parts: workspace.
@@ -205,7 +194,8 @@ void gather_readers(Exec const& exec, LatticeReaders<typename Exec::memory_space
   using Memory = typename Exec::memory_space;
   launch("gridmorph::transposed::lattice_parts", exec, 0, readers.n_chunks,
          LatticeParts<Memory>{readers, x, gradient, parts});
-  launch("gridmorph::transposed::lattice", exec, 0, readers.shape.size(), LatticeSums<Memory>{readers, parts, value});
+  launch("gridmorph::transposed::lattice", exec, 0, Index(readers.lattice_node.extent(0)),
+         LatticeSums<Memory>{readers, parts, value});
 }
 
 /// Transpose of PassMotions, by places: each gathers from the rows that name it. Sources in layers as in TransposedLayers.

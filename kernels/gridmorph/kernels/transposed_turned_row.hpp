@@ -133,11 +133,14 @@ class TurnedLines {
   }
 
   KOKKOS_INLINE_FUNCTION void add_end(unsigned end, double const* f, Row const& x, Row const& g) {
-    End const& of = ends_[end];
+    End const& end_of = ends_[end];
     Sum& to = sums_[end];
-    for (int w = 0; w < n_; ++w)
-      to.add(w, f[w],
-             turned_gradient(Quaternion<Vec3>::share(of.quaternion(w), f[w]), of.arm(x, w), {g.x[w], g.y[w], g.z[w]}));
+    for (int w = 0; w < n_; ++w) {
+      double scale = 0, along = 0;
+      TurnedGradient const of = turned_gradient(Quaternion<Vec3>::share(end_of.quaternion(w), f[w]), end_of.arm(x, w),
+                                                {g.x[w], g.y[w], g.z[w]}, scale, along);
+      to.add(w, f[w] * scale, of);
+    }
   }
   /// Outer: whether the other end turns too.
   template <bool Outer>
@@ -148,9 +151,9 @@ class TurnedLines {
     for (int w = 0; w < n_; ++w) {
       Q const own = wall.quaternion(w), q = Outer ? Q::between(edge.quaternion(w), own, f[w]) : Q::share(own, f[w]);
       Vec3 const arm = wall.arm(x, w), gradient{g.x[w], g.y[w], g.z[w]};
-      double along = 0;
-      TurnedGradient const of = turned_gradient(q, arm, gradient, along);
-      double const stretched = 1 + f[w] * wall.stretch[w], share = f[w] * stretched;
+      double scale = 0, along = 0;
+      TurnedGradient const of = turned_gradient(q, arm, gradient, scale, along);
+      double const stretched = scale * (1 + f[w] * wall.stretch[w]), share = f[w] * stretched;
       first.add(w, share, of);
       first.stretch[w] += f[w] * (dot(gradient, arm) + along);
       if (Outer) last.add(w, stretched - share, of);

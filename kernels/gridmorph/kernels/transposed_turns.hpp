@@ -235,15 +235,22 @@ struct NearFieldTurnBack {
     RootEnds const& ends = table.ends(r);
     Vec3 const own = raw_turn[r];
     Vec3 correction, of_own, of_correction;
+    bool corrected = false;
     for (RootEnd const& end : ends.end)
-      if (end.end >= 0 && end.share > 0)
+      if (end.end >= 0 && end.share > 0) {
         correction = correction + end.share * table.in_frame(end.to_root, at_end.alpha(end.end));
+        corrected = true;
+      }
     Vec3 const of_outer = root.turn * outer[r];
     bool const has_section = runs_between_surfaces(ends);
-    add_turn_then(own, correction, has_section ? inner[root.slot] : inner[root.slot] + of_outer, of_own, of_correction);
+    Vec3 const of_inner = has_section ? inner[root.slot] : inner[root.slot] + of_outer;
+    if (corrected || !(dot(own, own) < 0.9))
+      add_turn_then(own, correction, of_inner, of_own, of_correction);
+    else
+      of_own = of_inner;  // there is nothing to settled() below half a turn
     for (int m = 0; m < 2; ++m)
       if (ends.end[m].end >= 0 && ends.end[m].share > 0) parts.set(4 * r + 2 * m, ends.end[m].share * of_correction);
-    if (has_section) add_section(r, ends, own, of_outer, of_own);
+    if (has_section && root.turn != 0) add_section(r, ends, own, of_outer, of_own);
     raw.set(r, raw[r] + of_own);
   }
 

@@ -92,7 +92,7 @@ struct FanTwist {
   Vec3 axis, swing;
   FanMoments sums;
 
-  KOKKOS_INLINE_FUNCTION FanTwist(Vec3 const& axis_, Vec3 const& swing_, FanMoments const& sums_)
+  KOKKOS_FORCEINLINE_FUNCTION FanTwist(Vec3 const& axis_, Vec3 const& swing_, FanMoments const& sums_)
       : axis(axis_), swing(swing_), sums(sums_) {
     double const x = axis.x < 0 ? -axis.x : axis.x, y = axis.y < 0 ? -axis.y : axis.y,
                  z = axis.z < 0 ? -axis.z : axis.z;
@@ -100,8 +100,10 @@ struct FanTwist {
     across = least - dot(least, axis) * axis;
     t1 = (1 / norm(across)) * across;
     t2 = cross(axis, t1);
-    T1 = t1 + turned_by(-swing, t1);
-    T2 = t2 + turned_by(-swing, t2);
+    turn = quaternion_of(swing);
+    Quaternion<Vec3> const back{-turn.imaginary, turn.less};
+    T1 = t1 + back.turned(t1);
+    T2 = t2 + back.turned(t2);
     P1 = sums.before * T1;
     P2 = sums.before * T2;
     Q1 = sums.after * T1;
@@ -120,9 +122,9 @@ struct FanTwist {
     twist = quarter_tangent(sine, cosine);
   }
 
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION Vec3 rotation() const { return twist * axis; }
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Vec3 rotation() const { return twist * axis; }
   /// g: gradient of rotation().
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION TwistGradient gradient(Vec3 const& g) const {
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION TwistGradient gradient(Vec3 const& g) const {
     TwistGradient of;
     double const whole = sine * sine + cosine * cosine;
     if (!(whole > 0)) return of;
@@ -142,11 +144,13 @@ struct FanTwist {
     Mat3 const back = transpose(sums.after);
     Vec3 const m1 = (2 * of_c11) * P1 + of_c12 * P2 + back * (of_b11 * t1 + of_b21 * t2);
     Vec3 const m2 = (2 * of_c22) * P2 + of_c12 * P1 + back * (of_b12 * t1 + of_b22 * t2);
-    Vec3 const of_t2 = m2 + turned_by(swing, m2) + of_b21 * Q1 + of_b22 * Q2;
-    Vec3 const of_t1 = m1 + turned_by(swing, m1) + of_b11 * Q1 + of_b12 * Q2 + cross(of_t2, axis);
+    Vec3 const of_t2 = m2 + turn.turned(m2) + of_b21 * Q1 + of_b22 * Q2;
+    Vec3 const of_t1 = m1 + turn.turned(m1) + of_b11 * Q1 + of_b12 * Q2 + cross(of_t2, axis);
     Vec3 const of_across = unit_gradient(across, of_t1);
     of.axis = twist * g + cross(t1, of_t2) - dot(least, axis) * of_across - dot(of_across, axis) * least;
-    of.swing = turned_by_gradient(swing, m1, t1) + turned_by_gradient(swing, m2, t2);
+    TurnedGradient of_turn = turned_gradient(turn, m1, t1);
+    of_turn.add(1, turned_gradient(turn, m2, t2));
+    of.swing = rotation_gradient(swing, of_turn);
     of.t1 = t1;
     of.t2 = t2;
     of.by1 = of_b11 * T1 + of_b12 * T2;
@@ -155,6 +159,7 @@ struct FanTwist {
   }
 
  private:
+  Quaternion<Vec3> turn;
   Vec3 least, across, t1, t2, T1, T2, P1, P2, Q1, Q2;
   double c11, c12, c22, b11, b12, b21, b22, sine, cosine, twist;
   bool on_a_line;
@@ -204,7 +209,7 @@ KOKKOS_INLINE_FUNCTION KeptHeightGradient kept_height_gradient(Vec3 const& line,
 class FanTurn {
  public:
   /// moved: not zero.
-  KOKKOS_INLINE_FUNCTION FanTurn(Vec3 const& normal, Vec3 const& moved, FanMoments const& sums)
+  KOKKOS_FORCEINLINE_FUNCTION FanTurn(Vec3 const& normal, Vec3 const& moved, FanMoments const& sums)
       : normal_(normal), moved_(moved), twist_((1 / norm(moved)) * moved, turn_between(normal, moved), sums) {}
 
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Vec3 rotation() const { return turn_then(twist_.swing, twist_.rotation()); }
@@ -214,7 +219,7 @@ class FanTurn {
     TwistGradient twist;  ///< of arms
   };
   /// g: of rotation().
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION Gradient gradient(Vec3 const& g) const {
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Gradient gradient(Vec3 const& g) const {
     Vec3 of_swing, of_twist;
     add_turn_then(twist_.swing, twist_.rotation(), g, of_swing, of_twist);
     Gradient of{{}, twist_.gradient(of_twist)};

@@ -26,7 +26,13 @@ struct TransposedEntries {
   }
   /// Of an operator, the weight that a row leaves its first item included.
   void add(InterpolationOperator const& rows) {
+    add(rows, [](Index32) { return true; });
+  }
+  /// Of the rows whose targets count.
+  template <class Counts>
+  void add(InterpolationOperator const& rows, Counts const& counts) {
     for (std::size_t r = 0; r < rows.target.size(); ++r) {
+      if (!counts(rows.target[r])) continue;
       Index const from = rows.first[r], to = rows.first[r + 1];
       double first = 1;
       for (Index k = from + 1; k < to; ++k) first -= double(rows.weight[std::size_t(k)]);
@@ -123,43 +129,77 @@ std::vector<Vec3> host_positions(Exec const& exec, Baseline const& x, Index n) {
   return {host.data(), host.data() + host.extent(0)};
 }
 
-/// Nodes that read a lattice, each once. Fences.
+/// Nodes that read a lattice, each once, by cells.
+struct ReadersOfCells {
+  Index cells[3];
+  std::vector<Index32> node;
+  std::vector<Index> begin;  ///< (cells + 1)
+
+  ReadersOfCells(kernels::UniformLattice const& shape, std::vector<Index32> nodes, std::vector<Vec3> const& x) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    for (int a = 0; a < 3; ++a) cells[a] = std::max<Index>(1, shape.nodes[a] - 1);
+    begin.assign(std::size_t(cells[0] * cells[1] * cells[2]) + 1, 0);
+    std::vector<Index> cell;
+    for (Index32 const n : nodes) {
+      kernels::PlaceInCell const at = shape.place(x[std::size_t(n)]);
+      cell.push_back(at.cell[0] + cells[0] * (at.cell[1] + cells[1] * at.cell[2]));
+      ++begin[std::size_t(cell.back()) + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    node.resize(nodes.size());
+    std::vector<Index> next(begin.begin(), begin.end() - 1);
+    for (std::size_t k = 0; k < nodes.size(); ++k) node[std::size_t(next[std::size_t(cell[k])]++)] = nodes[k];
+  }
+};
+
+/// In the memory of an execution space; is_read: of each lattice node, is set. Fences.
 template <class Exec>
 kernels::LatticeReaders<typename Exec::memory_space> lattice_readers(Exec const& exec,
                                                                      kernels::UniformLattice const& shape,
-                                                                     std::vector<Index32> nodes,
-                                                                     std::vector<Vec3> const& x,
+                                                                     ReadersOfCells const& readers,
+                                                                     std::vector<bool>& is_read,
                                                                      std::string const& label) {
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  Index cells[3];
-  for (int a = 0; a < 3; ++a) cells[a] = std::max<Index>(1, shape.nodes[a] - 1);
-  auto const cell_of = [&](Index32 n) {
-    kernels::PlaceInCell const at = shape.place(x[std::size_t(n)]);
-    return at.cell[0] + cells[0] * (at.cell[1] + cells[1] * at.cell[2]);
-  };
-  Index const n_cells = cells[0] * cells[1] * cells[2];
-  std::vector<Index> begin(std::size_t(n_cells) + 1, 0);
-  std::vector<Index> cell;
-  for (Index32 const n : nodes) {
-    cell.push_back(cell_of(n));
-    ++begin[std::size_t(cell.back()) + 1];
-  }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Index32> sorted(nodes.size());
-  std::vector<Index> next(begin.begin(), begin.end() - 1);
-  for (std::size_t k = 0; k < nodes.size(); ++k) sorted[std::size_t(next[std::size_t(cell[k])]++)] = nodes[k];
-  std::vector<Index> first, first_chunk;
-  for (Index c = 0; c < n_cells; ++c) {
-    first_chunk.push_back(Index(first.size()));
-    for (Index k = begin[std::size_t(c)]; k < begin[std::size_t(c) + 1]; k += kernels::lattice_chunk)
+  std::vector<Index> first;
+  std::vector<std::vector<Index32>> parts(std::size_t(shape.size()));
+  Index const n_cells = Index(readers.begin.size()) - 1;
+  for (Index c = 0; c < n_cells; ++c)
+    for (Index k = readers.begin[std::size_t(c)]; k < readers.begin[std::size_t(c) + 1]; k += kernels::lattice_chunk) {
+      Index const at[3] = {c % readers.cells[0], c / readers.cells[0] % readers.cells[1],
+                           c / (readers.cells[0] * readers.cells[1])};
+      for (int corner = 0; corner < 8; ++corner) {
+        Index node[3];
+        bool inside = true;  // a flat lattice has no upper corners
+        for (int a = 0; a < 3; ++a) {
+          node[a] = at[a] + ((corner >> a) & 1);
+          inside = inside && node[a] < shape.nodes[a];
+        }
+        if (inside)
+          parts[std::size_t(node[0] + shape.nodes[0] * (node[1] + shape.nodes[1] * node[2]))].push_back(
+              Index32(8 * Index(first.size()) + corner));
+      }
       first.push_back(k);
-  }
-  first_chunk.push_back(Index(first.size()));
+    }
   Index const n_chunks = Index(first.size());
-  first.push_back(Index(sorted.size()));
-  kernels::LatticeReaders<typename Exec::memory_space> out{
-      shape, upload(exec, sorted, label), upload(exec, first, label), upload(exec, first_chunk, label), n_chunks};
+  first.push_back(Index(readers.node.size()));
+  std::vector<Index32> lattice_node, part;
+  std::vector<Index> first_part;
+  is_read.assign(parts.size(), false);
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    if (parts[n].empty()) continue;
+    is_read[n] = true;
+    lattice_node.push_back(Index32(n));
+    first_part.push_back(Index(part.size()));
+    part.insert(part.end(), parts[n].begin(), parts[n].end());
+  }
+  first_part.push_back(Index(part.size()));
+  kernels::LatticeReaders<typename Exec::memory_space> out{shape,
+                                                           upload(exec, readers.node, label),
+                                                           upload(exec, first, label),
+                                                           upload(exec, lattice_node, label),
+                                                           upload(exec, first_part, label),
+                                                           upload(exec, part, label),
+                                                           n_chunks};
   compat::fence(exec, "gridmorph::Morpher (host tables may go)");
   return out;
 }
@@ -174,12 +214,15 @@ class SmoothFieldBack {
     if (plan.empty()) return;
     leaves_ = transposed(exec, plan.leaves, label);
     groups_ = transposed(exec, plan.groups, plan.n_groups, label);
-    lattice_ = transposed(exec, plan.lattice, label);
+    std::vector<bool> is_read;
+    readers_ = lattice_readers(exec, plan.shape, ReadersOfCells(plan.shape, std::move(readers), x), is_read, label);
+    TransposedEntries rows;
+    rows.add(plan.lattice, [&](Index32 n) { return bool(is_read[std::size_t(n)]); });
+    lattice_ = upload(exec, rows, {}, label).rows;
     centre_ = upload(exec, plan.centre, label);
     std::vector<Vec3> place;
     for (Index n = 0; n < plan.shape.size(); ++n) place.push_back(plan.shape.position(n));
     place_ = upload(exec, place, label);
-    readers_ = lattice_readers(exec, plan.shape, std::move(readers), x, label);
     group_ = room_for<Value>(exec, std::size_t(plan.n_groups), label);
     value_ = room_for<Vec3>(exec, std::size_t(plan.shape.size()), label);
     parts_ = room_for<Vec3>(exec, std::size_t(8 * readers_.n_chunks), label);
