@@ -136,13 +136,15 @@ def _motion_text(tables, more):
     return tomli_w.dumps(ordered)
 
 
-def _function(self, patches: str | typing.Sequence[str], function: typing.Callable[[numpy.typing.NDArray[numpy.float64]], numpy.typing.ArrayLike], rank: int = 0) -> Motion:
+def _function(self, patches: str | typing.Sequence[str],
+              function: typing.Callable[[numpy.typing.NDArray[numpy.float64]], numpy.typing.ArrayLike], rank: int = 0) -> Motion:
     """Adds a rule: function(points (k, 3)) -> displacement (k, 3), of baseline positions, equal for equal points. Returns the motion."""
     self._function(_selectors(patches), function, rank)
     return self
 
 
-def _field(self, patches: str | typing.Sequence[str], points: numpy.typing.ArrayLike, displacement: numpy.typing.ArrayLike, rank: int = 0, max_distance: float = 0.0) -> Motion:
+def _field(self, patches: str | typing.Sequence[str], points: numpy.typing.ArrayLike, displacement: numpy.typing.ArrayLike, rank: int = 0,
+           max_distance: float = 0.0) -> Motion:
     """Adds a rule: displacements (k, 3) at points (k, 3), exact there and interpolated between. Returns the motion.
 
     max_distance: a node farther than that from every point is a MotionError; 0: no limit.
@@ -151,7 +153,8 @@ def _field(self, patches: str | typing.Sequence[str], points: numpy.typing.Array
     return self
 
 
-def _rigid(self, patches: str | typing.Sequence[str], matrix: numpy.typing.ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)), translation: numpy.typing.ArrayLike = (0, 0, 0),
+def _rigid(self, patches: str | typing.Sequence[str], matrix: numpy.typing.ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+           translation: numpy.typing.ArrayLike = (0, 0, 0),
            rank: int = 0) -> Motion:
     """Adds a rule: x' = matrix x + translation. Returns the motion."""
     self._rigid(_selectors(patches), numpy.ravel(matrix).astype(float).tolist(), numpy.ravel(translation).astype(float).tolist(), rank)

@@ -25,6 +25,7 @@ Names, shapes and orders are IDWarp's. What differs:
 from __future__ import annotations
 
 import os
+import types
 import typing
 
 import numpy
@@ -200,7 +201,8 @@ class USMesh:
         self._connectivity = (numpy.asarray(conn).ravel(), numpy.asarray(face_sizes).ravel())
         self._grid = self._baseline
 
-    def setSurfaceDefinition(self, pts: numpy.typing.ArrayLike, conn: numpy.typing.ArrayLike, faceSizes: numpy.typing.ArrayLike, cgnsBlockID: object = None) -> None:
+    def setSurfaceDefinition(self, pts: numpy.typing.ArrayLike, conn: numpy.typing.ArrayLike, faceSizes: numpy.typing.ArrayLike,
+                             cgnsBlockID: object = None) -> None:
         """The surface as a solver has it: pts (M, 3) of this process [length], each a node of the mesh; conn, faceSizes: nodes of its faces.
 
         Patches (of the surfaces in the options) move of which all nodes are among the points. cgnsBlockID: taken, without effect. Raises
@@ -273,27 +275,42 @@ class USMesh:
         return self._to_solver(self._grid)
 
     def getCommonGrid(self) -> numpy.typing.NDArray[numpy.float64]:
-        """(3 n,) [length]: the mesh as it is now, x y z of each node, in the order of the file."""
-        return self._grid.ravel().copy()
+        """(3 n,) [length]: the mesh as it is now, x y z of each node, in the order of the file.
+
+        Of several processes the first has it, the others (0,).
+        """
+        return self._of_file(self._grid)
 
     def getWarpGrid(self) -> numpy.typing.NDArray[numpy.float64]:
         """The same as getCommonGrid(): no other order is kept."""
         return self.getCommonGrid()
 
+    @property
+    def warp(self) -> types.SimpleNamespace:
+        """Sizes that scripts ask of IDWarp's compiled part: warp.griddata.warpmeshdof, commonmeshdof, solvermeshdof of this process."""
+        dof = 3 * self.mesh.n_nodes if self.comm.rank == 0 else 0
+        solver = dof if self._indices is None else len(self._indices)
+        return types.SimpleNamespace(griddata=types.SimpleNamespace(warpmeshdof=dof, commonmeshdof=dof, solvermeshdof=solver))
+
+    def _of_file(self, values):
+        return values.reshape(-1).copy() if self.comm.rank == 0 else numpy.zeros(0)
+
     def _to_solver(self, values):
-        flat = values.reshape(-1)
-        return flat.copy() if self._indices is None else flat[self._indices]
+        return self._of_file(values) if self._indices is None else values.reshape(-1)[self._indices]
 
     def _from_solver(self, values, solver):
         """(n, 3) of the mesh: entries of one node add up, those of all processes too."""
         values = numpy.asarray(values, dtype=float).ravel()
         n = 3 * self.mesh.n_nodes
         known = solver and self._indices is not None
-        expected = len(self._indices) if known else n
+        expected = len(self._indices) if known else n if self.comm.rank == 0 else 0
         if len(values) != expected:
             raise ConfigError(f"dXv: must have {expected} entries, {'those of setExternalMeshIndices()' if known else '3 for each node'}, "
                               f"found {len(values)}")
-        full = numpy.bincount(self._indices, weights=values, minlength=n) if known else values
+        if known:
+            full = numpy.bincount(self._indices, weights=values, minlength=n)
+        else:
+            full = values if self.comm.rank == 0 else numpy.zeros(n)
         return numpy.asarray(self.comm.allreduce(full)).reshape(-1, 3)
 
     # ------------------------------------------------------------------------------------------------------------- derivatives
@@ -301,7 +318,7 @@ class USMesh:
     def warpDeriv(self, dXv: numpy.typing.ArrayLike, solverVec: bool = True) -> None:
         """dJ/dXs of the surface from dXv = dJ/dx (ndof,) of the solver's mesh; getdXs() has it.
 
-        solverVec False: dXv (3 n,) or (n, 3) is in the order of the file, on each process a part of the sum. Exact, at the current surface
+        solverVec False: dXv (3 n,) or (n, 3) is in the order of the file, on the first process alone. Exact, at the current surface
         coordinates. Cost: about one warpMesh().
         """
         self._ensure_surface()
@@ -318,12 +335,12 @@ class USMesh:
     def warpDerivFwd(self, dXs: numpy.typing.ArrayLike, solverVec: bool = True) -> numpy.typing.NDArray[numpy.float64]:
         """(ndof,): how the mesh moves where the surface coordinates move by dXs (N, 3), to first order; exact, at the current ones.
 
-        solverVec False: (3 n,), in the order of the file.
+        solverVec False: (3 n,), in the order of the file, on the first process alone.
         """
         self._ensure_surface()
         u = self._boundary(self._current - self._points)
         moved = self.plan.velocities(self._boundary(self._rows(dXs, "dXs")), u)
-        return self._to_solver(moved) if solverVec else moved.ravel()
+        return self._to_solver(moved) if solverVec else self._of_file(moved)
 
     def verifyWarpDeriv(self, dXv: numpy.typing.ArrayLike | None = None, solverVec: bool = True, dofStart: int = 0, dofEnd: int = 10,
                         h: float = 1e-6, randomSeed: int = 314) -> float:

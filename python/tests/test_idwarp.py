@@ -157,6 +157,8 @@ def test_solver_order_and_the_sum_of_its_copies(meshes):
     common[[5, 3, 0]] = 1, 6, 8
     mesh.warpDeriv(common, solverVec=False)
     np.testing.assert_array_equal(mesh.getdXs(), in_solver)
+    sizes = mesh.warp.griddata
+    assert (sizes.solvermeshdof, sizes.warpmeshdof) == (4, 3 * mesh.mesh.n_nodes)
 
 
 def test_grids_are_written_in_the_format_they_were_read(meshes, tmp_path, moved):
@@ -244,7 +246,7 @@ def half_of(rank, pipe, name, points, moved, indices, weight):
     mesh.setSurfaceCoordinates(moved)
     mesh.warpMesh()
     mesh.warpDeriv(weight)
-    return mesh.getSolverGrid(), mesh.getdXs()
+    return mesh.getSolverGrid(), mesh.getdXs(), mesh.getCommonGrid()
 
 
 def other_process(pipe, results, *arguments):
@@ -273,4 +275,5 @@ def test_processes_share_surface_and_nodes(meshes):
     out = [half_of(0, here, *parts[0]), results.recv()]
     other.join()
     np.testing.assert_allclose(np.concatenate([o[0] for o in out]), alone.getSolverGrid(), atol=1e-12)
+    np.testing.assert_allclose(np.concatenate([o[2] for o in out]), alone.getCommonGrid(), atol=1e-12)
     np.testing.assert_allclose(np.concatenate([o[1] for o in out]), alone.getdXs(), atol=1e-11 * np.abs(alone.getdXs()).max())
