@@ -20,10 +20,10 @@ TEST(Html, ReplacesWhatIsNoText) {
   std::string const sign = "\uFFFD";
   EXPECT_EQ(escaped(std::string("a\0b\x07", 4)), "a" + sign + "b" + sign);
   EXPECT_EQ(escaped("\xff\xc3"), sign + sign);
-  EXPECT_EQ(escaped("\xc0\xaf"), sign + sign);                    // overlong
-  EXPECT_EQ(escaped("\xed\xa0\x80"), sign + sign + sign);          // a surrogate
+  EXPECT_EQ(escaped("\xc0\xaf"), sign + sign);                        // overlong
+  EXPECT_EQ(escaped("\xed\xa0\x80"), sign + sign + sign);             // a surrogate
   EXPECT_EQ(escaped("\xf4\x90\x80\x80"), sign + sign + sign + sign);  // beyond Unicode
-  EXPECT_EQ(escaped("\xe4\xb8"), sign + sign);                     // cut off
+  EXPECT_EQ(escaped("\xe4\xb8"), sign + sign);                        // cut off
 }
 
 constexpr char const* hostile = "</style><script>alert(1)</script>\"'&";
@@ -39,9 +39,17 @@ ReportPage page_of(std::string const& name) {
   quality.certificate = Certificate{3, 0, 1, 0, {1, 0, {1, 2, 3}, -1, 0}};
   ReportPage page;
   page.report = quality_json(quality, quality, {});
-  page.report.update({{"gridmorph", name}, {"case_file", name}, {"input", name}, {"output", name}, {"nodes", 8},
-                      {"notes", {name}}, {"fields", nlohmann::json::array()}, {"stages", nlohmann::json::array()},
-                      {"times", {{"steps", {{{"step", name}, {"seconds", 1.0}, {"nodes_per_second", nullptr}}}}, {"total_seconds", 1.0}}}});
+  page.report.update(
+      {{"gridmorph", name},
+       {"case_file", name},
+       {"input", name},
+       {"output", name},
+       {"nodes", 8},
+       {"notes", {name}},
+       {"fields", nlohmann::json::array()},
+       {"stages", nlohmann::json::array()},
+       {"times",
+        {{"steps", {{{"step", name}, {"seconds", 1.0}, {"nodes_per_second", nullptr}}}}, {"total_seconds", 1.0}}}});
   page.plan = {{"stages", {{{"name", name}, {"chains", {name}}, {"cells", 3}}}}};
   page.kind = "cells";
   page.mesh_size = 1;
@@ -66,7 +74,8 @@ TEST(Html, ShowsHostileNamesAsText) {
     for (std::size_t at = in.find(what); at != std::string::npos; at = in.find(what, at + 1)) ++n;
     return n;
   };
-  for (std::string const tag : {"<", ">", "<script", "</style"}) EXPECT_EQ(count(text, tag), count(harmless, tag)) << tag;
+  for (std::string const tag : {"<", ">", "<script", "</style"})
+    EXPECT_EQ(count(text, tag), count(harmless, tag)) << tag;
 }
 
 TEST(Html, SaysTheVerdictFirst) {

@@ -102,15 +102,16 @@ TEST(Cells, HaveTheNamesAndMeasuresOfTheReport) {
   QualityReport const report = measure_quality(Kokkos::DefaultHostExecutionSpace(), blocks, input);
   MeasureStatistics const& worst = report.far_field[Measure::determinant_3x3x3];
   Index const cell = pictures->number_of(worst.worst_zone, worst.worst_cell);
-  EXPECT_EQ(pictures->measures(cell, blocks.coordinates).determinant_3x3x3, worst.worst);
+  EXPECT_DOUBLE_EQ(pictures->measures(cell, blocks.coordinates).determinant_3x3x3, worst.worst);
   CellName const name = pictures->name(cell);
-  EXPECT_EQ(name.index, (std::vector<Index>{worst.worst_cell[0] + 1, worst.worst_cell[1] + 1, worst.worst_cell[2] + 1}));
+  EXPECT_EQ(name.index,
+            (std::vector<Index>{worst.worst_cell[0] + 1, worst.worst_cell[1] + 1, worst.worst_cell[2] + 1}));
   Elements const elements(test::to_hexahedra(blocks));
   for (Index e = 0; e < elements.mesh.n_elements(); ++e) {
     CellName const n = elements.pictures->name(e);
     EXPECT_EQ(elements.pictures->number_of(0, {int(n.index[0] - 1), 0, 0}), e);
-    EXPECT_EQ(elements.pictures->measures(e, elements.mesh.coordinates).determinant_3x3x3,
-              pictures->measures(e, blocks.coordinates).determinant_3x3x3);
+    EXPECT_DOUBLE_EQ(elements.pictures->measures(e, elements.mesh.coordinates).determinant_3x3x3,
+                     pictures->measures(e, blocks.coordinates).determinant_3x3x3);
   }
 }
 

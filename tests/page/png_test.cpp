@@ -63,7 +63,8 @@ std::vector<std::uint8_t> decoded(std::string const& file, int width, int height
   std::size_t const bytes = palette ? 1 : 4, row = bytes * std::size_t(width);
   std::vector<std::uint8_t> rows((row + 1) * std::size_t(height));
   uLongf length = uLongf(rows.size());
-  EXPECT_EQ(::uncompress(rows.data(), &length, reinterpret_cast<Bytef const*>(packed.data()), uLong(packed.size())), Z_OK);
+  EXPECT_EQ(::uncompress(rows.data(), &length, reinterpret_cast<Bytef const*>(packed.data()), uLong(packed.size())),
+            Z_OK);
   EXPECT_EQ(length, rows.size());
   std::vector<std::uint8_t> plain(row * std::size_t(height)), out;
   for (std::size_t y = 0; y < std::size_t(height); ++y)
@@ -71,7 +72,11 @@ std::vector<std::uint8_t> decoded(std::string const& file, int width, int height
       int const a = x < bytes ? 0 : plain[y * row + x - bytes], b = y == 0 ? 0 : plain[(y - 1) * row + x];
       int const c = x < bytes || y == 0 ? 0 : plain[(y - 1) * row + x - bytes];
       int const filter = rows[y * (row + 1)];
-      int const guess = filter == 0 ? 0 : filter == 1 ? a : filter == 2 ? b : filter == 3 ? (a + b) / 2 : paeth_of(a, b, c);
+      int const guess = filter == 0   ? 0
+                        : filter == 1 ? a
+                        : filter == 2 ? b
+                        : filter == 3 ? (a + b) / 2
+                                      : paeth_of(a, b, c);
       plain[y * row + x] = std::uint8_t(rows[y * (row + 1) + 1 + x] + guess);
     }
   for (std::uint8_t const p : plain) {
@@ -87,15 +92,16 @@ std::vector<std::uint8_t> decoded(std::string const& file, int width, int height
 
 TEST(Png, HoldsEveryPixelOfAnyPicture) {
   std::mt19937 random(7);
-  for (auto const& [width, height, colours] :
-       {std::tuple(1, 1, 1), std::tuple(37, 5, 3), std::tuple(16, 16, 256), std::tuple(64, 33, 257), std::tuple(200, 90, 4000)}) {
+  for (auto const& [width, height, colours] : {std::tuple(1, 1, 1), std::tuple(37, 5, 3), std::tuple(16, 16, 256),
+                                               std::tuple(64, 33, 257), std::tuple(200, 90, 4000)}) {
     std::vector<std::array<std::uint8_t, 4>> palette;
     for (int n = 0; n < colours; ++n)
       palette.push_back({std::uint8_t(random()), std::uint8_t(random()), std::uint8_t(n), std::uint8_t(1 + n % 255)});
     Picture picture(width, height);
     for (int p = 0; p < width * height; ++p)
       for (std::size_t c = 0; c < 4; ++c)
-        picture.rgba[4 * std::size_t(p) + c] = palette[std::size_t(p < colours ? p : int(random() % unsigned(colours)))][c];
+        picture.rgba[4 * std::size_t(p) + c] =
+            palette[std::size_t(p < colours ? p : int(random() % unsigned(colours)))][c];
     EXPECT_EQ(decoded(png_bytes(picture), width, height), picture.rgba) << width << " x " << height;
   }
 }

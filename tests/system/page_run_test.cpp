@@ -50,7 +50,8 @@ TEST_F(PageRun, IsTheSameInEveryRunButForTimes) {
 TEST_F(PageRun, LeavesTheMeshAndTheReportAsTheyAre) {
   ASSERT_EQ(gridmorph("morph rotation.toml -o plain.cgns --report plain.json").status, 0);
   ASSERT_EQ(gridmorph("morph rotation.toml -o paged.cgns --report paged.json --html page.html").status, 0);
-  auto plain = nlohmann::json::parse(contents(path("plain.json"))), paged = nlohmann::json::parse(contents(path("paged.json")));
+  auto plain = nlohmann::json::parse(contents(path("plain.json"))),
+       paged = nlohmann::json::parse(contents(path("paged.json")));
   for (auto* report : {&plain, &paged})
     for (char const* key : {"times", "output"}) report->erase(key);
   EXPECT_EQ(plain, paged);
@@ -64,10 +65,10 @@ TEST_F(PageRun, TellsOfAVerdictAloneWhatItHas) {
 }
 
 TEST_F(PageRun, IsThereWhereTheMeshIsRefused) {
-  std::string rules = contents(path("rotation.toml"));
-  write_case("case.toml", "[[motion]]\npatches = [\"blade\"]\nrule = \"rigid\"\ntranslation = [0, 0.4, 0]\n"
-                          "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n");
-  Outcome const run = gridmorph("morph case.toml --html page.html");
+  std::string text = contents(path("rotation.toml"));
+  std::string const file = "file    = \"rotation.csv\"";
+  write("case.toml", text.replace(text.find(file), file.size(), file + "\namplitude = 10"));
+  Outcome const run = gridmorph("morph case.toml -o out.cgns --html page.html");
   ASSERT_EQ(run.status, 4) << run.err;
   EXPECT_NE(contents(path("page.html")).find("Inverted: nothing was written"), std::string::npos);
   expect_nothing_written();
@@ -81,7 +82,8 @@ TEST_F(PageRun, IsAKeyOfCaseFiles) {
 }
 
 TEST_F(PageRun, RefusesPathsBeforeTheRun) {
-  expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html nowhere/page.html"), {"page 'nowhere/page.html'", "make it first"});
+  expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html nowhere/page.html"),
+                   {"page 'nowhere/page.html'", "make it first"});
   expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html rotation.toml"), {"never overwritten"});
   expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html page.cgns"), {"HTML"});
   expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html r.json --report r.json"), {"the same file"});

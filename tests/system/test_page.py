@@ -125,7 +125,7 @@ class Browser:
           const wide = document.documentElement.clientWidth, out = [];
           if (document.documentElement.scrollWidth > wide) out.push("page " + document.documentElement.scrollWidth);
           for (const e of document.querySelectorAll("body *")) {
-            if (e.closest(".scroll, .graph, svg") && !e.matches(".scroll, .graph, svg")) continue;
+            if (e.closest(".scroll, .graph, svg, pre") && !e.matches(".scroll, .graph, svg, pre")) continue;
             if (e.closest(".graph, .scroll") && e.matches("svg")) continue;
             const box = e.getBoundingClientRect();
             if (box.width > 0 && box.right > wide + 1) out.push(e.tagName + "." + e.className + " " + box.right);
@@ -204,6 +204,7 @@ class Pages(unittest.TestCase):
         run("morph", "ball/" + case, "--html", "ball.html", "--report", "ball.json", "-o", "moved_ball.cgns")
         text = read(os.path.join(cls.folder, "passage/rotation.toml"))
         text = re.sub(r'(?m)^output *=.*\n', "", text, count=1)
+        text = re.sub(r'(?m)^(file *= *"rotation.csv")', r'\1\namplitude = "sin(2 * pi * t)"', text, count=1)
         with open(os.path.join(cls.folder, "passage/steps.toml"), "w", encoding="utf-8") as file:
             file.write(text + '\n[sequence]\nsteps = 5\noutput = "steps.cgns"\n')
         run("morph", "passage/steps.toml", "--html", "steps.html", "--report", "steps.json")

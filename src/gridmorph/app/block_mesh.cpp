@@ -86,7 +86,9 @@ QualityReport BlockMesh::measure(QualityWanted const& wanted) const {
   input.fast = wanted.fast;
   input.regions = wanted.regions.cells;
   input.handedness = handedness();
-  if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, wanted.measures.empty() ? std::span<Measure const>(block_fields) : wanted.measures, n_cells());
+  if (wanted.fields != nullptr)
+    input.fields = fields_of(
+        *wanted.fields, wanted.measures.empty() ? std::span<Measure const>(block_fields) : wanted.measures, n_cells());
   QualityReport report = measure_quality(Exec(), mesh_, input);
   if (wanted.morphed != nullptr)
     report.certificate = certify(Exec(), mesh_, {input.coordinates, input.baseline, input.handedness});

@@ -76,7 +76,10 @@ QualityReport ElementMesh::measure(QualityWanted const& wanted) const {
   input.fast = wanted.fast;
   input.regions = wanted.regions.elements;
   input.faces = by_faces_;
-  if (wanted.fields != nullptr) input.fields = fields_of(*wanted.fields, wanted.measures.empty() ? std::span<Measure const>(element_fields) : wanted.measures, mesh.n_elements());
+  if (wanted.fields != nullptr)
+    input.fields =
+        fields_of(*wanted.fields, wanted.measures.empty() ? std::span<Measure const>(element_fields) : wanted.measures,
+                  mesh.n_elements());
   Kokkos::DefaultHostExecutionSpace const exec;
   QualityReport report = measure_quality(exec, mesh, topology, face_patches, input);
   if (wanted.morphed != nullptr)

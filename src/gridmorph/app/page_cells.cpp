@@ -16,11 +16,12 @@ constexpr Index most_sampled = 100'000;  ///< cells of a sample
 
 /// One measure of the cells that are looked at.
 struct Values {
-  std::vector<double> before, after;
+  std::vector<double> const *before = nullptr, *after = nullptr;
 };
 struct Sample {
   std::vector<Index> cell;  ///< empty: all
   std::array<Values, page_measures.size()> value;
+  std::array<std::vector<double>, 2 * page_measures.size()> own;  ///< of a sample
   std::vector<char> near;
 };
 
@@ -35,14 +36,15 @@ bool is_near(NearCells const& near, Index cell) {
 }
 
 /// All cells where the run kept their measures, evenly spaced ones otherwise.
-Sample take_sample(Run const& run, page::PictureMesh const& mesh) {
-  Sample out;
+void take_sample(Run const& run, page::PictureMesh const& mesh, Sample& out) {
   bool kept = true;
   for (std::size_t m = 0; m < page_measures.size(); ++m) {
     auto const values = run.kept(page_measures[m]);
     kept = kept && values.before != nullptr && values.after != nullptr;
-    if (kept) out.value[m] = {*values.before, *values.after};
+    out.value[m] = kept ? Values{values.before, values.after} : Values{&out.own[2 * m], &out.own[2 * m + 1]};
   }
+  if (!kept)
+    for (std::size_t m = 0; m < page_measures.size(); ++m) out.value[m] = {&out.own[2 * m], &out.own[2 * m + 1]};
   Index const n_cells = mesh.n_cells(), stride = kept ? 1 : (n_cells + most_sampled - 1) / most_sampled;
   for (Index cell = 0; cell < n_cells; cell += stride) {
     out.near.push_back(is_near(run.plan().near(), cell) ? 1 : 0);
@@ -50,11 +52,10 @@ Sample take_sample(Run const& run, page::PictureMesh const& mesh) {
     out.cell.push_back(cell);
     auto const before = mesh.measures(cell, run.mesh().coordinates()), after = mesh.measures(cell, run.morphed());
     for (std::size_t m = 0; m < page_measures.size(); ++m) {
-      out.value[m].before.push_back(value_of(before, page_measures[m]));
-      out.value[m].after.push_back(value_of(after, page_measures[m]));
+      out.own[2 * m].push_back(value_of(before, page_measures[m]));
+      out.own[2 * m + 1].push_back(value_of(after, page_measures[m]));
     }
   }
-  return out;
 }
 
 struct Candidate {
@@ -62,31 +63,33 @@ struct Candidate {
   std::string reason;
 };
 
-/// The cells with the smallest keys in a region, the first of equals.
-void add_smallest(std::vector<double> const& key, std::vector<char> const& near, bool in_near, std::size_t many,
+/// The cells with the smallest keys in a region, the first of equals. key(n): of cell n.
+template <class Key>
+void add_smallest(Key const& key, std::vector<char> const& near, bool in_near, std::size_t many,
                   std::string const& reason, std::vector<Candidate>& out) {
-  std::vector<Index> cells;
-  for (std::size_t n = 0; n < key.size(); ++n)
-    if ((near[n] != 0) == in_near) cells.push_back(Index(n));
-  many = std::min(many, cells.size());
-  auto const less = [&](Index a, Index b) {
-    return std::pair(key[std::size_t(a)], a) < std::pair(key[std::size_t(b)], b);
-  };
-  std::partial_sort(cells.begin(), cells.begin() + std::ptrdiff_t(many), cells.end(), less);
-  for (std::size_t n = 0; n < many; ++n) out.push_back({cells[n], reason});
+  std::vector<std::pair<double, Index>> least;  // ascending
+  for (std::size_t n = 0; n < near.size(); ++n) {
+    if ((near[n] != 0) != in_near) continue;
+    double const k = key(n);
+    if (least.size() == many && !(k < least.back().first)) continue;
+    auto const at =
+        std::upper_bound(least.begin(), least.end(), k, [](double a, auto const& b) { return a < b.first; });
+    least.insert(at, {k, Index(n)});
+    if (least.size() > many) least.pop_back();
+  }
+  for (auto const& [k, cell] : least) out.push_back({cell, reason});
 }
 
 std::vector<Candidate> worst_of_all(Sample const& sample) {
   std::vector<Candidate> out;
-  Values const &determinant = sample.value[0], &angle = sample.value[1];
-  std::vector<double> kept(determinant.after.size());  // as CellLimits::max_loss counts, less 1
-  for (std::size_t n = 0; n < kept.size(); ++n)
-    kept[n] = (determinant.after[n] - determinant.before[n]) / std::max(std::abs(determinant.before[n]), 0.05);
+  auto const &before = *sample.value[0].before, &after = *sample.value[0].after, &angle = *sample.value[1].after;
   for (bool const near : {true, false}) {
     std::string const field = near ? ", near field" : ", far field";
-    add_smallest(determinant.after, sample.near, near, 2, "smallest determinant" + field, out);
-    add_smallest(angle.after, sample.near, near, 1, "smallest angle" + field, out);
-    add_smallest(kept, sample.near, near, 1, "largest loss of determinant" + field, out);
+    add_smallest([&](std::size_t n) { return after[n]; }, sample.near, near, 2, "smallest determinant" + field, out);
+    add_smallest([&](std::size_t n) { return angle[n]; }, sample.near, near, 1, "smallest angle" + field, out);
+    // As CellLimits::max_loss counts.
+    add_smallest([&](std::size_t n) { return (after[n] - before[n]) / std::max(std::abs(before[n]), 0.05); },
+                 sample.near, near, 1, "largest loss of determinant" + field, out);
   }
   return out;
 }
@@ -107,30 +110,32 @@ std::vector<Candidate> worst_of_report(QualityReport const& quality, page::Pictu
   return out;
 }
 
+/// One per measure; none of a region without cells.
 std::vector<page::Histogram> histograms_of(Sample const& sample, bool near) {
   std::vector<char> in(sample.near.size());
   for (std::size_t n = 0; n < in.size(); ++n) in[n] = (sample.near[n] != 0) == near ? 1 : 0;
   std::vector<page::Histogram> out;
   if (std::find(in.begin(), in.end(), 1) == in.end()) return out;
-  for (std::size_t m = 0; m < page_measures.size(); ++m) {
-    out.push_back(page::histogram(page_measures[m], sample.value[m].before, sample.value[m].after, in));
-    out.back().title =
-        std::string(text_of(page_measures[m]).title) + (near ? ", near field" : ", far field");
-  }
+  out.resize(page_measures.size());
+  for_each_task(out.size(), [&](std::size_t m) {
+    out[m] = page::histogram(page_measures[m], *sample.value[m].before, *sample.value[m].after, in);
+    out[m].title = std::string(text_of(page_measures[m]).title) + (near ? ", near field" : ", far field");
+  });
   return out;
 }
 
 }  // namespace
 
-void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh,
-                  page::ReportPage& out) {
-  Sample const sample = take_sample(run, mesh);
+void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh, page::ReportPage& out) {
+  Sample sample;
+  take_sample(run, mesh, sample);
   out.near_histograms = histograms_of(sample, true);
   out.far_histograms = histograms_of(sample, false);
   if (!sample.cell.empty())
-    out.histogram_note = fmt::format("A verdict was measured: the histograms are of {} of {} {}, evenly spaced; full quality "
-                                     "(--quality full) has all of them.",
-                                     sample.cell.size(), mesh.n_cells(), out.kind);
+    out.histogram_note = fmt::format(
+        "A verdict was measured: the histograms are of {} of {} {}, evenly spaced; full quality "
+        "(--quality full) has all of them.",
+        sample.cell.size(), mesh.n_cells(), out.kind);
   constexpr std::size_t most_drawn = 6;
   std::set<Index> seen;
   for (Candidate const& one : sample.cell.empty() ? worst_of_all(sample) : worst_of_report(quality, mesh)) {

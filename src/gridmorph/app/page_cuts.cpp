@@ -40,7 +40,8 @@ Cut plane_mesh_cut(Coordinates const& at) {
 /// Inner and outer radius of a mesh along its axis.
 class Annulus {
  public:
-  Annulus(Coordinates const& at, Axis const& axis) : frame_(axis) {
+  Annulus(Coordinates const& at, Axis const& axis)
+      : frame_(axis), bins_(bins_of(at.size())), inner_(bins_, HUGE_VAL), outer_(bins_, -HUGE_VAL) {
     for (Index n = 0; n < at.size(); ++n) {
       double const a = frame_.meridional(at[n]).axial;
       begin_ = std::min(begin_, a);
@@ -58,7 +59,7 @@ class Annulus {
   [[nodiscard]] bool is_axial() const {
     double gap = 0, jump = 0;
     std::size_t full = 0, last = 0;
-    for (std::size_t b = 0; b < bins; ++b) {
+    for (std::size_t b = 0; b < bins_; ++b) {
       if (!(inner_[b] < outer_[b])) continue;
       gap += outer_[b] - inner_[b];
       if (full > 0)
@@ -67,14 +68,14 @@ class Annulus {
       last = b;
       ++full;
     }
-    return full > bins / 2 && jump < 0.2 * gap / double(full);
+    return full > bins_ / 2 && jump < 0.25 * gap / double(full);
   }
 
   /// Share of the way from the inner to the outer radius.
   [[nodiscard]] double span(Vec3 const& p) const {
     MeridionalPoint const m = frame_.meridional(p);
-    double const at = std::clamp((m.axial - begin_) / (end_ - begin_) * bins - 0.5, 0.0, double(bins - 1));
-    auto const b = std::min(std::size_t(at), bins - 2);
+    double const at = std::clamp((m.axial - begin_) / (end_ - begin_) * double(bins_) - 0.5, 0.0, double(bins_ - 1));
+    auto const b = std::min(std::size_t(at), bins_ - 2);
     double const t = at - double(b);
     double const in = value(inner_, b) * (1 - t) + t * value(inner_, b + 1);
     double const out = value(outer_, b) * (1 - t) + t * value(outer_, b + 1);
@@ -83,33 +84,31 @@ class Annulus {
   [[nodiscard]] CylindricalFrame const& frame() const { return frame_; }
 
  private:
-  static constexpr std::size_t bins = 200;
+  /// So few that each has nodes of both walls, where blades lean too.
+  static std::size_t bins_of(Index nodes) { return std::size_t(std::clamp(0.5 * std::cbrt(double(nodes)), 8.0, 80.0)); }
   [[nodiscard]] std::size_t bin(double a) const {
-    return std::min(bins - 1, std::size_t((a - begin_) / (end_ - begin_) * double(bins)));
+    return std::min(bins_ - 1, std::size_t((a - begin_) / (end_ - begin_) * double(bins_)));
   }
   /// Of the nearest bin that has nodes.
-  [[nodiscard]] double value(std::array<double, bins> const& of, std::size_t b) const {
-    for (std::size_t d = 0; d < bins; ++d) {
+  [[nodiscard]] double value(std::vector<double> const& of, std::size_t b) const {
+    for (std::size_t d = 0; d < bins_; ++d) {
       if (b >= d && std::isfinite(of[b - d])) return of[b - d];
-      if (b + d < bins && std::isfinite(of[b + d])) return of[b + d];
+      if (b + d < bins_ && std::isfinite(of[b + d])) return of[b + d];
     }
     return 0;
   }
 
   CylindricalFrame frame_;
   double begin_ = HUGE_VAL, end_ = -HUGE_VAL;
-  std::array<double, bins> inner_ = filled(HUGE_VAL), outer_ = filled(-HUGE_VAL);
-  static std::array<double, bins> filled(double v) {
-    std::array<double, bins> out{};
-    out.fill(v);
-    return out;
-  }
+  std::size_t bins_;
+  std::vector<double> inner_, outer_;
 };
 
 /// At constant span, rolled out about the middle of what moves: axial position and radius x angle.
 std::vector<Cut> span_cuts(std::shared_ptr<Annulus const> const& annulus, page::Surface const& surface) {
   CylindricalFrame const& frame = annulus->frame();
-  Vec3 const across = std::fabs(frame.direction().x) < 0.9 ? cross(frame.direction(), {1, 0, 0}) : cross(frame.direction(), {0, 1, 0});
+  Vec3 const across =
+      std::fabs(frame.direction().x) < 0.9 ? cross(frame.direction(), {1, 0, 0}) : cross(frame.direction(), {0, 1, 0});
   Vec3 const first = (1 / norm(across)) * across, second = cross(frame.direction(), first);
   double radius = 0, x = 0, y = 0, n = 0;
   for (std::size_t k = 0; k < surface.nodes.size(); ++k) {

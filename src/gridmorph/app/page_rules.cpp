@@ -22,7 +22,11 @@ std::string joined(std::vector<std::string> names) {
 }
 
 std::string text_of_rule(Rule const& rule) {
-  if (auto const* function = std::get_if<FunctionRule>(&rule)) return function->description;
+  if (auto const* function = std::get_if<FunctionRule>(&rule)) {
+    constexpr std::size_t most = 120;  // the case file is on the page whole
+    std::string const& text = function->description;
+    return text.size() <= most ? text : text.substr(0, text.rfind(' ', most)) + " \u2026";
+  }
   std::string const name(rule_name(rule));
   if (auto const* inflate = std::get_if<InflateRule>(&rule)) return name + " " + inflate->description;
   auto const* slip = std::get_if<SlipRule>(&rule);
@@ -73,8 +77,8 @@ PatchRoles roles_of(BoundaryMotion const& rules, std::size_t n_patches) {
     PatchKind const kind = rules.boundary().mesh().patches[p].kind;
     bool const body = kind == PatchKind::wall || kind == PatchKind::other;
     int const r = motion.patch[p].rule;
-    bool const moves = r >= 0 && rules.is_explicit(r) &&
-                       !std::holds_alternative<FixedRule>(motion.rules[std::size_t(r)].rule);
+    bool const moves =
+        r >= 0 && rules.is_explicit(r) && !std::holds_alternative<FixedRule>(motion.rules[std::size_t(r)].rule);
     if (body && moves)
       out.wall[p] = 1;
     else if (kind == PatchKind::wall)

@@ -82,7 +82,8 @@ void Run::measure_baseline() {
 
 Run::KeptMeasure Run::kept(Measure measure) const {
   auto const in = [&](std::vector<CellField> const& fields) -> std::vector<double> const* {
-    auto const at = std::find_if(fields.begin(), fields.end(), [&](auto const& f) { return f.name == field_name(measure); });
+    auto const at =
+        std::find_if(fields.begin(), fields.end(), [&](auto const& f) { return f.name == field_name(measure); });
     return at == fields.end() ? nullptr : &at->values;
   };
   auto const* after = in(result_.measures);

@@ -143,14 +143,14 @@ struct Ending {
   std::filesystem::path output;
   std::optional<std::filesystem::path> report;
   std::optional<std::filesystem::path> page = {};  ///< the report as a page
-  bool written = false;  ///< the meshes are wanted
+  bool written = false;                            ///< the meshes are wanted
   bool falls_short = false;
   std::function<nlohmann::json()> json;  ///< the report, less the name of the output
   std::function<std::string(nlohmann::json const& report)> page_text = {};
-  std::function<void()> write;           ///< puts meshes in place, where they are wanted
-  std::function<std::string()> text;     ///< for people
-  std::string wrote;                     ///< after it, where the meshes are written
-  std::string also_wrote;                ///< after that, in any case
+  std::function<void()> write;        ///< puts meshes in place, where they are wanted
+  std::function<std::string()> text;  ///< for people
+  std::string wrote;                  ///< after it, where the meshes are written
+  std::string also_wrote;             ///< after that, in any case
   std::vector<std::string> warnings = {};
   std::function<std::string()> refusal;
 };

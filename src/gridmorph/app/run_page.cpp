@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <numeric>
 #include <sstream>
 #include <system_error>
 
@@ -21,7 +22,7 @@ namespace gridmorph::cli {
 namespace {
 
 constexpr int picture_width = 880, picture_height = 600;  ///< of surfaces; of steps three quarters of it
-constexpr int section_width = 760;
+constexpr int section_width = 640;
 constexpr int most_steps = 24;  ///< of a sequence that are shown
 
 std::string processor() {
@@ -142,10 +143,10 @@ void RunPage::finish(Run const& run, QualityReport const& quality) {
   page_.mesh_size = rules.boundary().size();
   for (Index n = 0; n < baseline.size(); ++n)
     page_.largest_displacement = std::max(page_.largest_displacement, norm(run.morphed()[n] - baseline[n]));
-  page_.mesh_summary = fmt::format(
-      "{}, {} {}, {} nodes, {} {}; diagonal of its bounding box {:.4g}.",
-      pictures_->is_plane() ? "A mesh in a plane" : "A mesh in space", mesh.zones.size(),
-      mesh.zones.size() == 1 ? "zone" : "zones", mesh.n_nodes(), pictures_->n_cells(), page_.kind, page_.mesh_size);
+  page_.mesh_summary = fmt::format("{}, {} {}, {} nodes, {} {}; diagonal of its bounding box {:.4g}.",
+                                   pictures_->is_plane() ? "A mesh in a plane" : "A mesh in space", mesh.zones.size(),
+                                   mesh.zones.size() == 1 ? "zone" : "zones", mesh.n_nodes(), pictures_->n_cells(),
+                                   page_.kind, page_.mesh_size);
   page_.rules = rule_rows(rules, baseline, run.morphed());
   page_.check = boundary_check(rules, baseline, run.morphed());
   page_.plan = run.plan().json();
@@ -162,23 +163,27 @@ void RunPage::make_surfaces(Run const& run) {
   if (surface_.facets.empty()) return;
   auto const u = displacement_of_surface(run);
   page_.scale_end = largest(u);
-  auto const add = [&](page::View const& view, std::string const& caption) {
-    page_.surfaces.push_back({page::image(page::surface_picture(surface_, u, page_.scale_end, view, picture_width, picture_height),
-                                          caption), caption});
-  };
+  std::vector<page::View> views;
   if (pictures_->is_plane()) {
-    add(page::plane_view(surface_, u, picture_width, picture_height),
-        "the morphed mesh; blue: where its walls were");
-    return;
+    views = {page::plane_view(surface_, u, picture_width, picture_height)};
+    page_.surfaces = {{"", "the morphed mesh; blue: where its walls were"}};
+  } else {
+    auto const both = page::find_views(surface_, u, upwards(case_file_.axis, surface_), picture_width, picture_height);
+    views.assign(both.begin(), both.end());
+    page_.surfaces = {{"", "the morphed walls as the flow sees them; blue: edges of what moves, in the baseline"},
+                      {"", "the same from the other side"}};
   }
-  auto const views = page::find_views(surface_, u, upwards(case_file_.axis, surface_), picture_width, picture_height);
-  add(views[0], "the morphed walls as the flow sees them; blue: edges of patches in the baseline");
-  add(views[1], "the same from the other side");
+  for_each_task(views.size(), [&](std::size_t n) {
+    page_.surfaces[n].body =
+        page::image(page::surface_picture(surface_, u, page_.scale_end, views[n], picture_width, picture_height),
+                    page_.surfaces[n].caption);
+  });
 }
 
 void RunPage::make_steps() {
   if (surface_.facets.empty() || steps_.empty()) return;
-  if (worst_step_ && std::none_of(steps_.begin(), steps_.end(), [&](Step const& s) { return s.step == worst_step_->step; })) {
+  if (worst_step_ &&
+      std::none_of(steps_.begin(), steps_.end(), [&](Step const& s) { return s.step == worst_step_->step; })) {
     steps_.push_back(std::move(*worst_step_));
     std::sort(steps_.begin(), steps_.end(), [](Step const& a, Step const& b) { return a.step < b.step; });
   }
@@ -191,63 +196,109 @@ void RunPage::make_steps() {
       pictures_->is_plane()
           ? page::plane_view(surface_, most->displacement, width, height)
           : page::find_views(surface_, most->displacement, upwards(case_file_.axis, surface_), width, height)[0];
-  for (Step const& s : steps_)
-    page_.steps.push_back(
-        {s.step + 1, page::image(page::surface_picture(surface_, s.displacement, page_.scale_end, view, width, height),
-                                 fmt::format("surface in step {}", s.step + 1))});
+  page_.steps.resize(steps_.size());
+  for_each_task(steps_.size(), [&](std::size_t n) {
+    Step const& s = steps_[n];
+    page_.steps[n] = {s.step + 1,
+                      page::image(page::surface_picture(surface_, s.displacement, page_.scale_end, view, width, height),
+                                  fmt::format("surface in step {}", s.step + 1))};
+  });
 }
+
+namespace {
+
+/// A cut of both meshes.
+struct BothSections {
+  std::array<page::Section, 2> section;
+  std::array<std::vector<float>, 2> value;
+  std::array<page::FlatBox, 2> walls;
+
+  /// Of what moves, in both.
+  [[nodiscard]] page::FlatBox box() const {
+    page::FlatBox out;
+    for (auto const& w : walls)
+      if (!w.empty()) {
+        out.take(w.low);
+        out.take(w.high);
+      }
+    return out;
+  }
+};
+
+struct SectionFrame {
+  std::size_t cut = 0;
+  std::array<page::Window, 2> window;  ///< of the baseline and of the morphed mesh
+  int height = 0;
+  std::string title;
+};
+
+/// All of what moves.
+SectionFrame whole_frame(std::size_t cut, page::FlatBox const& box, std::string title) {
+  double const wide = box.high[0] - box.low[0], high = box.high[1] - box.low[1];
+  double const ratio = std::clamp(wide > 0 ? 1.1 * high / wide : 1.0, 0.5, 1.0);
+  page::Window const all{{0.5 * (box.low[0] + box.high[0]), 0.5 * (box.low[1] + box.high[1])},
+                         1.35 * 0.5 * std::max(wide, high / ratio)};
+  return {cut, {all, all}, int(section_width * ratio), std::move(title)};
+}
+
+/// An end of what moves along the first coordinate: a leading or trailing edge, a nose, a tail. In each mesh about where it is there.
+SectionFrame end_frame(std::size_t cut, BothSections const& both, bool first, std::string title) {
+  page::FlatBox const box = both.box();
+  double const size = std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+  SectionFrame out{cut, {}, section_width * 2 / 3, std::move(title)};
+  for (page::Window& w : out.window) w.half_width = 0.07 * size;
+  for (std::size_t s = 0; s < 2; ++s)
+    for (auto const& wall : both.section[s].walls)
+      if (wall.moves)
+        for (page::Flat const& p : {wall.a, wall.b})
+          if (p[0] == (first ? both.walls[s].low[0] : both.walls[s].high[0])) out.window[s].centre = p;
+  return out;
+}
+}  // namespace
 
 void RunPage::make_sections(Run const& run) {
   auto const cuts = cuts_of(*pictures_, run.plan().rules(), case_file_.axis, surface_, displacement_of_surface(run));
-  bool details = true;
-  for (page::Cut const& cut : cuts) {
-    std::array<Coordinates const*, 2> const at{&run.mesh().coordinates(), &run.morphed()};
-    std::array<page::Section, 2> section;
-    std::array<std::vector<float>, 2> value;
-    page::FlatBox box;
-    std::array<page::FlatBox, 2> walls;
-    for (std::size_t s = 0; s < 2; ++s) {
-      section[s] = page::cut_mesh(*pictures_, boundary_, *at[s], cut, roles_.wall);
-      for (Index const cell : section[s].cell)
-        value[s].push_back(float(pictures_->measures(cell, *at[s]).determinant_3x3x3));
-      walls[s] = page::moving_walls(section[s]);
-      if (!walls[s].empty()) {
-        box.take(walls[s].low);
-        box.take(walls[s].high);
-      }
-    }
+  std::vector<BothSections> both(cuts.size());
+  for_each_task(2 * cuts.size(), [&](std::size_t n) {
+    std::size_t const c = n / 2, s = n % 2;
+    Coordinates const& at = s == 0 ? run.mesh().coordinates() : run.morphed();
+    both[c].section[s] = page::cut_mesh(*pictures_, boundary_, at, cuts[c], roles_.wall);
+    for (Index const cell : both[c].section[s].cell)
+      both[c].value[s].push_back(float(pictures_->measures(cell, at).determinant_3x3x3));
+    both[c].walls[s] = page::moving_walls(both[c].section[s]);
+  });
+  // The cut with most of what moves comes first: of a wing that across its span.
+  std::vector<std::size_t> order(cuts.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  auto const pieces = [&](std::size_t c) {
+    auto const& walls = both[c].section[0].walls;
+    return std::count_if(walls.begin(), walls.end(), [](auto const& wall) { return wall.moves; });
+  };
+  if (!cuts.empty() && cuts.front().period <= 0)
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return pieces(a) > pieces(b); });
+  std::vector<SectionFrame> frames;
+  for (std::size_t const c : order) {
+    page::FlatBox const box = both[c].box();
     if (box.empty()) continue;  // nothing that moves is cut
-    auto const add = [&](page::Window const& window, int height, std::string const& title) {
-      page::FigureGroup group{title, {}};
-      for (std::size_t s = 0; s < 2; ++s) {
-        std::string const caption = s == 0 ? "baseline" : "morphed";
-        group.figures.push_back(
-            {page::image(page::section_picture(section[s], value[s], window, section_width, height), title + ", " + caption),
-             caption});
-      }
-      page_.sections.push_back(std::move(group));
-    };
-    double const wide = box.high[0] - box.low[0], high = box.high[1] - box.low[1];
-    double const ratio = std::clamp(wide > 0 ? 1.1 * high / wide : 1.0, 0.5, 1.0);
-    page::Window const all{{0.5 * (box.low[0] + box.high[0]), 0.5 * (box.low[1] + box.high[1])},
-                           1.35 * 0.5 * std::max(wide, high / ratio)};
-    add(all, int(section_width * ratio), fmt::format("{} ({} to the right, {} up)", cut.title, cut.labels[0], cut.labels[1]));
+    bool const details = frames.empty() && !both[c].walls[0].empty() && !both[c].walls[1].empty();
+    auto const& labels = cuts[c].labels;
+    frames.push_back(
+        whole_frame(c, box, fmt::format("{} ({} to the right, {} up)", cuts[c].title, labels[0], labels[1])));
     if (!details) continue;
-    details = false;
-    // The two ends of what moves along the first coordinate: leading and trailing edges, noses and tails.
-    for (bool const first : {true, false}) {
-      std::array<page::Flat, 2> tip{};
-      for (std::size_t s = 0; s < 2; ++s)
-        for (auto const& wall : section[s].walls)
-          if (wall.moves)
-            for (page::Flat const& p : {wall.a, wall.b})
-              if (p[0] == (first ? walls[s].low[0] : walls[s].high[0])) tip[s] = p;
-      double const apart = std::hypot(tip[0][0] - tip[1][0], tip[0][1] - tip[1][1]);
-      page::Window const near{{0.5 * (tip[0][0] + tip[1][0]), 0.5 * (tip[0][1] + tip[1][1])},
-                              std::max(0.07 * std::max(wide, high), 0.8 * apart)};
-      add(near, section_width * 2 / 3, fmt::format("{}: the end towards {} {}", cut.title, first ? "smaller" : "larger", cut.labels[0]));
-    }
+    for (bool const first : {true, false})
+      frames.push_back(end_frame(c, both[c], first,
+                                 fmt::format("{}: the end at the {} {}, each mesh about its own", cuts[c].title,
+                                             first ? "smallest" : "largest", labels[0])));
   }
+  for (SectionFrame const& f : frames) page_.sections.push_back({f.title, {{"", "baseline"}, {"", "morphed"}}});
+  for_each_task(2 * frames.size(), [&](std::size_t n) {
+    SectionFrame const& f = frames[n / 2];
+    page::Figure& figure = page_.sections[n / 2].figures[n % 2];
+    BothSections const& b = both[f.cut];
+    figure.body =
+        page::image(page::section_picture(b.section[n % 2], b.value[n % 2], f.window[n % 2], section_width, f.height),
+                    f.title + ", " + figure.caption);
+  });
 }
 
 std::string RunPage::text(nlohmann::json const& report) {

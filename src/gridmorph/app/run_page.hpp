@@ -5,7 +5,11 @@
 #include <gridmorph/app/page/section.hpp>
 #include <gridmorph/app/page/surface_picture.hpp>
 #include <gridmorph/app/run.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
 
+#include <Kokkos_Core.hpp>
+
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
@@ -53,6 +57,23 @@ class RunPage {
   std::optional<Step> worst_step_;
 };
 
+/// do_it(n) for n below `tasks`, on all threads, whichever is free; what one of them throws is thrown in the end.
+template <class Function>
+void for_each_task(std::size_t tasks, Function const& do_it) {
+  using Policy = Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, Kokkos::Schedule<Kokkos::Dynamic>>;
+  std::vector<std::exception_ptr> thrown(tasks);
+  Kokkos::parallel_for("gridmorph::cli::page_task", Policy(0, tasks).set_chunk_size(1), [&](std::size_t n) {
+    try {
+      do_it(n);
+    } catch (...) {
+      thrown[n] = std::current_exception();
+    }
+  });
+  compat::fence(Kokkos::DefaultHostExecutionSpace(), "gridmorph::cli::page_task (all are done)");
+  for (auto const& e : thrown)
+    if (e) std::rethrow_exception(e);
+}
+
 // page_rules.cpp
 PatchRoles roles_of(BoundaryMotion const& rules, std::size_t n_patches);
 std::vector<page::RuleRow> rule_rows(BoundaryMotion const& rules, Coordinates const& baseline,
@@ -63,8 +84,7 @@ page::BoundaryCheck boundary_check(BoundaryMotion const& rules, Coordinates cons
 
 // page_cells.cpp
 /// Histograms of near and far field, and the worst cells with drawings.
-void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh,
-                  page::ReportPage& out);
+void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh, page::ReportPage& out);
 
 // page_cuts.cpp
 /// Where to cut: a plane mesh is itself; a machine at constant span; anything else at three planes through what moves.

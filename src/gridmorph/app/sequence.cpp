@@ -260,45 +260,43 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
     warnings = messages_of(shortfalls);
     if (!shortfall.empty()) warnings.insert(warnings.begin(), shortfall);
   }
-  return conclude({.output = options.output,
-                   .report = case_file.output_options.report,
-                   .page = case_file.output_options.page,
-                   .written = written,
-                   .falls_short = !shortfall.empty(),
-                   .json =
-                       [&] {
-                         nlohmann::json json = run.json(worst_quality, outcome);
-                         json["sequence"] = steps_json(results, worst, options);
-                         json.update(of_guard);
-                         return json;
-                       },
-                   .page_text = [&](nlohmann::json const& report) { return page->text(report); },
-                   .write =
-                       [&] {
-                         if (written) files.commit();
-                       },
-                   .text =
-                       [&] {
-                         std::string text = run.head();
-                         text += (text.empty() ? "" : "\n") + steps_table(results, worst);
-                         std::vector<std::vector<TipClearance>> clearances;
-                         for (StepResult const& step : results) clearances.push_back(step.clearances);
-                         if (std::string const tips = clearance_steps_table(clearances); !tips.empty())
-                           text += "\n" + tips;
-                         if (!shortfall.empty()) text += "\n" + shortfall + "\n";
-                         return text + fmt::format("\nstep {}, the worst one\n\n", worst + 1) +
-                                run.tables(worst_quality, outcome);
-                       },
-                   .wrote = wrote_text(options),
-                   .also_wrote = wrote_report(case_file.output_options.report) +
-                                 wrote_report(case_file.output_options.page),
-                   .warnings = std::move(warnings),
-                   .refusal =
-                       [&] {
-                         return run.refusal_of(options.output, "steps have cells",
-                                               "lower the amplitudes, change " + file.traits().change_many);
-                       }},
-                  terminal);
+  return conclude(
+      {.output = options.output,
+       .report = case_file.output_options.report,
+       .page = case_file.output_options.page,
+       .written = written,
+       .falls_short = !shortfall.empty(),
+       .json =
+           [&] {
+             nlohmann::json json = run.json(worst_quality, outcome);
+             json["sequence"] = steps_json(results, worst, options);
+             json.update(of_guard);
+             return json;
+           },
+       .page_text = [&](nlohmann::json const& report) { return page->text(report); },
+       .write =
+           [&] {
+             if (written) files.commit();
+           },
+       .text =
+           [&] {
+             std::string text = run.head();
+             text += (text.empty() ? "" : "\n") + steps_table(results, worst);
+             std::vector<std::vector<TipClearance>> clearances;
+             for (StepResult const& step : results) clearances.push_back(step.clearances);
+             if (std::string const tips = clearance_steps_table(clearances); !tips.empty()) text += "\n" + tips;
+             if (!shortfall.empty()) text += "\n" + shortfall + "\n";
+             return text + fmt::format("\nstep {}, the worst one\n\n", worst + 1) + run.tables(worst_quality, outcome);
+           },
+       .wrote = wrote_text(options),
+       .also_wrote = wrote_report(case_file.output_options.report) + wrote_report(case_file.output_options.page),
+       .warnings = std::move(warnings),
+       .refusal =
+           [&] {
+             return run.refusal_of(options.output, "steps have cells",
+                                   "lower the amplitudes, change " + file.traits().change_many);
+           }},
+      terminal);
 }
 
 }  // namespace gridmorph::cli

@@ -2,8 +2,8 @@
 #include <gridmorph/io/vtk/base64.hpp>
 #include <gridmorph/io/zlib_blocks.hpp>
 
+#include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <unordered_map>
@@ -40,45 +40,35 @@ void append_chunk(std::string& out, char const* name, std::string_view data) {
   append_big_endian(out, png_checksum(std::string_view(out).substr(at)));
 }
 
-int paeth(int left, int up, int corner) {
-  int const p = left + up - corner;
-  int const a = std::abs(p - left), b = std::abs(p - up), c = std::abs(p - corner);
-  return a <= b && a <= c ? left : b <= c ? up : corner;
-}
-
-/// Rows as they are packed: each with the filter whose differences are smallest (the standard's advice for colours; palettes go unfiltered).
+/// Rows as they are packed: each as it stands, less its left or less its upper neighbours, whichever differences are smallest (the standard's
+/// advice for colours; palettes go as they stand).
 std::string filtered_rows(std::vector<std::uint8_t> const& pixels, std::size_t row, std::size_t pixel, bool plain) {
   std::string out;
   out.reserve(pixels.size() + pixels.size() / row);
-  std::vector<std::uint8_t> const none(row, 0);
-  std::array<std::string, 4> tried;
+  // A row and the one above it, after a pixel of zeros.
+  std::vector<std::uint8_t> now(pixel + row, 0), above(pixel + row, 0);
+  std::array<std::vector<std::uint8_t>, 3> tried;
+  for (auto& t : tried) t.resize(row);
   for (std::size_t begin = 0; begin < pixels.size(); begin += row) {
-    std::uint8_t const* now = pixels.data() + begin;
-    std::uint8_t const* above = begin == 0 ? none.data() : now - row;
-    if (plain) {
-      out += '\0';
-      out.append(reinterpret_cast<char const*>(now), row);
-      continue;
+    std::copy_n(pixels.begin() + std::ptrdiff_t(begin), row, now.begin() + std::ptrdiff_t(pixel));
+    std::uint8_t const *const here = now.data() + pixel, *const left = now.data(), *const up = above.data() + pixel;
+    for (std::size_t n = 0; n < row; ++n) {
+      tried[0][n] = here[n];
+      tried[1][n] = std::uint8_t(here[n] - left[n]);
+      tried[2][n] = std::uint8_t(here[n] - up[n]);
     }
-    constexpr std::array<char, 4> filter{0, 1, 2, 4};
     std::size_t best = 0;
     long best_sum = -1;
-    for (std::size_t f = 0; f < filter.size(); ++f) {
-      tried[f].resize(row);
+    for (std::size_t f = 0; f < (plain ? 1 : tried.size()); ++f) {
       long sum = 0;
-      for (std::size_t n = 0; n < row; ++n) {
-        int const left = n < pixel ? 0 : now[n - pixel], up = above[n], corner = n < pixel ? 0 : above[n - pixel];
-        int const guess = f == 0 ? 0 : f == 1 ? left : f == 2 ? up : paeth(left, up, corner);
-        auto const value = std::uint8_t(int(now[n]) - guess);
-        tried[f][n] = char(value);
-        sum += value < 128 ? value : 256 - value;
-      }
+      for (std::uint8_t const v : tried[f]) sum += v < 128 ? v : 256 - v;
       if (best_sum >= 0 && sum >= best_sum) continue;
       best = f;
       best_sum = sum;
     }
-    out += filter[best];
-    out += tried[best];
+    out += char(best);
+    out.append(tried[best].begin(), tried[best].end());
+    std::swap(now, above);
   }
   return out;
 }

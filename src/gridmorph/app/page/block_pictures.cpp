@@ -31,8 +31,8 @@ class BlockPictures final : public PictureMesh {
       : PictureMesh(mesh), handedness_(handedness.begin(), handedness.end()), first_(first_cells(mesh)) {}
 
   bool is_plane() const override {
-    return mesh().dimension == 2 || std::all_of(mesh().zones.begin(), mesh().zones.end(),
-                                                [](Zone const& zone) { return zone.extent[2] == 2; });
+    return mesh().dimension == 2 ||
+           std::all_of(mesh().zones.begin(), mesh().zones.end(), [](Zone const& zone) { return zone.extent[2] == 2; });
   }
   Index n_cells() const override { return first_.back(); }
 

@@ -42,20 +42,25 @@ ColourScale const& quality_colours() {
 }
 
 Canvas::Canvas(int width, int height)
-    : width_(width), height_(height), samples_(std::size_t(width) * std::size_t(height) * fine * fine) {
-  for (Sample& s : samples_) s.depth = -std::numeric_limits<float>::infinity();
-}
+    : width_(width),
+      height_(height),
+      samples_(std::size_t(width) * std::size_t(height) * fine * fine,
+               Sample{-std::numeric_limits<float>::infinity()}) {}
 
 void Canvas::cover(Sample& s, Colour const& c) {
+  if (c.opacity >= 1) {
+    s = {s.depth, c.red, c.green, c.blue, 255};
+    return;
+  }
   // Both with their own opacity: "over" of Porter and Duff (1984), colours not multiplied.
-  auto const a = float(c.opacity);
-  float const sum = a + s.opacity * (1 - a);
+  auto const a = float(c.opacity), below = float(s.opacity) / 255;
+  float const sum = a + below * (1 - a);
   if (sum <= 0) return;
   float const share = a / sum;
-  s.red += share * (float(c.red) - s.red);
-  s.green += share * (float(c.green) - s.green);
-  s.blue += share * (float(c.blue) - s.blue);
-  s.opacity = sum;
+  auto const mix = [share](std::uint8_t from, std::uint8_t to) {
+    return std::uint8_t(float(from) + share * (float(to) - float(from)) + 0.5F);
+  };
+  s = {s.depth, mix(s.red, c.red), mix(s.green, c.green), mix(s.blue, c.blue), std::uint8_t(255 * sum + 0.5F)};
 }
 
 /// paint(sample, weights of the corners) for each sample whose middle lies in the triangle.
@@ -75,16 +80,30 @@ void Canvas::fill(std::array<Place, 3> const& corner, Paint const& paint) {
   auto const [top, bottom] = std::minmax({y[0], y[1], y[2]});
   int const x0 = std::max(0, clamped(std::ceil(left), columns)), x1 = std::min(columns - 1, clamped(right, columns));
   int const y0 = std::max(0, clamped(std::ceil(top), rows)), y1 = std::min(rows - 1, clamped(bottom, rows));
-  for (int py = y0; py <= y1; ++py)
-    for (int px = x0; px <= x1; ++px) {
-      std::array<double, 3> w{};
-      for (std::size_t n = 0; n < 3; ++n) {
-        std::size_t const a = (n + 1) % 3, b = (n + 2) % 3;
-        w[n] = ((x[a] - px) * (y[b] - py) - (x[b] - px) * (y[a] - py)) / area;
-      }
-      if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue;
-      paint(samples_[std::size_t(py) * std::size_t(columns) + std::size_t(px)], w);
+  // Weight n is at + along px + across py.
+  std::array<double, 3> at{}, along{}, across{};
+  for (std::size_t n = 0; n < 3; ++n) {
+    std::size_t const a = (n + 1) % 3, b = (n + 2) % 3;
+    at[n] = (x[a] * y[b] - x[b] * y[a]) / area;
+    along[n] = (y[a] - y[b]) / area;
+    across[n] = (x[b] - x[a]) / area;
+  }
+  for (int py = y0; py <= y1; ++py) {
+    // Where in this row all weights are positive, then exactly at its ends.
+    double begin = x0, end = x1;
+    std::array<double, 3> row{};
+    for (std::size_t n = 0; n < 3; ++n) {
+      row[n] = at[n] + across[n] * py;
+      if (along[n] > 0) begin = std::max(begin, -row[n] / along[n] - 1);
+      if (along[n] < 0) end = std::min(end, -row[n] / along[n] + 1);
     }
+    Sample* const samples = samples_.data() + std::size_t(py) * std::size_t(columns);
+    for (int px = int(std::max(begin, 0.0)); px <= int(end); ++px) {
+      std::array<double, 3> const w{row[0] + along[0] * px, row[1] + along[1] * px, row[2] + along[2] * px};
+      if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue;
+      paint(samples[px], w);
+    }
+  }
 }
 
 void Canvas::triangle(std::array<Place, 3> const& corner, std::array<double, 3> const& share, ColourScale const& scale,
@@ -93,14 +112,14 @@ void Canvas::triangle(std::array<Place, 3> const& corner, std::array<double, 3> 
     auto const depth = float(w[0] * corner[0].z + w[1] * corner[1].z + w[2] * corner[2].z);
     if (!(depth > s.depth)) return;
     Colour const c = scale.at(w[0] * share[0] + w[1] * share[1] + w[2] * share[2]);
-    s = {float(light * c.red), float(light * c.green), float(light * c.blue), 1, depth};
+    auto const lit = [light](std::uint8_t v) { return std::uint8_t(std::min(255.0, light * v)); };
+    s = {depth, lit(c.red), lit(c.green), lit(c.blue), 255};
   });
 }
 
 void Canvas::polygon(std::span<Place const> corners, Colour const& colour) {
   for (std::size_t n = 2; n < corners.size(); ++n)
-    fill({corners[0], corners[n - 1], corners[n]},
-         [&](Sample& s, std::array<double, 3> const&) { cover(s, colour); });
+    fill({corners[0], corners[n - 1], corners[n]}, [&](Sample& s, std::array<double, 3> const&) { cover(s, colour); });
 }
 
 void Canvas::line(Place const& a, Place const& b, Colour const& colour, double width, bool behind) {
@@ -109,22 +128,25 @@ void Canvas::line(Place const& a, Place const& b, Colour const& colour, double w
   double const ax = fine * a.x, ay = fine * a.y, dx = fine * b.x - ax, dy = fine * b.y - ay;
   if (!std::isfinite(ax + ay + dx + dy)) return;
   double t0 = 0, t1 = 1;
-  for (auto const& [step, room] : {std::pair(-dx, ax), std::pair(dx, columns - ax), std::pair(-dy, ay), std::pair(dy, rows - ay)}) {
+  for (auto const& [step, room] :
+       {std::pair(-dx, ax), std::pair(dx, columns - ax), std::pair(-dy, ay), std::pair(dy, rows - ay)}) {
     if (step == 0) {
       if (room < 0) return;
       continue;
     }
     double const t = room / step;
-    if (step < 0) t0 = std::max(t0, t);
-    else t1 = std::min(t1, t);
+    if (step < 0)
+      t0 = std::max(t0, t);
+    else
+      t1 = std::min(t1, t);
   }
   if (t0 >= t1) return;
   bool const flat = std::fabs(dx) >= std::fabs(dy);
   double const length = flat ? std::fabs(dx) : std::fabs(dy);
   int const across = std::max(1, int(std::lround(fine * width)));
-  int const steps = int(std::ceil((t1 - t0) * length));
-  for (int n = 0; n <= steps; ++n) {
-    double const t = steps == 0 ? t0 : t0 + (t1 - t0) * n / steps;
+  int const steps = std::max(1, int(std::lround((t1 - t0) * length)));
+  for (int n = 0; n < steps; ++n) {
+    double const t = t0 + (t1 - t0) * (n + 0.5) / steps;  // amid samples, so that rounding leaves none out
     auto const depth = float(a.z + t * (b.z - a.z));
     int const px = int(ax + t * dx), py = int(ay + t * dy);
     for (int w = 0; w < across; ++w) {
@@ -140,7 +162,7 @@ io::Picture Canvas::picture() const {
   io::Picture out(width_, height_);
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
-      float red = 0, green = 0, blue = 0, opacity = 0;
+      int red = 0, green = 0, blue = 0, opacity = 0;
       for (int v = 0; v < fine; ++v)
         for (int u = 0; u < fine; ++u) {
           Sample const& s =
@@ -150,16 +172,16 @@ io::Picture Canvas::picture() const {
           blue += s.opacity * s.blue;
           opacity += s.opacity;
         }
-      if (opacity <= 0) continue;
+      if (opacity == 0) continue;
       // Steps of 4 and of 16: no eye sees them, and files are a third smaller.
-      auto const byte = [](float v, int step) {
-        return std::uint8_t(std::min(255, int(std::lround(v / float(step))) * step));
+      auto const byte = [](int sum, int of, int step) {
+        return std::uint8_t(std::min(255, (sum + of * step / 2) / (of * step) * step));
       };
       std::uint8_t* const p = out.at(x, y);
-      p[0] = byte(red / opacity, 4);
-      p[1] = byte(green / opacity, 4);
-      p[2] = byte(blue / opacity, 4);
-      p[3] = byte(255 * opacity / (fine * fine), 16);
+      p[0] = byte(red, opacity, 4);
+      p[1] = byte(green, opacity, 4);
+      p[2] = byte(blue, opacity, 4);
+      p[3] = byte(opacity, fine * fine, 16);
     }
   return out;
 }

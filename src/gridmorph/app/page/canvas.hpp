@@ -44,7 +44,7 @@ class Canvas {
  public:
   Canvas(int width, int height);
 
-  /// A triangle with a share of the scale at each corner, darkened by `light` (0 to 1). Hides what lies behind it. Cost: its samples.
+  /// A triangle with a share of the scale at each corner, its colours times `light`. Hides what lies behind it. Cost: its samples.
   void triangle(std::array<Place, 3> const& corner, std::array<double, 3> const& share, ColourScale const& scale,
                 double light);
   /// A convex polygon of one colour over what is there, whatever its depth.
@@ -58,14 +58,14 @@ class Canvas {
 
  private:
   struct Sample {
-    float red = 0, green = 0, blue = 0, opacity = 0;
     float depth = 0;
+    std::uint8_t red = 0, green = 0, blue = 0, opacity = 0;
   };
   static constexpr int fine = 2;  ///< samples along the side of a pixel
 
   template <class Paint>
   void fill(std::array<Place, 3> const& corner, Paint const& paint);
-  void cover(Sample& sample, Colour const& colour);
+  static void cover(Sample& sample, Colour const& colour);
 
   int width_, height_;
   std::vector<Sample> samples_;

@@ -99,7 +99,8 @@ std::string drawing(CellFaces const& faces, Edges const& own, Edges const& besid
     auto const near_by = [](double v) { return std::clamp(v, -20 * side, 20 * side); };
     return std::array{near_by(0.5 * side + dot(d, view.x)), near_by(0.5 * side - dot(d, view.y))};
   };
-  std::string text = fmt::format("<svg class=\"cell\" viewBox=\"0 0 {0:.0f} {0:.0f}\" width=\"{0:.0f}\" height=\"{0:.0f}\" role=\"img\">", side);
+  std::string text = fmt::format(
+      "<svg class=\"cell\" viewBox=\"0 0 {0:.0f} {0:.0f}\" width=\"{0:.0f}\" height=\"{0:.0f}\" role=\"img\">", side);
   text += "<path class=\"beside\" d=\"" + path_of(beside, place) + "\"/><g class=\"faces\">";
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (faces[f].size() < 3) continue;

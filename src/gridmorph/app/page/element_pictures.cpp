@@ -47,8 +47,8 @@ class ElementPictures final : public PictureMesh {
     std::vector<Index> out;
     for (Index e = 0; e < n_cells(); ++e) {
       auto const corners = mesh().elements.corners(e);
-      auto const below = std::count_if(corners.begin(), corners.end(),
-                                       [&](Index32 n) { return level[std::size_t(n)] < 0; });
+      auto const below =
+          std::count_if(corners.begin(), corners.end(), [&](Index32 n) { return level[std::size_t(n)] < 0; });
       if (below != 0 && below != std::ptrdiff_t(corners.size())) out.push_back(e);
     }
     return out;
@@ -110,8 +110,7 @@ class ElementPictures final : public PictureMesh {
 }  // namespace
 
 std::unique_ptr<PictureMesh> picture_mesh(Mesh const& mesh, UnstructuredTopology const& topology,
-                                          BoundaryFacePatches const& face_patches,
-                                          std::span<signed char const> signs) {
+                                          BoundaryFacePatches const& face_patches, std::span<signed char const> signs) {
   return std::make_unique<ElementPictures>(mesh, topology, face_patches, signs);
 }
 

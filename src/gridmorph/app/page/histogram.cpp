@@ -10,17 +10,28 @@ namespace gridmorph::page {
 
 namespace {
 
+/// larger_is_bad: an axis of aspect ratios.
 std::size_t bin_of(std::vector<double> const& edge, double value, bool larger_is_bad) {
   std::size_t const last = edge.size() - 2;
   if (std::isnan(value)) return larger_is_bad ? last : 0;
-  auto const at = std::upper_bound(edge.begin(), edge.end(), value) - edge.begin();
-  return at < 1 ? 0 : std::min(last, std::size_t(at - 1));
+  if (!(value > edge.front())) return 0;
+  if (value >= edge.back()) return last;
+  // Even on the scale of the axis: a guess that is off by one bin at most.
+  bool const logarithmic = larger_is_bad;
+  double const share = logarithmic ? std::log10(value / edge.front()) / std::log10(edge.back() / edge.front())
+                                   : (value - edge.front()) / (edge.back() - edge.front());
+  auto bin = std::min(last, std::size_t(share * double(last + 1)));
+  if (value < edge[bin]) --bin;
+  if (value >= edge[bin + 1]) ++bin;
+  return bin;
 }
 
 // Of the drawing, in pixels.
-constexpr double wide = 400, high = 172, left = 46, right = 8, top = 8, bottom = 30;
+constexpr double wide = 400, high = 172, left = 46, right = 18, top = 8, bottom = 30;
 
-double height_of(Index count, double most) { return count == 0 ? 0 : (std::log10(double(count)) + 0.35) / (most + 0.35); }
+double height_of(Index count, double most) {
+  return count == 0 ? 0 : (std::log10(double(count)) + 0.35) / (most + 0.35);
+}
 
 /// 1, 10, 100, 1 k, ...
 std::string count_text(int power) {
@@ -79,9 +90,10 @@ std::string histogram_svg(Histogram const& h) {
   int const step = most > 5 ? 2 : 1;
   for (int power = 0; power <= int(most); power += step) {
     double const y = y_of(Index(std::llround(std::pow(10.0, power))));
-    svg += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/><text x=\"{:.1f}\" y=\"{:.1f}\" "
-                       "text-anchor=\"end\">{}</text>",
-                       left, y, wide - right, left - 5, y + 4, count_text(power));
+    svg += fmt::format(
+        "<path class=\"grid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/><text x=\"{:.1f}\" y=\"{:.1f}\" "
+        "text-anchor=\"end\">{}</text>",
+        left, y, wide - right, left - 5, y + 4, count_text(power));
   }
   std::string bars, line = fmt::format("M{:.1f} {:.1f}", left, high - bottom);
   for (std::size_t b = 0; b < bins; ++b) {
@@ -94,11 +106,16 @@ std::string histogram_svg(Histogram const& h) {
   line += fmt::format("V{:.1f}", high - bottom);
   svg += fmt::format("<path class=\"before\" d=\"{}\"/><path class=\"after\" d=\"{}\"/>", bars, line);
   svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", left, high - bottom, wide - right);
-  std::size_t const ticks = h.measure == Measure::aspect_ratio ? bins / 8 : h.measure == Measure::minimum_angle_deg ? 6 : 11;
+  std::size_t const ticks = h.measure == Measure::aspect_ratio        ? bins / 8
+                            : h.measure == Measure::minimum_angle_deg ? 9
+                                                                      : 11;
   for (std::size_t t = 0; t <= ticks; ++t) {
     std::size_t const b = t * bins / ticks;
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", left + dx * double(b),
-                       high - bottom + 15, std::fabs(h.edge[b]) < 1e-9 ? "0" : fmt::format("{:.4g}", h.edge[b]));
+                       high - bottom + 15,
+                       h.measure == Measure::aspect_ratio ? count_text(int(t))
+                       : std::fabs(h.edge[b]) < 1e-9      ? "0"
+                                                          : fmt::format("{:.4g}", h.edge[b]));
   }
   return svg + "</svg>";
 }

@@ -10,8 +10,9 @@ namespace gridmorph::page {
 
 struct Histogram {
   Measure measure = Measure::determinant_3x3x3;
-  std::vector<double> edge;           ///< (bins + 1), ascending; what lies outside is in the first or the last bin
-  std::vector<Index> before, after;   ///< (bins) of cells that were looked at; values that are no number are where the worst ones are
+  std::vector<double> edge;  ///< (bins + 1), ascending; what lies outside is in the first or the last bin
+  std::vector<Index> before,
+      after;  ///< (bins) of cells that were looked at; values that are no number are where the worst ones are
   std::string title;
 };
 

@@ -10,9 +10,7 @@ namespace {
 
 /// Bytes of the character that begins there (RFC 3629); 0 where none does.
 std::size_t length_of_character(std::string_view text, std::size_t at) {
-  auto const byte = [&](std::size_t n) {
-    return at + n < text.size() ? static_cast<unsigned char>(text[at + n]) : 0U;
-  };
+  auto const byte = [&](std::size_t n) { return at + n < text.size() ? static_cast<unsigned char>(text[at + n]) : 0U; };
   unsigned const b = byte(0);
   auto const goes_on = [&](std::size_t n) { return (byte(n) & 0xC0U) == 0x80U; };
   if (b < 0x80) return 1;

@@ -30,24 +30,28 @@ std::string motion_part(ReportPage const& page) {
   }
   Table table({{"rule"}, {"patches"}, {"from"}, {"nodes", true}, {"largest displacement", true}, {"mean", true}});
   for (RuleRow const& row : page.rules)
-    table.add({escaped(row.rule), escaped(row.patches), escaped(row.where), count(row.nodes), number(row.largest),
-               number(row.mean)});
+    table.add({escaped(row.rule), escaped(row.patches),
+               "<span class=\"word\">" + escaped(row.where.substr(row.where.find_last_of('/') + 1)) + "</span>",
+               count(row.nodes), number(row.largest), number(row.mean)});
   out += table.html();
   if (page.report.contains("targets") && !page.report["targets"].empty()) {
     out += "<p>How far nodes are from their target is among the notes above.</p>\n";
   }
   if (page.report.contains("fields") && !page.report["fields"].empty())
-    out += fmt::format("<p>{} rule{} from points or structural models; distances of the mapping are among the notes "
-                       "above.</p>\n",
-                       page.report["fields"].size(), page.report["fields"].size() == 1 ? " takes its displacement" : "s take their displacements");
+    out += fmt::format(
+        "<p>{} rule{} from points or structural models; distances of the mapping are among the notes "
+        "above.</p>\n",
+        page.report["fields"].size(),
+        page.report["fields"].size() == 1 ? " takes its displacement" : "s take their displacements");
   return out + "</section>\n";
 }
 
 std::string sections_part(ReportPage const& page) {
   if (page.sections.empty()) return {};
   std::string out =
-      "<section id=\"sections\"><h2>Sections</h2>\n<p>Baseline and morphed mesh in one frame and to one scale. "
-      "Cells are coloured by their determinant 3\u00d73\u00d73: grey is good, yellow below 0.6, red near zero. "
+      "<section id=\"sections\"><h2>Sections</h2>\n<p>Baseline and morphed mesh to one scale, and in one frame where "
+      "nothing else is said. "
+      "Cells are coloured by their determinant 3\u00d73\u00d73: grey is good, yellow near a half, red near zero. "
       "Blue: walls that move.</p>\n";
   for (FigureGroup const& group : page.sections) {
     out += "<h3>" + escaped(group.title) + "</h3>\n<div class=\"figures pair\">";

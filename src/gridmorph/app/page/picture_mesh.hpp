@@ -87,8 +87,7 @@ class PictureMesh {
 std::unique_ptr<PictureMesh> picture_mesh(Mesh const& mesh, std::span<int const> handedness);
 /// Of elements. signs: numbering_signs().
 std::unique_ptr<PictureMesh> picture_mesh(Mesh const& mesh, UnstructuredTopology const& topology,
-                                          BoundaryFacePatches const& face_patches,
-                                          std::span<signed char const> signs);
+                                          BoundaryFacePatches const& face_patches, std::span<signed char const> signs);
 
 /// "zone 'A' cell (i 3, j 1, k 7)" or "zone 'A' element 17".
 std::string to_string(CellName const& name);

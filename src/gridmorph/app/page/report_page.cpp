@@ -31,7 +31,8 @@ std::string repeat_part(ReportPage const& page) {
   for (auto const& [name, value] : page.settings) table.add({escaped(name), escaped(value)});
   out += table.html();
   if (!page.case_text.empty())
-    out += "<h3>" + escaped(page.report["case_file"].get<std::string>()) + "</h3>\n<pre><code>" + escaped(page.case_text) + "</code></pre>\n";
+    out += "<h3>" + escaped(page.report["case_file"].get<std::string>()) + "</h3>\n<pre><code>" +
+           escaped(page.case_text) + "</code></pre>\n";
   return out + "</section>\n";
 }
 
@@ -40,15 +41,19 @@ std::string page_text(ReportPage const& page) {
   std::string const name = escaped(file.substr(file.find_last_of('/') + 1));
   std::string const input = escaped(page.report["input"].get<std::string>());
   std::string const output = page.report["output"].is_null() ? std::string("nothing written")
-                                                               : escaped(page.report["output"].get<std::string>());
+                                                             : escaped(page.report["output"].get<std::string>());
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src "
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
+      "'unsafe-inline'; script-src "
       "'unsafe-inline'\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n"
-      "<link rel=\"icon\" href=\"data:,\">\n<title>" + name + ": gridmorph report</title>\n<style>\n" + std::string(page_css) + "</style>\n</head>\n<body>\n<header><p class=\"dim\">gridmorph " +
-      escaped(page.report["gridmorph"].get<std::string>()) + "</p><h1>" + name + "</h1>\n<p class=\"files\">" + input + " \u2192 " + output +
-      "</p></header>\n<main>\n";
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" "
+      "content=\"light dark\">\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<title>" +
+      name + ": gridmorph report</title>\n<style>\n" + std::string(page_css) +
+      "</style>\n</head>\n<body>\n<header><p class=\"dim\">gridmorph " +
+      escaped(page.report["gridmorph"].get<std::string>()) + "</p><h1>" + name + "</h1>\n<p class=\"files\">" + input +
+      " \u2192 " + output + "</p></header>\n<main>\n";
   struct Part {
     char const *id, *title;
     std::string text;

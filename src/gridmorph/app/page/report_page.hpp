@@ -27,7 +27,8 @@ struct RuleRow {
 /// What must hold beside the quality of cells.
 struct BoundaryCheck {
   Index periodic_nodes = 0;  ///< of periodic connections; 0: none
-  double periodic = 0;  ///< largest difference between the displacements of a node and of its copy, turned into its frame
+  double periodic =
+      0;  ///< largest difference between the displacements of a node and of its copy, turned into its frame
   Index slip_nodes = 0;
   double slip = 0;  ///< largest distance of a node of slip surfaces from where its surface has it
 };

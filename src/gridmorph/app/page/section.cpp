@@ -26,7 +26,8 @@ void sort_around(std::vector<Flat>& points) {
 
 bool wraps(std::vector<Flat> const& points, double period) {
   if (period <= 0) return false;
-  auto const [low, high] = std::minmax_element(points.begin(), points.end(), [](Flat const& a, Flat const& b) { return a[1] < b[1]; });
+  auto const [low, high] =
+      std::minmax_element(points.begin(), points.end(), [](Flat const& a, Flat const& b) { return a[1] < b[1]; });
   return (*high)[1] - (*low)[1] > 0.5 * period;
 }
 
@@ -49,8 +50,7 @@ Section plane_section(PictureMesh const& mesh, Coordinates const& at, Cut const&
   }
   for (Edge const& side : plane.sides)
     if (side.patch >= 0 && walls[std::size_t(side.patch)] >= 0)
-      out.walls.push_back(
-          {cut.flat(at[side.node[0]]), cut.flat(at[side.node[1]]), walls[std::size_t(side.patch)] > 0});
+      out.walls.push_back({cut.flat(at[side.node[0]]), cut.flat(at[side.node[1]]), walls[std::size_t(side.patch)] > 0});
   return out;
 }
 
@@ -149,8 +149,8 @@ io::Picture section_picture(Section const& section, std::vector<float> const& va
                   {0x22, 0x2b, 0x36, opacity}, 0.5);
   }
   for (auto const& wall : section.walls)
-    canvas.line(place(wall.a), place(wall.b),
-                wall.moves ? Colour{0x1d, 0x5f, 0xd1, 1} : Colour{0x4a, 0x55, 0x63, 1}, wall.moves ? 2 : 1);
+    canvas.line(place(wall.a), place(wall.b), wall.moves ? Colour{0x1d, 0x5f, 0xd1, 1} : Colour{0x4a, 0x55, 0x63, 1},
+                wall.moves ? 2 : 1);
   return canvas.picture();
 }
 

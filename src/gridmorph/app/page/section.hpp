@@ -17,8 +17,8 @@ using Flat = std::array<double, 2>;
 
 /// Where a mesh is cut, and how the cut is laid flat.
 struct Cut {
-  std::string title;                  ///< "span 50 %", "y = 3.5"
-  std::array<std::string, 2> labels;  ///< of the two coordinates
+  std::string title;                         ///< "span 50 %", "y = 3.5"
+  std::array<std::string, 2> labels;         ///< of the two coordinates
   std::function<double(Vec3 const&)> level;  ///< zero where it cuts; empty: the plane of a mesh
   std::function<Flat(Vec3 const&)> flat;
   double period = 0;  ///< of the second coordinate; polygons wider than half of it are left out; 0: none

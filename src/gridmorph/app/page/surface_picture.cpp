@@ -79,13 +79,42 @@ class SurfaceNumbers {
   std::unordered_map<Index32, Index32> number_;
 };
 
+/// Edges that one facet of moving patches has alone. Zones have nodes of their own where they meet: nodes at one place count as one.
+std::vector<Edge> rims_of(Surface const& surface, std::vector<signed char> const& role) {
+  double size = 0;
+  for (Vec3 const& p : surface.baseline) size = std::max(size, norm(p - surface.baseline.front()));
+  double const step = size > 0 ? 1e-7 * size : 1;
+  using Cell = std::array<std::int64_t, 3>;
+  std::map<Cell, Index32> places;  // in order, so that pictures are the same in every run
+  std::vector<Index32> place(surface.nodes.size(), -1);
+  auto const place_of = [&](Index32 n) {
+    if (place[std::size_t(n)] < 0) {
+      Vec3 const d = (1 / step) * (surface.baseline[std::size_t(n)] - surface.baseline.front());
+      place[std::size_t(n)] =
+          places.emplace(Cell{std::llround(d.x), std::llround(d.y), std::llround(d.z)}, n).first->second;
+    }
+    return place[std::size_t(n)];
+  };
+  std::map<std::array<Index32, 2>, int> times;
+  for (Facet const& facet : surface.facets) {
+    if (role[std::size_t(facet.patch)] < 1) continue;
+    for (std::size_t c = 0; c < facet.size(); ++c) {
+      Index32 const a = place_of(facet.node[c]), b = place_of(facet.node[(c + 1) % facet.size()]);
+      if (a != b) ++times[{std::min(a, b), std::max(a, b)}];
+    }
+  }
+  std::vector<Edge> out;
+  for (auto const& [edge, n] : times)
+    if (n == 1) out.push_back({edge, 0});
+  return out;
+}
+
 }  // namespace
 
 Surface make_surface(std::vector<Facet> const& facets, std::vector<signed char> const& role,
                      Coordinates const& baseline) {
   Surface out;
   SurfaceNumbers number(out, baseline);
-  std::map<std::array<Index32, 2>, Edge> open;  // in order, so that pictures are the same in every run
   for (Facet facet : facets) {
     if (facet.patch < 0 || role[std::size_t(facet.patch)] < 0) continue;
     for (std::size_t c = 0; c < facet.size(); ++c) {
@@ -93,15 +122,8 @@ Surface make_surface(std::vector<Facet> const& facets, std::vector<signed char> 
       if (role[std::size_t(facet.patch)] > 0) out.focus[std::size_t(facet.node[c])] = 1;
     }
     out.facets.push_back(facet);
-    for (std::size_t c = 0; c < facet.size(); ++c) {
-      Index32 const a = facet.node[c], b = facet.node[(c + 1) % facet.size()];
-      if (a == b) continue;
-      auto const [at, added] = open.emplace(std::array{std::min(a, b), std::max(a, b)}, Edge{{a, b}, facet.patch});
-      if (!added && at->second.patch == facet.patch) at->second.patch = -1;  // inside the patch
-    }
   }
-  for (auto const& [key, edge] : open)
-    if (edge.patch >= 0) out.rims.push_back(edge);
+  out.rims = rims_of(out, role);
   return out;
 }
 
@@ -199,7 +221,7 @@ io::Picture surface_picture(Surface const& surface, std::vector<Vec3> const& dis
     Vec3 const normal = unit_vector(area_of(f, moved));
     if (!(dot(normal, view.towards) > 0)) continue;
     front.push_back(&f);
-    double const light = 0.55 + 0.45 * std::max(0.0, dot(normal, lamp));
+    double const light = 0.68 + 0.36 * std::max(0.0, dot(normal, lamp));
     for (std::size_t c = 2; c < f.size(); ++c) {
       auto const a = std::size_t(f.node[0]), b = std::size_t(f.node[c - 1]), d = std::size_t(f.node[c]);
       canvas.triangle({at[a], at[b], at[d]}, {share[a], share[b], share[d]}, displacement_colours(), light);
@@ -223,8 +245,7 @@ io::Picture surface_picture(Surface const& surface, std::vector<Vec3> const& dis
   for (Edge const& rim : surface.rims) {
     Place const a = project(surface.baseline[std::size_t(rim.node[0])]);
     Place const b = project(surface.baseline[std::size_t(rim.node[1])]);
-    if (norm(displacement[std::size_t(rim.node[0])]) + norm(displacement[std::size_t(rim.node[1])]) > 0.01 * most)
-      canvas.line(raised(a), raised(b), {0x2b, 0x6c, 0xd4, 0.9}, 1.5);
+    canvas.line(raised(a), raised(b), {0x2b, 0x6c, 0xd4, 0.9}, 1.5);
   }
   return canvas.picture();
 }

@@ -15,7 +15,7 @@ struct Surface {
   std::vector<Index32> nodes;  ///< of the mesh
   std::vector<Vec3> baseline;  ///< (nodes)
   std::vector<char> focus;     ///< (nodes) whether a picture is to show them
-  std::vector<Edge> rims;      ///< edges of facets where the patch ends; places in `nodes`
+  std::vector<Edge> rims;      ///< edges where what is in focus ends; places in `nodes`
 };
 
 /// Facets of the patches whose role is not negative; those of patches whose role is 1 are in focus.

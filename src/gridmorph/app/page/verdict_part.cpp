@@ -45,10 +45,13 @@ json worst_of(json const& quality, std::string const& measure, bool larger_is_ba
 
 std::string place_of(json const& worst) {
   CellName name{worst.value("zone", std::string()), {}};
-  if (worst.contains("element")) name.index = {worst["element"].get<Index>()};
-  else if (worst.contains("cell")) name.index = worst["cell"].get<std::vector<Index>>();
+  if (worst.contains("element"))
+    name.index = {worst["element"].get<Index>()};
+  else if (worst.contains("cell"))
+    name.index = worst["cell"].get<std::vector<Index>>();
   else if (worst.contains("node") && worst["node"].is_array())
-    return fmt::format("zone '{}' node (i {}, j {}, k {})", name.zone, worst["node"][0].get<Index>(), worst["node"][1].get<Index>(), worst["node"][2].get<Index>());
+    return fmt::format("zone '{}' node (i {}, j {}, k {})", name.zone, worst["node"][0].get<Index>(),
+                       worst["node"][1].get<Index>(), worst["node"][2].get<Index>());
   else if (worst.contains("node"))
     return fmt::format("zone '{}' node {}", name.zone, worst["node"].get<Index>());
   return name.index.empty() ? std::string() : to_string(name);
@@ -65,8 +68,7 @@ struct Verdict {
 Index newly_inverted_of(json const& morphed) {
   Index out = 0;
   for (char const* region : {"near_field", "far_field"}) out += morphed[region]["newly_inverted"].get<Index>();
-  if (morphed.contains("certificate"))
-    out = std::max(out, morphed["certificate"]["broken"]["cells"].get<Index>());
+  if (morphed.contains("certificate")) out = std::max(out, morphed["certificate"]["broken"]["cells"].get<Index>());
   return out;
 }
 
@@ -88,20 +90,21 @@ Verdict verdict_of(ReportPage const& page) {
     auto const n = report["sequence"]["steps"].size();
     steps = bad > 0      ? fmt::format(" in {} of {} steps", bad, n)
             : beyond > 0 ? fmt::format(" in {} of {} steps", beyond, n)
-                         : fmt::format(" in all {} steps", n);
+                         : fmt::format(" in any of {} steps", n);
   }
   if (inverted > 0) {
     bool const written = !report["output"].is_null();
     return {"bad", "\u2716", written ? "Inverted, and written all the same" : "Inverted: nothing was written",
-            fmt::format("{} {}{} turned inside out that {} sound in the baseline.", count(inverted), page.kind,
-                        steps, inverted == 1 ? "was" : "were")};
+            fmt::format("{} {}{} turned inside out that {} sound in the baseline.", count(inverted), page.kind, steps,
+                        inverted == 1 ? "was" : "were")};
   }
   if (falls_short)
     return {"short", "\u25B2", "Valid, but short of the thresholds",
             "No cell is inverted" + steps +
                 " that was sound in the baseline; what falls short of the case file's thresholds is listed below."};
-  return {"good", "\u2714", "Valid", "Every cell" + (steps.empty() ? std::string(" of the morphed mesh") : steps) +
-                                         " is as sound as it was, and no threshold is missed."};
+  return {
+      "good", "\u2714", "Valid",
+      "No cell is inverted" + steps + " that was sound in the baseline, and no threshold of the case file is missed."};
 }
 
 std::string certificate_sentence(ReportPage const& page) {
@@ -110,14 +113,15 @@ std::string certificate_sentence(ReportPage const& page) {
   json const& c = morphed["certificate"];
   std::string const of_worst = page.report.contains("sequence") ? " of the worst step" : "";
   if (c["holds"].get<bool>())
-    return fmt::format("Certified: the Jacobian of all {} {}{} is bounded over the whole cell, not at its corners only{}.",
-                       count(c["cells"]), page.kind, of_worst,
-                       c["negative"].get<Index>() > 0
-                           ? fmt::format("; {} that are negative somewhere were so in the baseline", count(c["negative"]))
-                           : std::string());
-  return fmt::format("Not certified: {} of {} {}{} are negative somewhere that were not in the baseline; the first is {}.",
-                     count(c["broken"]["cells"]), count(c["cells"]), page.kind, of_worst,
-                     escaped(place_of(c["broken"]["first"])));
+    return fmt::format(
+        "Certified: the Jacobian of all {} {}{} is bounded over the whole cell, not at its corners only{}.",
+        count(c["cells"]), page.kind, of_worst,
+        c["negative"].get<Index>() > 0
+            ? fmt::format("; {} that are negative somewhere were so in the baseline", count(c["negative"]))
+            : std::string());
+  return fmt::format(
+      "Not certified: {} of {} {}{} are negative somewhere that were not in the baseline; the first is {}.",
+      count(c["broken"]["cells"]), count(c["cells"]), page.kind, of_worst, escaped(place_of(c["broken"]["first"])));
 }
 
 std::string card(std::string const& title, std::string const& value, std::string const& below) {
@@ -128,7 +132,8 @@ std::string before_after(ReportPage const& page, char const* title, char const* 
   json const after = worst_of(page.report["morphed"], measure, false);
   if (after.is_null()) return {};
   json const before = page.report.contains("baseline") ? worst_of(page.report["baseline"], measure, false) : json();
-  std::string const value = (before.is_null() ? "" : number(before["value"]) + " \u2192 ") + number(after["value"]) + unit;
+  std::string const value =
+      (before.is_null() ? "" : number(before["value"]) + " \u2192 ") + number(after["value"]) + unit;
   return card(title, value, escaped(place_of(after)));
 }
 
@@ -139,17 +144,17 @@ std::string cards(ReportPage const& page) {
   out += before_after(page, "smallest angle", "minimum_angle_deg", "\u00b0");
   if (report["morphed"].contains("walls") && report["morphed"]["walls"]["nodes"].get<Index>() > 0) {
     json const& walls = report["morphed"]["walls"];
-    out += card("wall spacing, largest change",
-                fmt::format("{} %", number(100 * walls["first_height_change"]["max"].get<double>())),
-                escaped(walls["first_height_change"]["worst"].is_null() ? std::string("unchanged")
-                                                                        : place_of(walls["first_height_change"]["worst"])));
+    out += card(
+        "wall spacing, largest change",
+        fmt::format("{} %", number(100 * walls["first_height_change"]["max"].get<double>())),
+        escaped(walls["first_height_change"]["worst"].is_null() ? std::string("unchanged")
+                                                                : place_of(walls["first_height_change"]["worst"])));
   }
   if (page.check.periodic_nodes > 0)
     out += card("periodic match", number(page.check.periodic / page.mesh_size),
                 "of the mesh size, largest difference of copies");
   if (page.check.slip_nodes > 0)
-    out += card("off slip surfaces", number(page.check.slip / page.mesh_size),
-                "of the mesh size, beyond the baseline");
+    out += card("off slip surfaces", number(page.check.slip / page.mesh_size), "of the mesh size, beyond the baseline");
   out += card("largest displacement", number(page.largest_displacement),
               fmt::format("{} % of the mesh size", number(100 * page.largest_displacement / page.mesh_size)));
   double const seconds = report["times"]["total_seconds"].get<double>();
@@ -172,8 +177,9 @@ std::string verdict_part(ReportPage const& page) {
   for (json const& s : page.report["shortfalls"])
     (s["severity"] == "failure" ? failures : warnings).push_back(s["message"]);
   for (json const& n : page.report["notes"]) notes.push_back(n);
-  std::string out = fmt::format("<section class=\"verdict {}\" id=\"verdict\"><h2><span aria-hidden=\"true\">{}</span> {}</h2><p>{} {}</p>\n",
-                                v.kind, v.mark, v.title, v.text, certificate_sentence(page));
+  std::string out = fmt::format(
+      "<section class=\"verdict {}\" id=\"verdict\"><h2><span aria-hidden=\"true\">{}</span> {}</h2><p>{} {}</p>\n",
+      v.kind, v.mark, v.title, v.text, certificate_sentence(page));
   out += list_of(failures, "failures") + list_of(warnings, "warnings") + "</section>\n" + cards(page);
   if (!notes.empty())
     out += fmt::format("<details{}><summary>{} {}</summary>{}</details>\n", notes.size() <= 4 ? " open" : "",
