@@ -39,7 +39,7 @@ PassageCounts counts_at(double scale, double span_factor, CornerFractions const&
   if (tip == BladeTip::none) return c;
   c.gap = at_least(4, 14 * scale);
   c.cavity = tip == BladeTip::flat ? 0 : at_least(4, 12 * scale);
-  c.rim = at_least(4, 10 * scale);
+  c.rim = at_least(4, 16 * scale);
   c.span += c.gap + c.cavity;
   // The core has as many cells at the one end as at the other.
   int const more = c.leading_upper + c.leading_lower - c.trailing_upper - c.trailing_lower;
