@@ -44,7 +44,7 @@ function(gridmorph_precompile_headers target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess -Wno-stringop-overflow -Wno-array-bounds>)
 endfunction()
 
-# What libraries and command add to that: they read what the core has read. Compilers other than g++ refuse it where definitions differ.
+# What other libraries add to that: they read what the core has read. Compilers other than g++ refuse it where definitions differ.
 set(gridmorph_reuse_core "")
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(gridmorph_reuse_core REUSE_FROM gridmorph)
