@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 
 namespace gridmorph::test {
 namespace {
@@ -378,6 +379,69 @@ TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
   folder.write("one.toml", head() + blade_rule(rule) + "[[clearance]]\ntips = \"blade\"\nwalls = \"inlet\"\n");
   EXPECT_EQ(gridmorph("morph one.toml"), 2);
   expect_all_in(text("err"), {"clearance", "revolution"});
+}
+
+TEST_F(WaveWheel, EveryPassageHasTheRunningClearanceOfItsOwnBlade) {
+  double const growth = 4e-4;
+  std::string const rule = fmt::format("rule = \"formula\"\ndr = \"{} * (r - 0.09) / (0.167 - 0.09)\"", growth);
+  std::string const clearance = "[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n";
+  std::vector<double> const factors{1, 0.5, 0, -0.5, 1, 1.5, 0.25, 1};
+  std::string list;
+  for (double const f : factors) list += fmt::format("{}{}", list.empty() ? "" : ", ", f);
+  for (bool const elements : {false, true}) {
+    std::string const input = elements ? "elements.cgns" : "passage.cgns";
+    if (elements) write_mesh(folder.file(input), as_hexahedra(mesh));
+    folder.write("wheel.toml", head(input) + blade_rule(rule) + clearance +
+                                   "[wheel]\noutput = \"w.cgns\"\nfactors = [" + list + "]\n");
+    ASSERT_LE(gridmorph("wheel wheel.toml --report w.json"), 1) << text("err");
+    auto const passages = nlohmann::json::parse(text("w.json"))["passages"];
+    ASSERT_EQ(passages.size(), factors.size());
+    WheelFile const* blocks = nullptr;
+    std::optional<WheelFile> file;
+    if (!elements) blocks = &file.emplace(folder.file("w.cgns"));
+    for (int p = 0; p < n_blades; ++p) {
+      auto const& tip = passages[std::size_t(p)]["clearances"][0];
+      double const grown = growth * factors[std::size_t(p)];
+      EXPECT_EQ(tip["name"], "rotor");
+      EXPECT_NEAR(double(tip["before"]["smallest"]), 0, 1e-12);
+      EXPECT_NEAR(double(tip["by_rule"]["smallest"]), -grown, 1e-12) << p;
+      EXPECT_NEAR(double(tip["by_rule"]["mean"]), -grown, 1e-12) << p;
+      EXPECT_NEAR(double(tip["after"]["smallest"]), elements ? -grown : 0, 1e-12) << p;
+      // The place is one of the wheel: of that passage's blade.
+      Vec3 const at{tip["after"]["at"][0], tip["after"]["at"][1], tip["after"]["at"][2]};
+      if (blocks == nullptr) continue;
+      double nearest = 1;
+      for (Vec3 const& x : blade(*blocks, p)) nearest = std::min(nearest, distance(Turn(Axis{}, p, n_blades)(x), at));
+      EXPECT_LT(nearest, 1e-12) << p;
+    }
+    expect_all_in(text("out"), {"passage 6: rotor", "-0.0006", "smallest of all: -0.0006, passage 6: rotor", "rubs"});
+  }
+}
+
+TEST_F(WaveWheel, OverTimeTheSmallestClearanceIsToldWithItsStepAndPassage) {
+  double const growth = 4e-4;
+  std::string const rule = fmt::format(
+      "rule = \"formula\"\ndr = \"{} * (r - 0.09) / (0.167 - 0.09)\"\namplitude = \"sin(2 * pi * t)\"", growth);
+  int const steps = 5;
+  folder.write("wheel.toml", head() + sequence(steps) + blade_rule(rule) +
+                                 "[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n" +
+                                 wave(1));
+  ASSERT_LE(gridmorph("wheel wheel.toml --report w.json"), 1) << text("err");
+  auto const list = nlohmann::json::parse(text("w.json"))["sequence"]["steps"];
+  ASSERT_EQ(list.size(), std::size_t(steps));
+  double least = 1;
+  std::string told;
+  for (int s = 0; s < steps; ++s)
+    for (int p = 0; p < n_blades; ++p) {
+      double const now = -growth * std::sin(2 * pi * (double(s) / steps + double(p) / n_blades));
+      auto const& tip = list[std::size_t(s)]["passages"][std::size_t(p)]["clearances"][0];
+      EXPECT_NEAR(double(tip["by_rule"]["smallest"]), now, 1e-12) << s << " " << p;
+      EXPECT_NEAR(double(tip["after"]["smallest"]), 0, 1e-12);
+      if (now > least - 1e-12) continue;
+      least = now;
+      told = fmt::format("smallest of all: {:.4g}, step {}, passage {}: rotor", now, s + 1, p + 1);
+    }
+  expect_all_in(text("out"), {told, "by the rule, step", "passage 8: rotor"});
 }
 
 TEST_F(WaveWheel, PassageTellsTheSmallestClearanceOfASequence) {

@@ -235,68 +235,29 @@ std::vector<Shortfall> Run::shortfalls_of(QualityReport const& quality) const {
   return shortfalls(baseline_, quality, thresholds_of(case_file_));
 }
 
-/// Number of the rule that the user gives all of these nodes, ascending; -1 where there is none.
-int Run::rule_of(std::vector<Index> const& nodes) const {
-  auto const& rules = case_file_.motion.rules;
-  for (std::size_t r = 0; r < rules.size(); ++r) {
-    std::vector<Index> named;
-    try {
-      named = mesh_->nodes_of(rules[r].patches);
-    } catch (MotionError const&) {  // it names interfaces alone
-      continue;
-    }
-    std::sort(named.begin(), named.end());
-    if (std::includes(named.begin(), named.end(), nodes.begin(), nodes.end())) return int(r);
-  }
-  return -1;
-}
-
 std::vector<TipClearance> Run::clearances(Moment const* when) const {
   std::vector<TipClearance> out;
   if (case_file_.clearances.empty()) return out;
   Motion const motion = when == nullptr ? case_file_.motion : motion_at(case_file_, *when);
-  auto const places = [](Coordinates const& x, std::vector<Index> const& nodes) {
+  if (!clearances_)
+    clearances_.emplace(case_file_, mesh_->coordinates(),
+                        [this](std::vector<std::string> const& selectors) { return mesh_->nodes_of(selectors); });
+  auto const by_rule = [&](std::span<Index const> nodes, std::span<Vec3> u) {
+    int const r = clearances_->rule_of(nodes);
+    if (r < 0) return false;
+    Rule const& rule = motion.rules[std::size_t(r)].rule;
     std::vector<Vec3> at;
-    for (Index const n : nodes) at.push_back(x[n]);
-    return at;
-  };
-  auto const ascending = [](std::vector<Index> nodes) {
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    return nodes;
-  };
-  for (ClearanceCase const& one : case_file_.clearances) {
-    auto const wall_nodes = ascending(mesh_->nodes_of(one.walls)), blade = ascending(mesh_->nodes_of(one.tips));
-    ClearanceWall const before(motion.axis, places(mesh_->coordinates(), wall_nodes));
-    // Nodes slide on a wall that slips, and those of a blade may be off it: the wall itself stays.
-    int const of_wall = rule_of(wall_nodes);
-    bool const moves = of_wall >= 0 && (case_file_.timed[std::size_t(of_wall)].at ||
-                                        std::holds_alternative<AttachedRule>(motion.rules[std::size_t(of_wall)].rule));
-    ClearanceWall const after = moves ? ClearanceWall(motion.axis, places(result_.morphed, wall_nodes)) : before;
-    auto const blade_places = places(mesh_->coordinates(), blade);
-    double side = 0;
-    for (Vec3 const& node : blade_places) side += before.distance(node);
-    std::vector<Index> tip;
-    for (std::size_t const n : tip_nodes(before, blade_places, one.rim)) tip.push_back(blade[n]);
-    double const outwards = side < 0 ? -1 : 1;
-    auto at = places(mesh_->coordinates(), tip);
-    TipClearance found{one.name,
-                       tip.size(),
-                       before.of(at, outwards),
-                       {},
-                       after.of(places(result_.morphed, tip), outwards),
-                       std::max(before.scatter(), after.scatter())};
-    if (int const r = rule_of(tip); r >= 0) {
-      Rule const& rule = motion.rules[std::size_t(r)].rule;
-      std::vector<Vec3> u(at.size());
-      auto const* function = std::get_if<FunctionRule>(&rule);
-      auto const* rigid = std::get_if<RigidRule>(&rule);
-      if (function != nullptr) function->function(at, u);
-      for (std::size_t n = 0; n < at.size(); ++n) at[n] += rigid != nullptr ? displacement(*rigid, at[n]) : u[n];
-      if (function != nullptr || rigid != nullptr) found.by_rule = after.of(at, outwards);
+    for (Index const n : nodes) at.push_back(mesh_->coordinates()[n]);
+    if (auto const* function = std::get_if<FunctionRule>(&rule)) {
+      function->function(at, u);
+    } else if (auto const* rigid = std::get_if<RigidRule>(&rule)) {
+      for (std::size_t n = 0; n < at.size(); ++n) u[n] = displacement(*rigid, at[n]);
+    } else {
+      return false;
     }
-    out.push_back(std::move(found));
-  }
+    return true;
+  };
+  for (std::size_t t = 0; t < clearances_->size(); ++t) out.push_back(clearances_->of(t, result_.morphed, by_rule));
   return out;
 }
 

@@ -5,10 +5,10 @@
 
 #include <gridmorph/app/any_mesh.hpp>
 #include <gridmorph/app/casefile/ignored_keys.hpp>
+#include <gridmorph/app/clearances.hpp>
 #include <gridmorph/app/cli/terminal.hpp>
 #include <gridmorph/app/recipe.hpp>
 #include <gridmorph/report/shortfalls.hpp>
-#include <gridmorph/report/tip_clearance.hpp>
 
 #include <array>
 
@@ -116,8 +116,6 @@ class Run {
   StepTimes times;
 
  private:
-  [[nodiscard]] int rule_of(std::vector<Index> const& nodes) const;
-
   struct Result {
     Coordinates morphed;
     QualityReport quality;
@@ -135,6 +133,7 @@ class Run {
   std::vector<CellField> baseline_measures_;
   QualityReport baseline_;  ///< without cells where only a verdict was asked for
   std::vector<Vec3> displacement_;
+  mutable std::optional<Clearances> clearances_;  ///< once they are asked for
   Result result_;
 };
 

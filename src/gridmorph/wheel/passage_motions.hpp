@@ -47,6 +47,8 @@ class PassageMotions {
 
   /// Displacements of the nodes in a passage. Passages beyond the last of a row have those of its first ones.
   [[nodiscard]] std::vector<Vec3> boundary(int passage) const;
+  /// Whose displacements boundary() has.
+  [[nodiscard]] std::vector<Node> const& nodes() const { return nodes_; }
   /// Whether two passages have equal displacements, because they and their neighbours have equal blades.
   [[nodiscard]] bool alike(int passage, int other) const;
   /// The first passage whose displacements a passage has: itself where there is none before it.

@@ -63,7 +63,6 @@ class Ignored {
   }
 
   void of_wheel() {
-    refuse("", "clearance", "is for one `gridmorph morph`, and passages of a wheel have none");
     refuse("", "region", "is for `gridmorph morph`, and passages of a wheel are morphed without regions");
     if (use_.unstructured) {
       std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";

@@ -59,6 +59,9 @@ class BlockPassage final : public PassageMesh {
     return make_wheel_mesh(mesh(), links_, rows, passages, families);
   }
   [[nodiscard]] QualityReport measure(QualityWanted const& wanted) const override { return mesh_.measure(wanted); }
+  [[nodiscard]] std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const override {
+    return mesh_.nodes_of(selectors);
+  }
   [[nodiscard]] Certificate certify(Coordinates const& placed, std::vector<int> const& zones) const override {
     CertificateInput<Kokkos::HostSpace> input{views(placed), views(mesh().coordinates), mesh_.handedness()};
     input.zones = zones;

@@ -87,6 +87,9 @@ class ElementPassage final : public PassageMesh {
     return gridmorph::in_file_order(mesh(), x);
   }
   [[nodiscard]] QualityReport measure(QualityWanted const& wanted) const override { return mesh_.measure(wanted); }
+  [[nodiscard]] std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const override {
+    return mesh_.nodes_of(selectors);
+  }
   [[nodiscard]] Certificate certify(Coordinates const& placed, std::vector<int> const& zones) const override {
     CertificateInput<Kokkos::HostSpace> input{views(placed), views(mesh_.coordinates())};
     input.signs = mesh_.signs;

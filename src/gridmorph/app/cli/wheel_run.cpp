@@ -7,6 +7,8 @@
 #include <Kokkos_Core.hpp>
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -53,7 +55,9 @@ WheelRun::WheelRun(CaseFile const& case_file, MeshKind kind, Terminal& terminal)
       setup_(wheel_setup(case_file, mesh_, rows_)),
       wheel_(sector_->wheel(rows_, setup_.passages(),
                             case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
-      shared_(sector_->links(), rows_, true) {
+      shared_(sector_->links(), rows_, true),
+      clearances_(case_file, mesh_.coordinates,
+                  [this](std::vector<std::string> const& selectors) { return sector_->nodes_of(selectors); }) {
   time("read");
 }
 
@@ -269,6 +273,7 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
       made.passages.push_back(made.passages.back());
     }
     made.passages.back().blades = blades_of(p);
+    made.passages.back().clearances = clearances_of(p, morphed_);
     auto const zones = place(p, next, morphed_, seams, made.gap);
     next += int(zones.size());
     time("turn");
@@ -315,6 +320,36 @@ std::vector<std::string> WheelRun::blades_of(int passage) const {
   return out;
 }
 
+std::vector<TipClearance> WheelRun::clearances_of(int passage, Coordinates const& morphed) const {
+  std::vector<TipClearance> out;
+  if (clearances_.empty()) return out;
+  std::vector<Vec3> const boundary = plan_->passages().boundary(passage);
+  std::map<std::array<double, 3>, std::size_t> asked;  // nodes of several zones at one place are asked once
+  auto const key = [](Vec3 const& x) { return std::array{x.x, x.y, x.z}; };
+  auto const& nodes = plan_->passages().nodes();
+  for (std::size_t n = 0; n < nodes.size(); ++n) asked.try_emplace(key(nodes[n].place), n);
+  auto const by_rule = [&](std::span<Index const> tip, std::span<Vec3> u) {
+    for (std::size_t n = 0; n < tip.size(); ++n) {
+      auto const found = asked.find(key(mesh_.coordinates[tip[n]]));
+      if (found == asked.end()) return false;
+      u[n] = boundary[found->second];
+    }
+    return true;
+  };
+  for (std::size_t t = 0; t < clearances_.size(); ++t) {
+    auto const& tip = clearances_.nodes_of_tip(t);
+    auto const row = std::size_t(tip.empty() ? 0 : rows_.row_of_zone[std::size_t(mesh_.zone_of(tip.front()))]);
+    if (passage >= setup_.blades[row].passages) continue;
+    TipClearance found = clearances_.of(t, morphed, by_rule);
+    auto const turned = rows_.rows[row].pitch.times(passage);
+    found.before.at = turned(found.before.at);
+    if (found.by_rule) found.by_rule->at = turned(found.by_rule->at);
+    found.after.at = turned(found.after.at);
+    out.push_back(std::move(found));
+  }
+  return out;
+}
+
 bool any_inverted(WheelMade const& made) {
   return !made.whole.certificate->holds() || std::any_of(made.passages.begin(), made.passages.end(),
                                                          [](auto const& p) { return newly_inverted(p.quality) > 0; });
@@ -327,6 +362,7 @@ std::string wheel_text(WheelRun const& run, WheelResult const& result) {
   text += certificate_text(result.whole);
   text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
                       result.gap.distance);
+  if (auto const tips = wheel_clearances(result); !tips.empty()) text += "\n" + tips;
   return text + "\n" + format_times(result.times, result.nodes);
 }
 

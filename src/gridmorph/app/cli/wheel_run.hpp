@@ -1,6 +1,7 @@
 // Morphs, measures and turns the passages of a wheel, one at a time, at one time or at several.
 #pragma once
 
+#include <gridmorph/app/clearances.hpp>
 #include <gridmorph/app/cli/terminal.hpp>
 #include <gridmorph/app/cli/wheel_passage.hpp>
 #include <gridmorph/app/cli/wheel_text.hpp>
@@ -59,6 +60,7 @@ class WheelRun {
   void give(std::map<int, int> const& zones, ZoneSink const& sink) const;
   void certify_zones(std::map<int, int> const& zones, Certificate& wheel);
   [[nodiscard]] std::vector<std::string> blades_of(int passage) const;
+  [[nodiscard]] std::vector<TipClearance> clearances_of(int passage, Coordinates const& morphed) const;
 
   CaseFile const& case_;
   Terminal& terminal_;
@@ -75,6 +77,7 @@ class WheelRun {
   WheelSetup setup_;
   WheelMesh wheel_;
   SharedNodes shared_;
+  Clearances clearances_;
   QualityWanted quality_;
   std::unique_ptr<CaseFile> recipe_;  ///< that the plan refers to, where it is not the case file
   std::unique_ptr<PassagePlan> plan_;

@@ -139,8 +139,10 @@ int wheel_sequence(CaseFile const& case_file, MeshSource const& file, std::files
            },
        .text =
            [&] {
+             std::string const tips = wheel_clearances(steps);
              return wheel_steps_table(steps) + "\nall steps\n\n" + passages_over_time(steps, result) +
-                    fmt::format("\nstep {}, the worst one\n\n", at + 1) + wheel_text(run, result);
+                    (tips.empty() ? "" : "\n" + tips) + fmt::format("\nstep {}, the worst one\n\n", at + 1) +
+                    wheel_text(run, result);
            },
        .wrote = wrote_text(options),
        .also_wrote = wrote_report(report),

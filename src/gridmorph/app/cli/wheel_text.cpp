@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace gridmorph::cli {
 
@@ -36,7 +37,8 @@ PassageStep passage_step(PassageResult const& passage) {
                   smallest(q, Measure::determinant_3x3x3),
                   smallest(q, Measure::minimum_angle_deg),
                   newly_inverted(q),
-                  {}};
+                  {},
+                  passage.clearances};
   MeasureStatistics const* worst = nullptr;
   for (auto const* region : {&q.near_field, &q.far_field}) {
     auto const& measure = (*region)[Measure::determinant_3x3x3];
@@ -44,6 +46,35 @@ PassageStep passage_step(PassageResult const& passage) {
   }
   if (worst != nullptr) out.place = worst_place(q, *worst);
   return out;
+}
+
+/// Tips of all passages, named by them. `passages`: whatever has clearances.
+template <class Passages>
+std::vector<TipClearance> all_tips(Passages const& passages) {
+  std::vector<TipClearance> out;
+  for (std::size_t p = 0; p < passages.size(); ++p)
+    for (TipClearance tip : passages[p].clearances) {
+      tip.name = fmt::format("passage {}: {}", p + 1, tip.name);
+      out.push_back(std::move(tip));
+    }
+  return out;
+}
+
+double told(TipClearance const& tip) { return tip.by_rule ? tip.by_rule->smallest : tip.after.smallest; }
+
+/// "smallest of all: 0.0012, passage 3: rotor"
+std::string smallest_of_all(std::vector<std::vector<TipClearance>> const& steps) {
+  TipClearance const* least = nullptr;
+  std::size_t at = 0;
+  for (std::size_t s = 0; s < steps.size(); ++s)
+    for (TipClearance const& tip : steps[s])
+      if (least == nullptr || told(tip) < told(*least)) {
+        least = &tip;
+        at = s;
+      }
+  if (least == nullptr) return {};
+  std::string const step = steps.size() > 1 ? fmt::format("step {}, ", at + 1) : "";
+  return fmt::format("smallest of all: {:.4g}, {}{}\n", told(*least), step, least->name);
 }
 
 std::string line(std::string const& passage, std::string const& blade, std::size_t width,
@@ -83,6 +114,17 @@ std::string passage_table(WheelResult const& result) {
     text += line(std::to_string(p + 1), blades_text(result.passages[p].blades), width,
                  fmt::format("{:.4g}", result.passages[p].largest_displacement), result.passages[p].quality);
   return text;
+}
+
+std::string wheel_clearances(WheelMade const& made) {
+  auto const tips = all_tips(made.passages);
+  return tips.empty() ? std::string() : clearance_table(tips) + smallest_of_all({tips});
+}
+
+std::string wheel_clearances(std::vector<WheelStep> const& steps) {
+  std::vector<std::vector<TipClearance>> tips;
+  for (WheelStep const& step : steps) tips.push_back(all_tips(step.passages));
+  return clearance_steps_table(tips) + smallest_of_all(tips);
 }
 
 WheelStep wheel_step(double time, WheelMade const& made) {
@@ -163,6 +205,7 @@ nlohmann::json wheel_steps_json(std::vector<WheelStep> const& steps) {
                           {"min_determinant", now.determinant},
                           {"min_angle_deg", now.angle_deg},
                           {"newly_inverted", now.newly_inverted}});
+      if (!now.clearances.empty()) passages.back()["clearances"] = clearance_json(now.clearances);
     }
     list.push_back({{"step", s + 1},
                     {"time", steps[s].time},
@@ -197,6 +240,7 @@ nlohmann::json wheel_json(Mesh const& mesh, WheelRows const& rows, WheelSetup co
                                 {"largest_displacement", passage.largest_displacement},
                                 {"quality", passage.quality},
                                 {"shortfalls", std::move(shortfalls)}});
+    if (!passage.clearances.empty()) json["passages"].back()["clearances"] = clearance_json(passage.clearances);
   }
   json["certificate"] = certificate_json(result.whole);
   json["largest_seam_gap"] = result.gap.distance;

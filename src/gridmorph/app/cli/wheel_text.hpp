@@ -5,6 +5,7 @@
 #include <gridmorph/quality/quality.hpp>
 #include <gridmorph/report/shortfalls.hpp>
 #include <gridmorph/report/step_times.hpp>
+#include <gridmorph/report/tip_clearance.hpp>
 #include <gridmorph/wheel/seams.hpp>
 
 #include <nlohmann/json_fwd.hpp>
@@ -21,6 +22,7 @@ struct PassageResult {
   double largest_displacement = 0;  ///< of the boundary
   QualityReport quality;
   std::vector<Shortfall> shortfalls;
+  std::vector<TipClearance> clearances = {};  ///< of the rows that have this passage; places as the wheel has them
 };
 
 /// A wheel at one time.
@@ -44,6 +46,7 @@ struct PassageStep {
   double angle_deg = 0;    ///< smallest
   Index newly_inverted = 0;
   std::string place;  ///< of the smallest determinant
+  std::vector<TipClearance> clearances = {};
 
   /// Which of two is the worse one: inverted cells first.
   [[nodiscard]] bool worse_than(PassageStep const& other) const {
@@ -69,6 +72,10 @@ std::vector<std::string> failures_of(WheelMade const& made);
 std::string describe_rows(Mesh const& mesh, WheelRows const& rows, WheelSetup const& setup);
 /// One line per passage: blades, displacement, worst cells; near and far field together.
 std::string passage_table(WheelResult const& result);
+/// One line per passage and tip with its clearances, and which is the smallest of all; empty without any.
+std::string wheel_clearances(WheelMade const& made);
+/// The same of many steps: the smallest of all steps, and the steps they are in.
+std::string wheel_clearances(std::vector<WheelStep> const& steps);
 /// One line per step with its worst passage; of long sequences evenly spaced steps and the worst.
 std::string wheel_steps_table(std::vector<WheelStep> const& steps);
 /// One line per passage: the largest displacement and the worst of all steps.
