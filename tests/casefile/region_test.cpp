@@ -1,6 +1,8 @@
 // [[region]] tables become the regions they say.
 #include "case_text.hpp"
 
+#include <gridmorph/motion/shock/shock_search.hpp>
+
 namespace gridmorph::testing {
 namespace {
 
@@ -71,6 +73,70 @@ TEST(AttachedRuleText, IsRead) {
   ASSERT_TRUE(rule.near);
   EXPECT_EQ(rule.near->first, (Vec3{1, 2, 3}));
   EXPECT_EQ(rule.near->second, 0.5);
+}
+
+TEST(RegionText, AShockIsASearchInASolution) {
+  InnerRegion const r = region_of(
+      "zones = \"wing*\"\nshock = { file = \"flow.cgns\", solution = \"last\", sensor = \"jump\", variable = "
+      "\"Density\", threshold = 0.2, heat_ratio = 1.3, smallest = 3, grow = 2 }");
+  ASSERT_NE(r.shock, nullptr);
+  EXPECT_EQ(r.shock->file, "flow.cgns");
+  EXPECT_EQ(r.shock->solution, "last");
+  EXPECT_EQ(r.shock->sensor, ShockSearch::Sensor::jump);
+  EXPECT_EQ(r.shock->variable, "Density");
+  EXPECT_EQ(r.shock->least(), 0.2);
+  EXPECT_EQ(r.shock->heat_ratio, 1.3);
+  EXPECT_EQ(r.shock->smallest, 3);
+  EXPECT_EQ(r.shock->grow, 2);
+  InnerRegion const plain = region_of("shock = {}");
+  EXPECT_EQ(plain.shock->sensor, ShockSearch::Sensor::normal_mach);
+  EXPECT_EQ(plain.shock->least(), 1);
+  EXPECT_EQ(plain.shock->compression, 0.05);
+  CaseFile const read =
+      parse_case_file(mesh_and_rule + "[[region]]\nname = \"part\"\nshock = { file = \"flow.cgns\" }\n", "case.toml");
+  EXPECT_EQ(read.files, std::vector<std::filesystem::path>{"flow.cgns"});  // so that no output takes its place
+}
+
+TEST(RegionText, EveryProblemOfAShockIsReportedWithItsLine) {
+  auto const problems =
+      problems_of(mesh_and_rule +
+                  "[[region]]\nname = \"a\"\nshock = { sensor = \"jmup\" }\n"
+                  "[[region]]\nname = \"b\"\nshock = { variable = \"Mach\", threshold = 0, grow = -1, smallest = 0 }\n"
+                  "[[region]]\nname = \"c\"\nshock = { sensor = \"jump\", compression = 0.1, heat_ratio = 1 }\n"
+                  "[[motion]]\npatches = \"a\"\nrule = \"shock\"\nfade = 0.1\n"
+                  "[[motion]]\npatches = \"b\"\nrule = \"shock\"\nto = \"x.cgns\"\nof = \"blade\"\nsmooth = "
+                  "-1\ndirection = [0, 0, 0]\n");
+  EXPECT_TRUE(reported(problems, "case.toml:9", {"sensor", "jump"}));
+  EXPECT_TRUE(reported(problems, "case.toml:12", {"variable", "is of sensor"}));
+  EXPECT_TRUE(reported(problems, "case.toml:12", {"threshold", "positive"}));
+  EXPECT_TRUE(reported(problems, "case.toml:12", {"grow", "0 to 1000"}));
+  EXPECT_TRUE(reported(problems, "case.toml:12", {"smallest", "1 cell"}));
+  EXPECT_TRUE(reported(problems, "case.toml:15", {"compression", "is of sensor"}));
+  EXPECT_TRUE(reported(problems, "case.toml:15", {"heat_ratio", "larger than 1"}));
+  EXPECT_TRUE(reported(problems, "case.toml:16", {"to", "new_flow.cgns"}));
+  EXPECT_TRUE(reported(problems, "case.toml:19", {"of and fade belong together"}));
+  EXPECT_TRUE(reported(problems, "case.toml:24", {"of and fade belong together"}));
+  EXPECT_TRUE(reported(problems, "case.toml:25", {"smooth", "positive length"}));
+  EXPECT_TRUE(reported(problems, "case.toml:26", {"direction", "no length"}));
+}
+
+TEST(RegionText, TheRuleShockNamesTheFileThatItGoesTo) {
+  CaseFile const c = parse_case_file(
+      mesh_and_rule +
+          "[[region]]\nname = \"part\"\nshock = {}\n[[motion]]\npatches = \"part\"\nrule = \"shock\"\nto = "
+          "\"new.cgns\"\nsolution = \"last\"\ndirection = [0, 2, 0]\nsmooth = 0.5\nof = \"blade\"\nfade = 0.25\n",
+      "case.toml");
+  ASSERT_EQ(c.shock_follows.size(), 1U);
+  ShockFollow const& follow = c.shock_follows[0];
+  EXPECT_EQ(follow.rule, 1U);
+  EXPECT_EQ(follow.to, "new.cgns");
+  EXPECT_EQ(follow.solution, "last");
+  EXPECT_EQ(*follow.direction, (Vec3{0, 2, 0}));
+  EXPECT_EQ(*follow.smooth, 0.5);
+  auto const& rule = std::get<ShockRule>(c.motion.rules[1].rule);
+  EXPECT_EQ(rule.of, std::vector<std::string>{"blade"});
+  EXPECT_EQ(rule.fade, 0.25);
+  EXPECT_EQ(std::get<ShockRule>(fraction_of(c, 0.5).rules[1].rule).share, 0.5);
 }
 
 }  // namespace

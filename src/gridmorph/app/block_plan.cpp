@@ -1,6 +1,7 @@
 // The steps between a structured mesh with motion rules and morphed coordinates.
 #include <gridmorph/app/block_mesh.hpp>
 #include <gridmorph/app/block_stages.hpp>
+#include <gridmorph/app/shocks.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
@@ -44,16 +45,17 @@ MeasuredRegions measured_regions(Mesh mesh, std::vector<InnerRegion> const& meas
 class BlockPlan final : public AnyPlan {
  public:
   BlockPlan(BlockMesh const& mesh, CaseFile const& case_file)
-      : case_file_(case_file),
+      : shocks_(locate_shocks(case_file, mesh.mesh())),
+        case_file_(shocks_.case_file),
         file_mesh_(mesh),
-        prepared_(prepare(mesh.mesh(), case_file.motion, case_file.plan)),
+        prepared_(prepare(mesh.mesh(), case_file_.motion, case_file_.plan)),
         mesh_(prepared_.mesh),
-        near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file)),
+        near_(near_cells_of(prepared_.mesh, prepared_.plan(), case_file_)),
         regions_(measured_regions(prepared_.mesh,
                                   locate_wakes(prepared_.surface.shared_boundary(), prepared_.surface.motion(),
-                                               case_file.measured_regions, region_notes_),
+                                               case_file_.measured_regions, region_notes_),
                                   region_notes_)) {
-    if (case_file.plan.volume.by_prediction()) order_by_prediction();
+    if (case_file_.plan.volume.by_prediction()) order_by_prediction();
   }
 
   std::vector<Vec3> displacement(Moment const* when) override {
@@ -144,6 +146,7 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] std::vector<std::string> notes() const override {
     std::vector<std::string> out = prepared_.mesh.notes;
     auto const append = [&](auto const& more) { out.insert(out.end(), more.begin(), more.end()); };
+    append(shocks_.notes);
     append(region_notes_);
     append(prepared_.surface.motion().notes);
     append(prepared_.surface.notes());
@@ -228,6 +231,7 @@ class BlockPlan final : public AnyPlan {
     return worst;
   }
 
+  LocatedShocks shocks_;
   CaseFile const& case_file_;
   BlockMesh const& file_mesh_;
   Exec exec_;

@@ -1,5 +1,6 @@
 // The steps between an unstructured mesh with motion rules and morphed coordinates.
 #include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/app/shocks.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
@@ -24,22 +25,25 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 class ElementPlan final : public AnyPlan {
  public:
   ElementPlan(ElementMesh const& mesh, CaseFile const& case_file)
-      : mesh_(mesh), case_file_(case_file), options_(with_background(case_file)) {
+      : mesh_(mesh),
+        shocks_(locate_shocks(case_file, mesh.mesh)),
+        case_file_(shocks_.case_file),
+        options_(with_background(case_file_)) {
     Problems problems;
     for (auto const& problem : mesh.face_patches.problems) problems.add(problem);
     problems.throw_if_any<MeshError>();
     Stopwatch watch;
     NodeGraph graph =
-        make_node_graph(mesh.mesh, mesh.topology.elements_of_nodes, row_of_nodes(mesh.mesh, case_file.motion));
-    bool const any = case_file.sequence || options_.elements.motion >= 0;
+        make_node_graph(mesh.mesh, mesh.topology.elements_of_nodes, row_of_nodes(mesh.mesh, case_file_.motion));
+    bool const any = case_file_.sequence || options_.elements.motion >= 0;
     auto boundary =
-        boundary_conditions(mesh.mesh, mesh.topology, mesh.face_patches, graph, case_file.motion,
+        boundary_conditions(mesh.mesh, mesh.topology, mesh.face_patches, graph, case_file_.motion,
                             options_.elements.walls, any ? Displacements::any : Displacements::of_the_rules);
-    if (auto const& sequence = case_file.sequence) {  // the offset of the wrap reckons with all steps
+    if (auto const& sequence = case_file_.sequence) {  // the offset of the wrap reckons with all steps
       options_.elements.motion = 0;
       for (int step = 0; step < sequence->steps; ++step)
         options_.elements.motion = std::max(
-            options_.elements.motion, largest_norm(evaluate(boundary, motion_at(case_file, sequence->moment(step)))));
+            options_.elements.motion, largest_norm(evaluate(boundary, motion_at(case_file_, sequence->moment(step)))));
     }
     double const seconds = watch.lap();
     prepared_ =
@@ -48,7 +52,7 @@ class ElementPlan final : public AnyPlan {
     near_ = near_elements_of(prepared_);
     BoundaryMotion const& rules = *prepared_.boundary.motion;
     std::vector<std::string> notes;  // those of the rules come again
-    for (auto const* regions : {&case_file.motion.regions, &case_file.measured_regions})
+    for (auto const* regions : {&case_file_.motion.regions, &case_file_.measured_regions})
       for (InnerRegion const& region : locate_wakes(rules.shared_boundary(), rules.motion(), *regions, notes))
         add_measured(region);
     planning_ = seconds + watch.lap();
@@ -121,7 +125,7 @@ class ElementPlan final : public AnyPlan {
 
   [[nodiscard]] std::vector<std::string> notes() const override {
     auto out = mesh_.notes();
-    for (auto const& more : {prepared_.notes, mapping_notes(case_file_)})
+    for (auto const& more : {shocks_.notes, prepared_.notes, mapping_notes(case_file_)})
       out.insert(out.end(), more.begin(), more.end());
     return out;
   }
@@ -252,6 +256,7 @@ class ElementPlan final : public AnyPlan {
   }
 
   ElementMesh const& mesh_;
+  LocatedShocks shocks_;
   CaseFile const& case_file_;
   PlanOptions options_;
   PreparedUnstructured prepared_;

@@ -82,6 +82,16 @@ struct ClearanceCase {
   std::string where;
 };
 
+/// A rule `shock`: where the shock that its regions have goes to.
+struct ShockFollow {
+  std::size_t rule = 0;           ///< number in Motion::rules
+  std::string to;                 ///< CGNS file with a mesh and the solution on it
+  std::string solution;           ///< FlowSolution_t; empty: as SolutionWanted has it
+  std::optional<Vec3> direction;  ///< absent: that of the gradient in the shock
+  std::optional<double> smooth;   ///< radius of the means of ShockShift; absent: a tenth of the shock's extent
+  std::string where;              ///< "case.toml:14"
+};
+
 /// [background] file: a background mesh of the user's.
 struct BackgroundFile {
   std::filesystem::path path;
@@ -113,6 +123,7 @@ struct CaseFile {
   OutputOptions output_options;
   std::vector<FieldUse> fields;
   std::vector<ClearanceCase> clearances;
+  std::vector<ShockFollow> shock_follows;
   std::optional<WheelCase> wheel;  ///< [wheel], for `gridmorph wheel`
   std::vector<TimedRule> timed;    ///< per rule of `motion`
   std::optional<SequenceOptions> sequence;

@@ -2,12 +2,14 @@
 
 #include <gridmorph/app/casefile/detail/sections_reader.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/motion/shock/shock_search.hpp>
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -131,6 +133,41 @@ void read_wake(TableReader& region, std::optional<Axis> const& axis, InnerRegion
   out.wake = std::move(wake);
 }
 
+/// shock = { sensor = "jump", variable = "Pressure", threshold = 0.1 }; an empty table takes the defaults.
+void read_shock_search(TableReader& region, InnerRegion& out) {
+  auto table = region.table("shock");
+  if (!table) return;
+  ShockSearch search;
+  if (auto const file = table->string("file")) search.file = table->context().input(*file).string();
+  search.solution = table->string("solution").value_or("");
+  auto const sensor = table->choice("sensor", {"normal-mach", "jump"});
+  if (sensor) search.sensor = ShockSearch::Sensor(*sensor);
+  bool const jump = search.sensor == ShockSearch::Sensor::jump;
+  search.variable = table->string("variable").value_or(search.variable);
+  if (table->has("variable") && !jump)
+    table->problem("variable", "is of sensor = \"jump\"; the normal Mach number is one of pressure and velocity");
+  search.threshold = table->number("threshold");
+  if (search.threshold && !(*search.threshold > 0))
+    table->problem("threshold", fmt::format("must be positive, found {}", *search.threshold));
+  search.compression = table->number("compression").value_or(search.compression);
+  if (!(search.compression >= 0))
+    table->problem("compression", fmt::format("must not be negative, found {}", search.compression));
+  if (table->has("compression") && jump)
+    table->problem("compression", "is of sensor = \"normal-mach\"; threshold says the same of \"jump\"");
+  search.heat_ratio = table->number("heat_ratio").value_or(search.heat_ratio);
+  if (!(search.heat_ratio > 1))
+    table->problem("heat_ratio", fmt::format("must be larger than 1, found {}", search.heat_ratio));
+  search.smallest = table->integer("smallest").value_or(search.smallest);
+  if (search.smallest < 1)
+    table->problem("smallest", fmt::format("must be 1 cell at least, found {}", search.smallest));
+  search.grow = table->integer("grow").value_or(search.grow);
+  constexpr int most = 1000;
+  if (search.grow < 0 || search.grow > most)
+    table->problem("grow", fmt::format("must be 0 to {} layers of cells, found {}", most, search.grow));
+  table->finish();
+  out.shock = std::make_shared<ShockSearch const>(std::move(search));
+}
+
 }  // namespace
 
 InnerRegion read_region(TableReader& table, std::optional<Axis> const& axis) {
@@ -146,16 +183,20 @@ InnerRegion read_region(TableReader& table, std::optional<Axis> const& axis) {
   read_annulus(table, axis, all);
   read_nodes(table, out);
   read_wake(table, axis, out);
-  bool const has_shape =
-      table.has("box") || table.has("sphere") || table.has("axial") || table.has("radius") || table.has("wake");
+  read_shock_search(table, out);
+  bool has_shape = false;
+  for (char const* key : {"box", "sphere", "axial", "radius", "wake", "shock"}) has_shape = has_shape || table.has(key);
+  if (out.wake && out.shock) table.problem("shock", "cannot stand beside wake; make two regions of them");
   if (table.has("nodes") && has_shape)
-    table.problem("nodes",
-                  "say which nodes they are, and stand alone beside zones; remove box, sphere, axial, radius and wake");
+    table.problem(
+        "nodes",
+        "say which nodes they are, and stand alone beside zones; remove box, sphere, axial, radius, wake and shock");
   if (table.has("nodes") && out.zones.size() != 1)
     table.problem("nodes", "are those of one zone; name it, zones = \"Zone 1\"");
   if (table.has("name") && !table.has("nodes") && !has_shape && out.zones.empty())
-    table.problem("name",
-                  "is all there is: say where the region lies, by zones, nodes, box, sphere, axial, radius or wake");
+    table.problem(
+        "name",
+        "is all there is: say where the region lies, by zones, nodes, box, sphere, axial, radius, wake or shock");
   out.only_measured = table.boolean("only_measured").value_or(false);
   if (out.only_measured && out.nodes)
     for (int a = 0; a < 3; ++a)

@@ -28,7 +28,7 @@ namespace {
 std::vector<std::string> const rule_names{"fixed",   "rigid",    "formula", "field",    "circumferential-slide",
                                           "follow",  "slip",     "free",    "sections", "target",
                                           "contour", "attached", "inflate", "bulb",     "extend",
-                                          "wake",    "ffd"};
+                                          "wake",    "ffd",      "shock"};
 
 /// scale = 0.95, scale = [sx, sy, sz], or scale = { factor = one of these, origin = [x, y, z] }.
 void read_scale(TableReader& step, RigidSteps& rigid) {
@@ -317,6 +317,40 @@ void read_amplitude(TableReader& table, RuleContext const& shared, TimedRule& ru
   rule.changes = true;
 }
 
+/// Lengths that must be positive, as far as they are given.
+std::optional<double> read_length(TableReader& table, char const* key) {
+  auto const value = table.number(key);
+  if (value && !(*value > 0)) table.problem(key, fmt::format("must be a positive length, found {}", *value));
+  return value;
+}
+
+/// What needs the mesh is left to those who have it (ShockFollow).
+TimedRule read_shock(TableReader& table, CaseFile& out) {
+  ShockFollow follow;
+  follow.rule = out.motion.rules.size();
+  follow.where = table.context().where(table.line());
+  table.require("to", "to = \"new_flow.cgns\", a CGNS file with the mesh and the solution on it");
+  if (auto const to = table.string("to")) follow.to = table.context().input(*to).string();
+  follow.solution = table.string("solution").value_or("");
+  follow.direction = table.vector("direction");
+  if (follow.direction && !(norm(*follow.direction) > 0)) table.problem("direction", "[0, 0, 0] has no length");
+  follow.smooth = read_length(table, "smooth");
+  ShockRule rule;
+  rule.of = table.strings("of").value_or(std::vector<std::string>{});
+  rule.fade = read_length(table, "fade").value_or(0);
+  if (rule.of.empty() != !table.has("fade"))
+    table.problem(rule.of.empty() ? "fade" : "of",
+                  "of and fade belong together: the walls that the shock stands on, and the distance from them within "
+                  "which its motion fades to theirs");
+  out.shock_follows.push_back(std::move(follow));
+  return {[rule](double share, Moment const&) {
+            ShockRule at = rule;
+            at.share = share;
+            return at;
+          },
+          {}};
+}
+
 /// Rules with a displacement of their own, by their number in rule_names; none for the others.
 std::optional<TimedRule> read_explicit(std::size_t number, TableReader& table, RuleContext const& shared,
                                        CaseFile& out) {
@@ -340,6 +374,7 @@ std::optional<TimedRule> read_explicit(std::size_t number, TableReader& table, R
     case 12: return read_inflate(table, shared);
     case 13: return read_bulbs(table, shared);
     case 16: return read_ffd(table, shared);
+    case 17: return read_shock(table, out);
     default: return std::nullopt;
   }
 }
@@ -373,9 +408,7 @@ Rule read_wake(TableReader& table, RuleContext const& shared) {
   rule.sections = search.sections;
   rule.span = search.span;
   rule.flow = search.flow;
-  rule.fade = table.number("fade");
-  if (rule.fade && !(*rule.fade > 0))
-    table.problem("fade", fmt::format("must be a positive length, found {}", *rule.fade));
+  rule.fade = read_length(table, "fade");
   rule.turn = table.number("turn").value_or(rule.turn);
   if (!(rule.turn >= 0 && rule.turn <= 1))
     table.problem("turn", fmt::format("is a share, 0 to 1, found {}", rule.turn));
