@@ -41,6 +41,11 @@ TEST_P(Transpose, IsTheSameToTheBitOnAllHostSpaces) {
 #undef GRIDMORPH_COMPARE
 }
 
+TEST_P(Transpose, DoesNotDependOnWhatWasMorphedBefore) {
+  PreparedMorph const prepared = prepare(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  EXPECT_EQ(bits_left_by_others(linearised<Kokkos::DefaultHostExecutionSpace>(prepared)), 0);
+}
+
 TEST_P(Transpose, LeavesTheSecondOrderOfATaylorSeries) {
   // J = sum of w . u + |u|^2 / 2 from half the motion on: what J makes beyond its slope falls by four where the step falls by two.
   PreparedMorph const prepared = prepare(GetParam().mesh(), GetParam().motion(1), GetParam().options);

@@ -1,6 +1,7 @@
 // A morph's transpose against its derivative forwards.
 #pragma once
 
+#include "support/morph_run.hpp"
 #include "support/random.hpp"
 
 #include <gridmorph/mesh/mesh.hpp>
@@ -53,6 +54,18 @@ struct LinearisedMorph {
     return g;
   }
 };
+
+/// Bits by which gradients differ where another displacement has gone through the Morpher since it was made; 0: a transpose runs all that
+/// it is linearised at itself.
+template <class Exec>
+Index bits_left_by_others(LinearisedMorph<Exec> const& at) {
+  Coordinates const g = random_vectors(8, at.n_nodes), fresh = at.backwards(g);
+  Coordinates other(at.boundary.size()), u(at.n_nodes);
+  for (Index k = 0; k < other.size(); ++k) other.set(k, -0.3 * at.boundary[k]);
+  at.morpher.displacements(Exec(), other, u);
+  Exec().fence();
+  return different_bits(at.backwards(g), fresh);
+}
 
 /// Largest of |g . Jr - J^T g . r| over the sum of the sizes of both products' terms, for random g and r. Terms, not sums: those of a random g
 /// cancel.

@@ -191,6 +191,10 @@ TEST_P(UnstructuredTranspose, IsTheDerivativeOfAFunctional) {
   EXPECT_NEAR((J(h) - J(-h)) / (2 * h), product, 1e-7 * size);
 }
 
+TEST_P(UnstructuredTranspose, DoesNotDependOnWhatWasMorphedBefore) {
+  EXPECT_EQ(bits_left_by_others(this->planned().at<Exec>(1)), 0);
+}
+
 TEST_P(UnstructuredTranspose, IsTheSameToTheBitOnAllHostSpaces) {
   Planned const& planned = this->planned();
   Coordinates const g = random_vectors(7, planned.c.mesh.n_nodes());
