@@ -10,9 +10,9 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::string name_of(Patch const& patch) { return patch.families.empty() ? patch.name : patch.families.front(); }
+std::string label_of(Patch const& patch) { return patch.families.empty() ? patch.name : patch.families.front(); }
 
-std::string joined(std::vector<std::string> names) {
+std::string listed_names(std::vector<std::string> names) {
   constexpr std::size_t most = 12;
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
@@ -102,7 +102,7 @@ std::vector<page::RuleRow> rule_rows(BoundaryMotion const& rules, Coordinates co
     for (int p = 0; p < int(motion.patch.size()) && !none; ++p) {
       if (motion.patch[std::size_t(p)].rule != r) continue;
       by_default = motion.patch[std::size_t(p)].by_default;
-      names.push_back(name_of(boundary.mesh().patches[std::size_t(p)]));
+      names.push_back(label_of(boundary.mesh().patches[std::size_t(p)]));
       auto const& of = boundary.surface(p).nodes;
       nodes.insert(nodes.end(), of.begin(), of.end());
     }
@@ -114,7 +114,7 @@ std::vector<page::RuleRow> rule_rows(BoundaryMotion const& rules, Coordinates co
     if (names.empty()) continue;
     page::RuleRow row = row_of(std::move(nodes), baseline, morphed);
     row.rule = none ? "free, both sides as one" : text_of_rule(motion.rules[std::size_t(r)].rule);
-    row.patches = joined(std::move(names));
+    row.patches = listed_names(std::move(names));
     row.where = by_default ? "default" : motion.rules[std::size_t(r)].where;
     out.push_back(std::move(row));
   }
