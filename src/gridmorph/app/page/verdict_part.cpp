@@ -114,8 +114,8 @@ std::string certificate_sentence(ReportPage const& page) {
   std::string const of_worst = page.report.contains("sequence") ? " of the worst step" : "";
   if (c["holds"].get<bool>())
     return fmt::format(
-        "Certified: the Jacobian of all {} {}{} is bounded over the whole cell, not at its corners only{}.",
-        count(c["cells"]), page.kind, of_worst,
+        "Certified by bounds of the Jacobian over the whole of all {} {}{}, not at corners alone{}.", count(c["cells"]),
+        page.kind, of_worst,
         c["negative"].get<Index>() > 0
             ? fmt::format("; {} that are negative somewhere were so in the baseline", count(c["negative"]))
             : std::string());
