@@ -160,7 +160,7 @@ TEST(PassageMotion, UnknownNameIsAnErrorThatListsTheNames) {
     passage_motion("wobble");
     FAIL() << "accepted";
   } catch (ConfigError const& e) {
-    EXPECT_NE(std::string(e.what()).find("'rotation' or 'chord'"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("'rotation', 'chord' or 'gap'"), std::string::npos) << e.what();
   }
 }
 
