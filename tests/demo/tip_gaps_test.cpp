@@ -25,7 +25,7 @@ constexpr double size = 0.67;  // largest radius
 
 PassageOptions passage_with(BladeTip tip, PassageOptions::Layout layout) {
   PassageOptions o;
-  o.nodes = 14'000;
+  o.nodes = 24'000;
   o.tip = tip;
   o.layout = layout;
   return o;
