@@ -4,6 +4,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/io/read_solution.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/motion/shock/shock_shift.hpp>
