@@ -1,5 +1,6 @@
 // Gradients of control points: against the rule itself, centred differences of the rules, and whole morphs.
 #include "support/expect_error.hpp"
+#include "support/functional_of_morph.hpp"
 #include "support/made_bodies.hpp"
 #include "support/mesh_builders.hpp"
 #include "support/motions.hpp"
@@ -136,39 +137,20 @@ TEST(FfdGradient, OfControlPointsThatAFaceHoldsIsZero) {
       for (int i = 0; i < 6; ++i) EXPECT_EQ(slopes[lattice.number(i, j, k)] == Vec3{}, i >= 4) << i << j << k;
 }
 
-/// J = sum of w . x + |x|^2 / 2 of all nodes.
-double functional(Coordinates const& x) {
-  double sum = 0;
-  for (Index n = 0; n < x.size(); ++n) sum += dot(Vec3{1, -2, 0.5} + 0.5 * x[n], x[n]);
-  return sum;
-}
-
 void expect_slopes_of_whole_morphs(Mesh const& mesh, Motion const& moves) {
   auto const& lattice = std::get<FfdRule>(moves.rules[0].rule);
   MorphPlan const plan(mesh, moves);
-  Morpher<Exec> const morpher(Exec(), plan, mesh.coordinates, {.transpose = true});
+  FunctionalOfMorph<Exec> const functional(plan, mesh.coordinates);
   auto const of_numbers = by_numbers(moves);
-  auto const positions = [&](std::vector<double> const& p) {
-    Coordinates x(mesh.n_nodes());
-    morpher.positions(Exec(), coordinates_of(plan.boundary_displacement(of_numbers(p))), x);
-    Exec().fence();
-    return x;
-  };
   std::vector<double> const p = numbers_of(lattice);
-  Coordinates dJ_dx = positions(p), dJ_db(Index(plan.boundary_nodes().size()));
-  for (Index n = 0; n < dJ_dx.size(); ++n) dJ_dx.set(n, dJ_dx[n] + Vec3{1, -2, 0.5});
-  morpher.transpose(Exec(), coordinates_of(plan.boundary_displacement()), dJ_dx, dJ_db);
-  Exec().fence();
-  std::vector<Vec3> given;
-  for (Index m = 0; m < dJ_db.size(); ++m) given.push_back(dJ_db[m]);
-  std::vector<Vec3> const slopes = ffd_gradient(plan, 0, given);
+  std::vector<Vec3> const slopes = ffd_gradient(plan, 0, functional.gradient());
   double const h = 1e-4;
   for (std::size_t n = 0; n < slopes.size(); n += 5) {
     std::size_t const k = 3 * n + n % 3;
     std::vector<double> up = p, down = p;
     up[k] += h;
     down[k] -= h;
-    double const difference = (functional(positions(up)) - functional(positions(down))) / (2 * h);
+    double const difference = (functional.of(of_numbers(up)) - functional.of(of_numbers(down))) / (2 * h);
     double const slope = n % 3 == 0 ? slopes[n].x : n % 3 == 1 ? slopes[n].y : slopes[n].z;
     EXPECT_NE(slope, 0);
     EXPECT_NEAR(slope, difference, 1e-6 * std::abs(difference)) << n;

@@ -1,4 +1,5 @@
 // Gradients of the parameters of rules, on blocks and on elements: against differences of whole morphs.
+#include "support/functional_of_morph.hpp"
 #include "support/made_bodies.hpp"
 #include "support/mesh_builders.hpp"
 #include "support/motions.hpp"
@@ -43,36 +44,17 @@ TEST(Transpose, OfWallsWhoseNodesAreTrimmedToSlipSurfacesIsExact) {
   EXPECT_LE(product_error(at), 1e-13);
 }
 
-/// J = sum of w . x + |x|^2 / 2 of all nodes.
-double functional(Coordinates const& x) {
-  double sum = 0;
-  for (Index n = 0; n < x.size(); ++n) sum += dot(Vec3{1, -2, 0.5} + 0.5 * x[n], x[n]);
-  return sum;
-}
-
 void expect_slopes_of_differences(Mesh const& mesh, ParametricMotion const& motion_of, PlanOptions const& options) {
   Parameters const p{0.1, 0.05, 0.2}, steps{1e-4, 1e-4, 1e-4};
   MorphPlan const plan(mesh, motion_of(p), options);
-  Morpher<Exec> const morpher(Exec(), plan, mesh.coordinates, {.transpose = true});
-  auto const positions = [&](Parameters const& at) {
-    Coordinates x(mesh.n_nodes());
-    morpher.positions(Exec(), coordinates_of(plan.boundary_displacement(motion_of(at))), x);
-    Exec().fence();
-    return x;
-  };
-  Coordinates dJ_dx = positions(p), dJ_db(Index(plan.boundary_nodes().size()));
-  for (Index n = 0; n < dJ_dx.size(); ++n) dJ_dx.set(n, dJ_dx[n] + Vec3{1, -2, 0.5});
-  morpher.transpose(Exec(), coordinates_of(plan.boundary_displacement()), dJ_dx, dJ_db);
-  Exec().fence();
-  std::vector<Vec3> given;
-  for (Index m = 0; m < dJ_db.size(); ++m) given.push_back(dJ_db[m]);
-  std::vector<double> const slopes = parameter_gradient(plan, motion_of, p, steps, given);
+  FunctionalOfMorph<Exec> const functional(plan, mesh.coordinates);
+  std::vector<double> const slopes = parameter_gradient(plan, motion_of, p, steps, functional.gradient());
   ASSERT_EQ(slopes.size(), p.size());
   for (std::size_t k = 0; k < p.size(); ++k) {
     Parameters up = p, down = p;
     up[k] += steps[k];
     down[k] -= steps[k];
-    double const difference = (functional(positions(up)) - functional(positions(down))) / (2 * steps[k]);
+    double const difference = (functional.of(motion_of(up)) - functional.of(motion_of(down))) / (2 * steps[k]);
     EXPECT_NE(difference, 0) << k;
     EXPECT_NEAR(slopes[k], difference, 1e-6 * std::abs(difference)) << k;
   }

@@ -3,6 +3,7 @@
 #include <gridmorph/app/run_page.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/io/read_file.hpp>
+#include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/report/block_graph_text.hpp>
 
 #include <fmt/format.h>
@@ -66,12 +67,6 @@ std::vector<std::pair<std::string, std::string>> settings_of(CaseFile const& cas
   if (case_file.side_file) out.emplace_back("side file", size_text(*case_file.side_file));
   for (auto const& file : case_file.files) out.emplace_back("input file", size_text(file));
   out.emplace_back("date", now());
-  return out;
-}
-
-double largest(std::vector<Vec3> const& u) {
-  double out = 0;
-  for (Vec3 const& v : u) out = std::max(out, norm(v));
   return out;
 }
 
@@ -162,7 +157,7 @@ void RunPage::finish(Run const& run, QualityReport const& quality) {
 void RunPage::make_surfaces(Run const& run) {
   if (surface_.facets.empty()) return;
   auto const u = displacement_of_surface(run);
-  page_.scale_end = largest(u);
+  page_.scale_end = largest_norm(u);
   std::vector<page::View> views;
   if (pictures_->is_plane()) {
     views = {page::plane_view(surface_, u, picture_width, picture_height)};
@@ -190,8 +185,8 @@ void RunPage::make_steps() {
   constexpr int width = picture_width * 3 / 4, height = picture_height * 3 / 4;
   Step const* most = &steps_.front();
   for (Step const& s : steps_)
-    if (largest(s.displacement) > largest(most->displacement)) most = &s;
-  page_.scale_end = largest(most->displacement);
+    if (largest_norm(s.displacement) > largest_norm(most->displacement)) most = &s;
+  page_.scale_end = largest_norm(most->displacement);
   page::View const view =
       pictures_->is_plane()
           ? page::plane_view(surface_, most->displacement, width, height)

@@ -2,6 +2,7 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/point_numbers.hpp>
 #include <gridmorph/mapping/detail/merge_nodes.hpp>
+#include <gridmorph/motion/boundary_conditions.hpp>
 
 #include <fmt/format.h>
 
@@ -13,12 +14,6 @@ namespace gridmorph::mapping {
 namespace {
 
 constexpr double conflict = 1e-6;  // of the largest displacement
-
-double largest(std::vector<Vec3> const& field) {
-  double out = 0;
-  for (Vec3 const& u : field) out = std::max(out, norm(u));
-  return out;
-}
 
 /// For every node the first one at its position.
 std::vector<std::size_t> first_at_position(std::vector<Vec3> const& p) {
@@ -48,7 +43,7 @@ void merge_nodes(StructuralModel& model, std::vector<std::vector<Vec3>>& fields)
   PointCloud& nodes = model.nodes;
   auto const first = first_at_position(nodes.position);
   for (auto const& field : fields) {
-    double const limit = conflict * largest(field);
+    double const limit = conflict * largest_norm(field);
     for (std::size_t b = 0; b < first.size(); ++b) {
       std::size_t const a = first[b];
       if (a != b && distance(field[a], field[b]) > limit)
