@@ -20,14 +20,12 @@ function(gridmorph_unity_build target)
   if(GRIDMORPH_HOST_OPTIONS)
     math(EXPR groups_of_kernels "(${arg_GROUPS} + 2) / 3")
     target_compile_options(${target} PRIVATE ${GRIDMORPH_HOST_OPTIONS})
-    # Kernels have those of the build type again, behind them. From g++ 13 on a header that was precompiled with others is not taken.
+    # Kernels have those of the build type again, behind them, and read their headers themselves: of a header that was precompiled with
+    # other options g++ 13 and newer take nothing, and g++ 12 crashes.
     string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
     separate_arguments(options NATIVE_COMMAND "${CMAKE_CXX_FLAGS_${type}}")
     string(REPLACE ";" "\\;" options "${options}")
-    set(of_kernels COMPILE_OPTIONS "${options}")
-    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
-      list(APPEND of_kernels SKIP_PRECOMPILE_HEADERS ON) # by its presence, whatever its value
-    endif()
+    set(of_kernels COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON)
   endif()
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "\\.cpp$")
