@@ -1,5 +1,6 @@
 #include <gridmorph/app/casefile/detail/ffd_reader.hpp>
 #include <gridmorph/app/casefile/detail/number_table.hpp>
+#include <gridmorph/app/casefile/detail/toml.hpp>
 #include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
@@ -133,7 +134,7 @@ std::optional<std::array<int, 2>> read_range(toml::value const& value, int count
   auto const whole = [&](toml::value const& v) {
     return v.is_integer() && v.as_integer() >= 1 && v.as_integer() <= count;
   };
-  if (value.is_string() && value.as_string().str == "all") return std::array<int, 2>{0, count - 1};
+  if (value.is_string() && string_of(value) == "all") return std::array<int, 2>{0, count - 1};
   if (whole(value)) return std::array<int, 2>{int(value.as_integer()) - 1, int(value.as_integer()) - 1};
   if (!value.is_array() || value.as_array().size() != 2) return std::nullopt;
   auto const &first = value.as_array()[0], &last = value.as_array()[1];
