@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace gridmorph::test {
@@ -76,6 +77,32 @@ TEST_P(Transpose, LeavesTheSecondOrderOfATaylorSeries) {
   double const whole = J(0.5 + h) - J0 - h * slope, part = J(0.5 + h / 2) - J0 - h / 2 * slope;
   EXPECT_NE(slope, 0);
   EXPECT_LE(std::abs(part - whole / 4), 0.1 * std::abs(whole / 4) + 1e-9 * std::abs(J0));
+}
+
+TEST_P(Transpose, FollowsADerivativeThatIsTheSlopeInDirectionsOffSlipSurfacesToo) {
+  // Nodes whose displacement is given slide where their patch meets a slip surface: what leads off it is taken out of positions, so it has to be
+  // out of rates as well.
+  PreparedMorph const prepared = prepare(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  auto const at = linearised<Exec>(prepared);
+  double const size = prepared.plan().mesh_size;
+  Coordinates rate(at.boundary.size());
+  for (Index k = 0; k < rate.size(); ++k) {
+    Vec3 const x = (1 / size) * prepared.mesh.coordinates[prepared.plan().boundary_nodes[std::size_t(k)]];
+    rate.set(k, {std::sin(3 * x.y + x.z), std::cos(2 * x.z - x.x), std::sin(1 + 2 * x.x + 3 * x.y)});
+  }
+  auto const displacements = [&](double step) {
+    Coordinates b(at.boundary.size()), u(at.n_nodes);
+    for (Index k = 0; k < b.size(); ++k) b.set(k, at.boundary[k] + step * rate[k]);
+    at.morpher.displacements(Exec(), b, u);
+    Exec().fence();
+    return u;
+  };
+  double const h = 1e-6 * size;
+  Coordinates const ahead = displacements(h), behind = displacements(-h), v = at.forwards(rate);
+  double worst = 0;
+  for (Index n = 0; n < v.size(); ++n) worst = std::max(worst, distance((0.5 / h) * (ahead[n] - behind[n]), v[n]));
+  EXPECT_LE(worst, 1e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Transpose, ::testing::ValuesIn(make_cases()),

@@ -16,7 +16,9 @@ struct SlipEnd {
   std::int32_t to_node;   ///< frame of the slot -> frame of the node, -1: the same
   std::int32_t to_chain;  ///< frame of the node -> chain frame
   std::int32_t surface[3];
-  double tolerance;  ///< nodes with a given displacement are left alone this near to their surfaces
+  /// Nodes with a given displacement are left alone this near to their surfaces. Rates know nothing of it: what leads off a
+  /// surface does not last longer than the way to here.
+  double tolerance;
 };
 
 /// What does not change from morph to morph: position in the baseline mesh and own distances from its surfaces.
@@ -74,15 +76,15 @@ struct SlipEndValues {
     Vec3 wanted = given, wanted_rate = given_rate;
     int const count = end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
     if constexpr (Rate)
-      if (count == 1 && !(end.tolerance > 0)) {  // needs no displacement for it
+      if (count == 1) {  // needs no displacement for it
         wanted_rate =
             surfaces(end.surface[0]).constrain_rate(baseline.position, baseline.own_offset[0], given, given_rate);
         return in_frame(end.to_chain, wanted_rate - given_rate);
       }
     constrain_to_all<Rate>(count, Surfaces{surfaces, end}, Offsets{baseline}, baseline.position, wanted, wanted_rate);
+    if constexpr (Rate) return in_frame(end.to_chain, wanted_rate - given_rate);
     bool const left_alone = norm(wanted - given) <= end.tolerance && end.tolerance > 0;
-    Vec3 const d = left_alone ? Vec3{} : (Rate ? wanted_rate - given_rate : wanted - given);
-    return in_frame(end.to_chain, d);
+    return left_alone ? Vec3{} : in_frame(end.to_chain, wanted - given);
   }
 
  private:

@@ -80,11 +80,6 @@ struct SlipEndBySlot {
     auto const own = [&](int m) { return baseline.own_offset[m]; };
     int const count = end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
     Vec3 const u = in_frame(end.to_node, kept[item]), g = back(end.to_chain, gradient[end.value]);
-    if (end.tolerance > 0) {
-      Vec3 wanted = u, no_rate;
-      constrain_to_all<false>(count, surface, own, baseline.position, wanted, no_rate);
-      if (norm(wanted - u) <= end.tolerance) return {};
-    }
     return back(end.to_node, constrained_gradient(count, surface, own, baseline.position, u, g) - g);
   }
 
