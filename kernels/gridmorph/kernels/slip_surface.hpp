@@ -111,7 +111,7 @@ struct ProfileView {
   }
 
   /// Value and derivatives by one lookup; the end slopes are continued outside.
-  KOKKOS_INLINE_FUNCTION ProfileSample sample(double a) const {
+  KOKKOS_FORCEINLINE_FUNCTION ProfileSample sample(double a) const {
     ProfileKnot const &first = knots[0], &last = knots[size - 1];
     if (a <= first.axial) return {first.radius + first.slope * (a - first.axial), first.slope, 0};
     if (a >= last.axial) return {last.radius + last.slope * (a - last.axial), last.slope, 0};
@@ -248,8 +248,8 @@ struct SlipSurfaceView {
     if (!(r > 0)) return rate;
     double const r_rate = dot(moved, moved_rate) / r;
     if (kind == SlipKind::meridional) return rate - meridional_rate(a + du, moved, axial_rate, moved_rate, r_rate, own);
-    double const excess = r - (profile(a + du) + own);
-    double const excess_rate = r_rate - profile.derivative(a + du) * axial_rate;
+    ProfileSample const wall = profile.sample(a + du);
+    double const excess = r - (wall.value + own), excess_rate = r_rate - wall.slope * axial_rate;
     return rate - ((excess_rate - excess * r_rate / r) / r) * moved - (excess / r) * moved_rate;
   }
 

@@ -8,7 +8,8 @@
 //
 // Nodes of a chain are listed as bundles: boxes (s, a, b) of slots of the skeleton or of nodes inside a piece. A group is a rectangle
 // (a, b) of lines that run through the same bundles, so that one work item has its lines to itself: sums come in one order whatever the
-// number of threads.
+// number of threads. On the host nodes are taken in rows that vector instructions work on: those of neighbouring lines, or, where memory
+// runs along the lines, those of one line after the other, in sixteen sums that are added up at its end.
 //
 // Cost per node and chain through it: 24 bytes of gradient and 8 of line parameter read; where the chain turns 24 more, about 90
 // flops per end that turns. Nothing is written but at the ends.
@@ -25,6 +26,12 @@ namespace gridmorph::kernels {
 struct LineStep {
   Index s, a, b;
 };
+/// Along which nodes lie side by side in a row: on neighbouring lines, or on one line.
+enum class RowAlong { a, s };
+template <RowAlong along>
+KOKKOS_INLINE_FUNCTION Index row_step(LineStep const& step) {
+  return along == RowAlong::a ? step.a : step.s;
+}
 
 struct LineBundle {
   std::int32_t s, n_s;     ///< positions on the chain
@@ -43,6 +50,8 @@ struct LineGroup {
   std::int32_t chain;
   std::int32_t a, b, n_a, n_b;
   std::int32_t first_bundle, n_bundles;
+  /// Rows are of nodes of one line, not of neighbouring lines: what follows on one another in memory is read together.
+  std::int32_t rows_along_s = 0;
 };
 
 /// Gradients of the nodes of bundles, and where these nodes are.
@@ -69,18 +78,18 @@ struct BundleGradients {
     return p.t < 0 ? 0 : t[at(p.t, p.t_step, s, a, b)];
   }
 
-  /// The gradients of n neighbouring lines from a on; below: where their nodes are, their parameters, the gradients of the rotations of slots.
-  template <int width>
+  /// The gradients of a row of n nodes from (s, a, b) on; below: where they are, their parameters, the gradients of the rotations of slots.
+  template <RowAlong along, int width>
   KOKKOS_INLINE_FUNCTION void row(LineBundle const& p, int s, int a, int b, int n, VectorRow<width>& g) const {
-    Index const first = at(p.value, p.value_step, s, a, b);
-    p.in_volume != 0 ? read(nodes, first, p.value_step.a, n, g) : read(slots, first, p.value_step.a, n, g);
+    Index const first = at(p.value, p.value_step, s, a, b), step = row_step<along>(p.value_step);
+    p.in_volume != 0 ? read(nodes, first, step, n, g) : read(slots, first, step, n, g);
     turn_back(p, n, g);
   }
-  template <int width>
+  template <RowAlong along, int width>
   KOKKOS_INLINE_FUNCTION void places(LineBundle const& p, int s, int a, int b, int n, VectorRow<width>& x) const {
-    Index const first = at(p.x, p.x_step, s, a, b);
-    if (p.in_volume == 0) return read(position, first, p.x_step.a, n, x);
-    read(baseline, first, p.x_step.a, n, x);
+    Index const first = at(p.x, p.x_step, s, a, b), step = row_step<along>(p.x_step);
+    if (p.in_volume == 0) return read(position, first, step, n, x);
+    read(baseline, first, step, n, x);
     turn_back(p, n, x);
     for (int w = 0; w < n; ++w) {
       x.x[w] += p.offset.x;
@@ -88,14 +97,15 @@ struct BundleGradients {
       x.z[w] += p.offset.z;
     }
   }
+  template <RowAlong along>
   KOKKOS_INLINE_FUNCTION void parameters(LineBundle const& p, int s, int a, int b, int n, double* to) const {
     double const* const from = t + (p.t < 0 ? 0 : at(p.t, p.t_step, s, a, b));
-    for (int w = 0; w < n; ++w) to[w] = p.t < 0 ? 0 : from[w * p.t_step.a];
+    for (int w = 0; w < n; ++w) to[w] = p.t < 0 ? 0 : from[w * row_step<along>(p.t_step)];
   }
-  template <int width>
+  template <RowAlong along, int width>
   KOKKOS_INLINE_FUNCTION void turn_gradients(LineBundle const& p, int s, int a, int b, int n,
                                              VectorRow<width>& g) const {
-    read(slot_turns, at(p.value, p.value_step, s, a, b), p.value_step.a, n, g);
+    read(slot_turns, at(p.value, p.value_step, s, a, b), row_step<along>(p.value_step), n, g);
     turn_back(p, n, g);
   }
 
@@ -165,38 +175,54 @@ struct LineGradients {
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     int const entry = entry_of(first_item, item);
     LineGroup const& group = groups(entry);
-    Chain const& chain = chains(group.chain);
     Index const local = item - first_item(entry), per_row = tiles(group.n_a, Width);
-    Lines const lines{
-        int(local % per_row) * Width, int(local / per_row),
-        group.n_a - int(local % per_row) * Width < Width ? group.n_a - int(local % per_row) * Width : Width};
-    Index const lower = chain.first_end_value + group.a + lines.a + Index(chain.n_a) * (group.b + lines.b);
-    if (chain.turn == TurnLaw::none)
-      add_displacements(group, chain, lines, lower, [](LineBundle const&, int, Row const&) {});
-    else
-      add_turned(group, chain, lines, lower);
+    int const first = int(local % per_row) * Width, b = int(local / per_row);
+    int const n = group.n_a - first < Width ? group.n_a - first : Width;
+    if constexpr (Width > 1)
+      if (group.rows_along_s != 0) {
+        for (int a = first; a < first + n; ++a) add<RowAlong::s>(group, Lines<nodes_of_a_line>{a, b, nodes_of_a_line});
+        return;
+      }
+    add<RowAlong::a>(group, Lines<Width>{first, b, n});
   }
 
  private:
+  static constexpr int nodes_of_a_line = 16;  ///< in a row along s
+
+  /// What is added up side by side: lines from a on, or every n-th node of one line.
+  template <int width>
   struct Lines {
     int a, b, n;
   };
-  using Row = VectorRow<Width>;
+  template <int width>
+  using Row = VectorRow<width>;
 
-  /// visit(bundle, s, gradients) of every row.
-  template <class Visit>
-  KOKKOS_INLINE_FUNCTION void add_displacements(LineGroup const& group, Chain const& chain, Lines const& lines,
+  template <RowAlong along, int width>
+  KOKKOS_INLINE_FUNCTION void add(LineGroup const& group, Lines<width> const& lines) const {
+    Chain const& chain = chains(group.chain);
+    Index const lower = chain.first_end_value + group.a + lines.a + Index(chain.n_a) * (group.b + lines.b);
+    if (chain.turn == TurnLaw::none)
+      add_displacements<along>(group, chain, lines, lower, [](LineBundle const&, int, int, Row<width> const&) {});
+    else
+      add_turned<along>(group, chain, lines, lower);
+  }
+
+  /// visit(bundle, s, number of nodes, gradients) of every row.
+  template <RowAlong along, int width, class Visit>
+  KOKKOS_INLINE_FUNCTION void add_displacements(LineGroup const& group, Chain const& chain, Lines<width> const& lines,
                                                 Index lower, Visit const& visit) const {
-    Row first, last, g;
-    double weight[Width];
+    Row<width> first, last, g;
+    double weight[width];
     for (int w = 0; w < lines.n; ++w) first.x[w] = first.y[w] = first.z[w] = last.x[w] = last.y[w] = last.z[w] = 0;
     bool const constant = chain.law == LineLaw::constant;
+    constexpr int step = along == RowAlong::a ? 1 : width;
     for (int m = 0; m < group.n_bundles; ++m) {
       LineBundle const& p = from.bundles(group.first_bundle + m);
-      for (int s = 0; s < p.n_s; ++s) {
-        from.row(p, s, lines.a, lines.b, lines.n, g);
-        if (!constant) weights(chain, p, s, lines, weight);
-        for (int w = 0; w < lines.n; ++w) {
+      for (int s = 0; s < p.n_s; s += step) {
+        int const n = along == RowAlong::a ? lines.n : p.n_s - s < width ? p.n_s - s : width;
+        from.template row<along>(p, s, lines.a, lines.b, n, g);
+        if (!constant) weights<along>(chain, p, s, lines, n, weight);
+        for (int w = 0; w < n; ++w) {
           double const f = constant ? 0 : weight[w];
           first.x[w] += (1 - f) * g.x[w];
           first.y[w] += (1 - f) * g.y[w];
@@ -205,25 +231,37 @@ struct LineGradients {
           last.y[w] += f * g.y[w];
           last.z[w] += f * g.z[w];
         }
-        visit(p, s, g);
+        visit(p, s, n, g);
       }
+    }
+    Index const upper = lower + chain.section_size();
+    if constexpr (along == RowAlong::s) {
+      Vec3 of_first, of_last;
+      for (int w = 0; w < width; ++w) {
+        of_first += {first.x[w], first.y[w], first.z[w]};
+        of_last += {last.x[w], last.y[w], last.z[w]};
+      }
+      to.u.set(lower, of_first);
+      to.u.set(upper, of_last);
+      return;
     }
     for (int w = 0; w < lines.n; ++w) {
       to.u.set(lower + w, {first.x[w], first.y[w], first.z[w]});
-      to.u.set(lower + chain.section_size() + w, {last.x[w], last.y[w], last.z[w]});
+      to.u.set(upper + w, {last.x[w], last.y[w], last.z[w]});
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void weights(Chain const& chain, LineBundle const& p, int s, Lines const& lines,
+  template <RowAlong along, int width>
+  KOKKOS_INLINE_FUNCTION void weights(Chain const& chain, LineBundle const& p, int s, Lines<width> const& lines, int n,
                                       double* weight) const {
     if (p.t < 0) {
-      for (int w = 0; w < lines.n; ++w) weight[w] = law_weight(chain, law_knots, 0);
+      for (int w = 0; w < n; ++w) weight[w] = law_weight(chain, law_knots, 0);
       return;
     }
     double const* const at = from.t + from.at(p.t, p.t_step, s, lines.a, lines.b);
-    Index const step = p.t_step.a;
+    Index const step = row_step<along>(p.t_step);
     auto const fill = [&](auto const& law) {
-      for (int w = 0; w < lines.n; ++w) weight[w] = law(at[w * step]);
+      for (int w = 0; w < n; ++w) weight[w] = law(at[w * step]);
     };
     switch (chain.law) {
       case LineLaw::linear: return fill([](double f) { return f; });
@@ -232,21 +270,23 @@ struct LineGradients {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void add_turned(LineGroup const& group, Chain const& chain, Lines const& lines,
+  template <RowAlong along, int width>
+  KOKKOS_INLINE_FUNCTION void add_turned(LineGroup const& group, Chain const& chain, Lines<width> const& lines,
                                          Index lower) const {
-    TurnedLines<Width> turned(ends, chain, lower, lines.n);
-    add_displacements(group, chain, lines, lower, [&](LineBundle const& p, int s, Row const& g) {
-      double t[Width];
-      Row x;
-      from.parameters(p, s, lines.a, lines.b, lines.n, t);
-      from.places(p, s, lines.a, lines.b, lines.n, x);
-      turned.add(t, x, g);
+    constexpr bool one_line = along == RowAlong::s;
+    TurnedLines<width> turned(ends, chain, lower, lines.n, one_line);
+    add_displacements<along>(group, chain, lines, lower, [&](LineBundle const& p, int s, int n, Row<width> const& g) {
+      double t[width];
+      Row<width> x;
+      from.template parameters<along>(p, s, lines.a, lines.b, n, t);
+      from.template places<along>(p, s, lines.a, lines.b, n, x);
+      turned.add(t, x, g, n);
       if (p.in_volume != 0) return;
-      Row of_turns;
-      from.turn_gradients(p, s, lines.a, lines.b, lines.n, of_turns);
-      turned.add_turns(t, of_turns);
+      Row<width> of_turns;
+      from.template turn_gradients<along>(p, s, lines.a, lines.b, n, of_turns);
+      turned.add_turns(t, of_turns, n);
     });
-    turned.write(lower, to.turned, to.turns);
+    one_line ? turned.write_sum(lower, to.turned, to.turns) : turned.write(lower, to.turned, to.turns);
   }
 };
 

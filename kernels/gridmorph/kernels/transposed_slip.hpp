@@ -55,8 +55,9 @@ KOKKOS_INLINE_FUNCTION Vec3 slip_gradient(SlipSurfaceView const& s, Vec3 const& 
   if (!(r > 0)) return g;
   Vec3 const outwards = (1 / r) * moved;
   if (s.kind == SlipKind::meridional) return meridional_gradient(s, a + du, r, outwards, own, g);
-  double const excess = r - (s.profile(a + du) + own), share = excess / r;
-  Vec3 const of_excess = (1 - share) * outwards - s.profile.derivative(a + du) * n;
+  ProfileSample const wall = s.profile.sample(a + du);
+  double const share = (r - (wall.value + own)) / r;
+  Vec3 const of_excess = (1 - share) * outwards - wall.slope * n;
   return g - dot(outwards, g) * of_excess - share * (g - dot(n, g) * n);
 }
 

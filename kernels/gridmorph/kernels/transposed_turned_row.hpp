@@ -45,39 +45,40 @@ struct TurnedEndGradients {
   }
 };
 
-/// n neighbouring lines of a chain that turns, whose first ends are `lower` + w.
+/// n neighbouring lines of a chain that turns, whose first ends are `lower` + w; or one line, whose nodes are added up in n shares.
 template <int width>
 class TurnedLines {
  public:
-  KOKKOS_INLINE_FUNCTION TurnedLines(TurnedEnds<double const> const& ends, Chain const& chain, Index lower, int n)
-      : chain_(chain), n_(n) {
+  KOKKOS_INLINE_FUNCTION TurnedLines(TurnedEnds<double const> const& ends, Chain const& chain, Index lower, int n,
+                                     bool one_line = false)
+      : chain_(chain), n_(n), step_(one_line ? 0 : 1) {
     for (unsigned end = 0; end < 2; ++end)
       if ((chain.turned_ends & (1u + end)) != 0 || (end == 0 && turns_as_one(chain)))
         load(ends, lower + Index(end) * chain.section_size(), ends_[end]);
   }
 
-  /// Adds what nodes of the lines give: at fractions t, positions x in the frame of the chain, gradients g.
-  KOKKOS_INLINE_FUNCTION void add(double const* t, VectorRow<width> const& x, VectorRow<width> const& g) {
+  /// Adds what the first n nodes give: at fractions t, positions x in the frame of the chain, gradients g.
+  KOKKOS_INLINE_FUNCTION void add(double const* t, VectorRow<width> const& x, VectorRow<width> const& g, int n) {
     double f[width];
     if (turns_as_one(chain_)) {
-      fill_turn_weights(chain_, 0, t, n_, f);
-      chain_.turned_ends & 2u ? add_as_one<true>(f, x, g) : add_as_one<false>(f, x, g);
+      fill_turn_weights(chain_, 0, t, n, f);
+      chain_.turned_ends & 2u ? add_as_one<true>(f, x, g, n) : add_as_one<false>(f, x, g, n);
       return;
     }
     for (unsigned end = 0; end < 2; ++end)
       if (chain_.turned_ends & (1u + end)) {
-        fill_turn_weights(chain_, end, t, n_, f);
-        add_end(end, f, x, g);
+        fill_turn_weights(chain_, end, t, n, f);
+        add_end(end, f, x, g, n);
       }
   }
   /// g: gradients of the rotations that the lines hand to nodes.
-  KOKKOS_INLINE_FUNCTION void add_turns(double const* t, VectorRow<width> const& g) {
+  KOKKOS_INLINE_FUNCTION void add_turns(double const* t, VectorRow<width> const& g, int n) {
     double f[width];
     for (unsigned end = 0; end < 2; ++end) {
       if ((chain_.turned_ends & (1u + end)) == 0) continue;
-      fill_turn_weights(chain_, end, t, n_, f);
+      fill_turn_weights(chain_, end, t, n, f);
       Sum& to = sums_[end];
-      for (int w = 0; w < n_; ++w) {
+      for (int w = 0; w < n; ++w) {
         to.turn[0][w] += f[w] * g.x[w];
         to.turn[1][w] += f[w] * g.y[w];
         to.turn[2][w] += f[w] * g.z[w];
@@ -87,13 +88,26 @@ class TurnedLines {
 
   /// Sets the gradients at both ends.
   KOKKOS_INLINE_FUNCTION void write(Index lower, TurnedEndGradients const& turned, Field<double> const& turns) const {
-    for (unsigned end = 0; end < 2; ++end) {
-      Sum const& s = sums_[end];
+    for (unsigned end = 0; end < 2; ++end)
       for (int w = 0; w < n_; ++w) {
         Index const at = lower + Index(end) * chain_.section_size() + w;
-        turned.set(at, {{s.q[0][w], s.q[1][w], s.q[2][w]}, s.q[3][w], s.stretch[w]});
-        turns.set(at, {s.turn[0][w], s.turn[1][w], s.turn[2][w]});
+        turned.set(at, sums_[end].rotation(w));
+        turns.set(at, sums_[end].turn_of(w));
       }
+  }
+  /// The same of one line.
+  KOKKOS_INLINE_FUNCTION void write_sum(Index lower, TurnedEndGradients const& turned,
+                                        Field<double> const& turns) const {
+    for (unsigned end = 0; end < 2; ++end) {
+      TurnedGradient sum;
+      Vec3 of_turn;
+      for (int w = 0; w < n_; ++w) {
+        sum.add(1, sums_[end].rotation(w));
+        of_turn += sums_[end].turn_of(w);
+      }
+      Index const at = lower + Index(end) * chain_.section_size();
+      turned.set(at, sum);
+      turns.set(at, of_turn);
     }
   }
 
@@ -110,6 +124,10 @@ class TurnedLines {
   };
   struct Sum {
     double q[4][width] = {}, stretch[width] = {}, turn[3][width] = {};
+    [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION TurnedGradient rotation(int w) const {
+      return {{q[0][w], q[1][w], q[2][w]}, q[3][w], stretch[w]};
+    }
+    [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Vec3 turn_of(int w) const { return {turn[0][w], turn[1][w], turn[2][w]}; }
     KOKKOS_FORCEINLINE_FUNCTION void add(int w, double f, TurnedGradient const& g) {
       q[0][w] += f * g.imaginary.x;
       q[1][w] += f * g.imaginary.y;
@@ -120,7 +138,7 @@ class TurnedLines {
 
   KOKKOS_INLINE_FUNCTION void load(TurnedEnds<double const> const& ends, Index first, End& to) {
     for (int w = 0; w < n_; ++w) {
-      TurnedEnd<Vec3> const e = ends[first + w];
+      TurnedEnd<Vec3> const e = ends[first + step_ * w];
       to.q[0][w] = e.q.imaginary.x;
       to.q[1][w] = e.q.imaginary.y;
       to.q[2][w] = e.q.imaginary.z;
@@ -132,10 +150,10 @@ class TurnedLines {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void add_end(unsigned end, double const* f, Row const& x, Row const& g) {
+  KOKKOS_INLINE_FUNCTION void add_end(unsigned end, double const* f, Row const& x, Row const& g, int n) {
     End const& end_of = ends_[end];
     Sum& to = sums_[end];
-    for (int w = 0; w < n_; ++w) {
+    for (int w = 0; w < n; ++w) {
       double scale = 0, along = 0;
       TurnedGradient const of = turned_gradient(Quaternion<Vec3>::share(end_of.quaternion(w), f[w]), end_of.arm(x, w),
                                                 {g.x[w], g.y[w], g.z[w]}, scale, along);
@@ -144,11 +162,11 @@ class TurnedLines {
   }
   /// Outer: whether the other end turns too.
   template <bool Outer>
-  KOKKOS_INLINE_FUNCTION void add_as_one(double const* f, Row const& x, Row const& g) {
+  KOKKOS_INLINE_FUNCTION void add_as_one(double const* f, Row const& x, Row const& g, int n) {
     using Q = Quaternion<Vec3>;
     End const &wall = ends_[0], &edge = ends_[1];
     Sum &first = sums_[0], &last = sums_[1];
-    for (int w = 0; w < n_; ++w) {
+    for (int w = 0; w < n; ++w) {
       Q const own = wall.quaternion(w), q = Outer ? Q::between(edge.quaternion(w), own, f[w]) : Q::share(own, f[w]);
       Vec3 const arm = wall.arm(x, w), gradient{g.x[w], g.y[w], g.z[w]};
       double scale = 0, along = 0;
@@ -161,7 +179,7 @@ class TurnedLines {
   }
 
   Chain const& chain_;
-  int n_;
+  int n_, step_;
   End ends_[2];
   Sum sums_[2];
 };

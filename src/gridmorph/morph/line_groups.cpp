@@ -3,6 +3,7 @@
 #include <gridmorph/core/index.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 #include <utility>
 
@@ -88,6 +89,18 @@ std::vector<PlacedBundle> cut_alike(std::vector<PlacedBundle> bundles) {
   return bundles;
 }
 
+/// Whether most nodes of a group follow on one another in memory along its lines, or its lines have hardly a neighbour.
+bool runs_along_s(std::vector<kernels::LineBundle> const& bundles, int n_a) {
+  constexpr int short_row = 4;  // neighbouring lines: a vector register or two
+  Index along = 0, all = 0;
+  for (kernels::LineBundle const& p : bundles) {
+    all += p.n_s;
+    bool const nearer = std::abs(p.value_step.s) < std::abs(p.value_step.a);
+    if (p.n_s > short_row && (nearer || n_a <= short_row)) along += p.n_s;
+  }
+  return 2 * along > all;
+}
+
 }  // namespace
 
 PlacedBundle bundle_of(kernels::SkeletonSweep const& sweep) {
@@ -139,8 +152,8 @@ LineGroups groups_of(BundlesOfChains const& of_chains) {
       places[{p.first[1], p.first[0], p.n[1], p.n[0]}].push_back(p.bundle);
     for (auto& [place, list] : places) {
       std::stable_sort(list.begin(), list.end(), [](auto const& a, auto const& b) { return a.s < b.s; });
-      out.groups.push_back(
-          {chain, place[1], place[0], place[3], place[2], std::int32_t(out.bundles.size()), std::int32_t(list.size())});
+      out.groups.push_back({chain, place[1], place[0], place[3], place[2], std::int32_t(out.bundles.size()),
+                            std::int32_t(list.size()), runs_along_s(list, place[3]) ? 1 : 0});
       out.bundles.insert(out.bundles.end(), list.begin(), list.end());
     }
   }
