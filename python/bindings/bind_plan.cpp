@@ -1,9 +1,9 @@
 #include "objects.hpp"
 
 #include <gridmorph/guard/smoothing_record.hpp>
+#include <gridmorph/morph/ffd_gradient.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
-#include <gridmorph/morph/parameter_gradient.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -77,6 +77,13 @@ class PyPlan {
     return with_result(out, n_boundary(), [&](Out const& g) {
       with_boundary(u, [&](In const& b) { read(gradient, [&](In const& d) { morpher_->transpose(exec_, b, d, g); }); });
     });
+  }
+
+  [[nodiscard]] std::vector<Vec3> control_point_gradient(int rule, Vectors const& gradient) const {
+    check_vectors(gradient, n_boundary(), "gradient");
+    auto const dJ_db = as_vectors(gradient, "gradient");
+    Call const call;
+    return ffd_gradient(*plan_, rule, dJ_db);
   }
 
   /// Seconds of displacements() as a C++ program calls it, on arrays of its own: what calls from Python are measured against.
@@ -237,7 +244,20 @@ void bind_plan(nb::module_& m) {
           nb::sig("def transpose(self, gradient: numpy.typing.ArrayLike, u: numpy.typing.ArrayLike | None = None, *, "
                   "out: numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]"),
           "(m, 3): dJ/du of the boundary nodes from `gradient` = dJ/dx of all nodes (n, 3), at u: the exact transpose "
-          "of velocities().");
+          "of velocities().")
+      .def(
+          "ffd_gradient",
+          [](PyPlan const& p, int rule, Vectors gradient) {
+            return as_array(p.control_point_gradient(rule, gradient));
+          },
+          nb::arg("rule"), nb::arg("gradient"),
+          nb::sig("def ffd_gradient(self, rule: int, gradient: numpy.typing.ArrayLike) -> "
+                  "numpy.typing.NDArray[numpy.float64]"),
+          "(k, 3): dJ/dd of the control points of rule number `rule` of the motion, an ffd rule, from `gradient` = "
+          "dJ/du "
+          "(m, 3) as transpose() returns it. i fastest: .reshape(n_k, n_j, n_i, 3).\n\n"
+          "Exact, as u is linear in d; zero for control points that a face of the lattice holds. Raises ConfigError "
+          "where the rule is no ffd rule.");
 }
 
 }  // namespace gridmorph::python

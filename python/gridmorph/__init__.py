@@ -168,3 +168,39 @@ def _prescribed(self, patches: str | typing.Sequence[str], rank: int = 0) -> Mot
 
 
 _attach(Motion, read=staticmethod(_read_motion), function=_function, field=_field, rigid=_rigid, prescribed=_prescribed)
+
+
+# ----------------------------------------------------------------------------------------------------------------- plans
+
+
+def _parameter_gradient(self, motion: typing.Callable[[numpy.typing.NDArray[numpy.float64]], Motion], parameters: numpy.typing.ArrayLike,
+                        steps: numpy.typing.ArrayLike, gradient: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+    """(k,): dJ/dp of the parameters (k,) of rules, from gradient = dJ/du (m, 3) as transpose() returns it.
+
+    motion(p): the rules with these parameters, always for the same patches. dJ/dp_k = sum of gradient . (b(p + h_k) - b(p - h_k)) / (2 h_k),
+    b what the rules give boundary nodes, h_k of steps (k,) or one for all, about 1e-5 of what p_k is of. Cost: two evaluations of the rules
+    per parameter; no mesh is morphed. Raises ConfigError, MotionError.
+    """
+    p = numpy.array(parameters, dtype=float)
+    if p.ndim != 1:
+        raise ConfigError(f"parameters: must be an array of (k,), found {p.shape}")
+    try:
+        h = numpy.broadcast_to(numpy.asarray(steps, dtype=float), p.shape)
+    except ValueError:
+        raise ConfigError(f"steps: must be one number or an array of {p.shape}, found {numpy.shape(steps)}") from None
+    if not (h > 0).all():
+        raise ConfigError(f"steps: must be positive, found {h.min()}")
+    gradient = numpy.asarray(gradient, dtype=float)
+    if gradient.shape != (len(self.boundary_nodes), 3):
+        raise ConfigError(f"gradient: must be an array of ({len(self.boundary_nodes)}, 3), found {gradient.shape}")
+    out = numpy.empty(len(p))
+    for k in range(len(p)):
+        ahead, behind = p.copy(), p.copy()
+        ahead[k] += h[k]
+        behind[k] -= h[k]
+        change = self.boundary_displacement_of(motion(ahead)) - self.boundary_displacement_of(motion(behind))
+        out[k] = numpy.vdot(gradient, change) / (ahead[k] - behind[k])
+    return out
+
+
+_attach(Plan, parameter_gradient=_parameter_gradient)

@@ -76,8 +76,9 @@ class SurfacePoints:
 class SlipPlanes:
     """Boundary nodes that a plan keeps on planes: edges of what moves on a symmetry plane, say.
 
-    A displacement off the plane is taken back by the morph, beyond a tolerance; here it is taken away beforehand, so that displacements
-    and derivatives say the same. Which nodes these are is asked of the plan: one morph for each plane.
+    A displacement off the plane is put back by the morph, but for as much as the mesh's own nodes scatter about it: finite differences with
+    steps smaller than that differ from the derivative. Here it is taken away beforehand, so that they agree with any step. Which nodes these
+    are is asked of the plan: one morph for each plane.
     """
 
     def __init__(self, mesh, plan, patches):

@@ -74,6 +74,47 @@ def test_transpose_is_that_of_velocities(plan):
     assert abs(forwards - backwards) < 1e-12 * np.abs(gradient).sum()
 
 
+LATTICE = {"patches": ["floor"], "rule": "ffd", "counts": [3, 3, 2], "rank": 1,
+           "continuity": 0, "box": {"from": [-0.1, -0.1, -0.5], "to": [1.1, 1.1, 0.5]}}
+
+
+def test_gradient_of_control_points_is_what_they_move(mesh):
+    shape = (2, 3, 3, 3)  # k, j, i, component
+    d = np.random.default_rng(3).normal(scale=0.02, size=shape)
+    points = [{"at": [i + 1, j + 1, k + 1], "d": d[k, j, i].tolist()} for k in range(2) for j in range(3) for i in range(3)]
+    plan = gridmorph.Plan(mesh, gridmorph.Motion({"motion": [dict(LATTICE, points=points)]}))
+    u = np.asarray(plan.boundary_displacement)
+    gradient = np.random.default_rng(4).normal(size=u.shape)
+    slopes = plan.ffd_gradient(0, gradient)
+    assert slopes.shape == (18, 3) and np.abs(u).max() > 0
+    np.testing.assert_allclose(np.vdot(slopes.reshape(shape), d), np.vdot(gradient, u), rtol=1e-12)
+    with pytest.raises(gridmorph.ConfigError, match="gradient"):
+        plan.ffd_gradient(0, gradient[1:])
+
+
+def test_a_rule_that_is_no_lattice_has_no_control_points(plan):
+    with pytest.raises(gridmorph.ConfigError, match="ffd"):
+        plan.ffd_gradient(0, np.zeros((len(plan.boundary_nodes), 3)))
+
+
+def test_gradients_of_parameters_are_those_of_whole_morphs(mesh):
+    def motion(p):
+        return gridmorph.Motion({"motion": [{"patches": ["floor"], "rule": "formula", "dz": f"({p[0]}*x + {p[1]}*{p[1]}*y) * sin(pi*x)^2 * sin(pi*y)^2"}]})
+
+    p = np.array([0.1, 0.2])
+    plan = gridmorph.Plan(mesh, motion(p))
+    weights = np.random.default_rng(5).normal(size=(mesh.n_nodes, 3))
+    slopes = plan.parameter_gradient(motion, p, 1e-5, plan.transpose(weights))
+    for k in range(2):
+        h = np.eye(2)[k] * 1e-4
+        J = [np.vdot(weights, plan.displacements(plan.boundary_displacement_of(motion(q)))) for q in (p - h, p + h)]
+        assert slopes[k] == pytest.approx((J[1] - J[0]) / 2e-4, rel=1e-6)
+    with pytest.raises(gridmorph.ConfigError, match="steps"):
+        plan.parameter_gradient(motion, p, [1e-5, 0], np.zeros((len(plan.boundary_nodes), 3)))
+    with pytest.raises(gridmorph.ConfigError, match="gradient"):
+        plan.parameter_gradient(motion, p, 1e-5, weights)
+
+
 def test_strides_single_precision_and_out(plan):
     u = plan.boundary_displacement
     expected = plan.displacements(u)
