@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -180,6 +181,48 @@ Mesh as_polyhedra(Mesh const& mesh) {
   }
   out.patches = mesh.patches;
   out.coordinates = mesh.coordinates;
+  return out;
+}
+
+Mesh with_joined_elements(Mesh const& mesh, int side) {
+  UnstructuredTopology const topology = make_topology(mesh);
+  std::vector<Index> partner(std::size_t(mesh.n_elements()), -1);
+  int pairs = 0;
+  for (Zone const& zone : mesh.zones)
+    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
+      Index const other = topology.sides.of(e)[std::size_t(side)];
+      bool const here = other >= zone.first_element && other < zone.first_element + zone.n_elements;
+      if (!here || partner[std::size_t(e)] >= 0 || partner[std::size_t(other)] >= 0 || ++pairs % 3 == 0) continue;
+      partner[std::size_t(e)] = other;
+      partner[std::size_t(other)] = e;
+    }
+  Mesh out = mesh;
+  out.zones.clear();
+  out.elements = {};
+  out.polyhedra.first_face.push_back(0);
+  std::array<Index32, max_face_corners> room{};
+  for (Zone const& zone : mesh.zones) {
+    out.zones.push_back(zone);
+    out.zones.back().first_element = out.n_elements();
+    out.zones.back().n_elements = 0;
+    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
+      Index const other = partner[std::size_t(e)];
+      if (other < 0) out.add_element(mesh.elements.type[std::size_t(e)], mesh.elements.nodes[e]);
+      if (other < e) continue;
+      std::set<Index32> nodes;
+      for (Index const part : {e, other})
+        for (int s = 0; s < n_sides(mesh, part); ++s) {
+          if (topology.sides.of(part)[std::size_t(s)] == (part == e ? other : e)) continue;
+          auto const face = side_nodes(mesh, part, s, room);
+          out.polyhedra.faces.add(face);
+          nodes.insert(face.begin(), face.end());
+        }
+      out.polyhedra.element.push_back(Index32(out.n_elements()));
+      out.polyhedra.first_face.push_back(out.polyhedra.faces.size());
+      std::vector<Index32> const list(nodes.begin(), nodes.end());
+      out.add_element(ElementType::polyhedron, list);
+    }
+  }
   return out;
 }
 

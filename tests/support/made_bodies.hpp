@@ -24,6 +24,9 @@ Mesh second_order(Mesh const& mesh, bool all_nodes = false, std::function<Vec3(V
 /// The same elements as polyhedra, their faces listed one by one.
 Mesh as_polyhedra(Mesh const& mesh);
 
+/// The same nodes with polyhedra among the elements: two of three pairs of elements that meet across side `side` of the first are one.
+Mesh with_joined_elements(Mesh const& mesh, int side);
+
 /// A box of n cells of size 1 without those whose centre is in the body, of hexahedra, or of tetrahedra. Patch "body" (a wall), the
 /// six sides "i_min" ... "k_max" as farfield.
 Mesh box_around(Index3 n, std::function<bool(Vec3 const& centre)> const& body, bool tetrahedra = false);

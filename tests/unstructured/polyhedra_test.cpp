@@ -1,7 +1,9 @@
 // NGON_n and NFACE_n, written by the CGNS mid-level library.
 #include "io/io_support.hpp"
+#include "support/made_bodies.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
@@ -124,6 +126,116 @@ TEST(Polyhedra, OtherShapesKeepTheirFaces) {
   auto const derived = make_topology(mesh);
   EXPECT_EQ(derived.boundary.size(), 10);
   EXPECT_EQ(sorted(derived.boundary.nodes[0]), sorted(topology.boundary.nodes[0]));
+}
+
+/// The corners of each element, and each face of a polyhedron, in ascending order: however they were listed.
+std::vector<std::vector<Index32>> corners_and_faces(Mesh const& mesh) {
+  std::vector<std::vector<Index32>> out;
+  for (Index e = 0; e < mesh.n_elements(); ++e) out.push_back(sorted(mesh.elements.corners(e)));
+  for (std::size_t p = 0; p < mesh.polyhedra.element.size(); ++p) {
+    std::vector<std::vector<Index32>> faces;
+    for (Index f = mesh.polyhedra.first_face[p]; f < mesh.polyhedra.first_face[p + 1]; ++f)
+      faces.push_back(sorted(mesh.polyhedra.faces[f]));
+    std::sort(faces.begin(), faces.end());
+    out.insert(out.end(), faces.begin(), faces.end());
+  }
+  return out;
+}
+
+std::vector<std::vector<Index32>> faces_of(Patch const& patch) {
+  std::vector<std::vector<Index32>> out;
+  for (Index f = 0; f < patch.faces.size(); ++f) out.push_back(sorted(patch.faces[f]));
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+TEST(Polyhedra, AreWrittenByTheirFaces) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("written.cgns");
+  for (Mesh const& plain : {to_hexahedra(unit_box({5, 3, 2})), to_prisms_and_tetrahedra(unit_box({3, 2, 4}), 2)}) {
+    Mesh const mesh = with_joined_elements(plain, 1);
+    ASSERT_GT(mesh.polyhedra.element.size(), 1u);
+    ASSERT_LT(Index(mesh.polyhedra.element.size()), mesh.n_elements());
+    write_mesh(path, mesh);
+    Mesh const back = read_mesh(path);
+    EXPECT_EQ(back.elements.type, mesh.elements.type);
+    EXPECT_EQ(corners_and_faces(back), corners_and_faces(mesh));
+    ASSERT_EQ(back.patches.size(), mesh.patches.size());
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+      EXPECT_EQ(back.patches[p].name, mesh.patches[p].name);
+      EXPECT_EQ(back.patches[p].kind, mesh.patches[p].kind);
+      EXPECT_EQ(faces_of(back.patches[p]), faces_of(mesh.patches[p])) << mesh.patches[p].name;
+    }
+    for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], mesh.coordinates[n]);
+    EXPECT_EQ(make_topology(back).boundary.size(), make_topology(mesh).boundary.size());
+  }
+}
+
+TEST(Polyhedra, AreWrittenAsTheStandardHasThem) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("written.cgns");
+  Mesh const mesh = with_joined_elements(to_hexahedra(unit_box({3, 2, 2})), 1);
+  write_mesh(path, mesh);
+  int file = 0, sections = 0;
+  check(cg_open(path.c_str(), CG_MODE_READ, &file));
+  check(cg_nsections(file, 1, 1, &sections));
+  ASSERT_EQ(sections, 2);
+  std::vector<std::vector<cgsize_t>> lists[2];
+  cgsize_t first[2], last[2];
+  for (int s = 0; s < 2; ++s) {
+    std::array<char, 66> name{};
+    CGNS_ENUMT(ElementType_t) type;
+    int boundary = 0, parents = 0;
+    check(cg_section_read(file, 1, 1, s + 1, name.data(), &type, &first[s], &last[s], &boundary, &parents));
+    EXPECT_EQ(type, s == 0 ? CGNS_ENUMV(NGON_n) : CGNS_ENUMV(NFACE_n));
+    cgsize_t size = 0;
+    check(cg_ElementDataSize(file, 1, 1, s + 1, &size));
+    std::vector<cgsize_t> items(std::size_t(size), 0), offsets(std::size_t(last[s] - first[s] + 2));
+    check(cg_poly_elements_read(file, 1, 1, s + 1, items.data(), offsets.data(), nullptr));
+    for (std::size_t n = 0; n + 1 < offsets.size(); ++n)
+      lists[s].emplace_back(items.begin() + offsets[n], items.begin() + offsets[n + 1]);
+  }
+  check(cg_close(file));
+  EXPECT_EQ(first[0], 1);
+  EXPECT_EQ(first[1], last[0] + 1);
+  EXPECT_EQ(last[1] - last[0], mesh.n_elements());
+  // Each face bounds one element, outwards, or two, and the second one sees it from outside as inwards. Around each element faces close:
+  // every edge is passed once each way.
+  std::map<cgsize_t, std::vector<int>> signs;
+  for (auto const& element : lists[1]) {
+    std::map<std::pair<cgsize_t, cgsize_t>, int> edges;
+    for (cgsize_t const face : element) {
+      signs[std::abs(face)].push_back(face > 0 ? 1 : -1);
+      auto nodes = lists[0][std::size_t(std::abs(face)) - 1];
+      if (face < 0) std::reverse(nodes.begin(), nodes.end());
+      for (std::size_t n = 0; n < nodes.size(); ++n) ++edges[{nodes[n], nodes[(n + 1) % nodes.size()]}];
+    }
+    for (auto const& [edge, times] : edges) {
+      EXPECT_EQ(times, 1);
+      EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
+    }
+  }
+  EXPECT_EQ(signs.size(), lists[0].size());
+  for (auto const& [face, of] : signs)
+    EXPECT_TRUE(of == std::vector<int>{1} || of == (std::vector<int>{1, -1})) << face;
+}
+
+TEST(Polyhedra, InOneZoneWithElementsOfSecondOrderAreRefused) {
+  TemporaryFolder const folder;
+  Mesh mesh = with_joined_elements(to_hexahedra(unit_box({3, 2, 2})), 1);
+  Mesh const curved = second_order(to_hexahedra(unit_box({1, 1, 1})));
+  Index32 const shift = Index32(mesh.n_nodes());
+  std::vector<Index32> nodes;
+  for (Index32 const n : curved.elements.nodes[0]) nodes.push_back(n + shift);
+  mesh.zones.back().n_nodes += curved.n_nodes();
+  mesh.add_element(ElementType::hexahedron, nodes);
+  Coordinates x(mesh.n_nodes());
+  for (Index n = 0; n < x.size(); ++n)
+    x.set(n, n < shift ? mesh.coordinates[n] : Vec3{9, 0, 0} + curved.coordinates[n - shift]);
+  mesh.coordinates = x;
+  std::string const said = message_of<IoError>([&] { write_mesh(folder.file("no.cgns"), mesh); });
+  EXPECT_NE(said.find("second order"), std::string::npos) << said;
+  EXPECT_FALSE(std::filesystem::exists(folder.file("no.cgns")));
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ TEST_F(ElementWheel, InPartStaysPeriodicByTheAngleOfThePart) {
   EXPECT_GT(moved, again.n_nodes() / 4);
 }
 
-/// An H mesh of one zone, its blade on the periodic sides, as blocks, hexahedra, or prisms and tetrahedra.
+/// An H mesh of one zone, its blade on the periodic sides, as blocks, hexahedra, prisms and tetrahedra, or hexahedra and polyhedra.
 class CascadeWheel : public ElementWheel {
  protected:
   void SetUp() override {
@@ -166,24 +166,25 @@ class CascadeWheel : public ElementWheel {
     Mesh mixed = to_prisms_and_tetrahedra(blocks, 4);
     for (auto const& face : blocks.interfaces) mixed.connections.push_back(node_pairs(blocks, face));
     put("mixed", mixed);
+    put("polyhedra", with_joined_elements(as_hexahedra(blocks), 3));
     std::string gentle = demo_rules;
     gentle.replace(gentle.find("0.06 * sin(axial / 0.05) + 0.1 * axial"), 38, "0.04 * sin(2 * axial) + 0.01 * axial");
     gentle.replace(gentle.find("0.1 * (r - 0.12) * axial"), 24, "0.02 * (r - 1.2) * axial");
-    for (std::string const kind : {"blocks", "hexahedra", "mixed"}) case_of(kind, gentle);
+    for (std::string const kind : {"blocks", "hexahedra", "mixed", "polyhedra"}) case_of(kind, gentle);
   }
   static constexpr char const* blades = "factors = [1, 1, 1, 0.5, 1, 0.5, 0.5, -1]\n";
 };
 
 TEST_F(CascadeWheel, MovesBoundariesAsTheWheelOfTheBlocks) {
   WheelFile const of_blocks = wheel("blocks.toml", blades);
-  for (std::string const kind : {"hexahedra", "mixed"}) {
+  for (std::string const kind : {"hexahedra", "mixed", "polyhedra"}) {
     ElementWheelFile const of_elements = element_wheel(kind, blades);
     expect_same_boundaries(blocks, {"hub", "case"}, of_blocks, of_elements);
   }
 }
 
 TEST_F(CascadeWheel, OfAnyElementsIsClosedFaceByFace) {
-  for (std::string const kind : {"hexahedra", "mixed"}) {
+  for (std::string const kind : {"hexahedra", "mixed", "polyhedra"}) {
     ElementWheelFile const wheel = element_wheel(kind, blades);
     EXPECT_EQ(wheel.n_periodic(), 0);
     wheel.expect_same_bits();

@@ -244,7 +244,6 @@ class ElementPlan final : public AnyPlan {
 
   /// The morphed mesh with its regions (0 near, 1 partially wrapped, 2 far), layers and displacements.
   void write_regions(std::string const& path, Coordinates const& morphed) const {
-    if (mesh_.mesh.polyhedra.element.size() > 0) return;  // they cannot be written anew
     OutputFields fields;
     fields.displacement = true;
     CellField region{"Region", {}};

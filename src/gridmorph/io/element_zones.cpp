@@ -9,7 +9,7 @@ namespace gridmorph::io {
 
 namespace {
 
-constexpr std::int32_t mixed = 20;
+constexpr std::int32_t mixed = 20, ngon = 22, nface = 23;
 
 /// ElementType_t of a list of nodes; 0 for those that this writer does not know.
 std::int32_t cgns_type(ElementType type, std::size_t nodes) {
@@ -26,6 +26,31 @@ std::int32_t cgns_type(ElementType type, std::size_t nodes) {
 }
 
 std::int32_t face_type(std::size_t corners) { return corners == 2 ? 3 : corners == 3 ? 5 : corners == 4 ? 7 : 0; }
+
+bool has_polyhedra(Mesh const& mesh, Zone const& zone) {
+  auto const& of = mesh.polyhedra.element;
+  auto const first = std::lower_bound(of.begin(), of.end(), Index32(zone.first_element));
+  return first != of.end() && *first < zone.first_element + zone.n_elements;
+}
+
+/// At most this many numbers are in its sections by faces: of each side its nodes, an offset and the number that its element has of it.
+std::uint64_t numbers_by_faces(Mesh const& mesh, Zone const& zone) {
+  std::uint64_t out = 0;
+  std::array<Index32, max_face_corners> room{};
+  for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e)
+    for (int s = 0; s < n_sides(mesh, e); ++s) out += side_nodes(mesh, e, s, room).size() + 2;
+  return out;
+}
+
+/// Numbers in a zone, from 1 on, of the mesh's nodes.
+std::vector<std::int32_t> numbers_of(std::vector<Index32> const& nodes, Zone const& zone) {
+  std::vector<std::int32_t> out;
+  out.reserve(nodes.size());
+  for (Index32 const n : nodes) out.push_back(std::int32_t(n - zone.first_node + 1));
+  return out;
+}
+
+std::vector<std::int32_t> offsets_of(CsrGraph const& lists) { return {lists.first.begin(), lists.first.end()}; }
 
 std::pair<std::string, std::string> split(std::string const& zone_name) {
   auto const slash = zone_name.find('/');
@@ -62,9 +87,15 @@ void ElementZoneWriter::zone(int z, std::array<double const*, 3> const& values) 
   file_.create_text(id, "ZoneType", "ZoneType_t", "Unstructured");
   coordinates(zone, id, values);
   std::set<std::string> sections{"ZoneType", "GridCoordinates", "ZoneBC", "ZoneGridConnectivity"};
-  Index next = elements(zone, id, sections);
-  boundary(z, id, next, sections);
+  ZoneFaces const* const faces = has_polyhedra(mesh_, zone) ? &faces_of(zone) : nullptr;
+  Index const next = faces ? elements(zone, *faces, id, sections) : elements(zone, id, sections);
+  boundary(z, faces, id, next, sections);
   connections(z, id);
+}
+
+ZoneFaces const& ElementZoneWriter::faces_of(Zone const& zone) {
+  auto const known = faces_.find(zone.first_element);
+  return (known != faces_.end() ? known : faces_.emplace(zone.first_element, ZoneFaces(mesh_, zone)).first)->second;
 }
 
 void ElementZoneWriter::coordinates(Zone const& zone, double zone_id, std::array<double const*, 3> const& values) {
@@ -81,14 +112,20 @@ void ElementZoneWriter::coordinates(Zone const& zone, double zone_id, std::array
   }
 }
 
+double ElementZoneWriter::elements_node(double zone_id, std::string const& name, std::int32_t type, Index first,
+                                        Index size) {
+  std::array<std::int32_t, 2> const value{type, 0};
+  double const id = file_.create(zone_id, name, "Elements_t", "I4", {2}, value.data());
+  std::array<std::int32_t, 2> const range{std::int32_t(first), std::int32_t(first + size - 1)};
+  file_.create(id, "ElementRange", "IndexRange_t", "I4", {2}, range.data());
+  return id;
+}
+
 void ElementZoneWriter::section(double zone_id, std::string const& name, Index first,
                                 std::vector<std::int32_t> const& types, std::vector<Index> const& start,
                                 std::vector<std::int32_t> const& nodes) {
   bool const uniform = std::all_of(types.begin(), types.end(), [&](std::int32_t t) { return t == types.front(); });
-  std::array<std::int32_t, 2> const type{uniform ? types.front() : mixed, 0};
-  double const id = file_.create(zone_id, name, "Elements_t", "I4", {2}, type.data());
-  std::array<std::int32_t, 2> const range{std::int32_t(first), std::int32_t(first + Index(types.size()) - 1)};
-  file_.create(id, "ElementRange", "IndexRange_t", "I4", {2}, range.data());
+  double const id = elements_node(zone_id, name, uniform ? types.front() : mixed, first, Index(types.size()));
   if (uniform) {
     file_.create(id, "ElementConnectivity", "DataArray_t", "I4", {Index(nodes.size())}, nodes.data());
     return;
@@ -119,6 +156,39 @@ Index ElementZoneWriter::elements(Zone const& zone, double zone_id, std::set<std
   return zone.n_elements + 1;
 }
 
+Index ElementZoneWriter::elements(Zone const& zone, ZoneFaces const& faces, double zone_id,
+                                  std::set<std::string>& taken) {
+  for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e)
+    if (mesh_.elements.corners(e).size() < mesh_.elements.nodes[e].size())
+      throw IoError(mesh_.source + ": " + describe_element(mesh_, e) +
+                    " is of second order and in one zone with polyhedra, which are written by their faces: it cannot "
+                    "be written");
+  auto const write = [&](char const* name, std::int32_t type, Index first, CsrGraph const& lists,
+                         std::vector<std::int32_t> const& items) {
+    double const id = elements_node(zone_id, cgns::unique_name(taken, name), type, first, lists.size());
+    auto const offsets = offsets_of(lists);
+    file_.create(id, "ElementStartOffset", "DataArray_t", "I4", {Index(offsets.size())}, offsets.data());
+    file_.create(id, "ElementConnectivity", "DataArray_t", "I4", {Index(items.size())}, items.data());
+  };
+  Index const n_faces = faces.faces().size();
+  write("Faces", ngon, 1, faces.faces(), numbers_of(faces.faces().item, zone));
+  write("Elements", nface, n_faces + 1, faces.elements(), faces.elements().item);
+  return n_faces + zone.n_elements + 1;
+}
+
+void ElementZoneWriter::listed_faces(Patch const& patch, ZoneFaces const& faces, double bc_id) {
+  std::vector<std::int32_t> list;
+  for (Index f = 0; f < patch.faces.size(); ++f) {
+    Index const face = faces.find(patch.faces[f]);
+    if (face < 0)
+      throw IoError(mesh_.source + ": patch " + describe_patch(mesh_, patch) + " has a face at node " +
+                    describe_node(mesh_, patch.faces[f][0]) + " that is none of an element, which cannot be written");
+    list.push_back(std::int32_t(face + 1));
+  }
+  file_.create_text(bc_id, "GridLocation", "GridLocation_t", "FaceCenter");
+  file_.create(bc_id, "PointList", "IndexArray_t", "I4", {1, Index(list.size())}, list.data());
+}
+
 void ElementZoneWriter::family_names(double parent, std::vector<std::string> const& families) {
   for (std::size_t f = 0; f < families.size(); ++f)
     if (f == 0)
@@ -127,7 +197,8 @@ void ElementZoneWriter::family_names(double parent, std::vector<std::string> con
       file_.create_text(parent, "AdditionalFamilyName" + std::to_string(f), "AdditionalFamilyName_t", families[f]);
 }
 
-void ElementZoneWriter::boundary(int z, double zone_id, Index next, std::set<std::string>& sections) {
+void ElementZoneWriter::boundary(int z, ZoneFaces const* faces, double zone_id, Index next,
+                                 std::set<std::string>& sections) {
   auto const& zone = mesh_.zones[std::size_t(z)];
   double zone_bc = 0;
   std::set<std::string> taken;
@@ -135,16 +206,18 @@ void ElementZoneWriter::boundary(int z, double zone_id, Index next, std::set<std
     if (patch.zone != z) continue;
     if (taken.empty()) zone_bc = file_.create(zone_id, "ZoneBC", "ZoneBC_t");
     double const id = file_.create_text(zone_bc, cgns::unique_name(taken, patch.name), "BC_t", cgns::bc_type_of(patch));
-    if (patch.faces.size() > 0) {
-      std::vector<std::int32_t> types, nodes;
+    if (patch.faces.size() > 0 && faces != nullptr) {
+      options_.boundary_nodes ? points(id, "PointList", patch_nodes(patch), zone) : listed_faces(patch, *faces, id);
+    } else if (patch.faces.size() > 0) {
+      std::vector<std::int32_t> types;
       for (Index f = 0; f < patch.faces.size(); ++f) {
         types.push_back(face_type(patch.faces[f].size()));
         if (types.back() == 0)
           throw IoError(mesh_.source + ": patch " + describe_patch(mesh_, patch) + " has faces of " +
                         std::to_string(patch.faces[f].size()) + " corners, which cannot be written");
       }
-      for (Index32 const n : patch.faces.item) nodes.push_back(std::int32_t(n - zone.first_node + 1));
-      section(zone_id, cgns::unique_name(sections, patch.name), next, types, patch.faces.first, nodes);
+      section(zone_id, cgns::unique_name(sections, patch.name), next, types, patch.faces.first,
+              numbers_of(patch.faces.item, zone));
       std::array<std::int32_t, 2> const range{std::int32_t(next), std::int32_t(next + patch.faces.size() - 1)};
       next += patch.faces.size();
       if (options_.boundary_nodes) {
@@ -161,8 +234,7 @@ void ElementZoneWriter::boundary(int z, double zone_id, Index next, std::set<std
 }
 
 void ElementZoneWriter::points(double parent, char const* name, std::vector<Index32> const& nodes, Zone const& zone) {
-  std::vector<std::int32_t> list;
-  for (Index32 const n : nodes) list.push_back(std::int32_t(n - zone.first_node + 1));
+  auto const list = numbers_of(nodes, zone);
   file_.create(parent, name, "IndexArray_t", "I4", {1, Index(list.size())}, list.data());
 }
 
@@ -204,6 +276,7 @@ std::uint64_t bytes_of_elements(Mesh const& mesh) {
   for (auto const& zone : mesh.zones) {
     values += 3 * std::uint64_t(zone.size());
     numbers += 2 * std::uint64_t(zone.n_elements);
+    if (has_polyhedra(mesh, zone)) numbers += numbers_by_faces(mesh, zone);
     if (zone.n_elements > 0)
       numbers += std::uint64_t(first[std::size_t(zone.first_element + zone.n_elements)] -
                                first[std::size_t(zone.first_element)]);

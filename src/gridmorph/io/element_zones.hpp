@@ -3,6 +3,7 @@
 
 #include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/io/zone_faces.hpp>
 
 #include <array>
 #include <cstdint>
@@ -15,7 +16,8 @@
 namespace gridmorph::io {
 
 /// Writes the zones of a mesh with their elements, patches and connections. Nodes, elements, faces and connections of a zone are numbered
-/// from its first node and first element on; zones may share them, as the copies of a passage in a wheel do.
+/// from its first node and first element on; zones may share them, as the copies of a passage in a wheel do. A zone with polyhedra is written
+/// by its faces, NGON_n and NFACE_n, as the standard asks for all of its elements then.
 class ElementZoneWriter {
  public:
   /// The mesh, in the order of its file and without coordinates, must outlive the writer.
@@ -33,8 +35,14 @@ class ElementZoneWriter {
                std::vector<Index> const& start, std::vector<std::int32_t> const& nodes);
   /// Returns the next element number.
   Index elements(Zone const& zone, double zone_id, std::set<std::string>& taken);
+  ZoneFaces const& faces_of(Zone const& zone);
+  /// The same for a zone with polyhedra.
+  Index elements(Zone const& zone, ZoneFaces const& faces, double zone_id, std::set<std::string>& taken);
+  double elements_node(double zone_id, std::string const& name, std::int32_t type, Index first, Index size);
   void family_names(double parent, std::vector<std::string> const& families);
-  void boundary(int z, double zone_id, Index next, std::set<std::string>& sections);
+  void boundary(int z, ZoneFaces const* faces, double zone_id, Index next, std::set<std::string>& sections);
+  /// Where the faces of a patch are, by their numbers.
+  void listed_faces(Patch const& patch, ZoneFaces const& faces, double bc_id);
   void points(double parent, char const* name, std::vector<Index32> const& nodes, Zone const& zone);
   void connections(int z, double zone_id);
   void periodic(double connection, Periodic const& p);
@@ -43,6 +51,7 @@ class ElementZoneWriter {
   Mesh const& mesh_;
   WriteOptions options_;
   std::map<std::string, double> bases_;
+  std::map<Index, ZoneFaces> faces_;  ///< by first elements, which zones may share
 };
 
 /// More than the file will take.

@@ -71,7 +71,8 @@ struct WriteOptions {
 /// Blocks: 1-to-1 interfaces with Transform. A family whose patches share one BC type gets that type, and its patches become
 /// FamilySpecified. Patches of kind `connection` have no donor in a Mesh and become UserDefined boundary conditions of the same name.
 /// Elements: faces of boundary conditions as sections of their own, connections as Abutting1to1 point lists; in the order of the
-/// file that the mesh came from. Polyhedra are refused. Blocks beside elements are written as elements too.
+/// file that the mesh came from. A zone with polyhedra is written by its faces (NGON_n, NFACE_n), with boundary conditions that list theirs;
+/// elements of second order are refused there. Blocks beside elements are written as elements too.
 void write_mesh(std::string const& path, Mesh const& mesh, WriteOptions const& options = {});
 
 /// Writes a mesh as write_mesh does, but zone by zone: for meshes that never are in memory as a whole. Zones of elements may share nodes and

@@ -60,10 +60,6 @@ class ElementPassage final : public PassageMesh {
       : mesh_(without_repeated_elements(load_mesh(case_file.input, case_file.side_file, case_file.leave_out))) {
     Problems problems;
     for (auto const& problem : mesh_.problems) problems.add(problem);
-    if (!mesh_.mesh.polyhedra.element.empty())
-      problems.add(mesh_.mesh.source +
-                   ": has polyhedra, which are not written anew, and a wheel is a new file; make a wheel of a mesh of "
-                   "tetrahedra, pyramids, prisms and hexahedra");
     problems.throw_if_any<MeshError>();
     links_ = passage_links(Boundary(mesh_.mesh, mesh_.topology, mesh_.face_patches));
   }
