@@ -1,5 +1,5 @@
 // Positions and motions as a machine sees them: along its axis, away from it, and around it; in a linear cascade along the flow,
-// along the span, and along the pitch.
+// along the span, and along the pitch; in a plane across the axis away from it, along it, and around it.
 #pragma once
 
 #include <gridmorph/geometry/axis.hpp>
@@ -25,7 +25,8 @@ struct CylindricalMotion {
 
 /// The frame of a machine's axis, or of a linear cascade: blades side by side along a straight line, what an annulus becomes when its
 /// radius grows without limit. There axial position, radius and angle are the positions along the axis (the way of the flow), along the
-/// span = pitch x axis, and along the pitch, all lengths from the origin.
+/// span = pitch x axis, and along the pitch, all lengths from the origin. In a plane across the axis, whose flow goes in or out, axial
+/// position and radius change places: the one is the distance from the axis, the other the position along it.
 class CylindricalFrame {
  public:
   explicit CylindricalFrame(Axis const& axis)
@@ -36,9 +37,17 @@ class CylindricalFrame {
     span_ = cross(pitch_, direction_);
     linear_ = true;
   }
+  /// Of a row in a plane across the axis.
+  static CylindricalFrame in_plane(Axis const& axis) {
+    CylindricalFrame out(axis);
+    out.plane_ = true;
+    return out;
+  }
 
   /// Whether blades stand along a straight line.
   [[nodiscard]] bool is_linear() const { return linear_; }
+  /// Whether the flow stays in a plane across the axis.
+  [[nodiscard]] bool is_plane() const { return plane_; }
   /// Linear: units along pitch and span.
   [[nodiscard]] Vec3 const& pitch() const { return pitch_; }
   [[nodiscard]] Vec3 const& span() const { return span_; }
@@ -50,7 +59,14 @@ class CylindricalFrame {
     Vec3 const d = p - origin_;
     double const a = dot(d, direction_);
     if (linear_) return {a, dot(d, span_)};
-    return {a, norm(d - a * direction_)};
+    double const r = norm(d - a * direction_);
+    return plane_ ? MeridionalPoint{r, a} : MeridionalPoint{a, r};
+  }
+  /// Length along the circumference per angle: the distance from the axis; 1 in a linear cascade, whose angles are lengths.
+  [[nodiscard]] double length_of_angle(Vec3 const& p) const {
+    if (linear_) return 1;
+    MeridionalPoint const m = meridional(p);
+    return plane_ ? m.axial : m.radius;
   }
 
   /// What displacement u does to point p. Every component is a product with u, so that u = 0 gives exact zeros.
@@ -63,12 +79,13 @@ class CylindricalFrame {
     Vec3 const v = u - axial * direction_;
     double const radii = norm(q) + norm(q + v);
     double const radial = radii > 0 ? (2 * dot(q, v) + dot(v, v)) / radii : 0.0;
-    return {axial, radial, std::atan2(dot(direction_, cross(q, v)), dot(q, q) + dot(q, v))};
+    return swapped({axial, radial, std::atan2(dot(direction_, cross(q, v)), dot(q, q) + dot(q, v))});
   }
 
   /// The displacement of p that has these components: the inverse of motion(). Exactly zero for zero components; an
   /// angle alone keeps axial position and radius to round-off.
-  [[nodiscard]] Vec3 displacement(Vec3 const& p, CylindricalMotion const& m) const {
+  [[nodiscard]] Vec3 displacement(Vec3 const& p, CylindricalMotion const& components) const {
+    CylindricalMotion const m = swapped(components);
     if (linear_) return m.axial * direction_ + m.radial * span_ + m.angle_rad * pitch_;
     Vec3 const d = p - origin_;
     Vec3 const q = d - dot(d, direction_) * direction_;
@@ -83,10 +100,16 @@ class CylindricalFrame {
   }
 
  private:
+  /// Between what components mean in a plane and about the axis.
+  [[nodiscard]] CylindricalMotion swapped(CylindricalMotion const& m) const {
+    return plane_ ? CylindricalMotion{m.radial, m.axial, m.angle_rad} : m;
+  }
+
   Vec3 origin_;
   Vec3 direction_;
   Vec3 pitch_, span_;  ///< linear
   bool linear_ = false;
+  bool plane_ = false;
 };
 
 }  // namespace gridmorph

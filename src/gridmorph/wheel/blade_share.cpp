@@ -1,6 +1,7 @@
 #include <gridmorph/wheel/blade_share.hpp>
 
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/wheel/detail/pitch_fraction.hpp>
 #include <gridmorph/wheel/shared_nodes.hpp>
@@ -82,33 +83,62 @@ class Row {
     return {out.begin(), out.end()};
   }
 
-  /// Patches that meet are of one blade. A patch whose nodes are `a` passages ahead meets another whose nodes are `b` ahead:
+  /// What hangs together of a blade's patch by its faces: in an H mesh of elements one patch has both sides, a pitch apart.
+  struct Piece {
+    int patch = -1;
+    std::vector<Index> nodes;
+  };
+
+  [[nodiscard]] std::vector<Piece> pieces_of_blades() const {
+    std::vector<Piece> out;
+    for (int const p : blades_) {
+      BoundarySurface const& surface = boundary_.surface(p);
+      DisjointSets<int> sets(surface.nodes.size());
+      std::vector<char> in_face(surface.nodes.size(), 0);
+      for (GridFacet const& face : surface.faces)
+        for (int const n : face)
+          if (n >= 0) {
+            sets.join(face[0], n);
+            in_face[std::size_t(n)] = 1;
+          }
+      // Blocks have a grid, and nodes amid edges are of no face.
+      bool const whole = std::find(in_face.begin(), in_face.end(), 0) != in_face.end();
+      std::map<int, std::vector<Index>> pieces;
+      for (std::size_t n = 0; n < in_face.size(); ++n)
+        pieces[whole ? 0 : sets.root(int(n))].push_back(surface.nodes[n]);
+      for (auto& [root, nodes] : pieces) out.push_back({p, std::move(nodes)});
+    }
+    return out;
+  }
+
+  /// Pieces that meet are of one blade. A piece whose nodes are `a` passages ahead meets another whose nodes are `b` ahead:
   /// their blades' numbers differ by a - b.
   void number_blades(SharedNodes const& all) {
+    std::vector<Piece> const pieces = pieces_of_blades();
     struct Meeting {
-      int patch, offset;
+      int piece, offset;
     };
     std::map<int, std::vector<Meeting>> meetings;  // by group
-    std::vector<unsigned char> touches(blades_.size(), 0);
-    for (std::size_t b = 0; b < blades_.size(); ++b) {
-      for (Index const n : boundary_.surface(blades_[b]).nodes) {
+    std::vector<unsigned char> touches(pieces.size(), 0);
+    for (std::size_t b = 0; b < pieces.size(); ++b) {
+      for (Index const n : pieces[b].nodes) {
         Index const one = one_of_place_(n);
         if (auto const side = side_.find(one); side != side_.end()) touches[b] |= side->second;
         if (auto const* m = all.find(one); m != nullptr && !all.on_axis(m->group))
           meetings[m->group].push_back({int(b), m->offset});
       }
     }
-    std::vector<std::set<std::pair<int, int>>> neighbours(blades_.size());  // (patch, its number minus the own one)
+    std::vector<std::set<std::pair<int, int>>> neighbours(pieces.size());  // (piece, its number minus the own one)
     for (auto const& [group, meets] : meetings)
       for (Meeting const& m : meets) {
         Meeting const& first = meets.front();
-        neighbours[first.patch].insert({m.patch, m.offset - first.offset});
-        neighbours[m.patch].insert({first.patch, first.offset - m.offset});
+        neighbours[first.piece].insert({m.piece, m.offset - first.offset});
+        neighbours[m.piece].insert({first.piece, first.offset - m.offset});
       }
 
-    std::vector<int> number(blades_.size(), 0);
-    std::vector<char> seen(blades_.size(), 0);
-    for (std::size_t start = 0; start < blades_.size(); ++start) {
+    std::vector<int> number(pieces.size(), 0);
+    std::vector<char> seen(pieces.size(), 0);
+    for (std::size_t start = 0; start < pieces.size(); ++start) {
       if (seen[start] != 0) continue;
       std::vector<int> blade{int(start)};
       seen[start] = 1;
@@ -121,7 +151,7 @@ class Row {
             blade.push_back(other);
           } else if (number[other] != expected) {
             throw MotionError(
-                "blade " + describe_patch(mesh_, mesh_.patches[blades_[start]]) +
+                "blade " + describe_patch(mesh_, mesh_.patches[pieces[start].patch]) +
                 " hangs together with the blade of the next passage, so the two cannot move differently; name the "
                 "blade alone in `of`, without hub and case");
           }
@@ -137,8 +167,8 @@ class Row {
         if (touches[b] != 0) middle_ = 0;
       }
     }
-    for (std::size_t b = 0; b < blades_.size(); ++b)
-      for (Index const n : boundary_.surface(blades_[b]).nodes) blade_at_[one_of_place_(n)] = number[b];
+    for (std::size_t b = 0; b < pieces.size(); ++b)
+      for (Index const n : pieces[b].nodes) blade_at_[one_of_place_(n)] = number[b];
   }
 
   PitchFraction const& fraction_of(int rule) {

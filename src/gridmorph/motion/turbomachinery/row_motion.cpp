@@ -72,9 +72,12 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
                   std::to_string(sections.last_span()) +
                   (annulus.has_walls() ? " between hub and case"
                    : frame.is_linear() ? " of its own extent, in a linear cascade"
+                   : frame.is_plane()  ? " across a plane"
                                        : " of its own radii") +
-                  (annulus.turns() ? ", along the flow path " : ", axial ") + std::to_string(sections.most_upstream()) +
-                  " to " + std::to_string(sections.most_downstream()));
+                  (annulus.turns()    ? ", along the flow path "
+                   : frame.is_plane() ? ", radii "
+                                      : ", axial ") +
+                  std::to_string(sections.most_upstream()) + " to " + std::to_string(sections.most_downstream()));
   return sections;
 }
 
@@ -101,6 +104,19 @@ std::optional<std::vector<Vec3>> pitch_directions(Boundary const& boundary, Reso
   return found;
 }
 
+/// A direction or its opposite: that whose largest component is positive.
+Vec3 upwards(Vec3 const& v) {
+  Vec3 const size{std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+  double const largest = size.x >= size.y && size.x >= size.z ? v.x : (size.y >= size.z ? v.y : v.z);
+  return largest < 0 ? -v : v;
+}
+
+/// Whether the mesh is a plane one across a direction.
+bool lies_across(Boundary const& boundary, Vec3 const& direction) {
+  constexpr double parallel = 1e-6;
+  return boundary.is_plane() && norm(cross(boundary.across(), direction)) < parallel * norm(boundary.across());
+}
+
 }  // namespace
 
 CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades) {
@@ -108,15 +124,16 @@ CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& mo
   auto directions = pitch_directions(boundary, motion, in_row, false);
   if (directions && directions->size() > 1) directions = pitch_directions(boundary, motion, in_row, true);
   CylindricalFrame const about_axis(motion.axis);
-  if (!directions || directions->empty()) return about_axis;
+  if (!directions || directions->empty())
+    return lies_across(boundary, about_axis.direction()) ? CylindricalFrame::in_plane(motion.axis) : about_axis;
   if (directions->size() > 1)
     throw MotionError(
         "the periodic sides of the row are apart in several directions; let the rule follow name those between blades");
   // Which way it counts shall not depend on which side the file names first.
-  Vec3 pitch = directions->front();
-  Vec3 const size{std::abs(pitch.x), std::abs(pitch.y), std::abs(pitch.z)};
-  double const largest = size.x >= size.y && size.x >= size.z ? pitch.x : (size.y >= size.z ? pitch.y : pitch.z);
-  if (largest < 0) pitch = -pitch;
+  Vec3 const pitch = upwards(directions->front());
+  // The plane leaves one way across the pitch.
+  if (lies_across(boundary, about_axis.direction()))
+    return {Axis{motion.axis.origin, upwards(cross(pitch, boundary.across()))}, pitch};
   constexpr double across = 1e-3;
   if (std::abs(dot(pitch, about_axis.direction())) > across)
     throw MotionError(
@@ -138,6 +155,8 @@ std::vector<RigidTransform> periodic_transforms_of_row(Boundary const& boundary,
 
 Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, CylindricalFrame const& frame,
                        std::vector<int> const& blades) {
+  // Circles in a plane are ends of a row there, never its hub or case.
+  if (frame.is_plane()) return {surfaces, {}, meridional_points(boundary, frame, blades)};
   std::vector<bool> const in_row = zones_of_row(boundary, blades);
   return {surfaces, end_walls_of_row(boundary, surfaces, in_row), meridional_points(boundary, frame, blades),
           [&] { return walls_of_row(boundary, surfaces, in_row, frame); }};
@@ -149,8 +168,7 @@ RowMotion::RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std
     : blades_(blades),
       frame_(frame_of_row(boundary, motion, blades)),
       row_zones_(zones_of_row(boundary, blades)),
-      annulus_(surfaces, end_walls_of_row(boundary, surfaces, row_zones_), meridional_points(boundary, frame_, blades),
-               [&] { return walls_of_row(boundary, surfaces, row_zones_, frame_); }),
+      annulus_(annulus_of_row(boundary, surfaces, frame_, blades)),
       sections_(make_sections(boundary, blades, frame_, annulus_, displacement, notes)),
       middle_(0.5 * (sections_.most_upstream() + sections_.most_downstream())),
       inlet_(find_end(boundary, motion, blades, -1, displacement)),
@@ -197,7 +215,9 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
         throw MotionError("patch " + describe_patch(mesh, patch) +
                           " has the rule circumferential-slide but lies beside the blade's "
                           "mid-chord at " +
-                          std::string(annulus_.turns() ? "flow path length " : "axial position ") +
+                          std::string(annulus_.turns()    ? "flow path length "
+                                      : frame_.is_plane() ? "radius "
+                                                          : "axial position ") +
                           std::to_string(middle_) + "; only patches upstream or downstream of it can slide");
       }
     } else if (row_zones_[patch.zone] && (patch.kind != PatchKind::wall && patch.kind != PatchKind::symmetry &&

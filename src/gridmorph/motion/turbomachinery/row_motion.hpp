@@ -17,8 +17,9 @@ namespace gridmorph {
 
 /// Of the row that holds the blades: about the axis, or that of a linear cascade where its periodic connections are translations
 /// across the axis (one direction; where there are several, that of the connections which follow a blade), towards the
-/// positive side of the coordinate that changes most. Throws MotionError when
-/// a translation runs along the axis or their directions differ.
+/// positive side of the coordinate that changes most; its flow goes along the axis, or, where that stands on a plane mesh, across the pitch
+/// in the plane towards the positive side likewise. Without translations such a mesh has its row in the plane, around the axis. Throws
+/// MotionError when a translation runs along the axis or their directions differ.
 CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades);
 
 /// Hub, case and the coordinates between them of the row that holds the blades. Keeps pointers to `surfaces`.

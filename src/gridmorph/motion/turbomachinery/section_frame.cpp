@@ -53,8 +53,8 @@ class BladeFrame final : public SectionFrame {
     MeridionalPoint const m = frame_.meridional(point);
     Vec3 const d = point - frame_.origin();
     FlowPosition const at = annulus_.position(m);
-    if (frame_.is_linear()) return {at.h, at.m, dot(d, frame_.pitch()), 1};
-    return {at.h, at.m, std::atan2(dot(d, second_), dot(d, first_)), m.radius};
+    double const t = frame_.is_linear() ? dot(d, frame_.pitch()) : std::atan2(dot(d, second_), dot(d, first_));
+    return {at.h, at.m, t, frame_.length_of_angle(point)};
   }
   [[nodiscard]] Vec3 displacement(Vec3 const& point, double ds, double dt) const override {
     return frame_.displacement(point, annulus_.motion(frame_.meridional(point), {ds, 0, dt}));
