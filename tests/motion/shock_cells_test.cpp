@@ -1,11 +1,13 @@
 // Which cells a shock sensor takes, against the profile that the solution was made of.
 #include "shock_flow.hpp"
+#include "support/cascade.hpp"
 #include "support/expect_error.hpp"
 #include "support/mesh_builders.hpp"
 #include "support/scramble.hpp"
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/motion/shock/shock_cells.hpp>
 
 #include <gtest/gtest.h>
@@ -218,6 +220,57 @@ TEST(ShockCells, SmallGroupsAreDroppedAndLayersGrowFromTheOthers) {
   search.grow = 0;
   expect_all_in(message_of<MotionError>([&] { find_shock(mesh, solution, search, all(mesh)); }),
                 {"in 2 groups of " + std::to_string(n), "smallest = " + std::to_string(n) + " would keep"});
+}
+
+/// A solution of one pressure but at nodes (i, any j, k), for k in `layers`.
+FlowSolution raised(Mesh const& mesh, int i, std::vector<int> const& layers) {
+  FlowSolution out = solution_of(mesh, {});
+  std::vector<double>& p = out.values["Pressure"];
+  std::fill(p.begin(), p.end(), 1.0);
+  Zone const& zone = mesh.zones.front();
+  for (int const k : layers)
+    for (int j = 0; j < zone.extent[1]; ++j) p[std::size_t(zone.node({i, j, k}))] = 3;
+  return out;
+}
+
+// Straight and round the axis; a pressure that is raised on both of its periodic sides is raised in one place.
+TEST(ShockCells, CellsThatMeetAcrossPeriodicSidesAreOfOneGroup) {
+  for (double const radius : {0.0, 3.0}) {
+    Mesh const blocks = cascade(radius);
+    Zone const zone = blocks.zones.front();
+    int const last = zone.extent[2] - 1, of_a_side = 2 * (zone.extent[1] - 1);
+    FlowSolution const both = raised(blocks, 5, {0, last}), one = raised(blocks, 5, {last});
+    for (bool const elements : {false, true}) {
+      Mesh const mesh = elements ? as_hexahedra(blocks) : blocks;
+      ShockSearch search = search_for(Sensor::jump, 0.2);
+      search.smallest = of_a_side + 1;
+      ShockCells const found = find_shock(mesh, both, search, all(mesh));
+      EXPECT_EQ(count(found.cells), 2 * of_a_side);
+      expect_all_in(found.summary, {std::to_string(2 * of_a_side) + " cells in 1 group "});
+      expect_all_in(message_of<MotionError>([&] { find_shock(mesh, one, search, all(mesh)); }),
+                    {"in 1 groups of " + std::to_string(of_a_side) + " at most"});
+      // Without the periodic sides they are two.
+      Mesh apart = mesh;
+      apart.interfaces.clear();
+      apart.connections.clear();
+      expect_all_in(message_of<MotionError>([&] { find_shock(apart, both, search, all(apart)); }),
+                    {"in 2 groups of " + std::to_string(of_a_side) + " at most"});
+    }
+  }
+}
+
+TEST(ShockCells, LayersGrowAcrossPeriodicSides) {
+  Mesh const mesh = cascade(3);
+  Zone const& zone = mesh.zones.front();
+  ShockSearch search = search_for(Sensor::jump, 0.2);
+  search.grow = 1;
+  auto const cells = find_shock(mesh, raised(mesh, 5, {1}), search, all(mesh)).cells;
+  Index const ni = zone.extent[0] - 1, nj = zone.extent[1] - 1, nk = zone.extent[2] - 1;
+  for (Index k = 0; k < nk; ++k)
+    for (Index j = 0; j < nj; ++j)
+      for (Index i = 0; i < ni; ++i)
+        EXPECT_EQ(cells[std::size_t(i + ni * (j + nj * k))] != 0, i >= 3 && i <= 6 && (k <= 2 || k == nk - 1))
+            << i << k;
 }
 
 TEST(ShockCells, WhereNoneIsFoundTheThresholdThatIsNamedWouldDo) {

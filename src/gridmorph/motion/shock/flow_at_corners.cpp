@@ -113,6 +113,10 @@ CellCorners::CellCorners(Mesh const& mesh) : mesh_(mesh) {
   }
 }
 
+std::vector<Index> CellCorners::one_across_periodic_sides() const {
+  return nodes_joined_across_periodic_sides(mesh_, one_);
+}
+
 void CellCorners::each(std::function<void(Index, std::span<Index const>)> const& look) const {
   std::vector<Index> corners;
   if (!mesh_.is_structured()) {

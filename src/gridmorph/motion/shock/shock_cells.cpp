@@ -1,6 +1,7 @@
 #include <gridmorph/motion/shock/shock_cells.hpp>
 
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/shock/fitted_gradient.hpp>
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace gridmorph {
@@ -79,33 +79,16 @@ class SensorOfCells {
   std::vector<double> value_;
 };
 
-/// NodeGroups of nodes that cells join.
-class NodeGroups {
- public:
-  explicit NodeGroups(Index n) : above_(std::size_t(n)) { std::iota(above_.begin(), above_.end(), Index(0)); }
-
-  Index root(Index n) {
-    while (above_[std::size_t(n)] != n) {
-      above_[std::size_t(n)] = above_[std::size_t(above_[std::size_t(n)])];
-      n = above_[std::size_t(n)];
-    }
-    return n;
-  }
-  void join(Index a, Index b) {
-    a = root(a);
-    b = root(b);
-    above_[std::size_t(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> above_;
-};
-
 class ShockFinder {
  public:
   ShockFinder(Mesh const& mesh, FlowSolution const& solution, ShockSearch const& search,
               std::vector<std::uint8_t> const& looked_at)
-      : mesh_(mesh), solution_(solution), search_(search), looked_at_(looked_at), cells_(mesh) {}
+      : mesh_(mesh),
+        solution_(solution),
+        search_(search),
+        looked_at_(looked_at),
+        cells_(mesh),
+        place_(cells_.one_across_periodic_sides()) {}
 
   ShockCells run() {
     find();
@@ -162,11 +145,11 @@ class ShockFinder {
   }
 
   void drop_small_groups() {
-    NodeGroups groups(cells_.n_nodes());
+    DisjointSets<Index> groups(std::size_t(cells_.n_nodes()));
     std::vector<Index> node(std::size_t(cells_.size()), -1);
     each_found([&](Index c, std::span<Index const> corners) {
-      node[std::size_t(c)] = cells_.one(corners.front());
-      for (Index const n : corners) groups.join(cells_.one(corners.front()), cells_.one(n));
+      node[std::size_t(c)] = place(corners.front());
+      for (Index const n : corners) groups.join(place(corners.front()), place(n));
     });
     std::map<Index, Index> size;
     for (auto const& [c, reading] : reading_) ++size[groups.root(node[std::size_t(c)])];
@@ -191,6 +174,9 @@ class ShockFinder {
     });
     found_ = Index(reading_.size());
   }
+
+  /// The smallest number among a node, those at its place and their periodic copies: cells that share one are neighbours.
+  [[nodiscard]] Index place(Index node) const { return place_[std::size_t(node)]; }
 
   template <class Look>
   void each_found(Look const& look) const {
@@ -229,11 +215,11 @@ class ShockFinder {
   void grow() {
     std::vector<std::uint8_t> touched(std::size_t(cells_.n_nodes()), 0);
     each_found([&](Index, std::span<Index const> corners) {
-      for (Index const n : corners) touched[std::size_t(cells_.one(n))] = 1;
+      for (Index const n : corners) touched[std::size_t(place(n))] = 1;
     });
     cells_.each([&](Index c, std::span<Index const> corners) {
       for (Index const n : corners)
-        if (touched[std::size_t(cells_.one(n))] != 0) out_.cells[std::size_t(c)] = 1;
+        if (touched[std::size_t(place(n))] != 0) out_.cells[std::size_t(c)] = 1;
     });
   }
 
@@ -242,6 +228,7 @@ class ShockFinder {
   ShockSearch const& search_;
   std::vector<std::uint8_t> const& looked_at_;
   CellCorners cells_;
+  std::vector<Index> place_;
   ShockCells out_;
   std::vector<std::pair<Index, SensorReading>> reading_;  ///< of the cells found, ascending
   Index n_looked_at_ = 0, found_ = 0, groups_ = 0, dropped_ = 0;

@@ -33,7 +33,7 @@ std::vector<std::string> shock_variables(ShockSearch const& search);
 /// Whether each cell of the mesh lies in the zones of a region and where it holds, leaving aside shock and cells. A zone that is not there holds nothing (add_regions() says so).
 std::vector<std::uint8_t> cells_looked_at(Mesh const& mesh, InnerRegion const& region);
 
-/// Cells of the shock among those looked at. Cells that share a node, across interfaces and connections too (not across periodic ones), are of one group.
+/// Cells of the shock among those looked at. Cells that share a node, across interfaces and connections too, periodic ones among them, are neighbours: of one group, and layers grow to them.
 /// Throws MotionError where variables lack (listing those there are), where no cell reaches the threshold (with the largest value, where it is, and what would do) and where all groups
 /// are too small. Cost O(nodes + cells).
 ShockCells find_shock(Mesh const& mesh, FlowSolution const& solution, ShockSearch const& search,
