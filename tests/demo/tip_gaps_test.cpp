@@ -8,6 +8,7 @@
 
 #include <generators/passage.hpp>
 #include <generators/passage_motion.hpp>
+#include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/quality/quality.hpp>
 
 #include <gtest/gtest.h>
@@ -183,6 +184,43 @@ TEST_P(TipGaps, CellsShareEvenlyWhatTheGapChangesByAndNoneIsInverted) {
     EXPECT_LE(s.highest, 1.001);
     EXPECT_LE(first_height_change(out), change.motion.chord_factor.size() > 3 ? 0.07 : 0.01);
   }
+}
+
+/// What `follow` asks of the sides of the passage beside the blade: to the tip as the blade does, and of the gap above it the same share at all heights. So no node
+/// of theirs has to be put back onto the case.
+TEST_P(TipGaps, SidesFollowTheBladeToItsTipAndShareTheGapAbove) {
+  double const factor = 0.2, gap = options.tip_gap;
+  Outcome const out = morph(mesh, motion_of(options, {"gap", 0, {}, factor}), near_field_of_the_blade());
+  SlipSurface const *hub = nullptr, *casing = nullptr;
+  for (std::size_t p = 0; p < out.mesh.patches.size(); ++p) {
+    if (out.mesh.patches[p].families.front() == "hub") hub = out.prepared.surface.slip_surface(int(p));
+    if (out.mesh.patches[p].families.front() == "case") casing = out.prepared.surface.slip_surface(int(p));
+  }
+  ASSERT_TRUE(hub && casing);
+  auto const span = [&](Vec3 const& p) {
+    return (radius_of(p) - hub->profile(p.x)) / (casing->profile(p.x) - hub->profile(p.x));
+  };
+  int below = 0, above = 0;
+  for (Interface1to1 const& side : out.mesh.interfaces) {
+    if (!side.periodic) continue;
+    IndexRange const& r = side.range;
+    for (int k = r.begin[2]; k < r.end[2]; ++k)
+      for (int j = r.begin[1]; j < r.end[1]; ++j)
+        for (int i = r.begin[0]; i < r.end[0]; ++i) {
+          Index const n = out.mesh.zones[std::size_t(side.zone)].node({i, j, k});
+          Vec3 const p = out.mesh.coordinates[n];
+          if (std::abs(p.x) > 0.03) continue;
+          double const h = span(p), tip = 1 - gap;
+          double const wanted = h <= tip ? h * (1 - factor * gap) / tip : 1 - factor * (1 - h);
+          // The sections of a blade with a groove end at its floor, where it opens at the edges.
+          double const tolerance = options.tip == BladeTip::groove ? 5e-4 : 1e-5;
+          EXPECT_NEAR(span(out.morphed.position[n]), wanted, tolerance) << h;
+          ++(h <= tip ? below : above);
+        }
+  }
+  EXPECT_GT(below, 50);
+  EXPECT_GT(above, 20);
+  EXPECT_EQ(trim_note(out.mesh, out.plan(), out.boundary), std::nullopt);
 }
 
 TEST_P(TipGaps, ByDefaultAllMovingWallsGetANearFieldButThoseAtTheGap) {

@@ -11,9 +11,10 @@
 namespace gridmorph::test {
 namespace {
 
-PassageOptions passage_options(PassageOptions::Layout layout, bool left_handed) {
+PassageOptions passage_options(PassageOptions::Layout layout, bool left_handed, BladeTip tip = BladeTip::none) {
   PassageOptions o;
   o.nodes = 10'000;
+  o.tip = tip;
   o.layout = layout;
   o.left_handed = left_handed;
   o.placement = rotation_about({0.1, 0.2, -0.3}, {1, -2, 0.5}, 0.8);
@@ -26,7 +27,7 @@ Case passage(std::string name, PassageOptions const& options, PassageMotion cons
   c.mesh = [=] { return make_passage(options); };
   c.motion = [=](double factor) {
     Motion m = motion(
-        {rule({"blade"},
+        {rule(blade_families(options.tip),
               function_rule(scaled(factor, [=](Vec3 const& p) { return passage_displacement(options, move, p); }))),
          rule({"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}), rule({"type:periodic"}, FollowRule{{"blade"}}),
          rule({"hub", "case"}, SlipRule{SlipRule::Surface::revolution, {}, {}})});
@@ -35,7 +36,8 @@ Case passage(std::string name, PassageOptions const& options, PassageMotion cons
   };
   c.options.boundary_layers = {{{"blade"}, BoundaryLayer::Extent::block, 0, 0, BoundaryLayer::Mode::translate}};
   c.translation = 0.37 * (options.placement.rotation * Vec3{1, 0, 0});
-  c.all_patches = {"blade", "inlet", "outlet", "hub", "case"};
+  c.all_patches = blade_families(options.tip);
+  for (char const* other : {"inlet", "outlet", "hub", "case"}) c.all_patches.emplace_back(other);
   return c;
 }
 
@@ -136,6 +138,10 @@ std::vector<Case> make_cases() {
   std::vector<Case> list{
       passage("passage", passage_options(Layout::whole_faces, false), rotated_sections()),
       passage("passage_left_handed", passage_options(Layout::five_zones, true), chord_redesign()),
+      passage("passage_flat_tip", passage_options(Layout::five_zones, true, BladeTip::flat), gap_halved()),
+      passage("passage_squealer", passage_options(Layout::whole_faces, false, BladeTip::squealer), rotated_sections()),
+      passage("passage_groove", passage_options(Layout::five_zones, false, BladeTip::groove),
+              {"turned", -6, {{0.5, 1.04}}, 0.5}),
       passage_with_free_surfaces(),
       machine("turbine_stage", "axial_turbine_stage_H.cgns", {1, 0, 0}, {"BLADE1", "BLADE2"}, FixedRule{}),
       machine("turbine_stage_free_planes", "axial_turbine_stage_H.cgns", {1, 0, 0}, {"BLADE1", "BLADE2"},

@@ -12,6 +12,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
 
 namespace gridmorph::test {
 namespace {
@@ -85,6 +88,59 @@ TEST(Links, PeriodicRotationIsFittedToTheNodesNotTakenFromTheFile) {
   EXPECT_NEAR(c2.x, c.x, 1e-13);
   EXPECT_NEAR(c2.y, c.y, 1e-13);
   EXPECT_NEAR(std::abs(std::remainder(c2.z - c.z, 8 * std::atan(1.0))), 8 * std::atan(1.0) / 7, 1e-13);
+}
+
+/// A sector of one cell across, its sides in two zones: one high, one of a thin strip, with what single precision makes of nodes.
+Mesh sector_with_a_strip(double pitch, double pitch_of_the_strip, double height, double noise) {
+  Random random(5);
+  MeshBuilder build("strip");
+  auto const zone = [&](std::string const& name, double from, double to, double angle) {
+    return build.zone(name, {5, 5, 3}, [&, from, to, angle](Index3 const& n) {
+      double const r = from + (to - from) * n[1] / 4, a = angle * n[2] / 2;
+      return Vec3{0.25 * n[0], r * std::cos(a), r * std::sin(a)} + random.vector(noise);
+    });
+  };
+  for (auto const& [z, angle] : {std::pair(zone("high", 1, 2, pitch), pitch),
+                                 std::pair(zone("strip", 2, 2 + height, pitch_of_the_strip), pitch_of_the_strip)}) {
+    IndexRange const all = whole(build.mesh().zones[std::size_t(z)]);
+    // One is declared there, the other one back; both as the pitch of the first.
+    bool const back = z == 1;
+    build.join(z, face_of(all, 2, back ? 1 : 0), z, face_of(all, 2, back ? 0 : 1), {},
+               periodic_rotation({}, {1, 0, 0}, back ? -pitch : pitch));
+  }
+  return build.finish();
+}
+
+double farthest_from(RigidTransform const& t, RigidTransform const& wanted) {
+  double out = 0;
+  for (Vec3 const& p : {Vec3{1, 0, 0}, Vec3{0, 2, 0}, Vec3{0, 0, 2}}) out = std::max(out, distance(t(p), wanted(p)));
+  return out;
+}
+
+TEST(Links, SidesOfAPitchAreFittedAsOneSoThatAStripTurnsAsWellAsTheRest) {
+  double const pitch = 0.3, noise = 6e-8;
+  Mesh const mesh = sector_with_a_strip(pitch, pitch, 0.002, noise);
+  TopologyOptions loose;
+  loose.matching_tolerance = 1e-5;
+  std::set<double> off;
+  for (Link const& link : connect(mesh, loose).all) {
+    bool const back = (link.transform.rotation * Vec3{0, 1, 0}).z < 0;
+    off.insert(farthest_from(link.transform, periodic_rotation({}, {1, 0, 0}, back ? -pitch : pitch).declared));
+  }
+  // Alone the strip, as thin as 3e4 times the noise, would leave its turn about its own length open by some 1e-5.
+  EXPECT_LT(*off.rbegin(), 5 * noise);
+}
+
+TEST(Links, SidesThatTurnOtherwiseThanTheRestAreFittedAlone) {
+  double const pitch = 0.3, other = 0.3 + 2e-7;
+  TopologyOptions loose;
+  loose.matching_tolerance = 1e-5;
+  for (Link const& link : connect(sector_with_a_strip(pitch, other, 0.5, 0), loose).all) {
+    bool const back = (link.transform.rotation * Vec3{0, 1, 0}).z < 0;
+    double const angle = link.zone == 0 ? pitch : other;
+    EXPECT_LT(farthest_from(link.transform, periodic_rotation({}, {1, 0, 0}, back ? -angle : angle).declared), 1e-12);
+    EXPECT_LT(link.mismatch, 1e-14);
+  }
 }
 
 TEST(Links, FitFindsAnyRigidTransform) {

@@ -24,15 +24,6 @@ bool on_one_face(Zone const& zone, IndexRange const& r) {
   return flat >= 1;
 }
 
-RigidTransform fitted_periodic(Mesh const& mesh, Interface1to1 const& face, double size) {
-  std::vector<Vec3> own, donor;
-  for_each_pair(mesh, face, [&](Index p, Index q) {
-    own.push_back(mesh.coordinates[p]);
-    donor.push_back(mesh.coordinates[q]);
-  });
-  return fit_periodic(*face.periodic, own, donor, size);
-}
-
 struct WorstPair {
   double distance = 0;
   Index own = 0, donor = 0;
@@ -47,6 +38,88 @@ WorstPair worst_pair(Mesh const& mesh, Interface1to1 const& face, RigidTransform
   });
   return worst;
 }
+
+bool lies_on_faces(Mesh const& mesh, Interface1to1 const& face) {
+  if (face.donor_zone < 0 || face.donor_zone >= int(mesh.zones.size())) return false;
+  Zone const &own = mesh.zones[face.zone], &donor = mesh.zones[face.donor_zone];
+  if (!within(own, face.range) || !on_one_face(own, face.range)) return false;
+  IndexRange const image = face.to_donor(face.range);
+  return within(donor, image) && on_one_face(donor, image);
+}
+
+/// Periodic transforms fitted to the nodes of all interfaces that are declared alike, there or back: what a strip over a tip or in a boundary layer leaves
+/// uncertain, the others know.
+class PeriodicFits {
+ public:
+  PeriodicFits(Mesh const& mesh, double size) : mesh_(mesh), size_(size), group_(mesh.interfaces.size(), -1) {
+    back_.resize(group_.size(), 0);
+    for (std::size_t f = 0; f < group_.size(); ++f)
+      if (mesh.interfaces[f].periodic && lies_on_faces(mesh, mesh.interfaces[f])) add(f);
+    for (Group& group : groups_) {
+      if (group.members > 1) group.fit = fit_periodic(group.declared, group.from, group.to, size_);
+      group.from = group.to = {};
+    }
+  }
+
+  /// That of its group, or its own where its nodes know better: files declare one angle for pitches that differ.
+  [[nodiscard]] RigidTransform of(std::size_t f) const {
+    Interface1to1 const& face = mesh_.interfaces[f];
+    Group const& group = groups_[std::size_t(group_[f])];
+    std::vector<Vec3> own, donor;
+    for_each_pair(mesh_, face, [&](Index p, Index q) {
+      own.push_back(mesh_.coordinates[p]);
+      donor.push_back(mesh_.coordinates[q]);
+    });
+    RigidTransform const alone = fit_periodic(*face.periodic, own, donor, size_);
+    if (group.members == 1) return alone;
+    RigidTransform const joint = back_[f] != 0 ? group.fit.inverse() : group.fit;
+    constexpr double scatter = 2, round_off = 1e-13;
+    double const allowed = scatter * worst_pair(mesh_, face, alone, true).distance + round_off * size_;
+    return worst_pair(mesh_, face, joint, true).distance <= allowed ? joint : alone;
+  }
+
+ private:
+  struct Group {
+    Periodic declared;
+    std::vector<Vec3> from, to;
+    int members = 0;
+    RigidTransform fit;
+  };
+
+  void add(std::size_t f) {
+    Interface1to1 const& face = mesh_.interfaces[f];
+    for (int g = 0; g < int(groups_.size()) && group_[f] < 0; ++g) {
+      RigidTransform const& declared = groups_[std::size_t(g)].declared.declared;
+      back_[f] = alike(face.periodic->declared.inverse(), declared) ? 1 : 0;
+      if (back_[f] != 0 || alike(face.periodic->declared, declared)) group_[f] = g;
+    }
+    if (group_[f] < 0) {
+      group_[f] = int(groups_.size());
+      groups_.push_back({*face.periodic, {}, {}, 0, {}});
+    }
+    Group& group = groups_[std::size_t(group_[f])];
+    ++group.members;
+    for_each_pair(mesh_, face, [&](Index p, Index q) {
+      group.from.push_back(mesh_.coordinates[back_[f] != 0 ? q : p]);
+      group.to.push_back(mesh_.coordinates[back_[f] != 0 ? p : q]);
+    });
+  }
+
+  /// To what files say in single precision.
+  [[nodiscard]] bool alike(RigidTransform const& a, RigidTransform const& b) const {
+    constexpr double single = 1e-6;
+    double apart = distance(a.translation, b.translation) / (size_ > 0 ? size_ : 1);
+    for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+      apart = std::max(apart, distance(a.rotation * e, b.rotation * e));
+    return apart < single;
+  }
+
+  Mesh const& mesh_;
+  double size_;
+  std::vector<int> group_;  ///< by interface; -1: not periodic
+  std::vector<char> back_;  ///< declared the other way round than its group
+  std::vector<Group> groups_;
+};
 
 std::string describe_interface(Mesh const& mesh, Interface1to1 const& face) {
   return "interface '" + face.name + "' (" + describe_range(mesh, face.zone, face.range) + " to zone '" +
@@ -72,6 +145,7 @@ Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const&
     if (Vec3 const p = mesh.coordinates[n]; !std::isfinite(p.x + p.y + p.z))
       throw MeshError(mesh.source + ": " + describe_node(mesh, n) + " is not finite; repair the mesh first");
 
+  PeriodicFits const fits(mesh, links.mesh_size);
   for (std::size_t f = 0; f < mesh.interfaces.size(); ++f) {
     Interface1to1 const& face = mesh.interfaces[f];
     auto const name = [&] { return describe_interface(mesh, face); };
@@ -102,7 +176,7 @@ Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const&
       continue;
     }
     Link link{int(f), face.zone, face.donor_zone, face.range, face.to_donor, face.periodic.has_value(), {}, 0};
-    if (link.periodic) link.transform = fitted_periodic(mesh, face, links.mesh_size);
+    if (link.periodic) link.transform = fits.of(f);
     WorstPair const worst = worst_pair(mesh, face, link.transform, link.periodic);
     link.mismatch = worst.distance;
     bool const single = mesh.zones[face.zone].single_precision || mesh.zones[face.donor_zone].single_precision;

@@ -136,7 +136,8 @@ BladeSections::BladeSections(BladeSurface const& blade) {
   sliced_ = blade.sliced;
   span_lo_ = -std::numeric_limits<double>::infinity();
   span_hi_ = std::numeric_limits<double>::infinity();
-  double lowest = span_hi_, highest = span_lo_;
+  lowest_ = span_hi_;
+  highest_ = span_lo_;
   std::size_t most_nodes = 0;
   for (BladeContour const& contour : blade.contours) {
     contours.emplace_back();
@@ -144,15 +145,15 @@ BladeSections::BladeSections(BladeSurface const& blade) {
       SpanLine const& line = contours.back().emplace_back(blade, blade.lines[l]);
       span_lo_ = std::max(span_lo_, line.span.front());
       span_hi_ = std::min(span_hi_, line.span.back());
-      lowest = std::min(lowest, line.span.front());
-      highest = std::max(highest, line.span.back());
+      lowest_ = std::min(lowest_, line.span.front());
+      highest_ = std::max(highest_, line.span.back());
       most_nodes = std::max(most_nodes, line.span.size());
     }
   }
-  if (contours.empty() || !(span_hi_ - span_lo_ > 0.3 * (highest - lowest)))
+  if (contours.empty() || !(span_hi_ - span_lo_ > 0.3 * (highest_ - lowest_)))
     throw MotionError("the blade's spanwise grid lines share only the span fractions " + std::to_string(span_lo_) +
-                      " to " + std::to_string(span_hi_) + " of " + std::to_string(lowest) + " to " +
-                      std::to_string(highest) + "; let `of` name whole sides of one blade row");
+                      " to " + std::to_string(span_hi_) + " of " + std::to_string(lowest_) + " to " +
+                      std::to_string(highest_) + "; let `of` name whole sides of one blade row");
 
   n_sections_ = int(std::clamp<std::size_t>(2 * most_nodes - 1, 33, 129));
   auto const section = [&](std::size_t c, double h) {

@@ -35,6 +35,9 @@ class BladeSections {
   [[nodiscard]] bool sliced() const { return sliced_; }
   [[nodiscard]] double first_span() const { return span_lo_; }
   [[nodiscard]] double last_span() const { return span_hi_; }
+  /// How far any of its lines reaches: beyond the sections where lines end apart, as beside a groove.
+  [[nodiscard]] double lowest_span() const { return lowest_; }
+  [[nodiscard]] double highest_span() const { return highest_; }
   /// Smallest leading and largest trailing edge position: the blade's axial range.
   [[nodiscard]] double most_upstream() const;
   [[nodiscard]] double most_downstream() const;
@@ -45,7 +48,7 @@ class BladeSections {
   [[nodiscard]] Components tabulated(double span, double chord_fraction) const;
 
   bool sliced_ = false;
-  double span_lo_ = 0, span_hi_ = 0;
+  double span_lo_ = 0, span_hi_ = 0, lowest_ = 0, highest_ = 0;
   int n_sections_ = 0;
   std::vector<Components> motion_;  ///< (n_sections, n_chord), chord fastest
   SpanTable leading_, trailing_;

@@ -286,7 +286,22 @@ CylindricalMotion RowMotion::taper(End const& end, FlowPosition const& at, doubl
   return {share * edge.axial, share * edge.radial, end_angle + share * (edge.angle_rad - end_angle)};
 }
 
+double RowMotion::share_over_gap(double h) const {
+  constexpr double gap = 1e-4;  // in span: what a blade that reaches its walls may lack
+  double const first = sections_.lowest_span(), last = sections_.highest_span();
+  if (!annulus_.has_walls()) return 1;
+  if (h > last && 1 - last > gap) return std::max(1 - h, 0.0) / (1 - last);
+  if (h < first && first > gap) return std::max(h, 0.0) / first;
+  return 1;
+}
+
 CylindricalMotion RowMotion::follow_motion(FlowPosition const& at) const {
+  CylindricalMotion out = along_camber(at);
+  out.radial *= share_over_gap(at.h);
+  return out;
+}
+
+CylindricalMotion RowMotion::along_camber(FlowPosition const& at) const {
   double const leading = sections_.leading(at.h), trailing = sections_.trailing(at.h);
   if (at.m < leading) return taper(inlet_, at, leading, 0);
   if (at.m > trailing) return taper(exit_, at, trailing, 1);

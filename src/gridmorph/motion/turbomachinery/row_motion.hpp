@@ -50,7 +50,8 @@ class RowMotion {
   [[nodiscard]] bool is_upstream(Vec3 const& point) const;
   /// Periodics: mid-camber motion between the edges, linear taper along the flow path to the ends of the row. Between
   /// known end walls the span fraction is kept as far as the blade keeps its own; where the blade leaves the walls, so do
-  /// nodes on the walls, and finalize puts both back alike.
+  /// nodes on the walls, and finalize puts both back alike. Between the end of a blade and a wall that it does not reach, what leads off
+  /// the span fraction falls to nothing at the wall.
   [[nodiscard]] Vec3 follow(Vec3 const& point) const;
 
  private:
@@ -74,6 +75,10 @@ class RowMotion {
                                         double chord_fraction) const;
   /// Components of the motion (see Annulus::components).
   [[nodiscard]] CylindricalMotion follow_motion(FlowPosition const& at) const;
+  /// Of the camber line at a span fraction (of the nearest section, beyond the blade), tapered beyond its edges.
+  [[nodiscard]] CylindricalMotion along_camber(FlowPosition const& at) const;
+  /// Between the end of a blade and a wall that it does not reach, how much of what leads off its span fraction is left: falls to nothing at the wall.
+  [[nodiscard]] double share_over_gap(double h) const;
 
   std::vector<int> blades_;  ///< ascending
   CylindricalFrame frame_;
