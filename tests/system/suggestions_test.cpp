@@ -5,6 +5,7 @@
 #include "support/reduced.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <generators/passage.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>
@@ -81,6 +82,48 @@ TEST_F(Suggestions, RunOnSectorsAboutAnyAxis) {
   expect_runs("bend", test::bend_sector(sector, 1), along);
   sector.inner_radius = 0;
   expect_runs("wedge", test::annulus_sector(sector, 1), along);
+}
+
+/// Blade, tip and what is cut into it are one body, and over the tip there is no near field: with a motion in the suggested case the blade grows
+/// until the gap over it is half as high, and untwists, and no cell turns inside out.
+TEST_F(Suggestions, OnPassagesWithATipGapTakeAMotionThatClosesTheGapByHalf) {
+  for (BladeTip const tip : {BladeTip::flat, BladeTip::squealer, BladeTip::groove}) {
+    std::string const kind(name(tip));
+    SCOPED_TRACE(kind);
+    PassageOptions options;
+    options.nodes = 20'000;
+    options.tip = tip;
+    Mesh const mesh = make_passage(options);
+    ASSERT_NO_FATAL_FAILURE(expect_runs(kind, mesh, "[0, 0, 0]"));
+    std::string text = contents(path("cases/" + kind + "/case.toml"));
+    std::string const still = "rule = \"rigid\"\ntranslation = [0, 0, 0]";
+    auto const at = text.find(still);
+    ASSERT_NE(at, std::string::npos) << text;
+    for (std::string const& family : blade_families(tip))
+      EXPECT_NE(text.rfind("\"" + family + "\"", at), std::string::npos) << text;
+    EXPECT_NE(text.find("walls  = [\"blade\"]"), std::string::npos) << text;
+    text.replace(at, still.size(),
+                 R"keys(rule = "formula"
+dr     = "0.0015 * max(0, (r - 0.46) / 0.2)"
+dtheta = "-0.03 * max(0, (r - 0.46) / 0.2) * axial / r"
+daxial = "0.03 * max(0, (r - 0.46) / 0.2) * r * theta")keys");
+    write("cases/" + kind + "/grown.toml", text);
+    Outcome const grown = gridmorph("morph -q cases/" + kind + "/grown.toml --report grown.json");
+    EXPECT_EQ(grown.status, 0) << grown.err << text;
+    auto const report = nlohmann::json::parse(contents(path("grown.json")));
+    for (auto const* region : {"near_field", "far_field"}) {
+      EXPECT_GT(report["morphed"][region]["cells"], 1000) << region;
+      EXPECT_EQ(report["morphed"][region]["inverted"], 0) << region;
+    }
+    // The gap is what the blade leaves of 1.5 % of the span.
+    Mesh const moved = read_mesh(path("cases/" + kind + "/" + kind + "_morphed.cgns").string());
+    double rise = 0;
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      auto const radius = [](Vec3 const& p) { return std::hypot(p.y, p.z); };
+      rise = std::max(rise, radius(moved.coordinates[n]) - radius(mesh.coordinates[n]));
+    }
+    EXPECT_NEAR(rise, 0.0015, 0.0001);
+  }
 }
 
 TEST_F(Suggestions, RunOnElementsOfEveryKind) {
