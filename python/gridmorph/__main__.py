@@ -1,6 +1,6 @@
 """The gridmorph command, as it comes with the package: python -m gridmorph COMMAND ...
 
-Everything the command does, and two things more: `demo` draws pictures of what it made, and `view` draws those of other meshes:
+Everything the command does, and one thing more: `demo` draws pictures of what it made. `view` draws with this Python:
 
     python -m gridmorph demo                                    a passage, morphed twice, in demo_passage
     python -m gridmorph morph case.toml
@@ -27,19 +27,17 @@ def executable():
 
 
 def _demo(arguments):
-    command = [executable(), "demo", *arguments]
-    status = subprocess.run(command, check=False).returncode
+    command = executable()
+    status = subprocess.run([command, "demo", *arguments], check=False).returncode
     if status not in (0, 1) or "--help" in arguments or "-h" in arguments:
         return status
-    folder = _pictures.folder_of_demo(arguments)
-    return _pictures.draw_demo(folder) or status
+    return _pictures.draw_demo(command, _pictures.folder_of_demo(arguments)) or status
 
 
 def main(arguments=None):
     arguments = sys.argv[1:] if arguments is None else list(arguments)
+    os.environ.setdefault("GRIDMORPH_PYTHON", sys.executable)  # which has what the package needs
     try:
-        if arguments[:1] == ["view"]:
-            return _pictures.view(arguments[1:])
         if arguments[:1] == ["demo"]:
             return _demo(arguments[1:] if len(arguments) > 1 and not arguments[1].startswith("-") else ["passage", *arguments[1:]])
         program = executable()

@@ -1,5 +1,6 @@
 """The command that comes with the package: python -m gridmorph, each in a process of its own as in a terminal."""
 import ctypes.util
+import os
 import subprocess
 import sys
 
@@ -21,7 +22,7 @@ def test_errors_have_the_texts_and_statuses_of_the_command(tmp_path):
     done = run("morph", tmp_path / "nothing.toml")
     assert done.returncode == 2 and "nothing.toml" in done.stderr and "Traceback" not in done.stderr
     done = run("view")
-    assert done.returncode == 2 and "needs a mesh" in done.stdout
+    assert done.returncode == 2 and "mesh is required" in done.stderr
 
 
 def test_demo_morphs_and_draws(tmp_path):
@@ -32,6 +33,7 @@ def test_demo_morphs_and_draws(tmp_path):
     assert pictures == ["passage_chord_pictures/section.png", "passage_rotation_pictures/section.png"]
     again = run("view", "demo_passage/passage.cgns", "--out", "alone", cwd=tmp_path)
     assert again.returncode == 0 and (tmp_path / "alone" / "section.png").stat().st_size > 1000
+    assert again.stdout.splitlines()[0] == os.path.join("alone", "section.png")
 
 
 def test_threads_of_others_keep_their_number():

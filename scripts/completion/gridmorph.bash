@@ -24,10 +24,12 @@ _gridmorph() {
     -q | --quiet | --json | --dry-run | --optimise | --all | --match | --no-periodic | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
   esac
   case $previous in
-    -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --gap | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out | --matching-tolerance | --open-faces) return ;;
+    -t | --threads | -n | --nodes | -e | --elements | -a | --angle | --gap | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out | --matching-tolerance | --open-faces | --plane | --span | --i | --j | --k | --wall | --box | --dpi) return ;;
     -m | --motion) mapfile -t COMPREPLY < <(compgen -W "rotation chord gap all" -- "$current") ;;
     --tip) mapfile -t COMPREPLY < <(compgen -W "none flat squealer groove" -- "$current") ;;
-    -d | --directory) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
+    --axis) mapfile -t COMPREPLY < <(compgen -W "x y z" -- "$current") ;;
+    --color) mapfile -t COMPREPLY < <(compgen -W "determinant displacement none type" -- "$current") ;;
+    -d | --directory | --out | --stages) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     -*) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
     *)
       if [[ -z $command ]]; then

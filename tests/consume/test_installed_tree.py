@@ -3,6 +3,7 @@
 
   test_installed_tree.py PREFIX BUILD_FOLDER CMAKE
 """
+import importlib.util
 import os
 import re
 import shutil
@@ -100,6 +101,19 @@ class InstalledTree(unittest.TestCase):
         result = run(COMMAND, "wheel", "--help")
         self.assertEqual(result.returncode, 0, result.stdout)
         self.assertIn(os.path.join(DOC, "docs"), result.stdout)
+
+    @unittest.skipUnless(all(importlib.util.find_spec(name) for name in ("h5py", "matplotlib")), "h5py or Matplotlib is not installed")
+    def test_pictures_are_drawn_by_the_installed_scripts(self):
+        meshes = os.path.join(SHARE, "gridmorph", "examples", "meshes")
+        environment = {**{name: value for name, value in os.environ.items() if name != "GRIDMORPH_SCRIPTS"}, "GRIDMORPH_PYTHON": sys.executable}
+        before = files_below(PREFIX)
+        with tempfile.TemporaryDirectory() as folder:
+            for mesh, *options in (("717_wl_L2.cgns", "--plane", "x=8.8"), ("mesh_vki_turbine.su2",)):
+                out = os.path.join(folder, mesh)
+                result = run(COMMAND, "view", os.path.join(meshes, mesh), "--out", out, *options, env=environment)
+                self.assertEqual(result.returncode, 0, result.stdout)
+                self.assertIn("section.png", os.listdir(out))
+        self.assertEqual(files_below(PREFIX), before)
 
     def test_an_example_runs_in_a_folder_of_the_user(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -12,7 +12,7 @@ namespace gridmorph::testing {
 namespace {
 
 std::vector<std::string> const commands{"morph",  "inspect",   "plan",    "quality", "wheel",
-                                        "fillet", "hexahedra", "surface", "demo"};
+                                        "fillet", "hexahedra", "surface", "view",    "demo"};
 
 class CommandInterface : public CommandTest {
  protected:

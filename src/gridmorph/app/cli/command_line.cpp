@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -16,7 +17,7 @@ namespace gridmorph::cli {
 namespace {
 
 std::vector<std::string> const command_names{"morph",  "inspect",   "plan",    "quality", "wheel",
-                                             "fillet", "hexahedra", "surface", "demo"};
+                                             "fillet", "hexahedra", "surface", "view",    "demo"};
 
 constexpr char const* exit_statuses =
     "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
@@ -162,6 +163,25 @@ CLI::App* add_fillet(CLI::App& app, CommandLine& out) {
   return fillet;
 }
 
+CLI::App* add_view(CLI::App& app, CommandLine& out) {
+  auto* view = app.add_subcommand(
+      "view", "Draw pictures of one mesh, or of a baseline and its morphed mesh side by side: sections and close-ups");
+  view->add_option("mesh", out.input, "Mesh, or the baseline (CGNS or SU2)")->required();
+  view->add_option("morphed", out.second, "Morphed mesh");
+  view->add_option("-o,--out", out.output, "Folder for the pictures; made if missing")
+      ->required()
+      ->option_text("DIR REQUIRED");
+  for (auto const& option : drawing_options) {
+    std::function<void(std::vector<std::string> const&)> const keep = [&](std::vector<std::string> const& values) {
+      out.drawing.push_back({&option, values});
+    };
+    view->add_option_function(std::string(option.name), keep, std::string(option.text))
+        ->expected(option.values)
+        ->option_text(std::string(option.value_names));
+  }
+  return view;
+}
+
 CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   auto* demo = app.add_subcommand("demo", "Write a built-in mesh and its case files, and morph it");
   demo->add_option(
@@ -224,6 +244,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   commands.emplace_back(add_fillet(app, out), Command::fillet);
   commands.emplace_back(add_hexahedra(app, out), Command::hexahedra);
   commands.emplace_back(add_surface(app, out), Command::surface);
+  commands.emplace_back(add_view(app, out), Command::view);
   commands.emplace_back(add_demo(app, out), Command::demo);
   for (auto const& [subcommand, command] : commands) {
     add_common(*subcommand, out);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/cli/drawing_options.hpp>
 #include <gridmorph/core/index.hpp>
 
 #include <filesystem>
@@ -13,7 +14,7 @@
 namespace gridmorph::cli {
 
 struct CommandLine {
-  enum class Command { morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, demo };
+  enum class Command { morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, view, demo };
   Command command = Command::morph;
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
@@ -21,8 +22,9 @@ struct CommandLine {
   std::string typed;                            ///< the command line, as a shell reads it
   std::filesystem::path input;                  ///< case file or mesh
   std::optional<CaseDocument> case_document;    ///< morph, plan, wheel: `input`, once it is read
-  std::optional<std::filesystem::path> second;  ///< quality: morphed mesh
-  std::optional<std::filesystem::path> output;  ///< morph, wheel: instead of the case file's; what others write
+  std::optional<std::filesystem::path> second;  ///< quality, view: morphed mesh
+  std::optional<std::filesystem::path>
+      output;  ///< morph, wheel: instead of the case file's; what others write; view: a folder
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   std::optional<std::filesystem::path> page;    ///< morph: the report as a page, instead of the case file's
   std::optional<double> fraction;               ///< morph: of the motion
@@ -48,6 +50,8 @@ struct CommandLine {
   double run_out = 8;                         ///< fillet: radii
   int split = 1;                              ///< surface: pieces along each side of a facet
   bool ascii = false;                         ///< surface: text, not binary
+
+  std::vector<GivenDrawingOption> drawing;  ///< view
 
   std::string demo_name;
   std::optional<std::string> demo_motion;  ///< passage

@@ -1,10 +1,9 @@
 #include <gridmorph/app/cli/help.hpp>
+#include <gridmorph/app/cli/own_files.hpp>
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <string_view>
-#include <system_error>
 
 namespace gridmorph::cli {
 
@@ -44,6 +43,11 @@ constexpr std::array topics{
           "unstructured.md#the-same-mesh-both-ways, formats.md"},
     Topic{"surface", "  gridmorph surface wing.cgns --patches type:wall --output wing.stl\n",
           "motion.md#target (what the surface is for), formats.md"},
+    Topic{"view",
+          "  gridmorph view passage.cgns passage_rotation.cgns --out pictures\n"
+          "  gridmorph view wing.cgns wing_morphed.cgns --out pictures --plane y=3.5\n",
+          "demo_passage.md, demo_ball.md (what is drawn of blocks and of elements), report.md (pages with pictures, of "
+          "every format)"},
     Topic{"demo",
           "  gridmorph demo passage --nodes 1000000\n"
           "  gridmorph demo ball --elements 200000 --angle 20\n",
@@ -57,13 +61,8 @@ Topic const* topic_of(CLI::App const* app) {
 
 /// Where the docs are: beside the installed program, or in the source tree that it was built in; "docs" where they are nowhere.
 std::string docs_folder() {
-  std::error_code error;
-  auto const program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (!error)
-    for (auto folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
-      for (char const* name : {"share/doc/gridmorph/docs", "docs"})
-        if (std::filesystem::exists(folder / name / "case_file.md", error)) return (folder / name).string();
-  return "docs";
+  constexpr std::array<std::string_view, 2> names{"share/doc/gridmorph/docs", "docs"};
+  return own_folder(names, "case_file.md").value_or("docs").string();
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// gridmorph: morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, demo.
+// gridmorph: morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, view, demo.
 //
 //   gridmorph inspect passage.cgns
 //   gridmorph plan case.toml
@@ -43,6 +43,7 @@ int run(CommandLine const& options, Terminal& terminal) {
     case Command::fillet: return run_fillet_command(options, terminal);
     case Command::hexahedra: return run_hexahedra_command(options, terminal);
     case Command::surface: return run_surface_command(options, terminal);
+    case Command::view: return run_view_command(options, terminal);
     case Command::demo: return run_demo_command(options, terminal);
   }
   return bad_input;
@@ -111,10 +112,13 @@ int main(int argc, char** argv) try {
       return int(done);
     });
   }
-  wait_passively(argv);
   auto& options = std::get<CommandLine>(parsed);
+  using Command = CommandLine::Command;
+  bool const computes = options.command != Command::view;
+  if (computes) wait_passively(argv);
   Terminal terminal(options.quiet, options.json);
   return report_errors(terminal, [&] {
+    if (!computes) return run(options, terminal);
     if (names_case_file(options)) options.case_document.emplace(options.input);
     KokkosSession const session(choose_threads(options));
     return run(options, terminal);

@@ -40,7 +40,8 @@ std::optional<std::uintmax_t> bytes_of_mesh(CommandLine const& options) {
     case Command::quality:
     case Command::fillet:
     case Command::hexahedra:
-    case Command::surface: break;
+    case Command::surface:
+    case Command::view: break;
   }
   if (!mesh) return std::nullopt;
   std::error_code error;
