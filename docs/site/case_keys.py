@@ -1,5 +1,5 @@
 """Keys of case files, read from the tables of docs/case_file.md, which a test holds equal to what the reader knows: an
-anchor for each of them, and an index of all."""
+anchor for each of them, an index of all, and the reference that `gridmorph keys` gives."""
 import re
 
 OPEN, CLOSE = re.compile(r"<!-- keys: (.+) -->"), "<!-- end of keys -->"
@@ -43,6 +43,23 @@ def place(table):
         return f"`[[motion]]`, rule `{words[1]}`" + "".join(f", `{word}`" for word in words[2:])
     head = f"[[{words[0]}]]" if words[0] in ("motion", "region", "clearance") else f"[{words[0]}]"
     return f"`{head}`" + "".join(f", `{word}`" for word in words[1:])
+
+
+def reference_page(keys):
+    """All keys, table by table, as the reader of case files describes them: keys are those of `gridmorph keys --json`."""
+    lines = ["# Reference of keys", "",
+             f"All {len(keys)} keys of case files, table by table, from the program: this page is `gridmorph keys`, which takes them from the list that the "
+             "reader's own messages are made of. [Case files](case_file.md) has the same keys with examples and more to say of each, and an "
+             "[index](case_keys.md) has them by name. A test holds the three equal.", ""]
+    last = None
+    for key in keys:
+        if key["table"] != last:
+            last = key["table"]
+            title = "Top level" if last == "top level" else place(last).replace("`", "")
+            lines += ["", f"## {title}", "", "| key | type | unit | default | what it is |", "| --- | --- | --- | --- | --- |"]
+        cells = (key[name].replace("|", "\\|") for name in ("type", "unit", "default", "meaning"))
+        lines.append(f"| [`{key['key']}`](case_file.md#{anchor(last, key['key'])}) | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
 
 
 def index_page(text):

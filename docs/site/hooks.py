@@ -1,5 +1,6 @@
-"""What the site needs beyond the pages of docs/: what they link to elsewhere in the repository, two pages made of other
-sources (keys of case files, the command line), formulas as MathML. mkdocs calls the on_ functions."""
+"""What the site needs beyond the pages of docs/: what they link to elsewhere in the repository, three pages made of other
+sources (keys of case files, twice, and the command line), formulas as MathML. mkdocs calls the on_ functions."""
+import json
 import os
 import posixpath
 import re
@@ -13,7 +14,7 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 
 sys.path.insert(0, str(Path(__file__).parent))
-from case_keys import index_page, with_anchors  # noqa: E402
+from case_keys import index_page, reference_page, with_anchors  # noqa: E402
 from named_files import NAMED_FILE, REPOSITORY, file_named  # noqa: E402
 
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".toml": "toml", ".py": "python", ".cmake": "cmake", ".txt": "text", ".awk": "awk", ".csv": "text"}
@@ -101,6 +102,7 @@ def on_files(files, config):
             if target.endswith(".md"):
                 todo.append(target)
     files.append(File.generated(config, "case_keys.md", content=index_page((REPOSITORY / "docs/case_file.md").read_text(encoding="utf-8"))))
+    files.append(File.generated(config, "case_reference.md", content=reference_page(json.loads(said("keys", "--json"))["keys"])))
     files.append(File.generated(config, "command_line.md", content=command_line()))
     return files
 
@@ -140,19 +142,22 @@ def on_page_content(html, page, config, files):
     return FORMULA.sub(mathml, html)
 
 
-def command_line():
-    """A page of what gridmorph and its commands say to --help; GRIDMORPH names the executable."""
+def said(*words):
+    """What gridmorph prints; GRIDMORPH names the executable."""
     program = os.environ.get("GRIDMORPH")
     if not program:
-        raise PluginError("GRIDMORPH names no gridmorph executable, whose --help is a page of the site; scripts/docs sets it")
+        raise PluginError("GRIDMORPH names no gridmorph executable, of whose words pages of the site are made; scripts/docs sets it")
+    return subprocess.run([program, *words], capture_output=True, text=True, check=True).stdout
 
+
+def command_line():
+    """A page of what gridmorph and its commands say to --help."""
     def wrapped(line):
         indent = 34 if re.match(r"  [-\w]", line) else len(line) - len(line.lstrip())
         return textwrap.fill(line, 84, subsequent_indent=" " * indent, break_on_hyphens=False) if len(line) > 84 and not line.startswith("  gridmorph ") else line
 
     def ask(*words):
-        said = subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True).stdout
-        return "\n".join(wrapped(line.replace(str(REPOSITORY / "docs"), "docs")) for line in said.rstrip().split("\n"))
+        return "\n".join(wrapped(line.replace(str(REPOSITORY / "docs"), "docs")) for line in said(*words, "--help").rstrip().split("\n"))
 
     overview = ask()
     listed = overview[overview.index("Subcommands:"):]

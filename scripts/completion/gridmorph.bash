@@ -38,6 +38,7 @@ _gridmorph() {
       fi
       case $command in
         demo) mapfile -t COMPREPLY < <(compgen -W "passage ball turbine slat coil aircraft" -- "$current") ;;
+        keys) mapfile -t COMPREPLY < <(compgen -W "$("$program" keys 2>/dev/null | sed -n 's/^  \([a-z][a-z_0-9]*\)  .*/\1/p')" -- "$current") ;;
         morph | plan | wheel) mapfile -t COMPREPLY < <(compgen -d -- "$current"; compgen -f -X '!*.toml' -- "$current") ;;
         *) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
       esac

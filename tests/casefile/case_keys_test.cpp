@@ -1,7 +1,8 @@
-// The tables of docs/case_file.md and the reader of case files say the same.
+// The reader of case files, the list of its keys (keys.txt) and the tables of docs/case_file.md say the same.
 #include "case_text.hpp"
 
 #include <gridmorph/app/casefile/detail/rule_reader.hpp>
+#include <gridmorph/app/casefile/key_list.hpp>
 
 #include <map>
 #include <set>
@@ -142,7 +143,8 @@ std::map<std::string, CaseKeyUse> everything_asked() {
 TEST(CaseKeys, EveryKeyThatTheReaderKnowsIsListed) {
   std::set<std::pair<std::string, std::string>> reported;
   for (auto const& [rule, keys] : everything_asked())
-    for (auto const& [asked_table, key] : keys) {
+    for (auto const& [place, reading] : keys) {
+      auto const& [asked_table, key] = place;
       // Tables in a step are those of the rule.
       std::string table = asked_table;
       if (auto const at = table.find(" steps "); at != std::string::npos) table.erase(at, 6);
@@ -169,6 +171,98 @@ TEST(CaseKeys, EveryKeyThatIsListedIsKnownToTheReader) {
     EXPECT_TRUE(found != asked.end() && found->second.count({as_asked(k.table), std::string(k.key)}) == 1)
         << "docs/case_file.md describes '" << k.key << "' of [" << k.table
         << "], but the reader does not ask for it; take it out";
+  }
+}
+
+TEST(CaseKeys, TheListOfKeysSaysWhatTheTablesOfTheDocsSay) {
+  auto const& list = casefile::key_list();
+  ASSERT_EQ(list.size(), case_keys().size());
+  std::map<std::pair<std::string, std::string>, casefile::KeyDescription> listed;
+  for (auto const& k : list) {
+    std::string const table(k.table == "top level" ? "" : k.table);
+    EXPECT_TRUE(listed.emplace(std::pair(table, std::string(k.key)), k).second) << table << " " << k.key << " twice";
+    EXPECT_FALSE(k.meaning.empty()) << table << " " << k.key;
+    EXPECT_LT(k.meaning.size(), 220U) << table << " " << k.key << ": the docs are for what is longer";
+    EXPECT_EQ(k.meaning.find("]("), std::string_view::npos) << k.meaning << ": a link, in a terminal";
+  }
+  for (auto const& k : case_keys()) {
+    auto const found = listed.find({k.table, k.key});
+    ASSERT_NE(found, listed.end()) << k.table << " " << k.key << " is not in keys.txt";
+    EXPECT_EQ(found->second.type, k.type) << k.table << " " << k.key;
+    EXPECT_EQ(found->second.unit, k.unit) << k.table << " " << k.key;
+    EXPECT_EQ(found->second.initial, k.initial) << k.table << " " << k.key;
+  }
+}
+
+/// "\"a\", \"b\" or \"c\"".
+std::string as_type(std::vector<std::string> const& words) {
+  std::string out;
+  for (std::size_t n = 0; n < words.size(); ++n)
+    out += (n == 0 ? "\"" : n + 1 == words.size() ? " or \"" : ", \"") + words[n] + '"';
+  return out;
+}
+
+/// Whether a type of the list can be what the reader reads a key as.
+bool goes_with(std::string_view type, std::string const& read_as) {
+  auto const has = [&](std::string_view word) { return type.find(word) != std::string_view::npos; };
+  if (has("as of `rigid`")) return true;
+  if (read_as == "[x, y, z]") return has("[") || has("as ");
+  if (read_as == "list of numbers") return has("list") || has("[") || has("three");
+  if (read_as == "number") return has("number") || has("values") || has("factor") || has("three") || has("list of [");
+  if (read_as == "whole number") return has("whole number") || has(" to ") || has("0, 1 or 2");
+  if (read_as == "string or list") return has("string or list") || has("list of") || has("list") || has("string");
+  if (read_as == "table") return has("table");
+  if (read_as == "list of tables") return has("list of tables");
+  if (read_as == "true or false") return has("true or false");
+  for (std::string_view const word : {"string", "file", "folder", "name", "expression", "\""})
+    if (has(word)) return true;
+  return false;
+}
+
+TEST(CaseKeys, TypesOfTheListAreWhatTheReaderReads) {
+  std::size_t checked = 0, chosen = 0;
+  for (auto const& [rule, keys] : everything_asked())
+    for (auto const& [place, reading] : keys) {
+      auto const& [table, key] = place;
+      auto const* listed = casefile::find_key(table, rule, key);
+      if (listed == nullptr) continue;  // that every key is listed is another test
+      for (auto const& as : reading.as) {
+        EXPECT_TRUE(goes_with(listed->type, as))
+            << "[" << listed->table << "] " << key << " is " << listed->type << ", and is read as " << as;
+        ++checked;
+      }
+      // One word of which the reader knows several: the type lists them, as the only ones or beside others.
+      if (reading.words.size() < 2) continue;
+      std::string_view const type = listed->type;
+      for (auto const& word : reading.words)
+        EXPECT_NE(type.find('"' + word + '"'), std::string_view::npos)
+            << "[" << listed->table << "] " << key << " may be \"" << word << "\", and its type is " << type;
+      if (type.starts_with('"') && type.find("table") == std::string_view::npos &&
+          type.find('[') == std::string_view::npos && type.find("radius") == std::string_view::npos) {
+        EXPECT_EQ(type, as_type(reading.words)) << "[" << listed->table << "] " << key;
+        ++chosen;
+      }
+    }
+  EXPECT_GT(checked, 250U);
+  EXPECT_GT(chosen, 15U);
+}
+
+TEST(CaseKeys, MessagesSayWhatAKeyIsFromTheList) {
+  auto const* offset = casefile::find_key("near_field", "", "offset");
+  ASSERT_NE(offset, nullptr);
+  std::string const rule = "[[motion]]\npatches = \"blade\"\nrule = \"rigid\"\n";
+  auto const said = [&](std::string const& more) {
+    return problems_of("[mesh]\ninput = \"in.cgns\"\n" + rule + more).at(0);
+  };
+  EXPECT_NE(said("translation = [1, 0, 0]\n[near_field]\noffset = \"wide\"\n").find(casefile::describe(*offset)),
+            std::string::npos);
+  // Of the rule that the table belongs to, in tables inside it and in steps.
+  for (std::string const table : {"rotation", "steps = [ { rotation"}) {
+    std::string const end = table == "rotation" ? "\n" : " } ]\n";
+    std::string const text = said(table + " = { angle_deg = \"far\", axis = [1, 0, 0], origin = [0, 0, 0] }" + end);
+    EXPECT_NE(text.find(casefile::describe(*casefile::find_key("motion rotation", "rigid", "angle_deg"))),
+              std::string::npos)
+        << text;
   }
 }
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 sys.path.insert(0, str(DOCS / "site"))
-from case_keys import anchor, index_page, rows, with_anchors  # noqa: E402
+from case_keys import anchor, index_page, reference_page, rows, with_anchors  # noqa: E402
 from check_site import problems  # noqa: E402
 from named_files import NAMED_FILE, file_named  # noqa: E402
 
@@ -80,6 +80,15 @@ class KeysOfCaseFiles(unittest.TestCase):
         for name in anchors:
             self.assertEqual(page.count(f'<a id="{name}">'), 1, name)
             self.assertEqual(index.count(f"(case_file.md#{name})"), 1, name)
+
+    def test_the_reference_has_a_part_per_table_and_leads_to_the_rows(self):
+        keys = [{"table": table, "key": key, "type": kind, "unit": unit, "default": initial, "meaning": "a | b"}
+                for _, table, key, kind, unit, initial in rows(self.text)]
+        page = reference_page(keys)
+        self.assertEqual(page.count("\n## "), len({key["table"] for key in keys}))
+        for key in keys:
+            self.assertEqual(page.count(f"(case_file.md#{anchor(key['table'], key['key'])})"), 1, key)
+        self.assertEqual(page.count("| a \\| b |"), len(keys))
 
 
 class PagesOfAlgorithms(unittest.TestCase):

@@ -11,8 +11,8 @@
 namespace gridmorph::testing {
 namespace {
 
-std::vector<std::string> const commands{"morph",  "inspect",   "plan",    "quality", "wheel",
-                                        "fillet", "hexahedra", "surface", "view",    "demo"};
+std::vector<std::string> const commands{"morph",     "inspect", "plan", "quality", "wheel", "fillet",
+                                        "hexahedra", "surface", "view", "keys",    "demo"};
 
 class CommandInterface : public CommandTest {
  protected:
@@ -46,6 +46,7 @@ class CommandInterface : public CommandTest {
             {"fillet passage.cgns -b blade -w hub --radius 0.002 -o filled.cgns", "stations"},
             {"hexahedra passage.cgns -o elements.cgns", "hexahedra"},
             {"surface passage.cgns -p blade -o out.stl", "facets"},
+            {"keys guard", "keys"},
             {"demo passage -n 10000 -m chord -d made", "morphs"}};
   }
 
@@ -110,7 +111,8 @@ TEST_F(CommandInterface, QuietRunsPrintOnlyWhatWasAskedFor) {
     for (auto const& line : run.error_lines())
       EXPECT_EQ(line.rfind("gridmorph: warning: ", 0), 0U) << arguments << "\n" << line;
     bool const asked = arguments.find("inspect") == 0 || arguments.find("plan") == 0 ||
-                       arguments.find("quality") == 0 || arguments.find("--dry-run") != std::string::npos;
+                       arguments.find("quality") == 0 || arguments.find("keys") == 0 ||
+                       arguments.find("--dry-run") != std::string::npos;
     EXPECT_EQ(run.out.empty(), !asked) << arguments << "\n" << run.out;
   }
 }

@@ -13,6 +13,7 @@
 
 #include <compare>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -168,8 +169,14 @@ class CaseDocument {
 CaseFile read_case_file(CaseDocument const& document);
 inline CaseFile read_case_file(std::filesystem::path const& path) { return read_case_file(CaseDocument(path)); }
 
+/// As what the reader reads a key: "string", "number", "whole number", "true or false", "list of numbers", "[x, y, z]", "string or list",
+/// "table", "list of tables"; the words that it chooses from.
+struct KeyReading {
+  std::set<std::string> as;
+  std::vector<std::string> words;
+};
 /// (table, key) pairs that the reader asked for, tables as "mesh", "mesh axis", "motion": what it knows, for checks of the docs.
-using CaseKeyUse = std::set<std::pair<std::string, std::string>>;
+using CaseKeyUse = std::map<std::pair<std::string, std::string>, KeyReading>;
 
 /// The same from text (see CaseDocument). `asked`, when given, is filled also when there are problems.
 CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked = nullptr);

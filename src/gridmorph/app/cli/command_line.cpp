@@ -16,8 +16,8 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::vector<std::string> const command_names{"morph",  "inspect",   "plan",    "quality", "wheel",
-                                             "fillet", "hexahedra", "surface", "view",    "demo"};
+std::vector<std::string> const command_names{"morph",     "inspect", "plan", "quality", "wheel", "fillet",
+                                             "hexahedra", "surface", "view", "keys",    "demo"};
 
 constexpr char const* exit_statuses =
     "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
@@ -31,7 +31,7 @@ void add_quality(CLI::App& command, CommandLine& out, char const* text) {
 /// What every command understands, before its name and after it.
 void add_common(CLI::App& app, CommandLine& out) {
   app.add_flag("-q,--quiet", out.quiet,
-               "Print errors and warnings only, and what inspect, plan and quality are asked for");
+               "Print errors and warnings only, and what inspect, plan, quality and keys are asked for");
   app.add_flag("--json", out.json, "Print the result as JSON on standard output, and nothing else there");
   app.add_option(
          "-t,--threads", out.threads,
@@ -182,6 +182,12 @@ CLI::App* add_view(CLI::App& app, CommandLine& out) {
   return view;
 }
 
+CLI::App* add_keys(CLI::App& app, CommandLine& out) {
+  auto* keys = app.add_subcommand("keys", "List the keys of case files: type, unit, default, meaning");
+  keys->add_option("name", out.names, "Keys, tables or rules (offset, volume, rigid); all of them if none is given");
+  return keys;
+}
+
 CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   auto* demo = app.add_subcommand("demo", "Write a built-in mesh and its case files, and morph it");
   demo->add_option(
@@ -245,6 +251,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   commands.emplace_back(add_hexahedra(app, out), Command::hexahedra);
   commands.emplace_back(add_surface(app, out), Command::surface);
   commands.emplace_back(add_view(app, out), Command::view);
+  commands.emplace_back(add_keys(app, out), Command::keys);
   commands.emplace_back(add_demo(app, out), Command::demo);
   for (auto const& [subcommand, command] : commands) {
     add_common(*subcommand, out);

@@ -14,7 +14,7 @@
 namespace gridmorph::cli {
 
 struct CommandLine {
-  enum class Command { morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, view, demo };
+  enum class Command { morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, view, keys, demo };
   Command command = Command::morph;
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
@@ -52,6 +52,7 @@ struct CommandLine {
   bool ascii = false;                         ///< surface: text, not binary
 
   std::vector<GivenDrawingOption> drawing;  ///< view
+  std::vector<std::string> names;           ///< keys: of keys and tables
 
   std::string demo_name;
   std::optional<std::string> demo_motion;  ///< passage

@@ -31,6 +31,7 @@ int run_surface_command(CommandLine const& options, Terminal& terminal);
 int run_fillet_command(CommandLine const& options, Terminal& terminal);
 int run_hexahedra_command(CommandLine const& options, Terminal& terminal);
 int run_view_command(CommandLine const& options, Terminal& terminal);
+int run_keys_command(CommandLine const& options, Terminal& terminal);
 int run_demo_command(CommandLine const& options, Terminal& terminal);
 
 }  // namespace gridmorph::cli

@@ -48,6 +48,8 @@ constexpr std::array topics{
           "  gridmorph view wing.cgns wing_morphed.cgns --out pictures --plane y=3.5\n",
           "demo_passage.md, demo_ball.md (what is drawn of blocks and of elements), report.md (pages with pictures, of "
           "every format)"},
+    Topic{"keys", "  gridmorph keys guard\n  gridmorph keys rigid --json\n",
+          "case_file.md (the same and more, with examples)"},
     Topic{"demo",
           "  gridmorph demo passage --nodes 1000000\n"
           "  gridmorph demo ball --elements 200000 --angle 20\n",

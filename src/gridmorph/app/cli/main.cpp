@@ -1,4 +1,4 @@
-// gridmorph: morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, view, demo.
+// gridmorph: morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, view, keys, demo.
 //
 //   gridmorph inspect passage.cgns
 //   gridmorph plan case.toml
@@ -44,6 +44,7 @@ int run(CommandLine const& options, Terminal& terminal) {
     case Command::hexahedra: return run_hexahedra_command(options, terminal);
     case Command::surface: return run_surface_command(options, terminal);
     case Command::view: return run_view_command(options, terminal);
+    case Command::keys: return run_keys_command(options, terminal);
     case Command::demo: return run_demo_command(options, terminal);
   }
   return bad_input;
@@ -114,7 +115,7 @@ int main(int argc, char** argv) try {
   }
   auto& options = std::get<CommandLine>(parsed);
   using Command = CommandLine::Command;
-  bool const computes = options.command != Command::view;
+  bool const computes = options.command != Command::view && options.command != Command::keys;
   if (computes) wait_passively(argv);
   Terminal terminal(options.quiet, options.json);
   return report_errors(terminal, [&] {

@@ -41,7 +41,8 @@ std::optional<std::uintmax_t> bytes_of_mesh(CommandLine const& options) {
     case Command::fillet:
     case Command::hexahedra:
     case Command::surface:
-    case Command::view: break;
+    case Command::view:
+    case Command::keys: break;
   }
   if (!mesh) return std::nullopt;
   std::error_code error;

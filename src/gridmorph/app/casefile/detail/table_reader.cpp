@@ -1,4 +1,5 @@
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
+#include <gridmorph/app/casefile/key_list.hpp>
 #include <gridmorph/app/casefile/suggest.hpp>
 
 #include <fmt/format.h>
@@ -26,8 +27,22 @@ std::string describe_value(toml::value const& value) {
   }
 }
 
-TableReader::TableReader(Context& context, toml::value const& table, std::string name)
-    : context_(&context), table_(&table), name_(std::move(name)) {}
+TableReader::TableReader(Context& context, toml::value const& table, std::string name, std::string rule)
+    : context_(&context), table_(&table), name_(std::move(name)), rule_(std::move(rule)) {
+  if (auto const found = table.as_table().find("rule"); found != table.as_table().end() && found->second.is_string())
+    rule_ = string_of(found->second);
+}
+
+std::string TableReader::plain_name() const {
+  std::string name = name_;
+  std::erase_if(name, [](char c) { return c == '[' || c == ']'; });
+  return name;
+}
+
+std::string TableReader::about(std::string const& key) const {
+  KeyDescription const* const known = find_key(plain_name(), rule_, key);
+  return known == nullptr ? "" : ". " + describe(*known);
+}
 
 bool TableReader::has(std::string const& key) const { return table_->as_table().count(key) > 0; }
 
@@ -38,9 +53,8 @@ unsigned TableReader::line(std::string const& key) const {
 }
 
 toml::value const* TableReader::find(std::string const& key) {
-  std::string name = name_;
-  std::erase_if(name, [](char c) { return c == '[' || c == ']'; });
-  if (context_->asked != nullptr) context_->asked->emplace(name, key);
+  std::string name = plain_name();
+  if (context_->asked != nullptr) (*context_->asked)[{name, key}];
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   auto const& table = table_->as_table();
   auto const found = table.find(key);
@@ -49,21 +63,27 @@ toml::value const* TableReader::find(std::string const& key) {
   return &found->second;
 }
 
+toml::value const* TableReader::find_as(char const* what, std::string const& key) {
+  if (context_->asked != nullptr) (*context_->asked)[{plain_name(), key}].as.insert(what);
+  return find(key);
+}
+
 void TableReader::problem(std::string const& key, std::string const& text) {
   context_->problem(line(key), fmt::format("{}{}{}: {}", name_, name_.empty() ? "" : " ", key, text));
 }
 
 void TableReader::require(std::string const& key, std::string_view what_to_write) {
   if (find(key) == nullptr)
-    context_->problem(
-        line(), fmt::format("{}{}key '{}' is missing; add {}", name_, name_.empty() ? "" : ": ", key, what_to_write));
+    context_->problem(line(), fmt::format("{}{}key '{}' is missing; add {}{}", name_, name_.empty() ? "" : ": ", key,
+                                          what_to_write, about(key)));
 }
 
 std::optional<std::string> TableReader::string(std::string const& key) {
-  auto const* value = find(key);
+  auto const* value = find_as("string", key);
   if (value == nullptr) return std::nullopt;
   if (!value->is_string()) {
-    problem(key, fmt::format("expected a string, found {}; write {} = \"...\"", describe_value(*value), key));
+    problem(key,
+            fmt::format("expected a string, found {}; write {} = \"...\"{}", describe_value(*value), key, about(key)));
     return std::nullopt;
   }
   if (string_of(*value).empty()) {
@@ -74,10 +94,10 @@ std::optional<std::string> TableReader::string(std::string const& key) {
 }
 
 std::optional<bool> TableReader::boolean(std::string const& key) {
-  auto const* value = find(key);
+  auto const* value = find_as("true or false", key);
   if (value == nullptr) return std::nullopt;
   if (!value->is_boolean()) {
-    problem(key, fmt::format("expected true or false, found {}", describe_value(*value)));
+    problem(key, fmt::format("expected true or false, found {}{}", describe_value(*value), about(key)));
     return std::nullopt;
   }
   return value->as_boolean();
@@ -90,7 +110,7 @@ std::optional<double> TableReader::finite(toml::value const& value, std::string 
   else if (value.is_floating())
     number = value.as_floating();
   else {
-    problem(key, fmt::format("expected a number, found {}", describe_value(value)));
+    problem(key, fmt::format("expected a number, found {}{}", describe_value(value), about(key)));
     return std::nullopt;
   }
   if (!std::isfinite(number)) {
@@ -101,15 +121,15 @@ std::optional<double> TableReader::finite(toml::value const& value, std::string 
 }
 
 std::optional<double> TableReader::number(std::string const& key) {
-  auto const* value = find(key);
+  auto const* value = find_as("number", key);
   return value == nullptr ? std::nullopt : finite(*value, key);
 }
 
 std::optional<int> TableReader::integer(std::string const& key) {
-  auto const* value = find(key);
+  auto const* value = find_as("whole number", key);
   if (value == nullptr) return std::nullopt;
   if (!value->is_integer()) {
-    problem(key, fmt::format("expected a whole number, found {}", describe_value(*value)));
+    problem(key, fmt::format("expected a whole number, found {}{}", describe_value(*value), about(key)));
     return std::nullopt;
   }
   auto const wide = value->as_integer();
@@ -121,10 +141,14 @@ std::optional<int> TableReader::integer(std::string const& key) {
 }
 
 std::optional<std::vector<double>> TableReader::numbers(std::string const& key) {
-  auto const* value = find(key);
+  return list_of_numbers("list of numbers", key);
+}
+
+std::optional<std::vector<double>> TableReader::list_of_numbers(char const* what, std::string const& key) {
+  auto const* value = find_as(what, key);
   if (value == nullptr) return std::nullopt;
   if (!value->is_array()) {
-    problem(key, fmt::format("expected an array of numbers, found {}", describe_value(*value)));
+    problem(key, fmt::format("expected an array of numbers, found {}{}", describe_value(*value), about(key)));
     return std::nullopt;
   }
   std::vector<double> out;
@@ -137,17 +161,17 @@ std::optional<std::vector<double>> TableReader::numbers(std::string const& key) 
 }
 
 std::optional<Vec3> TableReader::vector(std::string const& key) {
-  auto const list = numbers(key);
+  auto const list = list_of_numbers("[x, y, z]", key);
   if (!list) return std::nullopt;
   if (list->size() != 3) {
-    problem(key, fmt::format("expected three numbers [x, y, z], found {}", list->size()));
+    problem(key, fmt::format("expected three numbers [x, y, z], found {}{}", list->size(), about(key)));
     return std::nullopt;
   }
   return Vec3{(*list)[0], (*list)[1], (*list)[2]};
 }
 
 std::optional<std::vector<std::string>> TableReader::strings(std::string const& key) {
-  auto const* value = find(key);
+  auto const* value = find_as("string or list", key);
   if (value == nullptr) return std::nullopt;
   std::vector<std::string> out;
   if (value->is_string())
@@ -161,7 +185,8 @@ std::optional<std::vector<std::string>> TableReader::strings(std::string const& 
       out.push_back(string_of(item));
     }
   } else {
-    problem(key, fmt::format("expected a string or an array of strings, found {}", describe_value(*value)));
+    problem(key,
+            fmt::format("expected a string or an array of strings, found {}{}", describe_value(*value), about(key)));
     return std::nullopt;
   }
   if (out.empty()) {
@@ -176,36 +201,38 @@ std::optional<std::vector<std::string>> TableReader::strings(std::string const& 
 }
 
 std::optional<TableReader> TableReader::table(std::string const& key) {
-  auto const* value = find(key);
+  auto const* value = find_as("table", key);
   if (value == nullptr) return std::nullopt;
   if (!value->is_table()) {
-    problem(key, fmt::format("expected a table {{ ... }}, found {}", describe_value(*value)));
+    problem(key, fmt::format("expected a table {{ ... }}, found {}{}", describe_value(*value), about(key)));
     return std::nullopt;
   }
-  return TableReader(*context_, *value, name_.empty() ? fmt::format("[{}]", key) : fmt::format("{} {}", name_, key));
+  return TableReader(*context_, *value, name_.empty() ? fmt::format("[{}]", key) : fmt::format("{} {}", name_, key),
+                     rule_);
 }
 
 std::vector<TableReader> TableReader::tables(std::string const& key) {
-  auto const* value = find(key);
+  auto const* value = find_as("list of tables", key);
   std::vector<TableReader> out;
   if (value == nullptr) return out;
   std::string const name = name_.empty() ? fmt::format("[[{}]]", key) : fmt::format("{} {}", name_, key);
   if (value->is_table()) {
-    out.emplace_back(*context_, *value, name_.empty() ? fmt::format("[{}]", key) : name);
+    out.emplace_back(*context_, *value, name_.empty() ? fmt::format("[{}]", key) : name, rule_);
     return out;
   }
   bool const usable = value->is_array() && std::all_of(value->as_array().begin(), value->as_array().end(),
                                                        [](toml::value const& item) { return item.is_table(); });
   if (!usable) {
-    problem(key, fmt::format("expected a table or an array of tables, found {}", describe_value(*value)));
+    problem(key, fmt::format("expected a table or an array of tables, found {}{}", describe_value(*value), about(key)));
     return out;
   }
-  for (auto const& item : value->as_array()) out.emplace_back(*context_, item, name);
+  for (auto const& item : value->as_array()) out.emplace_back(*context_, item, name, rule_);
   return out;
 }
 
 std::optional<std::size_t> TableReader::choice(std::string const& key, std::vector<std::string> const& words) {
   auto const word = string(key);
+  if (context_->asked != nullptr) (*context_->asked)[{plain_name(), key}].words = words;
   if (!word) return std::nullopt;
   auto const found = std::find(words.begin(), words.end(), *word);
   if (found == words.end()) {

@@ -38,7 +38,7 @@ struct Context {
 class TableReader {
  public:
   /// `name` is how messages call the table: "[mesh]", "[[motion]]", "[mesh] axis".
-  TableReader(Context& context, toml::value const& table, std::string name);
+  TableReader(Context& context, toml::value const& table, std::string name, std::string rule = "");
 
   [[nodiscard]] bool has(std::string const& key) const;
   [[nodiscard]] unsigned line() const { return line_of(*table_); }
@@ -72,10 +72,17 @@ class TableReader {
 
  private:
   std::optional<double> finite(toml::value const& value, std::string const& key);
+  std::optional<std::vector<double>> list_of_numbers(char const* what, std::string const& key);
+  /// find(), where the key is read as one thing: see KeyReading.
+  toml::value const* find_as(char const* what, std::string const& key);
+  [[nodiscard]] std::string plain_name() const;
+  /// ". offset: ... (number > 0, length)", to end a message with; empty where the list of keys has nothing.
+  [[nodiscard]] std::string about(std::string const& key) const;
 
   Context* context_;
   toml::value const* table_;
   std::string name_;
+  std::string rule_;  ///< of the [[motion]] that this is, or is a part of
   std::vector<std::string> known_;
 };
 
