@@ -70,6 +70,21 @@ def add_stages(path, stages):
         node(solution, "Chain", "DataArray_t", chains)
 
 
+def add_pressure(path, kind):
+    """The axial position as a variable, at the nodes or as the mean of every cell."""
+    with h5py.File(path, "a") as file:
+        zone = file["Base/Zone 1"]
+        values = zone["GridCoordinates/CoordinateX/ data"][()]
+        solution = node(zone, "Flow", "FlowSolution_t")
+        node(solution, "GridLocation", "GridLocation_t", "Vertex" if kind == "Vertex" else "CellCenter")
+        if kind != "Vertex":
+            values = np.broadcast_to(0.5 * (values[:-1, :-1, :-1] + values[:-1, :-1, 1:]), np.array(values.shape) - 1).copy()
+        if kind == "rind":
+            node(solution, "Rind", "Rind_t", np.array([1, 1, 1, 1, 1, 1]))
+            values = np.pad(values, 1, constant_values=99)
+        node(solution, "Pressure", "DataArray_t", values)
+
+
 def image_size(path):
     with open(path, "rb") as file:
         head = file.read(24)
@@ -119,6 +134,30 @@ class Picture(unittest.TestCase):
 
     def test_a_plane_across_the_grid_lines_is_drawn(self):
         self.expect_pictures(self.run_picture(self.base, self.morphed, "--plane", "z=0.1"), ("section",))
+
+    def test_a_variable_of_a_solution_fills_the_cells_that_a_plane_meets(self):
+        """At nodes, in cells, and in cells with a layer around the zone: the same values, on polygons that make up the section."""
+        for kind in ("Vertex", "CellCenter", "rind"):
+            for path in (self.base, self.morphed):
+                write_annulus(path, 0.1 if path == self.morphed else 0)
+                add_pressure(path, kind)
+            module = runpy.run_path(PICTURE)
+            cut = module["PlaneCut"]("x=0.53")
+            (part,) = module["sections"](cut, self.base, self.morphed, "Pressure", 0.05)
+            self.assertEqual(len(part.polygons), 8 * 12)
+            np.testing.assert_allclose(part.value, 8.5 / 16)
+            area = sum(0.5 * abs(np.sum(p[:, 0] * np.roll(p[:, 1], -1) - p[:, 1] * np.roll(p[:, 0], -1))) for p in part.polygons)
+            self.assertAlmostEqual(area, 1.5 * 12 * np.sin(0.5 / 12))
+            # The wave is highest on k = 1 at large radii, and does not reach the other side.
+            self.assertTrue(0 < part.outlined.sum() < len(part.polygons))
+            self.expect_pictures(self.run_picture(self.base, self.morphed, "--plane", "x=0.53", "--color", "Pressure", "--moved", "0.05"),
+                                 ("section",))
+            shutil.rmtree(self.path("out"))
+        for wrong, said in ((("--plane", "x=0.53", "--color", "Density"), "no 'Density'"), (("--span", "0.4", "--color", "Pressure"), "--plane"),
+                            (("--plane", "x=0.53", "--moved", "1"), "--color")):
+            run = self.run_picture(self.base, self.morphed, *wrong)
+            self.assertEqual(run.returncode, 2)
+            self.assertIn(said, run.stderr)
 
     def write_stages(self):
         os.mkdir(self.path("stages"))
