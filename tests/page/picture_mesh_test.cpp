@@ -49,7 +49,9 @@ double area_of(Section const& section) {
 
 Cut at_x(double x) {
   Cut cut;
-  cut.level = [x](Vec3 const& p) { return p.x - x; };
+  cut.levels = [x](Coordinates const& nodes, std::span<double> level) {
+    for (std::size_t n = 0; n < level.size(); ++n) level[n] = nodes[Index(n)].x - x;
+  };
   cut.flat = [](Vec3 const& p) { return Flat{p.y, p.z}; };
   return cut;
 }

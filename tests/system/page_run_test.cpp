@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <regex>
+#include <sstream>
 #include <string>
 
 namespace gridmorph::testing {
@@ -45,6 +46,19 @@ TEST_F(PageRun, IsTheSameInEveryRunButForTimes) {
   ASSERT_EQ(gridmorph("--threads 1 morph rotation.toml --html a.html").status, 0);
   ASSERT_EQ(gridmorph("--threads 2 morph rotation.toml --html b.html").status, 0);
   EXPECT_EQ(without_times(contents(path("a.html"))), without_times(contents(path("b.html"))));
+}
+
+TEST_F(PageRun, HasSizeAndChecksumOfWhatWasReadAndWritten) {
+  ASSERT_EQ(gridmorph("morph rotation.toml -o moved.cgns --html page.html").status, 0);
+  std::string const text = contents(path("page.html"));
+  for (std::string const name : {"passage.cgns", "rotation.csv", "moved.cgns"}) {
+    Outcome const sum = shell("cksum " + name);  // of POSIX.1: CRC, bytes, name
+    ASSERT_EQ(sum.status, 0) << sum.err;
+    std::istringstream in(sum.out);
+    std::string crc, bytes;
+    in >> crc >> bytes;
+    EXPECT_NE(text.find(bytes + " bytes, cksum " + crc), std::string::npos) << name;
+  }
 }
 
 TEST_F(PageRun, LeavesTheMeshAndTheReportAsTheyAre) {

@@ -35,27 +35,43 @@ bool is_near(NearCells const& near, Index cell) {
   return near.cells.extent(0) > 0 && near.cells(std::size_t(cell)) != 0;
 }
 
-/// All cells where the run kept their measures, evenly spaced ones otherwise.
-void take_sample(Run const& run, page::PictureMesh const& mesh, Sample& out) {
-  bool kept = true;
+/// Whether the run kept all of these measures, which then are those of the sample.
+bool take_kept(Run const& run, Sample& out) {
   for (std::size_t m = 0; m < page_measures.size(); ++m) {
     auto const values = run.kept(page_measures[m]);
-    kept = kept && values.before != nullptr && values.after != nullptr;
-    out.value[m] = kept ? Values{values.before, values.after} : Values{&out.own[2 * m], &out.own[2 * m + 1]};
+    if (values.before == nullptr || values.after == nullptr) return false;
+    out.value[m] = {values.before, values.after};
   }
-  if (!kept)
-    for (std::size_t m = 0; m < page_measures.size(); ++m) out.value[m] = {&out.own[2 * m], &out.own[2 * m + 1]};
-  Index const n_cells = mesh.n_cells(), stride = kept ? 1 : (n_cells + most_sampled - 1) / most_sampled;
+  return true;
+}
+
+/// All cells where the run kept their measures, evenly spaced ones otherwise.
+void take_sample(Run const& run, page::PictureMesh const& mesh, Sample& out) {
+  NearCells const near = run.plan().near();
+  Index const n_cells = mesh.n_cells();
+  if (take_kept(run, out)) {
+    out.near.assign(std::size_t(n_cells), 0);
+    for (std::size_t n = 0; n < near.cells.extent(0); ++n) out.near[n] = near.cells(n) != 0 ? 1 : 0;
+    return;
+  }
+  Index const stride = (n_cells + most_sampled - 1) / most_sampled;
   for (Index cell = 0; cell < n_cells; cell += stride) {
-    out.near.push_back(is_near(run.plan().near(), cell) ? 1 : 0);
-    if (kept) continue;
     out.cell.push_back(cell);
-    auto const before = mesh.measures(cell, run.mesh().coordinates()), after = mesh.measures(cell, run.morphed());
-    for (std::size_t m = 0; m < page_measures.size(); ++m) {
-      out.own[2 * m].push_back(value_of(before, page_measures[m]));
-      out.own[2 * m + 1].push_back(value_of(after, page_measures[m]));
-    }
+    out.near.push_back(is_near(near, cell) ? 1 : 0);
   }
+  for (auto& values : out.own) values.resize(out.cell.size());
+  for (std::size_t m = 0; m < page_measures.size(); ++m) out.value[m] = {&out.own[2 * m], &out.own[2 * m + 1]};
+  constexpr std::size_t share = 1024;  // cells of a task
+  for_each_task((out.cell.size() + share - 1) / share, [&](std::size_t task) {
+    for (std::size_t n = task * share; n < std::min(out.cell.size(), (task + 1) * share); ++n) {
+      auto const before = mesh.measures(out.cell[n], run.mesh().coordinates());
+      auto const after = mesh.measures(out.cell[n], run.morphed());
+      for (std::size_t m = 0; m < page_measures.size(); ++m) {
+        out.own[2 * m][n] = value_of(before, page_measures[m]);
+        out.own[2 * m + 1][n] = value_of(after, page_measures[m]);
+      }
+    }
+  });
 }
 
 struct Candidate {
@@ -81,16 +97,22 @@ void add_smallest(Key const& key, std::vector<char> const& near, bool in_near, s
 }
 
 std::vector<Candidate> worst_of_all(Sample const& sample) {
-  std::vector<Candidate> out;
   auto const &before = *sample.value[0].before, &after = *sample.value[0].after, &angle = *sample.value[1].after;
-  for (bool const near : {true, false}) {
+  std::array<std::vector<Candidate>, 6> found;
+  for_each_task(found.size(), [&](std::size_t task) {
+    bool const near = task < 3;
     std::string const field = near ? ", near field" : ", far field";
-    add_smallest([&](std::size_t n) { return after[n]; }, sample.near, near, 2, "smallest determinant" + field, out);
-    add_smallest([&](std::size_t n) { return angle[n]; }, sample.near, near, 1, "smallest angle" + field, out);
-    // As CellLimits::max_loss counts.
-    add_smallest([&](std::size_t n) { return (after[n] - before[n]) / std::max(std::abs(before[n]), 0.05); },
-                 sample.near, near, 1, "largest loss of determinant" + field, out);
-  }
+    std::vector<Candidate>& out = found[task];
+    if (task % 3 == 0)
+      add_smallest([&](std::size_t n) { return after[n]; }, sample.near, near, 2, "smallest determinant" + field, out);
+    else if (task % 3 == 1)
+      add_smallest([&](std::size_t n) { return angle[n]; }, sample.near, near, 1, "smallest angle" + field, out);
+    else  // As CellLimits::max_loss counts.
+      add_smallest([&](std::size_t n) { return (after[n] - before[n]) / std::max(std::abs(before[n]), 0.05); },
+                   sample.near, near, 1, "largest loss of determinant" + field, out);
+  });
+  std::vector<Candidate> out;
+  for (auto const& some : found) out.insert(out.end(), some.begin(), some.end());
   return out;
 }
 
@@ -110,18 +132,20 @@ std::vector<Candidate> worst_of_report(QualityReport const& quality, page::Pictu
   return out;
 }
 
-/// One per measure; none of a region without cells.
-std::vector<page::Histogram> histograms_of(Sample const& sample, bool near) {
-  std::vector<char> in(sample.near.size());
-  for (std::size_t n = 0; n < in.size(); ++n) in[n] = (sample.near[n] != 0) == near ? 1 : 0;
-  std::vector<page::Histogram> out;
-  if (std::find(in.begin(), in.end(), 1) == in.end()) return out;
-  out.resize(page_measures.size());
-  for_each_task(out.size(), [&](std::size_t m) {
-    out[m] = page::histogram(page_measures[m], *sample.value[m].before, *sample.value[m].after, in);
-    out[m].title = std::string(text_of(page_measures[m]).title) + (near ? ", near field" : ", far field");
+/// One per measure of each field; none of a field without cells.
+void make_histograms(Sample const& sample, page::ReportPage& out) {
+  std::array<std::array<page::Histogram, 2>, page_measures.size()> made;
+  for_each_task(made.size(), [&](std::size_t m) {
+    made[m] = page::histograms(page_measures[m], *sample.value[m].before, *sample.value[m].after, sample.near);
   });
-  return out;
+  for (std::size_t const near : {0U, 1U}) {
+    if (std::find(sample.near.begin(), sample.near.end(), char(near)) == sample.near.end()) continue;
+    for (auto& of_measure : made) {
+      page::Histogram& h = of_measure[near];
+      h.title = std::string(text_of(h.measure).title) + (near != 0 ? ", near field" : ", far field");
+      (near != 0 ? out.near_histograms : out.far_histograms).push_back(std::move(h));
+    }
+  }
 }
 
 }  // namespace
@@ -129,8 +153,7 @@ std::vector<page::Histogram> histograms_of(Sample const& sample, bool near) {
 void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh, page::ReportPage& out) {
   Sample sample;
   take_sample(run, mesh, sample);
-  out.near_histograms = histograms_of(sample, true);
-  out.far_histograms = histograms_of(sample, false);
+  make_histograms(sample, out);
   if (!sample.cell.empty())
     out.histogram_note = fmt::format(
         "A verdict was measured: the histograms are of {} of {} {}, evenly spaced; full quality "

@@ -129,7 +129,9 @@ std::vector<Cut> span_cuts(std::shared_ptr<Annulus const> const& annulus, page::
     Cut cut;
     cut.title = fmt::format("Span {:.0f} %, rolled out", 100 * share);
     cut.labels = {"axial", "radius x angle"};
-    cut.level = [annulus, share](Vec3 const& p) { return annulus->span(p) - share; };
+    cut.levels = [annulus, share](Coordinates const& at, std::span<double> level) {
+      for (std::size_t n = 0; n < level.size(); ++n) level[n] = annulus->span(at[Index(n)]) - share;
+    };
     cut.flat = [annulus, first, second, middle, radius](Vec3 const& p) {
       CylindricalFrame const& f = annulus->frame();
       Vec3 const d = p - f.origin();
@@ -161,7 +163,10 @@ std::vector<Cut> plane_cuts(page::Surface const& surface, std::vector<Vec3> cons
     Cut cut;
     cut.title = fmt::format("{} = {:.4g}", names[std::size_t(d)], at);
     cut.labels = {names[std::size_t(a)], names[std::size_t(b)]};
-    cut.level = [d, at](Vec3 const& p) { return component(p, d) - at; };
+    cut.levels = [d, at](Coordinates const& nodes, std::span<double> level) {
+      double const* const x = (d == 0 ? nodes.x : d == 1 ? nodes.y : nodes.z).data();
+      for (std::size_t n = 0; n < level.size(); ++n) level[n] = x[n] - at;
+    };
     cut.flat = [a, b](Vec3 const& p) { return page::Flat{component(p, a), component(p, b)}; };
     out.push_back(std::move(cut));
   }

@@ -477,6 +477,8 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
                                             holds_fields(file.format) ? run.fields() : OutputFields());
                            if (options.vtk) run.mesh().write_vtk(*options.vtk, run.morphed(), run.fields());
                            add_time(run.times, "write", watch.lap());
+                           if (page) page->add_output(case_file.output);
+                           if (page) add_time(run.times, "page", watch.lap(), false);
                          }
                          if (options.stages) run.write_stages(*options.stages);
                        },

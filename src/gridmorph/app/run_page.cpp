@@ -2,6 +2,7 @@
 #include <gridmorph/app/page/html.hpp>
 #include <gridmorph/app/run_page.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/io/checksum.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/report/block_graph_text.hpp>
@@ -49,13 +50,21 @@ std::string now() {
                      utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-std::string size_text(std::filesystem::path const& path) {
-  std::error_code error;
-  auto const size = std::filesystem::file_size(path, error);
-  return error ? path.string() : fmt::format("{} ({} bytes)", path.string(), size);
+/// Files that the run reads, and what they are.
+std::vector<std::pair<std::string, std::filesystem::path>> inputs_of_run(CaseFile const& case_file) {
+  std::vector<std::pair<std::string, std::filesystem::path>> out{{"mesh", case_file.input}};
+  if (case_file.side_file) out.emplace_back("side file", *case_file.side_file);
+  for (auto const& file : case_file.files) out.emplace_back("input file", file);
+  return out;
 }
 
-std::vector<std::pair<std::string, std::string>> settings_of(CaseFile const& case_file) {
+/// Size and checksum; empty of what is no ordinary file.
+std::string identity_of(std::filesystem::path const& path) {
+  auto const sum = io::posix_checksum(path.string());
+  return sum ? fmt::format("{} bytes, cksum {}", sum->bytes, sum->value) : std::string();
+}
+
+std::vector<std::pair<std::string, std::string>> settings_of_program() {
   std::vector<std::pair<std::string, std::string>> out;
   std::istringstream versions(version_text());
   for (std::string line; std::getline(versions, line);) out.emplace_back("version", line);
@@ -63,9 +72,6 @@ std::vector<std::pair<std::string, std::string>> settings_of(CaseFile const& cas
   out.emplace_back("machine", machine());
   std::error_code error;
   out.emplace_back("folder", std::filesystem::current_path(error).string());
-  out.emplace_back("mesh", size_text(case_file.input));
-  if (case_file.side_file) out.emplace_back("side file", size_text(*case_file.side_file));
-  for (auto const& file : case_file.files) out.emplace_back("input file", size_text(file));
   out.emplace_back("date", now());
   return out;
 }
@@ -99,7 +105,7 @@ Vec3 upwards(std::optional<Axis> const& axis, page::Surface const& surface) {
 
 RunPage::RunPage(CaseFile const& case_file, std::string typed) : case_file_(case_file) {
   page_.command_line = std::move(typed);
-  page_.settings = settings_of(case_file);
+  page_.settings = settings_of_program();
   page_.case_text = io::read_file(case_file.source.string());
 }
 
@@ -129,7 +135,23 @@ void RunPage::add_step(Run const& run, int step, int of, bool worst) {
   if (worst) worst_step_ = Step{step, displacement_of_surface(run)};
 }
 
+void RunPage::add_inputs() {
+  auto const inputs = inputs_of_run(case_file_);
+  std::vector<std::string> identity(inputs.size());
+  for_each_task(inputs.size(), [&](std::size_t n) { identity[n] = identity_of(inputs[n].second); });
+  for (std::size_t n = 0; n < inputs.size(); ++n)
+    page_.settings.emplace_back(inputs[n].first,
+                                inputs[n].second.string() + (identity[n].empty() ? "" : " (" + identity[n] + ")"));
+  page_.settings.emplace_back("checksums", "as the program cksum prints them: cksum FILE");
+}
+
+void RunPage::add_output(std::filesystem::path const& output) {
+  if (std::string const identity = identity_of(output); !identity.empty())
+    page_.settings.emplace_back("output", identity);
+}
+
 void RunPage::finish(Run const& run, QualityReport const& quality) {
+  add_inputs();
   BoundaryMotion const& rules = run.plan().rules();
   Mesh const& mesh = pictures_->mesh();
   Coordinates const& baseline = run.mesh().coordinates();
@@ -251,6 +273,19 @@ SectionFrame end_frame(std::size_t cut, BothSections const& both, bool first, st
 }
 }  // namespace
 
+/// Of cells, as the run kept them, measured where it did not.
+std::vector<float> RunPage::determinants_of(Run const& run, std::vector<Index> const& cells, bool morphed) const {
+  auto const kept = run.kept(Measure::determinant_3x3x3);
+  auto const* const values = morphed ? kept.after : kept.before;
+  Coordinates const& at = morphed ? run.morphed() : run.mesh().coordinates();
+  std::vector<float> out;
+  out.reserve(cells.size());
+  for (Index const cell : cells)
+    out.push_back(
+        float(values != nullptr ? (*values)[std::size_t(cell)] : pictures_->measures(cell, at).determinant_3x3x3));
+  return out;
+}
+
 void RunPage::make_sections(Run const& run) {
   auto const cuts = cuts_of(*pictures_, run.plan().rules(), case_file_.axis, surface_, displacement_of_surface(run));
   std::vector<BothSections> both(cuts.size());
@@ -258,8 +293,7 @@ void RunPage::make_sections(Run const& run) {
     std::size_t const c = n / 2, s = n % 2;
     Coordinates const& at = s == 0 ? run.mesh().coordinates() : run.morphed();
     both[c].section[s] = page::cut_mesh(*pictures_, boundary_, at, cuts[c], roles_.wall);
-    for (Index const cell : both[c].section[s].cell)
-      both[c].value[s].push_back(float(pictures_->measures(cell, at).determinant_3x3x3));
+    both[c].value[s] = determinants_of(run, both[c].section[s].cell, s == 1);
     both[c].walls[s] = page::moving_walls(both[c].section[s]);
   });
   // The cut with most of what moves comes first: of a wing that across its span.

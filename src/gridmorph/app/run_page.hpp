@@ -33,14 +33,18 @@ class RunPage {
   /// All pictures and numbers of the run as it stands. quality: as the report has it. Cost: facets, cells of sections, pixels.
   void finish(Run const& run, QualityReport const& quality);
 
+  /// The mesh that the run has written. Cost: reading it.
+  void add_output(std::filesystem::path const& output);
+
   /// The page with this report. Cost: its length.
   [[nodiscard]] std::string text(nlohmann::json const& report);
 
  private:
-  void find_surface(Run const& run);
+  void add_inputs();
   [[nodiscard]] std::vector<Vec3> displacement_of_surface(Run const& run) const;
   void make_surfaces(Run const& run);
   void make_sections(Run const& run);
+  [[nodiscard]] std::vector<float> determinants_of(Run const& run, std::vector<Index> const& cells, bool morphed) const;
   void make_steps();
 
   CaseFile const& case_file_;

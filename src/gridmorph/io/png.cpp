@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 namespace gridmorph::io {
 
@@ -40,35 +41,48 @@ void append_chunk(std::string& out, char const* name, std::string_view data) {
   append_big_endian(out, png_checksum(std::string_view(out).substr(at)));
 }
 
-/// Rows as they are packed: each as it stands, less its left or less its upper neighbours, whichever differences are smallest (the standard's
-/// advice for colours; palettes go as they stand).
+/// How far bytes are from zero, of differences: what packs best is smallest (the standard's advice for colours).
+long distance_from_zero(std::uint8_t const* bytes, std::size_t n) {
+  constexpr std::size_t few = 1024;  // whose sum the compiler keeps in 32 bits, several at a time
+  long sum = 0;
+  for (std::size_t begin = 0; begin < n; begin += few) {
+    std::uint32_t part = 0;
+    for (std::size_t k = begin; k < std::min(n, begin + few); ++k) {
+      int const v = std::int8_t(bytes[k]);
+      part += std::uint32_t(v < 0 ? -v : v);
+    }
+    sum += part;
+  }
+  return sum;
+}
+
+/// Rows as they are packed: each as it stands, less its left or less its upper neighbours, whichever differences are smallest; palettes
+/// go as they stand.
 std::string filtered_rows(std::vector<std::uint8_t> const& pixels, std::size_t row, std::size_t pixel, bool plain) {
-  std::string out;
-  out.reserve(pixels.size() + pixels.size() / row);
-  // A row and the one above it, after a pixel of zeros.
-  std::vector<std::uint8_t> now(pixel + row, 0), above(pixel + row, 0);
-  std::array<std::vector<std::uint8_t>, 3> tried;
-  for (auto& t : tried) t.resize(row);
-  for (std::size_t begin = 0; begin < pixels.size(); begin += row) {
-    std::copy_n(pixels.begin() + std::ptrdiff_t(begin), row, now.begin() + std::ptrdiff_t(pixel));
-    std::uint8_t const *const here = now.data() + pixel, *const left = now.data(), *const up = above.data() + pixel;
-    for (std::size_t n = 0; n < row; ++n) {
-      tried[0][n] = here[n];
-      tried[1][n] = std::uint8_t(here[n] - left[n]);
-      tried[2][n] = std::uint8_t(here[n] - up[n]);
+  std::size_t const rows = pixels.size() / row;
+  std::string out(rows * (row + 1), '\0');
+  std::vector<std::uint8_t> less_left(row), less_up(row);
+  std::vector<std::uint8_t> const nothing(row, 0);
+  for (std::size_t r = 0; r < rows; ++r) {
+    std::uint8_t const* const here = pixels.data() + r * row;
+    std::uint8_t const* best = here;
+    char filter = 0;
+    if (!plain) {
+      std::uint8_t const* const up = r > 0 ? here - row : nothing.data();
+      std::copy_n(here, pixel, less_left.data());
+      for (std::size_t n = pixel; n < row; ++n) less_left[n] = std::uint8_t(here[n] - here[n - pixel]);
+      for (std::size_t n = 0; n < row; ++n) less_up[n] = std::uint8_t(here[n] - up[n]);
+      long least = distance_from_zero(here, row);
+      for (auto const& [tried, number] : {std::pair(less_left.data(), char(1)), std::pair(less_up.data(), char(2))})
+        if (long const sum = distance_from_zero(tried, row); sum < least) {
+          least = sum;
+          best = tried;
+          filter = number;
+        }
     }
-    std::size_t best = 0;
-    long best_sum = -1;
-    for (std::size_t f = 0; f < (plain ? 1 : tried.size()); ++f) {
-      long sum = 0;
-      for (std::uint8_t const v : tried[f]) sum += v < 128 ? v : 256 - v;
-      if (best_sum >= 0 && sum >= best_sum) continue;
-      best = f;
-      best_sum = sum;
-    }
-    out += char(best);
-    out.append(tried[best].begin(), tried[best].end());
-    std::swap(now, above);
+    char* const to = out.data() + r * (row + 1);
+    to[0] = filter;
+    std::memcpy(to + 1, best, row);
   }
   return out;
 }
@@ -78,9 +92,15 @@ bool make_palette(Picture const& picture, std::vector<std::uint8_t>& number, std
   std::unordered_map<std::uint32_t, std::uint8_t> known;
   std::size_t const n = picture.rgba.size() / 4;
   number.resize(n);
+  std::uint32_t last = 0;
   for (std::size_t p = 0; p < n; ++p) {
     std::uint32_t colour = 0;
     if (picture.rgba[4 * p + 3] != 0) std::memcpy(&colour, picture.rgba.data() + 4 * p, 4);
+    if (p > 0 && colour == last) {  // most pixels are like the one before
+      number[p] = number[p - 1];
+      continue;
+    }
+    last = colour;
     auto const [at, added] = known.emplace(colour, std::uint8_t(colours.size()));
     if (added) {
       if (colours.size() == 256) return false;

@@ -23,17 +23,28 @@ std::optional<std::string> unpacked_block(std::string_view packed, std::size_t s
   return length == size ? std::optional(std::move(out)) : std::nullopt;
 }
 
-std::string packed_block(std::string const& path, std::string_view bytes) {
+namespace {
+
+std::string packed_at(int level, std::string const& path, std::string_view bytes) {
   std::string out(::compressBound(uLong(bytes.size())), '\0');
   uLongf length = uLongf(out.size());
-  if (::compress(reinterpret_cast<Bytef*>(out.data()), &length, reinterpret_cast<Bytef const*>(bytes.data()),
-                 uLong(bytes.size())) != Z_OK)
+  if (::compress2(reinterpret_cast<Bytef*>(out.data()), &length, reinterpret_cast<Bytef const*>(bytes.data()),
+                  uLong(bytes.size()), level) != Z_OK)
     throw MachineError(path + ": zlib cannot pack a block");
   out.resize(length);
   return out;
 }
 
-std::string zlib_stream(std::string_view bytes) { return packed_block("a stream", bytes); }
+}  // namespace
+
+std::string packed_block(std::string const& path, std::string_view bytes) {
+  return packed_at(Z_DEFAULT_COMPRESSION, path, bytes);
+}
+
+std::string zlib_stream(std::string_view bytes) {
+  constexpr int level = 1;  // of pictures of report pages: a quarter longer than by default, in a third of the time
+  return packed_at(level, "a stream", bytes);
+}
 
 #else
 

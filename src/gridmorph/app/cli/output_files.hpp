@@ -10,9 +10,9 @@
 
 namespace gridmorph::cli {
 
-/// What a report that waits beside its place has to spare for a time that is known later: more than the digits of three
-/// numbers in JSON.
-inline constexpr std::size_t room_for_a_time = 128;
+/// What a report that waits beside its place has to spare for what is known later: more than the digits of three numbers in JSON, and
+/// size and checksum of the output.
+inline constexpr std::size_t room_for_a_time = 256;
 
 /// A text file written beside its place; it appears there on commit() and leaves nothing behind without it.
 class PendingFile {

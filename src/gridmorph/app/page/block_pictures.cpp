@@ -61,18 +61,27 @@ class BlockPictures final : public PictureMesh {
 
   std::vector<Index> crossed(std::span<double const> level) const override {
     std::vector<Index> out;
+    std::vector<int> below;  // of four nodes that differ in j and k, along i
     for (std::size_t z = 0; z < mesh().zones.size(); ++z) {
       Zone const& zone = mesh().zones[z];
-      auto const [si, sj, sk] = zone.strides();
+      Index const sj = zone.strides()[1], sk = zone.strides()[2];
+      auto const ni = std::size_t(zone.extent[0]);
+      below.resize(ni);
       Index cell = first_[z];
       for (int k = 0; k + 1 < zone.extent[2]; ++k)
-        for (int j = 0; j + 1 < zone.extent[1]; ++j) {
-          double const* at = level.data() + zone.node({0, j, k});
-          for (int i = 0; i + 1 < zone.extent[0]; ++i, ++at, ++cell) {
-            int below = 0;
-            for (Index const n : {Index(0), si, sj, si + sj, sk, si + sk, sj + sk, si + sj + sk}) below += at[n] < 0;
-            if (below != 0 && below != 8) out.push_back(cell);
+        for (int j = 0; j + 1 < zone.extent[1]; ++j, cell += Index(ni) - 1) {
+          double const* const at = level.data() + zone.node({0, j, k});
+          int least = 4, most = 0;
+          for (std::size_t i = 0; i < ni; ++i) {
+            double const* const p = at + i;
+            below[i] = int(p[0] < 0) + int(p[sj] < 0) + int(p[sk] < 0) + int(p[sj + sk] < 0);
+            least = std::min(least, below[i]);
+            most = std::max(most, below[i]);
           }
+          if (most == 0 || least == 4) continue;  // so of most rows
+          for (std::size_t i = 0; i + 1 < ni; ++i)
+            if (int const of_cell = below[i] + below[i + 1]; of_cell != 0 && of_cell != 8)
+              out.push_back(cell + Index(i));
         }
     }
     return out;

@@ -61,11 +61,13 @@ class Canvas {
     float depth = 0;
     std::uint8_t red = 0, green = 0, blue = 0, opacity = 0;
   };
+  class OverOpaque;
   static constexpr int fine = 2;  ///< samples along the side of a pixel
 
   template <class Paint>
   void fill(std::array<Place, 3> const& corner, Paint const& paint);
   static void cover(Sample& sample, Colour const& colour);
+  static void set_pixel(Sample const* upper, Sample const* lower, std::uint8_t* pixel);
 
   int width_, height_;
   std::vector<Sample> samples_;

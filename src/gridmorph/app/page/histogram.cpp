@@ -4,27 +4,53 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace gridmorph::page {
 
 namespace {
 
-/// larger_is_bad: an axis of aspect ratios.
-std::size_t bin_of(std::vector<double> const& edge, double value, bool larger_is_bad) {
-  std::size_t const last = edge.size() - 2;
-  if (std::isnan(value)) return larger_is_bad ? last : 0;
-  if (!(value > edge.front())) return 0;
-  if (value >= edge.back()) return last;
-  // Even on the scale of the axis: a guess that is off by one bin at most.
-  bool const logarithmic = larger_is_bad;
-  double const share = logarithmic ? std::log10(value / edge.front()) / std::log10(edge.back() / edge.front())
-                                   : (value - edge.front()) / (edge.back() - edge.front());
-  auto bin = std::min(last, std::size_t(share * double(last + 1)));
-  if (value < edge[bin]) --bin;
-  if (value >= edge[bin + 1]) ++bin;
-  return bin;
-}
+/// The bins of an axis, found without a logarithm per value.
+class Bins {
+ public:
+  /// logarithmic: an axis of aspect ratios, where what is no number is as bad as the largest.
+  Bins(std::vector<double> const& edge, bool logarithmic)
+      : edge_(edge), last_(edge.size() - 2), of_no_number_(logarithmic ? last_ : 0) {
+    if (!logarithmic) {
+      per_unit_ = double(last_ + 1) / (edge.back() - edge.front());
+      return;
+    }
+    // The bin of the smallest number with the same leading bits: exponent and four bits after it, a step of 6 %.
+    key_ = key_of(edge.front());
+    for (std::size_t key = key_, bin = 0; key <= key_of(edge.back()); ++key) {
+      double const least = std::bit_cast<double>(std::uint64_t(key) << dropped_bits);
+      while (bin < last_ && least >= edge[bin + 1]) ++bin;
+      first_.push_back(bin);
+    }
+  }
+
+  [[nodiscard]] std::size_t operator()(double value) const {
+    if (!(value > edge_.front())) return std::isnan(value) ? of_no_number_ : 0;
+    if (value >= edge_.back()) return last_;
+    // Even on the scale of the axis: a guess that is off by one bin at most.
+    std::size_t bin = first_.empty() ? std::min(last_, std::size_t((value - edge_.front()) * per_unit_))
+                                     : first_[key_of(value) - key_];
+    if (value < edge_[bin]) --bin;
+    if (value >= edge_[bin + 1]) ++bin;
+    return bin;
+  }
+
+ private:
+  static constexpr unsigned dropped_bits = 48;
+  static std::size_t key_of(double value) { return std::size_t(std::bit_cast<std::uint64_t>(value) >> dropped_bits); }
+
+  std::vector<double> const& edge_;
+  std::size_t last_, of_no_number_, key_ = 0;
+  double per_unit_ = 0;
+  std::vector<std::size_t> first_;  ///< by key
+};
 
 // Of the drawing, in pixels.
 constexpr double wide = 400, high = 172, left = 46, right = 18, top = 8, bottom = 30;
@@ -58,21 +84,23 @@ std::vector<double> histogram_edges(Measure measure, double largest) {
   }
 }
 
-Histogram histogram(Measure measure, std::vector<double> const& before, std::vector<double> const& after,
-                    std::vector<char> const& in) {
+std::array<Histogram, 2> histograms(Measure measure, std::vector<double> const& before,
+                                    std::vector<double> const& after, std::vector<char> const& in) {
   double largest = 0;
-  for (auto const* values : {&before, &after})
-    for (double const v : *values)
-      if (std::isfinite(v)) largest = std::max(largest, v);
-  Histogram out;
-  out.measure = measure;
-  out.edge = histogram_edges(measure, largest);
-  bool const bad = larger_is_worse(measure);
-  for (auto const& [values, counts] : {std::pair(&before, &out.before), std::pair(&after, &out.after)}) {
-    counts->assign(out.edge.size() - 1, 0);
-    for (std::size_t n = 0; n < values->size(); ++n)
-      if (in[n] != 0) ++(*counts)[bin_of(out.edge, (*values)[n], bad)];
+  if (measure == Measure::aspect_ratio)
+    for (auto const* values : {&before, &after})
+      for (double const v : *values)
+        if (v > largest && std::isfinite(v)) largest = v;
+  std::array<Histogram, 2> out;
+  for (Histogram& h : out) {
+    h.measure = measure;
+    h.edge = histogram_edges(measure, largest);
+    h.before.assign(h.edge.size() - 1, 0);
+    h.after.assign(h.edge.size() - 1, 0);
   }
+  Bins const bin(out[0].edge, larger_is_worse(measure));
+  for (std::size_t n = 0; n < before.size(); ++n) ++out[in[n] != 0 ? 1 : 0].before[bin(before[n])];
+  for (std::size_t n = 0; n < after.size(); ++n) ++out[in[n] != 0 ? 1 : 0].after[bin(after[n])];
   return out;
 }
 

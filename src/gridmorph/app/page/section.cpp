@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace gridmorph::page {
 
@@ -58,23 +59,30 @@ Section plane_section(PictureMesh const& mesh, Coordinates const& at, Cut const&
 
 Section cut_mesh(PictureMesh const& mesh, std::vector<Facet> const& boundary, Coordinates const& at, Cut const& cut,
                  std::vector<signed char> const& walls) {
-  if (!cut.level) return plane_section(mesh, at, cut, walls);
+  if (!cut.levels) return plane_section(mesh, at, cut, walls);
   Section out;
   out.first.push_back(0);
   std::vector<double> level(std::size_t(at.size()));
-  for (Index n = 0; n < at.size(); ++n) level[std::size_t(n)] = cut.level(at[n]);
+  cut.levels(at, level);
   CellFaces faces;
   std::vector<Flat> points;
+  std::vector<std::pair<Index32, Index32>> edges;
   for (Index const cell : mesh.crossed(level)) {
     mesh.faces(cell, faces);
+    edges.clear();
     points.clear();
-    for (std::size_t f = 0; f < faces.size(); ++f)
-      for (std::size_t c = 0; c < faces[f].size(); ++c) {
-        Index32 const a = faces[f][c], b = faces[f][(c + 1) % faces[f].size()];
-        // Each edge bounds two faces: from its lower node, so that it gives the same point in both.
-        if (crosses(level[std::size_t(a)], level[std::size_t(b)]))
-          points.push_back(crossing(cut, at, level, std::min(a, b), std::max(a, b)));
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      auto const face = faces[f];
+      Index32 a = face.back();
+      for (Index32 const b : face) {
+        if (crosses(level[std::size_t(a)], level[std::size_t(b)])) edges.push_back(std::minmax(a, b));
+        a = b;
       }
+    }
+    // Each edge bounds two faces of the cell: once, and from its lower node, so that it gives one point in all cells around it.
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    for (auto const& [a, b] : edges) points.push_back(crossing(cut, at, level, a, b));
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
     if (points.size() < 3 || wraps(points, cut.period)) continue;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ using Flat = std::array<double, 2>;
 
 /// Where a mesh is cut, and how the cut is laid flat.
 struct Cut {
-  std::string title;                         ///< "span 50 %", "y = 3.5"
-  std::array<std::string, 2> labels;         ///< of the two coordinates
-  std::function<double(Vec3 const&)> level;  ///< zero where it cuts; empty: the plane of a mesh
+  std::string title;                  ///< "span 50 %", "y = 3.5"
+  std::array<std::string, 2> labels;  ///< of the two coordinates
+  /// Of all nodes, (n_nodes): zero where it cuts. Empty: the plane of a mesh.
+  std::function<void(Coordinates const& at, std::span<double> level)> levels;
   std::function<Flat(Vec3 const&)> flat;
   double period = 0;  ///< of the second coordinate; polygons wider than half of it are left out; 0: none
 };
