@@ -1,5 +1,6 @@
 // Meshes of real size and shape: the demo passage, and meshes from outside with a motion each.
 #include "invariants/cases.hpp"
+#include "support/reduced.hpp"
 #include "support/shared_mesh.hpp"
 
 #include <generators/aircraft.hpp>
@@ -138,15 +139,18 @@ std::vector<Case> make_cases() {
   std::vector<Case> list{
       passage("passage", passage_options(Layout::whole_faces, false), rotated_sections()),
       passage("passage_left_handed", passage_options(Layout::five_zones, true), chord_redesign()),
-      passage("passage_flat_tip", passage_options(Layout::five_zones, true, BladeTip::flat), gap_halved()),
       passage("passage_squealer", passage_options(Layout::whole_faces, false, BladeTip::squealer), rotated_sections()),
-      passage("passage_groove", passage_options(Layout::five_zones, false, BladeTip::groove),
-              {"turned", -6, {{0.5, 1.04}}, 0.5}),
       passage_with_free_surfaces(),
       machine("turbine_stage", "axial_turbine_stage_H.cgns", {1, 0, 0}, {"BLADE1", "BLADE2"}, FixedRule{}),
       machine("turbine_stage_free_planes", "axial_turbine_stage_H.cgns", {1, 0, 0}, {"BLADE1", "BLADE2"},
               FreeRule{FreeRule::Constraint::axial}),
   };
+  if (!reduced()) {
+    list.push_back(
+        passage("passage_flat_tip", passage_options(Layout::five_zones, true, BladeTip::flat), gap_halved()));
+    list.push_back(passage("passage_groove", passage_options(Layout::five_zones, false, BladeTip::groove),
+                           {"turned", -6, {{0.5, 1.04}}, 0.5}));
+  }
   // The stand-in, and what it stands in for where that is there.
   for (auto const& [name, file] : {std::pair("water_turbine", "water_turbine.cgns"),
                                    std::pair("water_turbine_of_others", "axialTurbine_7blk.cgns")})

@@ -146,6 +146,14 @@ TEST(Slip, WherePlanesMeetGoesAlongTheirEdgeWhateverTheAngle) {
       EXPECT_LT(norm(Vec3{0, u.y, u.z}), 1e-12) << angle;
       EXPECT_LT(std::abs(u.x - given.x), 1e-12) << angle;
       EXPECT_LT(distance(r, {rate.x, 0, 0}), 1e-12) << angle;
+      // Where the displacement is along the edge already, the rate has to be put there all the same.
+      for (Vec3 const& kept : {Vec3{}, Vec3{given.x, 0, 0}}) {
+        Vec3 same = kept;
+        r = rate;
+        node(same, r);
+        EXPECT_EQ(same, kept);
+        EXPECT_LT(distance(r, {rate.x, 0, 0}), 1e-12) << angle;
+      }
     }
   }
 }
