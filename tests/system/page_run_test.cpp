@@ -95,6 +95,63 @@ TEST_F(PageRun, IsAKeyOfCaseFiles) {
   EXPECT_NE(contents(path("made.html")).find("</html>"), std::string::npos);
 }
 
+TEST_F(PageRun, OfAWheelHasEveryPassageAndShowsTheWorst) {
+  std::string const rules = contents(path("rotation.toml"));
+  std::string const wheel =
+      "\n[wheel]\noutput = \"wheel.cgns\"\npassages = 4\nfactors = [1, 0.5, -1, 0.5]\n[output]\nhtml = \"own.html\"\n";
+  write("wheel.toml", rules + wheel);
+  Outcome const run = gridmorph("wheel wheel.toml --html page.html --report r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("wrote page.html"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(path("own.html"))) << "the option comes before the key";
+  std::string const text = contents(path("page.html"));
+  auto const report = nlohmann::json::parse(contents(path("r.json")));
+  ASSERT_EQ(report["passages"].size(), 4U);
+  std::size_t worst = 0;
+  double least = 2;
+  for (std::size_t p = 0; p < 4; ++p) {
+    auto const of_all = page::worst_of(report["passages"][p]["quality"], "determinant_3x3x3", false);
+    EXPECT_NE(text.find(">" + page::number(of_all["value"]) + "<"), std::string::npos) << "passage " << p + 1;
+    EXPECT_NE(text.find(">" + page::number(report["passages"][p]["largest_displacement"]) + "<"), std::string::npos);
+    if (of_all["value"].get<double>() < least) {
+      least = of_all["value"];
+      worst = p + 1;
+    }
+  }
+  EXPECT_NE(text.find("The 4 passages"), std::string::npos);
+  // Cards are of all passages.
+  std::string const card = " \u2192 " + page::number(least) + "</b><small>passage " + std::to_string(worst) + ", zone";
+  EXPECT_NE(text.find(card), std::string::npos) << card;
+  EXPECT_NE(text.find("No cell is inverted in any of 4 passages"), std::string::npos);
+  EXPECT_NE(text.find("Of passage " + std::to_string(worst) + ", the worst one"), std::string::npos) << worst;
+  for (std::string const part : {"class=\"histogram\"", "Span 50 %", "data:image/png", "the whole of all"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  std::istringstream sum(shell("cksum wheel.cgns").out);
+  std::string crc;
+  sum >> crc;
+  EXPECT_NE(text.find("cksum " + crc), std::string::npos);
+}
+
+TEST_F(PageRun, OfAWheelSaysInHowManyPassagesCellsAreInverted) {
+  write("wheel.toml",
+        contents(path("rotation.toml")) + "\n[wheel]\noutput = \"out.cgns\"\npassages = 3\nfactors = [1, 12, 1]\n");
+  Outcome const run = gridmorph("wheel wheel.toml --html page.html");
+  ASSERT_EQ(run.status, 4) << run.err;
+  std::string const text = contents(path("page.html"));
+  EXPECT_NE(text.find("Inverted: nothing was written"), std::string::npos);
+  EXPECT_NE(text.find(" of 3 passages turned inside out"), std::string::npos);
+  expect_nothing_written();
+}
+
+TEST_F(PageRun, IsRefusedForAWheelOverTime) {
+  write("wheel.toml",
+        contents(path("rotation.toml")) + "\n[wheel]\noutput = \"out.cgns\"\npassages = 2\n[sequence]\nsteps = 2\n");
+  std::string text = contents(path("wheel.toml"));
+  std::string const file = "file    = \"rotation.csv\"";
+  write("wheel.toml", text.replace(text.find(file), file.size(), file + "\namplitude = \"cos(2*pi*t)\""));
+  expect_bad_input(gridmorph("wheel wheel.toml --html page.html"), {"over time", "--html"});
+}
+
 TEST_F(PageRun, RefusesPathsBeforeTheRun) {
   expect_bad_input(gridmorph("morph rotation.toml -o out.cgns --html nowhere/page.html"),
                    {"page 'nowhere/page.html'", "make it first"});

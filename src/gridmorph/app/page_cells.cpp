@@ -36,9 +36,10 @@ bool is_near(NearCells const& near, Index cell) {
 }
 
 /// Whether the run kept all of these measures, which then are those of the sample.
-bool take_kept(Run const& run, Sample& out) {
+bool take_kept(PageMeshes const& meshes, Sample& out) {
+  if (!meshes.kept) return false;
   for (std::size_t m = 0; m < page_measures.size(); ++m) {
-    auto const values = run.kept(page_measures[m]);
+    auto const values = meshes.kept(page_measures[m]);
     if (values.before == nullptr || values.after == nullptr) return false;
     out.value[m] = {values.before, values.after};
   }
@@ -46,10 +47,10 @@ bool take_kept(Run const& run, Sample& out) {
 }
 
 /// All cells where the run kept their measures, evenly spaced ones otherwise.
-void take_sample(Run const& run, page::PictureMesh const& mesh, Sample& out) {
-  NearCells const near = run.plan().near();
+void take_sample(PageMeshes const& meshes, page::PictureMesh const& mesh, Sample& out) {
+  NearCells const& near = meshes.near;
   Index const n_cells = mesh.n_cells();
-  if (take_kept(run, out)) {
+  if (take_kept(meshes, out)) {
     out.near.assign(std::size_t(n_cells), 0);
     for (std::size_t n = 0; n < near.cells.extent(0); ++n) out.near[n] = near.cells(n) != 0 ? 1 : 0;
     return;
@@ -64,8 +65,8 @@ void take_sample(Run const& run, page::PictureMesh const& mesh, Sample& out) {
   constexpr std::size_t share = 1024;  // cells of a task
   for_each_task((out.cell.size() + share - 1) / share, [&](std::size_t task) {
     for (std::size_t n = task * share; n < std::min(out.cell.size(), (task + 1) * share); ++n) {
-      auto const before = mesh.measures(out.cell[n], run.mesh().coordinates());
-      auto const after = mesh.measures(out.cell[n], run.morphed());
+      auto const before = mesh.measures(out.cell[n], meshes.baseline);
+      auto const after = mesh.measures(out.cell[n], meshes.morphed);
       for (std::size_t m = 0; m < page_measures.size(); ++m) {
         out.own[2 * m][n] = value_of(before, page_measures[m]);
         out.own[2 * m + 1][n] = value_of(after, page_measures[m]);
@@ -150,15 +151,16 @@ void make_histograms(Sample const& sample, page::ReportPage& out) {
 
 }  // namespace
 
-void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh, page::ReportPage& out) {
+void fill_quality(PageMeshes const& meshes, QualityReport const& quality, page::PictureMesh const& mesh,
+                  page::ReportPage& out) {
   Sample sample;
-  take_sample(run, mesh, sample);
+  take_sample(meshes, mesh, sample);
   make_histograms(sample, out);
-  if (!sample.cell.empty())
-    out.histogram_note = fmt::format(
-        "A verdict was measured: the histograms are of {} of {} {}, evenly spaced; full quality "
-        "(--quality full) has all of them.",
-        sample.cell.size(), mesh.n_cells(), out.kind);
+  if (!sample.cell.empty() && (quality.fast || Index(sample.cell.size()) < mesh.n_cells()))
+    out.histogram_note =
+        fmt::format("{}he histograms are of {} of {} {}, evenly spaced{}.",
+                    quality.fast ? "A verdict was measured: t" : "T", sample.cell.size(), mesh.n_cells(), out.kind,
+                    meshes.kept ? "; full quality (--quality full) has all of them" : "");
   constexpr std::size_t most_drawn = 6;
   std::set<Index> seen;
   for (Candidate const& one : sample.cell.empty() ? worst_of_all(sample) : worst_of_report(quality, mesh)) {
@@ -166,11 +168,11 @@ void fill_quality(Run const& run, QualityReport const& quality, page::PictureMes
     page::WorstCell& worst = out.worst.emplace_back();
     worst.name = mesh.name(one.cell);
     worst.reason = one.reason;
-    worst.centre = mesh.centre(one.cell, run.morphed());
-    worst.before = mesh.measures(one.cell, run.mesh().coordinates());
-    worst.after = mesh.measures(one.cell, run.morphed());
+    worst.centre = mesh.centre(one.cell, meshes.morphed);
+    worst.before = mesh.measures(one.cell, meshes.baseline);
+    worst.after = mesh.measures(one.cell, meshes.morphed);
     if (out.worst.size() <= most_drawn)
-      worst.drawing = page::draw_cell(mesh, one.cell, run.mesh().coordinates(), run.morphed());
+      worst.drawing = page::draw_cell(mesh, one.cell, meshes.baseline, meshes.morphed);
   }
 }
 

@@ -181,11 +181,15 @@ bool has_blades(ResolvedMotion const& motion) {
 
 }  // namespace
 
-std::vector<Cut> cuts_of(page::PictureMesh const& mesh, BoundaryMotion const& rules, std::optional<Axis> const& axis,
+bool is_of_machine(BoundaryMotion const& rules) {
+  return has_blades(rules.motion()) || !rules.boundary().periodic_transforms().empty();
+}
+
+std::vector<Cut> cuts_of(page::PictureMesh const& mesh, bool of_machine, std::optional<Axis> const& axis,
                          page::Surface const& surface, std::vector<Vec3> const& displacement) {
   Coordinates const& at = mesh.mesh().coordinates;
   if (mesh.is_plane()) return {plane_mesh_cut(at)};
-  if (axis && (has_blades(rules.motion()) || !rules.boundary().periodic_transforms().empty()))
+  if (axis && of_machine)
     if (auto const annulus = std::make_shared<Annulus const>(at, *axis); annulus->is_axial())
       if (auto cuts = span_cuts(annulus, surface); !cuts.empty()) return cuts;
   return plane_cuts(surface, displacement);

@@ -111,28 +111,40 @@ RunPage::RunPage(CaseFile const& case_file, std::string typed) : case_file_(case
 
 void RunPage::begin(Run const& run) {
   pictures_ = run.mesh().pictures();
-  Mesh const& mesh = pictures_->mesh();
-  roles_ = roles_of(run.plan().rules(), mesh.patches.size());
+  roles_ = roles_of(run.plan().rules(), pictures_->mesh().patches.size());
+  of_machine_ = is_of_machine(run.plan().rules());
+  find_surface(run.mesh().coordinates());
+}
+
+void RunPage::begin_passage(std::unique_ptr<page::PictureMesh> pictures, PatchRoles roles,
+                            Coordinates const& baseline) {
+  pictures_ = std::move(pictures);
+  roles_ = std::move(roles);
+  of_machine_ = true;
+  find_surface(baseline);
+}
+
+void RunPage::find_surface(Coordinates const& baseline) {
   if (pictures_->is_plane()) {
-    surface_ = page::make_surface(pictures_->plane(), roles_.wall, run.mesh().coordinates());
+    surface_ = page::make_surface(pictures_->plane(), roles_.wall, baseline);
   } else {
     boundary_ = pictures_->boundary();
-    surface_ = page::make_surface(boundary_, roles_.wall, run.mesh().coordinates());
+    surface_ = page::make_surface(boundary_, roles_.wall, baseline);
   }
 }
 
-std::vector<Vec3> RunPage::displacement_of_surface(Run const& run) const {
+std::vector<Vec3> RunPage::displacement_of_surface(Coordinates const& morphed) const {
   std::vector<Vec3> out;
   out.reserve(surface_.nodes.size());
   for (std::size_t n = 0; n < surface_.nodes.size(); ++n)
-    out.push_back(run.morphed()[surface_.nodes[n]] - surface_.baseline[n]);
+    out.push_back(morphed[surface_.nodes[n]] - surface_.baseline[n]);
   return out;
 }
 
 void RunPage::add_step(Run const& run, int step, int of, bool worst) {
   int const stride = (of + most_steps - 1) / most_steps;
-  if (step % stride == 0) steps_.push_back({step, displacement_of_surface(run)});
-  if (worst) worst_step_ = Step{step, displacement_of_surface(run)};
+  if (step % stride == 0) steps_.push_back({step, displacement_of_surface(run.morphed())});
+  if (worst) worst_step_ = Step{step, displacement_of_surface(run.morphed())};
 }
 
 void RunPage::add_inputs() {
@@ -150,35 +162,54 @@ void RunPage::add_output(std::filesystem::path const& output) {
     page_.settings.emplace_back("output", identity);
 }
 
-void RunPage::finish(Run const& run, QualityReport const& quality) {
+void RunPage::describe(PageMeshes const& meshes, std::string const& cells) {
   add_inputs();
-  BoundaryMotion const& rules = run.plan().rules();
   Mesh const& mesh = pictures_->mesh();
-  Coordinates const& baseline = run.mesh().coordinates();
   page_.structured = mesh.is_structured();
-  page_.kind = run.mesh().kind().cells;
-  page_.mesh_size = rules.boundary().size();
-  for (Index n = 0; n < baseline.size(); ++n)
-    page_.largest_displacement = std::max(page_.largest_displacement, norm(run.morphed()[n] - baseline[n]));
+  page_.kind = cells;
+  for (Index n = 0; n < meshes.baseline.size(); ++n)
+    page_.largest_displacement = std::max(page_.largest_displacement, norm(meshes.morphed[n] - meshes.baseline[n]));
   page_.mesh_summary = fmt::format("{}, {} {}, {} nodes, {} {}; diagonal of its bounding box {:.4g}.",
                                    pictures_->is_plane() ? "A mesh in a plane" : "A mesh in space", mesh.zones.size(),
                                    mesh.zones.size() == 1 ? "zone" : "zones", mesh.n_nodes(), pictures_->n_cells(),
                                    page_.kind, page_.mesh_size);
-  page_.rules = rule_rows(rules, baseline, run.morphed());
-  page_.check = boundary_check(rules, baseline, run.morphed());
+}
+
+void RunPage::finish(Run const& run, QualityReport const& quality) {
+  BoundaryMotion const& rules = run.plan().rules();
+  PageMeshes const meshes{run.mesh().coordinates(), run.morphed(), run.plan().near(),
+                          [&](Measure measure) { return run.kept(measure); }};
+  page_.mesh_size = rules.boundary().size();
+  describe(meshes, run.mesh().kind().cells);
+  page_.rules = rule_rows(rules, meshes.baseline, meshes.morphed);
+  page_.check = boundary_check(rules, meshes.baseline, meshes.morphed);
   page_.plan = run.plan().json();
   if (auto const graph = run.plan().graph()) page_.graph = svg_text(*graph);
-  fill_quality(run, quality, *pictures_, page_);
+  fill_quality(meshes, quality, *pictures_, page_);
   if (case_file_.sequence)
     make_steps();
   else
-    make_surfaces(run);
-  make_sections(run);
+    make_surfaces(meshes.morphed);
+  make_sections(meshes);
 }
 
-void RunPage::make_surfaces(Run const& run) {
+void RunPage::finish_passage(PageMeshes const& meshes, QualityReport const& quality, std::string const& cells) {
+  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (Index n = 0; n < meshes.baseline.size(); ++n) {
+    Vec3 const p = meshes.baseline[n];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  page_.mesh_size = norm(high - low);
+  describe(meshes, cells);
+  fill_quality(meshes, quality, *pictures_, page_);
+  make_surfaces(meshes.morphed);
+  make_sections(meshes);
+}
+
+void RunPage::make_surfaces(Coordinates const& morphed) {
   if (surface_.facets.empty()) return;
-  auto const u = displacement_of_surface(run);
+  auto const u = displacement_of_surface(morphed);
   page_.scale_end = largest_norm(u);
   std::vector<page::View> views;
   if (pictures_->is_plane()) {
@@ -274,10 +305,11 @@ SectionFrame end_frame(std::size_t cut, BothSections const& both, bool first, st
 }  // namespace
 
 /// Of cells, as the run kept them, measured where it did not.
-std::vector<float> RunPage::determinants_of(Run const& run, std::vector<Index> const& cells, bool morphed) const {
-  auto const kept = run.kept(Measure::determinant_3x3x3);
+std::vector<float> RunPage::determinants_of(PageMeshes const& meshes, std::vector<Index> const& cells,
+                                            bool morphed) const {
+  auto const kept = meshes.kept ? meshes.kept(Measure::determinant_3x3x3) : Run::KeptMeasure();
   auto const* const values = morphed ? kept.after : kept.before;
-  Coordinates const& at = morphed ? run.morphed() : run.mesh().coordinates();
+  Coordinates const& at = morphed ? meshes.morphed : meshes.baseline;
   std::vector<float> out;
   out.reserve(cells.size());
   for (Index const cell : cells)
@@ -286,14 +318,15 @@ std::vector<float> RunPage::determinants_of(Run const& run, std::vector<Index> c
   return out;
 }
 
-void RunPage::make_sections(Run const& run) {
-  auto const cuts = cuts_of(*pictures_, run.plan().rules(), case_file_.axis, surface_, displacement_of_surface(run));
+void RunPage::make_sections(PageMeshes const& meshes) {
+  auto const cuts =
+      cuts_of(*pictures_, of_machine_, case_file_.axis, surface_, displacement_of_surface(meshes.morphed));
   std::vector<BothSections> both(cuts.size());
   for_each_task(2 * cuts.size(), [&](std::size_t n) {
     std::size_t const c = n / 2, s = n % 2;
-    Coordinates const& at = s == 0 ? run.mesh().coordinates() : run.morphed();
+    Coordinates const& at = s == 0 ? meshes.baseline : meshes.morphed;
     both[c].section[s] = page::cut_mesh(*pictures_, boundary_, at, cuts[c], roles_.wall);
-    both[c].value[s] = determinants_of(run, both[c].section[s].cell, s == 1);
+    both[c].value[s] = determinants_of(meshes, both[c].section[s].cell, s == 1);
     both[c].walls[s] = page::moving_walls(both[c].section[s]);
   });
   // The cut with most of what moves comes first: of a wing that across its span.

@@ -10,6 +10,7 @@
 #include <Kokkos_Core.hpp>
 
 #include <exception>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,13 @@ struct PatchRoles {
   std::vector<signed char> wall;  ///< per patch: 1 a wall that a rule moves, 0 one that stands or slips, -1 none
 };
 
+/// A mesh before and after, as a page shows it.
+struct PageMeshes {
+  Coordinates const &baseline, &morphed;
+  NearCells const& near;
+  std::function<Run::KeptMeasure(Measure)> kept;  ///< where measures of every cell were kept; empty: nowhere
+};
+
 class RunPage {
  public:
   /// Before the run: the case file as it is now. typed: the command line.
@@ -28,10 +36,14 @@ class RunPage {
 
   /// What the mesh looks like, once the run has it. Cost: its boundary.
   void begin(Run const& run);
+  /// The same of the passage of a wheel, which is one of a machine.
+  void begin_passage(std::unique_ptr<page::PictureMesh> pictures, PatchRoles roles, Coordinates const& baseline);
   /// Remembers the surface as the run has it now, of a sequence of `of` steps: of some of them, and of the worst so far.
   void add_step(Run const& run, int step, int of, bool worst);
   /// All pictures and numbers of the run as it stands. quality: as the report has it. Cost: facets, cells of sections, pixels.
   void finish(Run const& run, QualityReport const& quality);
+  /// Those of one passage of a wheel. cells: "cells" or "elements".
+  void finish_passage(PageMeshes const& meshes, QualityReport const& quality, std::string const& cells);
 
   /// The mesh that the run has written. Cost: reading it.
   void add_output(std::filesystem::path const& output);
@@ -40,11 +52,14 @@ class RunPage {
   [[nodiscard]] std::string text(nlohmann::json const& report);
 
  private:
+  void find_surface(Coordinates const& baseline);
   void add_inputs();
-  [[nodiscard]] std::vector<Vec3> displacement_of_surface(Run const& run) const;
-  void make_surfaces(Run const& run);
-  void make_sections(Run const& run);
-  [[nodiscard]] std::vector<float> determinants_of(Run const& run, std::vector<Index> const& cells, bool morphed) const;
+  void describe(PageMeshes const& meshes, std::string const& cells);
+  [[nodiscard]] std::vector<Vec3> displacement_of_surface(Coordinates const& morphed) const;
+  void make_surfaces(Coordinates const& morphed);
+  void make_sections(PageMeshes const& meshes);
+  [[nodiscard]] std::vector<float> determinants_of(PageMeshes const& meshes, std::vector<Index> const& cells,
+                                                   bool morphed) const;
   void make_steps();
 
   CaseFile const& case_file_;
@@ -53,6 +68,7 @@ class RunPage {
   std::vector<page::Facet> boundary_;
   PatchRoles roles_;
   page::Surface surface_;
+  bool of_machine_ = false;  ///< cut at constant span
   struct Step {
     int step = 0;
     std::vector<Vec3> displacement;
@@ -88,12 +104,14 @@ page::BoundaryCheck boundary_check(BoundaryMotion const& rules, Coordinates cons
 
 // page_cells.cpp
 /// Histograms of near and far field, and the worst cells with drawings.
-void fill_quality(Run const& run, QualityReport const& quality, page::PictureMesh const& mesh, page::ReportPage& out);
+void fill_quality(PageMeshes const& meshes, QualityReport const& quality, page::PictureMesh const& mesh,
+                  page::ReportPage& out);
 
 // page_cuts.cpp
+/// Whether rules or periodic boundaries are those of blade rows.
+bool is_of_machine(BoundaryMotion const& rules);
 /// Where to cut: a plane mesh is itself; a machine at constant span; anything else at three planes through what moves.
-std::vector<page::Cut> cuts_of(page::PictureMesh const& mesh, BoundaryMotion const& rules,
-                               std::optional<Axis> const& axis, page::Surface const& surface,
-                               std::vector<Vec3> const& displacement);
+std::vector<page::Cut> cuts_of(page::PictureMesh const& mesh, bool of_machine, std::optional<Axis> const& axis,
+                               page::Surface const& surface, std::vector<Vec3> const& displacement);
 
 }  // namespace gridmorph::cli

@@ -73,8 +73,6 @@ class Ignored {
         refuse("guard", key, "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
     }
     refuse("output", "stages", "is for `gridmorph morph`, and passages of a wheel have one plan");
-    refuse("output", "html",
-           "is for `gridmorph morph`, and a wheel has no page; use report = \"report.json\" for its numbers");
     if (case_.plan.volume.order == OrderBy::prediction)
       refuse("volume", "order", "is for `gridmorph morph`, and chains of a wheel, whose blades differ, go by priority");
     if (case_.plan.volume.laws_by_prediction)

@@ -76,6 +76,7 @@ CLI::App* add_wheel(CLI::App& app, CommandLine& out) {
   wheel->add_option("case", out.input, "Case file (TOML) with [wheel]")->required();
   wheel->add_option("-o,--output", out.output, "Mesh of the wheel, instead of the case file's output");
   wheel->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
+  wheel->add_option("--html", out.page, "Report as one page with pictures (HTML), instead of the case file's html");
   add_quality(*wheel, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
   return wheel;
 }

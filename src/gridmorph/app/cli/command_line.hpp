@@ -26,7 +26,7 @@ struct CommandLine {
   std::optional<std::filesystem::path>
       output;  ///< morph, wheel: instead of the case file's; what others write; view: a folder
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
-  std::optional<std::filesystem::path> page;    ///< morph: the report as a page, instead of the case file's
+  std::optional<std::filesystem::path> page;    ///< morph, wheel: the report as a page, instead of the case file's
   std::optional<double> fraction;               ///< morph: of the motion
   bool dry_run = false;
   bool all = false;                            ///< plan: every chain of however many

@@ -58,6 +58,7 @@ class BlockPassage final : public PassageMesh {
                                 WheelFamilies families) const override {
     return make_wheel_mesh(mesh(), links_, rows, passages, families);
   }
+  [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const override { return mesh_.pictures(); }
   [[nodiscard]] QualityReport measure(QualityWanted const& wanted) const override { return mesh_.measure(wanted); }
   [[nodiscard]] std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const override {
     return mesh_.nodes_of(selectors);

@@ -82,6 +82,7 @@ class ElementPassage final : public PassageMesh {
   [[nodiscard]] Coordinates in_file_order(Coordinates const& x) const override {
     return gridmorph::in_file_order(mesh(), x);
   }
+  [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const override { return mesh_.pictures(); }
   [[nodiscard]] QualityReport measure(QualityWanted const& wanted) const override { return mesh_.measure(wanted); }
   [[nodiscard]] std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const override {
     return mesh_.nodes_of(selectors);

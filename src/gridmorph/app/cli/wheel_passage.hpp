@@ -45,6 +45,8 @@ class PassageMesh {
   [[nodiscard]] virtual WheelMesh wheel(WheelRows const& rows, std::vector<int> const& passages,
                                         WheelFamilies families) const = 0;
   [[nodiscard]] virtual Coordinates in_file_order(Coordinates const& x) const { return x; }
+  /// As pictures see it; must not outlive this.
+  [[nodiscard]] virtual std::unique_ptr<page::PictureMesh> pictures() const = 0;
   [[nodiscard]] virtual QualityReport measure(QualityWanted const& wanted) const = 0;
   /// Numbers of the nodes of patches, as AnyMesh::nodes_of().
   [[nodiscard]] virtual std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const = 0;

@@ -198,6 +198,18 @@ PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates c
   return passage;
 }
 
+void WheelRun::take_worst(int passage, QualityReport const& quality, Coordinates const& morphed) {
+  Badness const badness = badness_of(quality);
+  if (worst_->passage >= 0 && !(worst_->badness < badness)) return;
+  worst_->passage = passage;
+  worst_->badness = badness;
+  if (worst_->morphed.size() == 0) worst_->morphed = Coordinates(morphed.size());
+  for (auto const& [to, from] : {std::pair(worst_->morphed.x, morphed.x), std::pair(worst_->morphed.y, morphed.y),
+                                 std::pair(worst_->morphed.z, morphed.z)})
+    Kokkos::deep_copy(exec_, to, from);
+  exec_.fence();
+}
+
 std::vector<Seams> WheelRun::new_seams() const {
   std::vector<Seams> seams;
   for (int r = 0; r < int(rows_.rows.size()); ++r)
@@ -265,6 +277,7 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
       last = p;
       int const same = motions.first_alike(p);  // before p: it has been measured
       made.passages.push_back(same < p ? made.passages[same] : measure(boundary, morphed_));
+      if (same == p && worst_) take_worst(p, made.passages.back().quality, morphed_);
       if (same == p && relaxed.before > 0)
         made.notes.push_back(
             fmt::format("passage {}: {} {}; displacements around them are smoothed in {} rounds, {} are left", p + 1,

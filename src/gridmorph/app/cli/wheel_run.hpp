@@ -12,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,13 @@ namespace gridmorph::cli {
 
 /// Takes a zone of the wheel, in the order of its file.
 using ZoneSink = std::function<void(int zone, double const* x, double const* y, double const* z)>;
+
+/// The passage whose cells came out worst.
+struct WorstPassage {
+  int passage = -1;  ///< none yet
+  Badness badness;
+  Coordinates morphed;  ///< where the sector is
+};
 
 class WheelRun {
  public:
@@ -36,6 +44,11 @@ class WheelRun {
   /// Plans once for all passages and times, measures the baseline, and tries other recipes where the case file says so. Throws MotionError
   /// where blades in a wave do not come back after a period.
   void prepare();
+  /// From here on make() keeps the mesh of the worst passage. Cost: a copy of it.
+  void keep_worst() { worst_.emplace(); }
+  [[nodiscard]] WorstPassage const& worst() const { return *worst_; }
+  [[nodiscard]] NearCells const& near() const { return quality_.near; }
+
   /// The wheel at a step, passage by passage.
   WheelMade make(int step, ZoneSink const& sink);
   /// The passages as they are in the baseline, each in its place and closed to its neighbours.
@@ -54,6 +67,7 @@ class WheelRun {
   void move_to(int step);
   RelaxReport morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed);
   PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed);
+  void take_worst(int passage, QualityReport const& quality, Coordinates const& morphed);
   [[nodiscard]] std::vector<Seams> new_seams() const;
   /// Puts a passage where it stands; `next`: its first zone of the wheel. Returns its zones of the wheel by those of the sector.
   std::map<int, int> place(int passage, int next, Coordinates const& morphed, std::vector<Seams>& seams, SeamGap& gap);
@@ -83,6 +97,7 @@ class WheelRun {
   std::unique_ptr<PassagePlan> plan_;
   int step_ = 0;  ///< that the plan's passages are of
   Coordinates morphed_, placed_;
+  std::optional<WorstPassage> worst_;
 };
 
 /// Whether cells are inverted that the baseline has sound.

@@ -13,6 +13,7 @@ std::string plan_part(ReportPage const& page);
 std::string quality_part(ReportPage const& page);
 std::string sections_part(ReportPage const& page);
 std::string sequence_part(ReportPage const& page);
+std::string passages_part(ReportPage const& page);
 std::string times_part(ReportPage const& page);
 std::string repeat_part(ReportPage const& page);
 

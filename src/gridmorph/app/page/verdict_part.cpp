@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -72,6 +73,24 @@ Index newly_inverted_of(json const& morphed) {
   return out;
 }
 
+Index newly_inverted_of_wheel(json const& wheel) {
+  Index out = 0;
+  for (json const& passage : wheel["passages"]) out += newly_inverted_of(passage["quality"]);
+  return out;
+}
+
+/// " in 2 of 36 passages", " in any of 36 passages".
+std::string of_passages(json const& wheel, bool inverted, bool falls_short) {
+  auto const& passages = wheel["passages"];
+  auto const fails = [&](json const& passage) {
+    if (inverted) return newly_inverted_of(passage["quality"]) > 0;
+    return std::any_of(passage["shortfalls"].begin(), passage["shortfalls"].end(),
+                       [](json const& s) { return s["severity"] == "failure"; });
+  };
+  if (!inverted && !falls_short) return fmt::format(" in any of {} passages", passages.size());
+  return fmt::format(" in {} of {} passages", std::count_if(passages.begin(), passages.end(), fails), passages.size());
+}
+
 Verdict verdict_of(ReportPage const& page) {
   json const& report = page.report;
   json const& morphed = report["morphed"];
@@ -92,6 +111,10 @@ Verdict verdict_of(ReportPage const& page) {
             : beyond > 0 ? fmt::format(" in {} of {} steps", beyond, n)
                          : fmt::format(" in any of {} steps", n);
   }
+  if (report.contains("wheel")) {
+    inverted = std::max(inverted, newly_inverted_of_wheel(report["wheel"]));
+    steps = of_passages(report["wheel"], inverted > 0, falls_short);
+  }
   if (inverted > 0) {
     bool const written = !report["output"].is_null();
     return {"bad", "\u2716", written ? "Inverted, and written all the same" : "Inverted: nothing was written",
@@ -111,7 +134,9 @@ std::string certificate_sentence(ReportPage const& page) {
   json const& morphed = page.report["morphed"];
   if (!morphed.contains("certificate")) return {};
   json const& c = morphed["certificate"];
-  std::string const of_worst = page.report.contains("sequence") ? " of the worst step" : "";
+  std::string const of_worst = page.report.contains("sequence") ? " of the worst step"
+                               : page.report.contains("wheel")  ? " of the wheel"
+                                                                : "";
   if (c["holds"].get<bool>())
     return fmt::format(
         "Certified by bounds of the Jacobian over the whole of all {} {}{}, not at corners alone{}.", count(c["cells"]),
@@ -128,13 +153,63 @@ std::string card(std::string const& title, std::string const& value, std::string
   return "<div class=\"card\"><span>" + title + "</span><b>" + value + "</b><small>" + below + "</small></div>\n";
 }
 
+/// A morphed mesh that the page is about, and what to say before its places.
+struct Shown {
+  std::string of;
+  json const* quality;
+};
+
+/// The mesh, or every passage of a wheel.
+std::vector<Shown> shown_of(ReportPage const& page) {
+  if (!page.report.contains("wheel")) return {{"", &page.report["morphed"]}};
+  std::vector<Shown> out;
+  for (json const& passage : page.report["wheel"]["passages"])
+    out.push_back({fmt::format("passage {}, ", passage["passage"].get<Index>()), &passage["quality"]});
+  return out;
+}
+
 std::string before_after(ReportPage const& page, char const* title, char const* measure, char const* unit) {
-  json const after = worst_of(page.report["morphed"], measure, false);
+  json after;
+  std::string of;
+  for (Shown const& shown : shown_of(page)) {
+    json const worst = worst_of(*shown.quality, measure, false);
+    if (worst.is_null()) continue;
+    bool const worse = after.is_null() || !worst["value"].is_number() ||
+                       (after["value"].is_number() && worst["value"].get<double>() < after["value"].get<double>());
+    if (!worse) continue;
+    after = worst;
+    of = shown.of;
+  }
   if (after.is_null()) return {};
   json const before = page.report.contains("baseline") ? worst_of(page.report["baseline"], measure, false) : json();
   std::string const value =
       (before.is_null() ? "" : number(before["value"]) + " \u2192 ") + number(after["value"]) + unit;
-  return card(title, value, escaped(place_of(after)));
+  return card(title, value, escaped(of + place_of(after)));
+}
+
+std::string wall_card(ReportPage const& page) {
+  json const* change = nullptr;
+  std::string of;
+  for (Shown const& shown : shown_of(page)) {
+    json const& quality = *shown.quality;
+    if (!quality.contains("walls") || quality["walls"]["nodes"].get<Index>() == 0) continue;
+    json const& own = quality["walls"]["first_height_change"];
+    if (change != nullptr && !(own["max"].get<double>() > (*change)["max"].get<double>())) continue;
+    change = &own;
+    of = shown.of;
+  }
+  if (change == nullptr) return {};
+  json const& worst = (*change)["worst"];
+  return card("wall spacing, largest change", fmt::format("{} %", number(100 * (*change)["max"].get<double>())),
+              escaped(worst.is_null() ? std::string("unchanged") : of + place_of(worst)));
+}
+
+double largest_displacement_of(ReportPage const& page) {
+  double out = page.largest_displacement;
+  if (page.report.contains("wheel"))
+    for (json const& passage : page.report["wheel"]["passages"])
+      out = std::max(out, passage["largest_displacement"].get<double>());
+  return out;
 }
 
 std::string cards(ReportPage const& page) {
@@ -142,21 +217,19 @@ std::string cards(ReportPage const& page) {
   std::string out = "<div class=\"cards\">\n";
   out += before_after(page, "smallest determinant 3\u00d73\u00d73", "determinant_3x3x3", "");
   out += before_after(page, "smallest angle", "minimum_angle_deg", "\u00b0");
-  if (report["morphed"].contains("walls") && report["morphed"]["walls"]["nodes"].get<Index>() > 0) {
-    json const& walls = report["morphed"]["walls"];
-    out += card(
-        "wall spacing, largest change",
-        fmt::format("{} %", number(100 * walls["first_height_change"]["max"].get<double>())),
-        escaped(walls["first_height_change"]["worst"].is_null() ? std::string("unchanged")
-                                                                : place_of(walls["first_height_change"]["worst"])));
-  }
+  out += wall_card(page);
   if (page.check.periodic_nodes > 0)
     out += card("periodic match", number(page.check.periodic / page.mesh_size),
                 "of the mesh size, largest difference of copies");
   if (page.check.slip_nodes > 0)
     out += card("off slip surfaces", number(page.check.slip / page.mesh_size), "of the mesh size, beyond the baseline");
-  out += card("largest displacement", number(page.largest_displacement),
-              fmt::format("{} % of the mesh size", number(100 * page.largest_displacement / page.mesh_size)));
+  if (report.contains("wheel"))
+    out += card("neighbours apart", number(report["wheel"]["largest_seam_gap"].get<double>() / page.mesh_size),
+                "of the size of a passage, nodes that coincide, before one took over the other's position");
+  double const largest = largest_displacement_of(page);
+  out += card("largest displacement", number(largest),
+              fmt::format("{} % of the {} size", number(100 * largest / page.mesh_size),
+                          report.contains("wheel") ? "passage's" : "mesh"));
   double const seconds = report["times"]["total_seconds"].get<double>();
   out += card("time", fmt::format("{} s", number(seconds)), count(report["nodes"]) + " nodes");
   return out + "</div>\n";
