@@ -6,6 +6,7 @@
 #include <gridmorph/mesh/extent.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gridmorph {
@@ -48,7 +49,7 @@ bool lies_on_faces(Mesh const& mesh, Interface1to1 const& face) {
 }
 
 /// Periodic transforms fitted to the nodes of all interfaces that are declared alike, there or back: what a strip over a tip or in a boundary layer leaves
-/// uncertain, the others know.
+/// uncertain, the others know. The order of the interfaces, and whether a file has both sides of them, does not change a bit.
 class PeriodicFits {
  public:
   PeriodicFits(Mesh const& mesh, double size) : mesh_(mesh), size_(size), group_(mesh.interfaces.size(), -1) {
@@ -56,8 +57,8 @@ class PeriodicFits {
     for (std::size_t f = 0; f < group_.size(); ++f)
       if (mesh.interfaces[f].periodic && lies_on_faces(mesh, mesh.interfaces[f])) add(f);
     for (Group& group : groups_) {
-      if (group.members > 1) group.fit = fit_periodic(group.declared, group.from, group.to, size_);
-      group.from = group.to = {};
+      if (group.members > 1) group.fit = fitted(group.declared, group.pairs);
+      group.pairs = {};
     }
   }
 
@@ -79,30 +80,57 @@ class PeriodicFits {
   }
 
  private:
+  using Pair = std::array<double, 6>;  // from, to
   struct Group {
-    Periodic declared;
-    std::vector<Vec3> from, to;
+    Periodic declared;  ///< forwards
+    std::vector<Pair> pairs;
     int members = 0;
     RigidTransform fit;
   };
 
   void add(std::size_t f) {
     Interface1to1 const& face = mesh_.interfaces[f];
-    for (int g = 0; g < int(groups_.size()) && group_[f] < 0; ++g) {
-      RigidTransform const& declared = groups_[std::size_t(g)].declared.declared;
-      back_[f] = alike(face.periodic->declared.inverse(), declared) ? 1 : 0;
-      if (back_[f] != 0 || alike(face.periodic->declared, declared)) group_[f] = g;
+    Periodic declared = *face.periodic;
+    if (!forwards(declared.declared)) {
+      back_[f] = 1;
+      declared.rotation_angle_rad = -declared.rotation_angle_rad;
+      declared.translation = -declared.translation;
+      declared.declared = declared.declared.inverse();
     }
+    for (int g = 0; g < int(groups_.size()) && group_[f] < 0; ++g)
+      if (alike(declared.declared, groups_[std::size_t(g)].declared.declared)) group_[f] = g;
     if (group_[f] < 0) {
       group_[f] = int(groups_.size());
-      groups_.push_back({*face.periodic, {}, {}, 0, {}});
+      groups_.push_back({declared, {}, 0, {}});
     }
     Group& group = groups_[std::size_t(group_[f])];
     ++group.members;
     for_each_pair(mesh_, face, [&](Index p, Index q) {
-      group.from.push_back(mesh_.coordinates[back_[f] != 0 ? q : p]);
-      group.to.push_back(mesh_.coordinates[back_[f] != 0 ? p : q]);
+      Vec3 const a = mesh_.coordinates[back_[f] != 0 ? q : p], b = mesh_.coordinates[back_[f] != 0 ? p : q];
+      group.pairs.push_back({a.x, a.y, a.z, b.x, b.y, b.z});
     });
+  }
+
+  /// One of a transform and its inverse, whichever a file declares.
+  [[nodiscard]] bool forwards(RigidTransform const& t) const {
+    constexpr double single = 1e-6;
+    auto const& m = t.rotation.m;
+    double const length = size_ > 0 ? size_ : 1;
+    for (double const v : {m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1], t.translation.x / length,
+                           t.translation.y / length, t.translation.z / length})
+      if (std::abs(v) > single) return v > 0;
+    return true;
+  }
+
+  [[nodiscard]] RigidTransform fitted(Periodic const& declared, std::vector<Pair>& pairs) const {
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    std::vector<Vec3> from, to;
+    for (Pair const& p : pairs) {
+      from.push_back({p[0], p[1], p[2]});
+      to.push_back({p[3], p[4], p[5]});
+    }
+    return fit_periodic(declared, from, to, size_);
   }
 
   /// To what files say in single precision.
@@ -117,7 +145,7 @@ class PeriodicFits {
   Mesh const& mesh_;
   double size_;
   std::vector<int> group_;  ///< by interface; -1: not periodic
-  std::vector<char> back_;  ///< declared the other way round than its group
+  std::vector<char> back_;  ///< declared backwards
   std::vector<Group> groups_;
 };
 

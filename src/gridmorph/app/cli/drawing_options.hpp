@@ -27,9 +27,13 @@ inline constexpr std::array drawing_options{
                   false},
     DrawingOption{"--wall", 1, "FAMILY", "Blocks: wall of the close-ups; the first one met if not given", true, false},
     DrawingOption{"--box", 4, "X0 X1 Y0 Y1", "One more close-up, box.png", true, true},
-    DrawingOption{"--color", 1, "WHAT",
-                  "Blocks: determinant, displacement or none; elements: type, none, or a solution of the file", true,
-                  true},
+    DrawingOption{
+        "--color", 1, "WHAT",
+        "Blocks: determinant, displacement, none, or with --plane a variable of the flow solution in both files; "
+        "elements: type, none, or a solution of the file",
+        true, true},
+    DrawingOption{"--moved", 1, "LENGTH", "Blocks, with a variable: outline cells that move by at least this", true,
+                  false},
     DrawingOption{"--stages", 1, "DIR", "Folder that [output] stages names: pictures of them too", true, true},
     DrawingOption{"--dpi", 1, "N", "Dots per inch", true, true}};
 
