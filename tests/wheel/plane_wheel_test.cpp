@@ -75,7 +75,9 @@ of      = "blade"
     EXPECT_EQ(faces.claimed, 0);
   }
   void expect_nothing_inverted() const {
-    for (auto const& passage : nlohmann::json::parse(text("wheel.json"))["passages"])
+    auto const report = nlohmann::json::parse(text("wheel.json"));
+    ASSERT_GT(report.at("passages").size(), 0u);
+    for (auto const& passage : report.at("passages"))
       for (auto const* region : {"near_field", "far_field"}) {
         if (!passage["morphed"].contains(region)) continue;
         EXPECT_EQ(passage["morphed"][region]["inverted"], 0);
