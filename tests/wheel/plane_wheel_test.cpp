@@ -35,16 +35,7 @@ axis   = "z"
 patches   = "blade"
 rule      = "sections"
 twist_deg = )" +
-           std::to_string(twist_deg) + R"(
-[[motion]]
-patches = ["inlet", "outlet"]
-rule    = "circumferential-slide"
-of      = "blade"
-[[motion]]
-patches = "type:periodic"
-rule    = "follow"
-of      = "blade"
-)";
+           std::to_string(twist_deg) + row_followers;
   }
   [[nodiscard]] Coordinates morphed(double twist_deg) const {
     folder.write("one.toml", case_of(twist_deg));

@@ -46,16 +46,8 @@ class StraightRow : public WheelTest {
   }
   [[nodiscard]] static std::string case_of(std::string const& input, std::string const& formula) {
     return "[mesh]\ninput = \"" + input + "\"\noutput = \"morphed.cgns\"\naxis = \"x\"\n" +
-           "[[motion]]\npatches = \"blade\"\nrule = \"formula\"\n" + formula +
+           "[[motion]]\npatches = \"blade\"\nrule = \"formula\"\n" + formula + row_followers +
            R"(
-[[motion]]
-patches = ["inlet", "outlet"]
-rule    = "circumferential-slide"
-of      = "blade"
-[[motion]]
-patches = "type:periodic"
-rule    = "follow"
-of      = "blade"
 [[motion]]
 patches = ["hub", "case"]
 rule    = "slip"

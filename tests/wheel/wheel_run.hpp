@@ -25,8 +25,8 @@ struct CylindricalPoint {
 /// About the x axis.
 inline CylindricalPoint cylindrical(Vec3 const& p) { return {p.x, std::hypot(p.y, p.z), std::atan2(p.z, p.y)}; }
 
-/// All but the blade of the demo passage goes along with it.
-inline std::string const followers = R"(
+/// Ends and sides of a row go along with its blade.
+inline std::string const row_followers = R"(
 [[motion]]
 patches = ["inlet", "outlet"]
 rule    = "circumferential-slide"
@@ -35,6 +35,10 @@ of      = "blade"
 patches = "type:periodic"
 rule    = "follow"
 of      = "blade"
+)";
+
+/// All but the blade of the demo passage goes along with it.
+inline std::string const followers = row_followers + R"(
 [[motion]]
 patches = ["hub", "case"]
 rule    = "slip"
