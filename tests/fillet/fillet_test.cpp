@@ -1,12 +1,11 @@
 // Fillets: against the circle between two lines, and what must hold of the mesh of a passage.
 #include "support/expect_error.hpp"
-#include "support/mesh_builders.hpp"
 #include "support/reduced.hpp"
 #include "support/scramble.hpp"
+#include "wedge.hpp"
 
 #include <generators/passage.hpp>
 #include <gridmorph/boundary/coverage.hpp>
-#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/fillet/fillet.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
@@ -23,39 +22,15 @@
 namespace gridmorph {
 namespace {
 
+using test::between;
 using test::expect_all_in;
+using test::grown;
 using test::message_of;
 
 constexpr double pi = std::numbers::pi;
 
-/// Cells that grow from a wall on.
-double grown(int n, int cells, double growth) { return (std::pow(growth, n) - 1) / (std::pow(growth, cells) - 1); }
-
-/// Two plane walls, "blade" and "hub", that meet at an angle along z: 1.2 along the corner, 1 along either wall. `lean`: of the
-/// grid lines on the hub, along the corner.
 Mesh wedge(double angle_rad, double lean = 0, Index3 extent = {7, 25, 25}) {
-  test::MeshBuilder builder("wedge");
-  builder.zone("wedge", extent, [=](Index3 const& p) {
-    double const along = 1.2 * p[0] / (extent[0] - 1), off_blade = grown(p[1], extent[1] - 1, 1.15),
-                 off_hub = grown(p[2], extent[2] - 1, 1.15);
-    return Vec3{off_blade + off_hub * std::cos(angle_rad), off_hub * std::sin(angle_rad), along + lean * off_blade};
-  });
-  builder.patch("blade", PatchKind::wall, 0, 1, 0);
-  builder.patch("hub", PatchKind::wall, 0, 2, 0);
-  builder.patch("far", PatchKind::farfield, 0, 1, 1);
-  builder.patch("far", PatchKind::farfield, 0, 2, 1);
-  builder.patch("side", PatchKind::symmetry, 0, 0, 0);
-  builder.patch("side", PatchKind::symmetry, 0, 0, 1);
-  return builder.finish();
-}
-
-FilletOptions between(Mesh const& mesh, std::vector<std::string> const& blade, std::vector<std::string> const& wall,
-                      double radius) {
-  FilletOptions options;
-  options.blade = select_patches(mesh, blade);
-  options.end_wall = select_patches(mesh, wall);
-  options.radius = [radius](Vec3 const&) { return radius; };
-  return options;
+  return test::wedge({.angle_rad = angle_rad, .lean = lean, .extent = extent});
 }
 
 FilletResult fillet_of(Mesh mesh, FilletOptions const& options) {

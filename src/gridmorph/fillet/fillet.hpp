@@ -20,16 +20,20 @@ struct FilletOptions {
   double run_out = 8;
 };
 
-struct FilletResult {
-  SplitMesh split;  ///< its mesh has coordinates
+/// What is said of a fillet, whatever the mesh.
+struct FilletFacts {
   SheetLayers layers;
   int stations = 0;                                ///< nodes of the corner that have a ball
   double smallest_radius = 0, largest_radius = 0;  ///< at these [length]
   double arc_angle_deg[2] = {0, 0};                ///< smallest and largest of their arcs
+  int open_ends = 0;                               ///< nodes at which a fillet runs out
+};
+
+struct FilletResult : FilletFacts {
+  SplitMesh split;  ///< its mesh has coordinates
   double wall_deviation =
       0;  ///< largest distance of moved wall nodes off the arcs from the walls as they were [length]
   bool first_cells_kept = true;  ///< off both walls; otherwise those of the wall with fewer layers became smaller
-  int open_ends = 0;             ///< nodes at which a fillet runs out
 };
 
 /// The mesh with a fillet along all corners of `blade` with `end_wall`.

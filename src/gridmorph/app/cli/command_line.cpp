@@ -140,9 +140,9 @@ CLI::App* add_hexahedra(CLI::App& app, CommandLine& out) {
 }
 
 CLI::App* add_fillet(CLI::App& app, CommandLine& out) {
-  auto* fillet =
-      app.add_subcommand("fillet", "Round the corner between a blade and an end wall, with blocks that suit it");
-  fillet->add_option("mesh", out.input, "Mesh of blocks (CGNS, PLOT3D)")->required();
+  auto* fillet = app.add_subcommand(
+      "fillet", "Round the corner between a blade and an end wall, with blocks or elements that suit it");
+  fillet->add_option("mesh", out.input, "Mesh of blocks or of elements")->required();
   fillet->add_option("-b,--blade", out.patches, "Patches of the blade, named as in case files")->required();
   fillet->add_option("-w,--wall", out.end_walls, "Patches of the end wall: hub, case, or both")->required();
   fillet->add_option("--radius", out.radius, "Radius: a number, or an expression of x, y, z along the corner")

@@ -4,10 +4,12 @@
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
+#include <gridmorph/app/element_mesh.hpp>
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
-#include <gridmorph/fillet/fillet.hpp>
+#include <gridmorph/fillet/fillet_elements.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 
@@ -17,6 +19,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace gridmorph::cli {
 
@@ -37,73 +40,98 @@ std::function<double(Vec3 const&)> radius_of(std::string const& text) {
   };
 }
 
+std::string facts_text(FilletFacts const& facts) {
+  std::string text = fmt::format(
+      "fillet along {} nodes of the corner: radius {:.5g}{}, arcs of {:.1f} to {:.1f} degrees\n", facts.stations,
+      facts.smallest_radius,
+      facts.largest_radius > facts.smallest_radius ? fmt::format(" to {:.5g}", facts.largest_radius) : std::string(),
+      facts.arc_angle_deg[0], facts.arc_angle_deg[1]);
+  if (facts.open_ends > 0)
+    text += fmt::format(
+        "note: the corner goes on where the blade ends, at {} nodes; the fillet runs out before them, and does not go "
+        "around the edges of the blade\n",
+        facts.open_ends);
+  return text;
+}
+
 std::string summary_text(FilletResult const& result, Mesh const& before, double seconds) {
   Mesh const& after = result.split.mesh;
-  std::string text = fmt::format(
-      "fillet along {} nodes of the corner: radius {:.5g}{}, arcs of {:.1f} to {:.1f} degrees\n", result.stations,
-      result.smallest_radius,
-      result.largest_radius > result.smallest_radius ? fmt::format(" to {:.5g}", result.largest_radius) : std::string(),
-      result.arc_angle_deg[0], result.arc_angle_deg[1]);
-  text += fmt::format(
-      "layers taken from the corner: {} off the blade, {} off the end wall; {} made of both\n"
-      "moved wall nodes off the arc are {:.2g} from the walls as they were, at most\n",
-      result.layers.old[0], result.layers.old[1], result.layers.made, result.wall_deviation);
+  std::string text =
+      facts_text(result) + fmt::format(
+                               "layers taken from the corner: {} off the blade, {} off the end wall; {} made of both\n"
+                               "moved wall nodes off the arc are {:.2g} from the walls as they were, at most\n",
+                               result.layers.old[0], result.layers.old[1], result.layers.made, result.wall_deviation);
   if (!result.first_cells_kept)
     text +=
         "note: first cells off the wall with fewer layers become smaller, all along it: the layers of the other wall "
         "do not fit otherwise\n";
-  if (result.open_ends > 0)
-    text += fmt::format(
-        "note: the corner goes on where the blade ends, at {} nodes; the fillet runs out before them, and does not go "
-        "around the "
-        "edges of the blade\n",
-        result.open_ends);
   text +=
       fmt::format("zones {} -> {}, cells {} -> {}, nodes {} -> {}; {:.2f} s\n\n", before.zones.size(),
                   after.zones.size(), before.n_cells(), after.n_cells(), before.n_nodes(), after.n_nodes(), seconds);
   return text;
 }
 
-nlohmann::json document(CommandLine const& options, FilletResult const& result, QualityReport const& quality) {
-  return {
-      {"gridmorph", GRIDMORPH_VERSION},
-      {"input", options.input.string()},
-      {"output", options.output->string()},
-      {"stations", result.stations},
-      {"radius", {result.smallest_radius, result.largest_radius}},
-      {"arc_deg", {result.arc_angle_deg[0], result.arc_angle_deg[1]}},
-      {"layers", {{"blade", result.layers.old[0]}, {"end_wall", result.layers.old[1]}, {"made", result.layers.made}}},
-      {"wall_deviation", result.wall_deviation},
-      {"open_ends", result.open_ends},
-      {"zones", result.split.mesh.zones.size()},
-      {"cells", result.split.mesh.n_cells()},
-      {"quality", quality}};
+std::string summary_text(ElementFillet const& result, Mesh const& before, double seconds) {
+  std::string const elements =
+      result.cut_elements > 0
+          ? fmt::format(
+                "layers up to which hexahedra are cut in the mitre: {} off the blade, {} off the end wall\n"
+                "elements {} -> {}, ",
+                result.layers.old[0], result.layers.old[1], before.n_elements(), result.mesh.n_elements())
+          : fmt::format("layers of both walls meet in a mitre already: no element is cut\nelements {}, ",
+                        before.n_elements());
+  return facts_text(result) + elements + fmt::format("nodes {}; {:.2f} s\n\n", before.n_nodes(), seconds);
 }
 
-}  // namespace
+nlohmann::json document(CommandLine const& options, FilletFacts const& facts, QualityReport const& quality) {
+  return {{"gridmorph", GRIDMORPH_VERSION},
+          {"input", options.input.string()},
+          {"output", options.output->string()},
+          {"stations", facts.stations},
+          {"radius", {facts.smallest_radius, facts.largest_radius}},
+          {"arc_deg", {facts.arc_angle_deg[0], facts.arc_angle_deg[1]}},
+          {"layers", {{"blade", facts.layers.old[0]}, {"end_wall", facts.layers.old[1]}}},
+          {"open_ends", facts.open_ends},
+          {"quality", quality}};
+}
 
-int run_fillet_command(CommandLine const& options, Terminal& terminal) {
-  MeshSource const file = look_at(options.input, options.leave_out);
-  if (file.kind != MeshKind::structured)
-    throw ConfigError(
-        options.input.string() +
-        ": a fillet takes blocks out of a mesh, and this is one of elements; morph it with a rule \"formula\" or "
-        "\"target\" instead");
-  check_run_files(inputs_of_mesh(file), {{"mesh", *options.output}});
-  terminal.progress("reading " + options.input.string());
-  Mesh mesh = load_mesh(options.input, {}, options.leave_out);
-  if (mesh.dimension != 3)
-    throw MeshError(options.input.string() + ": a mesh of two dimensions has no corners to fill");
-  Stopwatch watch;
-  terminal.progress("filling corners");
-  Links const links = connect_and_check(mesh, options.topology);
+FilletOptions options_of(CommandLine const& options, Mesh const& mesh) {
   FilletOptions wanted;
   wanted.blade = select_patches(mesh, options.patches);
   wanted.end_wall = select_patches(mesh, options.end_walls);
   wanted.radius = radius_of(options.radius);
   wanted.layers = {options.blade_layers, options.end_wall_layers};
   wanted.run_out = options.run_out;
-  FilletResult const result = make_fillet(mesh, links, wanted);
+  return wanted;
+}
+
+/// Says so, and how to change that.
+int refuse(CommandLine const& options, Terminal& terminal, FilletFacts const& facts, QualityReport const& quality) {
+  terminal.say(format_table(quality));
+  terminal.error(fmt::format(
+      "{} was not written: {} cells are inverted, with {} layers off the blade and {} off the end wall; give a smaller "
+      "radius, other --blade-layers and --wall-layers, or a longer --run-out",
+      options.output->string(), quality.far_field.inverted + quality.near_field.inverted, facts.layers.old[0],
+      facts.layers.old[1]));
+  return not_written;
+}
+
+void throw_if_any(std::vector<std::string> const& problems) {
+  Problems all;
+  for (auto const& problem : problems) all.add(problem);
+  all.throw_if_any<MeshError>();
+}
+
+bool any_inverted(QualityReport const& quality) { return quality.far_field.inverted + quality.near_field.inverted > 0; }
+
+int fill_blocks(CommandLine const& options, Terminal& terminal) {
+  Mesh mesh = load_mesh(options.input, {}, options.leave_out);
+  if (mesh.dimension != 3)
+    throw MeshError(options.input.string() + ": a mesh of two dimensions has no corners to fill");
+  Stopwatch watch;
+  terminal.progress("filling corners");
+  Links const links = connect_and_check(mesh, options.topology);
+  FilletResult const result = make_fillet(mesh, links, options_of(options, mesh));
   double const seconds = watch.lap();
 
   terminal.progress("checking connections, measuring quality");
@@ -111,22 +139,57 @@ int run_fillet_command(CommandLine const& options, Terminal& terminal) {
   Mesh checked = after.mesh();
   (void)connect_and_check(checked, options.topology);
   QualityReport const quality = after.measure({});
-  Index const inverted = quality.far_field.inverted + quality.near_field.inverted;
-  if (inverted > 0) {
-    terminal.say(format_table(quality));
-    terminal.error(
-        fmt::format("{} was not written: {} cells are inverted, with {} layers off the blade and {} off the end wall; "
-                    "give a smaller "
-                    "radius, other --blade-layers and --wall-layers, or a longer --run-out",
-                    options.output->string(), inverted, result.layers.old[0], result.layers.old[1]));
-    return not_written;
-  }
+  if (any_inverted(quality)) return refuse(options, terminal, result, quality);
   terminal.progress("writing " + options.output->string());
   write_mesh(options.output->string(), after.mesh());
   terminal.say(summary_text(result, mesh, seconds) + format_table(quality) +
                fmt::format("\nwrote {}\n", options.output->string()));
-  terminal.document(document(options, result, quality));
+  nlohmann::json json = document(options, result, quality);
+  json["layers"]["made"] = result.layers.made;
+  json["wall_deviation"] = result.wall_deviation;
+  json["zones"] = result.split.mesh.zones.size();
+  json["cells"] = result.split.mesh.n_cells();
+  terminal.document(json);
   return done;
+}
+
+int fill_elements(CommandLine const& options, Terminal& terminal) {
+  ElementMesh const before(options.input, {}, options.leave_out);
+  Mesh const& mesh = before.mesh;
+  if (mesh.dimension != 3)
+    throw MeshError(options.input.string() + ": a mesh of two dimensions has no corners to fill");
+  throw_if_any(before.problems);
+  Stopwatch watch;
+  terminal.progress("filling corners");
+  ElementFillet const result = make_fillet(mesh, before.topology, before.face_patches, options_of(options, mesh));
+  double const seconds = watch.lap();
+
+  terminal.progress("checking the elements, measuring quality");
+  ElementMesh const after(result.mesh);
+  throw_if_any(after.problems);
+  QualityReport const quality = after.measure({});
+  if (any_inverted(quality)) return refuse(options, terminal, result, quality);
+  terminal.progress("writing " + options.output->string());
+  if (result.cut_elements > 0)
+    write_mesh(options.output->string(), result.mesh);
+  else  // with all that the file has beside coordinates
+    before.write(options.input, *options.output, result.mesh.coordinates, {});
+  terminal.say(summary_text(result, mesh, seconds) + format_table(quality) +
+               fmt::format("\nwrote {}\n", options.output->string()));
+  nlohmann::json json = document(options, result, quality);
+  json["elements"] = result.mesh.n_elements();
+  json["cut_elements"] = result.cut_elements;
+  terminal.document(json);
+  return done;
+}
+
+}  // namespace
+
+int run_fillet_command(CommandLine const& options, Terminal& terminal) {
+  MeshSource const file = look_at(options.input, options.leave_out);
+  check_run_files(inputs_of_mesh(file), {{"mesh", *options.output}});
+  terminal.progress("reading " + options.input.string());
+  return file.kind == MeshKind::structured ? fill_blocks(options, terminal) : fill_elements(options, terminal);
 }
 
 }  // namespace gridmorph::cli

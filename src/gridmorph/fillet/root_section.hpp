@@ -1,0 +1,114 @@
+// A root line cut across at one of its places: walls, ball, and how layers meet.
+#pragma once
+
+#include <gridmorph/fillet/mitre_path.hpp>
+#include <gridmorph/fillet/wall_profile.hpp>
+
+#include <array>
+#include <vector>
+
+namespace gridmorph {
+
+/// A point between the walls by how far it is from them. Lengths.
+struct CornerPoint {
+  std::array<double, 2> off;    ///< from the blade, from the end wall
+  std::array<double, 2> along;  ///< the same point along each wall from the corner
+};
+
+/// y over x in straight pieces from (0, 0), both ascending, on with slope 1.
+class Relation {
+ public:
+  /// Nothing where that would not ascend.
+  void add(double x, double y);
+  [[nodiscard]] double operator()(double x) const;
+
+ private:
+  std::vector<double> x_{0}, y_{0};
+};
+
+/// How layers of the two walls meet, from the places x off the blade and y off the end wall that find_mitre() chose. Where layers are as high on both
+/// walls, all relations say x = x.
+///
+/// The mitre's height there is about the smaller distance, g = ((x^-2 + y^-2) / 2)^(-1/2). The farther off the walls, the less that counts: from 1.4 radii
+/// on places stay what they are.
+class MitreRelations {
+ public:
+  MitreRelations() = default;
+  MitreRelations(std::vector<MitrePlace> const& places, std::vector<std::array<double, 2>> const& off, double radius);
+
+  /// Of a wall: distance of a layer from it -> its distance from the new wall in the mitre, where lines of the other wall come to its first place and
+  /// where it leaves its last one: a layer may have several.
+  [[nodiscard]] Relation const& first(int wall) const { return first_[std::size_t(wall)]; }
+  [[nodiscard]] Relation const& last(int wall) const { return last_[std::size_t(wall)]; }
+  /// Of a wall: distance of a line from the other wall -> where it begins on the new wall.
+  [[nodiscard]] Relation const& start(int wall) const { return start_[std::size_t(wall)]; }
+
+ private:
+  std::array<Relation, 2> first_, last_, start_;
+};
+
+struct RootSection {
+  Vec3 root;
+  Vec3 along;            ///< the line, unit
+  Vec3 across;           ///< the section, unit: the line, leaning as edges of the blade lean
+  double angle_rad = 0;  ///< between the walls
+  Vec3 blade_normal;     ///< at the root, unit, into the mesh
+  std::array<WallProfile, 2> wall;
+  double radius = 0;  ///< 0: sharp
+  Vec3 centre;        ///< of the ball, from the root
+  Vec3 to_middle;     ///< from there to the middle of the arc, unit
+  double half_arc = 0;
+  std::array<double, 2> contact{0, 0};  ///< along the walls
+  double reach = 0;                     ///< along the walls, from which on nothing moves
+  MitreRelations mitre;
+
+  /// By how much the way over the fillet is shorter than the one along the corner.
+  [[nodiscard]] double cut_off(int w) const { return contact[std::size_t(w)] - half_arc; }
+};
+
+/// Where a point of the sharp corner goes.
+struct CornerMove {
+  Vec3 shift;
+  int wall = 0;          ///< the one it belongs to
+  bool on_arc = false;   ///< its foot on the new wall
+  double arc_share = 0;  ///< of the half arc, where its foot is
+  double start = 1;      ///< how much nearer to the corner its line begins than before
+  double bend = 0;       ///< 0 on the wall, 1 in the mitre
+  double still = 1;      ///< 1: too far from the new wall to move
+};
+
+/// Between two sections, `share` of the way from one to the other. Refers to them.
+class BetweenSections {
+ public:
+  BetweenSections(RootSection const& a, RootSection const& b, double share) : a_(a), b_(b), share_(share) {}
+
+  [[nodiscard]] RootSection const& a() const { return a_; }
+  [[nodiscard]] Vec3 root() const { return mean(a_.root, b_.root); }
+  [[nodiscard]] Vec3 across() const;
+  [[nodiscard]] double radius() const { return mean(a_.radius, b_.radius); }
+  [[nodiscard]] double reach() const { return mean(a_.reach, b_.reach); }
+
+  [[nodiscard]] CornerPoint point(std::array<double, 2> const& off) const;
+  /// Of a node at `at`; `in_mitre`: find_mitre() chose it. It keeps what it is beside the section, less the nearer it comes to the mitre.
+  [[nodiscard]] CornerMove move(Vec3 const& at, CornerPoint const& p, bool in_mitre) const;
+  /// Of the fillet, beside a point: the point of the arc's tube nearest to it across the corner.
+  [[nodiscard]] Vec3 on_arc(Vec3 const& p, int wall, double arc_share) const;
+  /// The corner's new place.
+  [[nodiscard]] Vec3 middle() const;
+
+ private:
+  [[nodiscard]] double mean(double a, double b) const { return a + share_ * (b - a); }
+  [[nodiscard]] Vec3 mean(Vec3 const& a, Vec3 const& b) const { return a + share_ * (b - a); }
+  /// As long as the mean of their lengths.
+  [[nodiscard]] Vec3 turned(Vec3 const& a, Vec3 const& b) const;
+  [[nodiscard]] WallPoint wall_at(int w, double s) const;
+  struct Arc {
+    Vec3 centre, outwards;
+  };
+  [[nodiscard]] Arc arc(int w, double share) const;
+
+  RootSection const &a_, &b_;
+  double share_;
+};
+
+}  // namespace gridmorph

@@ -1,0 +1,179 @@
+#include <gridmorph/fillet/rounded_corner.hpp>
+
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/geometry/unit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gridmorph {
+
+namespace {
+
+/// The nearest of some nodes.
+class NodeTree {
+ public:
+  NodeTree(Mesh const& mesh, std::vector<Index32> const& nodes) {
+    std::vector<std::array<int, 4>> each;
+    for (Index32 const n : nodes) {
+      int const k = int(points_.size());
+      points_.push_back(mesh.coordinates[n]);
+      each.push_back({k, k, k, -1});
+    }
+    boxes_ = FacetBoxes(points_, each);
+  }
+  /// Its place in the list; -1: none.
+  [[nodiscard]] int nearest(Vec3 const& p) const {
+    int best = -1;
+    double best2 = std::numeric_limits<double>::infinity();
+    boxes_.for_each_nearer(
+        p,
+        [&](int k) {
+          Vec3 const d = points_[std::size_t(k)] - p;
+          double const d2 = dot(d, d);
+          if (d2 < best2 || (d2 == best2 && k < best)) {
+            best2 = d2;
+            best = k;
+          }
+        },
+        [&] { return best2; });
+    return best;
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  FacetBoxes boxes_;
+};
+
+/// What becomes of a node.
+struct Move {
+  Vec3 shift;        ///< by its section
+  Vec3 mended;       ///< from there onto the new wall; zero off the walls
+  double still = 1;  ///< CornerMove
+  double bend = 0;
+  int wall = 0;
+  bool near = false;  ///< the line
+
+  [[nodiscard]] bool stays() const { return !near || (still == 1 && shift == Vec3{}); }
+};
+
+class CornerRounding {
+ public:
+  CornerRounding(JoinedElements const& elements, WallEdges const& edges, RootSections const& sections,
+                 std::array<FacetSurface const*, 2> const& walls)
+      : elements_(elements),
+        edges_(edges),
+        sections_(sections),
+        walls_(walls),
+        within_(1.5 * sections.largest_reach()) {}
+
+  [[nodiscard]] Move move_of(Index32 place) const {
+    Move out;
+    Vec3 const p = elements_.position(place);
+    auto const nearest = sections_.find(p, {}, within_);
+    if (!nearest || out_of_reach(p, *nearest)) return out;
+    bool const on_blade = edges_.on(0, place), on_end_wall = edges_.on(1, place);
+    auto const found = sections_.find(p, off_blade(place), within_);
+    if (!found || out_of_reach(p, *found)) return out;
+    out.near = true;
+    std::array<double, 2> off = off_walls(walls_, p);
+    if (on_blade) off[0] = 0;
+    if (on_end_wall) off[1] = 0;
+    BetweenSections const section = sections_.between(*found);
+    CornerMove const move = corner_move(place, section, off);
+    out.shift = move.shift;
+    out.still = move.still;
+    out.bend = move.bend;
+    out.wall = move.wall;
+    if ((!on_blade && !on_end_wall) || !(section.radius() > 0) || out.stays()) return out;
+    Vec3 const to = p + move.shift;
+    if (on_blade && on_end_wall) {
+      out.mended = section.middle() - to;
+    } else if (move.on_arc) {
+      out.mended = section.on_arc(to, move.wall, move.arc_share) - to;
+    } else {
+      FacetSurface const& wall = *walls_[on_blade ? 0 : 1];
+      out.mended = wall.view().slide(wall.closest_point(to), to) - to;
+    }
+    return out;
+  }
+
+ private:
+  /// Cheaply: what moves is within the reach along a wall, and not much more than a radius off it.
+  [[nodiscard]] bool out_of_reach(Vec3 const& p, SectionPlace const& at) const {
+    BetweenSections const section = sections_.between(at);
+    return distance(p, section.root()) > 1.1 * std::hypot(section.reach(), 1.5 * section.radius());
+  }
+
+  /// The direction off the blade; zero on the blade's surface but off its nodes.
+  [[nodiscard]] Vec3 off_blade(Index32 place) const {
+    if (edges_.on(0, place)) return edges_.normal(0, place);
+    Vec3 const p = elements_.position(place), off = p - walls_[0]->closest_point(p).point;
+    return off == Vec3{} ? off : unit(off);
+  }
+
+  /// Lines lean along the corner; the nearer to it a node comes, the less.
+  [[nodiscard]] CornerMove corner_move(Index32 place, BetweenSections const& section,
+                                       std::array<double, 2> const& off) const {
+    Vec3 const p = elements_.position(place);
+    CornerPoint const point = section.point(off);
+    KnownPlace const* const known = sections_.known(place);
+    bool const in_mitre = known != nullptr && known->in_mitre;
+    CornerMove out = section.move(p, point, in_mitre);
+    auto const [near, far] = std::minmax(off[0], off[1]);
+    double const lean = known == nullptr ? 1 : in_mitre ? std::min(1.0, 1.4 * near / far) : out.start;
+    if (lean < 1) {
+      BetweenSections const line = sections_.between(known->section);
+      Vec3 const beside = dot(p - line.root(), line.across()) * line.across();
+      CornerMove const there = line.move(p, line.point(off), in_mitre);
+      Vec3 const straight = there.shift - ((1 - there.still) * (1 - there.bend)) * beside;  // the rest is in the move
+      out.shift = lean * out.shift + (1 - lean) * straight;
+    }
+    return out;
+  }
+
+  JoinedElements const& elements_;
+  WallEdges const& edges_;
+  RootSections const& sections_;
+  std::array<FacetSurface const*, 2> const& walls_;
+  double within_;
+};
+
+}  // namespace
+
+Coordinates round_corners(JoinedElements const& elements, WallEdges const& edges, RootSections const& sections,
+                          std::array<FacetSurface const*, 2> const& walls) {
+  constexpr Index share = 256;  // few nodes are near the lines, so shares are small
+  Mesh const& mesh = elements.mesh();
+  HostInstance const host;
+  CornerRounding const rounding(elements, edges, sections, walls);
+  std::vector<Move> moves(std::size_t(mesh.n_nodes()));
+  detail::for_all_parts(host, "gridmorph::round_corners", (mesh.n_nodes() + share - 1) / share, [&](Index part) {
+    for (Index n = share * part; n < std::min(mesh.n_nodes(), share * (part + 1)); ++n)
+      if (elements.place(Index32(n)) == Index32(n)) moves[std::size_t(n)] = rounding.move_of(Index32(n));
+  });
+
+  std::array<std::vector<Index32>, 2> on_walls;
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    for (std::size_t w = 0; w < 2; ++w)
+      if (moves[std::size_t(n)].near && edges.on(int(w), Index32(n))) on_walls[w].push_back(Index32(n));
+  std::array<NodeTree, 2> const trees{NodeTree(mesh, on_walls[0]), NodeTree(mesh, on_walls[1])};
+  Coordinates out(mesh.n_nodes());
+  detail::for_all(host, "gridmorph::round_corners (places)", mesh.n_nodes(), [&](Index n) {
+    Index32 const place = elements.place(Index32(n));
+    Move const& move = moves[std::size_t(place)];
+    Vec3 const p = mesh.coordinates[n];
+    if (move.stays()) return out.set(n, p);
+    Vec3 mended = move.mended;
+    if (!edges.on(0, place) && !edges.on(1, place)) {
+      auto const w = std::size_t(move.wall);
+      if (int const k = trees[w].nearest(p); k >= 0)
+        mended = ((1 - move.still) * (1 - move.bend)) * moves[std::size_t(on_walls[w][std::size_t(k)])].mended;
+    }
+    out.set(n, p + move.shift + mended);
+  });
+  return out;
+}
+
+}  // namespace gridmorph
