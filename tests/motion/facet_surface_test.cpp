@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -326,6 +327,55 @@ TEST(FacetSurface, PointsAnywhereHaveAFoot) {
     }
     EXPECT_GE(surface.closest_point({std::nan(""), 0, 0}).facet, 0);
   }
+}
+
+/// Columns of an H grid around the round nose of a hole in the plane z = 0: behind the nose grid lines turn by eighty degrees, so that local
+/// coordinates of the facets there fold.
+TEST(FacetSurface, KinkedGridLinesHaveAFootForEveryPoint) {
+  std::array<double, 15> const x{-5.355, -3.732, -2.478, -1.594, -.97,  -.53,  -.219, 0,
+                                 .219,   .512,   .903,   1.426,  2.121, 3.041, 4.252};
+  std::array<double, 8> const low{0, -1.315, -1.931, -2.465, -2.965, -3.444, -3.9, -4.3},
+      high{0, 1.496, 2.351, 3.198, 4.103, 5.1, 6.21, 7.45};
+  std::array<double, 6> const y{0, .56, 1.3, 2.25, 3.49, 5.08};
+  constexpr int n = 15, m = 6, nose = 7;
+  FacetList list;
+  for (int const side : {1, -1}) {
+    auto const first = std::int32_t(list.points.size());
+    for (int j = 0; j < m; ++j)
+      for (int i = 0; i < n; ++i) {
+        double const rim = i < nose ? .55 * (x[i] + .219) : (side > 0 ? high[i - nose] : low[i - nose]);
+        list.points.push_back({x[i], rim + side * y[j], 0});
+      }
+    for (std::int32_t j = 0; j + 1 < m; ++j)
+      for (std::int32_t i = 0; i + 1 < n; ++i) {
+        std::int32_t const a = first + i + n * j;
+        list.facets.push_back({a, a + 1, a + 1 + n, a + n});
+      }
+  }
+  FacetSurface const surface = FacetSurface::from_facets(list);
+  // How far a point of the plane is from the flat facets; the rim between their corners is curved.
+  auto const from_facets = [&](double px, double py) {
+    double best = 1e9;
+    for (auto const& f : list.facets) {
+      int left = 0;
+      double edge = 1e9;
+      for (int q = 0; q < 4; ++q) {
+        Vec3 const a = list.points[std::size_t(f[q])], d = list.points[std::size_t(f[(q + 1) % 4])] - a;
+        left += d.x * (py - a.y) - d.y * (px - a.x) > 0 ? 1 : 0;
+        double const t = std::clamp(((px - a.x) * d.x + (py - a.y) * d.y) / dot(d, d), 0.0, 1.0);
+        edge = std::min(edge, std::hypot(px - a.x - t * d.x, py - a.y - t * d.y));
+      }
+      best = std::min(best, left == 0 || left == 4 ? 0 : edge);
+    }
+    return best;
+  };
+  for (double px = -1; px < 2; px += 0.0371)
+    for (double py = -2; py <= 2; py += 0.0413)
+      for (double const pz : {0.01, 1.0, 2.3}) {
+        kernels::FacetFoot const foot = surface.closest_point({px, py, pz});
+        ASSERT_GE(foot.facet, 0) << px << " " << py << " " << pz;
+        ASSERT_NEAR(foot.distance, std::hypot(from_facets(px, py), pz), 0.07) << px << " " << py << " " << pz;
+      }
 }
 
 }  // namespace

@@ -81,6 +81,7 @@ struct FacetSurfaceView {
       crossed_crease = true;
       cross(walk, next, 1 - t);
     }
+    if (walk.best.facet < 0) stay_near(walk, flat, p);
     return walk.best;
   }
 
@@ -119,6 +120,28 @@ struct FacetSurfaceView {
       best = {s, length > 0 ? (1 / length) * n : n, facet, u, v, far, place};
     }
   };
+
+  /// Where grid lines have kinks, local coordinates of facets beside them may fold, and the way from facet to facet go in circles: the foot
+  /// is then the nearest place of the flat facets, on the curved one; on a rim that across from p.
+  KOKKOS_INLINE_FUNCTION void stay_near(Walk& walk, FlatPlace const& flat, Vec3 const& p) const {
+    using std::fabs;
+    constexpr double on_edge = 1e-9;
+    FacetPatch const patch = this->patch(flat.facet);
+    walk.facet = flat.facet;
+    for (int q = 0; q < patch.size; ++q) {
+      if (tree.facets[flat.facet].neighbour[q] >= 0) continue;
+      patch.on_edge(q, patch.along_edge(q, flat.u, flat.v), walk.u, walk.v);
+      if (fabs(walk.u - flat.u) + fabs(walk.v - flat.v) > on_edge) continue;
+      double const t = foot_on_edge(patch, q, p);
+      patch.on_edge(q, t, walk.u, walk.v);
+      walk.offer(p, patch.edge(q, t), patch.edge_normal(q, t), FacetFoot::Place::rim);
+    }
+    if (walk.best.facet >= 0) return;
+    walk.u = flat.u;
+    walk.v = flat.v;
+    FacetPlace const at = patch.at(walk.u, walk.v);
+    walk.offer(p, at.s, at.n, FacetFoot::Place::inside);
+  }
 
   /// On to the place t of an edge (4 * facet + edge).
   KOKKOS_INLINE_FUNCTION void cross(Walk& walk, int edge, double t) const {
