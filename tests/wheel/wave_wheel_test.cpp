@@ -369,6 +369,7 @@ TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
     ASSERT_LE(gridmorph("morph one.toml --report one.json"), 1) << text("err");
     auto const tip = nlohmann::json::parse(text("one.json"))["clearances"][0];
     EXPECT_EQ(tip["name"], "rotor");
+    EXPECT_EQ(tip["distance"], "meridional");
     EXPECT_GT(tip["nodes"], 20);
     EXPECT_NEAR(double(tip["before"]["smallest"]), 0, 1e-12);
     EXPECT_NEAR(double(tip["by_rule"]["smallest"]), -growth, 1e-12);
@@ -376,9 +377,14 @@ TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
     EXPECT_NEAR(double(tip["after"]["smallest"]), elements ? -growth : 0, 1e-12) << "elements keep what they are given";
     expect_all_in(text("out"), {"clearance", "rotor", "-0.0004", "rubs"});
   }
+  // The inlet is a plane across the axis: no radius over the axial position, so its surface is taken.
   folder.write("one.toml", head() + blade_rule(rule) + "[[clearance]]\ntips = \"blade\"\nwalls = \"inlet\"\n");
-  EXPECT_EQ(gridmorph("morph one.toml"), 2);
-  expect_all_in(text("err"), {"clearance", "revolution"});
+  ASSERT_LE(gridmorph("morph one.toml --report one.json"), 1) << text("err");
+  double leading = 1;
+  for (Vec3 const& x : blade(mesh)) leading = std::min(leading, x.x);
+  auto const tip = nlohmann::json::parse(text("one.json"))["clearances"][0];
+  EXPECT_EQ(tip["distance"], "surface");
+  EXPECT_NEAR(double(tip["before"]["smallest"]), leading - PassageOptions{}.inlet, 1e-12);
 }
 
 TEST_F(WaveWheel, EveryPassageHasTheRunningClearanceOfItsOwnBlade) {

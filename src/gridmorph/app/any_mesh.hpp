@@ -6,6 +6,7 @@
 #include <gridmorph/app/cli/diagnosis.hpp>
 #include <gridmorph/app/cli/inspect_text.hpp>
 #include <gridmorph/app/page/picture_mesh.hpp>
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/io/mesh_io.hpp>
@@ -196,8 +197,8 @@ class AnyMesh {
   [[nodiscard]] virtual PatchesAsSurface surface(std::vector<std::string> const& selectors, bool as_facets,
                                                  int split) const = 0;
 
-  /// Numbers of the nodes of patches, those at one place once or several times. Throws MotionError for selectors that name none.
-  [[nodiscard]] virtual std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const = 0;
+  /// Its patches with nodes and facets.
+  [[nodiscard]] virtual Boundary boundary() const = 0;
 
   /// The file `input`, which this was read from, with other coordinates: write_morphed(), SeriesWriter.
   virtual void write(std::filesystem::path const& input, std::filesystem::path const& output,

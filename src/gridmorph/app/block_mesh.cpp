@@ -3,7 +3,6 @@
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/boundary/patch_surface.hpp>
-#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/quality/certificate.hpp>
@@ -135,15 +134,6 @@ PatchesAsSurface BlockMesh::surface(std::vector<std::string> const& selectors, b
   if (facets > most)
     throw ConfigError(fmt::format("the patches would give {} facets, more than {}; lower --split", facets, most));
   out.facets = triangulate(mesh_, patches, split);
-  return out;
-}
-
-std::vector<Index> BlockMesh::nodes_of(std::vector<std::string> const& selectors) const {
-  std::vector<Index> out;
-  for (int const p : select_patches(mesh_, selectors)) {
-    Patch const& patch = mesh_.patches[std::size_t(p)];
-    for_each_node(mesh_.zones[std::size_t(patch.zone)], patch.range, [&](Index n) { out.push_back(n); });
-  }
   return out;
 }
 

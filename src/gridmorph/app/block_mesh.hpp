@@ -35,7 +35,7 @@ class BlockMesh final : public AnyMesh {
   }
   [[nodiscard]] PatchesAsSurface surface(std::vector<std::string> const& selectors, bool as_facets,
                                          int split) const override;
-  [[nodiscard]] std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const override;
+  [[nodiscard]] Boundary boundary() const override { return Boundary(mesh_); }
   void write(std::filesystem::path const& input, std::filesystem::path const& output, Coordinates const& morphed,
              OutputFields const& fields) const override {
     write_morphed(input.string(), output.string(), mesh_, morphed, fields);

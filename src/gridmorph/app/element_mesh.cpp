@@ -144,14 +144,4 @@ PatchesAsSurface ElementMesh::surface(std::vector<std::string> const& selectors,
   return out;
 }
 
-std::vector<Index> ElementMesh::nodes_of(std::vector<std::string> const& selectors) const {
-  Boundary const boundary(mesh, topology, face_patches);
-  std::vector<Index> out;
-  for (int const p : select_patches(mesh, selectors)) {
-    auto const& nodes = boundary.surface(p).nodes;
-    out.insert(out.end(), nodes.begin(), nodes.end());
-  }
-  return out;
-}
-
 }  // namespace gridmorph::cli

@@ -43,7 +43,7 @@ class ElementMesh final : public AnyMesh {
   [[nodiscard]] nlohmann::json json(MeshSummary const& summary, SnippetOptions const& options) const override;
   [[nodiscard]] PatchesAsSurface surface(std::vector<std::string> const& selectors, bool as_facets,
                                          int split) const override;
-  [[nodiscard]] std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const override;
+  [[nodiscard]] Boundary boundary() const override { return Boundary(mesh, topology, face_patches); }
   void write(std::filesystem::path const& input, std::filesystem::path const& output, Coordinates const& morphed,
              OutputFields const& fields) const override {
     write_morphed(input.string(), output.string(), mesh, morphed, fields);

@@ -239,11 +239,8 @@ std::vector<TipClearance> Run::clearances(Moment const* when) const {
   std::vector<TipClearance> out;
   if (case_file_.clearances.empty()) return out;
   Motion const motion = when == nullptr ? case_file_.motion : motion_at(case_file_, *when);
-  if (!clearances_)
-    clearances_.emplace(case_file_, mesh_->coordinates(),
-                        [this](std::vector<std::string> const& selectors) { return mesh_->nodes_of(selectors); });
-  auto const by_rule = [&](std::span<Index const> nodes, std::span<Vec3> u) {
-    int const r = clearances_->rule_of(nodes);
+  if (!clearances_) clearances_.emplace(case_file_, mesh_->boundary());
+  auto const by_rule = [&](int r, std::span<Index const> nodes, std::span<Vec3> u) {
     if (r < 0) return false;
     Rule const& rule = motion.rules[std::size_t(r)].rule;
     std::vector<Vec3> at;
@@ -257,7 +254,10 @@ std::vector<TipClearance> Run::clearances(Moment const* when) const {
     }
     return true;
   };
-  for (std::size_t t = 0; t < clearances_->size(); ++t) out.push_back(clearances_->of(t, result_.morphed, by_rule));
+  for (std::size_t t = 0; t < clearances_->size(); ++t)
+    out.push_back(clearances_->of(t, result_.morphed, [&](std::span<Index const> nodes, std::span<Vec3> u) {
+      return by_rule(clearances_->rule_of_tip(t), nodes, u);
+    }));
   return out;
 }
 

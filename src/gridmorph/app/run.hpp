@@ -94,7 +94,7 @@ class Run {
   };
   [[nodiscard]] KeptMeasure kept(Measure measure) const;
 
-  /// [[clearance]] of the result, of a moment of a sequence where one is given. Throws MotionError for walls that are not of revolution.
+  /// [[clearance]] of the result, of a moment of a sequence where one is given. Throws MotionError for walls without an area.
   [[nodiscard]] std::vector<TipClearance> clearances(Moment const* when = nullptr) const;
 
   /// What the motion would make of cells.

@@ -281,10 +281,6 @@ void read_clearances(TableReader& root, CaseFile& out) {
     if (one.rim <= 0 || one.rim > 1)
       table.problem("rim",
                     fmt::format("is the share of the blade's height that is its tip, 0 < rim <= 1, found {}", one.rim));
-    if (!out.axis)
-      table.problem("walls",
-                    "are of revolution about the machine axis; add axis = { origin = [0, 0, 0], direction = [1, "
-                    "0, 0] } to [mesh]");
     table.finish();
     out.clearances.push_back(std::move(one));
   }

@@ -60,9 +60,7 @@ class BlockPassage final : public PassageMesh {
   }
   [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const override { return mesh_.pictures(); }
   [[nodiscard]] QualityReport measure(QualityWanted const& wanted) const override { return mesh_.measure(wanted); }
-  [[nodiscard]] std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const override {
-    return mesh_.nodes_of(selectors);
-  }
+  [[nodiscard]] Boundary boundary() const override { return mesh_.boundary(); }
   [[nodiscard]] Certificate certify(Coordinates const& placed, std::vector<int> const& zones) const override {
     CertificateInput<Kokkos::HostSpace> input{views(placed), views(mesh().coordinates), mesh_.handedness()};
     input.zones = zones;

@@ -61,7 +61,7 @@ class ElementPassage final : public PassageMesh {
     Problems problems;
     for (auto const& problem : mesh_.problems) problems.add(problem);
     problems.throw_if_any<MeshError>();
-    links_ = passage_links(Boundary(mesh_.mesh, mesh_.topology, mesh_.face_patches));
+    links_ = passage_links(boundary());
   }
 
   [[nodiscard]] KindTraits const& kind() const override { return ElementMesh::traits(); }
@@ -84,9 +84,7 @@ class ElementPassage final : public PassageMesh {
   }
   [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const override { return mesh_.pictures(); }
   [[nodiscard]] QualityReport measure(QualityWanted const& wanted) const override { return mesh_.measure(wanted); }
-  [[nodiscard]] std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const override {
-    return mesh_.nodes_of(selectors);
-  }
+  [[nodiscard]] Boundary boundary() const override { return mesh_.boundary(); }
   [[nodiscard]] Certificate certify(Coordinates const& placed, std::vector<int> const& zones) const override {
     CertificateInput<Kokkos::HostSpace> input{views(placed), views(mesh_.coordinates())};
     input.signs = mesh_.signs;

@@ -48,8 +48,7 @@ class PassageMesh {
   /// As pictures see it; must not outlive this.
   [[nodiscard]] virtual std::unique_ptr<page::PictureMesh> pictures() const = 0;
   [[nodiscard]] virtual QualityReport measure(QualityWanted const& wanted) const = 0;
-  /// Numbers of the nodes of patches, as AnyMesh::nodes_of().
-  [[nodiscard]] virtual std::vector<Index> nodes_of(std::vector<std::string> const& selectors) const = 0;
+  [[nodiscard]] virtual Boundary boundary() const = 0;
   /// Of some zones of a passage in its place: neither turns nor shifts change a
   /// sign.
   [[nodiscard]] virtual Certificate certify(Coordinates const& placed, std::vector<int> const& zones) const = 0;

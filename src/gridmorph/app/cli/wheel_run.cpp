@@ -55,9 +55,8 @@ WheelRun::WheelRun(CaseFile const& case_file, MeshKind kind, Terminal& terminal)
       setup_(wheel_setup(case_file, mesh_, rows_)),
       wheel_(sector_->wheel(rows_, setup_.passages(),
                             case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
-      shared_(sector_->links(), rows_, true),
-      clearances_(case_file, mesh_.coordinates,
-                  [this](std::vector<std::string> const& selectors) { return sector_->nodes_of(selectors); }) {
+      shared_(sector_->links(), rows_, true) {
+  if (!case_file.clearances.empty()) clearances_.emplace(case_file, sector_->boundary());
   time("read");
 }
 
@@ -335,7 +334,7 @@ std::vector<std::string> WheelRun::blades_of(int passage) const {
 
 std::vector<TipClearance> WheelRun::clearances_of(int passage, Coordinates const& morphed) const {
   std::vector<TipClearance> out;
-  if (clearances_.empty()) return out;
+  if (!clearances_) return out;
   std::vector<Vec3> const boundary = plan_->passages().boundary(passage);
   std::map<std::array<double, 3>, std::size_t> asked;  // nodes of several zones at one place are asked once
   auto const key = [](Vec3 const& x) { return std::array{x.x, x.y, x.z}; };
@@ -349,11 +348,11 @@ std::vector<TipClearance> WheelRun::clearances_of(int passage, Coordinates const
     }
     return true;
   };
-  for (std::size_t t = 0; t < clearances_.size(); ++t) {
-    auto const& tip = clearances_.nodes_of_tip(t);
+  for (std::size_t t = 0; t < clearances_->size(); ++t) {
+    auto const& tip = clearances_->nodes_of_tip(t);
     auto const row = std::size_t(tip.empty() ? 0 : rows_.row_of_zone[std::size_t(mesh_.zone_of(tip.front()))]);
     if (passage >= setup_.blades[row].passages) continue;
-    TipClearance found = clearances_.of(t, morphed, by_rule);
+    TipClearance found = clearances_->of(t, morphed, by_rule);
     auto const turned = rows_.rows[row].pitch.times(passage);
     found.before.at = turned(found.before.at);
     if (found.by_rule) found.by_rule->at = turned(found.by_rule->at);

@@ -91,7 +91,7 @@ class WheelRun {
   WheelSetup setup_;
   WheelMesh wheel_;
   SharedNodes shared_;
-  Clearances clearances_;
+  std::optional<Clearances> clearances_;  ///< where the case file asks for them
   QualityWanted quality_;
   std::unique_ptr<CaseFile> recipe_;  ///< that the plan refers to, where it is not the case file
   std::unique_ptr<PassagePlan> plan_;

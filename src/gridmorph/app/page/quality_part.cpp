@@ -114,13 +114,13 @@ std::string worst_part(ReportPage const& page) {
 
 std::string clearances_part(ReportPage const& page) {
   if (!page.report.contains("clearances")) return {};
-  Table table({{"clearance"}, {"nodes", true}, {"smallest before"}, {"smallest after"}});
+  Table table({{"clearance"}, {"nodes", true}, {"smallest before"}, {"smallest after"}, {"distance"}});
   auto const range = [](json const& gap) {
     return fmt::format("{}, mean {}", number(gap["smallest"]), number(gap["mean"]));
   };
   for (json const& c : page.report["clearances"])
     table.add({escaped(c.value("name", std::string())), count(c.value("nodes", json(0))), range(c["before"]),
-               range(c["after"])});
+               range(c["after"]), escaped(c.value("distance", std::string()))});
   return "<h3>Clearances</h3>\n" + table.html();
 }
 

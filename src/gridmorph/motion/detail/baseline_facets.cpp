@@ -8,14 +8,6 @@
 #include <utility>
 
 namespace gridmorph {
-namespace {
-
-FacetList moved(FacetList list, RigidTransform const& transform) {
-  for (Vec3& p : list.points) p = transform(p);
-  return list;
-}
-
-}  // namespace
 
 std::vector<std::vector<int>> smoothly_joined(Boundary const& boundary, std::vector<int> const& patches,
                                               FacetOptions const& options) {
@@ -41,26 +33,6 @@ std::vector<std::vector<int>> smoothly_joined(Boundary const& boundary, std::vec
   std::vector<std::vector<int>> out;
   for (auto& [number, list_of] : members) out.push_back(std::move(list_of));
   return out;
-}
-
-FacetList with_periodic_copies(Boundary const& boundary, std::vector<int> const& patches) {
-  FacetList const own = boundary.facets(patches);
-  double const tolerance = 1e-6 * boundary.size();
-  std::vector<RigidTransform> copies;
-  auto const add = [&](RigidTransform const& transform) {
-    bool const known = std::any_of(copies.begin(), copies.end(), [&](RigidTransform const& other) {
-      return std::all_of(own.points.begin(), own.points.end(),
-                         [&](Vec3 const& p) { return distance(transform(p), other(p)) <= tolerance; });
-    });
-    if (!known) copies.push_back(transform);
-  };
-  for (RigidTransform const& transform : boundary.periodic_transforms(patches)) {
-    add(transform);
-    add(transform.inverse());
-  }
-  FacetList all = own;
-  for (RigidTransform const& transform : copies) all.add(moved(own, transform));
-  return all;
 }
 
 }  // namespace gridmorph

@@ -1,4 +1,4 @@
-// The baseline mesh's own surface as facets: which patches make up one surface, and what lies beyond periodic connections.
+// The baseline mesh's own surface as facets: which patches make up one surface.
 #pragma once
 
 #include <gridmorph/boundary/boundary.hpp>
@@ -11,9 +11,5 @@ namespace gridmorph {
 /// is on both surfaces, so it stays on their edge. Cost O(n log n) in the nodes.
 std::vector<std::vector<int>> smoothly_joined(Boundary const& boundary, std::vector<int> const& patches,
                                               FacetOptions const& options);
-
-/// Facets of the patches and their copies across the periodic connections that they touch, so that nodes can slide out of
-/// the sector and normals are the same on both sides. Transforms are fitted to the connections' nodes.
-FacetList with_periodic_copies(Boundary const& boundary, std::vector<int> const& patches);
 
 }  // namespace gridmorph

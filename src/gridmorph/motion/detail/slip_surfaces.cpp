@@ -1,5 +1,6 @@
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 
+#include <gridmorph/boundary/periodic_copies.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
@@ -207,7 +208,9 @@ class Finder {
       for (Patches const& members : smoothly_joined(boundary_, patches, options)) {
         SlipSurface surface;
         surface.kind = SlipSurface::Kind::facets;
-        surface.facets = FacetSurface::from_facets(with_periodic_copies(boundary_, members), options);
+        // With what lies beyond the periodic sides, so that nodes can slide out of the sector and normals are the same on both.
+        surface.facets = FacetSurface::from_facets(
+            with_copies(boundary_.facets(members), periodic_copies(boundary_, members)), options);
         surface.origin = surface.facets.boxes.front().low;
         auto const points = boundary_.points(members);
         PlaneFit const fit = fit_plane(points);
