@@ -3,6 +3,7 @@
 #include "support/plane_cascade.hpp"
 #include "support/unstructured_case.hpp"
 
+#include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 
@@ -90,6 +91,54 @@ TEST(PlaneRows, MoveAsRowsBetweenTwoPlanesDo) {
     for (std::size_t n = 0; n < u.size(); ++n)
       apart = std::max(apart, distance(u[n][std::size_t(r)], v[n][std::size_t(r)]));
     EXPECT_LT(apart, 1e-10 * largest) << r;
+  }
+}
+
+/// What the rules give both planes of a mesh of one cell across, by its nodes; the plane z = 0 as plane_cascade() counts its nodes.
+void expect_moves_as_in_plane(Mesh const& two_planes, Boundary const& boundary, Mesh const& plane,
+                              std::vector<ByRule> const& wanted, Axis const& axis) {
+  BoundaryMotion const motion{std::make_shared<Boundary const>(boundary),
+                              resolve(boundary.mesh(), rules(redesign(), axis))};
+  auto const u = displacements(motion, plane);
+  double largest = 0, apart = 0;
+  for (int const r : {blade, ends, sides}) {
+    largest = std::max(largest, largest_of(wanted, std::size_t(r)));
+    for (std::size_t n = 0; n < u.size(); ++n)
+      apart = std::max(apart, distance(u[n][std::size_t(r)], wanted[n][std::size_t(r)]));
+  }
+  EXPECT_GT(largest, 0.005);
+  EXPECT_LT(apart, 1e-10 * largest);
+  // And of the other plane alike.
+  double uneven = 0;
+  for (Index n = 0; n < two_planes.n_nodes(); ++n) {
+    Vec3 const p = two_planes.coordinates[n], below{p.x, p.y, 0};
+    std::array<Vec3, 2> v;
+    for (int const r : {blade, sides}) {
+      motion.displacement(r, {&p, 1}, {&v[0], 1});
+      motion.displacement(r, {&below, 1}, {&v[1], 1});
+      uneven = std::max(uneven, distance(v[0], v[1]));
+    }
+  }
+  EXPECT_LT(uneven, 1e-10 * largest);
+}
+
+// Two planes with symmetry conditions and one cell between them are a plane mesh in all but name.
+TEST(PlaneRows, OfTwoPlanesMoveAsTheirSection) {
+  Periodic const turn = turned_sides(2 * std::numbers::pi / blades),
+                 shift = periodic_translation({0, plane_cascade_pitch, 0});
+  for (auto const& [section, periodic] :
+       {std::pair(section_of_wheel(blades), turn), std::pair(straight_section(), shift)}) {
+    Mesh const plane = plane_cascade(section, periodic);
+    auto const wanted = in_plane(plane, redesign());
+    for (PatchKind const ends : {PatchKind::symmetry, PatchKind::wall}) {
+      Mesh const blocks = cascade_between_planes(section, periodic, 0.3, 2, ends);
+      expect_moves_as_in_plane(blocks, Boundary(blocks), plane, wanted, about_z);
+      UnstructuredCase const elements(as_hexahedra(blocks));
+      expect_moves_as_in_plane(elements.mesh, Boundary(elements.mesh, elements.topology, elements.face_patches), plane,
+                               wanted, about_z);
+    }
+    Mesh const of_two_dimensions = plane_cascade_block(section, periodic);
+    expect_moves_as_in_plane(of_two_dimensions, Boundary(of_two_dimensions), plane, wanted, about_z);
   }
 }
 

@@ -86,22 +86,22 @@ Mesh plane_cascade(PlaneMap const& map, Periodic const& sides) {
   return mesh;
 }
 
-Mesh cascade_between_planes(PlaneMap const& map, Periodic const& sides, double height) {
-  MeshBuilder build("cascade between planes");
-  int const zone = build.zone("passage", {ni, 3, across}, [&](Index3 const& n) {
-    return place_of(map, n[0], n[2]) + Vec3{0, 0, 0.5 * height * n[1]};
-  });
+namespace {
+
+IndexRange part(IndexRange range, int first, int last) {
+  range.begin[0] = first;
+  range.end[0] = last + 1;
+  return range;
+}
+
+/// What a block has whose i goes with the flow; `span` and `pitch`: its other directions.
+Mesh with_boundaries(MeshBuilder& build, int zone, int span, int pitch, Periodic const& sides, PatchKind ends) {
   IndexRange const all = whole(build.mesh().zones[std::size_t(zone)]);
   build.patch("inlet", PatchKind::inflow, zone, 0, 0);
   build.patch("outlet", PatchKind::outflow, zone, 0, 1);
-  build.patch("hub", PatchKind::wall, zone, 1, 0);
-  build.patch("case", PatchKind::wall, zone, 1, 1);
-  auto const part = [](IndexRange range, int first, int last) {
-    range.begin[0] = first;
-    range.end[0] = last + 1;
-    return range;
-  };
-  IndexRange const lower = face_of(all, 2, 0), upper = face_of(all, 2, 1);
+  build.patch("hub", ends, zone, span, 0);
+  build.patch("case", ends, zone, span, 1);
+  IndexRange const lower = face_of(all, pitch, 0), upper = face_of(all, pitch, 1);
   for (IndexRange const& side : {lower, upper})
     build.patch("blade", PatchKind::wall, zone, part(side, before, before + along));
   for (int const first : {0, before + along}) {
@@ -109,6 +109,26 @@ Mesh cascade_between_planes(PlaneMap const& map, Periodic const& sides, double h
     build.join(zone, part(lower, first, last), zone, part(upper, first, last), {}, sides);
   }
   return build.finish();
+}
+
+}  // namespace
+
+Mesh cascade_between_planes(PlaneMap const& map, Periodic const& sides, double height, int stations, PatchKind ends) {
+  MeshBuilder build("cascade between planes");
+  int const zone = build.zone("passage", {ni, stations, across}, [&](Index3 const& n) {
+    return place_of(map, n[0], n[2]) + Vec3{0, 0, height / (stations - 1) * n[1]};
+  });
+  return with_boundaries(build, zone, 1, 2, sides, ends);
+}
+
+Mesh plane_cascade_block(PlaneMap const& map, Periodic const& sides) {
+  MeshBuilder build("plane cascade of a block");
+  int const zone = build.zone("passage", {ni, across, 2}, [&](Index3 const& n) {
+    return place_of(map, n[0], n[1]) + Vec3{0, 0, 0.1 * n[2]};
+  });
+  Mesh mesh = with_boundaries(build, zone, 2, 1, sides, PatchKind::symmetry);
+  mesh.dimension = 2;
+  return mesh;
 }
 
 }  // namespace gridmorph::test

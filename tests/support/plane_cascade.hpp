@@ -20,8 +20,11 @@ PlaneMap section_of_wheel(int blades);
 
 /// Patches of families inlet, outlet and blade; `sides` takes the lower periodic side onto the upper one.
 Mesh plane_cascade(PlaneMap const& map, Periodic const& sides);
-/// The same section at three stations between two planes, one block; with hub and case.
-Mesh cascade_between_planes(PlaneMap const& map, Periodic const& sides, double height);
+/// The same section at so many stations between two planes, one block; with hub and case.
+Mesh cascade_between_planes(PlaneMap const& map, Periodic const& sides, double height, int stations = 3,
+                            PatchKind ends = PatchKind::wall);
+/// The same as a 2-D mesh of one block, as readers give it a second plane.
+Mesh plane_cascade_block(PlaneMap const& map, Periodic const& sides);
 
 /// Sides of the bent sections: a turn about z.
 Periodic turned_sides(double angle_rad);

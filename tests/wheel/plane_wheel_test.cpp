@@ -140,5 +140,46 @@ TEST_P(PlaneWheel, SharesInletAndExitBetweenTheBladesBesideThem) {
   }
 }
 
+// Blocks of one cell across, in three dimensions with symmetry planes or of a 2-D base, make the wheel that plane elements make.
+TEST_P(PlaneWheel, OfBlocksOneCellThickHasTheSameBoundaries) {
+  std::string const factors = "factors = [1, -0.5, 0, 0, 0.75, 1, 1, -1, 0.25]\n";
+  ElementWheelFile const of_elements = wheel(4, factors);
+  std::vector<Index> nodes;
+  for (std::string const name : {"inlet", "outlet", "blade"}) for_nodes(name, [&](Index n) { nodes.push_back(n); });
+  for (Connection const& c : mesh.connections) {
+    nodes.insert(nodes.end(), c.nodes.begin(), c.nodes.end());
+    nodes.insert(nodes.end(), c.donor_nodes.begin(), c.donor_nodes.end());
+  }
+  auto const section = round() ? section_of_wheel(n_blades) : straight_section();
+  Periodic const sides =
+      round() ? turned_sides(2 * std::numbers::pi / n_blades) : periodic_translation({0, plane_cascade_pitch, 0});
+  for (bool const of_a_2d_base : {false, true}) {
+    Mesh const blocks = of_a_2d_base ? plane_cascade_block(section, sides)
+                                     : cascade_between_planes(section, sides, 0.1, 2, PatchKind::symmetry);
+    write_mesh(folder.file("passage.cgns"), blocks);
+    folder.write("wheel.toml", case_of(4) + "[wheel]\noutput = \"blocks.cgns\"\n" +
+                                   (round() ? "" : "passages = " + std::to_string(n_blades) + "\n") + factors);
+    ASSERT_EQ(gridmorph("wheel wheel.toml --report wheel.json"), 0) << text("out") << text("err");
+    expect_nothing_inverted();
+    Mesh const made = read_mesh(folder.file("blocks.cgns"));
+    EXPECT_EQ(made.dimension, of_a_2d_base ? 2 : 3);
+    ASSERT_EQ(made.zones.size(), std::size_t(n_blades));
+    Index const ni = blocks.zones[0].extent[0];
+    double worst = 0, moved = 0;
+    for (int p = 0; p < n_blades; ++p) {
+      Zone const& zone = made.zones[std::size_t(p)];
+      ASSERT_EQ(zone.name, name("passage", p));
+      for (Index const n : nodes) {
+        Index const own = of_a_2d_base ? n : n % ni + 2 * ni * (n / ni);
+        Vec3 const place = pitch().times(-p)(made.coordinates[zone.first_node + own]), wanted = at(of_elements, p, n);
+        worst = std::max(worst, distance(place, wanted));
+        moved = std::max(moved, distance(place, mesh.coordinates[n]));
+      }
+    }
+    EXPECT_GT(moved, 0.01);
+    EXPECT_LT(worst, 1e-10 * mesh.size()) << of_a_2d_base;
+  }
+}
+
 }  // namespace
 }  // namespace gridmorph::test

@@ -12,6 +12,12 @@ bool is_explicit(Rule const& rule) {
   return !std::holds_alternative<SlipRule>(rule) && !std::holds_alternative<FreeRule>(rule);
 }
 
+/// Whether a rule looks at the row that its patches are in: the passage has lost the pitch of straight ones.
+bool needs_row(Rule const& rule) {
+  return std::holds_alternative<FollowRule>(rule) || std::holds_alternative<CircumferentialSlideRule>(rule) ||
+         std::holds_alternative<SectionsRule>(rule) || std::holds_alternative<TargetRule>(rule);
+}
+
 }  // namespace
 
 std::string no_rule_for_side(Mesh const& sector, PassageLink const& link) {
@@ -50,8 +56,7 @@ OpenedPassage open_passage(Mesh const& sector, PassageLinks const& links, WheelR
   problems.throw_if_any<MotionError>();
 
   for (MotionRule& rule : out.motion.rules)
-    if (std::holds_alternative<FollowRule>(rule.rule) || std::holds_alternative<CircumferentialSlideRule>(rule.rule))
-      rule.rule = FunctionRule{std::string(rule_name(rule.rule)), {}};
+    if (needs_row(rule.rule)) rule.rule = FunctionRule{std::string(rule_name(rule.rule)), {}};
   return out;
 }
 

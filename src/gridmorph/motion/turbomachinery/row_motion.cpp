@@ -111,10 +111,24 @@ Vec3 upwards(Vec3 const& v) {
   return largest < 0 ? -v : v;
 }
 
-/// Whether the mesh is a plane one across a direction.
-bool lies_across(Boundary const& boundary, Vec3 const& direction) {
-  constexpr double parallel = 1e-6;
-  return boundary.is_plane() && norm(cross(boundary.across(), direction)) < parallel * norm(boundary.across());
+/// Whether the row is in a plane across a direction (unit): of a plane mesh, or one cell thick, so that its nodes are on two planes.
+bool lies_across(Boundary const& boundary, std::vector<bool> const& in_row, Vec3 const& direction) {
+  constexpr double parallel = 1e-6, flat = 1e-3;  // of the distance between the planes
+  if (boundary.is_plane()) return norm(cross(boundary.across(), direction)) < parallel * norm(boundary.across());
+  Mesh const& mesh = boundary.mesh();
+  double low = inf, high = -inf;
+  auto const for_heights = [&](auto&& visit) {
+    for (std::size_t z = 0; z < mesh.zones.size(); ++z)
+      for (Index n = 0; in_row[z] && n < mesh.zones[z].size(); ++n)
+        if (!visit(dot(mesh.coordinates[mesh.zones[z].first_node + n], direction))) return false;
+    return true;
+  };
+  for_heights([&](double h) {
+    low = std::min(low, h);
+    high = std::max(high, h);
+    return true;
+  });
+  return for_heights([&](double h) { return std::min(h - low, high - h) <= flat * (high - low); });
 }
 
 }  // namespace
@@ -125,15 +139,15 @@ CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& mo
   if (directions && directions->size() > 1) directions = pitch_directions(boundary, motion, in_row, true);
   CylindricalFrame const about_axis(motion.axis);
   if (!directions || directions->empty())
-    return lies_across(boundary, about_axis.direction()) ? CylindricalFrame::in_plane(motion.axis) : about_axis;
+    return lies_across(boundary, in_row, about_axis.direction()) ? CylindricalFrame::in_plane(motion.axis) : about_axis;
   if (directions->size() > 1)
     throw MotionError(
         "the periodic sides of the row are apart in several directions; let the rule follow name those between blades");
   // Which way it counts shall not depend on which side the file names first.
   Vec3 const pitch = upwards(directions->front());
   // The plane leaves one way across the pitch.
-  if (lies_across(boundary, about_axis.direction()))
-    return {Axis{motion.axis.origin, upwards(cross(pitch, boundary.across()))}, pitch};
+  if (lies_across(boundary, in_row, about_axis.direction()))
+    return {Axis{motion.axis.origin, upwards(cross(pitch, about_axis.direction()))}, pitch};
   constexpr double across = 1e-3;
   if (std::abs(dot(pitch, about_axis.direction())) > across)
     throw MotionError(
