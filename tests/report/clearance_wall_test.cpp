@@ -121,6 +121,18 @@ TEST(SurfaceWall, KnowsTheSideOfEveryPartOfAWall) {
   EXPECT_NEAR(wall.distance({0.3, 0.6, 1.1}), -0.1, 1e-15);
 }
 
+TEST(SurfaceWall, KnowsTheSideOfASmallPartOfALargeWall) {
+  FacetList list = grid(60, 60, [](double a, double b) { return Vec3{a, b, 0}; });
+  for (int const n : {0, 1})  // one facet looks down, the other up
+    list.add(grid(1, 1, [&](double a, double b) {
+      return n == 0 ? Vec3{0.4 + 0.1 * b, 0.4 + 0.1 * a, 1} : Vec3{0.7 + 0.1 * a, 0.4 + 0.1 * b, 1};
+    }));
+  SurfaceWall const wall(list);
+  EXPECT_NEAR(wall.distance({0.45, 0.45, 0.9}), 0.1, 1e-15);
+  EXPECT_NEAR(wall.distance({0.75, 0.45, 0.9}), -0.1, 1e-15);
+  EXPECT_NEAR(wall.distance({0.75, 0.45, 1.1}), 0.1, 1e-15);
+}
+
 TEST(SurfaceWall, GoesRoundTheEdgesOfAGroove) {
   // A groove of depth 0.1 and width 0.2 across a plane: from above the nearest place is a wall, an edge or the floor.
   FacetList list;

@@ -128,15 +128,23 @@ void SurfaceWall::find_sides(FacetList const& inward) {
     for (std::int32_t const edge : surface_.facets[f].neighbour)
       if (edge >= 0) parts.join(int(f), edge / 4);
   std::vector<int> balance(surface_.facets.size(), 0);
-  for (auto const& f : inward.facets) {
+  auto const ask = [&](std::array<std::int32_t, 4> const& f) {
     auto const at = [&](int corner) { return inward.points[std::size_t(f[std::size_t(corner)])]; };
     int const last = f[3] < 0 ? 2 : 3;
     Vec3 const middle = f[3] < 0 ? (1.0 / 3) * (at(0) + at(1) + at(2)) : 0.25 * (at(0) + at(1) + at(2) + at(3));
     auto const foot = surface_.closest_point(middle);
     double const alike = dot(cross(at(2) - at(0), at(last) - at(1)), foot.normal);
     balance[std::size_t(parts.root(foot.facet))] += alike < 0 ? -1 : 1;
+  };
+  // Some of the facets, and all of them only where these leave a part out.
+  constexpr std::size_t enough = 1000;
+  auto const roots = parts.roots();
+  std::size_t const n = inward.facets.size();
+  for (std::size_t const stride : {std::max<std::size_t>(1, n / enough), std::size_t(1)}) {
+    for (std::size_t f = 0; f < n; f += stride) ask(inward.facets[f]);
+    if (std::all_of(roots.begin(), roots.end(), [&](int part) { return balance[std::size_t(part)] != 0; })) break;
   }
-  for (int const part : parts.roots()) side_.push_back(balance[std::size_t(part)] < 0 ? -1 : 1);
+  for (int const part : roots) side_.push_back(balance[std::size_t(part)] < 0 ? -1 : 1);
 }
 
 void SurfaceWall::find_holes(std::vector<Vec3> const& standing) {
