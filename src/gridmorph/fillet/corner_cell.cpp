@@ -4,6 +4,7 @@
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <algorithm>
+#include <vector>
 
 namespace gridmorph {
 
@@ -36,6 +37,15 @@ Index32 common_neighbour(std::span<Index32 const> corners, Index32 a, Index32 b,
   return -1;
 }
 
+/// Whether it has eight nodes in their places: collapsed hexahedra have not.
+bool is_whole(CornerCell const& cell) {
+  std::vector<Index32> nodes;
+  for (auto const& end : cell.node)
+    for (auto const& row : end) nodes.insert(nodes.end(), row.begin(), row.end());
+  std::sort(nodes.begin(), nodes.end());
+  return nodes.front() >= 0 && std::adjacent_find(nodes.begin(), nodes.end()) == nodes.end();
+}
+
 }  // namespace
 
 CornerCell CornerLattice::first(std::array<Index32, 2> const& root_edge) const {
@@ -56,6 +66,10 @@ CornerCell CornerLattice::first(std::array<Index32, 2> const& root_edge) const {
     }
     at[1][1] = common_neighbour(corners, at[0][1], at[1][0], at[0][0]);
   }
+  if (!is_whole(cell))
+    throw MeshError(
+        elements_.mesh().source + ": " + describe_element(elements_.mesh(), e) +
+        " in the corner is collapsed, or has both of its faces there on one wall; it cannot be cut along a mitre");
   return cell;
 }
 
@@ -87,6 +101,7 @@ std::optional<CornerCell> CornerLattice::off(CornerCell const& cell, int wall) c
       (wall == 0 ? out.node[end][0][k] : out.node[end][k][0]) = near;
       (wall == 0 ? out.node[end][1][k] : out.node[end][k][1]) = next;
     }
+  if (!is_whole(out)) return {};
   return out;
 }
 
@@ -119,6 +134,9 @@ std::optional<CornerCell> CornerLattice::behind(CornerCell const& cell, int end)
   near[0][1] = face[3];
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) out.node[std::size_t(end)][i][j] = away(corners, near[i][j], face);
+  if (!is_whole(out))
+    throw MeshError(elements_.mesh().source + ": " + describe_element(elements_.mesh(), out.element) +
+                    " is collapsed; the corner goes on through it and has to be cut there");
   return out;
 }
 

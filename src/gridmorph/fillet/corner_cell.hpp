@@ -13,14 +13,15 @@ namespace gridmorph {
 struct CornerCell {
   Index32 element = -1;
   /// Nodes: at either end along the corner, nearer (0) to or farther (1) from the blade, from the end wall.
-  std::array<std::array<std::array<Index32, 2>, 2>, 2> node;
+  std::array<std::array<std::array<Index32, 2>, 2>, 2> node{{{{{-1, -1}, {-1, -1}}}, {{{-1, -1}, {-1, -1}}}}};
 };
 
 class CornerLattice {
  public:
   CornerLattice(JoinedElements const& elements, WallEdges const& edges) : elements_(elements), edges_(edges) {}
 
-  /// The only element along a root edge, its ends in the order of the edge.
+  /// The only element along a root edge, its ends in the order of the edge. Throws MeshError for a collapsed one, and where both of its faces
+  /// there are of one wall.
   [[nodiscard]] CornerCell first(std::array<Index32, 2> const& root_edge) const;
   /// Farther off a wall; nothing where there is no hexahedron.
   [[nodiscard]] std::optional<CornerCell> off(CornerCell const& cell, int wall) const;

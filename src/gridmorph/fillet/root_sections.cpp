@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,7 @@ namespace gridmorph {
 
 namespace {
 
+constexpr double sharpest = 0.349, flattest = 2.618;  ///< 20 and 150 degrees
 constexpr double reach_contacts = 3;     ///< of the contacts' distances from the corner, within which walls change
 constexpr double least_contacts = 1.25;  ///< that have to be left
 constexpr double steepest = 0.5;         ///< change of the reach along the corner
@@ -90,6 +92,7 @@ RootSections::RootSections(JoinedElements const& elements, BoundaryFacePatches c
     RootLine const& line = lines[l];
     std::vector<Vec3> at;
     for (Index32 const p : line.places) at.push_back(elements.position(p));
+    double const largest = *std::max_element(radii[l].begin(), radii[l].end());
     auto const turning = turning_of(edges, line, at);
     sections_.emplace_back();
     for (std::size_t k = 0; k < line.places.size(); ++k) {
@@ -107,8 +110,12 @@ RootSections::RootSections(JoinedElements const& elements, BoundaryFacePatches c
       for (Vec3& n : normal) n = across(n, s.across);
       ups = {up(s.across, normal[0], normal[1]), up(s.across, normal[1], normal[0])};
       s.angle_rad = std::acos(std::clamp(dot(ups[0], ups[1]), -1.0, 1.0));
+      if (s.angle_rad < sharpest || s.angle_rad > flattest)
+        throw MotionError("the walls meet at an angle of " + to_text(s.angle_rad * 180 / std::numbers::pi, 3) +
+                          " degrees at the corner's node " + to_text(s.root, 9) +
+                          "; a fillet takes 20 to 150, and none that is there already");
       s.to_middle = -unit(normal[0] + normal[1]);
-      double const length = std::max(1.2 * reach_contacts * height, small);
+      double const length = std::max(1.2 * reach_contacts * largest / std::tan(half), 1e-3 * blade.size());
       for (std::size_t w = 0; w < 2; ++w)
         s.wall[w] = WallProfile(*walls[w], s.root, s.across, ups[w], normal[w], length);
       if (wanted > small) {

@@ -29,6 +29,11 @@ bool meet(Patch const& one, Patch const& other) {
   return common > 1;
 }
 
+/// The same, on two faces.
+bool meet_in_corner(Mesh const& mesh, Patch const& one, Patch const& other) {
+  return meet(one, other) && face_of(mesh, one).first != face_of(mesh, other).first;
+}
+
 class Search {
  public:
   Search(Mesh const& mesh, Links const& links) : mesh_(mesh), links_(links) { out_.of_zone.resize(mesh.zones.size()); }
@@ -89,6 +94,13 @@ class Search {
 
 }  // namespace
 
+bool meet_in_corners(Mesh const& mesh, std::span<int const> blade, std::span<int const> end_wall) {
+  return std::any_of(blade.begin(), blade.end(), [&](int b) {
+    return std::any_of(end_wall.begin(), end_wall.end(),
+                       [&](int w) { return b != w && meet_in_corner(mesh, mesh.patches[b], mesh.patches[w]); });
+  });
+}
+
 WallSheets find_wall_sheets(Mesh const& mesh, Links const& links, std::span<int const> blade,
                             std::span<int const> end_wall) {
   Search search(mesh, links);
@@ -96,10 +108,9 @@ WallSheets find_wall_sheets(Mesh const& mesh, Links const& links, std::span<int 
   for (int b : blade)
     for (int w : end_wall) {
       Patch const &one = mesh.patches[b], &other = mesh.patches[w];
-      if (b == w || !meet(one, other)) continue;
+      if (b == w || !meet_in_corner(mesh, one, other)) continue;
       auto const [axis, side] = face_of(mesh, one);
       auto const [other_axis, other_side] = face_of(mesh, other);
-      if (axis == other_axis) continue;  // neighbours on one face
       search.add({one.zone, axis, side, Wall::blade});
       search.add({one.zone, other_axis, other_side, Wall::end_wall});
       found = true;

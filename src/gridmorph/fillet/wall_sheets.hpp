@@ -25,6 +25,10 @@ struct WallSheets {
   std::vector<std::vector<int>> of_zone;  ///< numbers of the sheets of each zone
 };
 
+/// Whether a patch of each meet along an edge of a zone, so that one block fills the corner between them. Where it is only their layers that meet, in a
+/// mitre, several share it.
+bool meet_in_corners(Mesh const& mesh, std::span<int const> blade, std::span<int const> end_wall);
+
 /// Starts at every edge of a zone where a patch of `blade` meets a patch of `end_wall`, and carries the layers along both through the 1-to-1
 /// interfaces until they end on patches or in themselves. Coordinates are not touched.
 ///

@@ -10,6 +10,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/fillet/fillet_elements.hpp>
+#include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 
@@ -105,15 +106,29 @@ FilletOptions options_of(CommandLine const& options, Mesh const& mesh) {
   return wanted;
 }
 
-/// Says so, and how to change that.
-int refuse(CommandLine const& options, Terminal& terminal, FilletFacts const& facts, QualityReport const& quality) {
+/// Says so, and what would change that.
+int refuse(CommandLine const& options, Terminal& terminal, QualityReport const& quality, std::string const& remedy) {
   terminal.say(format_table(quality));
-  terminal.error(fmt::format(
-      "{} was not written: {} cells are inverted, with {} layers off the blade and {} off the end wall; give a smaller "
-      "radius, other --blade-layers and --wall-layers, or a longer --run-out",
-      options.output->string(), quality.far_field.inverted + quality.near_field.inverted, facts.layers.old[0],
-      facts.layers.old[1]));
+  terminal.error(fmt::format("{} was not written: {} cells are inverted{}", options.output->string(),
+                             quality.far_field.inverted + quality.near_field.inverted, remedy));
   return not_written;
+}
+
+std::string remedy_of(FilletResult const& result) {
+  return fmt::format(
+      ", with {} layers off the blade and {} off the end wall; give a smaller radius, other --blade-layers and "
+      "--wall-layers, or a longer --run-out",
+      result.layers.old[0], result.layers.old[1]);
+}
+
+/// Of elements, most often too coarse ones: nodes beyond the fillet stay.
+std::string remedy_of(ElementFillet const& result) {
+  return fmt::format(
+      "; three cells along either wall at least have to be within the radius of the corner{}: give a larger radius, "
+      "finer cells, or a longer --run-out",
+      result.cut_elements > 0 ? fmt::format(" (there are {} off the blade and {} off the end wall)",
+                                            result.layers.old[0], result.layers.old[1])
+                              : std::string());
 }
 
 void throw_if_any(std::vector<std::string> const& problems) {
@@ -124,6 +139,32 @@ void throw_if_any(std::vector<std::string> const& problems) {
 
 bool any_inverted(QualityReport const& quality) { return quality.far_field.inverted + quality.near_field.inverted > 0; }
 
+/// Blocks whose layers meet in a mitre stay; their nodes move as those of hexahedra do.
+int move_blocks(CommandLine const& options, Terminal& terminal, Mesh const& mesh, FilletOptions const& wanted) {
+  Stopwatch watch;
+  Mesh const hexahedra = as_hexahedra(mesh);
+  UnstructuredTopology const topology = make_topology(hexahedra);
+  ElementFillet const result = make_fillet(hexahedra, topology, find_face_patches(hexahedra, topology), wanted);
+  double const seconds = watch.lap();
+  terminal.progress("measuring quality");
+  BlockMesh const before(mesh);
+  Coordinates const& morphed = result.mesh.coordinates;
+  QualityReport const quality = before.measure({.morphed = &morphed});
+  if (any_inverted(quality)) return refuse(options, terminal, quality, remedy_of(result));
+  terminal.progress("writing " + options.output->string());
+  before.write(options.input, *options.output, morphed, {});
+  terminal.say(facts_text(result) +
+               fmt::format("layers of both walls meet in a mitre already: blocks stay, nodes move\n"
+                           "zones {}, cells {}, nodes {}; {:.2f} s\n\n",
+                           mesh.zones.size(), mesh.n_cells(), mesh.n_nodes(), seconds) +
+               format_table(quality) + fmt::format("\nwrote {}\n", options.output->string()));
+  nlohmann::json json = document(options, result, quality);
+  json["zones"] = mesh.zones.size();
+  json["cells"] = mesh.n_cells();
+  terminal.document(json);
+  return done;
+}
+
 int fill_blocks(CommandLine const& options, Terminal& terminal) {
   Mesh mesh = load_mesh(options.input, {}, options.leave_out);
   if (mesh.dimension != 3)
@@ -131,7 +172,9 @@ int fill_blocks(CommandLine const& options, Terminal& terminal) {
   Stopwatch watch;
   terminal.progress("filling corners");
   Links const links = connect_and_check(mesh, options.topology);
-  FilletResult const result = make_fillet(mesh, links, options_of(options, mesh));
+  FilletOptions const wanted = options_of(options, mesh);
+  if (!meet_in_corners(mesh, wanted.blade, wanted.end_wall)) return move_blocks(options, terminal, mesh, wanted);
+  FilletResult const result = make_fillet(mesh, links, wanted);
   double const seconds = watch.lap();
 
   terminal.progress("checking connections, measuring quality");
@@ -139,7 +182,7 @@ int fill_blocks(CommandLine const& options, Terminal& terminal) {
   Mesh checked = after.mesh();
   (void)connect_and_check(checked, options.topology);
   QualityReport const quality = after.measure({});
-  if (any_inverted(quality)) return refuse(options, terminal, result, quality);
+  if (any_inverted(quality)) return refuse(options, terminal, quality, remedy_of(result));
   terminal.progress("writing " + options.output->string());
   write_mesh(options.output->string(), after.mesh());
   terminal.say(summary_text(result, mesh, seconds) + format_table(quality) +
@@ -168,7 +211,7 @@ int fill_elements(CommandLine const& options, Terminal& terminal) {
   ElementMesh const after(result.mesh);
   throw_if_any(after.problems);
   QualityReport const quality = after.measure({});
-  if (any_inverted(quality)) return refuse(options, terminal, result, quality);
+  if (any_inverted(quality)) return refuse(options, terminal, quality, remedy_of(result));
   terminal.progress("writing " + options.output->string());
   if (result.cut_elements > 0)
     write_mesh(options.output->string(), result.mesh);
