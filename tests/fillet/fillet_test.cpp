@@ -225,6 +225,45 @@ TEST(Fillet, ARadiusThatDoesNotFitComesWithOneThatDoes) {
   (void)expect_sound(fillet_of(mesh, between(mesh, {"blade"}, {"hub"}, 0.95 * fits)).split.mesh);
 }
 
+TEST(Fillet, RunsOutBeforeItsOwnEndsAlone) {
+  // A channel between two blades over a hub, the one on the left a quarter as long as the channel: its end lies across from the middle of the
+  // other one, nearer than the fillet runs out over.
+  Index3 const extent{33, 41, 21};
+  double const radius = 0.03, width = 0.2;
+  test::MeshBuilder builder("channel");
+  builder.zone("channel", extent, [&](Index3 const& p) {
+    double const t = double(p[1]) / (extent[1] - 1);
+    double const across = t < 0.5 ? 0.5 * grown(p[1], 20, 1.1) : 1 - 0.5 * grown(40 - p[1], 20, 1.1);
+    return Vec3{double(p[0]) / (extent[0] - 1), width * across, 0.5 * grown(p[2], extent[2] - 1, 1.1)};
+  });
+  for (int axis : {0, 2})
+    for (int side : {0, 1})
+      builder.patch(axis == 2 && side == 0 ? "hub" : "far",
+                    axis == 2 && side == 0 ? PatchKind::wall : PatchKind::farfield, 0, axis, side);
+  auto const along_side = [&](std::string const& name, PatchKind kind, int side, int begin, int end) {
+    IndexRange range = test::face_of({{0, 0, 0}, extent}, 1, side);
+    range.begin[0] = begin;
+    range.end[0] = end;
+    builder.patch(name, kind, 0, range);
+  };
+  along_side("blade", PatchKind::wall, 0, 0, 9);
+  along_side("side", PatchKind::symmetry, 0, 8, 33);
+  along_side("blade", PatchKind::wall, 1, 0, 33);
+  Mesh const mesh = builder.finish();
+  FilletResult const result = fillet_of(mesh, between(mesh, {"blade"}, {"hub"}, radius));
+  (void)expect_sound(result.split.mesh);
+  EXPECT_EQ(result.open_ends, 1);
+  int on_arc = 0;
+  for (Vec3 const& p : nodes_of(result.split.mesh, "blade")) {
+    if (p.y < width / 2) continue;
+    double const off_arc = std::hypot(width - radius - p.y, p.z - radius) - radius;
+    bool const straight = std::abs(p.y - width) < 1e-9 && p.z > radius - 1e-9;
+    EXPECT_TRUE(straight || std::abs(off_arc) < 1e-6 * radius) << p.x << " " << p.y << " " << p.z;
+    on_arc += straight ? 0 : 1;
+  }
+  EXPECT_GE(on_arc, 33);
+}
+
 TEST(Fillet, WhatCannotBeFilledIsRefused) {
   Mesh const mesh = wedge(pi / 2);
   expect_all_in(message_of<MeshError>([&] { (void)fillet_of(mesh, between(mesh, {"side"}, {"side"}, 0.01)); }),

@@ -31,11 +31,18 @@ Vec3 along_row(std::vector<Vec3> const& nodes, int number, bool closed) {
   return unit(nodes[std::size_t(behind)] - nodes[std::size_t(before)]);
 }
 
-/// Nodes where a fillet has to end although its corner goes on: stations beside one that is on no wall.
-std::vector<Vec3> open_ends(Mesh const& mesh, std::vector<CornerFrame> const& corners, CornerRows const& rows,
-                            std::vector<std::vector<char>> const& filled) {
-  std::vector<Vec3> out;
-  for (CornerRow const& row : rows.rows()) {
+/// Where a fillet has to end although its corner goes on: at stations beside one that is on no wall.
+struct OpenEnds {
+  int count = 0;
+  std::vector<std::vector<double>>
+      away;  ///< per row and place: along the row from the nearest of them; infinite where it has none
+};
+
+OpenEnds open_ends(std::vector<CornerFrame> const& corners, CornerRows const& rows,
+                   std::vector<std::vector<char>> const& filled, std::vector<std::vector<Vec3>> const& nodes) {
+  OpenEnds out;
+  for (std::size_t r = 0; r < rows.rows().size(); ++r) {
+    CornerRow const& row = rows.rows()[r];
     // A place that two zones share may be on the walls in one of them alone.
     std::vector<char> bare(row.places.size(), 1), on_walls(row.places.size(), 1);
     for (std::size_t c = 0; c < corners.size(); ++c)
@@ -45,21 +52,25 @@ std::vector<Vec3> open_ends(Mesh const& mesh, std::vector<CornerFrame> const& co
         (filled[c][a] ? bare : on_walls)[n] = 0;
       }
     std::size_t const n = row.places.size();
+    std::vector<double> away(n, std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < n; ++k) {
       if (bare[k]) continue;
       bool const first = k == 0 && !row.closed, last = k + 1 == n && !row.closed;
-      if (!on_walls[k] || (!first && bare[(k + n - 1) % n]) || (!last && bare[(k + 1) % n]))
-        out.push_back(node_at(mesh, corners[row.places[k].corner], row.places[k].station, {0, 0}));
+      if (on_walls[k] && (first || !bare[(k + n - 1) % n]) && (last || !bare[(k + 1) % n])) continue;
+      away[k] = 0;
+      ++out.count;
     }
+    std::size_t const steps = row.closed ? n : n - 1;
+    auto const relax = [&](std::size_t to, std::size_t from) {
+      away[to] = std::min(away[to], away[from] + distance(nodes[r][from], nodes[r][to]));
+    };
+    for (int round = 0; round < 2; ++round) {  // twice around what is closed
+      for (std::size_t k = 0; k < steps; ++k) relax((k + 1) % n, k);
+      for (std::size_t k = steps; k-- > 0;) relax(k, (k + 1) % n);
+    }
+    out.away.push_back(std::move(away));
   }
   return out;
-}
-
-/// 0 at an end, 1 from `length` on.
-double away_from(std::vector<Vec3> const& ends, Vec3 const& p, double length) {
-  double nearest = std::numeric_limits<double>::max();
-  for (Vec3 const& end : ends) nearest = std::min(nearest, distance(end, p));
-  return length > 0 ? smoothstep(nearest / length) : 1;
 }
 
 }  // namespace
@@ -74,9 +85,6 @@ CornerStations::CornerStations(Mesh const& mesh, Links const& links, WallSheets 
   std::vector<std::vector<char>> filled;
   for (auto const& corner : corners_) filled.push_back(filled_stations(mesh, corner, options));
   CornerRows const rows(corners_, links);
-  auto const ends = open_ends(mesh, corners_, rows, filled);
-  open_ends_ = int(ends.size());
-
   double fits = std::numeric_limits<double>::max();  // share of the radius
   Vec3 where;
   auto const at_most = [&](double share, Vec3 const& p) {
@@ -90,6 +98,8 @@ CornerStations::CornerStations(Mesh const& mesh, Links const& links, WallSheets 
     for (CornerPlace const& place : row.places)
       nodes.back().push_back(node_at(mesh, corners_[place.corner], place.station, {0, 0}));
   }
+  OpenEnds const ends = open_ends(corners_, rows, filled, nodes);
+  open_ends_ = ends.count;
   for (std::size_t c = 0; c < corners_.size(); ++c) {
     CornerFrame const& corner = corners_[c];
     auto const in_row = std::size_t(rows.row_of(c));
@@ -112,7 +122,8 @@ CornerStations::CornerStations(Mesh const& mesh, Links const& links, WallSheets 
         station.into_mesh[std::size_t(wall)] =
             unit(node_at(mesh, corner, a, wall == 0 ? std::array<int, 2>{1, 0} : std::array<int, 2>{0, 1}) - root);
       double radius = filled[c][a] ? checked_radius(options, root) : 0;
-      radius *= away_from(ends, root, options.run_out * radius);
+      double const over = options.run_out * radius;
+      if (over > 0) radius *= smoothstep(ends.away[in_row][std::size_t(number)] / over);
       std::optional<Ball> ball;
       if (radius > 1e-9 * station.line[0].curve.length()) {
         ball = rolling_ball({station.surface, &station.line[0].curve, station.into_mesh}, radius);
