@@ -284,7 +284,7 @@ class FilledElements : public ::testing::Test {
 
 TEST_F(FilledElements, HubAndCaseOfAPassageAreFilledInEitherLayout) {
   for (auto const layout : {PassageOptions::Layout::whole_faces, PassageOptions::Layout::five_zones}) {
-    Mesh const mesh = passage(test::reduced() ? 30'000 : 120'000, layout);
+    Mesh const mesh = passage(test::reduced() ? 60'000 : 120'000, layout);
     ElementFillet const result = fillet_of(mesh, between(mesh, {"blade"}, {"hub", "case"}, 0.003));
     (void)expect_sound(result.mesh);
     EXPECT_EQ(result.open_ends, 0);
@@ -330,13 +330,13 @@ TEST_F(FilledElements, TheSameHowEverNodesAreNumbered) {
 }
 
 TEST_F(FilledElements, TheRadiusMayChangeAlongTheCorner) {
-  Mesh const mesh = passage(test::reduced() ? 30'000 : 120'000);
+  Mesh const mesh = passage(test::reduced() ? 60'000 : 120'000);
   auto options = between(mesh, {"blade"}, {"hub"}, 0);
-  options.radius = [](Vec3 const& p) { return 0.002 + 0.01 * p.x; };
+  options.radius = [](Vec3 const& p) { return 0.003 + 0.01 * p.x; };
   ElementFillet const result = fillet_of(mesh, options);
   (void)expect_sound(result.mesh);
-  EXPECT_NEAR(result.smallest_radius, 0.0015, 1e-4);
-  EXPECT_NEAR(result.largest_radius, 0.0025, 1e-4);
+  EXPECT_NEAR(result.smallest_radius, 0.0025, 1e-4);
+  EXPECT_NEAR(result.largest_radius, 0.0035, 1e-4);
 }
 
 struct RealElementFillet {
