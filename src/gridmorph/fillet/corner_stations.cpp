@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -167,15 +166,8 @@ CornerStations::CornerStations(Mesh const& mesh, Links const& links, WallSheets 
 void CornerStations::describe(FilletResult& result) const {
   result.open_ends = open_ends_;
   for (auto const& corner : stations_)
-    for (CornerStation const& station : corner) {
-      if (station.sharp()) continue;
-      double const radius = station.ball().radius, angle = 360 / std::numbers::pi * station.ball().half_angle_rad;
-      bool const first = result.stations++ == 0;
-      result.smallest_radius = first ? radius : std::min(result.smallest_radius, radius);
-      result.largest_radius = std::max(result.largest_radius, radius);
-      result.arc_angle_deg[0] = first ? angle : std::min(result.arc_angle_deg[0], angle);
-      result.arc_angle_deg[1] = std::max(result.arc_angle_deg[1], angle);
-    }
+    for (CornerStation const& station : corner)
+      if (!station.sharp()) result.add_station(station.ball().radius, station.ball().half_angle_rad);
 }
 
 }  // namespace gridmorph

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace gridmorph {
@@ -182,6 +183,15 @@ class Layers {
 };
 
 }  // namespace
+
+void FilletFacts::add_station(double radius, double half_angle_rad) {
+  double const angle = 360 / std::numbers::pi * half_angle_rad;
+  bool const first = stations++ == 0;
+  smallest_radius = first ? radius : std::min(smallest_radius, radius);
+  largest_radius = std::max(largest_radius, radius);
+  arc_angle_deg[0] = first ? angle : std::min(arc_angle_deg[0], angle);
+  arc_angle_deg[1] = std::max(arc_angle_deg[1], angle);
+}
 
 FilletResult make_fillet(Mesh const& mesh, Links const& links, FilletOptions const& options) {
   WallSheets const sheets = find_wall_sheets(mesh, links, options.blade, options.end_wall);

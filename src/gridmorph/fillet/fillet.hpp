@@ -27,6 +27,9 @@ struct FilletFacts {
   double smallest_radius = 0, largest_radius = 0;  ///< at these [length]
   double arc_angle_deg[2] = {0, 0};                ///< smallest and largest of their arcs
   int open_ends = 0;                               ///< nodes at which a fillet runs out
+
+  /// One node of the corner more.
+  void add_station(double radius, double half_angle_rad);
 };
 
 struct FilletResult : FilletFacts {

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace gridmorph {
@@ -39,19 +38,6 @@ std::vector<double> radii_along(JoinedElements const& elements, WallEdges const&
     out.push_back(over > 0 ? radius * smoothstep(std::min(from_start[k], to_end[k]) / over) : radius);
   }
   return out;
-}
-
-void describe(RootSections const& sections, ElementFillet& out) {
-  for (auto const& line : sections.all())
-    for (RootSection const& s : line) {
-      if (!(s.radius > 0)) continue;
-      double const angle = 360 / std::numbers::pi * s.half_arc / s.radius;
-      bool const first = out.stations++ == 0;
-      out.smallest_radius = first ? s.radius : std::min(out.smallest_radius, s.radius);
-      out.largest_radius = std::max(out.largest_radius, s.radius);
-      out.arc_angle_deg[0] = first ? angle : std::min(out.arc_angle_deg[0], angle);
-      out.arc_angle_deg[1] = std::max(out.arc_angle_deg[1], angle);
-    }
 }
 
 }  // namespace
@@ -86,7 +72,9 @@ ElementFillet make_fillet(Mesh const& mesh, UnstructuredTopology const& topology
   auto const blade = FacetSurface::from_facets(boundary.facets(options.blade));
   auto const end_wall = FacetSurface::from_facets(boundary.facets(options.end_wall));
   RootSections const sections(elements, face_patches, edges, lines, mitres, radii, blade, end_wall);
-  describe(sections, out);
+  for (auto const& line : sections.all())
+    for (RootSection const& s : line)
+      if (s.radius > 0) out.add_station(s.radius, s.half_arc / s.radius);
   Coordinates rounded = round_corners(elements, edges, sections, {&blade, &end_wall});
   out.mesh = cut.empty() ? mesh : cut_corners(lattice, cut);
   out.cut_elements = out.mesh.n_elements() - mesh.n_elements();

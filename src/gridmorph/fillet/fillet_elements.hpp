@@ -17,11 +17,10 @@ struct ElementFillet : FilletFacts {
 /// (find_mitre(), cut_corners()); layers of two walls that meet in a mitre already stay as they are. Then space goes from the sharp corner to the round one,
 /// in the plane across the corner through each node: a node at the distances x and y from the walls, a along its own wall, goes to
 ///
-///     W(t) + h n(t),   t = (a - d s(a / R)) (1 - u^2),   u = x / x_m(y),   h = x (g(x) / x)^(1 - s(t / (b / 2))),
+///     W(t) + h n(t),   t = (a - d s(a / R)) (1 - u^2),   u = g(x) / g(y),   h = x (g(x) / x)^(1 - s(t / (b / 2))),
 ///
 /// W the new wall over the way t from the middle of the arc and n its normal, d what the fillet is shorter than the corner, R the reach, s the C1
-/// step, b the arc; x_m, g where the node's line meets the mitre and how high its layer is there (MitreRelations: x_m = y, g = x where both walls
-/// have the same layers). From 0.3 to 0.9 radii off the new wall that fades out. Nodes of the walls come onto arcs and walls exactly. Nodes farther along
+/// step, b the arc; g how high a layer is where it comes to the mitre (MitreRelations: g(x) = x where both walls have the same layers). From 0.3 to 0.9 radii off the new wall that fades out. Nodes of the walls come onto arcs and walls exactly. Nodes farther along
 /// the walls than R, three contact distances, stay bit for bit.
 ///
 /// Throws MeshError for walls that do not meet and elements that cannot be cut, MotionError for a radius that does not fit, with one that would. Cost

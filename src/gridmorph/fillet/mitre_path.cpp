@@ -28,7 +28,10 @@ class PathFinder {
  public:
   PathFinder(CornerLattice const& lattice, RootLine const& line, MitreReach const& reach)
       : lattice_(lattice), line_(line), reach_(reach), heights_(line.places.size()) {
-    for (std::size_t k = 0; k < line.n_edges(); ++k) measure(k);
+    for (std::size_t k = 0; k < line.n_edges(); ++k) {
+      roots_.push_back(lattice.first(line.edge(k)));
+      measure(k);
+    }
   }
 
   [[nodiscard]] Mitre find() const {
@@ -42,11 +45,11 @@ class PathFinder {
     while (!steps.empty() && steps.back() != Step::diagonal) steps.pop_back();
     out.at.resize(line_.places.size());
     out.on_walls.resize(line_.places.size());
-    for (std::size_t k = 0; k < line_.n_edges(); ++k) {
-      CornerCell const root = lattice_.first(line_.edge(k));
-      for (std::size_t end = 0; end < 2; ++end)
-        out.on_walls[(k + end) % line_.places.size()] = {place(root.node[end][0][1]), place(root.node[end][1][0])};
-    }
+    for (std::size_t k = 0; k < line_.n_edges(); ++k)
+      for (std::size_t end = 0; end < 2; ++end) {
+        auto const& root = roots_[k].node[end];
+        out.on_walls[(k + end) % line_.places.size()] = {place(root[0][1]), place(root[1][0])};
+      }
     std::vector<std::array<int, 2>> layers;
     for (Step const step : steps) {
       if (step != Step::off_end_wall) ++out.layers[0];
@@ -62,10 +65,7 @@ class PathFinder {
           auto& at = out.at[(k + end) % line_.places.size()];
           auto const& node = cell.node[end];
           if (at.size() == s)
-            at.push_back({place(cut                           ? node[1][1]
-                                : steps[s] == Step::off_blade ? node[1][0]
-                                                              : node[0][1]),
-                          layers[s], cut});
+            at.push_back({place(cut ? node[1][1] : steps[s] == Step::off_blade ? node[1][0] : node[0][1]), layers[s]});
         }
       }
     return out;
@@ -77,10 +77,9 @@ class PathFinder {
 
   /// Along both walls, from the root edge on.
   void measure(std::size_t k) {
-    auto const edge = line_.edge(k);
     double const far = looked_at * *std::max_element(reach_.radius.begin(), reach_.radius.end());
     for (int wall = 0; wall < 2; ++wall) {
-      std::optional<CornerCell> cell = lattice_.first(edge);
+      std::optional<CornerCell> cell = roots_[k];
       std::array<std::vector<double>, 2> heights;
       std::array<double, 2> height{0, 0};
       auto const enough = std::size_t(reach_.layers[std::size_t(wall)]);
@@ -141,7 +140,7 @@ class PathFinder {
   /// Cells of the path along one root edge: those that diagonals go through, and those that its edges lead into from.
   [[nodiscard]] std::vector<CornerCell> along(std::size_t k, std::vector<Step> const& steps) const {
     std::vector<CornerCell> out;
-    std::optional<CornerCell> cell = lattice_.first(line_.edge(k));
+    std::optional<CornerCell> cell = roots_[k];
     for (std::size_t s = 0; s < steps.size() && cell; ++s) {
       out.push_back(*cell);
       if (steps[s] != Step::off_end_wall) cell = lattice_.off(*cell, 0);
@@ -153,7 +152,8 @@ class PathFinder {
   CornerLattice const& lattice_;
   RootLine const& line_;
   MitreReach const& reach_;
-  std::vector<LineHeights> heights_;  ///< per place of the line
+  std::vector<CornerCell> roots_;     ///< per edge of the line
+  std::vector<LineHeights> heights_;  ///< per place of it
 };
 
 /// Places that edges of elements lead to from one.
@@ -177,7 +177,7 @@ std::vector<MitrePlace> grid_line(JoinedElements const& elements, WallEdges cons
   auto inner = neighbours(elements, root, elements.around(root));
   std::erase_if(inner, [&](Index32 n) { return !edges.on_none(root, n); });
   if (inner.size() != 1) return out;
-  out.push_back({*inner.begin(), {1, 1}, false});
+  out.push_back({*inner.begin(), {1, 1}});
   Index32 before = root;
   while (distance(elements.position(root), elements.position(out.back().place)) < far) {
     Index32 const here = out.back().place;
@@ -194,7 +194,7 @@ std::vector<MitrePlace> grid_line(JoinedElements const& elements, WallEdges cons
       break;
     before = here;
     int const layer = int(out.size()) + 1;
-    out.push_back({n, {layer, layer}, false});
+    out.push_back({n, {layer, layer}});
   }
   return out;
 }

@@ -12,7 +12,6 @@ namespace gridmorph {
 struct MitrePlace {
   Index32 place = -1;
   std::array<int, 2> layer{0, 0};  ///< off the blade and off the end wall
-  bool cut = false;                ///< the hexahedra between this and the one before are cut in two
 };
 
 /// The mitre of a root line, from the corner on.

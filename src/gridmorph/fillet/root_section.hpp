@@ -61,9 +61,6 @@ struct RootSection {
   std::array<double, 2> contact{0, 0};  ///< along the walls
   double reach = 0;                     ///< along the walls, from which on nothing moves
   MitreRelations mitre;
-
-  /// By how much the way over the fillet is shorter than the one along the corner.
-  [[nodiscard]] double cut_off(int w) const { return contact[std::size_t(w)] - half_arc; }
 };
 
 /// Where a point of the sharp corner goes.
@@ -82,7 +79,6 @@ class BetweenSections {
  public:
   BetweenSections(RootSection const& a, RootSection const& b, double share) : a_(a), b_(b), share_(share) {}
 
-  [[nodiscard]] RootSection const& a() const { return a_; }
   [[nodiscard]] Vec3 root() const { return mean(a_.root, b_.root); }
   [[nodiscard]] Vec3 across() const;
   [[nodiscard]] double radius() const { return mean(a_.radius, b_.radius); }

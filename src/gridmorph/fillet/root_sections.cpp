@@ -71,13 +71,12 @@ double sweep(FacetSurface const& blade, RootSection const& s, Vec3 const& up, Ve
 
 }  // namespace
 
+double off_wall(kernels::FacetFoot const& foot, Vec3 const& p) {
+  return foot.place == kernels::FacetFoot::Place::rim ? std::abs(dot(p - foot.point, foot.normal)) : foot.distance;
+}
+
 std::array<double, 2> off_walls(std::array<FacetSurface const*, 2> const& walls, Vec3 const& p) {
-  std::array<double, 2> out{};
-  for (std::size_t w = 0; w < 2; ++w) {
-    kernels::FacetFoot const foot = walls[w]->closest_point(p);
-    out[w] = foot.place == kernels::FacetFoot::Place::rim ? std::abs(dot(p - foot.point, foot.normal)) : foot.distance;
-  }
-  return out;
+  return {off_wall(walls[0]->closest_point(p), p), off_wall(walls[1]->closest_point(p), p)};
 }
 
 RootSections::RootSections(JoinedElements const& elements, BoundaryFacePatches const& face_patches,
@@ -87,7 +86,8 @@ RootSections::RootSections(JoinedElements const& elements, BoundaryFacePatches c
     : lines_(lines) {
   std::array<FacetSurface const*, 2> const walls{&blade, &end_wall};
   double const small = 1e-9 * blade.size();
-  std::vector<std::array<int, 4>> facets;
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 3>> edge_of_segment;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     RootLine const& line = lines[l];
     std::vector<Vec3> at;
@@ -139,17 +139,17 @@ RootSections::RootSections(JoinedElements const& elements, BoundaryFacePatches c
       s.mitre = MitreRelations(mitres[l].at[k], off, s.radius);
       if (!mitres[l].on_walls.empty())
         for (Index32 const p : mitres[l].on_walls[k]) known_[p] = {{l, k, k, 0}, false};
-      points_.push_back(s.root);
+      points.push_back(s.root);
       sections_.back().push_back(std::move(s));
     }
-    int const first = int(points_.size() - line.places.size());
+    int const first = int(points.size() - line.places.size());
     for (std::size_t k = 0; k < line.n_edges(); ++k) {
       std::size_t const next = (k + 1) % line.places.size();
       segments_.push_back({l, k, next});
-      facets.push_back({first + int(k), first + int(next), first + int(next), -1});
+      edge_of_segment.push_back({first + int(k), first + int(next), first + int(next)});
     }
   }
-  boxes_ = FacetBoxes(points_, facets);
+  tree_ = TargetTree(std::move(points), std::move(edge_of_segment));
   for (auto const& line : sections_)
     for (RootSection const& s : line) largest_reach_ = std::max(largest_reach_, s.reach);
   limit_reach(elements, face_patches, edges, radii);
@@ -176,8 +176,7 @@ KnownPlace const* RootSections::known(Index32 place) const {
 
 std::optional<SectionPlace> RootSections::find(Vec3 const& p, Vec3 const& blade_normal, double within) const {
   auto const nearest = nearest_section(p, {}, within);
-  bool const any_side = dot(blade_normal, blade_normal) == 0;
-  if (!nearest || any_side || beyond_end(*nearest, p)) return nearest;
+  if (!nearest || blade_normal == Vec3{} || beyond_end(*nearest, p)) return nearest;
   return nearest_section(p, blade_normal, within);
 }
 
@@ -190,29 +189,16 @@ bool RootSections::beyond_end(SectionPlace const& at, Vec3 const& p) const {
 
 std::optional<SectionPlace> RootSections::nearest_section(Vec3 const& p, Vec3 const& blade_normal,
                                                           double within) const {
-  bool const any_side = dot(blade_normal, blade_normal) == 0;
-  double best2 = within * within;
-  int best = -1;
-  boxes_.for_each_nearer(
-      p,
-      [&](int k) {
-        Segment const& s = segments_[std::size_t(k)];
-        RootSection const &a = sections_[s.line][s.first], &b = sections_[s.line][s.second];
-        if (!any_side && std::max(dot(blade_normal, a.blade_normal), dot(blade_normal, b.blade_normal)) < same_side)
-          return;
-        Vec3 const edge = b.root - a.root;
-        double const t = std::clamp(dot(p - a.root, edge) / dot(edge, edge), 0.0, 1.0);
-        Vec3 const d = p - (a.root + t * edge);
-        double const d2 = dot(d, d);
-        if (d2 < best2 || (d2 == best2 && k < best)) {
-          best2 = d2;
-          best = k;
-        }
-      },
-      [&] { return best2; });
-  if (best < 0) return {};
+  auto const same_way = [&](int k) {
+    Segment const& s = segments_[std::size_t(k)];
+    auto const& line = sections_[s.line];
+    return std::max(dot(blade_normal, line[s.first].blade_normal), dot(blade_normal, line[s.second].blade_normal)) >=
+           same_side;
+  };
+  auto const hit = blade_normal == Vec3{} ? tree_.closest_within(p, within) : tree_.closest_of(p, same_way);
+  if (hit.triangle < 0 || hit.distance >= within) return {};
 
-  Segment at = segments_[std::size_t(best)];
+  Segment at = segments_[std::size_t(hit.triangle)];
   int last_step = 0;
   for (int n = 0; n < 64; ++n) {
     double const from = ahead(p, at.line, at.first), to = ahead(p, at.line, at.second);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/fillet/root_section.hpp>
-#include <gridmorph/geometry/facet_boxes.hpp>
+#include <gridmorph/geometry/target_tree.hpp>
 
 #include <array>
 #include <optional>
@@ -11,7 +11,9 @@
 
 namespace gridmorph {
 
-/// Distances of a point from two walls; beyond a rim from the tangent plane there.
+/// Distance of a point from a wall where it has this foot; beyond a rim from the tangent plane there.
+double off_wall(kernels::FacetFoot const& foot, Vec3 const& p);
+/// From two walls.
 std::array<double, 2> off_walls(std::array<FacetSurface const*, 2> const& walls, Vec3 const& p);
 
 /// A point's section: between two of a line.
@@ -60,8 +62,7 @@ class RootSections {
   std::vector<RootLine> const& lines_;
   std::vector<std::vector<RootSection>> sections_;  ///< per line and place
   std::vector<Segment> segments_;
-  std::vector<Vec3> points_;
-  FacetBoxes boxes_;
+  TargetTree tree_;  ///< the segments, as triangles without area
   std::unordered_map<Index32, KnownPlace> known_;
   double largest_reach_ = 0;
 };

@@ -5,46 +5,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
+#include <vector>
 
 namespace gridmorph {
 
 namespace {
 
-/// The nearest of some nodes.
-class NodeTree {
- public:
-  NodeTree(Mesh const& mesh, std::vector<Index32> const& nodes) {
-    std::vector<std::array<int, 4>> each;
-    for (Index32 const n : nodes) {
-      int const k = int(points_.size());
-      points_.push_back(mesh.coordinates[n]);
-      each.push_back({k, k, k, -1});
-    }
-    boxes_ = FacetBoxes(points_, each);
+/// Nodes as triangles without area.
+TargetTree tree_of(Mesh const& mesh, std::vector<Index32> const& nodes) {
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 3>> each;
+  for (Index32 const n : nodes) {
+    int const k = int(points.size());
+    points.push_back(mesh.coordinates[n]);
+    each.push_back({k, k, k});
   }
-  /// Its place in the list; -1: none.
-  [[nodiscard]] int nearest(Vec3 const& p) const {
-    int best = -1;
-    double best2 = std::numeric_limits<double>::infinity();
-    boxes_.for_each_nearer(
-        p,
-        [&](int k) {
-          Vec3 const d = points_[std::size_t(k)] - p;
-          double const d2 = dot(d, d);
-          if (d2 < best2 || (d2 == best2 && k < best)) {
-            best2 = d2;
-            best = k;
-          }
-        },
-        [&] { return best2; });
-    return best;
-  }
-
- private:
-  std::vector<Vec3> points_;
-  FacetBoxes boxes_;
-};
+  return {std::move(points), std::move(each)};
+}
 
 /// What becomes of a node.
 struct Move {
@@ -74,12 +52,15 @@ class CornerRounding {
     auto const nearest = sections_.find(p, {}, within_);
     if (!nearest || out_of_reach(p, *nearest)) return out;
     bool const on_blade = edges_.on(0, place), on_end_wall = edges_.on(1, place);
-    auto const found = sections_.find(p, off_blade(place), within_);
+    // On the blade's surface but off its nodes there is no direction off it.
+    kernels::FacetFoot const blade_foot = walls_[0]->closest_point(p);
+    Vec3 const off_foot = p - blade_foot.point;
+    Vec3 const off_blade = on_blade ? edges_.normal(0, place) : off_foot == Vec3{} ? off_foot : unit(off_foot);
+    auto const found = sections_.find(p, off_blade, within_);
     if (!found || out_of_reach(p, *found)) return out;
     out.near = true;
-    std::array<double, 2> off = off_walls(walls_, p);
-    if (on_blade) off[0] = 0;
-    if (on_end_wall) off[1] = 0;
+    std::array<double, 2> const off{on_blade ? 0 : off_wall(blade_foot, p),
+                                    on_end_wall ? 0 : off_wall(walls_[1]->closest_point(p), p)};
     BetweenSections const section = sections_.between(*found);
     CornerMove const move = corner_move(place, section, off);
     out.shift = move.shift;
@@ -104,13 +85,6 @@ class CornerRounding {
   [[nodiscard]] bool out_of_reach(Vec3 const& p, SectionPlace const& at) const {
     BetweenSections const section = sections_.between(at);
     return distance(p, section.root()) > 1.1 * std::hypot(section.reach(), 1.5 * section.radius());
-  }
-
-  /// The direction off the blade; zero on the blade's surface but off its nodes.
-  [[nodiscard]] Vec3 off_blade(Index32 place) const {
-    if (edges_.on(0, place)) return edges_.normal(0, place);
-    Vec3 const p = elements_.position(place), off = p - walls_[0]->closest_point(p).point;
-    return off == Vec3{} ? off : unit(off);
   }
 
   /// Lines lean along the corner; the nearer to it a node comes, the less.
@@ -158,7 +132,7 @@ Coordinates round_corners(JoinedElements const& elements, WallEdges const& edges
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     for (std::size_t w = 0; w < 2; ++w)
       if (moves[std::size_t(n)].near && edges.on(int(w), Index32(n))) on_walls[w].push_back(Index32(n));
-  std::array<NodeTree, 2> const trees{NodeTree(mesh, on_walls[0]), NodeTree(mesh, on_walls[1])};
+  std::array<TargetTree, 2> const trees{tree_of(mesh, on_walls[0]), tree_of(mesh, on_walls[1])};
   Coordinates out(mesh.n_nodes());
   detail::for_all(host, "gridmorph::round_corners (places)", mesh.n_nodes(), [&](Index n) {
     Index32 const place = elements.place(Index32(n));
@@ -168,7 +142,7 @@ Coordinates round_corners(JoinedElements const& elements, WallEdges const& edges
     Vec3 mended = move.mended;
     if (!edges.on(0, place) && !edges.on(1, place)) {
       auto const w = std::size_t(move.wall);
-      if (int const k = trees[w].nearest(p); k >= 0)
+      if (int const k = trees[w].closest(p).triangle; k >= 0)
         mended = ((1 - move.still) * (1 - move.bend)) * moves[std::size_t(on_walls[w][std::size_t(k)])].mended;
     }
     out.set(n, p + move.shift + mended);
