@@ -27,8 +27,10 @@ nlohmann::json json_of(std::string const& keys, Badness const& badness) {
 
 CaseFile Recipe::of(CaseFile const& case_file) const {
   CaseFile out = case_file;
-  if (mode)
+  if (mode) {
     for (BoundaryLayer& layer : out.plan.boundary_layers) layer.mode = *mode;
+    if (out.plan.default_boundary_layer) out.plan.default_boundary_layer->mode = *mode;
+  }
   if (turn) out.plan.volume.turn = turn;
   if (law) {
     out.plan.volume.law = *law;
@@ -52,7 +54,9 @@ std::string Recipe::keys(bool unstructured) const {
 }
 
 std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructured) {
-  auto const& layers = case_file.plan.boundary_layers;
+  auto layers = case_file.plan.boundary_layers;
+  if (layers.empty() && !unstructured && case_file.plan.default_boundary_layer)
+    layers = {*case_file.plan.default_boundary_layer};
   if (layers.empty()) return {};
   auto const all_are = [&](Mode mode) {
     return std::ranges::all_of(layers, [&](BoundaryLayer const& layer) { return layer.mode == mode; });
