@@ -103,20 +103,6 @@ TEST(CaseFileText, TakesOneBoundaryLayerWithoutDoubleBrackets) {
   EXPECT_EQ(c.plan.boundary_layers[0].extent, BoundaryLayer::Extent::block);
 }
 
-TEST(CaseFileText, HasTheDefaultNearFieldUnlessItSaysFalse) {
-  EXPECT_TRUE(parse(smallest).plan.default_boundary_layer.has_value());
-  EXPECT_TRUE(parse("boundary_layer = true\n" + smallest).plan.default_boundary_layer.has_value());
-  CaseFile const none = parse("boundary_layer = false\n" + smallest);
-  EXPECT_TRUE(none.plan.boundary_layers.empty());
-  EXPECT_FALSE(none.plan.default_boundary_layer.has_value());
-}
-
-TEST(CaseFileText, LeavesTheExtentOfANearFieldToThePlanWhereItSaysNone) {
-  CaseFile const c = parse(smallest + "[boundary_layer]\nwalls = \"b\"\n");
-  ASSERT_EQ(c.plan.boundary_layers.size(), 1u);
-  EXPECT_EQ(c.plan.boundary_layers[0].extent, BoundaryLayer::Extent::automatic);
-}
-
 TEST(CaseFileText, KeepsTheRulesInTheirOrder) {
   CaseFile const c =
       parse(smallest + "[[motion]]\npatches = \"b\"\nrule = \"free\"\n[[motion]]\npatches = \"c\"\nrule = \"fixed\"\n");
@@ -130,18 +116,6 @@ TEST(CaseFileText, MayHaveWindowsLineEnds) {
   std::string text;
   for (char const c : smallest) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
   EXPECT_EQ(parse(text).input, "in.cgns");
-}
-
-TEST(Sequence, OfVeryManyStepsSomeAreLookedAtAheadOfTimeTheFirstAndTheLastAmongThem) {
-  SequenceOptions sequence;
-  for (int const steps : {1, 2, 7, 100, 99999}) {
-    sequence.steps = steps;
-    std::vector<int> const some = sequence.some_steps(100);
-    EXPECT_EQ(int(some.size()), std::min(steps, 100));
-    EXPECT_EQ(some.front(), 0);
-    EXPECT_EQ(some.back(), steps - 1);
-    EXPECT_TRUE(std::is_sorted(some.begin(), some.end(), std::less_equal<>())) << "each once";
-  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <gridmorph/core/suggest.hpp>
+#include <gridmorph/app/casefile/suggest.hpp>
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 #include <gridmorph/boundary/patch_surface.hpp>
 
 #include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,14 +43,14 @@ double box_diagonal(std::vector<Vec3> const& points) {
 PatchSurface::PatchSurface(Boundary const& boundary, std::vector<int> const& patches) : lines(boundary.is_plane()) {
   Mesh const& mesh = boundary.mesh();
   std::vector<Vec3> all;
-  bool single = false;
+  double resolution = 0;
   for (int const p : patches) {
     for (Index const n : boundary.surface(p).nodes) all.push_back(mesh.coordinates[n]);
     gridded = gridded && boundary.surface(p).grid.has_value();
-    single = single || mesh.zones[mesh.patches[p].zone].single_precision;
+    resolution = std::max(resolution, coordinate_resolution(mesh, mesh.patches[p].zone));
   }
   size = box_diagonal(all);
-  tolerance = (single ? 1e-6 : 1e-9) * size;
+  tolerance = place_tolerance(1e-9, size, resolution);
   numbers = PointNumbers(tolerance);
   for (int const p : patches) {
     BoundarySurface const& own = boundary.surface(p);

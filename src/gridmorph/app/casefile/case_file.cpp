@@ -5,8 +5,8 @@
 #include <gridmorph/app/casefile/detail/rule_reader.hpp>
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 #include <gridmorph/app/casefile/detail/wheel_reader.hpp>
+#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
@@ -140,7 +140,7 @@ BoundaryLayer read_boundary_layer(TableReader& table) {
   layer.walls = table.strings("walls").value_or(std::vector<std::string>{});
   if (auto const* extent = table.find("extent")) {
     if (extent->is_string()) {
-      if (table.choice("extent", {"block"})) layer.extent = BoundaryLayer::Extent::block;
+      table.choice("extent", {"block"});
     } else if (auto inner = table.table("extent")) {
       auto const layers = inner->integer("layers");
       auto const thickness = inner->number("thickness");
@@ -241,11 +241,7 @@ std::vector<BlockCut> read_cuts(TableReader& volume) {
 }
 
 void read_plan(TableReader& root, std::map<std::string, double> const& constants, CaseFile& out) {
-  if (auto const* given = root.find("boundary_layer"); given != nullptr && given->is_boolean()) {
-    if (!root.boolean("boundary_layer").value_or(true)) out.plan.default_boundary_layer.reset();
-  } else {
-    for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
-  }
+  for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
   auto volume = root.table("volume");
   if (!volume) return;
   std::vector<std::string> const laws{"linear", "c1", "c2", "mixed", "matched", "formula", "prediction"};
@@ -342,7 +338,7 @@ void read_results(TableReader& root, CaseFile& out) {
 }  // namespace
 
 struct CaseDocument::Root {
-  casefile::TomlText text;
+  toml::value value;
 };
 
 CaseDocument::CaseDocument(std::filesystem::path const& path)
@@ -354,7 +350,7 @@ CaseDocument::CaseDocument(std::string const& text, std::filesystem::path path)
 
 std::optional<std::filesystem::path> CaseDocument::mesh() const {
   try {
-    return (path_.parent_path() / toml::find<std::string>(root_->text.root, "mesh", "input")).lexically_normal();
+    return (path_.parent_path() / toml::find<std::string>(root_->value, "mesh", "input")).lexically_normal();
   } catch (std::exception const&) {  // read_case_file() says what is wrong
     return std::nullopt;
   }
@@ -366,8 +362,7 @@ CaseFile read(CaseDocument const& document, CaseKeyUse* asked) {
   Context context{document.path().string(), document.path().parent_path(), {}, asked};
   CaseFile out;
   out.source = document.path();
-  context.lines = document.root().text.lines;
-  TableReader root(context, document.root().text.root, "");
+  TableReader root(context, document.root().value, "");
   read_mesh(root, out);
   read_sequence(root, out);
   auto const constants = read_motion(root, out);
@@ -377,7 +372,6 @@ CaseFile read(CaseDocument const& document, CaseKeyUse* asked) {
   root.finish();
   context.problems.throw_if_any<ConfigError>();
   out.files = std::move(context.files);
-  out.notes = std::move(context.notes);
   out.given.assign(context.given.begin(), context.given.end());
   return out;
 }

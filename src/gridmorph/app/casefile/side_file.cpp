@@ -1,8 +1,8 @@
 #include <gridmorph/app/casefile/detail/side_tables.hpp>
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 #include <gridmorph/app/casefile/side_file.hpp>
+#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
@@ -230,15 +230,14 @@ std::optional<std::filesystem::path> find_side_file(std::filesystem::path const&
   path.replace_extension(".toml");
   std::error_code error;
   if (path == mesh || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  auto const document = casefile::parse_toml_text(read_text(path), path.string()).root;
+  auto const document = casefile::parse_toml_text(read_text(path), path.string());
   if (!document.is_table() || document.contains("mesh") || document.contains("motion")) return std::nullopt;
   return path;
 }
 
 void add_side_file(std::string const& text, std::filesystem::path const& path, Mesh& mesh) {
   Context context{path.string(), path.parent_path(), {}, nullptr};
-  auto const [document, lines] = casefile::parse_toml_text(text, context.file);
-  context.lines = lines;
+  toml::value const document = casefile::parse_toml_text(text, context.file);
   if (mesh.is_structured())
     Reader(context, mesh).read(document);
   else
@@ -253,7 +252,7 @@ Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem:
   auto const side = side_file ? side_file : find_side_file(mesh);
   if (!side) return read_mesh(mesh.string(), options);
   std::string const text = read_text(*side);
-  auto const document = casefile::parse_toml_text(text, side->string()).root;
+  auto const document = casefile::parse_toml_text(text, side->string());
   if (document.is_table() && document.contains("format") && document.at("format").is_string())
     options.plot3d_format = casefile::string_of(document.at("format"));
   Mesh out = read_mesh(mesh.string(), options);

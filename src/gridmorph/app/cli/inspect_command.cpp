@@ -4,7 +4,6 @@
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
@@ -53,12 +52,7 @@ void check_files(CommandLine const& options, MeshSource const& file) {
   if (!options.write_side_file) return;
   // A new side file begins with all of the present one, whose place it may take.
   outputs.push_back({"side file", *options.write_side_file});
-  RunFiles inputs = inputs_of_mesh(file, options.side_file);
-  if (auto const present = options.side_file ? options.side_file : find_side_file(options.input)) {
-    std::erase_if(inputs, [](RunFile const& input) { return input.what == "side file"; });
-    io::FilesRead::release(*present);
-  }
-  check_run_files(inputs, outputs);
+  check_run_files({{"input mesh", options.input}}, outputs);
 }
 
 }  // namespace
@@ -73,9 +67,8 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   if (options.match || options.write_side_file) {
     terminal.progress("matching points");
     auto const present = options.side_file ? options.side_file : find_side_file(options.input);
-    std::string const before = options.write_side_file && present ? io::read_file(present->string()) : std::string();
-    if (present) io::FilesRead::release(*present);
-    mesh->match({options.match_tolerance, options.match_periodic, options.write_side_file, before});
+    mesh->match({options.match_tolerance, options.match_periodic, options.write_side_file,
+                 options.write_side_file && present ? io::read_file(present->string()) : std::string()});
   }
   terminal.progress("looking at boundaries and connections");
   MeshSummary const summary = mesh->summary();

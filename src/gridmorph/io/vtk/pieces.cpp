@@ -1,10 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/point_numbers.hpp>
-#include <gridmorph/io/files_read.hpp>
-#include <gridmorph/io/made_folders.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/read_file.hpp>
-#include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
 #include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/mesh/file_order.hpp>
@@ -225,7 +222,7 @@ void write_morphed_pieces(std::string const& input, std::string const& output, M
   std::vector<std::pair<std::string, std::string>> texts;  // path, bytes
   std::vector<Edit> top_edits;
   fs::path const target(output), folder = fs::path(target).replace_extension();
-  io::MadeFolders made;
+  std::error_code failure;
   std::size_t z = 0;
   for (File const& file : pieces.files()) {
     std::vector<Edit> edits;
@@ -236,11 +233,12 @@ void write_morphed_pieces(std::string const& input, std::string const& output, M
     }
     fs::path place = target;
     if (pieces.top()) {
-      fs::path const name = name_beside(target, texts.size(), ".vtu");
+      fs::path const name =
+          folder.filename() / (folder.filename().string() + "_" + std::to_string(texts.size()) + ".vtu");
       top_edits.push_back({file.source->begin, file.source->end, escaped(name.string())});
       place = target.parent_path() / name;
       for (File const& other : pieces.files())
-        if (io::identity_of(place) == io::identity_of(other.path))
+        if (fs::exists(place, failure) && fs::equivalent(place, other.path, failure))
           throw IoError(place.string() +
                         ": is a file of the input, and an output would take its place; give another name");
     }
@@ -249,12 +247,15 @@ void write_morphed_pieces(std::string const& input, std::string const& output, M
   if (pieces.top()) {
     declare_fields(*pieces.top(), all, prefixes, top_edits);
     texts.emplace_back(output, pieces.top()->edited(std::move(top_edits)));
-    made.make(folder);
+    fs::create_directories(folder, failure);
+    if (failure) throw MachineError(folder.string() + ": cannot be made: " + failure.message());
   }
-  io::OutputFiles outputs;
-  for (auto const& [path, text] : texts) outputs.add(path).write(text);
-  outputs.commit();
-  made.keep();
+  std::vector<std::unique_ptr<io::OutputFile>> outputs;
+  for (auto const& [path, text] : texts) {
+    outputs.push_back(std::make_unique<io::OutputFile>(path));
+    outputs.back()->write(text);
+  }
+  for (auto const& file : outputs) file->commit();
 }
 
 }  // namespace gridmorph::vtk

@@ -1,5 +1,5 @@
 #include <gridmorph/app/casefile/detail/sections_reader.hpp>
-#include <gridmorph/core/suggest.hpp>
+#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
@@ -94,9 +94,8 @@ std::vector<std::pair<double, double>> read_stations(TableReader& table, std::st
     auto const span = two ? number(pair.as_array()[0]) : std::nullopt;
     auto const v = two ? number(pair.as_array()[1]) : std::nullopt;
     if (!span || !v) {
-      table.context().problem(
-          table.context().line_of(pair),
-          fmt::format("[[motion]] {}: expected [span fraction, value], found {}", key, describe_value(pair)));
+      table.context().problem(line_of(pair), fmt::format("[[motion]] {}: expected [span fraction, value], found {}",
+                                                         key, describe_value(pair)));
       return {};
     }
     stations.emplace_back(*span, *v);

@@ -1,7 +1,6 @@
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 #include <gridmorph/app/casefile/key_list.hpp>
-#include <gridmorph/core/suggest.hpp>
-#include <gridmorph/io/read_file.hpp>
+#include <gridmorph/app/casefile/suggest.hpp>
 
 #include <fmt/format.h>
 
@@ -50,17 +49,17 @@ bool TableReader::has(std::string const& key) const { return table_->as_table().
 unsigned TableReader::line(std::string const& key) const {
   auto const& table = table_->as_table();
   auto const found = table.find(key);
-  return found == table.end() ? line() : context_->line_of(found->second);
+  return found == table.end() ? line() : line_of(found->second);
 }
 
 toml::value const* TableReader::find(std::string const& key) {
   std::string name = plain_name();
   if (context_->asked != nullptr) (*context_->asked)[{name, key}];
-  if (asked_.insert(key).second) known_.push_back(key);
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   auto const& table = table_->as_table();
   auto const found = table.find(key);
   if (found == table.end()) return nullptr;
-  context_->given.insert({std::move(name), key, int(context_->line_of(found->second))});
+  context_->given.insert({std::move(name), key, int(line_of(found->second))});
   return &found->second;
 }
 
@@ -73,26 +72,10 @@ void TableReader::problem(std::string const& key, std::string const& text) {
   context_->problem(line(key), fmt::format("{}{}{}: {}", name_, name_.empty() ? "" : " ", key, text));
 }
 
-std::optional<std::filesystem::path> TableReader::input(std::string const& key) {
-  auto const name = string(key);
-  if (!name) return std::nullopt;
-  auto path = context_->input(*name);
-  std::error_code error;
-  if (!std::filesystem::exists(path, error))
-    problem(key, fmt::format("'{}' does not exist; {}", *name, io::looked_for_at(path.string())));
-  return path;
-}
-
 void TableReader::require(std::string const& key, std::string_view what_to_write) {
   if (find(key) == nullptr)
     context_->problem(line(), fmt::format("{}{}key '{}' is missing; add {}{}", name_, name_.empty() ? "" : ": ", key,
                                           what_to_write, about(key)));
-}
-
-bool TableReader::is_text(std::string const& key, std::string const& value) {
-  if (value.find('\0') == std::string::npos) return true;
-  problem(key, "holds the character \\u0000, which no name and no file has; remove it");
-  return false;
 }
 
 std::optional<std::string> TableReader::string(std::string const& key) {
@@ -107,7 +90,6 @@ std::optional<std::string> TableReader::string(std::string const& key) {
     problem(key, "the string is empty; give a value or remove the key");
     return std::nullopt;
   }
-  if (!is_text(key, string_of(*value))) return std::nullopt;
   return string_of(*value);
 }
 
@@ -215,8 +197,6 @@ std::optional<std::vector<std::string>> TableReader::strings(std::string const& 
     problem(key, "one of the strings is empty; give a name");
     return std::nullopt;
   }
-  for (std::string const& one : out)
-    if (!is_text(key, one)) return std::nullopt;
   return out;
 }
 
@@ -264,11 +244,11 @@ std::optional<std::size_t> TableReader::choice(std::string const& key, std::vect
 
 void TableReader::finish() {
   std::vector<std::pair<unsigned, std::string>> unknown;  // toml11 keeps keys in no order: report them by line
-  std::size_t left_out = 0;
+  std::size_t left_out = 0;                               // finding a line takes time as the file is long
   for (auto const& [key, value] : table_->as_table()) {
-    if (asked_.contains(key)) continue;
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
     if (unknown.size() < most_unknown_keys)
-      unknown.emplace_back(context_->line_of(value), key);
+      unknown.emplace_back(line_of(value), key);
     else
       ++left_out;
   }

@@ -8,7 +8,6 @@
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -25,9 +24,6 @@ struct Context {
   CaseKeyUse* asked = nullptr;                 ///< every key that is asked for, where somebody wants to know
   std::set<GivenKey> given{};                  ///< every key that is asked for and there
   std::vector<std::filesystem::path> files{};  ///< that have been named as inputs
-  std::shared_ptr<TomlLines const> lines{};    ///< of the file
-
-  std::vector<std::string> notes{};  ///< what was taken that nobody wrote
 
   /// A file as a key names it, to be read; noted, so that no output takes its place.
   std::filesystem::path input(std::string const& name) {
@@ -35,7 +31,6 @@ struct Context {
   }
 
   void problem(unsigned line, std::string const& text) { problems.add(where(line) + ": " + text); }
-  [[nodiscard]] unsigned line_of(toml::value const& value) const { return lines ? lines->of(value) : 1; }
   [[nodiscard]] std::string where(unsigned line) const { return file + ":" + std::to_string(line); }
 };
 
@@ -46,7 +41,7 @@ class TableReader {
   TableReader(Context& context, toml::value const& table, std::string name, std::string rule = "");
 
   [[nodiscard]] bool has(std::string const& key) const;
-  [[nodiscard]] unsigned line() const { return context_->line_of(*table_); }
+  [[nodiscard]] unsigned line() const { return line_of(*table_); }
   [[nodiscard]] unsigned line(std::string const& key) const;
   [[nodiscard]] std::string where(std::string const& key) const { return context_->where(line(key)); }
   [[nodiscard]] Context& context() const { return *context_; }
@@ -68,8 +63,6 @@ class TableReader {
   /// Index in `words` of a string value; a problem that names the nearest word otherwise.
   std::optional<std::size_t> choice(std::string const& key, std::vector<std::string> const& words);
 
-  /// A file that is read later, as a key names it; noted as Context::input() does, and a problem where it is not there.
-  std::optional<std::filesystem::path> input(std::string const& key);
   /// Notes that a key is missing.
   void require(std::string const& key, std::string_view what_to_write);
   /// Notes a problem with the value of a key (with the table's own line when the key is absent).
@@ -82,8 +75,6 @@ class TableReader {
   std::optional<std::vector<double>> list_of_numbers(char const* what, std::string const& key);
   /// find(), where the key is read as one thing: see KeyReading.
   toml::value const* find_as(char const* what, std::string const& key);
-  /// Whether a string could be a name; messages would end at a zero in it. Notes a problem where not.
-  bool is_text(std::string const& key, std::string const& value);
   [[nodiscard]] std::string plain_name() const;
   /// ". offset: ... (number > 0, length)", to end a message with; empty where the list of keys has nothing.
   [[nodiscard]] std::string about(std::string const& key) const;
@@ -91,9 +82,8 @@ class TableReader {
   Context* context_;
   toml::value const* table_;
   std::string name_;
-  std::string rule_;                ///< of the [[motion]] that this is, or is a part of
-  std::vector<std::string> known_;  ///< keys in the order in which they were asked for
-  std::set<std::string> asked_;     ///< the same ones
+  std::string rule_;  ///< of the [[motion]] that this is, or is a part of
+  std::vector<std::string> known_;
 };
 
 /// "a string", "an array", ... for messages, with the value if it is short.

@@ -1,4 +1,7 @@
-#include <gridmorph/core/suggest.hpp>
+#include <gridmorph/app/casefile/suggest.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -58,10 +61,8 @@ std::string nearest_word(std::string_view word, std::vector<std::string> const& 
 }
 
 std::string suggestion(std::string_view word, std::vector<std::string> const& known) {
-  if (auto const near = nearest_word(word, known); !near.empty()) return "; did you mean '" + near + "'?";
-  std::string list;
-  for (auto const& name : known) list += (list.empty() ? "; known here: " : ", ") + name;
-  return list;
+  if (auto const near = nearest_word(word, known); !near.empty()) return fmt::format("; did you mean '{}'?", near);
+  return known.empty() ? std::string() : fmt::format("; known here: {}", fmt::join(known, ", "));
 }
 
 }  // namespace gridmorph
