@@ -1,7 +1,7 @@
+#include <gridmorph/boundary/contradicted_periodics.hpp>
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <algorithm>
 #include <map>
@@ -134,9 +134,8 @@ bool is_collapsed(Mesh const& mesh, int zone, IndexRange const& r, double size) 
             extent[a] = std::max(extent[a], distance(mesh.coordinates[n], mesh.coordinates[n + stride[a]]));
           }
       }
-  double const tolerance = std::max(1e-12 * size, coordinate_resolution(mesh, zone));
   for (int a = 0; a < 3; ++a)
-    if (r.extent(a) > 1 && extent[a] < tolerance) return true;
+    if (r.extent(a) > 1 && extent[a] < 1e-12 * size) return true;
   return false;
 }
 
@@ -242,6 +241,7 @@ Links connect_and_check(HostInstance const& host, Mesh& mesh, TopologyOptions co
     problems.add(e.what());
   }
   problems.throw_if_any<MeshError>();
+  for (auto& line : contradicted_periodics(mesh)) mesh.notes.push_back(std::move(line));
   return links;
 }
 

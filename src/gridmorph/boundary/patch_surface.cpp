@@ -2,7 +2,6 @@
 #include <gridmorph/boundary/patch_surface.hpp>
 
 #include <gridmorph/kernels/box_tree.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,14 +42,14 @@ double box_diagonal(std::vector<Vec3> const& points) {
 PatchSurface::PatchSurface(Boundary const& boundary, std::vector<int> const& patches) : lines(boundary.is_plane()) {
   Mesh const& mesh = boundary.mesh();
   std::vector<Vec3> all;
-  double resolution = 0;
+  bool single = false;
   for (int const p : patches) {
     for (Index const n : boundary.surface(p).nodes) all.push_back(mesh.coordinates[n]);
     gridded = gridded && boundary.surface(p).grid.has_value();
-    resolution = std::max(resolution, coordinate_resolution(mesh, mesh.patches[p].zone));
+    single = single || mesh.zones[mesh.patches[p].zone].single_precision;
   }
   size = box_diagonal(all);
-  tolerance = place_tolerance(1e-9, size, resolution);
+  tolerance = (single ? 1e-6 : 1e-9) * size;
   numbers = PointNumbers(tolerance);
   for (int const p : patches) {
     BoundarySurface const& own = boundary.surface(p);

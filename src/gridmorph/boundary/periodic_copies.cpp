@@ -2,7 +2,6 @@
 
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <algorithm>
 #include <map>
@@ -15,7 +14,7 @@ namespace {
 /// Transforms and their inverses, those that carry points alike once.
 std::vector<RigidTransform> both_ways(Boundary const& boundary, std::vector<Vec3> const& points,
                                       std::vector<RigidTransform> const& transforms) {
-  double const tolerance = place_tolerance(1e-6, boundary.size(), coordinate_resolution(boundary.mesh()));
+  double const tolerance = 1e-6 * boundary.size();
   std::vector<RigidTransform> copies;
   auto const add = [&](RigidTransform const& transform) {
     bool const known = std::any_of(copies.begin(), copies.end(), [&](RigidTransform const& other) {

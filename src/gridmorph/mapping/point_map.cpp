@@ -104,6 +104,14 @@ Vec3 to_the_edge(Neighbours const& near) {
   return mapping::closest_in_hull(spanned_part, at_the_edge * farthest);
 }
 
+/// From the middle of the neighbours to the farthest: of 13 on a regular grid two spacings.
+double reach_of(Neighbours const& near) {
+  Vec3 const centre = even_spread(near).centre;
+  double out = 0;
+  for (Vec3 const& o : near.offset) out = std::max(out, norm(o - centre));
+  return out;
+}
+
 }  // namespace
 
 struct PointMap::Impl {
@@ -174,6 +182,7 @@ Stencil PointMap::stencil(Vec3 const& q, std::optional<std::size_t> without) con
   for (std::size_t i = 0; i < w.size(); ++i)
     out.terms.push_back({std::int32_t(near.number[i]), w[i] * (1 + gradient[i]), 0});
   out.beyond = norm(edge);
+  out.far_beyond = out.beyond > reach_of(near);
   return out;
 }
 

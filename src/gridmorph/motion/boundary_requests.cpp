@@ -1,7 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
 
 #include <algorithm>
@@ -29,8 +28,7 @@ class Evaluation {
         boundary_(boundary),
         rules_(motion),
         motion_(motion.motion()),
-        tolerance_(displacement_tolerance(motion_.conformity_tolerance, motion.boundary().size(),
-                                          coordinate_resolution(motion.boundary().mesh()))),
+        tolerance_(motion_.conformity_tolerance * motion.boundary().size()),
         values_(std::size_t(boundary.n_boundary_nodes)),
         given_by_(values_.size(), -1) {}
 

@@ -1,12 +1,12 @@
 #include <gridmorph/app/cli/boundary_guess.hpp>
 #include <gridmorph/app/cli/mesh_summary.hpp>
 #include <gridmorph/boundary/coincident_nodes.hpp>
+#include <gridmorph/boundary/contradicted_periodics.hpp>
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/boundary/links.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -151,8 +151,7 @@ void look_for_remedies(Mesh const& mesh, MeshSummary& summary) {
   Problems ignored;
   double worst = 0;
   for (auto const& link : connect(mesh, options, ignored).all) worst = std::max(worst, link.mismatch);
-  if (worst > coincidence_tolerance(mesh.size(), coordinate_resolution(mesh)) && worst < gross * mesh.size())
-    summary.needed_tolerance = 1.1 * worst;
+  if (worst > 1e-8 * mesh.size() && worst < gross * mesh.size()) summary.needed_tolerance = 1.1 * worst;
   options.matching_tolerance = summary.needed_tolerance;
   for (bool const open : {false, true}) {
     options.open_faces = open ? "open" : "";
@@ -277,6 +276,7 @@ MeshSummary summarize(Mesh const& mesh) {
   out.cells = mesh.n_cells();
   out.two_dimensional = mesh.dimension == 2;
   out.notes = mesh.notes;
+  for (auto& line : contradicted_periodics(mesh)) out.notes.push_back(std::move(line));
   for (auto const& zone : mesh.zones) {
     ZoneSummary z{zone.name, zone.extent, zone.size(), {}};
     for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) z.box.add(mesh.coordinates[n]);

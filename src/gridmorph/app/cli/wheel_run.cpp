@@ -1,7 +1,6 @@
 #include <gridmorph/app/cli/wheel_run.hpp>
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/report/quality_table.hpp>
 
 #include <fmt/format.h>
@@ -71,6 +70,7 @@ void WheelRun::time(std::string const& step) {
 
 void WheelRun::prepare() {
   terminal_.progress(sector_->kind().planning);
+  check_fields(case_, mesh_);
   plan_ = plan_of(case_);
   check_wave();
   time("plan");
@@ -191,7 +191,9 @@ PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates c
   for (Vec3 const& u : boundary) passage.largest_displacement = std::max(passage.largest_displacement, norm(u));
   quality_.morphed = &morphed;
   passage.quality = sector_->measure(quality_);
-  passage.shortfalls = shortfalls(baseline_, passage.quality, thresholds_of(case_));
+  passage.shortfalls = mapping_warnings(case_);
+  auto const of_quality = shortfalls(baseline_, passage.quality, thresholds_of(case_));
+  passage.shortfalls.insert(passage.shortfalls.end(), of_quality.begin(), of_quality.end());
   if (worst_of_.worst.empty() && newly_inverted(passage.quality) > 0)
     worst_of_ = diagnose(case_, plan_->for_messages(), passage.quality, morphed);
   time("quality");
@@ -230,8 +232,7 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
   for (PassageLink const& link : sector_->links().all) mismatch = std::max(mismatch, link.mismatch);
   // Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
   double const tolerance =
-      4 * mismatch + displacement_tolerance(std::max(1e-8, case_.motion.conformity_tolerance),
-                                            sector_->links().mesh_size, coordinate_resolution(mesh_));
+      4 * mismatch + std::max(1e-8, case_.motion.conformity_tolerance) * sector_->links().mesh_size;
   for (int r = 0; r < int(seams.size()); ++r) {
     if (passage >= setup_.blades[r].passages) continue;
     seams[r].close(passage, placed_);

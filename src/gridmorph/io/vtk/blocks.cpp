@@ -5,7 +5,6 @@
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
@@ -111,7 +110,7 @@ class Blocks {
       Tag const *connectivity = array_of(cells, "connectivity"), *offsets = array_of(cells, "offsets");
       if (leaf.points == nullptr || connectivity == nullptr || offsets == nullptr)
         file.fail(piece, "holds no points or no cells");
-      leaf.coordinates = file.reals(*leaf.points, 3 * file.count(piece, "NumberOfPoints"));
+      leaf.coordinates = file.coordinates(*leaf.points, 3 * file.count(piece, "NumberOfPoints"));
       auto const nodes = file.integers(*connectivity), ends = file.integers(*offsets);
       std::int64_t begin = 0;
       std::vector<Index32> row;
@@ -196,7 +195,7 @@ class PointFinder {
 /// For each point of a surface the nodes that lie there, in the order of the mesh.
 std::vector<std::vector<Index32>> nodes_at(Leaf const& leaf, Mesh const& mesh, Coordinates const& places) {
   std::vector<std::vector<Index32>> out(leaf.coordinates.size() / 3);
-  double const tolerance = place_tolerance(match_tolerance, mesh.size(), coordinate_resolution(mesh));
+  double const tolerance = match_tolerance * mesh.size();
   if (!(tolerance > 0)) return out;
   PointFinder const finder(leaf.coordinates, tolerance);
   for (Index n = 0; n < places.size(); ++n)

@@ -7,7 +7,6 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/motion/detail/baseline_facets.hpp>
 
 #include <algorithm>
@@ -52,7 +51,7 @@ std::vector<Index> outline_nodes(BoundarySurface const& surface) {
 /// only periodic copies meet. Compares the nodes on the outlines.
 std::vector<Patches> meridionally_connected(Boundary const& boundary, CylindricalFrame const& frame,
                                             Patches const& patches) {
-  double const tolerance = place_tolerance(1e-6, boundary.size(), coordinate_resolution(boundary.mesh()));
+  double const tolerance = 1e-6 * boundary.size();
   struct Mark {
     MeridionalPoint at;
     int member;
@@ -103,13 +102,7 @@ bool same_surface(SlipSurface const& a, SlipSurface const& b) {
 class Finder {
  public:
   Finder(Boundary const& boundary, ResolvedMotion const& motion, SlipSurfaces& out, std::vector<std::string>& notes)
-      : boundary_(boundary),
-        mesh_(boundary.mesh()),
-        motion_(motion),
-        frame_(motion.axis),
-        out_(out),
-        notes_(notes),
-        resolution_(coordinate_resolution(mesh_)) {}
+      : boundary_(boundary), mesh_(boundary.mesh()), motion_(motion), frame_(motion.axis), out_(out), notes_(notes) {}
 
   void run() {
     std::map<int, Patches> by_rule;
@@ -175,9 +168,9 @@ class Finder {
     }
   }
 
-  /// 1e-6 of the patch's size, and the rounding of its coordinates, at least that of single precision, wherever they are.
-  [[nodiscard]] double flat(double extent, std::vector<Vec3> const& points) const {
-    return 1e-6 * extent + std::max(2e-7 * largest_component(points), 2 * resolution_);
+  /// 1e-6 of the patch's size, and the rounding of single-precision coordinates wherever they are.
+  static double flat(double extent, std::vector<Vec3> const& points) {
+    return 1e-6 * extent + 2e-7 * largest_component(points);
   }
 
   void plane(Patches members, std::optional<std::pair<Vec3, Vec3>> const& given) {
@@ -384,7 +377,6 @@ class Finder {
   CylindricalFrame frame_;
   SlipSurfaces& out_;
   std::vector<std::string>& notes_;
-  double resolution_;
   std::string where_;
   Problems problems_;
 };
