@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <system_error>
 
 namespace gridmorph::cli {
@@ -18,34 +17,6 @@ std::string field_name(Measure measure) {
     if (c != '_') out += upper && c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
     upper = c == '_';
   }
-  return out;
-}
-
-void AnyPlan::take_trims(std::vector<Trim> const& trims, double allowed) {
-  refuse_undone(trims, allowed);
-  allowed_trim_ = allowed;
-  for (Trim const& trim : trims) {
-    auto const known = std::find_if(trims_.begin(), trims_.end(),
-                                    [&](Trim const& t) { return t.patch == trim.patch && t.rule == trim.rule; });
-    if (known == trims_.end())
-      trims_.push_back(trim);
-    else if (trim.share() > known->share())
-      *known = trim;
-  }
-}
-
-std::vector<Shortfall> AnyPlan::trimmed() const {
-  std::vector<Shortfall> out;
-  for (Trim const& trim : trims_)
-    if (trim.share() > allowed_trim_)
-      out.push_back({Shortfall::Severity::failure, describe(trim) + "; " + off_surface()});
-  return out;
-}
-
-std::vector<std::string> AnyPlan::trim_notes() const {
-  std::vector<std::string> out;
-  for (Trim const& trim : trims_)
-    if (trim.share() <= allowed_trim_) out.push_back(describe(trim) + "; " + off_surface());
   return out;
 }
 
@@ -78,20 +49,6 @@ CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<M
     fields[m] = Kokkos::View<double*, Kokkos::HostSpace>(values.data(), values.size());
   }
   return fields;
-}
-
-std::vector<Shortfall> mapping_warnings(CaseFile const& case_file) {
-  std::vector<Shortfall> out;
-  for (auto const& use : case_file.fields) {
-    try {
-      use.field->judge();
-    } catch (MotionError const& e) {
-      throw MotionError(use.where + ": " + e.what());
-    }
-    if (auto const text = far_from_model(*use.field); !text.empty() && !use.inverse)
-      out.push_back({Shortfall::Severity::warning, use.where + ": " + text});
-  }
-  return out;
 }
 
 std::vector<std::string> mapping_notes(CaseFile const& case_file) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gridmorph/app/casefile/case_file.hpp>
-#include <gridmorph/app/casefile/field_check.hpp>
 #include <gridmorph/app/cli/diagnosis.hpp>
 #include <gridmorph/app/cli/inspect_text.hpp>
 #include <gridmorph/app/page/picture_mesh.hpp>
@@ -14,9 +13,7 @@
 #include <gridmorph/io/surface/surface_io.hpp>
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/plan/block_graph.hpp>
-#include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
-#include <gridmorph/report/shortfalls.hpp>
 #include <gridmorph/report/step_times.hpp>
 
 #include <nlohmann/json.hpp>
@@ -125,8 +122,6 @@ class AnyPlan {
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
   /// Of the motion as the rules stand; of a sequence, at the step that comes out worst. Moves nothing.
   [[nodiscard]] virtual PlanPrediction predict() { return {}; }
-  /// Displacements that the rules gave so far and slip surfaces undo, in part or for the most part. Those of which most is undone throw.
-  [[nodiscard]] std::vector<Shortfall> trimmed() const;
   /// Of planning.
   [[nodiscard]] virtual StepTimes times() const = 0;
   /// For `gridmorph plan`.
@@ -142,12 +137,6 @@ class AnyPlan {
   [[nodiscard]] virtual NearCells const& near() const = 0;
 
  protected:
-  /// Of displacements that were given. Throws MotionError for those that are undone for the most part.
-  void take_trims(std::vector<Trim> const& trims, double allowed);
-  /// Of those that are small.
-  [[nodiscard]] std::vector<std::string> trim_notes() const;
-  /// What becomes of nodes that are taken off: "they are put back".
-  [[nodiscard]] virtual std::string off_surface() const = 0;
   /// Of freeze_recorded(), for the morpher; null before.
   [[nodiscard]] std::shared_ptr<SmoothingMap const> const& frozen_map() const { return frozen_map_; }
 
@@ -156,8 +145,6 @@ class AnyPlan {
   /// frozen_map() is another one from here on.
   virtual void drop_morpher() = 0;
 
-  std::vector<Trim> trims_;  ///< the worst of every rule and surface
-  double allowed_trim_ = 0;  ///< share
   std::optional<SmoothingRecord> record_;
   std::shared_ptr<SmoothingMap const> frozen_map_;
 };
@@ -171,8 +158,6 @@ CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<M
 /// Makes the folder of AnyPlan::write_stages(). Throws MachineError.
 void make_stage_folder(std::filesystem::path const& folder);
 
-/// Models of `field` rules that are far from some of the nodes: a warning each. Throws MotionError where they lie elsewhere, by all nodes.
-std::vector<Shortfall> mapping_warnings(CaseFile const& case_file);
 /// How far nodes were from the models of `field` rules, and what was left out of these.
 std::vector<std::string> mapping_notes(CaseFile const& case_file);
 
@@ -227,8 +212,6 @@ class AnyMesh {
   /// As pictures see it; the mesh must outlive it.
   [[nodiscard]] virtual std::unique_ptr<page::PictureMesh> pictures() const = 0;
 
-  /// check_fields() of a case file on this mesh.
-  virtual void check_fields(CaseFile const& case_file) const = 0;
   /// Connects, checks, resolves rules, plans. The mesh must outlive the plan. Throws MeshError, MotionError, PlanError.
   [[nodiscard]] virtual std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const = 0;
 };

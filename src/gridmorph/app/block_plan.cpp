@@ -62,15 +62,11 @@ class BlockPlan final : public AnyPlan {
     evaluated_ = true;
     if (when == nullptr) {
       auto out = prepared_.boundary_displacement();
-      take_trims(trims(prepared_.mesh, prepared_.plan(), prepared_.planned.boundary, prepared_.surface, out),
-                 case_file_.guard.max_trim);
+      trimmed_ = trim_note(prepared_.mesh, prepared_.plan(), out);
       return out;
     }
-    BoundaryMotion const now = prepared_.surface.with(motion_at(case_file_, *when));
-    auto out = evaluate(prepared_.mesh, prepared_.planned.boundary, now, prepared_.plan().rotations);
-    take_trims(trims(prepared_.mesh, prepared_.plan(), prepared_.planned.boundary, now, out),
-               case_file_.guard.max_trim);
-    return out;
+    return evaluate(prepared_.mesh, prepared_.planned.boundary, prepared_.surface.with(motion_at(case_file_, *when)),
+                    prepared_.plan().rotations);
   }
 
   std::vector<Vec3> displacement(double share) const override {
@@ -155,7 +151,7 @@ class BlockPlan final : public AnyPlan {
     append(prepared_.surface.motion().notes);
     append(prepared_.surface.notes());
     append(prepared_.plan().notes);
-    append(trim_notes());
+    if (trimmed_) out.push_back(*trimmed_);
     if (frozen_ && !frozen_->cells.empty())
       out.push_back(
           fmt::format("{} cells lose their shape in some of the steps; nodes around them are smoothed in all "
@@ -205,9 +201,6 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] NearCells const& near() const override { return near_; }
 
  private:
-  [[nodiscard]] std::string off_surface() const override {
-    return "they are put back, and the correction is spread along the span";
-  }
   [[nodiscard]] SmoothingRecord new_record() const override { return SmoothingRecord(prepared_); }
   void drop_morpher() override { morpher_.reset(); }
 
@@ -250,7 +243,8 @@ class BlockPlan final : public AnyPlan {
   std::optional<Morpher<Exec>> morpher_;
   std::optional<FrozenSmoothing> frozen_;
   bool evaluated_ = false;
-  double ordering_ = 0;  ///< seconds that the order of chains took to be found
+  double ordering_ = 0;                 ///< seconds that the order of chains took to be found
+  std::optional<std::string> trimmed_;  ///< of the rules as they stand
 };
 
 }  // namespace

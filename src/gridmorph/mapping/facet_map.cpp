@@ -125,8 +125,9 @@ bool FacetMap::Impl::at_free_side(Hit const& hit) const {
   return false;
 }
 
-Stencil FacetMap::stencil(Vec3 const& q) const {
-  Impl::Hit const hit = impl_->closest(q);
+Stencil FacetMap::stencil(Vec3 const& q, Vec3 const& anchor) const {
+  Impl::Hit hit = impl_->closest(anchor);
+  if (!(anchor == q)) hit.point = impl_->shapes[hit.facet].closest(q);
   StructuralFacet const& facet = impl_->facets[hit.facet];
   FacetShape const& shape = impl_->shapes[hit.facet];
   FacetPoint const& p = hit.point;
@@ -153,7 +154,6 @@ Stencil FacetMap::stencil(Vec3 const& q) const {
       double const steps = std::max(std::fabs(da), std::fabs(db));
       if (steps > at_the_edge) {
         out.beyond = norm(da * ta + db * tb);
-        out.far_beyond = steps > 2;
         double const share = impl_->extrapolation == Extrapolation::nearest ? 0 : std::min(1.0, 1 / steps);
         da *= share;
         db *= share;

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <vector>
-
 namespace gridmorph {
 
 std::string describe_mapping(PointField const& field) {
@@ -28,22 +26,6 @@ std::string describe_mapping(PointField const& field) {
   return text;
 }
 
-std::string far_from_model(PointField const& field) {
-  auto const m = field.mapping();
-  std::vector<std::string> what;
-  if (m.far_beyond > 0)
-    what.push_back(
-        fmt::format("{} of {} nodes are beyond the edge of its {} by more than two {} there, by {:.3g} at most, at {}",
-                    m.far_beyond, m.evaluated, field.n_elements() > 0 ? "elements" : "points",
-                    field.n_elements() > 0 ? "of them" : "spacings", m.max_beyond, to_text(m.farthest_beyond, 6)));
-  if (!field.has_max_distance() && m.patches_size > 0 && m.max > MappingLimits::notable * m.patches_size)
-    what.push_back(fmt::format("the node at {} is {:.3g} from it, {:.2g} % of the size of its patches",
-                               to_text(m.farthest, 6), m.max, 100 * m.max / m.patches_size));
-  if (what.empty()) return {};
-  return fmt::format("{}: {}; what they take from it may not be what was meant", field.source(),
-                     fmt::join(what, ", and "));
-}
-
 nlohmann::json mapping_json(PointField const& field) {
   auto const m = field.mapping();
   nlohmann::json json{{"file", field.source()},
@@ -53,9 +35,7 @@ nlohmann::json mapping_json(PointField const& field) {
                       {"evaluated", m.evaluated},
                       {"coincident", m.coincident},
                       {"extrapolated", m.extrapolated},
-                      {"far_beyond", m.far_beyond},
                       {"largest_extrapolation", m.max_beyond},
-                      {"patches_size", m.patches_size > 0 ? nlohmann::json(m.patches_size) : nlohmann::json()},
                       {"mapping_distance", {{"mean", m.mean}, {"max", m.max}}},
                       {"leave_one_out", nullptr}};
   if (m.evaluated == m.coincident) return json;
@@ -70,6 +50,9 @@ std::string describe_inverse(InverseField const& inverse) {
       "taken back by iteration: |X + u(X) - x| is at most {:.3g} (tolerance {:.3g}) after {} iterations of {} node "
       "positions",
       r.residual, inverse.tolerance(), r.iterations, r.evaluated);
+  if (r.held > 0)
+    text += fmt::format("; {} of them went to and fro between elements of the model and were held on one", r.held);
+  if (r.jump > 0) text += fmt::format(", where the displacement jumps by up to {:.3g} to the next", r.jump);
   if (r.one_step > 0)
     text += fmt::format("; one step, x - u(x), leaves {:.3g} at {}", r.one_step, to_text(r.worst_of_one_step, 6));
   return text;
@@ -81,6 +64,8 @@ nlohmann::json inverse_json(InverseField const& inverse) {
           {"iterations", r.iterations},
           {"tolerance", inverse.tolerance()},
           {"residual", r.residual},
+          {"held", r.held},
+          {"jump", r.jump},
           {"residual_of_one_step", r.one_step}};
 }
 

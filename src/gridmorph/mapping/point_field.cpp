@@ -1,6 +1,5 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mapping/detail/merge_nodes.hpp>
 #include <gridmorph/mapping/facet_map.hpp>
 #include <gridmorph/mapping/point_field.hpp>
@@ -50,17 +49,11 @@ struct PointField::Impl {
   mutable MappingDistance mapping;
   mutable double sum = 0;
 
-  mutable double patches_size = 0, slack = 0;
-
   void scale();
-  [[nodiscard]] double largest_displacement() const;
-  [[nodiscard]] Box box() const;
-  /// Of what lies elsewhere than the patches.
-  [[noreturn]] void refuse(std::string const& what) const;
-  void judge_distance(Vec3 const& q, double d) const;
-  void judge_far_beyond(std::int64_t far_beyond, std::int64_t of) const;
   void check(Vec3 const& q, Stencil const& stencil) const;
   [[nodiscard]] Stencil make(Vec3 const& q) const;
+  [[nodiscard]] std::vector<Vec3> sum_of(std::span<double const> factors) const;
+  [[nodiscard]] std::vector<Vec3> rotations(std::vector<Vec3> const& field) const;
   void evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> points, std::span<Vec3> displacement,
                 bool iterates) const;
 };
@@ -95,74 +88,6 @@ void PointField::Impl::check(Vec3 const& q, Stencil const& stencil) const {
            "max_extrapolation", options.max_extrapolation);
 }
 
-double PointField::Impl::largest_displacement() const {
-  double out = 0;
-  for (auto const& field : fields)
-    for (Vec3 const& u : field) out = std::max(out, norm(u));
-  return out;
-}
-
-Box PointField::Impl::box() const {
-  Box out;
-  for (Vec3 const& p : model.nodes.position) out.include(p);
-  return out;
-}
-
-namespace {
-
-std::string span_text(Box const& box) { return fmt::format("{} to {}", to_text(box.low, 4), to_text(box.high, 4)); }
-
-/// Ratios of lengths in other units that people mix up.
-struct Units {
-  double ratio;
-  char const* names;
-};
-constexpr std::array<Units, 4> mixed_up{
-    {{1000, "mm and m"}, {25.4, "mm and inch"}, {39.37, "inch and m"}, {3.281, "foot and m"}}};
-
-/// "; the file is 1000 times as large, as mm and m: length_scale = 0.001"
-std::string units_hint(double model, double patches, double length_scale) {
-  constexpr double alike = 0.1;
-  if (!(model > 0) || !(patches > 0)) return {};
-  for (Units const& u : mixed_up)
-    for (bool const larger : {true, false}) {
-      double const ratio = larger ? u.ratio : 1 / u.ratio;
-      if (std::fabs(model / patches / ratio - 1) < alike)
-        return fmt::format("; its size is {:.4g} times theirs, as with {}: length_scale = {:.4g} would fit",
-                           model / patches, u.names, length_scale / ratio);
-    }
-  return {};
-}
-
-}  // namespace
-
-void PointField::Impl::refuse(std::string const& what) const {
-  Box const own = box();
-  throw MotionError(
-      fmt::format("{}: {}; the points of the file lie from {}{}. Check length_scale, the order and signs of its "
-                  "columns, frame, and whether "
-                  "the file is whole; max_distance, the largest distance that is meant, allows more",
-                  model.nodes.source, what, span_text(own),
-                  units_hint(distance(own.low, own.high), patches_size, options.length_scale)));
-}
-
-void PointField::Impl::judge_distance(Vec3 const& q, double d) const {
-  if (options.max_distance > 0 || patches_size == 0 || d <= MappingLimits::distance * patches_size + slack) return;
-  refuse(fmt::format(
-      "the node at {} is {:.4g} from the {}, {:.3g} % of the size {:.4g} of its patches, more than {:.3g} %",
-      to_text(q, 6), d, facets ? "elements" : "nearest point", 100 * d / patches_size, patches_size,
-      100 * MappingLimits::distance));
-}
-
-void PointField::Impl::judge_far_beyond(std::int64_t far_beyond, std::int64_t of) const {
-  if (options.max_distance > 0 || patches_size == 0 || slack > 0 ||
-      double(far_beyond) <= MappingLimits::far_beyond * double(of))
-    return;
-  refuse(fmt::format("{} of {} nodes lie beyond the edge of its {} by more than two {} there, more than {:.3g} %",
-                     far_beyond, of, facets ? "elements" : "points", facets ? "of them" : "spacings",
-                     100 * MappingLimits::far_beyond));
-}
-
 Stencil PointField::Impl::make(Vec3 const& q) const {
   if (!std::isfinite(norm(q)))
     throw MotionError(fmt::format("{}: asked for the displacement at ({}, {}, {}), which is not finite",
@@ -188,16 +113,27 @@ void count(MappingDistance& to, double& sum, Vec3 const& q, Stencil const& stenc
   }
   ++to.evaluated;
   to.coincident += stencil.coincident ? 1 : 0;
-  to.far_beyond += stencil.far_beyond ? 1 : 0;
   sum += stencil.distance;
 }
 
 }  // namespace
 
+std::vector<Vec3> PointField::Impl::rotations(std::vector<Vec3> const& field) const {
+  return facets && options.turn_offset ? nodal_rotations(model, field) : std::vector<Vec3>();
+}
+
+std::vector<Vec3> PointField::Impl::sum_of(std::span<double const> factors) const {
+  std::vector<Vec3> sum(model.nodes.size());
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (factors[f] == 0) continue;
+    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += factors[f] * fields[f][n];
+  }
+  return sum;
+}
+
 void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> at, std::span<Vec3> displacement,
                                 bool iterates) const {
-  std::vector<Vec3> rotation;
-  if (facets && options.turn_offset) rotation = nodal_rotations(model, field);
+  std::vector<Vec3> const rotation = rotations(field);
   if (iterates) {
     for (std::size_t n = 0; n < at.size(); ++n) displacement[n] = apply(make(at[n]), field, rotation);
     return;
@@ -233,7 +169,6 @@ void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 c
   mapping.evaluated += here.evaluated;
   mapping.coincident += here.coincident;
   mapping.extrapolated += here.extrapolated;
-  mapping.far_beyond += here.far_beyond;
   sum += here_sum;
 }
 
@@ -266,12 +201,13 @@ void PointField::operator()(std::span<Vec3 const> points, std::span<Vec3> displa
 
 void PointField::evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
                           bool iterates) const {
-  std::vector<Vec3> field(size());
-  for (std::size_t f = 0; f < factors.size(); ++f) {
-    if (factors[f] == 0) continue;
-    for (std::size_t n = 0; n < field.size(); ++n) field[n] += factors[f] * impl_->fields[f][n];
-  }
-  impl_->evaluate(field, points, displacement, iterates);
+  impl_->evaluate(impl_->sum_of(factors), points, displacement, iterates);
+}
+
+Vec3 PointField::held(std::span<double const> factors, Vec3 const& point, Vec3 const& anchor) const {
+  std::vector<Vec3> const field = impl_->sum_of(factors);
+  Stencil const stencil = impl_->facets ? impl_->facets->stencil(point, anchor) : impl_->points->stencil(point, anchor);
+  return apply(stencil, field, impl_->rotations(field));
 }
 
 std::size_t PointField::size() const { return impl_->model.nodes.size(); }
@@ -286,47 +222,7 @@ MappingDistance PointField::mapping() const {
   std::lock_guard const lock(impl_->turn);
   MappingDistance all = impl_->mapping;
   if (all.evaluated > 0) all.mean = impl_->sum / double(all.evaluated);
-  all.patches_size = impl_->patches_size;
   return all;
-}
-
-bool PointField::has_max_distance() const { return impl_->options.max_distance > 0; }
-double PointField::largest_displacement() const { return impl_->largest_displacement(); }
-
-void PointField::expect(std::span<Vec3 const> nodes, double slack) const {
-  Box box;
-  for (Vec3 const& p : nodes) box.include(p);
-  if (nodes.empty()) return;
-  impl_->patches_size = std::max(impl_->patches_size, distance(box.low, box.high));
-  impl_->slack = slack;
-  if (impl_->options.max_distance > 0 || impl_->patches_size == 0) return;
-  constexpr std::size_t most = 4000;
-  std::size_t const step = (nodes.size() + most - 1) / most;
-  // Distances first: they take less than a search for neighbours far away.
-  Vec3 worst;
-  double largest = 0;
-  for (std::size_t n = 0; n < nodes.size(); n += step) {
-    double const d = impl_->points->nearest(nodes[n]).second;
-    if (!(d > largest)) continue;
-    largest = d;
-    worst = nodes[n];
-  }
-  if (largest > MappingLimits::distance * impl_->patches_size + slack)
-    impl_->judge_distance(worst, impl_->facets ? impl_->facets->stencil(worst).distance : largest);
-  std::int64_t looked_at = 0, far_beyond = 0;
-  for (std::size_t n = 0; n < nodes.size(); n += step, ++looked_at) {
-    Stencil const stencil = impl_->make(nodes[n]);
-    impl_->judge_distance(nodes[n], stencil.distance);
-    far_beyond += stencil.far_beyond ? 1 : 0;
-  }
-  impl_->judge_far_beyond(far_beyond, looked_at);
-}
-
-void PointField::judge() const {
-  MappingDistance const m = mapping();
-  if (m.evaluated == 0) return;
-  impl_->judge_distance(m.farthest, m.max);
-  impl_->judge_far_beyond(m.far_beyond, m.evaluated);
 }
 
 MappingError PointField::leave_one_out() const {

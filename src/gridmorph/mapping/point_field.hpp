@@ -24,16 +24,6 @@ struct MappingDistance {
   std::int64_t extrapolated = 0;  ///< beyond the edge of the model
   double max_beyond = 0;          ///< largest distance from that edge [length]
   Vec3 farthest_beyond;           ///< where max_beyond was found
-  std::int64_t far_beyond = 0;    ///< beyond it by more than two spacings of the points, or two elements, there
-  double patches_size =
-      0;  ///< diagonal of the patches that take their displacement from the field, by expect(); 0: not known
-};
-
-/// How far models may lie from the patches that take their displacement from them, where FieldOptions::max_distance says nothing.
-struct MappingLimits {
-  static constexpr double distance = 0.05;    ///< share of the patches' size
-  static constexpr double far_beyond = 0.05;  ///< share of the nodes that lie beyond the edge by more than two spacings
-  static constexpr double notable = 0.01;     ///< distances above this share are a warning
 };
 
 /// Leave-one-out: the displacement of nodes of the model, interpolated from the others, against their own. Neighbours are
@@ -76,6 +66,8 @@ class PointField {
   /// `iterates`: the points are no nodes but on the way to some; they are neither kept nor counted in mapping().
   void evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
                 bool iterates = false) const;
+  /// At one point, which is no node, by the element or the points that `anchor`, a place nearby, is mapped from.
+  [[nodiscard]] Vec3 held(std::span<double const> factors, Vec3 const& point, Vec3 const& anchor) const;
 
   [[nodiscard]] std::size_t size() const;        ///< nodes kept
   [[nodiscard]] std::size_t n_elements() const;  ///< 0: a cloud of points
@@ -85,13 +77,6 @@ class PointField {
   [[nodiscard]] std::string where(std::size_t node) const;  ///< "blade.csv:14"
   [[nodiscard]] std::vector<std::string> const& notes() const;
   [[nodiscard]] MappingDistance mapping() const;
-  /// These nodes will ask for their displacement: throws MotionError where the model lies elsewhere (MappingLimits), before any search of
-  /// theirs takes its time. `slack`: so much farther they may be [length]. Looks at 4000 of them, evenly; judge() knows all.
-  void expect(std::span<Vec3 const> nodes, double slack = 0) const;
-  /// Throws as expect() does, by all positions that were evaluated. Nothing where that was not called.
-  void judge() const;
-  [[nodiscard]] double largest_displacement() const;
-  [[nodiscard]] bool has_max_distance() const;
   /// Of the worst of the fields. Cost O(m log n) for a sample of m <= 2000 nodes.
   [[nodiscard]] MappingError leave_one_out() const;
 

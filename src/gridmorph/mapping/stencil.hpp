@@ -22,7 +22,6 @@ struct Stencil {
   Vec3 lever;               ///< from the model's surface to the position; zero for points
   double distance = 0;      ///< to the nearest point, or to the surface of the elements [length]
   double beyond = 0;        ///< beyond the edge of the model; 0 inside [length]
-  bool far_beyond = false;  ///< by more than two spacings of its points, or two of its elements, there
   bool coincident = false;
 };
 

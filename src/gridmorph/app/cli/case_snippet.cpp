@@ -205,19 +205,7 @@ class Snippet {
     if (s.axis && !s.unstructured && !guessed_ && bodies_.size() == 1) blade_ = blade_of(bodies_.front());
   }
 
-  /// Why there is nothing that could be moved, so that no case file could run; empty where there is.
-  [[nodiscard]] std::string why_none() const {
-    bool const blocks_alone = !s_.unstructured && s_.open_faces;  // open faces have a rule of their own
-    if (!bodies_.empty() || blocks_alone || (!s_.unstructured && !s_.boundaries.empty())) return {};
-    return s_.boundaries.empty()
-               ? "the file names no boundary, and what has no name cannot be moved; name its boundaries in the mesh "
-                 "generator or in a side file (gridmorph inspect --write-side-file)"
-               : "no boundary of the mesh could be a wall that moves; name one in the mesh generator or in a side file "
-                 "(gridmorph inspect --write-side-file)";
-  }
-
   std::string text() {
-    if (auto const why = why_none(); !why.empty()) return "# none: " + why + "\n";
     head();
     for (auto const& body : bodies_) moving(body);
     others();
@@ -299,15 +287,13 @@ class Snippet {
 
   void others() {
     bool const one_blade = blade_ >= 0;
-    std::vector<int> planes, loose, far, rest, ranked, slides;
-    // A wall goes off what is curved as it moves, and slip would undo its motion there; overset boundaries are no surface of anything.
+    std::vector<int> planes, surfaces, far, rest, ranked, slides;
     auto const sort_in = [&](int b, std::vector<int>& standing) {
       bool const meets = meets_a_moving_one(b);
-      bool const overset = is_kind(s_.boundaries[std::size_t(b)], PatchKind::connection);
-      (meets && s_.boundaries[std::size_t(b)].flat && !overset ? planes
-       : meets && (has_facets() || overset)                    ? loose
-       : meets                                                 ? ranked
-                                                               : standing)
+      (meets && s_.boundaries[std::size_t(b)].flat ? planes
+       : meets && has_facets()                     ? surfaces
+       : meets                                     ? ranked
+                                                   : standing)
           .push_back(b);
     };
     for (int const b : of_role(Role::symmetry)) {
@@ -325,8 +311,8 @@ class Snippet {
     rule(names(slides), "", "rule = \"circumferential-slide\"" + of_blade);
     if (one_blade && !s_.periodics.empty()) rule({"type:periodic"}, "", "rule = \"follow\"" + of_blade);
     rule(names(planes), "nodes slide on the plane", "rule = \"slip\"\nsurface = \"plane\"");
-    rule(names(loose), "moving walls end here and take the nodes along; on a surface that stays: slip, baseline",
-         "rule = \"free\"");
+    rule(names(surfaces), "moving walls end here: nodes slide on the surface as it is",
+         "rule = \"slip\"\nsurface = \"baseline\"");
     rule(names(far), "far away", "rule = \"fixed\"");
     rule(names(rest), "", "rule = \"fixed\"");
     rule(names(ranked), "where a moving wall ends here, the wall decides", "rule = \"fixed\"\nrank = 1");
@@ -383,10 +369,5 @@ class Snippet {
 }  // namespace
 
 std::string case_snippet(MeshSummary const& s, SnippetOptions const& options) { return Snippet(s, options).text(); }
-
-std::string why_no_case(MeshSummary const& s) {
-  SnippetOptions const options;
-  return Snippet(s, options).why_none();
-}
 
 }  // namespace gridmorph::cli

@@ -32,9 +32,7 @@ FieldOptions read_options(TableReader& table) {
   options.factor = table.number("factor").value_or(1);
   if (auto const d = table.number("max_distance")) {
     options.max_distance = *d;
-    if (*d <= 0)
-      table.problem("max_distance",
-                    fmt::format("must be positive, found {}; remove it for 5 % of the size of the patches", *d));
+    if (*d <= 0) table.problem("max_distance", fmt::format("must be positive, found {}; remove it for no limit", *d));
   }
   if (auto const word = table.choice("extrapolation", {"linear", "nearest"}))
     options.extrapolation = Extrapolation(*word);
@@ -246,7 +244,10 @@ TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& opti
                           [field, when, now, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
                             (*inverse)([&](std::span<Vec3 const> places, std::span<Vec3> there,
                                            bool iterates) { field->at(when.periods, now, places, there, iterates); },
-                                       share, points, u);
+                                       share, points, u,
+                                       [&](Vec3 const& place, Vec3 const& anchor) {
+                                         return field->held(when.periods, now, place, anchor);
+                                       });
                           }};
     return shared_field(description, share, [field, when, now](std::span<Vec3 const> points, std::span<Vec3> u) {
       field->at(when.periods, now, points, u);
@@ -331,7 +332,11 @@ TimedRule read_field(TableReader& table, RuleContext const& shared, CaseFile& ou
                                     constexpr double all = 1;
                                     field->evaluate({&all, 1}, places, there, iterates);
                                   },
-                                  share, points, u);
+                                  share, points, u,
+                                  [&](Vec3 const& place, Vec3 const& anchor) {
+                                    constexpr double all = 1;
+                                    return field->held({&all, 1}, place, anchor);
+                                  });
                             }};
       };
       return rule;
