@@ -2,8 +2,8 @@
 # process per test takes longer than most tests; where split is on, one per test, or per value of a suite's parameter. Asking when ctest runs, not
 # when the program is built, lets machines build what they cannot run.
 #
-# Given are name, program, split, shared_setup and threads, a list. With shared_setup, sanitizers run a suite in one process: what it sets up is made
-# once.
+# Given are name, program, split, shared_setup, threads, a list of which the first is every day's, and nightly, a list of regular expressions
+# for names of tests. With shared_setup, sanitizers run a suite in one process: what it sets up is made once.
 cmake_policy(VERSION 3.25)
 if(NOT EXISTS "${program}")
   add_test("${name}.is_not_built" "${program}")
@@ -21,8 +21,9 @@ string(REGEX MATCHALL "[^\n]+" lines "${listing}")
 set(filters "")
 # Sanitizers find in one thread nothing that they do not find in several.
 set(counts "${threads}")
+list(GET threads 0 every_day)
 if(DEFINED ENV{GRIDMORPH_TEST_REDUCED})
-  list(GET threads -1 counts)
+  list(GET threads 0 counts)
   if(shared_setup)
     set(split FALSE)
   endif()
@@ -49,13 +50,20 @@ foreach(line IN LISTS lines)
   string(REGEX REPLACE "[.]$" "" group "${group}")
   foreach(n IN LISTS counts)
     set(test "${name}.${group}")
-    if(NOT n STREQUAL threads)
+    set(label "")
+    if(NOT n EQUAL every_day)
       set(test "${name}_threads_${n}.${group}")
+      set(label nightly)
     endif()
+    foreach(late IN LISTS nightly)
+      if("${name}.${group}" MATCHES "^${name}[.]${late}")
+        set(label nightly)
+      endif()
+    endforeach()
     add_test("${test}" "${program}" "--gtest_filter=${filter}" --gtest_brief=1)
     # Skipped: where no test passed and none failed. A program says so in its last lines.
     set_tests_properties(
-      "${test}" PROPERTIES ENVIRONMENT "OMP_NUM_THREADS=${n};OMP_PROC_BIND=false;OMP_WAIT_POLICY=passive"
+      "${test}" PROPERTIES LABELS "${label}" ENVIRONMENT "OMP_NUM_THREADS=${n};OMP_PROC_BIND=false;OMP_WAIT_POLICY=passive"
                            SKIP_REGULAR_EXPRESSION "PASSED  \\] 0 tests\\.\n(\\[  SKIPPED \\][^\n]*\n)+$")
   endforeach()
 endforeach()

@@ -1,14 +1,34 @@
-# Debian packages and Debian source packages. Source this file; it needs `say` and `fail`. No host is named here:
+# Debian packages and Debian source packages. Source this file; it needs `say`, `fail` and $apt_log. No host is named here:
 # everything comes through the machine's own entries in /etc/apt.
 
 apt_updated=no
+apt_patience=900 apt_pause=3 # seconds to wait for another installation, in all and between two looks
 
 have_apt() { command -v apt-get >/dev/null 2>&1; }
+
+# apt_run ARGUMENT...: apt-get, whose talk goes to the end of $apt_log. Only one installation has the package database at a time, and a fresh
+# machine often runs one of its own: this one waits for its end.
+apt_run() {
+  local talk waited=no start=$SECONDS
+  mkdir -p "$(dirname "$apt_log")"
+  while :; do
+    talk=$(DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -q "$@" 2>&1) && break
+    printf '%s\n' "$talk" >>"$apt_log"
+    if ! grep -q 'Could not get lock\|Unable to acquire\|Unable to lock' <<<"$talk" || ((SECONDS - start >= apt_patience)); then
+      tail -n 20 <<<"$talk" >&2
+      fail "apt-get ${*: -1} failed; all that it said is in $apt_log"
+    fi
+    [ $waited = yes ] || say "waiting for another installation to end: $(grep -m 1 -o 'Could not get lock.*\|Unable to.*' <<<"$talk")"
+    waited=yes
+    sleep "$apt_pause"
+  done
+  printf '%s\n' "$talk" >>"$apt_log"
+}
 
 apt_update() {
   [ $apt_updated = no ] || return 0
   say "updating the list of Debian packages"
-  apt-get -q update >&2
+  apt_run update
   apt_updated=yes
 }
 
@@ -35,7 +55,7 @@ apt_install() {
   [ "$(id -u)" -eq 0 ] || fail "these Debian packages are missing; run as root: apt-get install ${missing[*]}"
   apt_update
   say "installing Debian packages: ${missing[*]}"
-  DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install "${missing[@]}" >&2
+  apt_run -y --no-install-recommends install "${missing[@]}"
 }
 
 # debian_source_entry SUITE: the machine's own entry for the Debian archive, rewritten to source packages of SUITE.

@@ -5,14 +5,11 @@
 #include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/mapping/inverse_field.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
-#include <gridmorph/mapping/point_field.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <functional>
-#include <memory>
-#include <random>
 
 namespace gridmorph::testing {
 namespace {
@@ -104,67 +101,6 @@ TEST(InverseField, IsRefusedWhereItDoesNotContractWithTheResidual) {
   InverseField const few("far.csv", 1e-12, 3);
   test::expect_all_in(test::message_of<MotionError>([&] { (void)apply(few, linear, nodes()); }),
                       {"after 3 iterations", "tolerance 1e-12", "raise inverse_iterations"});
-}
-
-/// A shell of 7 x 9 nodes, curved, and its untwist by 4 degrees from root to tip; places off it by up to a tenth of its size.
-class CoarseShell {
- public:
-  explicit CoarseShell(unsigned seed) : random_(seed) {
-    double const curve = between(-0.6, 0.6), size = between(0.5, 2), twist = between(0.05, 0.07);
-    StructuralModel model;
-    model.nodes.source = "shell.csv";
-    for (int j = 0; j < 9; ++j)
-      for (int i = 0; i < 7; ++i) {
-        double const s = i / 6.0 - 0.5, z = j / 8.0, angle = twist * z;
-        Vec3 const x{size * s, size * curve * (0.25 - s * s) + 0.05 * size * std::sin(3 * z), 2 * size * z};
-        model.nodes.position.push_back(x);
-        model.nodes.displacement.push_back({std::cos(angle) * x.x - std::sin(angle) * x.y - x.x,
-                                            std::sin(angle) * x.x + std::cos(angle) * x.y - x.y, 0.002 * x.z});
-        model.nodes.line.push_back(std::int64_t(model.nodes.line.size()) + 2);
-      }
-    for (int j = 0; j < 8; ++j)
-      for (int i = 0; i < 6; ++i) {
-        int const n = i + 7 * j;
-        model.facets.push_back({{n, n + 1, n + 8, n + 7}, 1});
-      }
-    for (int n = 0; n < 2000; ++n)
-      cold.push_back({size * between(-0.5, 0.5), size * (0.25 * curve + between(-0.2, 0.2)), 2 * size * between(0, 1)});
-    this->size = 2 * size;
-    field = std::make_unique<PointField>(std::move(model), FieldOptions{});
-  }
-
-  std::vector<Vec3> cold;
-  double size = 0;
-  std::unique_ptr<PointField> field;
-
- private:
-  double between(double low, double high) { return std::uniform_real_distribution<>(low, high)(random_); }
-  std::mt19937 random_;
-};
-
-TEST(InverseField, ComesBackFromCoarseShellsWhereIterationsWouldGoToAndFro) {
-  constexpr double all = 1;
-  Index held = 0;
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    CoarseShell const shell(seed);
-    auto const u = [&](std::span<Vec3 const> x, std::span<Vec3> out, bool iterates) {
-      shell.field->evaluate({&all, 1}, x, out, iterates);
-    };
-    std::vector<Vec3> hot(shell.cold.size()), back(hot.size()), again(hot.size());
-    u(shell.cold, hot, true);
-    for (std::size_t n = 0; n < hot.size(); ++n) hot[n] += shell.cold[n];
-    InverseField const inverse("shell.csv", 1e-9 * shell.size, 100);
-    ASSERT_NO_THROW(inverse(u, 1, hot, back, [&](Vec3 const& x, Vec3 const& anchor) {
-      return shell.field->held({&all, 1}, x, anchor);
-    })) << seed;
-    for (std::size_t n = 0; n < hot.size(); ++n) back[n] += hot[n];
-    u(back, again, true);  // there once more
-    for (std::size_t n = 0; n < hot.size(); ++n)
-      EXPECT_LT(distance(back[n] + again[n], hot[n]), 2e-9 * shell.size) << seed << " " << n;
-    EXPECT_EQ(inverse.report().jump, 0) << seed;
-    held += inverse.report().held;
-  }
-  EXPECT_GT(held, 0) << "no shell needs it";
 }
 
 class PlacedField : public ::testing::Test {

@@ -8,7 +8,7 @@ PointCloud nodes_of(std::string const& text) { return parse_point_cloud(text, "n
 PointCloud four_nodes() {
   return nodes_of("id,x,y,z,dx,dy,dz\n10,0,0,0,0,0,1\n20,1,0,0,0,0,2\n30,1,1,0,0,0,3\n40,0,1,0,0,0,4\n");
 }
-std::vector<std::string> problems_in(std::string const& elements) {
+std::vector<std::string> model_problems_in(std::string const& elements) {
   return error_lines([&] { (void)parse_elements(elements, "e.csv", four_nodes()); });
 }
 
@@ -32,38 +32,38 @@ TEST(StructuralModel, CountsNodesWithoutIds) {
 }
 
 TEST(StructuralModel, ReportsNodesThatAreNotThereWithLineAndElement) {
-  auto const lines = problems_in("1,10,20,30\n2,10,20,99\n3,11,20,30\n");
+  auto const lines = model_problems_in("1,10,20,30\n2,10,20,99\n3,11,20,30\n");
   EXPECT_TRUE(reported(lines, "e.csv:2: ", {"element 2", "node 99", "not in n.csv"}));
   EXPECT_TRUE(reported(lines, "e.csv:3: ", {"element 3", "node 11"}));
 }
 
 TEST(StructuralModel, ReportsLinesCutShort) {
-  EXPECT_TRUE(reported(problems_in("1,10,20,30\n2,10,2"), "e.csv:2: ", {"found 3 columns", "cut short"}));
-  EXPECT_TRUE(reported(problems_in("1,10,20,30\n2,10,20,3"), "e.csv:2: ", {"node 3"}));
+  EXPECT_TRUE(reported(model_problems_in("1,10,20,30\n2,10,2"), "e.csv:2: ", {"found 3 columns", "cut short"}));
+  EXPECT_TRUE(reported(model_problems_in("1,10,20,30\n2,10,20,3"), "e.csv:2: ", {"node 3"}));
 }
 
 TEST(StructuralModel, ReportsNumbersThatAreNotWholeAndNodesNamedTwice) {
-  EXPECT_TRUE(reported(problems_in("1,10,20.5,30\n"), "e.csv:1: ", {"\"20.5\"", "whole number"}));
-  EXPECT_TRUE(reported(problems_in("1,10,nan,30\n"), "e.csv:1: ", {"\"nan\"", "whole number"}));
-  EXPECT_TRUE(reported(problems_in("1,10,20,10\n"), "e.csv:1: ", {"names node 10 twice"}));
+  EXPECT_TRUE(reported(model_problems_in("1,10,20.5,30\n"), "e.csv:1: ", {"\"20.5\"", "whole number"}));
+  EXPECT_TRUE(reported(model_problems_in("1,10,nan,30\n"), "e.csv:1: ", {"\"nan\"", "whole number"}));
+  EXPECT_TRUE(reported(model_problems_in("1,10,20,10\n"), "e.csv:1: ", {"names node 10 twice"}));
 }
 
 TEST(StructuralModel, ReportsIdsUsedTwice) {
-  EXPECT_TRUE(reported(problems_in("1,10,20,30\n1,10,30,40\n"), "e.csv:2: ", {"id 1", "line 1"}));
+  EXPECT_TRUE(reported(model_problems_in("1,10,20,30\n1,10,30,40\n"), "e.csv:2: ", {"id 1", "line 1"}));
   auto const twice = nodes_of("id,x,y,z,dx,dy,dz\n1,0,0,0,0,0,0\n1,1,0,0,0,0,0\n");
   EXPECT_TRUE(reported(error_lines([&] { (void)parse_elements("1,1,1,1\n", "e.csv", twice); }),
                        "n.csv:3: ", {"id 1", "n.csv:2"}));
 }
 
 TEST(StructuralModel, ReportsFilesWithoutElementsAndForeignHeaders) {
-  EXPECT_TRUE(reported(problems_in("# nothing\n"), "e.csv: ", {"no elements"}));
-  EXPECT_TRUE(reported(problems_in("element;a;b;c\n1;10;20;30\n"), "e.csv:1: ", {"header", "id,n1,n2,n3,n4"}));
+  EXPECT_TRUE(reported(model_problems_in("# nothing\n"), "e.csv: ", {"no elements"}));
+  EXPECT_TRUE(reported(model_problems_in("element;a;b;c\n1;10;20;30\n"), "e.csv:1: ", {"header", "id,n1,n2,n3,n4"}));
 }
 
 TEST(StructuralModel, ListsNoMoreThanTenProblems) {
   std::string text;
   for (int n = 0; n < 100; ++n) text += std::to_string(n) + ",10,20,99\n";
-  EXPECT_EQ(problems_in(text).size(), 11u);
+  EXPECT_EQ(model_problems_in(text).size(), 11u);
 }
 
 TEST(StructuralModel, ReadsComplexShapes) {

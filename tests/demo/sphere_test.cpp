@@ -13,14 +13,14 @@ namespace {
 
 using namespace hybrid_checks;
 
-struct Variant {
+struct SphereVariant {
   char const* name;
   SphereOptions options;
   double determinant;  ///< smallest: where layers end early, flat tetrahedra follow
 };
 
-std::vector<Variant> variants() {
-  std::vector<Variant> all{
+std::vector<SphereVariant> sphere_variants() {
+  std::vector<SphereVariant> all{
       {"prisms", {}, 0.05}, {"hexahedra", {}, 0.05}, {"mixed", {}, 0.05}, {"cube", {}, 0.03}, {"near", {}, 0.005}};
   for (auto& v : all) v.options.elements = 40'000;
   all[1].options.layer_elements = LayerElements::hexahedra;
@@ -33,7 +33,7 @@ std::vector<Variant> variants() {
   return all;
 }
 
-class Sphere : public testing::TestWithParam<Variant> {
+class Sphere : public testing::TestWithParam<SphereVariant> {
  protected:
   SphereOptions const& options = GetParam().options;
   Mesh mesh = make_sphere(options);
@@ -65,8 +65,10 @@ TEST_P(Sphere, BoundariesAreWhereTheyWereAskedFor) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, Sphere, testing::ValuesIn(variants()),
-                         [](testing::TestParamInfo<Variant> const& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Options, Sphere, testing::ValuesIn(sphere_variants()),
+                         [](testing::TestParamInfo<SphereVariant> const& info) {
+                           return std::string(info.param.name);
+                         });
 
 TEST(SphereMesh, HasItsDefaultSizeAndFillsTheShell) {
   SphereOptions const options;

@@ -74,38 +74,6 @@ TEST(PassageWake, OfHexahedraTurnsWithItsBlade) {
   EXPECT_EQ(one.inverted(morphed.x), 0);
 }
 
-/// A turn of the blade alone, as stagger, which its wake takes over and fades.
-Motion staggered(double fade, double width) {
-  Motion m = turned(0);
-  RigidTransform const turn = rotation_about({0, 0, 0}, {0, 1, 0}, 0.17);
-  m.rules[0].rule = function_rule([turn](Vec3 const& p) {
-    Vec3 const u = turn(p) - p;  // on the surface of revolution
-    double const r = std::hypot(p.y, p.z), now = std::hypot(p.y + u.y, p.z + u.z);
-    return Vec3{p.x + u.x, (p.y + u.y) * r / now, (p.z + u.z) * r / now} - p;
-  });
-  std::get<WakeRule>(m.rules[1].rule).fade = fade;
-  m.regions[0].wake->width = width;
-  m.regions[0].wake->length = 0.1;
-  return m;
-}
-
-TEST(PassageWake, FadesToWhatTheFieldBesideItDoes) {
-  PreparedMorph const prepared = prepare(HostInstance(), small_passage(), staggered(0.02, 0.03), {});
-  std::vector<Vec3> points;
-  for (Index n = 0; n < prepared.mesh.n_nodes(); n += 17)
-    if (prepared.mesh.coordinates[n].x > 0.1) points.push_back(prepared.mesh.coordinates[n]);
-  ASSERT_GT(points.size(), 20U);
-  std::vector<Vec3> wake(points.size()), follow(points.size());
-  prepared.surface.displacement(1, points, wake);
-  prepared.surface.displacement(3, points, follow);
-  double moved = 0;
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    EXPECT_EQ(wake[n], follow[n]) << n;
-    moved = std::max(moved, norm(wake[n]));
-  }
-  EXPECT_GT(moved, 1e-3);
-}
-
 /// Whatever the blade does, copies one pitch apart get copies of the displacement.
 TEST(PassageWake, RepeatsFromPassageToPassage) {
   Mesh const mesh = small_passage();

@@ -1,6 +1,7 @@
 // Shared by the tests of files: a folder of their own, and a way to look at a file without the code under test.
 #pragma once
 
+#include "support/expect_error.hpp"
 #include "support/shared_mesh.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -46,18 +47,6 @@ inline double largest_mismatch(Mesh const& mesh, bool periodic) {
         }
   }
   return worst;
-}
-
-/// The message of the exception of type E that f throws; a failure if it throws none.
-template <class E, class F>
-std::string message_of(F f) {
-  try {
-    f();
-  } catch (E const& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
 }
 
 }  // namespace gridmorph::test

@@ -67,11 +67,11 @@ std::multiset<std::vector<int>> given(Faces const& f) {
   return out;
 }
 
-Vec3 wavy(double s, double t) { return {s, t, 0.1 * std::sin(5 * s + 3 * t)}; }
+Vec3 wavy_sheet(double s, double t) { return {s, t, 0.1 * std::sin(5 * s + 3 * t)}; }
 
 TEST(FaceGrids, OneGridComesBackWhole) {
   for (unsigned seed = 0; seed < 8; ++seed) {
-    Faces f = sheet(7, 4, false, wavy);
+    Faces f = sheet(7, 4, false, wavy_sheet);
     shuffle(f, seed);
     FaceGrids const found = find_face_grids(f.faces, f.points);
     EXPECT_EQ(found.left_over, 0u);
@@ -140,7 +140,7 @@ TEST(FaceGrids, ABoxHasSixSides) {
 
 // An L: from its concave corner cuts go on to the border.
 TEST(FaceGrids, AConcaveCornerIsCut) {
-  Faces f = sheet(7, 7, false, wavy);
+  Faces f = sheet(7, 7, false, wavy_sheet);
   std::erase_if(f.faces, [&](GridFacet const& face) { return face[0] % 7 >= 3 && face[0] / 7 >= 4; });
   FaceGrids const found = find_face_grids(f.faces, f.points);
   EXPECT_EQ(found.left_over, 0u);
@@ -149,7 +149,7 @@ TEST(FaceGrids, AConcaveCornerIsCut) {
 }
 
 TEST(FaceGrids, TrianglesAreLeftOver) {
-  Faces f = sheet(5, 5, false, wavy);
+  Faces f = sheet(5, 5, false, wavy_sheet);
   GridFacet const face = f.faces.back();
   f.faces.back() = {face[0], face[1], face[2], -1};
   f.faces.push_back({face[0], face[2], face[3], -1});

@@ -18,11 +18,11 @@
 namespace gridmorph::test {
 namespace {
 
-enum RuleNumber { blade, ends, sides };
+enum PlaneRule { blade_rule, ends_rule, sides_rule };
 
 constexpr int blades = 11;
 
-SectionsRule redesign() {
+SectionsRule plane_redesign() {
   SectionsRule rule;
   rule.twist_rad = {{{0, 0.06}}};
   rule.stagger_rad = {{{0, -0.03}}};
@@ -31,7 +31,7 @@ SectionsRule redesign() {
   return rule;
 }
 
-Motion rules(Rule const& of_the_blade, Axis const& axis) {
+Motion plane_rules(Rule const& of_the_blade, Axis const& axis) {
   Motion motion;
   motion.axis = axis;
   motion.rules = {{{"blade"}, of_the_blade, 0, "blade"},
@@ -52,9 +52,9 @@ std::vector<ByRule> displacements(BoundaryMotion const& motion, Mesh const& plan
       for (Index32 const n : patch.faces[f]) at_end[std::size_t(n)] = 1;
   std::vector<ByRule> out(at_end.size());
   for (std::size_t n = 0; n < out.size(); ++n)
-    for (int const r : {blade, ends, sides}) {
+    for (int const r : {blade_rule, ends_rule, sides_rule}) {
       Vec3 const p = plane.coordinates[Index(n)];
-      if (r != ends || at_end[n] != 0) motion.displacement(r, {&p, 1}, {&out[n][std::size_t(r)], 1});
+      if (r != ends_rule || at_end[n] != 0) motion.displacement(r, {&p, 1}, {&out[n][std::size_t(r)], 1});
     }
   return out;
 }
@@ -62,7 +62,7 @@ std::vector<ByRule> displacements(BoundaryMotion const& motion, Mesh const& plan
 BoundaryMotion motion_in_plane(Mesh const& mesh, Rule const& of_the_blade, Axis const& axis) {
   UnstructuredCase const with(mesh);
   auto const boundary = std::make_shared<Boundary const>(with.mesh, with.topology, with.face_patches);
-  return {boundary, resolve(boundary->mesh(), rules(of_the_blade, axis))};
+  return {boundary, resolve(boundary->mesh(), plane_rules(of_the_blade, axis))};
 }
 
 std::vector<ByRule> in_plane(Mesh const& mesh, Rule const& of_the_blade, Axis const& axis = about_z) {
@@ -80,11 +80,11 @@ double largest_of(std::vector<ByRule> const& u, std::size_t r) {
 TEST(PlaneRows, MoveAsRowsBetweenTwoPlanesDo) {
   Periodic const turn = turned_sides(2 * std::numbers::pi / blades);
   Mesh const thick = cascade_between_planes(section_of_wheel(blades), turn, 0.3), plane = wheel_passage();
-  Motion motion = rules(redesign(), about_z);
+  Motion motion = plane_rules(plane_redesign(), about_z);
   motion.rules.push_back({{"hub", "case"}, SlipRule{.surface = SlipRule::Surface::plane}, 0, "walls"});
-  auto const u = in_plane(plane, redesign());
+  auto const u = in_plane(plane, plane_redesign());
   auto const v = displacements(BoundaryMotion(thick, resolve(thick, motion)), plane);
-  for (int const r : {blade, ends, sides}) {
+  for (int const r : {blade_rule, ends_rule, sides_rule}) {
     double const largest = largest_of(v, std::size_t(r));
     EXPECT_GT(largest, 0.005);
     double apart = 0;
@@ -98,10 +98,10 @@ TEST(PlaneRows, MoveAsRowsBetweenTwoPlanesDo) {
 void expect_moves_as_in_plane(Mesh const& two_planes, Boundary const& boundary, Mesh const& plane,
                               std::vector<ByRule> const& wanted, Axis const& axis) {
   BoundaryMotion const motion{std::make_shared<Boundary const>(boundary),
-                              resolve(boundary.mesh(), rules(redesign(), axis))};
+                              resolve(boundary.mesh(), plane_rules(plane_redesign(), axis))};
   auto const u = displacements(motion, plane);
   double largest = 0, apart = 0;
-  for (int const r : {blade, ends, sides}) {
+  for (int const r : {blade_rule, ends_rule, sides_rule}) {
     largest = std::max(largest, largest_of(wanted, std::size_t(r)));
     for (std::size_t n = 0; n < u.size(); ++n)
       apart = std::max(apart, distance(u[n][std::size_t(r)], wanted[n][std::size_t(r)]));
@@ -113,7 +113,7 @@ void expect_moves_as_in_plane(Mesh const& two_planes, Boundary const& boundary, 
   for (Index n = 0; n < two_planes.n_nodes(); ++n) {
     Vec3 const p = two_planes.coordinates[n], below{p.x, p.y, 0};
     std::array<Vec3, 2> v;
-    for (int const r : {blade, sides}) {
+    for (int const r : {blade_rule, sides_rule}) {
       motion.displacement(r, {&p, 1}, {&v[0], 1});
       motion.displacement(r, {&below, 1}, {&v[1], 1});
       uneven = std::max(uneven, distance(v[0], v[1]));
@@ -129,7 +129,7 @@ TEST(PlaneRows, OfTwoPlanesMoveAsTheirSection) {
   for (auto const& [section, periodic] :
        {std::pair(section_of_wheel(blades), turn), std::pair(straight_section(), shift)}) {
     Mesh const plane = plane_cascade(section, periodic);
-    auto const wanted = in_plane(plane, redesign());
+    auto const wanted = in_plane(plane, plane_redesign());
     for (PatchKind const ends : {PatchKind::symmetry, PatchKind::wall}) {
       Mesh const blocks = cascade_between_planes(section, periodic, 0.3, 2, ends);
       expect_moves_as_in_plane(blocks, Boundary(blocks), plane, wanted, about_z);
@@ -164,8 +164,8 @@ TEST(PlaneRows, FollowReplicatesTheMotionOfTheBladeAndTapersAlongTheRadius) {
                          : r > trailing ? (outlet - r) / (outlet - trailing)
                                         : 1;
     double const a = std::atan2(p.y, p.x) + turn(at), moved = r + share * out(at);
-    worst = std::max(worst, distance(p + u[std::size_t(n)][sides], moved * Vec3{std::cos(a), std::sin(a), 0}));
-    largest = std::max(largest, norm(u[std::size_t(n)][sides]));
+    worst = std::max(worst, distance(p + u[std::size_t(n)][sides_rule], moved * Vec3{std::cos(a), std::sin(a), 0}));
+    largest = std::max(largest, norm(u[std::size_t(n)][sides_rule]));
   }
   EXPECT_GT(largest, 0.1);
   // Between the lines of a blade of 17 of them the motion of its camber line is a smooth curve through them.
@@ -188,7 +188,7 @@ TEST(PlaneRows, SlideTurnsTheEndsByTheAngleOfTheEdgesAndKeepsTheirRadius) {
     for (Index f = 0; f < patch.faces.size(); ++f)
       for (Index32 const n : patch.faces[f]) {
         Vec3 const p = mesh.coordinates[n];
-        EXPECT_LT(distance(p + u[std::size_t(n)][ends], wanted(p)), 1e-13) << patch.name;
+        EXPECT_LT(distance(p + u[std::size_t(n)][ends_rule], wanted(p)), 1e-13) << patch.name;
       }
   }
 }
@@ -203,29 +203,29 @@ TEST(PlaneRows, ATurnAboutTheAxisTurnsAllOfTheRowWhereverItsPlaneIs) {
   Axis const axis{centre + 0.7 * direction, -2.0 * direction};
   RigidRule const turn = make_rigid({.angle_rad = 0.2, .axis = axis});
   auto const u = in_plane(mesh, turn, axis);
-  EXPECT_GT(largest_of(u, ends), 0.1);
+  EXPECT_GT(largest_of(u, ends_rule), 0.1);
   for (Index n = 0; n < mesh.n_nodes(); ++n)
-    for (int const r : {ends, sides}) {
+    for (int const r : {ends_rule, sides_rule}) {
       Vec3 const given = u[std::size_t(n)][std::size_t(r)];
-      if (r == ends && given == Vec3{}) continue;
+      if (r == ends_rule && given == Vec3{}) continue;
       EXPECT_LT(distance(given, displacement(turn, mesh.coordinates[n])), 1e-13);
     }
 }
 
 TEST(PlaneRows, CopiesAPitchApartMoveAlikeAndSidesMeetTheBlade) {
   Mesh const mesh = wheel_passage();
-  auto const u = in_plane(mesh, redesign());
-  double const largest = largest_of(u, blade);
+  auto const u = in_plane(mesh, plane_redesign());
+  double const largest = largest_of(u, blade_rule);
   int met = 0;
   for (Connection const& c : mesh.connections)
     for (std::size_t k = 0; k < c.nodes.size(); ++k) {
-      Vec3 const own = u[std::size_t(c.nodes[k])][sides], donor = u[std::size_t(c.donor_nodes[k])][sides];
+      Vec3 const own = u[std::size_t(c.nodes[k])][sides_rule], donor = u[std::size_t(c.donor_nodes[k])][sides_rule];
       EXPECT_LT(distance(c.periodic->declared.rotation * own, donor), 1e-14);
       double const r = norm(mesh.coordinates[c.nodes[k]]);
       bool const edge = std::abs(r - 1) < 1e-12 ||
                         std::abs(r - std::exp(2 * std::numbers::pi / (blades * plane_cascade_pitch))) < 1e-12;
       if (!edge) continue;
-      EXPECT_LT(distance(own, u[std::size_t(c.nodes[k])][blade]), 1e-10 * largest);
+      EXPECT_LT(distance(own, u[std::size_t(c.nodes[k])][blade_rule]), 1e-10 * largest);
       ++met;
     }
   EXPECT_EQ(met, 2);
@@ -233,15 +233,15 @@ TEST(PlaneRows, CopiesAPitchApartMoveAlikeAndSidesMeetTheBlade) {
 
 TEST(PlaneRows, AreStraightOnesWhereTheRadiusIsLarge) {
   Mesh const straight = plane_cascade(straight_section(), periodic_translation({0, plane_cascade_pitch, 0}));
-  auto const linear = in_plane(straight, redesign(), Axis{{0, 0, 0}, {1, 0, 0}});
+  auto const linear = in_plane(straight, plane_redesign(), Axis{{0, 0, 0}, {1, 0, 0}});
   auto const apart = [&](double radius) {
     Mesh const bent = plane_cascade(bent_section(radius), turned_sides(plane_cascade_pitch / radius));
-    auto const u = in_plane(bent, redesign());
+    auto const u = in_plane(bent, plane_redesign());
     double worst = 0;
     for (Index n = 0; n < bent.n_nodes(); ++n) {
       Vec3 const p = bent.coordinates[n];
       double const r = norm(p), c = p.x / r, s = p.y / r;
-      for (int const k : {blade, ends, sides}) {
+      for (int const k : {blade_rule, ends_rule, sides_rule}) {
         Vec3 const v = u[std::size_t(n)][std::size_t(k)];
         worst = std::max(worst,
                          distance(linear[std::size_t(n)][std::size_t(k)], {c * v.x + s * v.y, c * v.y - s * v.x, 0}));
@@ -257,11 +257,11 @@ TEST(PlaneRows, AreStraightOnesWhereTheRadiusIsLarge) {
 // The pitch leaves one way across it in the plane, so that the axis may stand on the plane as well.
 TEST(PlaneRows, OfATranslationTakeTheAxisAlongTheFlowOrAcrossThePlane) {
   Mesh const mesh = plane_cascade(straight_section(), periodic_translation({0, plane_cascade_pitch, 0}));
-  auto const along = in_plane(mesh, redesign(), Axis{{0, 0, 0}, {1, 0, 0}}),
-             across = in_plane(mesh, redesign(), about_z);
-  EXPECT_GT(largest_of(along, sides), 0.01);
+  auto const along = in_plane(mesh, plane_redesign(), Axis{{0, 0, 0}, {1, 0, 0}}),
+             across = in_plane(mesh, plane_redesign(), about_z);
+  EXPECT_GT(largest_of(along, sides_rule), 0.01);
   for (std::size_t n = 0; n < along.size(); ++n)
-    for (int const r : {blade, ends, sides})
+    for (int const r : {blade_rule, ends_rule, sides_rule})
       EXPECT_LT(distance(along[n][std::size_t(r)], across[n][std::size_t(r)]), 1e-15);
 }
 

@@ -83,7 +83,9 @@ Motion redesigned(Names const& of = {"main", "splitter"}) {
                impeller::blade_rule(impeller::splitter, other_redesign()), of);
 }
 
-BoundaryMotion make(Mesh const& mesh, Motion const& motion) { return BoundaryMotion(mesh, resolve(mesh, motion)); }
+BoundaryMotion radial_motion(Mesh const& mesh, Motion const& motion) {
+  return BoundaryMotion(mesh, resolve(mesh, motion));
+}
 
 std::vector<Vec3> points_of(Mesh const& mesh, std::string const& name) {
   std::vector<Vec3> points;
@@ -113,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, EveryImpeller, ::testing::Values(Blade::o_mesh,
 
 TEST_P(EveryImpeller, FollowReplicatesTheMotionOfTheMainBladeAlongTheFlowPath) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = make(mesh, redesigned());
+  BoundaryMotion const motion = radial_motion(mesh, redesigned());
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   double worst = 0, largest = 0;
@@ -127,7 +129,7 @@ TEST_P(EveryImpeller, FollowReplicatesTheMotionOfTheMainBladeAlongTheFlowPath) {
 
 TEST_P(EveryImpeller, ASplitterCanBeFollowedByItself) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = make(mesh, redesigned({"splitter"}));
+  BoundaryMotion const motion = radial_motion(mesh, redesigned({"splitter"}));
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   for (std::size_t n = 0; n < points.size(); ++n)
@@ -136,7 +138,7 @@ TEST_P(EveryImpeller, ASplitterCanBeFollowedByItself) {
 
 TEST_P(EveryImpeller, SlideTurnsAndKeepsAxialPositionAndRadiusAtAxialInletAndRadialExit) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = make(mesh, redesigned());
+  BoundaryMotion const motion = radial_motion(mesh, redesigned());
   for (char const* end : {"inlet", "outlet"}) {
     auto const points = points_of(mesh, end);
     auto const u = evaluate(motion, slide_number, points);
@@ -152,7 +154,7 @@ TEST_P(EveryImpeller, SlideTurnsAndKeepsAxialPositionAndRadiusAtAxialInletAndRad
 
 TEST_P(EveryImpeller, FollowAgreesWithSlideOnInletAndExit) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = make(mesh, redesigned());
+  BoundaryMotion const motion = radial_motion(mesh, redesigned());
   for (char const* end : {"inlet", "outlet"}) {
     auto const points = points_of(mesh, end);
     auto const u = evaluate(motion, slide_number, points), v = evaluate(motion, follow_number, points);
@@ -167,7 +169,7 @@ TEST_P(EveryImpeller, ATurnAboutTheAxisComesBackExactlyWhereverTheAxisIs) {
   RigidRule const turn = make_rigid({.angle_rad = 0.2, .axis = axis});
   Motion motion = rules(turn, turn);
   motion.axis = axis;
-  BoundaryMotion const surface = make(mesh, motion);
+  BoundaryMotion const surface = radial_motion(mesh, motion);
   for (auto const& [name, rule] :
        {std::pair{"inlet", slide_number}, {"outlet", slide_number}, {"periodic", follow_number}}) {
     auto const points = points_of(mesh, name);
@@ -178,14 +180,14 @@ TEST_P(EveryImpeller, ATurnAboutTheAxisComesBackExactlyWhereverTheAxisIs) {
 
 TEST_P(EveryImpeller, ABladeThatDoesNotMoveMovesNothing) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = make(mesh, rules(FixedRule{}, FixedRule{}));
+  BoundaryMotion const motion = radial_motion(mesh, rules(FixedRule{}, FixedRule{}));
   for (auto const& [name, rule] : {std::pair{"inlet", slide_number}, {"periodic", follow_number}})
     for (Vec3 const& u : evaluate(motion, rule, points_of(mesh, name))) EXPECT_EQ(u, (Vec3{0, 0, 0}));
 }
 
 TEST_P(EveryImpeller, PeriodicCopiesMoveAlike) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = make(mesh, redesigned());
+  BoundaryMotion const motion = radial_motion(mesh, redesigned());
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   for (double angle : {impeller::pitch, -2.0}) {
@@ -199,7 +201,7 @@ TEST_P(EveryImpeller, PeriodicCopiesMoveAlike) {
 
 TEST_P(EveryImpeller, EdgesOfFollowStayOnHubAndCase) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = make(mesh, redesigned());
+  BoundaryMotion const motion = radial_motion(mesh, redesigned());
   for (auto const& [h, bend] : {std::pair{0.0, impeller::hub_bend}, {1.0, impeller::case_bend}}) {
     std::vector<Vec3> edge;
     for (double s = 0; s <= 1; s += 0.01) edge.push_back(impeller::point({s, h, 0.3}));
@@ -217,7 +219,7 @@ TEST(RadialRow, FollowAgreesWithAnHMeshWherePeriodicsMeetItAlsoWhereItLeavesItsE
         out[n] = out[n] + grow * (1 + points[n].x) * Vec3{1, points[n].y, points[n].z};
     };
     Mesh const mesh = impeller_mesh(Blade::h_mesh);
-    BoundaryMotion const motion = make(mesh, rules(rule, FixedRule{}));
+    BoundaryMotion const motion = radial_motion(mesh, rules(rule, FixedRule{}));
     int checked = 0;
     for (Vec3 const& p : points_of(mesh, "main")) {
       double const c = impeller::main_blade.fraction(place_of(p));
@@ -232,7 +234,7 @@ TEST(RadialRow, FollowAgreesWithAnHMeshWherePeriodicsMeetItAlsoWhereItLeavesItsE
 TEST(RadialRow, TheSplitterIsLeftOutWithANote) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
   std::string notes;
-  BoundaryMotion const motion = make(mesh, redesigned());
+  BoundaryMotion const motion = radial_motion(mesh, redesigned());
   for (auto const& n : motion.notes()) notes += n + "\n";
   expect_all_in(notes, {"splitter", "left out", "1 closed and 0 open", "along the flow path"});
 }
@@ -241,7 +243,7 @@ TEST(RadialRow, FollowAndSlideMayNameTheSplitterOrNot) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
   Motion motion = redesigned();
   std::get<CircumferentialSlideRule>(motion.rules[slide_number].rule).of = {"main"};
-  BoundaryMotion const surface = make(mesh, motion);
+  BoundaryMotion const surface = radial_motion(mesh, motion);
   auto const points = points_of(mesh, "outlet");
   auto const u = evaluate(surface, slide_number, points), v = evaluate(surface, follow_number, points);
   for (std::size_t n = 0; n < points.size(); ++n) EXPECT_LT(distance(u[n], v[n]), 1e-12);
@@ -252,7 +254,7 @@ TEST_P(EveryImpeller, PeriodicsThroughTheSplitterGoFromItsEdgesToWhatTheMainBlad
   for (Names const& ends : {Names{"main"}, Names{"main", "splitter"}}) {
     Motion motion = redesigned({"splitter"});
     std::get<CircumferentialSlideRule>(motion.rules[slide_number].rule).of = ends;
-    BoundaryMotion const surface = make(mesh, motion);
+    BoundaryMotion const surface = radial_motion(mesh, motion);
     for (char const* end : {"inlet", "outlet"}) {
       auto const points = points_of(mesh, end);
       auto const u = evaluate(surface, slide_number, points), v = evaluate(surface, follow_number, points);
@@ -299,7 +301,7 @@ TEST(RadialRow, ItsWallsMayBeOfSeveralFamiliesThatFollowOneAnother) {
                {{"periodic"}, FollowRule{{"main"}}, 0, ""}};
     for (auto const& wall : walls)
       m.rules.push_back({{wall}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""});
-    return evaluate(make(mesh, m), 2, points_of(mesh, "periodic"));
+    return evaluate(radial_motion(mesh, m), 2, points_of(mesh, "periodic"));
   };
   auto const u = follow(build(false), {"hub", "case"});
   auto const v = follow(build(true), {"hub0", "hub1", "hub2", "case0", "case1"});
@@ -373,7 +375,7 @@ TEST(RadialRow, FlatAndSteepConicalWallsMakeARadialRow) {
                     {{"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}, 0, ""},
                     {{"periodic"}, FollowRule{{"blade"}}, 0, ""},
                     {{"hub", "case"}, SlipRule{wall}, 0, ""}};
-    BoundaryMotion const surface = make(mesh, motion);
+    BoundaryMotion const surface = radial_motion(mesh, motion);
     for (Vec3 const& x : points_of(mesh, "periodic")) {
       Place const p = d.place_of(x);
       Vec3 const wanted = d.point(p.s, p.h, p.theta + d.angle(std::clamp(d.fraction(p.s), 0.0, 1.0), p.h)) - x;
@@ -391,7 +393,7 @@ TEST(RadialRow, OneEndWallIsNotEnough) {
   Motion motion = redesigned();
   motion.rules.back().patches = {"hub"};
   motion.rules.back().where = "case.toml:9";
-  expect_all_in(message_of<MotionError>([&] { make(mesh, motion); }), {"hub and case", "slip", "revolution"});
+  expect_all_in(message_of<MotionError>([&] { radial_motion(mesh, motion); }), {"hub and case", "slip", "revolution"});
 }
 
 TEST(RadialRow, BladesOfTwoRowsInOneOfAreRefused) {
@@ -406,7 +408,7 @@ TEST(RadialRow, BladesOfTwoRowsInOneOfAreRefused) {
   m.rules = {{{"main"}, FixedRule{}, 0, ""},
              {{"periodic"}, FollowRule{{"main"}}, 0, "case.toml:7"},
              {{"hub", "case"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};
-  expect_all_in(message_of<MotionError>([&] { make(mesh, m); }), {"case.toml:7", "two rows"});
+  expect_all_in(message_of<MotionError>([&] { radial_motion(mesh, m); }), {"case.toml:7", "two rows"});
 }
 
 // ---- flow coordinates --------------------------------------------------------------------------------------------
@@ -457,7 +459,7 @@ SlipSurface surface_of(Mesh const& mesh, BoundaryMotion const& motion, std::stri
 
 TEST(TurningWall, NodesComeBackAlongTheNormalInTheMeridionalPlane) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
-  BoundaryMotion const motion = make(mesh, redesigned());
+  BoundaryMotion const motion = radial_motion(mesh, redesigned());
   std::mt19937 random(1);
   std::uniform_real_distribution<> s(0.01, 0.99), h(-0.4, 0.4), d(-0.02, 0.02);
   for (auto const& [name, bend, at] :
@@ -493,7 +495,7 @@ void expect_rate_is_derivative(SlipSurfaceView const& view, Vec3 const& baseline
 
 TEST(TurningWall, RatesAreDerivatives) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
-  BoundaryMotion const motion = make(mesh, redesigned());
+  BoundaryMotion const motion = radial_motion(mesh, redesigned());
   SlipSurface const hub = surface_of(mesh, motion, "hub");
   SlipSurface disc = hub;  // a curved wall across the axis: axial position over radius
   std::vector<std::pair<double, double>> points;
@@ -516,7 +518,7 @@ TEST(TurningWall, AWallAcrossTheAxisKeepsTheRadiusOfWhatSlidesOnIt) {
   Mesh const mesh = row.finish();
   Motion motion;
   motion.rules = {{{"disc"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};
-  BoundaryMotion const surface = make(mesh, motion);
+  BoundaryMotion const surface = radial_motion(mesh, motion);
   SlipSurface const disc = surface_of(mesh, surface, "disc");
   EXPECT_EQ(disc.kind, SlipSurface::Kind::meridional);
   EXPECT_EQ(disc.baseline_deviation, 0);

@@ -16,7 +16,7 @@ namespace {
 
 using Mapping = TargetRule::Mapping;
 
-Vec3 bent(Vec3 const& x) { return {x.x, x.y, x.z + 0.2 * x.x * x.x - 0.1 * x.x * x.y}; }
+Vec3 bent_shell(Vec3 const& x) { return {x.x, x.y, x.z + 0.2 * x.x * x.x - 0.1 * x.x * x.y}; }
 
 TargetGeometry shell_triangles(int n, Map const& map) {
   return triangles_of(n, n / 2, [&](double a, double b) { return map(shell(a, b)); });
@@ -24,7 +24,7 @@ TargetGeometry shell_triangles(int n, Map const& map) {
 TargetRule projection(TargetGeometry geometry) { return rule_of(std::move(geometry), Mapping::projection); }
 
 TEST(TargetTree, FindsWhatACheckOfAllTrianglesFinds) {
-  TargetGeometry const g = shell_triangles(20, bent);
+  TargetGeometry const g = shell_triangles(20, bent_shell);
   TargetTree const tree(g.points, g.triangles);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 3);
@@ -159,7 +159,7 @@ TEST(TargetProjection, ATargetElsewhereIsFoundByItsBox) {
 TEST(TargetProjection, EveryNodeEndsOnTheTarget) {
   Mesh const mesh = shell_mesh();
   for (int const n : {9, 32, 61}) {
-    TargetRun const run(mesh, projection(shell_triangles(n, bent)));
+    TargetRun const run(mesh, projection(shell_triangles(n, bent_shell)));
     EXPECT_LT(run.reach().max, 4e-16 * mesh.size()) << n;
     EXPECT_EQ(run.reach().mapping, Mapping::projection);
   }
@@ -169,7 +169,7 @@ TEST(TargetProjection, ATargetOfAnotherResolutionConvergesAtSecondOrder) {
   Mesh const mesh = shell_mesh();
   // Distance from the smooth surface that the facets stand for: z is a function of x and y up to the map (a, b).
   auto const off = [&](int n) {
-    TargetRun const run(mesh, projection(shell_triangles(n, bent)));
+    TargetRun const run(mesh, projection(shell_triangles(n, bent_shell)));
     double worst = 0;
     for (int p = 0; p < 2; ++p) {
       auto const points = nodes_of(mesh, p);
@@ -181,7 +181,7 @@ TEST(TargetProjection, ATargetOfAnotherResolutionConvergesAtSecondOrder) {
           a = (x.x - 0.1 * std::sin(3 * b)) / 2;
           b = x.y - 0.05 * std::sin(4 * a);
         }
-        worst = std::max(worst, std::fabs(bent(shell(a, b)).z - x.z));
+        worst = std::max(worst, std::fabs(bent_shell(shell(a, b)).z - x.z));
       }
     }
     return worst;
@@ -194,10 +194,10 @@ TEST(TargetProjection, ATargetOfAnotherResolutionConvergesAtSecondOrder) {
 
 TEST(TargetProjection, CornersGoToCornersAndEdgesToEdgesByArcLength) {
   Mesh const mesh = shell_mesh();
-  TargetGeometry const target = shell_triangles(48, bent);
+  TargetGeometry const target = shell_triangles(48, bent_shell);
   TargetRun const run(mesh, projection(target));
   auto const left = nodes_of(mesh, 0), moved = run.displacement(0);
-  EXPECT_LT(distance(left[0] + moved[0], bent(shell(0, 0))), 1e-15);
+  EXPECT_LT(distance(left[0] + moved[0], bent_shell(shell(0, 0))), 1e-15);
   // The edge a = 0: the nodes' shares of the length of the target's edge are those of the baseline's.
   int const n = mesh.patches[0].range.extent(0), m = mesh.patches[0].range.extent(1);
   std::vector<Vec3> edge;
@@ -226,7 +226,7 @@ TEST(TargetProjection, CornersGoToCornersAndEdgesToEdgesByArcLength) {
 
 TEST(TargetProjection, TwoPatchesMoveTheirCommonEdgeAlikeBitForBit) {
   Mesh const mesh = shell_mesh();
-  TargetRun const run(mesh, projection(shell_triangles(37, bent)));
+  TargetRun const run(mesh, projection(shell_triangles(37, bent_shell)));
   auto const left = run.displacement(0), right = run.displacement(1);
   int const n = mesh.patches[0].range.extent(0), m = mesh.patches[1].range.extent(0);
   for (int j = 0; j < mesh.patches[0].range.extent(1); ++j)
@@ -236,7 +236,7 @@ TEST(TargetProjection, TwoPatchesMoveTheirCommonEdgeAlikeBitForBit) {
 TEST(TargetProjection, SpacingIsKept) {
   // Neighbours are as far apart as before, times what the lines as a whole have grown.
   Mesh const mesh = shell_mesh();
-  TargetRun const run(mesh, projection(shell_triangles(61, bent)));
+  TargetRun const run(mesh, projection(shell_triangles(61, bent_shell)));
   std::vector<double> growth;
   for (int p = 0; p < 2; ++p) {
     auto const points = nodes_of(mesh, p);
@@ -268,7 +268,7 @@ Vec3 lens(double t, double h) {
 }
 
 /// Twisted by up to 6 degrees and bent, with the square of the span.
-Vec3 twisted(Vec3 const& p) {
+Vec3 twisted_lens(Vec3 const& p) {
   double const h = p.z / 4, turn = -0.105 * h * h, c = std::cos(turn), s = std::sin(turn);
   double const x = p.x - 0.4 * h - 0.25, y = p.y;
   return {p.x - x + c * x - s * y, s * x + c * y + 0.6 * h * h, p.z};
@@ -290,7 +290,7 @@ TEST(TargetProjection, NodesBesideSharpEdgesKeepTheirSideAndTheirOrder) {
   // Closest points heap up on the edges of a twisted target: whatever is left over it goes to the edge itself.
   Mesh const mesh = lens_mesh(41, 9);
   TargetRun const run(
-      mesh, projection(triangles_of(121, 33, [](double a, double b) { return twisted(lens(a < 1 ? a : 0, b)); })));
+      mesh, projection(triangles_of(121, 33, [](double a, double b) { return twisted_lens(lens(a < 1 ? a : 0, b)); })));
   for (auto const& note : run.surface.notes()) EXPECT_EQ(note.find("fold"), std::string::npos) << note;
   auto const points = nodes_of(mesh, 0);
   auto const u = run.displacement(0);
@@ -302,7 +302,7 @@ TEST(TargetProjection, NodesBesideSharpEdgesKeepTheirSideAndTheirOrder) {
       double const before = distance(points[n], points[n + 1]);
       EXPECT_NEAR(distance(points[n] + u[n], points[n + 1] + u[n + 1]) / before, 1, 0.25) << i << " " << j;
     }
-  EXPECT_LT(run.error(twisted), 0.05);
+  EXPECT_LT(run.error(twisted_lens), 0.05);
   EXPECT_LT(run.reach().max, 1e-13 * mesh.size());
   EXPECT_GT(shortest, 0);
 }
@@ -409,14 +409,14 @@ TEST(TargetProjection, FacetsTurnedTheOtherWayAreTheSameTarget) {
 
 TEST(TargetProjection, UnusableTargetsAreErrors) {
   Mesh const mesh = shell_mesh();
-  TargetGeometry bad = shell_triangles(9, bent);
+  TargetGeometry bad = shell_triangles(9, bent_shell);
   bad.triangles[3][1] = int(bad.points.size());
   EXPECT_THROW(TargetRun(mesh, projection(bad)), MotionError);
-  bad = shell_triangles(9, bent);
+  bad = shell_triangles(9, bent_shell);
   bad.points[5].x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(TargetRun(mesh, projection(bad)), MotionError);
   EXPECT_THROW(TargetRun(mesh, projection({})), MotionError);
-  bad = grids_of(mesh, bent);
+  bad = grids_of(mesh, bent_shell);
   bad.grids[0].points.pop_back();
   EXPECT_THROW(TargetRun(mesh, projection(bad)), MotionError);
   EXPECT_THROW(TargetRun(mesh, TargetRule{}), MotionError);

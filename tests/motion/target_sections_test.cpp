@@ -38,7 +38,7 @@ std::vector<double> rows(int nj) {
 }
 
 /// Sections twist about their quarter chord and grow, both along the span.
-Vec3 twisted(Vec3 const& x) {
+Vec3 twisted_wing(Vec3 const& x) {
   double const h = x.z / 3, angle = 0.2 * h, size = 1 + 0.1 * h, x0 = 0.5 * h + 0.25;
   double const c = size * std::cos(angle), s = size * std::sin(angle);
   return {x0 + c * (x.x - x0) - s * x.y, s * (x.x - x0) + c * x.y, x.z};
@@ -102,14 +102,14 @@ TEST(TargetSections, ATargetThatIsTheBaselineMovesNothing) {
 
 TEST(TargetSections, AMovedCopyOfTheRowsIsReproduced) {
   Mesh const mesh = wing_mesh();
-  TargetRun const run(mesh, along_z(sections(rows(11), 61, twisted)));
-  EXPECT_LT(run.error(twisted), 1e-12);
+  TargetRun const run(mesh, along_z(sections(rows(11), 61, twisted_wing)));
+  EXPECT_LT(run.error(twisted_wing), 1e-12);
   EXPECT_LT(run.reach().max, 1e-12);
 }
 
 TEST(TargetSections, AnyStartSenseAndOrderOfSectionsIsTheSameTarget) {
   Mesh const mesh = wing_mesh();
-  TargetGeometry mixed = sections(rows(11), 61, twisted);
+  TargetGeometry mixed = sections(rows(11), 61, twisted_wing);
   for (std::size_t k = 0; k < mixed.sections.size(); ++k) {
     auto& points = mixed.sections[k].points;
     points.pop_back();
@@ -117,7 +117,7 @@ TEST(TargetSections, AnyStartSenseAndOrderOfSectionsIsTheSameTarget) {
     if (k % 2 == 1) std::reverse(points.begin(), points.end());
   }
   std::reverse(mixed.sections.begin(), mixed.sections.end());
-  EXPECT_LT(TargetRun(mesh, along_z(mixed)).error(twisted), 1e-12);
+  EXPECT_LT(TargetRun(mesh, along_z(mixed)).error(twisted_wing), 1e-12);
 }
 
 TEST(TargetSections, OtherNumbersOfPointsAndStationsConvergeAtSecondOrder) {
@@ -125,7 +125,7 @@ TEST(TargetSections, OtherNumbersOfPointsAndStationsConvergeAtSecondOrder) {
   auto const error = [](int n) {
     std::vector<double> spans;
     for (int k = 0; k <= n / 8; ++k) spans.push_back(8.0 * k / n);
-    return TargetRun(wing_mesh(3 * n / 2 + 1, 11), along_z(sections(spans, n + 1, twisted))).error(twisted);
+    return TargetRun(wing_mesh(3 * n / 2 + 1, 11), along_z(sections(spans, n + 1, twisted_wing))).error(twisted_wing);
   };
   double const coarse = error(40), fine = error(80), finest = error(160);
   EXPECT_LT(finest, 2e-4);
@@ -305,8 +305,8 @@ TEST(TargetSections, SidesInBlocksAboveAndBelowAreOneContour) {
   }
   std::vector<double> spans;
   for (int j = 0; j < nj; ++j) spans.push_back(double(j) / (nj - 1));
-  TargetRun const run(builder.finish(), along_z(sections(spans, 61, twisted)));
-  EXPECT_LT(run.error(twisted), 1e-12);
+  TargetRun const run(builder.finish(), along_z(sections(spans, 61, twisted_wing)));
+  EXPECT_LT(run.error(twisted_wing), 1e-12);
   EXPECT_LT(run.reach().max, 1e-12);
 }
 

@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import types
 import unittest
 
@@ -57,6 +58,47 @@ def required_packages():
     text = "".join(text_of(path) for path in ("cmake/gridmorphDependencies.cmake", "cmake/FindCGNS.cmake", "src/CMakeLists.txt"))
     found = re.findall(r'gridmorph_require\(GRIDMORPH_\w+ "[^"]*" (\w+)', text) + re.findall(r"find_package\((\w+)", text)
     return set(found) - {"MPI"}  # only where the CGNS that was found asks for it
+
+
+class Installation(unittest.TestCase):
+    """scripts/lib/apt.sh with another apt-get in front, which says what it is told to."""
+
+    def run_apt(self, script, patience=30):
+        with tempfile.TemporaryDirectory() as folder:
+            fake = os.path.join(folder, "apt-get")
+            with open(fake, "w", encoding="utf-8") as file:
+                file.write("#!/bin/bash\n" + script)
+            os.chmod(fake, 0o755)
+            run = subprocess.run(
+                ["bash", "-c", 'set -euo pipefail; cd "%s"; say() { echo "$*" >&2; }; fail() { say "$*"; exit 1; }; apt_log=log; '
+                               '. "%s/scripts/lib/apt.sh"; apt_pause=0; apt_patience=%d; apt_run install thing' % (folder, ROOT, patience)],
+                env=dict(os.environ, PATH=folder + ":" + os.environ["PATH"]), capture_output=True, text=True, timeout=60)
+            log = os.path.join(folder, "log")
+            text = ""
+            if os.path.exists(log):
+                with open(log, encoding="utf-8") as file:
+                    text = file.read()
+            return run, text
+
+    def test_waits_while_another_has_the_package_database(self):
+        run, log = self.run_apt('if [ ! -e again ]; then touch again; echo "E: Could not get lock /var/lib/dpkg/lock-frontend."; exit 100; fi\n'
+                                'echo "Setting up thing"\n')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("waiting for another installation", run.stderr)
+        self.assertNotIn("Setting up", run.stderr + run.stdout)
+        self.assertIn("Setting up thing", log)
+
+    def test_does_not_wait_for_ever(self):
+        run, _ = self.run_apt('echo "E: Could not get lock /var/lib/apt/lists/lock."; exit 100\n', patience=0)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("Could not get lock", run.stderr)
+
+    def test_says_at_once_what_else_went_wrong_and_where_all_of_it_is(self):
+        run, log = self.run_apt('echo "E: Unable to locate package thing"; exit 100\n')
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("Unable to locate package thing", run.stderr)
+        self.assertIn("is in log", run.stderr)
+        self.assertIn("Unable to locate", log)
 
 
 class Version(unittest.TestCase):

@@ -52,19 +52,5 @@ TEST_F(FilletRuns, BlocksWhoseLayersMeetInAMitreKeepTheirZones) {
   EXPECT_FALSE(std::filesystem::exists(path("again.cgns")));
 }
 
-TEST_F(FilletRuns, ARadiusHasToBeANumberOrAnExpression) {
-  for (std::string const radius : {"\"\"", "\" \"", "nan", "inf"})
-    expect_bad_input(gridmorph("fillet fine.cgns -b blade -w hub --radius " + radius + " -o filled.cgns"), {"radius"});
-  EXPECT_FALSE(std::filesystem::exists(path("filled.cgns")));
-}
-
-TEST_F(FilletRuns, OneThatFallsShortOfTheThresholdsEndsWithOneAndSaysSo) {
-  (void)run("hexahedra fine.cgns -o elements.cgns");
-  // Cells far beyond the thresholds at the tip of the mitre.
-  Outcome const outcome =
-      gridmorph("fillet fine.cgns -b blade -w hub --radius 0.003 --blade-layers 2 --wall-layers 2 -o filled.cgns");
-  EXPECT_EQ(outcome.status, std::filesystem::exists(path("filled.cgns")) ? 1 : 2) << outcome.out << outcome.err;
-}
-
 }  // namespace
 }  // namespace gridmorph::testing

@@ -15,7 +15,7 @@ namespace gridmorph::test {
 namespace {
 
 using Mask = std::vector<std::uint8_t>;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double endless = std::numeric_limits<double>::infinity();
 
 /// Nodes at a distance from the nearest of some of them.
 struct Around {
@@ -28,7 +28,7 @@ struct Around {
       : mesh(std::move(m)), seeds(std::size_t(mesh.n_nodes()), 0), wanted(seeds.size(), 1) {
     for (Index32 const n : sources) seeds[std::size_t(n)] = 1, wanted[std::size_t(n)] = 0;
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
-      double least = infinity;
+      double least = endless;
       for (Index32 const s : sources)
         least = std::min(least, gridmorph::distance(mesh.coordinates[n], mesh.coordinates[s]));
       distance.push_back(least);
@@ -153,7 +153,7 @@ TEST(Layers, NodesThatLieNearerThanTheirWayWaitAndTheUnreachedHaveNoRow) {
   Coordinates x(7);
   for (Index n = 0; n < 7; ++n) x.set(n, {double(n), 0, 0});
   Mask const seeds{1, 0, 0, 0, 0, 0, 0}, wanted{0, 1, 1, 1, 0, 1, 1};
-  std::vector<double> const distance{0, 1, 0.2, 3, 4, 5, infinity};
+  std::vector<double> const distance{0, 1, 0.2, 3, 4, 5, endless};
   auto const layers = make_layers(graph, x, seeds, wanted, distance, [](Index32, Index32) { return 2.0; });
   EXPECT_EQ(layers.rows.target, (std::vector<Index32>{1, 2, 3}));
   EXPECT_EQ(layers.rows.item, (std::vector<Index32>{0, 1, 2}));

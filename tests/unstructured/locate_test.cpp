@@ -48,7 +48,7 @@ std::vector<Location> locate(Mesh const& mesh, std::vector<Vec3> const& points) 
   return locate_with<Exec>(mesh, points, all_of(mesh));
 }
 
-Mesh moved(Mesh mesh, std::function<Vec3(Vec3)> const& f) {
+Mesh mapped(Mesh mesh, std::function<Vec3(Vec3)> const& f) {
   Coordinates c(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) c.set(n, f(mesh.coordinates[n]));
   mesh.coordinates = c;
@@ -121,14 +121,14 @@ std::vector<Case> cases() {
     return Vec3{0.6 * q.x - 0.8 * q.y, 0.48 * q.x + 0.36 * q.y, 0.64 * q.x + 0.48 * q.y} + Vec3{5, 6, 7};
   };
   auto const mirrored = [](Vec3 p) { return wave({-p.x, p.y, p.z}); };
-  return {{"hexahedra", moved(as_hexahedra(unit_box({6, 5, 7})), wave)},
-          {"prisms and tetrahedra", moved(to_prisms_and_tetrahedra(unit_box({5, 4, 6}), 3), wave)},
-          {"pyramids", moved(pyramids({3, 4, 3}), wave)},
-          {"polyhedra", polyhedra_of(moved(as_hexahedra(unit_box({4, 3, 5})), wave))},
-          {"flat prisms", moved(to_prisms_and_tetrahedra(unit_box({6, 3, 9}), 8), layers)},
-          {"inside out", moved(to_prisms_and_tetrahedra(unit_box({3, 4, 3}), 2), mirrored)},
-          {"triangles and quadrilaterals", moved(flat_box(8, 9, 4), flat_wave)},
-          {"tilted plane", moved(flat_box(6, 5, 2), tilted)}};
+  return {{"hexahedra", mapped(as_hexahedra(unit_box({6, 5, 7})), wave)},
+          {"prisms and tetrahedra", mapped(to_prisms_and_tetrahedra(unit_box({5, 4, 6}), 3), wave)},
+          {"pyramids", mapped(pyramids({3, 4, 3}), wave)},
+          {"polyhedra", polyhedra_of(mapped(as_hexahedra(unit_box({4, 3, 5})), wave))},
+          {"flat prisms", mapped(to_prisms_and_tetrahedra(unit_box({6, 3, 9}), 8), layers)},
+          {"inside out", mapped(to_prisms_and_tetrahedra(unit_box({3, 4, 3}), 2), mirrored)},
+          {"triangles and quadrilaterals", mapped(flat_box(8, 9, 4), flat_wave)},
+          {"tilted plane", mapped(flat_box(6, 5, 2), tilted)}};
 }
 
 ElementCorners corners_of(Mesh const& mesh, Index e) {
@@ -280,7 +280,7 @@ TEST(ElementLocator, OfPlacesEquallyNearTheSameIsTakenHoweverElementsAreNumbered
       double const angle = 2 * std::numbers::pi / 12 * p.x;
       return scale * Vec3{(1 + p.y) * std::cos(angle), (1 + p.y) * std::sin(angle), p.z};
     };
-    Mesh const mesh = moved(as_hexahedra(unit_box({12, 2, 3})), round);
+    Mesh const mesh = mapped(as_hexahedra(unit_box({12, 2, 3})), round);
     std::vector<Vec3> const points{scale * Vec3{0, 0, 0.4}, scale * Vec3{0, 0, 1}, scale * Vec3{0, 0, 2.2}};
     auto const expected = locate(mesh, points);
     for (int again = 0; again < 5; ++again) {
@@ -353,7 +353,7 @@ TEST(ElementLocator, BrokenMeshesAreSearchedLikeOthers) {
                                                       }};  // a pole
   for (std::size_t b = 0; b < breaks.size(); ++b) {
     SCOPED_TRACE(b);
-    auto const mesh = moved(sound, breaks[b]);
+    auto const mesh = mapped(sound, breaks[b]);
     std::vector<Vec3> points;
     for (int n = 0; n < 2000; ++n)
       points.push_back({random.between(-1, 7), random.between(-1, 7), random.between(-1, 7)});
@@ -370,7 +370,7 @@ TEST(ElementLocator, SizesThatDifferByTenMillionAreFoundInOneMesh) {
   // Geometric spacing along all three axes, and a sheared copy, whose boxes are larger than its cells.
   Mesh box = unit_box({24, 24, 24});
   for (bool const sheared : {false, true}) {
-    auto const mesh = moved(as_hexahedra(box), [&](Vec3 p) {
+    auto const mesh = mapped(as_hexahedra(box), [&](Vec3 p) {
       Vec3 const q{std::pow(2.0, p.x), std::pow(2.0, p.y), std::pow(2.0, p.z)};
       return sheared ? Vec3{q.x + q.z, q.y + 0.5 * q.x, q.z} : q;
     });
@@ -429,7 +429,7 @@ TEST(InterpolationRows, LinearFieldsAndConstantsAreReproducedByAllElements) {
 
 TEST(InterpolationRows, TrilinearFieldsAreReproducedInBoxes) {
   auto const trilinear = [](Vec3 const& x) { return (1 + x.x) * (2 - 0.3 * x.y) * (1 + 0.5 * x.z); };
-  auto const mesh = moved(as_hexahedra(unit_box({5, 6, 4})), [](Vec3 p) {
+  auto const mesh = mapped(as_hexahedra(unit_box({5, 6, 4})), [](Vec3 p) {
     return Vec3{p.x * p.x, 0.1 * p.y, p.z * 3};
   });
   Random random(7);

@@ -11,11 +11,11 @@ namespace gridmorph::test {
 namespace {
 
 /// A channel, periodic from i_min to i_max, whose lid j_max moves along.
-struct Channel {
+struct PeriodicChannel {
   Mesh mesh = flat_box(6, 4, 2);
   Motion motion;
 
-  Channel() {
+  PeriodicChannel() {
     Connection c;
     c.name = "pair";
     c.zone = c.donor_zone = 0;
@@ -44,7 +44,7 @@ struct Channel {
 };
 
 TEST(PeriodicPatches, AreFreeWhereNoRuleNamesThem) {
-  Channel const c;
+  PeriodicChannel const c;
   auto const b = c.conditions();
   for (double const x : {0., 6.}) EXPECT_FALSE(c.holds(b, x, 2)) << x;
   EXPECT_TRUE(c.holds(b, 3, 0));
@@ -56,14 +56,14 @@ TEST(PeriodicPatches, AreFreeWhereNoRuleNamesThem) {
 }
 
 TEST(PeriodicPatches, ObeyARuleThatNamesThem) {
-  Channel c;
+  PeriodicChannel c;
   c.motion.rules.push_back({{"i_*"}, FixedRule{}, 1, "test"});
   auto const b = c.conditions();
   for (double const x : {0., 6.}) EXPECT_TRUE(c.holds(b, x, 2)) << x;
 }
 
 TEST(PeriodicPatches, ThatAreOnlyPartlyPairedStayFixed) {
-  Channel c;
+  PeriodicChannel c;
   auto& pair = c.mesh.connections.front();
   pair.nodes.pop_back();
   pair.donor_nodes.pop_back();

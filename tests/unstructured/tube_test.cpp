@@ -44,7 +44,7 @@ Bodies wing() {
   return b;
 }
 
-struct Case {
+struct TubeCase {
   char const* name;
   Bodies bodies;
   double offset;
@@ -52,14 +52,14 @@ struct Case {
   Vec3 pivot, axis;  ///< of a turn by 30 degrees
 };
 
-std::vector<Case> cases() {
+std::vector<TubeCase> tube_cases() {
   return {{"rod", diagonal_rod(), 0.05, {-3, -3, -3}, {4, 4, 4}, {0, 0, 0}, {1, -1, 0}},
           {"ball on a rope", ball_on_a_rope(), 0.1, {-5, -5, -3}, {5, 5, 5}, {0, 0, 5}, {0, 1, 0}},
           {"plank", plank(), 0.1, {-4, -4, -4}, {6, 4, 4}, {0, 0, 0}, {0, 0, 1}},
           {"wing", wing(), 0.1, {-20, -20, 0}, {20, 20, 20}, {0, 0, 0}, {1, 0, 0}}};
 }
 
-gridmorph::Wrap tube_wrap(Case const& c) {
+gridmorph::Wrap tube_wrap(TubeCase const& c) {
   WrapOptions options;
   options.offset = c.offset;
   options.tube = true;
@@ -67,7 +67,7 @@ gridmorph::Wrap tube_wrap(Case const& c) {
 }
 
 TEST(Tube, HoldsItsWallsWithTheirOffset) {
-  for (Case const& c : cases()) {
+  for (TubeCase const& c : tube_cases()) {
     SCOPED_TRACE(c.name);
     gridmorph::Wrap const wrap = tube_wrap(c);
     ASSERT_TRUE(wrap.tube) << wrap.note;
@@ -80,20 +80,20 @@ TEST(Tube, HoldsItsWallsWithTheirOffset) {
 }
 
 TEST(Tube, IsSlimAndFollowsItsWalls) {
-  Case const c = cases()[0];
+  TubeCase const c = tube_cases()[0];
   Tube const tube = *tube_wrap(c).tube;
   EXPECT_NEAR(std::abs(dot(tube.axis, Vec3{1, 1, 1})), std::sqrt(3.0), 1e-3);
   EXPECT_NEAR(tube.length(), std::sqrt(3.0) + 0.1, 0.02);
   EXPECT_LT(tube.largest_radius(), 0.09);
   EXPECT_FALSE(tube.contains({0.5, 0.5, 0.7}));
-  Tube const flat = *tube_wrap(cases()[3]).tube;
+  Tube const flat = *tube_wrap(tube_cases()[3]).tube;
   // Above the wing, half a chord: a round tube would hold it.
   EXPECT_FALSE(flat.contains({0.3, 0.45, 1}));
   EXPECT_TRUE(flat.contains({0.7, 0.02, 1}));
 }
 
 TEST(Tube, EndsWhereItsMeshDoes) {
-  for (Case const& c : cases()) {
+  for (TubeCase const& c : tube_cases()) {
     SCOPED_TRACE(c.name);
     gridmorph::Wrap const wrap = tube_wrap(c);
     Tube const& tube = *wrap.tube;
@@ -113,14 +113,14 @@ TEST(Tube, EndsWhereItsMeshDoes) {
 }
 
 TEST(Tube, IsNotFittedAroundWhatIsWideOrTornApart) {
-  Case wide{"sphere", {}, 0.1, {-4, -4, -4}, {4, 4, 4}, {}, {}};
+  TubeCase wide{"sphere", {}, 0.1, {-4, -4, -4}, {4, 4, 4}, {}, {}};
   wide.bodies.sphere({0, 0, 0}, 0.5, 12);
   gridmorph::Wrap const around = tube_wrap(wide);
   EXPECT_FALSE(around.tube);
   EXPECT_NE(around.note.find("no tube"), std::string::npos) << around.note;
   EXPECT_GT(around.n_inside(), 20) << "cells of the lattice instead";
 
-  Case torn{"two spheres", {}, 0.1, {-4, -4, -4}, {9, 4, 4}, {}, {}};
+  TubeCase torn{"two spheres", {}, 0.1, {-4, -4, -4}, {9, 4, 4}, {}, {}};
   torn.bodies.sphere({0, 0, 0}, 0.3, 12);
   torn.bodies.sphere({6, 0, 0}, 0.3, 12);
   gridmorph::Wrap const apart = tube_wrap(torn);
@@ -130,7 +130,7 @@ TEST(Tube, IsNotFittedAroundWhatIsWideOrTornApart) {
 }
 
 /// det of the Jacobian, moved over baseline, at the corner nodes of a cell; the smallest of all cells in the domain.
-double smallest_volume_ratio(Case const& c, Mesh const& mesh, Coordinates const& moved) {
+double smallest_volume_ratio(TubeCase const& c, Mesh const& mesh, Coordinates const& moved) {
   double least = 1;
   for (Zone const& zone : mesh.zones)
     for (int k = 0; k + 1 < zone.extent[2]; ++k)
@@ -161,7 +161,7 @@ double smallest_volume_ratio(Case const& c, Mesh const& mesh, Coordinates const&
 }
 
 TEST(OTypeBackground, CarriesTurnsOfLongBodiesWithoutTurningCellsOver) {
-  for (Case const& c : cases()) {
+  for (TubeCase const& c : tube_cases()) {
     SCOPED_TRACE(c.name);
     Background background = make_background(tube_wrap(c));
     EXPECT_EQ(background.mesh.zones.size(), 22u);
@@ -197,7 +197,7 @@ TEST(OTypeBackground, CarriesTurnsOfLongBodiesWithoutTurningCellsOver) {
 }
 
 TEST(OTypeBackground, IsBoundedByTheTubeAndByTheBox) {
-  for (Case const& c : cases()) {
+  for (TubeCase const& c : tube_cases()) {
     SCOPED_TRACE(c.name);
     gridmorph::Wrap const wrap = tube_wrap(c);
     Background const background = make_background(wrap);
@@ -226,7 +226,7 @@ TEST(OTypeBackground, IsBoundedByTheTubeAndByTheBox) {
 }
 
 TEST(OTypeBackground, RowsReproduceLinearFieldsAtPointsOfTheFarField) {
-  Case const c = cases()[3];
+  TubeCase const c = tube_cases()[3];
   gridmorph::Wrap const wrap = tube_wrap(c);
   Background const background = make_background(wrap);
   std::vector<Vec3> points;

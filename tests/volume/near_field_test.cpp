@@ -9,14 +9,14 @@
 namespace gridmorph::test {
 namespace {
 
-BoundaryLayer layers(std::string const& wall, int n) {
+BoundaryLayer layers_at(std::string const& wall, int n) {
   return {{wall}, BoundaryLayer::Extent::layers, n, 0, BoundaryLayer::Mode::translate};
 }
 
 /// A straight box whose two u faces are walls, 8 cells apart: u_min moves, u_max stays, the rest is free.
 Outcome morph_between_walls(int layers_of_moving, int layers_of_fixed) {
   PlanOptions options;
-  options.boundary_layers = {layers("u_min", layers_of_moving), layers("u_max", layers_of_fixed)};
+  options.boundary_layers = {layers_at("u_min", layers_of_moving), layers_at("u_max", layers_of_fixed)};
   return morph(box({9, 4, 5}, Shape::straight, 1),
                motion({rule({"u_min"}, function_rule([](Vec3 const&) {
                               return Vec3{0, 0.25, 0.5};

@@ -12,7 +12,7 @@
 namespace gridmorph::test {
 namespace {
 
-std::vector<std::string> const sides{"v_min", "v_max", "w_min", "w_max"};
+std::vector<std::string> const side_patches{"v_min", "v_max", "w_min", "w_max"};
 
 BoxField field(Mesh const& mesh, Coordinates const& c) {
   Zone const& zone = mesh.zones[0];
@@ -45,8 +45,9 @@ TEST_P(BoxLaw, SweepBetweenTwoKnownFacesIsThePapersFormula) {
   VectorField const f = waves(0.2);
   PlanOptions options;
   options.volume.law = GetParam();
-  Outcome const r = morph(box({9, 7, 6}, Shape::curved, 1),
-                          motion({rule({"u_min", "u_max"}, function_rule(f)), rule(sides, FreeRule{})}), options);
+  Outcome const r =
+      morph(box({9, 7, 6}, Shape::curved, 1),
+            motion({rule({"u_min", "u_max"}, function_rule(f)), rule(side_patches, FreeRule{})}), options);
   BoxField const expected = reference_sweep(field(r.mesh, r.mesh.coordinates), field(r.mesh, f),
                                             [&](double t) { return weight(GetParam(), t); });
   EXPECT_LT(largest_difference(field(r.mesh, r.morphed.displacement), expected), 1e-14);
@@ -95,7 +96,7 @@ TEST(Box, TrilinearFieldsAreExactOnAStraightUniformGrid) {
 TEST(Box, LinearFieldsOnTwoFacesAreExactBetweenThem) {
   VectorField const f = [](Vec3 const& p) { return Vec3{0.1 * p.x - 0.3 * p.y, 0.2 * p.z, p.x + p.y}; };
   Outcome const r = morph(box({9, 7, 6}, Shape::straight, 1),
-                          motion({rule({"u_min", "u_max"}, function_rule(f)), rule(sides, FreeRule{})}));
+                          motion({rule({"u_min", "u_max"}, function_rule(f)), rule(side_patches, FreeRule{})}));
   EXPECT_LT(largest_difference(field(r.mesh, r.morphed.displacement), field(r.mesh, f)), 1e-14);
 }
 
@@ -137,7 +138,7 @@ TEST(Box, ASideGivesItsResidualAtTheSameFractionOfTheLinesBesideIt) {
 
 TEST(Box, OneKnownFaceIsCarriedThroughUnchanged) {
   VectorField const f = waves(0.2);
-  std::vector<std::string> rest = sides;
+  std::vector<std::string> rest = side_patches;
   rest.push_back("u_max");
   Outcome const r =
       morph(box({9, 7, 6}, Shape::curved, 1), motion({rule({"u_min"}, function_rule(f)), rule(rest, FreeRule{})}));
@@ -153,7 +154,7 @@ TEST(Box, ChainsOfTwoNodesHaveNothingToDo) {
     for (bool all : {true, false}) {
       std::vector<MotionRule> rules{
           rule(all ? std::vector<std::string>{"*"} : std::vector<std::string>{"u_min", "u_max"}, function_rule(f))};
-      if (!all) rules.push_back(rule(sides, FreeRule{}));
+      if (!all) rules.push_back(rule(side_patches, FreeRule{}));
       Outcome const r = morph(box(n, Shape::curved, 3), motion(rules));
       BoxField const expected =
           all ? reference_transfinite(field(r.mesh, r.mesh.coordinates), field(r.mesh, f), [](double t) { return t; })

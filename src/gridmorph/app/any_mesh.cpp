@@ -45,7 +45,7 @@ CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<M
   out.clear();
   for (Measure const m : measures) {
     auto const unit = m == Measure::minimum_angle_deg ? FieldUnit::degree : FieldUnit::number;
-    auto& values = out.emplace_back(field_name(m), std::vector<double>(std::size_t(n_cells)), unit).values;
+    auto& values = out.emplace_back(CellField{field_name(m), std::vector<double>(std::size_t(n_cells)), unit}).values;
     fields[m] = Kokkos::View<double*, Kokkos::HostSpace>(values.data(), values.size());
   }
   return fields;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,48 +16,13 @@ namespace {
 /// Iterations over which a residual has to get smaller.
 constexpr int stride = 8;
 
-/// Share of the displacement by which it may jump between elements.
-constexpr double largest_jump = 0.01;
-
 }  // namespace
 
 InverseField::InverseField(std::string source, double tolerance, int most_iterations)
     : source_(std::move(source)), tolerance_(tolerance), most_(most_iterations) {}
 
-std::optional<InverseField::Settled> InverseField::settle(Field const& u, HeldField const& held, double share,
-                                                          Vec3 const& x, Vec3 place) const {
-  auto const residual_at = [&](Vec3 const& at) {
-    Vec3 field;
-    u({&at, 1}, {&field, 1}, true);
-    return at - x + share * field;
-  };
-  std::optional<Settled> best;
-  for (int iterate = 0; iterate < stride; ++iterate) {
-    Vec3 at = place;
-    double before = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < most_; ++k) {
-      Vec3 const residual = at - x + share * held(at, place);
-      double const size = norm(residual);
-      if (size <= tolerance_) {
-        double const free = norm(residual_at(at));
-        bool const nearby = free <= std::max(tolerance_, largest_jump * distance(at, x));
-        if (nearby && (!best || free < best->residual)) best = Settled{at, free};
-        break;
-      }
-      if (k % stride == 0) {
-        if (!(size < before)) break;
-        before = size;
-      }
-      at = at - residual;
-    }
-    if (best && best->residual <= tolerance_) break;
-    place = place - residual_at(place);
-  }
-  return best;
-}
-
-void InverseField::operator()(Field const& u, double share, std::span<Vec3 const> points, std::span<Vec3> displacement,
-                              HeldField const& held) const {
+void InverseField::operator()(Field const& u, double share, std::span<Vec3 const> points,
+                              std::span<Vec3> displacement) const {
   InverseReport here;
   here.evaluated = Index(points.size());
   std::vector<std::size_t> open(points.size());  // positions that are not there yet
@@ -83,17 +47,6 @@ void InverseField::operator()(Field const& u, double share, std::span<Vec3 const
         continue;
       }
       bool const stuck = k > 0 && k % stride == 0 && !(size < earlier[o]);
-      if (held && (stuck || k >= most_))
-        if (auto const settled = settle(u, held, share, x, place[o])) {
-          displacement[n] = settled->place - x;
-          here.iterations = std::max(here.iterations, k);
-          ++here.held;
-          if (settled->residual <= tolerance_)
-            here.residual = std::max(here.residual, settled->residual);
-          else
-            here.jump = std::max(here.jump, settled->residual);
-          continue;
-        }
       if (stuck || k >= most_)
         throw MotionError(fmt::format(
             "{}: no place X with X + u(X) = x is found for the node at {}: |X + u(X) - x| is {:.3g} after {} "
@@ -118,8 +71,6 @@ void InverseField::operator()(Field const& u, double share, std::span<Vec3 const
   report_.evaluated += here.evaluated;
   report_.iterations = std::max(report_.iterations, here.iterations);
   report_.residual = std::max(report_.residual, here.residual);
-  report_.held += here.held;
-  report_.jump = std::max(report_.jump, here.jump);
   if (here.one_step > report_.one_step) {
     report_.one_step = here.one_step;
     report_.worst_of_one_step = here.worst_of_one_step;

@@ -71,7 +71,8 @@ ModalField::ModalField(std::optional<StructuralModel> mean, std::vector<Mode> mo
     fields_.push_back(std::make_shared<PointField const>(std::move(group.model), options, std::move(group.further)));
 }
 
-std::vector<std::vector<double>> ModalField::factors_at(double periods, std::span<double const> load_factors) const {
+void ModalField::at(double periods, std::span<double const> load_factors, std::span<Vec3 const> points,
+                    std::span<Vec3> displacement, bool iterates) const {
   std::vector<std::vector<double>> factors;
   for (auto const& field : fields_) factors.emplace_back(field->n_fields(), 0.0);
   if (mean_) factors[mean_->field][mean_->real] = 1;
@@ -81,20 +82,6 @@ std::vector<std::vector<double>> ModalField::factors_at(double periods, std::spa
     factors[part.field][part.real] = part.amplitude * cosine;
     if (part.complex) factors[part.field][part.imaginary] = -part.amplitude * sine;
   }
-  return factors;
-}
-
-Vec3 ModalField::held(double periods, std::span<double const> load_factors, Vec3 const& point,
-                      Vec3 const& anchor) const {
-  auto const factors = factors_at(periods, load_factors);
-  Vec3 sum;
-  for (std::size_t f = 0; f < fields_.size(); ++f) sum += fields_[f]->held(factors[f], point, anchor);
-  return sum;
-}
-
-void ModalField::at(double periods, std::span<double const> load_factors, std::span<Vec3 const> points,
-                    std::span<Vec3> displacement, bool iterates) const {
-  auto const factors = factors_at(periods, load_factors);
   std::fill(displacement.begin(), displacement.end(), Vec3{0, 0, 0});
   std::vector<Vec3> one(points.size());
   for (std::size_t f = 0; f < fields_.size(); ++f) {

@@ -66,8 +66,6 @@ class PointField {
   /// `iterates`: the points are no nodes but on the way to some; they are neither kept nor counted in mapping().
   void evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
                 bool iterates = false) const;
-  /// At one point, which is no node, by the element or the points that `anchor`, a place nearby, is mapped from.
-  [[nodiscard]] Vec3 held(std::span<double const> factors, Vec3 const& point, Vec3 const& anchor) const;
 
   [[nodiscard]] std::size_t size() const;        ///< nodes kept
   [[nodiscard]] std::size_t n_elements() const;  ///< 0: a cloud of points

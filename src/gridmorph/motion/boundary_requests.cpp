@@ -1,13 +1,10 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -60,10 +57,6 @@ class Evaluation {
     for (auto const& [who, c] : conflicts_) {
       Request const& first = boundary_.requests[std::size_t(c.first)];
       Request const& second = boundary_.requests[std::size_t(c.second)];
-      if (auto const torn = torn_copies(c); !torn.empty()) {
-        problems.add(torn);
-        continue;
-      }
       problems.add("patches " + who.first + " and " + who.second + " disagree on " + std::to_string(c.count) +
                    " common nodes, most at " + describe_node(mesh_, first.node) + ": " + to_text(c.a, 6) + " from " +
                    rule(first).where + ", " + to_text(c.b, 6) + " from " + rule(second).where + ", apart by " +
@@ -80,29 +73,6 @@ class Evaluation {
     Index first = 0, second = 0, count = 0;
     Vec3 a, b;
   };
-
-  /// What is wrong where one rule moves a node and its periodic copy in two ways; empty where that is not so.
-  [[nodiscard]] std::string torn_copies(Conflict const& c) const {
-    Request const &a = boundary_.requests[std::size_t(c.first)], &b = boundary_.requests[std::size_t(c.second)];
-    Vec3 const at = mesh_.coordinates[a.node], copy = mesh_.coordinates[b.node];
-    if (a.rule != b.rule || distance(at, copy) <= 1e-6 * rules_.boundary().size()) return {};
-    CylindricalFrame const frame(motion_.axis);
-    double const angle = std::abs(frame.motion(at, copy - at).angle_rad);
-    bool const turned = a.rotation != b.rotation && angle > 0;
-    std::string text = rule(a).where + " (" + std::string(rule_name(rule(a).rule)) + ") gives " +
-                       std::to_string(c.count) + " nodes of " + requester(mesh_, a) +
-                       " and their periodic copies different displacements, most at " + describe_node(mesh_, a.node) +
-                       ": " + to_text(c.a, 6) + " there and " + to_text(c.b, 6) + " at the copy " +
-                       describe_node(mesh_, b.node) + ", apart by " + to_text(c.size, 6) +
-                       "; the motion has to be the same in every pitch";
-    if (turned)
-      text += " of " + to_text(angle * 180 / std::numbers::pi, 6) +
-              " degrees: waves around the axis fit where there are " +
-              to_text(std::round(2 * std::numbers::pi / angle), 6) + " of them in a turn, or a multiple of that";
-    return text +
-           "; where the sides of a blade stand a pitch apart, as in H meshes, no lattice or turn in space moves both "
-           "alike: give such blades sections, or a formula in components about the axis";
-  }
 
   [[nodiscard]] MotionRule const& rule(Request const& r) const { return motion_.rules[std::size_t(r.rule)]; }
   [[nodiscard]] bool is_default(Request const& r) const {

@@ -17,7 +17,8 @@ std::vector<Index32> neighbours_across(UnstructuredTopology const& topology) {
 LinkedSides linked_sides(Mesh const& mesh, UnstructuredTopology const& topology) {
   auto const& [nodes, element, side, across, connection] = topology.boundary;
   LinkedSides out;
-  auto const side_of = [&](std::size_t f) {
+  // Bindings are named one by one, since clang below 16 captures none in code for OpenMP.
+  auto const side_of = [&topology, &element = element, &side = side](std::size_t f) {
     return std::size_t(topology.sides.first[std::size_t(element[f])] + side[f]);
   };
   for (std::size_t f = 0; f < across.size(); ++f) {

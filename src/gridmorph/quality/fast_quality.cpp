@@ -95,7 +95,7 @@ QualityReport fast_quality(Exec const& exec, Mesh const& mesh, QualityInput<type
         Index const first = kernels::first_cell(zone, row);
         kernels::CellRow const now = cell_row(coordinates, zone, row), before = cell_row(baseline, zone, row);
         kernels::RowVerdicts<Policy::row_length> verdict;
-        row_verdicts<Policy::lanes>(now, verdict);
+        kernels::row_verdicts<Policy::lanes>(now, verdict);
         for_each_region_run(
             has_near_field ? near_field.data() + first : nullptr, row.count, [&](int r, int begin, int end) {
               RunOfCells<Policy::row_length> const run{now, before, verdict, begin, end, first, against_baseline};

@@ -44,7 +44,8 @@ CellValue min_determinant(Exec const& exec, Mesh const& mesh,
       exec, "gridmorph::min_determinant", chunks, minima,
       KOKKOS_LAMBDA(kernels::RowOfCells const& row, SmallestCell& smallest_of_chunk) {
         double determinant[Policy::row_length], mark[Policy::row_length];
-        row_determinants<Policy::lanes>(detail::cell_row(coordinates, zones(row.zone), row), determinant, mark);
+        kernels::row_determinants<Policy::lanes>(detail::cell_row(coordinates, zones(row.zone), row), determinant,
+                                                 mark);
         for (int n = 0; n < row.count; ++n)
           if (determinant[n] < smallest_of_chunk.value) smallest_of_chunk = {determinant[n], row.i + n, row.j, row.k};
       });

@@ -94,7 +94,8 @@ std::pair<double, double> RevolutionWall::meridional(Vec3 const& point) const {
 }
 
 double RevolutionWall::distance(Vec3 const& point) const {
-  auto const [axial, radius] = meridional(point);
+  std::pair<double, double> const place = meridional(point);
+  double const axial = place.first, radius = place.second;
   // Nearest place on the line through the points, from the station of the point outwards.
   double best = std::numeric_limits<double>::infinity(), sign = 1;
   auto const look = [&](std::size_t n) {

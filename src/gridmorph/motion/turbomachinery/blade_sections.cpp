@@ -9,7 +9,6 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <utility>
 
 namespace gridmorph {
 
@@ -187,13 +186,6 @@ BladeSections::BladeSections(BladeSurface const& blade) {
     }
     leading.add(h, first);
     trailing.add(h, last);
-    double const chord = last[0] - first[0];
-    for (Side const& side : sides)
-      for (auto const& [own, mean] : {std::pair(side.table.front(), first), std::pair(side.table.back(), last)}) {
-        edge_spread_.length =
-            std::max({edge_spread_.length, std::abs(own[1] - mean[1]) / chord, std::abs(own[2] - mean[2]) / chord});
-        edge_spread_.angle_rad = std::max(edge_spread_.angle_rad, std::abs(own[3] - mean[3]));
-      }
   }
   leading_ = edge_table(contours, edges, &EdgeLines::leading).value_or(leading);
   trailing_ = edge_table(contours, edges, &EdgeLines::trailing).value_or(trailing);

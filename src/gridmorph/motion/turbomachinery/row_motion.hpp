@@ -46,8 +46,6 @@ class RowMotion {
   /// Whether a patch is of the blade, and its sections were cut from facets: then nodes of the blade have their motion from the blade's own
   /// rule, which the sections meet but for the facets.
   [[nodiscard]] bool gives_way_to(int patch) const;
-  /// Whether a patch is of the blade.
-  [[nodiscard]] bool has(int patch) const;
   /// Before mid-chord, along the flow.
   [[nodiscard]] bool is_upstream(Vec3 const& point) const;
   /// Periodics: mid-camber motion between the edges, linear taper along the flow path to the ends of the row. Between

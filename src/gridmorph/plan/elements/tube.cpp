@@ -41,7 +41,9 @@ double Tube::largest_radius() const {
 bool Tube::contains(Vec3 const& p) const {
   double const s = dot(p, axis);
   if (s < station.front() || s > station.back()) return false;
-  auto const [j, t] = level_of(*this, s);
+  Level const level = level_of(*this, s);
+  int const j = level.section;
+  double const t = level.t;
   Vec3 const c = between(centre[std::size_t(j)], centre[std::size_t(j) + 1], t);
   double const a = dot(p - c, u), b = dot(p - c, v);
   auto corner = [&](int k) {

@@ -244,10 +244,7 @@ TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& opti
                           [field, when, now, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
                             (*inverse)([&](std::span<Vec3 const> places, std::span<Vec3> there,
                                            bool iterates) { field->at(when.periods, now, places, there, iterates); },
-                                       share, points, u,
-                                       [&](Vec3 const& place, Vec3 const& anchor) {
-                                         return field->held(when.periods, now, place, anchor);
-                                       });
+                                       share, points, u);
                           }};
     return shared_field(description, share, [field, when, now](std::span<Vec3 const> points, std::span<Vec3> u) {
       field->at(when.periods, now, points, u);
@@ -332,11 +329,7 @@ TimedRule read_field(TableReader& table, RuleContext const& shared, CaseFile& ou
                                     constexpr double all = 1;
                                     field->evaluate({&all, 1}, places, there, iterates);
                                   },
-                                  share, points, u,
-                                  [&](Vec3 const& place, Vec3 const& anchor) {
-                                    constexpr double all = 1;
-                                    return field->held({&all, 1}, place, anchor);
-                                  });
+                                  share, points, u);
                             }};
       };
       return rule;
