@@ -4,6 +4,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/host_spaces.hpp>
 #include <gridmorph/kernels/element_place.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
@@ -247,7 +248,7 @@ TEST(ElementLocator, OrderOfCandidatesAndOfPointsAndTheBackendChangeNothing) {
                        random.vector(n % 3 == 0 ? size : 1e-3));
     std::vector<Index32> candidates = all_of(mesh);
     auto const expected = locate_with<Exec>(mesh, points, candidates);
-#ifdef KOKKOS_ENABLE_SERIAL
+#ifdef GRIDMORPH_WITH_SERIAL
     EXPECT_TRUE(same_bits(locate_with<Kokkos::Serial>(mesh, points, candidates), expected));
 #endif
     random.shuffle(candidates);

@@ -3,6 +3,7 @@
 #include "support/random.hpp"
 #include "support/unstructured_case.hpp"
 
+#include <gridmorph/core/host_spaces.hpp>
 #include <gridmorph/kernels/layer_motion.hpp>
 
 #include <gtest/gtest.h>
@@ -123,12 +124,14 @@ TEST(NearLayers, HaveTheVelocityOfTheirDifferences) {
   EXPECT_LT(error, 1e-7 * largest);
 }
 
+#ifdef GRIDMORPH_WITH_SERIAL
 TEST(NearLayers, GiveTheSameBitsWithAnyThreads) {
   Case const c = rooted();
   auto const with = [&](auto const& exec) { return positions_on(exec, c, moves({1, 0, 1}, 0.08), by_layers()); };
   Coordinates const serial = with(Kokkos::Serial()), host = with(Case::Host());
   for (Index n = 0; n < serial.size(); ++n) ASSERT_EQ(serial[n], host[n]) << n;
 }
+#endif
 
 }  // namespace
 }  // namespace gridmorph::test

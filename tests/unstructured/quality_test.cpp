@@ -3,6 +3,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/host_spaces.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <gtest/gtest.h>
@@ -411,7 +412,7 @@ TEST(UnstructuredQuality, RegionsAreMeasuredByThemselves) {
   expect_equal(report.regions[0].quality, split.near_field, true);
 }
 
-#if defined(KOKKOS_ENABLE_SERIAL) && defined(KOKKOS_ENABLE_OPENMP)
+#if defined(GRIDMORPH_WITH_SERIAL) && defined(GRIDMORPH_WITH_OPENMP)
 TEST(UnstructuredQuality, SerialAndOpenMPAgreeBitForBit) {
   Prepared const p(to_prisms_and_tetrahedra(
       one_zone({31, 22, 13},

@@ -18,7 +18,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -56,8 +55,7 @@ class BlockPlan final : public AnyPlan {
                                   locate_wakes(prepared_.surface.shared_boundary(), prepared_.surface.motion(),
                                                case_file_.measured_regions, region_notes_),
                                   region_notes_)) {
-    VolumeOptions const& volume = case_file_.plan.volume;
-    if (volume.by_prediction() || volume.are_automatic()) order_by_prediction();
+    if (case_file_.plan.volume.by_prediction()) order_by_prediction();
   }
 
   std::vector<Vec3> displacement(Moment const* when) override {
@@ -86,8 +84,7 @@ class BlockPlan final : public AnyPlan {
   }
 
   [[nodiscard]] PlanPrediction predict() override {
-    auto const [some, step, boundary] = predict_worst(case_file_.sequence ? case_file_.sequence->steps : 1);
-    Prediction const worst = predict_closely(exec_, prepared_, boundary);
+    auto const [worst, step, boundary] = predict_worst();
     PlanPrediction out{describe(prepared_.mesh, worst), prediction_warnings(prepared_.mesh, worst),
                        prediction_json(prepared_.mesh, worst)};
     if (!case_file_.sequence) return out;
@@ -166,7 +163,6 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] StepTimes times() const override {
     auto const& seconds = prepared_.seconds;
     StepTimes out{{"topology", seconds.topology}, {"rules", seconds.rules}, {"plan", seconds.plan}};
-    if (predicting_ > 0) out.push_back({"prediction", predicting_});
     if (ordering_ > 0) out.push_back({"order", ordering_});
     return out;
   }
@@ -214,37 +210,22 @@ class BlockPlan final : public AnyPlan {
     std::vector<Vec3> boundary;
   };
 
-  /// Asked for: the order of chains predicted to be best. Left to us: another one where that by priority inverts cells.
   void order_by_prediction() {
     Stopwatch watch;
-    bool const asked_for = case_file_.plan.volume.by_prediction();
-    int const steps = case_file_.sequence ? case_file_.sequence->steps : 1;
-    constexpr int enough = 8;
-    std::vector<Vec3> boundary;
-    try {
-      boundary = predict_worst(asked_for ? steps : std::min(steps, enough)).boundary;
-    } catch (MotionError const&) {
-      if (asked_for) throw;
-      return;  // the plan stands; that the motion cannot be made is said where it is made
-    }
-    bool const wanted = asked_for || is_inverted_by_priority(exec_, prepared_, boundary);
-    if (!asked_for) predicting_ = watch.lap();
-    if (!wanted) return;
-    plan_by_prediction(exec_, prepared_, boundary);
+    plan_by_prediction(exec_, prepared_, predict_worst().boundary);
     ordering_ = watch.lap();
   }
 
-  /// Of the motion as the rules stand, or of the step of a sequence that comes out worst of so many, spread over it to its last one.
-  StepPrediction predict_worst(int most) {
+  /// Of the motion as the rules stand, or of the step of a sequence that comes out worst.
+  StepPrediction predict_worst() {
     Predictor predictor(exec_, prepared_, {});
     StepPrediction worst;
     int const steps = case_file_.sequence ? case_file_.sequence->steps : 1;
-    for (int n = 1; n <= most; ++n) {
-      int const step = int(std::int64_t(n) * steps / most) - 1;
+    for (int step = 0; step < steps; ++step) {
       Moment const when = case_file_.sequence ? case_file_.sequence->moment(step) : Moment{};
       StepPrediction now{{}, step, displacement(case_file_.sequence ? &when : nullptr)};
       now.prediction = predictor.predict(now.boundary);
-      if (n == 1 || now.prediction.all.scaled_jacobian.value < worst.prediction.all.scaled_jacobian.value)
+      if (step == 0 || now.prediction.all.scaled_jacobian.value < worst.prediction.all.scaled_jacobian.value)
         worst = std::move(now);
     }
     return worst;
@@ -262,7 +243,6 @@ class BlockPlan final : public AnyPlan {
   std::optional<Morpher<Exec>> morpher_;
   std::optional<FrozenSmoothing> frozen_;
   bool evaluated_ = false;
-  double predicting_ = 0;               ///< seconds that it took to see whether cells come out inverted
   double ordering_ = 0;                 ///< seconds that the order of chains took to be found
   std::optional<std::string> trimmed_;  ///< of the rules as they stand
 };
