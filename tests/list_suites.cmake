@@ -2,8 +2,7 @@
 # process per test takes longer than most tests; where split is on, one per test, or per value of a suite's parameter. Asking when ctest runs, not
 # when the program is built, lets machines build what they cannot run.
 #
-# Given are name, program, split, shared_setup, threads, a list of which the first is every day's, and nightly, a list of regular expressions
-# for names of tests. With shared_setup, sanitizers run a suite in one process: what it sets up is made once.
+# Given are name, program, split, shared_setup and threads, a list of which the first is every day's. With shared_setup, sanitizers run a suite in one process: what it sets up is made once.
 cmake_policy(VERSION 3.25)
 if(NOT EXISTS "${program}")
   add_test("${name}.is_not_built" "${program}")
@@ -23,7 +22,7 @@ set(filters "")
 set(counts "${threads}")
 list(GET threads 0 every_day)
 if(DEFINED ENV{GRIDMORPH_TEST_REDUCED})
-  list(GET threads 0 counts)
+  set(counts ${every_day})
   if(shared_setup)
     set(split FALSE)
   endif()
@@ -55,11 +54,6 @@ foreach(line IN LISTS lines)
       set(test "${name}_threads_${n}.${group}")
       set(label nightly)
     endif()
-    foreach(late IN LISTS nightly)
-      if("${name}.${group}" MATCHES "^${name}[.]${late}")
-        set(label nightly)
-      endif()
-    endforeach()
     add_test("${test}" "${program}" "--gtest_filter=${filter}" --gtest_brief=1)
     # Skipped: where no test passed and none failed. A program says so in its last lines.
     set_tests_properties(

@@ -1,7 +1,8 @@
-# Debian packages and Debian source packages. Source this file; it needs `say`, `fail` and $apt_log. No host is named here:
+# Debian packages and Debian source packages. Source this file; it needs `say` and `fail`. No host is named here:
 # everything comes through the machine's own entries in /etc/apt.
 
 apt_updated=no
+apt_log=${apt_log:-${GRIDMORPH_DEPS_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/gridmorph}/apt.log}
 apt_patience=900 apt_pause=3 # seconds to wait for another installation, in all and between two looks
 
 have_apt() { command -v apt-get >/dev/null 2>&1; }

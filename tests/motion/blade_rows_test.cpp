@@ -1,5 +1,6 @@
 // Circumferential slide and follow on analytic blade rows. The oracle is the formula of the blade's motion.
 #include "annulus.hpp"
+#include "moved_nodes.hpp"
 #include "support/expect_error.hpp"
 
 #include <gridmorph/core/error.hpp>
@@ -11,8 +12,11 @@
 namespace gridmorph {
 namespace {
 
+using test::evaluate;
 using test::expect_all_in;
 using test::message_of;
+using test::motion_on;
+using test::points_of;
 
 using namespace testing;  // the annulus and its formulas
 
@@ -66,25 +70,6 @@ Mesh row_mesh(Blade blade = Blade::o_mesh, bool tilted_inlet = true) {
   return row.finish();
 }
 
-std::vector<Vec3> points_of(Mesh const& mesh, std::string const& name) {
-  std::vector<Vec3> points;
-  for (Patch const& p : mesh.patches)
-    if (p.name == name)
-      for (int j = 0; j < p.range.end[1]; ++j)
-        for (int i = 0; i < p.range.end[0]; ++i) points.push_back(mesh.coordinates[mesh.zones[p.zone].node({i, j, 0})]);
-  return points;
-}
-
-std::vector<Vec3> evaluate(BoundaryMotion const& motion, int rule, std::vector<Vec3> const& points) {
-  std::vector<Vec3> out(points.size(), {7, 7, 7});
-  motion.displacement(rule, points, out);
-  return out;
-}
-
-BoundaryMotion row_motion(Mesh const& mesh, Motion const& motion) {
-  return BoundaryMotion(mesh, resolve(mesh, motion));
-}
-
 /// The motion of the redesigns in the tests: restagger with twist, chord change, sides that differ.
 BladeMotion redesign() {
   BladeMotion m;
@@ -118,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, EveryBladeMesh,
 
 TEST_P(EveryBladeMesh, FollowReplicatesMidCamberMotionAndTapersToSlidingEnds) {
   Mesh const mesh = row_mesh(GetParam());
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign())));
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   double worst = 0, largest = 0;
@@ -142,7 +127,7 @@ double error_to_fixed_ends(Mesh const& mesh, BoundaryMotion const& motion) {
 
 TEST_P(EveryBladeMesh, FollowTapersToFixedEnds) {
   Mesh const mesh = row_mesh(GetParam());
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign()), false));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign()), false));
   EXPECT_LT(error_to_fixed_ends(mesh, motion), 5e-6);
   for (char const* end : {"inlet", "outlet"})
     for (Vec3 const& v : evaluate(motion, follow_number, points_of(mesh, end))) EXPECT_LT(norm(v), 1e-12);
@@ -162,13 +147,13 @@ TEST(BladeRow, ARegionUpstreamIsNoEndOfTheRow) {
   for (Index3 const& corner : {part.range.begin, Index3{11, part.range.end[1] - 1, 0}})
     ASSERT_TRUE(mesh.coordinates.x(zone.node(corner)) > -0.5 && mesh.coordinates.x(zone.node(corner)) < -0.1);
   mesh.patches.push_back(part);
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign()), false));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign()), false));
   EXPECT_LT(error_to_fixed_ends(mesh, motion), 5e-6);
 }
 
 TEST_P(EveryBladeMesh, SlideTurnsByTheAngleOfTheNearerEdgeAndKeepsAxialPositionAndRadius) {
   Mesh const mesh = row_mesh(GetParam());
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign())));
   for (char const* end : {"inlet", "outlet"}) {
     auto const points = points_of(mesh, end);
     auto const u = evaluate(motion, slide_number, points);
@@ -184,7 +169,7 @@ TEST_P(EveryBladeMesh, SlideTurnsByTheAngleOfTheNearerEdgeAndKeepsAxialPositionA
 
 TEST_P(EveryBladeMesh, FollowAgreesWithSlideOnInletAndExit) {
   Mesh const mesh = row_mesh(GetParam());
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign())));
   for (char const* end : {"inlet", "outlet"}) {
     auto const points = points_of(mesh, end);
     EXPECT_LT(largest_difference(evaluate(motion, slide_number, points), evaluate(motion, follow_number, points)),
@@ -195,7 +180,7 @@ TEST_P(EveryBladeMesh, FollowAgreesWithSlideOnInletAndExit) {
 TEST_P(EveryBladeMesh, ARotationAboutTheAxisTurnsEverythingByTheSameAngle) {
   Mesh const mesh = row_mesh(GetParam());
   RigidRule const turn = make_rigid({.angle_rad = 0.2, .axis = {{0, 0, 0}, {1, 0, 0}}});
-  BoundaryMotion const motion = row_motion(mesh, row_rules(turn));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(turn));
   for (auto const& [name, rule] :
        {std::pair{"inlet", slide_number}, {"outlet", slide_number}, {"periodic", follow_number}}) {
     auto const points = points_of(mesh, name);
@@ -207,7 +192,7 @@ TEST_P(EveryBladeMesh, ARotationAboutTheAxisTurnsEverythingByTheSameAngle) {
 TEST_P(EveryBladeMesh, ABladeThatDoesNotMoveMovesNothingBitForBit) {
   Mesh const mesh = row_mesh(GetParam());
   for (Rule const& rule : {Rule{FixedRule{}}, Rule{RigidRule{}}}) {
-    BoundaryMotion const motion = row_motion(mesh, row_rules(rule));
+    BoundaryMotion const motion = motion_on(mesh, row_rules(rule));
     for (auto const& [name, r] : {std::pair{"inlet", slide_number},
                                   {"outlet", slide_number},
                                   {"periodic", follow_number},
@@ -218,7 +203,7 @@ TEST_P(EveryBladeMesh, ABladeThatDoesNotMoveMovesNothingBitForBit) {
 
 TEST_P(EveryBladeMesh, FollowKeepsEndWallEdgesOnHubAndCase) {
   Mesh const mesh = row_mesh(GetParam());
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign())));
   for (auto const& [name, profile] : {std::pair{"hub", &hub}, {"case", &shroud}}) {
     auto const points = points_of(mesh, name);
     auto const u = evaluate(motion, follow_number, points);
@@ -245,7 +230,7 @@ void expect_follow_agrees_with_the_blade(Blade blade, std::function<double(doubl
     }
   };
   Mesh const mesh = row_mesh(blade);
-  BoundaryMotion const motion = row_motion(mesh, row_rules(rule));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(rule));
   auto const points = points_of(mesh, "blade");
   int checked = 0;
   double worst = 0;
@@ -272,7 +257,7 @@ TEST_P(HMesh, FollowAgreesWithABladeThatLeavesItsEndWalls) {
 
 TEST(BladeRow, DisplacementsTurnWithThePoint) {
   Mesh const mesh = row_mesh();
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign())));
   auto const points = points_of(mesh, "periodic");
   for (double angle : {pitch, -2.0, 0.01}) {
     Mat3 const turn = rotation_matrix({1, 0, 0}, angle);
@@ -289,8 +274,8 @@ TEST(BladeRow, HowTheBladeIsCutAndStoredChangesNothingBeyondRoundOff) {
   for (auto const& [whole, cut] : {std::pair{Blade::h_mesh, Blade::h_cut}}) {
     Mesh const a = row_mesh(whole), b = row_mesh(cut);
     auto const points = points_of(a, "periodic");
-    EXPECT_LT(largest_difference(evaluate(row_motion(a, row_rules(blade_rule(redesign()))), follow_number, points),
-                                 evaluate(row_motion(b, row_rules(blade_rule(redesign()))), follow_number, points)),
+    EXPECT_LT(largest_difference(evaluate(motion_on(a, row_rules(blade_rule(redesign()))), follow_number, points),
+                                 evaluate(motion_on(b, row_rules(blade_rule(redesign()))), follow_number, points)),
               1e-13);
   }
   // The O mesh: same nodes, cut and turned.
@@ -304,8 +289,8 @@ TEST(BladeRow, HowTheBladeIsCutAndStoredChangesNothingBeyondRoundOff) {
     cut.add(periodic());
     Mesh const a = row_mesh(Blade::o_mesh), b = cut.finish();
     auto const points = points_of(a, "periodic");
-    EXPECT_LT(largest_difference(evaluate(row_motion(a, row_rules(blade_rule(redesign()))), follow_number, points),
-                                 evaluate(row_motion(b, row_rules(blade_rule(redesign()))), follow_number, points)),
+    EXPECT_LT(largest_difference(evaluate(motion_on(a, row_rules(blade_rule(redesign()))), follow_number, points),
+                                 evaluate(motion_on(b, row_rules(blade_rule(redesign()))), follow_number, points)),
               1e-13);
   }
 }
@@ -331,7 +316,7 @@ TEST(BladeRow, TheAxisMayBeAnywhere) {
                                 }};
   Motion motion_there = row_rules(rule_there);
   motion_there.axis = {placed({-3, 0, 0}), 5.0 * (placed.rotation * Vec3{1, 0, 0})};
-  BoundaryMotion const ma = row_motion(a, row_rules(rule)), mb = row_motion(b, motion_there);
+  BoundaryMotion const ma = motion_on(a, row_rules(rule)), mb = motion_on(b, motion_there);
   for (auto const& [name, r] : {std::pair{"inlet", slide_number}, {"periodic", follow_number}}) {
     auto const u = evaluate(ma, r, points_of(a, name)), v = evaluate(mb, r, points_of(b, name));
     for (std::size_t n = 0; n < u.size(); ++n) EXPECT_LT(distance(placed.rotation * u[n], v[n]), 1e-11);
@@ -366,7 +351,7 @@ TEST(BladeRow, WithoutSlippingEndWallsSpanIsTakenFromTheBladesOwnRadii) {
            [](double s, double t) { return cylindrical(2 * s - 1, 1 + t, 0); },
            {}});
   Mesh const mesh = row.finish();
-  BoundaryMotion const motion = row_motion(mesh, row_rules(rule, true, false));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(rule, true, false));
   for (auto const& [name, r] :
        {std::pair{"inlet", slide_number}, {"outlet", slide_number}, {"periodic", follow_number}}) {
     auto const points = points_of(mesh, name);
@@ -397,7 +382,7 @@ TEST(BladeRow, ATipGapLeavesTheMotionOfTheTipBeyondIt) {
   row.add(outlet_plane(41, 5));
   row.add(periodic());
   Mesh const mesh = row.finish();
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign())));
   for (auto const& [c, h] : {std::pair{0, 0.3}, {0, 0.94}, {0, 0.97}, {0, 1.0}}) {
     Vec3 const p = cylindrical(inlet(h), radius(inlet(h), h), 0.5);
     Vec3 const q = p + evaluate(motion, slide_number, {p}).front();
@@ -417,7 +402,7 @@ TEST(BladeRow, ASideOpenAtTheTrailingEdgeCountsAsTwoSides) {
   row.add(outlet_plane(41, 5));
   row.add(periodic());
   Mesh const mesh = row.finish();
-  BoundaryMotion const motion = row_motion(mesh, row_rules(blade_rule(redesign())));
+  BoundaryMotion const motion = motion_on(mesh, row_rules(blade_rule(redesign())));
   auto const points = points_of(mesh, "inlet");
   auto const u = evaluate(motion, slide_number, points);
   for (std::size_t n = 0; n < points.size(); ++n)
@@ -445,7 +430,7 @@ TEST(BladeRow, AFlatInletWithoutPatchIsFoundAtTheMostUpstreamNodes) {
   motion.rules = {{{"blade"}, blade_rule(redesign()), 0, ""},
                   {{"periodic"}, FollowRule{{"blade"}}, 0, ""},
                   {{"hub", "case"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};
-  BoundaryMotion const surface = row_motion(mesh, motion);
+  BoundaryMotion const surface = motion_on(mesh, motion);
   for (double h : {0.0, 0.5, 1.0}) {
     Vec3 const end = cylindrical(-0.6, radius(-0.6, h), 0.1);
     EXPECT_LT(norm(evaluate(surface, 1, {end}).front()), 1e-12);
@@ -463,8 +448,8 @@ TEST(BladeRow, SinglePrecisionCoordinatesChangeTheMotionBySinglePrecision) {
     rounded.coordinates.set(n, {double(float(p.x)), double(float(p.y)), double(float(p.z))});
   }
   auto const points = points_of(mesh, "periodic");
-  EXPECT_LT(largest_difference(evaluate(row_motion(mesh, row_rules(blade_rule(redesign()))), follow_number, points),
-                               evaluate(row_motion(rounded, row_rules(blade_rule(redesign()))), follow_number, points)),
+  EXPECT_LT(largest_difference(evaluate(motion_on(mesh, row_rules(blade_rule(redesign()))), follow_number, points),
+                               evaluate(motion_on(rounded, row_rules(blade_rule(redesign()))), follow_number, points)),
             2e-6);
 }
 
@@ -475,7 +460,7 @@ TEST(BladeRow, ASlidePatchBesideTheBladeIsRefused) {
   Mesh const mesh = row.finish();
   Motion motion;
   motion.rules = {{{"blade"}, RigidRule{}, 0, ""}, {{"inlet"}, CircumferentialSlideRule{{"blade"}}, 0, "case.toml:7"}};
-  expect_all_in(message_of<MotionError>([&] { row_motion(mesh, motion); }), {"case.toml:7", "'inlet'", "mid-chord"});
+  expect_all_in(message_of<MotionError>([&] { motion_on(mesh, motion); }), {"case.toml:7", "'inlet'", "mid-chord"});
 }
 
 TEST(BladeRow, ABladeThatIsNoBladeIsRefusedWithAReason) {
@@ -485,7 +470,7 @@ TEST(BladeRow, ABladeThatIsNoBladeIsRefusedWithAReason) {
   Mesh const mesh = row.finish();
   Motion motion;
   motion.rules = {{{"blade"}, RigidRule{}, 0, ""}, {{"inlet"}, CircumferentialSlideRule{{"blade"}}, 0, "case.toml:7"}};
-  expect_all_in(message_of<MotionError>([&] { row_motion(mesh, motion); }), {"case.toml:7", "axial chord"});
+  expect_all_in(message_of<MotionError>([&] { motion_on(mesh, motion); }), {"case.toml:7", "axial chord"});
 }
 
 TEST(BoundaryMotion, DirectRulesAreEvaluatedExactly) {
@@ -502,7 +487,7 @@ TEST(BoundaryMotion, DirectRulesAreEvaluatedExactly) {
                                 }},
                    0,
                    ""}};
-  BoundaryMotion const surface = row_motion(mesh, motion);
+  BoundaryMotion const surface = motion_on(mesh, motion);
   auto const points = points_of(mesh, "inlet");
   for (Vec3 const& u : evaluate(surface, 0, points)) EXPECT_EQ(u, (Vec3{0, 0, 0}));
   for (Vec3 const& u : evaluate(surface, 1, points)) EXPECT_EQ(u, t);
@@ -512,7 +497,7 @@ TEST(BoundaryMotion, DirectRulesAreEvaluatedExactly) {
 
 TEST(BoundaryMotion, SaysWhichRulesAreExplicit) {
   Mesh const mesh = row_mesh();
-  BoundaryMotion const surface = row_motion(mesh, row_rules(FixedRule{}));
+  BoundaryMotion const surface = motion_on(mesh, row_rules(FixedRule{}));
   EXPECT_TRUE(surface.is_explicit(blade_rule_number));
   EXPECT_TRUE(surface.is_explicit(slide_number));
   EXPECT_TRUE(surface.is_explicit(follow_number));
@@ -533,7 +518,7 @@ TEST(BoundaryMotion, DisplacementsThatAreNotFiniteNameRulePointAndValue) {
                                 }},
                    0,
                    "case.toml:12"}};
-  BoundaryMotion const surface = row_motion(mesh, motion);
+  BoundaryMotion const surface = motion_on(mesh, motion);
   expect_all_in(message_of<MotionError>([&] {
                   evaluate(surface, 0, {{1, 0, 0}, {3, 4, 5}});
                 }),

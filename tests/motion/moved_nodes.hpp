@@ -1,4 +1,4 @@
-// What the first rule of a motion does to the nodes of its patches.
+// What the rules of a motion do to the nodes of its patches.
 #pragma once
 
 #include <gridmorph/motion/boundary_motion.hpp>
@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace gridmorph::test {
@@ -14,6 +15,27 @@ inline std::shared_ptr<Boundary const> boundary_of(Mesh const& mesh) {
   if (mesh.elements.size() == 0) return std::make_shared<Boundary const>(mesh);
   UnstructuredTopology const topology = make_topology(mesh);
   return std::make_shared<Boundary const>(mesh, topology, find_face_patches(mesh, topology));
+}
+
+inline BoundaryMotion motion_on(Mesh const& mesh, Motion const& motion) {
+  return BoundaryMotion(mesh, resolve(mesh, motion));
+}
+
+/// Nodes of the patches of that name, all of them faces k = 0 of blocks.
+inline std::vector<Vec3> points_of(Mesh const& mesh, std::string const& name) {
+  std::vector<Vec3> points;
+  for (Patch const& p : mesh.patches)
+    if (p.name == name)
+      for (int j = 0; j < p.range.end[1]; ++j)
+        for (int i = 0; i < p.range.end[0]; ++i) points.push_back(mesh.coordinates[mesh.zones[p.zone].node({i, j, 0})]);
+  return points;
+}
+
+/// Displacements by a rule, in an array that held others.
+inline std::vector<Vec3> evaluate(BoundaryMotion const& motion, int rule, std::vector<Vec3> const& points) {
+  std::vector<Vec3> out(points.size(), {7, 7, 7});
+  motion.displacement(rule, points, out);
+  return out;
 }
 
 struct MovedNode {

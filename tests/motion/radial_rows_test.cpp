@@ -1,5 +1,6 @@
 // Slip, slide and follow on a radial impeller with splitter blades. The oracle is the formula of the impeller's motion.
 #include "impeller.hpp"
+#include "moved_nodes.hpp"
 #include "support/expect_error.hpp"
 
 #include <gridmorph/core/error.hpp>
@@ -15,8 +16,11 @@ namespace {
 using kernels::MeridionalFrame;
 using kernels::SlipSurfaceView;
 
+using test::evaluate;
 using test::expect_all_in;
 using test::message_of;
+using test::motion_on;
+using test::points_of;
 
 using testing::angle_of;
 using testing::BladeMotion;
@@ -83,25 +87,6 @@ Motion redesigned(Names const& of = {"main", "splitter"}) {
                impeller::blade_rule(impeller::splitter, other_redesign()), of);
 }
 
-BoundaryMotion radial_motion(Mesh const& mesh, Motion const& motion) {
-  return BoundaryMotion(mesh, resolve(mesh, motion));
-}
-
-std::vector<Vec3> points_of(Mesh const& mesh, std::string const& name) {
-  std::vector<Vec3> points;
-  for (Patch const& p : mesh.patches)
-    if (p.name == name)
-      for (int j = 0; j < p.range.end[1]; ++j)
-        for (int i = 0; i < p.range.end[0]; ++i) points.push_back(mesh.coordinates[mesh.zones[p.zone].node({i, j, 0})]);
-  return points;
-}
-
-std::vector<Vec3> evaluate(BoundaryMotion const& motion, int rule, std::vector<Vec3> const& points) {
-  std::vector<Vec3> out(points.size(), {7, 7, 7});
-  motion.displacement(rule, points, out);
-  return out;
-}
-
 /// What follow has to give, from the formulas alone.
 Vec3 expected_follow(impeller::BladeShape const& blade, BladeMotion const& m, Vec3 const& at) {
   Place const p = place_of(at);
@@ -115,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, EveryImpeller, ::testing::Values(Blade::o_mesh,
 
 TEST_P(EveryImpeller, FollowReplicatesTheMotionOfTheMainBladeAlongTheFlowPath) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = radial_motion(mesh, redesigned());
+  BoundaryMotion const motion = motion_on(mesh, redesigned());
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   double worst = 0, largest = 0;
@@ -129,7 +114,7 @@ TEST_P(EveryImpeller, FollowReplicatesTheMotionOfTheMainBladeAlongTheFlowPath) {
 
 TEST_P(EveryImpeller, ASplitterCanBeFollowedByItself) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = radial_motion(mesh, redesigned({"splitter"}));
+  BoundaryMotion const motion = motion_on(mesh, redesigned({"splitter"}));
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   for (std::size_t n = 0; n < points.size(); ++n)
@@ -138,7 +123,7 @@ TEST_P(EveryImpeller, ASplitterCanBeFollowedByItself) {
 
 TEST_P(EveryImpeller, SlideTurnsAndKeepsAxialPositionAndRadiusAtAxialInletAndRadialExit) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = radial_motion(mesh, redesigned());
+  BoundaryMotion const motion = motion_on(mesh, redesigned());
   for (char const* end : {"inlet", "outlet"}) {
     auto const points = points_of(mesh, end);
     auto const u = evaluate(motion, slide_number, points);
@@ -154,7 +139,7 @@ TEST_P(EveryImpeller, SlideTurnsAndKeepsAxialPositionAndRadiusAtAxialInletAndRad
 
 TEST_P(EveryImpeller, FollowAgreesWithSlideOnInletAndExit) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = radial_motion(mesh, redesigned());
+  BoundaryMotion const motion = motion_on(mesh, redesigned());
   for (char const* end : {"inlet", "outlet"}) {
     auto const points = points_of(mesh, end);
     auto const u = evaluate(motion, slide_number, points), v = evaluate(motion, follow_number, points);
@@ -169,7 +154,7 @@ TEST_P(EveryImpeller, ATurnAboutTheAxisComesBackExactlyWhereverTheAxisIs) {
   RigidRule const turn = make_rigid({.angle_rad = 0.2, .axis = axis});
   Motion motion = rules(turn, turn);
   motion.axis = axis;
-  BoundaryMotion const surface = radial_motion(mesh, motion);
+  BoundaryMotion const surface = motion_on(mesh, motion);
   for (auto const& [name, rule] :
        {std::pair{"inlet", slide_number}, {"outlet", slide_number}, {"periodic", follow_number}}) {
     auto const points = points_of(mesh, name);
@@ -180,14 +165,14 @@ TEST_P(EveryImpeller, ATurnAboutTheAxisComesBackExactlyWhereverTheAxisIs) {
 
 TEST_P(EveryImpeller, ABladeThatDoesNotMoveMovesNothing) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = radial_motion(mesh, rules(FixedRule{}, FixedRule{}));
+  BoundaryMotion const motion = motion_on(mesh, rules(FixedRule{}, FixedRule{}));
   for (auto const& [name, rule] : {std::pair{"inlet", slide_number}, {"periodic", follow_number}})
     for (Vec3 const& u : evaluate(motion, rule, points_of(mesh, name))) EXPECT_EQ(u, (Vec3{0, 0, 0}));
 }
 
 TEST_P(EveryImpeller, PeriodicCopiesMoveAlike) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = radial_motion(mesh, redesigned());
+  BoundaryMotion const motion = motion_on(mesh, redesigned());
   auto const points = points_of(mesh, "periodic");
   auto const u = evaluate(motion, follow_number, points);
   for (double angle : {impeller::pitch, -2.0}) {
@@ -201,7 +186,7 @@ TEST_P(EveryImpeller, PeriodicCopiesMoveAlike) {
 
 TEST_P(EveryImpeller, EdgesOfFollowStayOnHubAndCase) {
   Mesh const mesh = impeller_mesh(GetParam());
-  BoundaryMotion const motion = radial_motion(mesh, redesigned());
+  BoundaryMotion const motion = motion_on(mesh, redesigned());
   for (auto const& [h, bend] : {std::pair{0.0, impeller::hub_bend}, {1.0, impeller::case_bend}}) {
     std::vector<Vec3> edge;
     for (double s = 0; s <= 1; s += 0.01) edge.push_back(impeller::point({s, h, 0.3}));
@@ -219,7 +204,7 @@ TEST(RadialRow, FollowAgreesWithAnHMeshWherePeriodicsMeetItAlsoWhereItLeavesItsE
         out[n] = out[n] + grow * (1 + points[n].x) * Vec3{1, points[n].y, points[n].z};
     };
     Mesh const mesh = impeller_mesh(Blade::h_mesh);
-    BoundaryMotion const motion = radial_motion(mesh, rules(rule, FixedRule{}));
+    BoundaryMotion const motion = motion_on(mesh, rules(rule, FixedRule{}));
     int checked = 0;
     for (Vec3 const& p : points_of(mesh, "main")) {
       double const c = impeller::main_blade.fraction(place_of(p));
@@ -234,7 +219,7 @@ TEST(RadialRow, FollowAgreesWithAnHMeshWherePeriodicsMeetItAlsoWhereItLeavesItsE
 TEST(RadialRow, TheSplitterIsLeftOutWithANote) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
   std::string notes;
-  BoundaryMotion const motion = radial_motion(mesh, redesigned());
+  BoundaryMotion const motion = motion_on(mesh, redesigned());
   for (auto const& n : motion.notes()) notes += n + "\n";
   expect_all_in(notes, {"splitter", "left out", "1 closed and 0 open", "along the flow path"});
 }
@@ -243,7 +228,7 @@ TEST(RadialRow, FollowAndSlideMayNameTheSplitterOrNot) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
   Motion motion = redesigned();
   std::get<CircumferentialSlideRule>(motion.rules[slide_number].rule).of = {"main"};
-  BoundaryMotion const surface = radial_motion(mesh, motion);
+  BoundaryMotion const surface = motion_on(mesh, motion);
   auto const points = points_of(mesh, "outlet");
   auto const u = evaluate(surface, slide_number, points), v = evaluate(surface, follow_number, points);
   for (std::size_t n = 0; n < points.size(); ++n) EXPECT_LT(distance(u[n], v[n]), 1e-12);
@@ -254,7 +239,7 @@ TEST_P(EveryImpeller, PeriodicsThroughTheSplitterGoFromItsEdgesToWhatTheMainBlad
   for (Names const& ends : {Names{"main"}, Names{"main", "splitter"}}) {
     Motion motion = redesigned({"splitter"});
     std::get<CircumferentialSlideRule>(motion.rules[slide_number].rule).of = ends;
-    BoundaryMotion const surface = radial_motion(mesh, motion);
+    BoundaryMotion const surface = motion_on(mesh, motion);
     for (char const* end : {"inlet", "outlet"}) {
       auto const points = points_of(mesh, end);
       auto const u = evaluate(surface, slide_number, points), v = evaluate(surface, follow_number, points);
@@ -301,7 +286,7 @@ TEST(RadialRow, ItsWallsMayBeOfSeveralFamiliesThatFollowOneAnother) {
                {{"periodic"}, FollowRule{{"main"}}, 0, ""}};
     for (auto const& wall : walls)
       m.rules.push_back({{wall}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""});
-    return evaluate(radial_motion(mesh, m), 2, points_of(mesh, "periodic"));
+    return evaluate(motion_on(mesh, m), 2, points_of(mesh, "periodic"));
   };
   auto const u = follow(build(false), {"hub", "case"});
   auto const v = follow(build(true), {"hub0", "hub1", "hub2", "case0", "case1"});
@@ -375,7 +360,7 @@ TEST(RadialRow, FlatAndSteepConicalWallsMakeARadialRow) {
                     {{"inlet", "outlet"}, CircumferentialSlideRule{{"blade"}}, 0, ""},
                     {{"periodic"}, FollowRule{{"blade"}}, 0, ""},
                     {{"hub", "case"}, SlipRule{wall}, 0, ""}};
-    BoundaryMotion const surface = radial_motion(mesh, motion);
+    BoundaryMotion const surface = motion_on(mesh, motion);
     for (Vec3 const& x : points_of(mesh, "periodic")) {
       Place const p = d.place_of(x);
       Vec3 const wanted = d.point(p.s, p.h, p.theta + d.angle(std::clamp(d.fraction(p.s), 0.0, 1.0), p.h)) - x;
@@ -393,7 +378,7 @@ TEST(RadialRow, OneEndWallIsNotEnough) {
   Motion motion = redesigned();
   motion.rules.back().patches = {"hub"};
   motion.rules.back().where = "case.toml:9";
-  expect_all_in(message_of<MotionError>([&] { radial_motion(mesh, motion); }), {"hub and case", "slip", "revolution"});
+  expect_all_in(message_of<MotionError>([&] { motion_on(mesh, motion); }), {"hub and case", "slip", "revolution"});
 }
 
 TEST(RadialRow, BladesOfTwoRowsInOneOfAreRefused) {
@@ -408,7 +393,7 @@ TEST(RadialRow, BladesOfTwoRowsInOneOfAreRefused) {
   m.rules = {{{"main"}, FixedRule{}, 0, ""},
              {{"periodic"}, FollowRule{{"main"}}, 0, "case.toml:7"},
              {{"hub", "case"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};
-  expect_all_in(message_of<MotionError>([&] { radial_motion(mesh, m); }), {"case.toml:7", "two rows"});
+  expect_all_in(message_of<MotionError>([&] { motion_on(mesh, m); }), {"case.toml:7", "two rows"});
 }
 
 // ---- flow coordinates --------------------------------------------------------------------------------------------
@@ -459,7 +444,7 @@ SlipSurface surface_of(Mesh const& mesh, BoundaryMotion const& motion, std::stri
 
 TEST(TurningWall, NodesComeBackAlongTheNormalInTheMeridionalPlane) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
-  BoundaryMotion const motion = radial_motion(mesh, redesigned());
+  BoundaryMotion const motion = motion_on(mesh, redesigned());
   std::mt19937 random(1);
   std::uniform_real_distribution<> s(0.01, 0.99), h(-0.4, 0.4), d(-0.02, 0.02);
   for (auto const& [name, bend, at] :
@@ -495,7 +480,7 @@ void expect_rate_is_derivative(SlipSurfaceView const& view, Vec3 const& baseline
 
 TEST(TurningWall, RatesAreDerivatives) {
   Mesh const mesh = impeller_mesh(Blade::o_mesh);
-  BoundaryMotion const motion = radial_motion(mesh, redesigned());
+  BoundaryMotion const motion = motion_on(mesh, redesigned());
   SlipSurface const hub = surface_of(mesh, motion, "hub");
   SlipSurface disc = hub;  // a curved wall across the axis: axial position over radius
   std::vector<std::pair<double, double>> points;
@@ -518,7 +503,7 @@ TEST(TurningWall, AWallAcrossTheAxisKeepsTheRadiusOfWhatSlidesOnIt) {
   Mesh const mesh = row.finish();
   Motion motion;
   motion.rules = {{{"disc"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};
-  BoundaryMotion const surface = radial_motion(mesh, motion);
+  BoundaryMotion const surface = motion_on(mesh, motion);
   SlipSurface const disc = surface_of(mesh, surface, "disc");
   EXPECT_EQ(disc.kind, SlipSurface::Kind::meridional);
   EXPECT_EQ(disc.baseline_deviation, 0);

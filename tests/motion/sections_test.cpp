@@ -2,6 +2,7 @@
 // formulas: nothing of what the rule finds on the surface enters it.
 #include "annulus.hpp"
 #include "impeller.hpp"
+#include "moved_nodes.hpp"
 #include "support/expect_error.hpp"
 
 #include <gridmorph/core/error.hpp>
@@ -19,6 +20,7 @@ namespace {
 using namespace testing;
 using test::expect_all_in;
 using test::message_of;
+using test::motion_on;
 
 constexpr double pi = std::numbers::pi;
 
@@ -196,10 +198,6 @@ Motion wing_rules(SectionsRule rule) {
   return motion;
 }
 
-BoundaryMotion made_motion(Mesh const& mesh, Motion const& motion) {
-  return BoundaryMotion(mesh, resolve(mesh, motion));
-}
-
 Vec3 displacement(BoundaryMotion const& motion, Vec3 const& point, int rule = 0) {
   Vec3 u{7, 7, 7};
   motion.displacement(rule, {&point, 1}, {&u, 1});
@@ -216,7 +214,7 @@ TEST_P(WingRedesign, MovesEveryPointAsItsSectionIsRedesigned) {
   auto const& [topology, redesign] = GetParam();
   Planform const plan = planform_of(topology);
   Mesh const mesh = wing_mesh(topology, plan);
-  BoundaryMotion const motion = made_motion(mesh, wing_rules(redesign.rule));
+  BoundaryMotion const motion = motion_on(mesh, wing_rules(redesign.rule));
   double worst = 0, largest = 0;
   for (double h : {0.0, 0.013, 0.31, 0.5, 0.77, 1.0})
     for (double turn : {0.0, 0.01, 0.1, 0.25, 0.4, 0.5, 0.55, 0.75, 0.97}) {
@@ -238,7 +236,7 @@ TEST(Sections, RoundNosesAreFoundBetweenTheGridLines) {
   rule.chord = linear(0.1, 0.1);
   for (Topology topology : {Topology::o, Topology::o_cut}) {
     Mesh const mesh = wing_mesh(topology, plan);
-    BoundaryMotion const motion = made_motion(mesh, wing_rules(rule));
+    BoundaryMotion const motion = motion_on(mesh, wing_rules(rule));
     for (double h : {0.0, 0.4, 1.0})
       for (double turn : {0.0, 0.02, 0.2, 0.5, 0.8, 0.99}) {
         Around const at = around(turn);
@@ -253,7 +251,7 @@ TEST(Sections, BowLeansTheStackingLineByItsAngle) {
   Mesh const mesh = wing_mesh(Topology::o, planform_of(Topology::o));
   SectionsRule rule;
   rule.bow_rad = linear(0.3, -0.3);
-  BoundaryMotion const motion = made_motion(mesh, wing_rules(rule));
+  BoundaryMotion const motion = motion_on(mesh, wing_rules(rule));
   Vec3 const t = tilted.rotation * Vec3{0, 1, 0};
   for (double h : {0.0, 0.2, 0.5, 0.9, 1.0}) {
     Vec3 const p = wing_point(section_point(planform_of(Topology::o), 1, true, h), h);
@@ -278,9 +276,9 @@ TEST(Sections, SpanIsFoundAcrossTheSymmetryPlaneAWingStandsOn) {
   SectionsRule rule;
   rule.twist_rad = linear(0.1, -0.1);
   Motion motion = wing_rules(rule);
-  BoundaryMotion const given = made_motion(mesh, motion);
+  BoundaryMotion const given = motion_on(mesh, motion);
   std::get<SectionsRule>(motion.rules[0].rule).span.reset();
-  BoundaryMotion const found = made_motion(mesh, motion);
+  BoundaryMotion const found = motion_on(mesh, motion);
   for (double h : {0.0, 0.3, 1.0}) {
     Vec3 const p = wing_point(section_point(plan, 2, false, h), h);
     EXPECT_GT(norm(displacement(given, p)), 1e-3);
@@ -312,7 +310,7 @@ TEST(Sections, EdgesStayOnAnInclinedPlaneAndTheTrimFadesAlongTheSpan) {
   rule.sweep = linear(0.3, 0.3);
   Motion motion;
   motion.rules = {{{"wing"}, rule, 0, ""}, {{"root"}, SlipRule{}, 0, ""}};
-  BoundaryMotion const surface = made_motion(mesh, motion);
+  BoundaryMotion const surface = motion_on(mesh, motion);
   double const length = std::sqrt(1 + slope * slope);
   Vec3 const normal{-slope / length, 0, 1 / length};
   for (int j = 0; j < m; ++j)
@@ -367,7 +365,7 @@ TEST_P(BladeRedesign, MovesEveryPointInTheDevelopedSurfaceAndKeepsItsSpanFractio
   auto const& [topology, redesign] = GetParam();
   Planform const plan = planform_of(topology);
   Mesh const mesh = blade_mesh(topology);
-  BoundaryMotion const motion = made_motion(mesh, blade_rules(redesign.rule));
+  BoundaryMotion const motion = motion_on(mesh, blade_rules(redesign.rule));
   bool const two_images = topology == Topology::h || topology == Topology::h_cut;
   double worst = 0, largest = 0;
   for (double h : {0.0, 0.02, 0.31, 0.5, 0.77, 1.0})
@@ -396,7 +394,7 @@ TEST(Sections, ZeroTablesMoveNothingBitForBit) {
   for (Topology topology : {Topology::o, Topology::h, Topology::c}) {
     for (bool wing : {true, false}) {
       Mesh const mesh = wing ? wing_mesh(topology, planform_of(topology)) : blade_mesh(topology);
-      BoundaryMotion const motion = made_motion(mesh, wing ? wing_rules(rule) : blade_rules(rule));
+      BoundaryMotion const motion = motion_on(mesh, wing ? wing_rules(rule) : blade_rules(rule));
       for (Index n = 0; n < mesh.n_nodes(); n += 7)
         EXPECT_TRUE((displacement(motion, mesh.coordinates[n]) == Vec3{0, 0, 0})) << n;
     }
@@ -407,7 +405,7 @@ TEST(Sections, BladeEdgesStayOnHubAndCase) {
   SectionsRule const rule = redesigns()[7].rule;
   for (Topology topology : {Topology::o, Topology::h_cut}) {
     Mesh const mesh = blade_mesh(topology);
-    BoundaryMotion const motion = made_motion(mesh, blade_rules(rule));
+    BoundaryMotion const motion = motion_on(mesh, blade_rules(rule));
     for (double turn : {0.0, 0.1, 0.3, 0.5})
       for (double h : {0.0, 1.0}) {
         Around const at = around(turn);
@@ -436,7 +434,7 @@ TEST(Sections, RadialBladesAreRedesignedAlongTheFlowPathBetweenHubAndCase) {
     row.add(impeller::end_plane("inlet", PatchKind::inflow, 0, 41, 5));
     row.add(impeller::end_plane("outlet", PatchKind::outflow, 1, 41, 5));
     Mesh const mesh = row.finish();
-    BoundaryMotion const motion = made_motion(mesh, blade_rules(rule));
+    BoundaryMotion const motion = motion_on(mesh, blade_rules(rule));
     for (double h : {0.0, 0.3, 0.7, 1.0})
       for (double phi : {0.1, 1.0, 2.0, 3.1}) {
         Vec3 const p = impeller::blade_point(impeller::main_blade, phi, h), q = p + displacement(motion, p);
@@ -455,7 +453,7 @@ TEST(Sections, InletAndExitSlideWithTheEdgesOfTheRedesign) {
   SectionsRule rule;
   rule.lean = linear(0.02, 0.05);
   Mesh const mesh = blade_mesh(Topology::o);
-  BoundaryMotion const motion = made_motion(mesh, blade_rules(rule));
+  BoundaryMotion const motion = motion_on(mesh, blade_rules(rule));
   for (double h : {0.1, 0.5, 0.9})
     for (double x : {inlet(h), outlet}) {
       Vec3 const p = cylindrical(x, radius(x, h), 0.1);
@@ -466,7 +464,7 @@ TEST(Sections, InletAndExitSlideWithTheEdgesOfTheRedesign) {
 
 TEST(Sections, CopiesOnePitchApartMoveAlike) {
   Mesh const mesh = blade_mesh(Topology::h);
-  BoundaryMotion const motion = made_motion(mesh, blade_rules(redesigns()[7].rule));
+  BoundaryMotion const motion = motion_on(mesh, blade_rules(redesigns()[7].rule));
   RigidTransform const turn = rotation_about({0, 0, 0}, {1, 0, 0}, pitch);
   for (double h : {0.0, 0.4, 1.0})
     for (double phi : {0.0, pi}) {
@@ -507,7 +505,7 @@ TEST(SpanwiseTable, ReproducesLines) {
 // -------------------------------------------------------------------------------------------------------------- errors
 
 std::string refusal(Mesh const& mesh, Motion const& motion) {
-  return message_of<MotionError>([&] { (void)made_motion(mesh, motion); });
+  return message_of<MotionError>([&] { (void)motion_on(mesh, motion); });
 }
 
 TEST(SectionsErrors, NameRuleAndValue) {
@@ -540,7 +538,7 @@ TEST(SectionsErrors, ThicknessOfASingleSide) {
   rule.thickness = {};
   rule.chord = linear(0.1, 0.1);
   Vec3 const p = wing_point(section_point({}, 1, true, 0.4), 0.4);
-  EXPECT_LT(distance(displacement(made_motion(mesh, wing_rules(rule)), p),
+  EXPECT_LT(distance(displacement(motion_on(mesh, wing_rules(rule)), p),
                      wing_point(section_point({}, 1, true, 0.4, rule), 0.4) - p),
             1e-6);
 }

@@ -1,5 +1,6 @@
 // Which surface a patch slips on, and the projection and constraint that kernels apply.
 #include "annulus.hpp"
+#include "moved_nodes.hpp"
 #include "support/expect_error.hpp"
 
 #include <gridmorph/core/error.hpp>
@@ -25,7 +26,7 @@ SlipRule revolution() { return {.surface = SlipRule::Surface::revolution}; }
 BoundaryMotion make(Mesh const& mesh, std::vector<MotionRule> rules) {
   Motion motion;
   motion.rules = std::move(rules);
-  return BoundaryMotion(mesh, resolve(mesh, motion));
+  return test::motion_on(mesh, motion);
 }
 
 Surface flat(std::string name, PatchKind kind, Vec3 origin, Vec3 a, Vec3 b, std::vector<std::string> families = {}) {

@@ -19,12 +19,7 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 using Key = std::array<long, 3>;
-
-QualityInput<Kokkos::HostSpace> input_of(Mesh const& mesh) {
-  QualityInput<Kokkos::HostSpace> input;
-  input.coordinates = views(mesh.coordinates);
-  return input;
-}
+using test::input_of;
 
 std::vector<double> field(Mesh const& mesh, Measure measure) {
   Measure const wanted[] = {measure};

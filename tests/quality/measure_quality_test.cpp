@@ -19,12 +19,7 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 using test::cell_corners;
-
-QualityInput<Kokkos::HostSpace> measured_input(Mesh const& mesh) {
-  QualityInput<Kokkos::HostSpace> input;
-  input.coordinates = views(mesh.coordinates);
-  return input;
-}
+using test::input_of;
 
 Vec3 swirl(Vec3 const& p) { return p + 0.03 * Vec3{std::sin(6 * p.y), p.x * p.z, std::cos(5 * p.x + p.y)}; }
 
@@ -65,7 +60,7 @@ TEST(MeasureQuality, StatisticsAndWorstCellsAgreeWithPlainLoopsInBothRegions) {
   Coordinates const after = test::moved(mesh, swirl);
   Kokkos::View<std::uint8_t*, Kokkos::HostSpace> near_field("near_field", mesh.n_cells());
   for (Index c = 0; c < mesh.n_cells(); ++c) near_field(c) = c % 3 == 0 ? 1 : 0;
-  auto input = measured_input(mesh);
+  auto input = input_of(mesh);
   input.coordinates = views(after);
   input.baseline = views(mesh.coordinates);
   input.near_field = near_field;
@@ -136,20 +131,19 @@ TEST(MeasureQuality, VolumeRatiosCrossInterfacesOfEveryOrientation) {
       std::vector<int> const handedness = zone_handedness(Exec(), mesh, views(mesh.coordinates));
       std::vector<double> const expected = volume_ratios_by_matching_faces(mesh, handedness);
       Measure const wanted[] = {Measure::volume_ratio};
-      auto const fields = cell_fields(Exec(), mesh, measured_input(mesh), std::span<Measure const>(wanted));
+      auto const fields = cell_fields(Exec(), mesh, input_of(mesh), std::span<Measure const>(wanted));
       for (std::size_t c = 0; c < expected.size(); ++c) ASSERT_NEAR(fields[0](c), expected[c], 1e-12) << "cell " << c;
-      QualityReport const report = measure_quality(Exec(), mesh, measured_input(mesh));
+      QualityReport const report = measure_quality(Exec(), mesh, input_of(mesh));
       EXPECT_EQ(report.far_field[Measure::volume_ratio].max,
                 *std::max_element(fields[0].data(), fields[0].data() + fields[0].extent(0)));
     }
 }
 
 TEST(MeasureQuality, DoesNotDependOnTheOrientationOfZones) {
-  QualityReport const plain =
-      measure_quality(Exec(), test::two_zones({}, true), measured_input(test::two_zones({}, true)));
+  QualityReport const plain = measure_quality(Exec(), test::two_zones({}, true), input_of(test::two_zones({}, true)));
   for (Orientation const& orientation : test::all_orientations()) {
     Mesh const mesh = test::two_zones(orientation, true);
-    QualityReport const report = measure_quality(Exec(), mesh, measured_input(mesh));
+    QualityReport const report = measure_quality(Exec(), mesh, input_of(mesh));
     EXPECT_EQ(report.left_handed_zones, orientation.determinant() < 0 ? 1 : 0);
     EXPECT_EQ(report.far_field.inverted, 0);
     for (std::size_t m = 0; m < n_measures; ++m) {
@@ -163,7 +157,7 @@ TEST(MeasureQuality, DoesNotDependOnTheOrientationOfZones) {
 TEST(MeasureQuality, ZoneTurnedInsideOutByMorphingIsInvertedEverywhere) {
   Mesh const mesh = test::two_zones({}, true);
   Coordinates const mirrored = test::moved(mesh, [](Vec3 const& p) { return Vec3{-p.x, p.y, p.z}; });
-  auto input = measured_input(mesh);
+  auto input = input_of(mesh);
   input.coordinates = views(mirrored);
   EXPECT_EQ(measure_quality(Exec(), mesh, input).far_field.inverted, 0);  // as a baseline: a left-handed mesh
   input.baseline = views(mesh.coordinates);
@@ -177,7 +171,7 @@ TEST(MeasureQuality, InvertedCellOfTheBaselineIsNotCountedAsNew) {
   Index const node = mesh.zones[0].node({2, 2, 2});
   mesh.coordinates.set(node, {0.5, 2, 2});  // beyond the neighbouring node: inverts the four cells behind it
   Coordinates const after = test::moved(mesh, [](Vec3 const& p) { return 2 * p; });
-  auto input = measured_input(mesh);
+  auto input = input_of(mesh);
   QualityReport const before = measure_quality(Exec(), mesh, input);
   EXPECT_EQ(before.far_field.inverted, 4);
   EXPECT_EQ(before.far_field.newly_inverted, 0);
@@ -198,7 +192,7 @@ TEST(MeasureQuality, FlatCellsAreCountedAndRoundOffInThemInvertsNothing) {
   Coordinates const after = test::moved(mesh, [](Vec3 const& p) {
     return p + Vec3{1e-3 * std::sin(p.y), 0, p.z > 2 ? -3e-15 : 0};
   });
-  auto input = measured_input(mesh);
+  auto input = input_of(mesh);
   QualityReport const before = measure_quality(Exec(), mesh, input);
   EXPECT_EQ(before.far_field.flat, 9);
   EXPECT_EQ(before.far_field.inverted, 0);
@@ -234,7 +228,7 @@ TEST(MeasureQuality, AWedgeOfLeftHandedCellsIsSound) {
     double const angle = -0.2 * p[1];
     return Vec3{0.1 + p[0] * std::cos(angle), 0.3 + p[0] * std::sin(angle), double(p[2])};
   });
-  QualityReport const report = measure_quality(Exec(), mesh, measured_input(mesh));
+  QualityReport const report = measure_quality(Exec(), mesh, input_of(mesh));
   EXPECT_EQ(report.left_handed_zones, 1);
   EXPECT_EQ(report.far_field.inverted, 0);
 }
@@ -250,7 +244,7 @@ struct Sheared {
     after.set(n, after[n] + corner);
   }
   [[nodiscard]] QualityRegion measure(CellLimits const& limits, bool fast = false) const {
-    auto input = measured_input(mesh);
+    auto input = input_of(mesh);
     input.baseline = input.coordinates;
     input.coordinates = views(after);
     input.limits = limits;
@@ -320,7 +314,7 @@ TEST(MeasureQuality, EdgesThatLoseTheirLengthAreFound) {
 
 TEST(MeasureQuality, ZeroMotionHasNoRelativeDisplacement) {
   Mesh const mesh = test::two_zones({}, true);
-  auto input = measured_input(mesh);
+  auto input = input_of(mesh);
   input.baseline = views(mesh.coordinates);
   QualityReport const report = measure_quality(Exec(), mesh, input);
   EXPECT_EQ(report.far_field[Measure::relative_displacement].max, 0);
@@ -333,7 +327,7 @@ TEST(MeasureQuality, CellsAtAPoleAreCollapsedButNotInverted) {
     double const angle = 0.2 * p[1];
     return Vec3{p[0] * std::cos(angle), p[0] * std::sin(angle), double(p[2])};
   });
-  QualityReport const report = measure_quality(Exec(), mesh, measured_input(mesh));
+  QualityReport const report = measure_quality(Exec(), mesh, input_of(mesh));
   EXPECT_EQ(report.far_field.collapsed, 5 * 2);
   EXPECT_EQ(report.far_field.inverted, 0);
   EXPECT_GT(report.far_field[Measure::determinant_3x3x3].min, 0.45);
@@ -349,7 +343,7 @@ TEST(MeasureQuality, NodesThatAreNotFiniteShowAsInvertedCells) {
   });
   Coordinates const after = test::moved(mesh, [](Vec3 const& p) { return p; });
   after.x(mesh.zones[0].node({1, 1, 1})) = std::nan("");
-  auto input = measured_input(mesh);
+  auto input = input_of(mesh);
   input.coordinates = views(after);
   input.baseline = views(mesh.coordinates);
   QualityReport const report = measure_quality(Exec(), mesh, input);
@@ -361,7 +355,7 @@ TEST(MeasureQuality, NodesThatAreNotFiniteShowAsInvertedCells) {
 TEST(CellFields, HoldTheValuesThatTheReportSummarises) {
   Mesh const mesh = test::two_zones(test::all_orientations()[30], true);
   Coordinates const after = test::moved(mesh, swirl);
-  auto input = measured_input(mesh);
+  auto input = input_of(mesh);
   input.coordinates = views(after);
   input.baseline = views(mesh.coordinates);
   std::vector<Measure> all;
@@ -425,20 +419,20 @@ TEST(MinDeterminant, RefusesABoxOutsideItsZoneByName) {
 TEST(MeasureQuality, RefusesInputThatDoesNotFitTheMesh) {
   Mesh mesh = test::two_zones({}, true);
   Coordinates const small(10);
-  auto input = measured_input(mesh);
+  auto input = input_of(mesh);
   input.coordinates = views(small);
   EXPECT_THROW(measure_quality(Exec(), mesh, input), MeshError);
-  input = measured_input(mesh);
+  input = input_of(mesh);
   input.baseline = views(small);
   EXPECT_THROW(measure_quality(Exec(), mesh, input), MeshError);
-  input = measured_input(mesh);
+  input = input_of(mesh);
   input.near_field = Kokkos::View<std::uint8_t*, Kokkos::HostSpace>("near_field", 3);
   EXPECT_THROW(measure_quality(Exec(), mesh, input), MeshError);
   mesh.interfaces[0].to_donor.donor_origin = {50, 0, 0};
-  EXPECT_THROW(measure_quality(Exec(), mesh, measured_input(mesh)), MeshError);
+  EXPECT_THROW(measure_quality(Exec(), mesh, input_of(mesh)), MeshError);
   mesh = test::two_zones({}, true);
   mesh.interfaces[0].to_donor.orientation.axis = {0, 1, 1};
-  EXPECT_THROW(measure_quality(Exec(), mesh, measured_input(mesh)), MeshError);
+  EXPECT_THROW(measure_quality(Exec(), mesh, input_of(mesh)), MeshError);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/quality/quality.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -102,6 +103,13 @@ inline std::vector<Orientation> all_orientations() {
     for (int s = 0; s < 8; ++s)
       list.push_back({{p[0], p[1], p[2]}, {(s & 1) != 0 ? -1 : 1, (s & 2) != 0 ? -1 : 1, (s & 4) != 0 ? -1 : 1}});
   return list;
+}
+
+/// The mesh as it is, to be measured.
+inline QualityInput<Kokkos::HostSpace> input_of(Mesh const& mesh) {
+  QualityInput<Kokkos::HostSpace> input;
+  input.coordinates = views(mesh.coordinates);
+  return input;
 }
 
 /// Corners of one cell, straight from the mesh.

@@ -1,12 +1,12 @@
 // The number of threads: it changes how long a run takes and not one bit of its mesh.
+#include "../io/io_support.hpp"
 #include "run_command.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>
 
-#include <bit>
-#include <cstdint>
+#include <utility>
 
 namespace gridmorph::testing {
 namespace {
@@ -25,13 +25,8 @@ class ThreadsRun : public CommandTest {
         first = std::move(mesh);
         continue;
       }
-      ASSERT_EQ(mesh.coordinates.x.size(), first.coordinates.x.size());
-      auto const bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
-      for (std::size_t i = 0; i < mesh.coordinates.x.size(); ++i)
-        ASSERT_TRUE(bits(mesh.coordinates.x[i]) == bits(first.coordinates.x[i]) &&
-                    bits(mesh.coordinates.y[i]) == bits(first.coordinates.y[i]) &&
-                    bits(mesh.coordinates.z[i]) == bits(first.coordinates.z[i]))
-            << "node " << i << " with " << n << " threads";
+      SCOPED_TRACE(fmt::format("{} threads", n));
+      test::expect_same_coordinates(mesh.coordinates, first.coordinates);
     }
   }
 };
