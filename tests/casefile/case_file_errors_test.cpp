@@ -59,6 +59,34 @@ TEST(CaseFileErrors, OfAnEmptyFileNameWhatIsMissing) {
   EXPECT_TRUE(reported(lines, "case.toml: no [[motion]] rule", {}));
 }
 
+TEST(CaseFileErrors, KeysOfPartsWithoutEndAreRefused) {
+  std::string key = "a";
+  for (int n = 0; n < 200'000; ++n) key += ".a";
+  EXPECT_TRUE(reported(problems_of("\n" + key + " = 1"), "case.toml:2: not valid TOML", {"parts"}));
+  EXPECT_TRUE(reported(problems_of("[" + key + "]"), "case.toml:1: not valid TOML", {"parts"}));
+}
+
+// Each of these took minutes where a line was looked for from the beginning of the text, or read anew for each value in it.
+TEST(CaseFileErrors, LongTablesAndListsAreReadAtOnceAndKeepTheirLines) {
+  std::string constants = "[constants]\n", list = "[[motion]]\nrule = \"fixed\"\npatches = [",
+              inline_table = "[constants]\n[x]\ny = {";
+  constexpr int many = 30'000;
+  for (int n = 0; n < many; ++n) {
+    constants += "c" + std::to_string(n) + " = 1\n";
+    list += "\"p" + std::to_string(n) + "\",";
+    inline_table += "k" + std::to_string(n) + "=1,";
+  }
+  EXPECT_TRUE(reported(problems_of(constants + "x = 1\n"), "case.toml:30002", {"cannot be the name of a constant"}));
+  EXPECT_TRUE(reported(problems_of(list + "\"last\"]\nwrong = 1\n"), "case.toml:4", {"unknown key 'wrong'"}));
+  EXPECT_TRUE(reported(problems_of(inline_table + "last=1}\n"), "case.toml:3", {"one in a line"}));
+}
+
+TEST(CaseFileErrors, WhatStandsInStringsOfSeveralLinesCountsAsText) {
+  std::string const brackets(100, '['), dots(100, '.'), text(300, ',');
+  EXPECT_TRUE(reported(problems_of("a = [\"\"\"\n" + brackets + dots + "\n" + text + "\n\"\"\", 1]\nb = 2\n"),
+                       "case.toml:5", {"unknown key 'b'"}));
+}
+
 TEST(CaseFileErrors, BracketsNestedWithoutEndAreRefused) {
   EXPECT_TRUE(reported(problems_of("a = " + std::string(300'000, '[')), "case.toml:1: not valid TOML", {"nested"}));
   EXPECT_TRUE(reported(problems_of("\n\na = " + std::string(300'000, '{')), "case.toml:3: not valid TOML", {"nested"}));

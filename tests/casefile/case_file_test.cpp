@@ -118,5 +118,17 @@ TEST(CaseFileText, MayHaveWindowsLineEnds) {
   EXPECT_EQ(parse(text).input, "in.cgns");
 }
 
+TEST(Sequence, OfVeryManyStepsSomeAreLookedAtAheadOfTimeTheFirstAndTheLastAmongThem) {
+  SequenceOptions sequence;
+  for (int const steps : {1, 2, 7, 100, 99999}) {
+    sequence.steps = steps;
+    std::vector<int> const some = sequence.some_steps(100);
+    EXPECT_EQ(int(some.size()), std::min(steps, 100));
+    EXPECT_EQ(some.front(), 0);
+    EXPECT_EQ(some.back(), steps - 1);
+    EXPECT_TRUE(std::is_sorted(some.begin(), some.end(), std::less_equal<>())) << "each once";
+  }
+}
+
 }  // namespace
 }  // namespace gridmorph::testing

@@ -51,6 +51,18 @@ CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<M
   return fields;
 }
 
+std::vector<int> predicted_steps(CaseFile const& case_file) {
+  constexpr int most_steps = 100;
+  return case_file.sequence ? case_file.sequence->some_steps(most_steps) : std::vector<int>{0};
+}
+
+std::string worst_step_text(CaseFile const& case_file, int step) {
+  auto const looked_at = int(predicted_steps(case_file).size()), steps = case_file.sequence->steps;
+  return looked_at == steps
+             ? fmt::format("step {} of {} comes out worst: ", step + 1, steps)
+             : fmt::format("step {} comes out worst of the {} that are looked at of {}: ", step + 1, looked_at, steps);
+}
+
 std::vector<std::string> mapping_notes(CaseFile const& case_file) {
   std::vector<std::string> notes;
   for (auto const& use : case_file.fields) {

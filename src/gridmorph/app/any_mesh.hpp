@@ -158,6 +158,11 @@ CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<M
 /// Makes the folder of AnyPlan::write_stages(). Throws MachineError.
 void make_stage_folder(std::filesystem::path const& folder);
 
+/// Steps of a sequence that AnyPlan::predict() looks at, 0 without one: all, of long ones as many as take the time of a plan, spread evenly.
+std::vector<int> predicted_steps(CaseFile const& case_file);
+/// "step 7 of 24 comes out worst: "
+std::string worst_step_text(CaseFile const& case_file, int step);
+
 /// How far nodes were from the models of `field` rules, and what was left out of these.
 std::vector<std::string> mapping_notes(CaseFile const& case_file);
 

@@ -88,7 +88,7 @@ class BlockPlan final : public AnyPlan {
     PlanPrediction out{describe(prepared_.mesh, worst), prediction_warnings(prepared_.mesh, worst),
                        prediction_json(prepared_.mesh, worst)};
     if (!case_file_.sequence) return out;
-    out.text = fmt::format("step {} of {} comes out worst: ", step + 1, case_file_.sequence->steps) + out.text;
+    out.text = worst_step_text(case_file_, step) + out.text;
     out.json["step"] = step + 1;
     return out;
   }
@@ -220,8 +220,7 @@ class BlockPlan final : public AnyPlan {
   StepPrediction predict_worst() {
     Predictor predictor(exec_, prepared_, {});
     StepPrediction worst;
-    int const steps = case_file_.sequence ? case_file_.sequence->steps : 1;
-    for (int step = 0; step < steps; ++step) {
+    for (int const step : predicted_steps(case_file_)) {
       Moment const when = case_file_.sequence ? case_file_.sequence->moment(step) : Moment{};
       StepPrediction now{{}, step, displacement(case_file_.sequence ? &when : nullptr)};
       now.prediction = predictor.predict(now.boundary);

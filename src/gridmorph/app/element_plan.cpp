@@ -39,9 +39,11 @@ class ElementPlan final : public AnyPlan {
     auto boundary =
         boundary_conditions(mesh.mesh, mesh.topology, mesh.face_patches, graph, case_file_.motion,
                             options_.elements.walls, any ? Displacements::any : Displacements::of_the_rules);
-    if (auto const& sequence = case_file_.sequence) {  // the offset of the wrap reckons with all steps
+    if (auto const& sequence =
+            case_file_.sequence) {  // the offset of the wrap reckons with all steps, of very many with some
+      constexpr int most_steps = 1000;
       options_.elements.motion = 0;
-      for (int step = 0; step < sequence->steps; ++step)
+      for (int const step : sequence->some_steps(most_steps))
         options_.elements.motion = std::max(
             options_.elements.motion, largest_norm(evaluate(boundary, motion_at(case_file_, sequence->moment(step)))));
     }
@@ -131,10 +133,10 @@ class ElementPlan final : public AnyPlan {
   }
   [[nodiscard]] PlanPrediction predict() override {
     ElementPrediction worst;
-    int const steps = case_file_.sequence ? case_file_.sequence->steps : 1;
     int worst_step = 0;
     Coordinates displaced(mesh_.n_nodes());
-    for (int step = 0; step < steps; ++step) {
+    std::vector<int> const steps = predicted_steps(case_file_);
+    for (int const step : steps) {
       Moment const when = case_file_.sequence ? case_file_.sequence->moment(step) : Moment{};
       morph(displacement(case_file_.sequence ? &when : nullptr), displaced, nullptr);
       ElementPrediction now = gridmorph::predict({}, mesh_.mesh, prepared_, displaced, mesh_.signs);
@@ -145,7 +147,7 @@ class ElementPlan final : public AnyPlan {
     PlanPrediction out{describe(mesh_.mesh, worst), prediction_warnings(mesh_.mesh, worst),
                        prediction_json(mesh_.mesh, worst)};
     if (!case_file_.sequence) return out;
-    out.text = fmt::format("step {} of {} comes out worst: ", worst_step + 1, steps) + out.text;
+    out.text = worst_step_text(case_file_, worst_step) + out.text;
     out.json["step"] = worst_step + 1;
     return out;
   }

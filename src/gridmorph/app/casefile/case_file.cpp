@@ -338,7 +338,7 @@ void read_results(TableReader& root, CaseFile& out) {
 }  // namespace
 
 struct CaseDocument::Root {
-  toml::value value;
+  casefile::TomlText text;
 };
 
 CaseDocument::CaseDocument(std::filesystem::path const& path)
@@ -350,7 +350,7 @@ CaseDocument::CaseDocument(std::string const& text, std::filesystem::path path)
 
 std::optional<std::filesystem::path> CaseDocument::mesh() const {
   try {
-    return (path_.parent_path() / toml::find<std::string>(root_->value, "mesh", "input")).lexically_normal();
+    return (path_.parent_path() / toml::find<std::string>(root_->text.root, "mesh", "input")).lexically_normal();
   } catch (std::exception const&) {  // read_case_file() says what is wrong
     return std::nullopt;
   }
@@ -362,7 +362,8 @@ CaseFile read(CaseDocument const& document, CaseKeyUse* asked) {
   Context context{document.path().string(), document.path().parent_path(), {}, asked};
   CaseFile out;
   out.source = document.path();
-  TableReader root(context, document.root().value, "");
+  context.lines = document.root().text.lines;
+  TableReader root(context, document.root().text.root, "");
   read_mesh(root, out);
   read_sequence(root, out);
   auto const constants = read_motion(root, out);

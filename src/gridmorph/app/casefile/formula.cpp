@@ -167,7 +167,9 @@ class Formula {
     try {
       define_language(parser);
       for (std::size_t v = 0; v < names_.size(); ++v) parser.DefineVar(names_[v], variables_[v].data());
-      for (auto const& [name, value] : constants) parser.DefineConst(name, value);
+      // Of however many constants those that are named.
+      for (auto const& name : names_in(expression))
+        if (auto const at = constants.find(name); at != constants.end()) parser.DefineConst(name, at->second);
       parser.SetExpr(expression);
       int results = 0;
       parser.Eval(results);
@@ -199,6 +201,8 @@ class Formula {
         for (auto const& [name, callback] : parsers_[c].GetFunDef()) all.push_back(name);
         return all;
       }());
+      constexpr std::size_t most_named = 40;
+      if (known.size() > most_named) known.resize(most_named);
       known.insert(known.end(), {"pi", "deg"});
       std::string names;
       for (auto const& name : known) names += (names.empty() ? "" : ", ") + name;
@@ -292,8 +296,11 @@ bool is_free_formula_name(std::string const& name) {
   if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) return false;
   if (!std::all_of(name.begin(), name.end(), is_name_character)) return false;
   if (std::find(variable_names.begin(), variable_names.end(), name) != variable_names.end()) return false;
-  mu::Parser parser;
-  define_language(parser);
+  static mu::Parser const parser = [] {
+    mu::Parser out;
+    define_language(out);
+    return out;
+  }();
   return parser.GetConst().count(name) == 0 && parser.GetFunDef().count(name) == 0;
 }
 

@@ -230,14 +230,15 @@ std::optional<std::filesystem::path> find_side_file(std::filesystem::path const&
   path.replace_extension(".toml");
   std::error_code error;
   if (path == mesh || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  auto const document = casefile::parse_toml_text(read_text(path), path.string());
+  auto const document = casefile::parse_toml_text(read_text(path), path.string()).root;
   if (!document.is_table() || document.contains("mesh") || document.contains("motion")) return std::nullopt;
   return path;
 }
 
 void add_side_file(std::string const& text, std::filesystem::path const& path, Mesh& mesh) {
   Context context{path.string(), path.parent_path(), {}, nullptr};
-  toml::value const document = casefile::parse_toml_text(text, context.file);
+  auto const [document, lines] = casefile::parse_toml_text(text, context.file);
+  context.lines = lines;
   if (mesh.is_structured())
     Reader(context, mesh).read(document);
   else
@@ -252,7 +253,7 @@ Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem:
   auto const side = side_file ? side_file : find_side_file(mesh);
   if (!side) return read_mesh(mesh.string(), options);
   std::string const text = read_text(*side);
-  auto const document = casefile::parse_toml_text(text, side->string());
+  auto const document = casefile::parse_toml_text(text, side->string()).root;
   if (document.is_table() && document.contains("format") && document.at("format").is_string())
     options.plot3d_format = casefile::string_of(document.at("format"));
   Mesh out = read_mesh(mesh.string(), options);

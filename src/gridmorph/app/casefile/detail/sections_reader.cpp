@@ -94,8 +94,9 @@ std::vector<std::pair<double, double>> read_stations(TableReader& table, std::st
     auto const span = two ? number(pair.as_array()[0]) : std::nullopt;
     auto const v = two ? number(pair.as_array()[1]) : std::nullopt;
     if (!span || !v) {
-      table.context().problem(line_of(pair), fmt::format("[[motion]] {}: expected [span fraction, value], found {}",
-                                                         key, describe_value(pair)));
+      table.context().problem(
+          table.context().line_of(pair),
+          fmt::format("[[motion]] {}: expected [span fraction, value], found {}", key, describe_value(pair)));
       return {};
     }
     stations.emplace_back(*span, *v);

@@ -49,17 +49,17 @@ bool TableReader::has(std::string const& key) const { return table_->as_table().
 unsigned TableReader::line(std::string const& key) const {
   auto const& table = table_->as_table();
   auto const found = table.find(key);
-  return found == table.end() ? line() : line_of(found->second);
+  return found == table.end() ? line() : context_->line_of(found->second);
 }
 
 toml::value const* TableReader::find(std::string const& key) {
   std::string name = plain_name();
   if (context_->asked != nullptr) (*context_->asked)[{name, key}];
-  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+  if (asked_.insert(key).second) known_.push_back(key);
   auto const& table = table_->as_table();
   auto const found = table.find(key);
   if (found == table.end()) return nullptr;
-  context_->given.insert({std::move(name), key, int(line_of(found->second))});
+  context_->given.insert({std::move(name), key, int(context_->line_of(found->second))});
   return &found->second;
 }
 
@@ -244,11 +244,11 @@ std::optional<std::size_t> TableReader::choice(std::string const& key, std::vect
 
 void TableReader::finish() {
   std::vector<std::pair<unsigned, std::string>> unknown;  // toml11 keeps keys in no order: report them by line
-  std::size_t left_out = 0;                               // finding a line takes time as the file is long
+  std::size_t left_out = 0;
   for (auto const& [key, value] : table_->as_table()) {
-    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (asked_.contains(key)) continue;
     if (unknown.size() < most_unknown_keys)
-      unknown.emplace_back(line_of(value), key);
+      unknown.emplace_back(context_->line_of(value), key);
     else
       ++left_out;
   }

@@ -8,6 +8,7 @@
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -24,6 +25,7 @@ struct Context {
   CaseKeyUse* asked = nullptr;                 ///< every key that is asked for, where somebody wants to know
   std::set<GivenKey> given{};                  ///< every key that is asked for and there
   std::vector<std::filesystem::path> files{};  ///< that have been named as inputs
+  std::shared_ptr<TomlLines const> lines{};    ///< of the file
 
   /// A file as a key names it, to be read; noted, so that no output takes its place.
   std::filesystem::path input(std::string const& name) {
@@ -31,6 +33,7 @@ struct Context {
   }
 
   void problem(unsigned line, std::string const& text) { problems.add(where(line) + ": " + text); }
+  [[nodiscard]] unsigned line_of(toml::value const& value) const { return lines ? lines->of(value) : 1; }
   [[nodiscard]] std::string where(unsigned line) const { return file + ":" + std::to_string(line); }
 };
 
@@ -41,7 +44,7 @@ class TableReader {
   TableReader(Context& context, toml::value const& table, std::string name, std::string rule = "");
 
   [[nodiscard]] bool has(std::string const& key) const;
-  [[nodiscard]] unsigned line() const { return line_of(*table_); }
+  [[nodiscard]] unsigned line() const { return context_->line_of(*table_); }
   [[nodiscard]] unsigned line(std::string const& key) const;
   [[nodiscard]] std::string where(std::string const& key) const { return context_->where(line(key)); }
   [[nodiscard]] Context& context() const { return *context_; }
@@ -83,7 +86,8 @@ class TableReader {
   toml::value const* table_;
   std::string name_;
   std::string rule_;  ///< of the [[motion]] that this is, or is a part of
-  std::vector<std::string> known_;
+  std::vector<std::string> known_;  ///< keys in the order in which they were asked for
+  std::set<std::string> asked_;     ///< the same ones
 };
 
 /// "a string", "an array", ... for messages, with the value if it is short.
