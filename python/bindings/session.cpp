@@ -57,6 +57,9 @@ Session::~Session() {
 
 std::shared_ptr<Session> Session::get(int threads) {
   auto session = running.lock();
+  if (threads > cli::most_threads)
+    throw ConfigError(std::to_string(threads) + " threads are asked for, and at most " +
+                      std::to_string(cli::most_threads) + " can be had; ask for fewer");
   if (!session) {
     session.reset(new Session(threads));
     running = held = session;

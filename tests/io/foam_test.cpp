@@ -513,6 +513,49 @@ TEST(OpenFoam, PartsOfDecomposedMeshesAndCasesWithoutMeshAreRefused) {
   expect_all_in(message_of<IoError>([&] { read_mesh((folder / "bare").string()); }), {"without a mesh", "blockMesh"});
 }
 
+TEST(OpenFoam, ListsOfOneValueAskForNoMoreThanTheMeshCanHave) {
+  TemporaryFolder const folder;
+  FoamBox const box;
+  box.write(folder / "case", {});
+  fs::path const owner = folder / "case" / "owner";
+  std::string const whole = bytes_of(owner), head = whole.substr(0, whole.find('}') + 1);
+  for (char const* list : {"2000000000{0}", "\n\n2000000000 { 0 }"}) {
+    std::ofstream(owner, std::ios::binary) << head << "\n" << list << "\n";
+    expect_all_in(message_of<IoError>([&] { (void)read_mesh((folder / "case").string()); }),
+                  {"owner:", "2000000000 values that are all alike"});
+  }
+}
+
+TEST(OpenFoam, BinaryListsEndBeforeTheFileDoes) {
+  TemporaryFolder const folder;
+  FoamBox const box;
+  box.write(folder / "case", {true, 32, 64});
+  for (char const* name : {"owner", "points", "faces"}) {
+    fs::path const path = folder / "case" / name;
+    std::string const whole = bytes_of(path);
+    std::size_t const end = whole.rfind(')');
+    for (std::size_t less = 0; less < 4; ++less) {  // without the bracket, and the last number cut
+      std::ofstream(path, std::ios::binary) << whole.substr(0, end - less);
+      EXPECT_THROW((void)read_mesh((folder / "case").string()), IoError) << name << " " << less;
+    }
+    std::ofstream(path, std::ios::binary) << whole;
+  }
+}
+
+TEST(OpenFoam, PackedFilesThatUnpackWithoutEndAreRefused) {
+  TemporaryFolder const folder;
+  FoamBox const box;
+  box.write(folder / "case");
+  std::string const points = (folder / "case" / "points").string();
+  if (std::system(("{ cat " + points + "; head -c 60000000 /dev/zero | tr '\\0' ' '; } | gzip -9 > " + points +
+                   ".gz && rm " + points)
+                      .c_str()) != 0)
+    GTEST_SKIP() << "no gzip here";
+  std::string const said = message_of<IoError>([&] { (void)read_mesh((folder / "case").string()); });
+  if (said.find("without zlib") != std::string::npos) GTEST_SKIP() << said;
+  expect_all_in(said, {"points.gz", "100 times", "gunzip"});
+}
+
 TEST(OpenFoam, DamagedFilesAreRefusedAndNothingElseHappens) {
   TemporaryFolder const folder;
   for (Storage const storage : {Storage{}, Storage{true, 32, 64}}) {

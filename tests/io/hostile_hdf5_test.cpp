@@ -244,6 +244,42 @@ TEST_F(HostileHdf5, FilesThatLinksLeadToAreKnown) {
   EXPECT_THROW(read_mesh(path_), Error);
 }
 
+TEST_F(HostileHdf5, CoordinatesBehindALinkOfHdf5ToAnotherFileAreLeftAlone) {
+  std::string const other = folder_.file("other.cgns");
+  auto const bytes = bytes_of(path_);
+  write_bytes(other, bytes);
+  std::string const data = x_ + "/ data";
+  change([&](hid_t file) {
+    H5Ldelete(file, data.c_str(), H5P_DEFAULT);
+    ASSERT_GE(H5Lcreate_external("other.cgns", data.c_str(), file, data.c_str(), H5P_DEFAULT, H5P_DEFAULT), 0);
+  });
+  expect_unreadable({x_, "external link", "other.cgns", "h5copy"});
+  expect_unwritable({x_, "external link"});
+  EXPECT_EQ(bytes_of(other), bytes);
+}
+
+TEST_F(HostileHdf5, CoordinatesUnderAnotherNameOfTheSameFileAreLeftAlone) {
+  std::string const data = x_ + "/ data";
+  change([&](hid_t file) {
+    H5Lmove(file, data.c_str(), file, "/kept", H5P_DEFAULT, H5P_DEFAULT);
+    ASSERT_GE(H5Lcreate_soft("/kept", file, data.c_str(), H5P_DEFAULT, H5P_DEFAULT), 0);
+  });
+  expect_same_coordinates(read_mesh(path_).coordinates, mesh_.coordinates);
+  expect_unwritable({x_, "another name in the file"});
+}
+
+TEST_F(HostileHdf5, GroupsThatHdf5ItselfLinksToAreKnown) {
+  std::string const grid = folder_.file("grid.cgns"), group = zone_ + "/GridCoordinates";
+  write_bytes(grid, bytes_of(path_));
+  change([&](hid_t file) {
+    H5Ldelete(file, group.c_str(), H5P_DEFAULT);
+    H5Lcreate_external("grid.cgns", group.c_str(), file, group.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+  });
+  ASSERT_EQ(look_at_mesh(path_).linked.size(), 1u);
+  EXPECT_TRUE(std::filesystem::equivalent(look_at_mesh(path_).linked[0], grid));
+  expect_unwritable({x_, "is a link"});
+}
+
 TEST_F(HostileHdf5, WhatIsReadBackMustBeWhatWasWritten) {
   auto const first = [&](int c) {
     auto const& x = mesh_.coordinates;

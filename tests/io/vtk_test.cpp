@@ -636,6 +636,20 @@ TEST_F(Vtm, BlocksOfVolumesAreZonesAndSurfacesTheirPatches) {
   EXPECT_EQ(mesh.patches[2].kind, PatchKind::outflow);
 }
 
+TEST_F(Vtm, OutputsOfSeveralFilesAppearTogetherOrNotAtAll) {
+  Mesh const mesh = read_mesh(path_);
+  std::filesystem::create_directories(folder_ / "out" / "out_2.vtp");  // a file cannot take its place
+  write_bytes(folder_ / "out" / "out_0.vtu", "of another run");
+  EXPECT_THROW(write_morphed(path_, folder_.file("out.vtm"), mesh, mesh.coordinates), IoError);
+  EXPECT_EQ(bytes_of(folder_ / "out" / "out_0.vtu"), "of another run");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "out_1.vtu"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.vtm"));
+  // Nor is the folder left where it was not there before.
+  std::filesystem::create_directories(folder_ / "new.vtm");
+  EXPECT_THROW(write_morphed(path_, folder_.file("new.vtm"), mesh, mesh.coordinates), IoError);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new"));
+}
+
 TEST_F(Vtm, SurfacesMoveWithTheNodesThatLieThere) {
   Mesh const mesh = read_mesh(path_);
   std::string const out = folder_.file("out.vtm");

@@ -120,6 +120,17 @@ TEST_F(CommandLine, QuietDemoPrintsNothingAndLeavesItsFiles) {
     EXPECT_TRUE(std::filesystem::exists(path("here") / name)) << name;
 }
 
+TEST_F(CommandLine, MoreThreadsThanThereArePlacesForAreCutDownWithAWarning) {
+  for (char const* command : {"$G keys -t 4096 mesh", "$G inspect -q -t 1024 passage.cgns",
+                              "OMP_NUM_THREADS=900 $G inspect -q passage.cgns"}) {
+    Outcome const run = shell(command);
+    EXPECT_EQ(run.status, 0) << run.err;
+    if (std::string(command).find("keys") == std::string::npos) {
+      EXPECT_NE(run.err.find("at most 512"), std::string::npos) << run.err;
+    }
+  }
+}
+
 TEST_F(CommandLine, AReaderThatGoesAwayIsNoFailure) {
   Outcome const run = shell("( $G inspect --json passage.cgns; echo $? >status ) | true");
   EXPECT_EQ(run.status, 0);

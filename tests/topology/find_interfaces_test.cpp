@@ -79,6 +79,23 @@ TEST_P(FindInterfaces, WhatIsFoundConnectsAndCoversTheMesh) {
   }
 }
 
+// Places that are no numbers were searched for without end.
+TEST(FoundInterfaces, CoordinatesThatAreNoNumbersAreRefused) {
+  for (double const bad : {std::nan(""), HUGE_VAL, 1e200}) {
+    Mesh mesh = box({3, 3, 3}, Shape::curved, 1);
+    mesh.coordinates.y(5) = bad;
+    std::string const said = [&] {
+      try {
+        (void)find_interfaces(mesh, {});
+      } catch (MeshError const& e) {
+        return std::string(e.what());
+      }
+      return std::string();
+    }();
+    EXPECT_NE(said.find("repair the mesh first"), said.npos) << said;
+  }
+}
+
 TEST_P(FindInterfaces, NeedsNoPatches) {
   Mesh const mesh = scramble(GetParam().make(7), {.seed = 7, .cuts = 2}).mesh;
   Mesh bare = without_interfaces(mesh);

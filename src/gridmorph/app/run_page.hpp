@@ -5,11 +5,11 @@
 #include <gridmorph/app/page/section.hpp>
 #include <gridmorph/app/page/surface_picture.hpp>
 #include <gridmorph/app/run.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 
 #include <Kokkos_Core.hpp>
 
-#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -81,17 +81,11 @@ class RunPage {
 template <class Function>
 void for_each_task(std::size_t tasks, Function const& do_it) {
   using Policy = Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, Kokkos::Schedule<Kokkos::Dynamic>>;
-  std::vector<std::exception_ptr> thrown(tasks);
-  Kokkos::parallel_for("gridmorph::cli::page_task", Policy(0, tasks).set_chunk_size(1), [&](std::size_t n) {
-    try {
-      do_it(n);
-    } catch (...) {
-      thrown[n] = std::current_exception();
-    }
-  });
+  detail::Thrown thrown;
+  Kokkos::parallel_for("gridmorph::cli::page_task", Policy(0, tasks).set_chunk_size(1),
+                       [&](std::size_t n) { thrown.guard(do_it, n); });
   compat::fence(Kokkos::DefaultHostExecutionSpace(), "gridmorph::cli::page_task (all are done)");
-  for (auto const& e : thrown)
-    if (e) std::rethrow_exception(e);
+  thrown.rethrow();
 }
 
 // page_rules.cpp

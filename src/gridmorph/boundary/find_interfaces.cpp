@@ -135,6 +135,7 @@ Periodic declared(topology::PeriodicMatch const& match) {
 
 FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options) {
   check_coordinates(mesh, "gridmorph::find_interfaces");
+  check_usable(mesh, "gridmorph::find_interfaces");
   if (!(options.tolerance > 0 && options.tolerance <= 0.25))
     throw MeshError("the tolerance for matching points is a share of the smallest edge, between 0 and 0.25, found " +
                     to_text(options.tolerance, 6));

@@ -27,12 +27,17 @@ enum class MeshKind { structured, unstructured };
 struct MeshFileFacts {
   MeshFormat format = MeshFormat::cgns;
   MeshKind kind = MeshKind::structured;
-  std::vector<std::string>
-      linked;  ///< other files that links of a CGNS file lead to, or a multi-block file of VTK names, as far as they are there
+  /// What the mesh consists of beside the file that is named, as far as it is there: files that links of a CGNS file lead to or a multi-block file of VTK
+  /// names, a .mapbc file, files and folders of an OpenFOAM case.
+  std::vector<std::string> linked;
 };
 
 /// Opens a CGNS file once and reads its tree. Throws IoError as read_mesh() does. `leave_out`: as in ReadOptions.
 MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out = {});
+
+/// All files, and folders, that write_morphed() of the mesh of `input` would write; of SeriesWriter where there are times.
+std::vector<std::string> files_to_write(std::string const& input, std::string const& output,
+                                        std::vector<double> const& times = {});
 
 /// What a file holds, from its first bytes and its zone types. Files that are neither CGNS nor SU2 count as structured, so
 /// that read_mesh() says what it makes of them. Files of both kinds of zones (hybrid ones) count as unstructured.

@@ -92,8 +92,11 @@ bool SolutionWriter::fits(Node const& solution, std::string const& location) con
   if (solution.labelled("IndexRange_t") != nullptr || solution.labelled("IndexArray_t") != nullptr) return false;
   auto const rind = rind_of(file_, solution);
   if (!rind.empty() && rind.size() != 2 * dimensions_.size()) return false;
+  constexpr std::int64_t most_planes = 1000;  // as grids have them
+  if (std::any_of(rind.begin(), rind.end(), [](std::int64_t planes) { return planes < 0 || planes >= most_planes; }))
+    return false;
   Node const* array = solution.labelled("DataArray_t");
-  if (array == nullptr) return true;
+  if (array == nullptr) return rind.empty();  // how much room it has is not known by its planes alone
   auto const stored = file_.dimensions(*array);
   if (stored.size() != dimensions_.size()) return false;
   for (std::size_t a = 0; a < stored.size(); ++a)

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/output_file.hpp>
 
 #include <algorithm>
@@ -111,10 +112,8 @@ PendingName* show(std::string name) {
   return free;
 }
 
-/// Only what signal handlers may do.
 void remove_pending(int signal) {
-  for (PendingName const* p = all_pending.load(); p != nullptr; p = p->next)
-    if (char const* const name = p->shown.load()) ::unlink(name);
+  remove_pending_files();
   ::raise(signal);  // the default action again, once this handler has returned
 }
 
@@ -161,6 +160,11 @@ void remove_stale(fs::path const& folder, std::string const& prefix) {
 
 }  // namespace
 
+void remove_pending_files() {
+  for (PendingName const* p = all_pending.load(); p != nullptr; p = p->next)
+    if (char const* const name = p->shown.load()) ::unlink(name);
+}
+
 void remove_pending_on_signals() {
   for (int const signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction present {};
@@ -182,6 +186,9 @@ OutputFile::OutputFile(std::string const& output) : output_(output) {
   if (fs::is_directory(output_, failure)) throw IoError(output + ": is a folder; name the file to write");
   if (auto const found = fs::status(output_, failure); fs::exists(found) && !fs::is_regular_file(found))
     throw IoError(output + ": is no ordinary file (a device, a pipe or a socket); name the file to write");
+  if (auto const input = FilesRead::name_of(output_))
+    throw IoError(output + ": is a file of the input ('" + *input +
+                  "'), and inputs are never overwritten; give another name");
   fs::path const folder = fs::path(output_).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, failure))
     throw IoError(output + ": there is no folder '" + folder.string() + "'; create it first");
@@ -262,6 +269,43 @@ void OutputFile::commit() {
   if (::rename(temporary_.c_str(), output_.c_str()) != 0)
     throw MachineError(output_ + ": cannot be put in place: " + system_reason() + "; check permissions of the folder");
   std::exchange(pending_, nullptr)->shown.store(nullptr);
+}
+
+bool OutputFile::hold_present() const {
+  std::error_code failure;
+  if (!fs::exists(output_, failure)) return false;
+  ::unlink(temporary_.c_str());
+  // File systems without hard links get a copy.
+  if (::link(output_.c_str(), temporary_.c_str()) == 0) return true;
+  fs::copy_file(output_, temporary_, failure);
+  if (failure) throw MachineError(output_ + ": cannot be kept while others are put in place: " + failure.message());
+  return true;
+}
+
+void OutputFile::put_back() {
+  if (::rename(temporary_.c_str(), output_.c_str()) == 0) std::exchange(pending_, nullptr)->shown.store(nullptr);
+}
+
+void OutputFile::take_away() const { ::unlink(output_.c_str()); }
+
+void OutputFiles::commit() {
+  std::deque<OutputFile> present;
+  std::vector<OutputFile*> before;  // of each that is in place; null where there was nothing
+  try {
+    for (OutputFile& file : files_) {
+      OutputFile& held = present.emplace_back(file.output());
+      OutputFile* const kept = held.hold_present() ? &held : nullptr;
+      file.commit();
+      before.push_back(kept);
+    }
+  } catch (...) {
+    for (std::size_t n = 0; n < before.size(); ++n)
+      if (before[n] != nullptr)
+        before[n]->put_back();
+      else
+        files_[n].take_away();
+    throw;
+  }
 }
 
 }  // namespace gridmorph::io

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/read_file.hpp>
 
 #include <algorithm>
@@ -17,6 +18,7 @@ std::string read_file(std::string const& path) {
   auto const status = fs::status(path, failure);
   if (!fs::exists(status)) throw IoError(path + ": no such file; check the name and the folder it is looked up from");
   if (!fs::is_regular_file(status)) throw IoError(path + ": is not an ordinary file");
+  FilesRead::note(path);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError(path + ": cannot be opened for reading: " + std::strerror(errno));

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
@@ -12,7 +13,9 @@
 #include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 
+#include <filesystem>
 #include <set>
+#include <system_error>
 #include <type_traits>
 
 namespace gridmorph {
@@ -48,24 +51,58 @@ Mesh read_without_names(std::string const& path, char const* format, ReadOptions
 
 }  // namespace
 
+namespace {
+
+/// Files that a mesh consists of beside the one that is named, but for those of links.
+std::vector<std::string> other_files(std::string const& path, MeshFormat format) {
+  std::vector<std::filesystem::path> files;
+  std::error_code ignored;
+  if (format == MeshFormat::openfoam) files = foam::files_of(path);
+  if (format == MeshFormat::ugrid) files = {ugrid::mapbc_of(path)};
+  if (format == MeshFormat::vtk) {
+    std::string const head = io::read_head(path);
+    if (vtk::is_parallel(head)) files = vtk::files_of_pieces(path);
+    if (vtk::is_blocks(head)) files = vtk::files_of_blocks(path);
+  }
+  std::vector<std::string> out;
+  for (auto const& file : files)
+    if (std::filesystem::exists(file, ignored)) out.push_back(file.string());
+  return out;
+}
+
+}  // namespace
+
 MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out) {
   MeshFileFacts out;
   out.format = mesh_format(path);
   if (out.format != MeshFormat::plot3d) out.kind = MeshKind::unstructured;
-  if (out.format == MeshFormat::vtk) {
-    std::string const head = io::read_head(path);
-    bool const parallel = vtk::is_parallel(head);
-    if (parallel || vtk::is_blocks(head))
-      for (auto const& file : parallel ? vtk::files_of_pieces(path) : vtk::files_of_blocks(path))
-        out.linked.push_back(file.string());
+  if (out.format == MeshFormat::cgns) {
+    cgns::File const file(path, cgns::File::Mode::read);
+    auto const tree = file.tree();
+    std::set<std::string> linked;
+    collect_linked(tree, linked);
+    out.linked.assign(linked.begin(), linked.end());
+    out.kind = kind_of(file, tree, leave_out);
+  } else {
+    out.linked = other_files(path, out.format);
   }
-  if (out.format != MeshFormat::cgns) return out;
-  cgns::File const file(path, cgns::File::Mode::read);
-  auto const tree = file.tree();
-  std::set<std::string> linked;
-  collect_linked(tree, linked);
-  out.linked.assign(linked.begin(), linked.end());
-  out.kind = kind_of(file, tree, leave_out);
+  io::FilesRead::note(path);
+  for (auto const& file : out.linked) io::FilesRead::note(file);
+  return out;
+}
+
+std::vector<std::string> files_to_write(std::string const& input, std::string const& output,
+                                        std::vector<double> const& times) {
+  std::vector<std::filesystem::path> files{output};
+  MeshFormat const format = mesh_format(input);
+  if (format == MeshFormat::openfoam) {
+    auto const more = foam::files_to_write(input, output, times);
+    files.insert(files.end(), more.begin(), more.end());
+  }
+  if (format == MeshFormat::vtk)
+    for (auto const& file : vtk::files_beside(input, output)) files.push_back(file);
+  std::vector<std::string> out;
+  for (auto const& file : files) out.push_back(file.string());
   return out;
 }
 

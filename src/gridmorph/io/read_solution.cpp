@@ -161,10 +161,13 @@ class SolutionReader {
     auto const planes = file_.integers(*rind);
     if (planes.size() != 2 * std::size_t(layout.index_dimension)) return std::nullopt;
     // Index directions of the file are those of the mesh with an extent of their own, in order.
+    // More planes than anybody keeps beside a zone are damage; products of theirs would not be numbers any more.
+    constexpr std::int64_t most_planes = 1000;  // as grids have them
+    auto const fits = [](std::int64_t of_a_side) { return of_a_side >= 0 && of_a_side < most_planes; };
     std::size_t n = 0;
     for (int a = 0; a < 3 && n < planes.size(); ++a) {
       if (layout.is_block() && layout.index_dimension == 2 && a == layout.flat_axis) continue;
-      if (planes[n] < 0 || planes[n + 1] < 0) return std::nullopt;
+      if (!fits(planes[n]) || !fits(planes[n + 1])) return std::nullopt;
       out.low[std::size_t(a)] = planes[n];
       out.high[std::size_t(a)] = planes[n + 1];
       n += 2;

@@ -3,6 +3,8 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/require_kokkos.hpp>
+#include <gridmorph/core/text.hpp>
+#include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <string>
@@ -23,6 +25,15 @@ inline void check_coordinates(Mesh const& mesh, char const* who) {
   complain("has " + std::to_string(n) + " nodes in its zones, and coordinates for " + std::to_string(c.x.extent(0)) +
            " (x), " + std::to_string(c.y.extent(0)) + " (y), " + std::to_string(c.z.extent(0)) +
            " (z) of them; set coordinates = Coordinates(mesh.n_nodes()) once all zones are there, and fill them");
+}
+
+/// Throws MeshError where a coordinate cannot be computed with: searches by place would go on for ever. Cost: one pass.
+inline void check_usable(Mesh const& mesh, char const* who) {
+  for (Index n = 0; n < mesh.coordinates.size(); ++n)
+    if (!is_usable(mesh.coordinates[n]))
+      throw MeshError(std::string(who) + ": mesh '" + mesh.source + "': " + describe_node(mesh, n) + " is at " +
+                      to_text(mesh.coordinates[n], 9) +
+                      ", which is not finite or larger than 1e100; repair the mesh first");
 }
 
 }  // namespace gridmorph

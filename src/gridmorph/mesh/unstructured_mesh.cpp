@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
@@ -153,6 +154,10 @@ class MeshCheck {
     if (mesh_.coordinates.size() != 0 && mesh_.coordinates.size() != nodes)
       problems_.add("mesh '" + mesh_.source + "': has " + std::to_string(mesh_.coordinates.size()) +
                     " coordinates for " + std::to_string(nodes) + " nodes");
+    for (Index n = 0; n < mesh_.coordinates.size() && problems_.empty(); ++n)
+      if (!is_usable(mesh_.coordinates[n]))
+        problems_.add("mesh '" + mesh_.source + "': " + describe_node(mesh_, n) + " is at " +
+                      to_text(mesh_.coordinates[n], 9) + ", which cannot be computed with");
   }
 
   [[nodiscard]] bool inside(Zone const& zone, std::span<Index32 const> nodes) const {

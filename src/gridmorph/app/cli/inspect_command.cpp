@@ -4,6 +4,7 @@
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
@@ -52,7 +53,12 @@ void check_files(CommandLine const& options, MeshSource const& file) {
   if (!options.write_side_file) return;
   // A new side file begins with all of the present one, whose place it may take.
   outputs.push_back({"side file", *options.write_side_file});
-  check_run_files({{"input mesh", options.input}}, outputs);
+  RunFiles inputs = inputs_of_mesh(file, options.side_file);
+  if (auto const present = options.side_file ? options.side_file : find_side_file(options.input)) {
+    std::erase_if(inputs, [](RunFile const& input) { return input.what == "side file"; });
+    io::FilesRead::release(*present);
+  }
+  check_run_files(inputs, outputs);
 }
 
 }  // namespace
@@ -67,8 +73,9 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   if (options.match || options.write_side_file) {
     terminal.progress("matching points");
     auto const present = options.side_file ? options.side_file : find_side_file(options.input);
-    mesh->match({options.match_tolerance, options.match_periodic, options.write_side_file,
-                 options.write_side_file && present ? io::read_file(present->string()) : std::string()});
+    std::string const before = options.write_side_file && present ? io::read_file(present->string()) : std::string();
+    if (present) io::FilesRead::release(*present);
+    mesh->match({options.match_tolerance, options.match_periodic, options.write_side_file, before});
   }
   terminal.progress("looking at boundaries and connections");
   MeshSummary const summary = mesh->summary();

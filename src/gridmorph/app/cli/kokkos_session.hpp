@@ -5,6 +5,9 @@
 
 namespace gridmorph::cli {
 
+/// Kokkos' OpenMP has places for so many threads, and writes beyond them without a word.
+inline constexpr int most_threads = 512;
+
 class KokkosSession {
  public:
   /// threads 0: Kokkos' own choice. Its warnings about thread binding are not for users of a command.

@@ -14,10 +14,13 @@
 #include <gridmorph/app/cli/terminal.hpp>
 #include <gridmorph/app/cli/threads.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/output_file.hpp>
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -83,6 +86,27 @@ int report_errors(Terminal& terminal, Work const& work) {
   }
 }
 
+/// Libraries throw on threads of their own, where nobody can catch it: Kokkos, when memory runs out while it starts. The status is then what it would
+/// be otherwise, and nothing half-written is left.
+[[noreturn]] void end_with_status() {
+  bool memory = false;
+  if (auto const thrown = std::current_exception()) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (std::bad_alloc const&) {
+      memory = true;
+    } catch (std::exception const& e) {
+      memory = std::strstr(e.what(), "llocation") != nullptr;
+    } catch (...) {
+    }
+  }
+  std::fputs(memory ? "gridmorph: error: out of memory; use a machine with more memory, or a smaller mesh\n"
+                    : "gridmorph: error: internal failure\n",
+             stderr);
+  gridmorph::io::remove_pending_files();
+  std::_Exit(machine_failure);
+}
+
 /// Memory that was freed is kept and used again. Large arrays come and go from stage to stage; fresh pages, which the system
 /// clears first, cost as much as most stages do (a quarter of the time with 10 million elements, for an eighth more memory).
 void keep_freed_memory() {
@@ -97,6 +121,7 @@ void keep_freed_memory() {
 
 int main(int argc, char** argv) try {
   keep_freed_memory();
+  std::set_terminate(end_with_status);
   // A reader that goes away, or a file that may not grow, is an error to report, not a reason to die.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -114,6 +139,7 @@ int main(int argc, char** argv) try {
     });
   }
   auto& options = std::get<CommandLine>(parsed);
+  gridmorph::io::FilesRead const read;  // whatever is read from here on is not written over
   using Command = CommandLine::Command;
   bool const computes = options.command != Command::view && options.command != Command::keys;
   if (computes) wait_passively(argv);
@@ -121,7 +147,7 @@ int main(int argc, char** argv) try {
   return report_errors(terminal, [&] {
     if (!computes) return run(options, terminal);
     if (names_case_file(options)) options.case_document.emplace(options.input);
-    KokkosSession const session(choose_threads(options));
+    KokkosSession const session(choose_threads(options, terminal));
     return run(options, terminal);
   });
 } catch (...) {  // what fails in reporting a failure, when memory has run out

@@ -2,6 +2,8 @@
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_kind.hpp>
+#include <gridmorph/io/files_read.hpp>
+#include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>
 
@@ -9,22 +11,11 @@
 #include <system_error>
 #include <utility>
 
-#include <sys/stat.h>
-
 namespace gridmorph::cli {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Equal for two paths that are one file, or would be.
-std::string identity(fs::path const& path) {
-  struct stat found {};
-  if (::stat(path.c_str(), &found) == 0) return fmt::format("{}:{}", found.st_dev, found.st_ino);
-  std::error_code error;
-  auto const canonical = fs::weakly_canonical(fs::absolute(path, error), error);
-  return (error ? path : canonical).string();
-}
 
 /// Why a path cannot be an output, whatever the other files are; empty when it can.
 std::string unwritable(RunFile const& file, RunFiles const& inputs) {
@@ -71,7 +62,8 @@ std::string wrong_ending(RunFile const& file, RunFiles const& inputs) {
 
 RunFiles inputs_of_mesh(MeshSource const& mesh, std::optional<fs::path> const& side_file) {
   RunFiles files{{"input mesh", mesh.path, false, to_string(mesh.format)}};
-  for (auto const& file : mesh.linked) files.push_back({"file that the mesh links to", file});
+  for (auto const& file : mesh.linked)
+    files.push_back({mesh.format == MeshFormat::cgns ? "file that the mesh links to" : "part of the input mesh", file});
   if (auto const side = side_file ? side_file : find_side_file(mesh.path)) files.push_back({"side file", *side});
   return files;
 }
@@ -89,9 +81,36 @@ RunFiles outputs_of(fs::path const& output, std::optional<fs::path> const& repor
   return files;
 }
 
+namespace {
+
+/// What was read, by identity: the inputs with what they are, and whatever else a reader has opened.
+class Taken {
+ public:
+  explicit Taken(RunFiles const& inputs) {
+    for (auto const& file : inputs) known_.emplace(io::identity_of(file.path), &file);
+  }
+  /// "input mesh 'a.cgns'"; empty for what is none of them.
+  [[nodiscard]] std::string name_of(fs::path const& path) const {
+    if (auto const input = known_.find(io::identity_of(path)); input != known_.end())
+      return fmt::format("{} '{}'", input->second->what, input->second->path.string());
+    auto const read = io::FilesRead::name_of(path);
+    return read ? fmt::format("input file '{}'", *read) : std::string();
+  }
+
+ private:
+  std::map<std::string, RunFile const*> known_;
+};
+
+/// An output mesh may be several files.
+std::vector<std::string> all_files(RunFile const& file, RunFiles const& inputs) {
+  if (file.what != "output" || inputs.empty() || inputs.front().format.empty()) return {file.path.string()};
+  return files_to_write(inputs.front().path.string(), file.path.string(), file.times);
+}
+
+}  // namespace
+
 void check_run_files(RunFiles const& inputs, RunFiles const& outputs) {
-  std::map<std::string, RunFile const*> taken;
-  for (auto const& file : inputs) taken.emplace(identity(file.path), &file);
+  Taken const taken(inputs);
   std::map<std::string, RunFile const*> written;
   Problems problems;
   for (auto const& file : outputs) {
@@ -101,13 +120,17 @@ void check_run_files(RunFiles const& inputs, RunFiles const& outputs) {
       continue;
     }
     if (auto const why = wrong_ending(file, inputs); !why.empty()) problems.add(fmt::format("{}: {}", name, why));
-    std::string const key = identity(file.path);
-    if (auto const input = taken.find(key); input != taken.end())
-      problems.add(fmt::format("{} is the {} '{}'; give another file name, inputs are never overwritten", name,
-                               input->second->what, input->second->path.string()));
-    if (auto const [other, added] = written.emplace(key, &file); !added)
-      problems.add(fmt::format("{} is the same file as {} '{}'; give two names", name, other->second->what,
-                               other->second->path.string()));
+    bool input_said = false, other_said = false;
+    for (std::string const& path : all_files(file, inputs)) {
+      std::string const of_several = path == file.path ? "" : fmt::format(" would write '{}', which", path);
+      if (auto const input = taken.name_of(path); !input.empty() && !std::exchange(input_said, true))
+        problems.add(fmt::format("{}{} is the {}; give another file name, inputs are never overwritten", name,
+                                 of_several, input));
+      if (auto const [other, added] = written.emplace(io::identity_of(path), &file);
+          !added && other->second != &file && !std::exchange(other_said, true))
+        problems.add(fmt::format("{}{} is the same file as {} '{}'; give two names", name, of_several,
+                                 other->second->what, other->second->path.string()));
+    }
   }
   problems.throw_if_any<ConfigError>();
 }

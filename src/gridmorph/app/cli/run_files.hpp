@@ -13,8 +13,9 @@ namespace gridmorph::cli {
 struct RunFile {
   std::string what;  ///< for messages: "input mesh", "report"
   std::filesystem::path path;
-  bool folder_is_made = false;   ///< of an output: its folder need not be there
-  std::string_view format = {};  ///< of the input mesh
+  bool folder_is_made = false;     ///< of an output: its folder need not be there
+  std::string_view format = {};    ///< of the input mesh
+  std::vector<double> times = {};  ///< of an output that is a series
 };
 using RunFiles = std::vector<RunFile>;
 
@@ -27,9 +28,9 @@ RunFiles inputs_of(CaseFile const& case_file, MeshSource const& mesh);
 /// A mesh and, where there is one, the report of the run that writes it.
 RunFiles outputs_of(std::filesystem::path const& output, std::optional<std::filesystem::path> const& report);
 
-/// Throws one ConfigError for all outputs that cannot be: in a folder that does not exist; a folder, device or pipe; an input or another
-/// output, by whatever name (links and hard links are the same file: device and inode are compared; what does not exist yet
-/// is compared by its canonical path); or named with the ending of another format than it is written in. Cost O(n log n) in the number of files.
+/// Throws one ConfigError for all outputs that cannot be: in a folder that does not exist; a folder, device or pipe; an input, another file that has been
+/// read (io::FilesRead) or another output, by whatever name (io::identity_of); or named with the ending of another format than it is written in. An
+/// output mesh counts with all files that it is written to. Cost O(n log n) in the number of files.
 void check_run_files(RunFiles const& inputs, RunFiles const& outputs);
 
 }  // namespace gridmorph::cli

@@ -1,13 +1,16 @@
 #include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/cli/kokkos_session.hpp>
 #include <gridmorph/app/cli/threads.hpp>
 #include <gridmorph/core/processors.hpp>
 
+#include <fmt/format.h>
 #include <Kokkos_Core.hpp>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <system_error>
 
@@ -63,13 +66,31 @@ void wait_passively(char** argv) {
 #endif
 }
 
-int choose_threads(CommandLine const& options) {
+namespace {
+
+/// Threads that the environment asks for, as Kokkos and OpenMP read it; 0 where it does not.
+int threads_of_environment() {
+  for (char const* name : {"KOKKOS_NUM_THREADS", "OMP_NUM_THREADS"})
+    if (char const* text = std::getenv(name))
+      return int(std::clamp(std::strtol(text, nullptr, 10), 0L, long(std::numeric_limits<int>::max())));
+  return 0;
+}
+
+}  // namespace
+
+int choose_threads(CommandLine const& options, Terminal& terminal) {
+  int const wanted = options.threads > 0 ? options.threads : threads_of_environment();
+  if (wanted > most_threads) {
+    terminal.warn(fmt::format("{} threads are asked for, and at most {} can be had; goes on with {}", wanted,
+                              most_threads, most_threads));
+    return most_threads;
+  }
   if (options.threads > 0) return options.threads;
 #ifndef KOKKOS_ENABLE_OPENMP
   return 0;  // one thread, or backends that know better
 #endif
   if (any_set({"OMP_NUM_THREADS", "KOKKOS_NUM_THREADS"})) return 0;
-  int const usable = usable_processors();
+  int const usable = std::min(usable_processors(), most_threads);
   auto const bytes = bytes_of_mesh(options);
   return bytes ? int(std::min(std::uintmax_t(usable), 1 + *bytes / bytes_per_thread)) : usable;
 }

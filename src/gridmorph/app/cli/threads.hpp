@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/app/cli/command_line.hpp>
+#include <gridmorph/app/cli/terminal.hpp>
 
 namespace gridmorph::cli {
 
@@ -13,7 +14,8 @@ void wait_passively(char** argv);
 
 /// Threads for Kokkos: what --threads says; 0, Kokkos' own choice, where the environment says it (OMP_NUM_THREADS,
 /// KOKKOS_NUM_THREADS); else as many as the process may use (affinity, quota of a container), and fewer for small meshes,
-/// judged by the size of the file: a thread with less than some 20,000 nodes waits more than it works.
-int choose_threads(CommandLine const& options);
+/// judged by the size of the file: a thread with less than some 20,000 nodes waits more than it works. More than Kokkos has places for are cut
+/// down, with a warning.
+int choose_threads(CommandLine const& options, Terminal& terminal);
 
 }  // namespace gridmorph::cli

@@ -3,6 +3,7 @@
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/own_files.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -93,6 +95,19 @@ void check_drawing_options(CommandLine const& options, bool elements) {
   problems.throw_if_any<ConfigError>();
 }
 
+/// Pictures get the names that the scripts give them; a mesh that has such a name stays where it is.
+void check_pictures(CommandLine const& options) {
+  Problems problems;
+  for (auto const& mesh : {std::optional(options.input), options.second})
+    if (mesh && mesh->extension() == ".png" &&
+        io::identity_of(mesh->has_parent_path() ? mesh->parent_path() : ".") == io::identity_of(*options.output))
+      problems.add(
+          fmt::format("view '{}': lies in the folder of the pictures and is named as one, and inputs are never "
+                      "overwritten; give another folder, --out FOLDER",
+                      mesh->string()));
+  problems.throw_if_any<ConfigError>();
+}
+
 std::vector<std::string> drawing_words(CommandLine const& options, std::string const& python,
                                        std::filesystem::path const& script) {
   // -B: nothing is written beside the scripts, which may be another user's; -u: pictures are named once they are there.
@@ -117,6 +132,7 @@ std::vector<std::string> drawing_words(CommandLine const& options, std::string c
 int run_view_command(CommandLine const& options, Terminal& terminal) {
   bool const elements = is_of_elements(options);
   check_drawing_options(options, elements);
+  check_pictures(options);
   auto const script = scripts_folder() / (elements ? unstructured_script : structured_script);
   auto const words = drawing_words(options, drawing_python(), script);
   nlohmann::json pictures = nlohmann::json::array();

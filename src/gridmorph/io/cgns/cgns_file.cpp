@@ -2,6 +2,7 @@
 #include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/cgns/hdf5_file.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/files_read.hpp>
 
 #include <cgns_io.h>
 
@@ -117,6 +118,7 @@ std::vector<Node const*> Node::all(std::string_view wanted) const {
 File::File(std::string path, Mode mode, FileFormat format) : path_(std::move(path)), mode_(mode), format_(format) {
   if (mode != Mode::create) {
     format_ = check_file(path_);
+    io::FilesRead::note(path_);
     file_size_ = Index(std::filesystem::file_size(path_));
   }
   if (mode != Mode::create && format_ == FileFormat::cgns_hdf5)
@@ -223,6 +225,7 @@ void File::load_children(Node& node, int depth) const {
     check(cgio_is_link(handle_, id, &link_length), "read", child.path);
     child.linked = node.linked || link_length > 0;
     if (link_length > 0) child.file = linked_file(handle_, path_, id);
+    if (!child.file.empty()) io::FilesRead::note(child.file);
     if (child.linked && ++linked_nodes_ > most_linked_nodes)
       throw IoError(path_ + ", node " + child.path + ": links lead to more than " + std::to_string(most_linked_nodes) +
                     " nodes, perhaps in a circle; the file is damaged: get a fresh copy of it");

@@ -2,6 +2,7 @@
 #define H5_USE_110_API
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/hdf5_file.hpp>
+#include <gridmorph/io/files_read.hpp>
 
 #include <hdf5.h>
 
@@ -196,6 +197,7 @@ class Hdf5File::Walk {
     child.stored.emplace();
     child.stored->place = node.stored->place + "/" + listed.name;
     child.name = std::move(listed.name);
+    if (object && !listed.hard) child.file = note_file(object.get());
     if (!object) {
       if (listed.hard) damaged(child.path, "cannot be opened");
       child.stored->type = "MT";
@@ -242,6 +244,9 @@ class Hdf5File::Walk {
 
   void describe_data(hid_t object, Node const& above, Node& node) {
     if (H5Lexists(object, data_name, H5P_DEFAULT) <= 0) return;
+    H5L_info_t link;
+    if (H5Lget_info(object, data_name, &link, H5P_DEFAULT) < 0) damaged(node.path, "its data cannot be found");
+    bool const coordinates = above.label == "GridCoordinates_t";
     Id const data(H5Dopen2(object, data_name, H5P_DEFAULT), H5Dclose);
     if (!data) damaged(node.path, "its data cannot be opened");
     auto& stored = *node.stored;
@@ -260,8 +265,12 @@ class Hdf5File::Walk {
     if (swapped_) std::reverse(stored.dimensions.begin(), stored.dimensions.end());
     auto const own = identity(data.get(), node.path);
     stored.object = own.object;
-    stored.shared = own.links > 1;
-    bool const coordinates = above.label == "GridCoordinates_t";
+    stored.shared = own.links > 1 || link.type == H5L_TYPE_SOFT;
+    if (link.type != H5L_TYPE_HARD) node.file = note_file(data.get());
+    if (coordinates && link.type != H5L_TYPE_HARD && !node.file.empty())
+      throw IoError(file_.path_ + ", node " + node.path + ": its data are in another file ('" + node.file +
+                    "', an external link), which must not be changed; write them into this file first, for instance "
+                    "with h5copy -f ext");
     if (own.external || ((coordinates || bytes > Stored::small) && is_virtual(data.get())))
       throw IoError(file_.path_ + ", node " + node.path +
                     ": its data are in another file (external storage), which must not be changed; write them into "
@@ -298,6 +307,7 @@ class Hdf5File::Walk {
     name.pop_back();
     if (name == file_.path_) return {};
     if (!files_.insert(name).second) return name;
+    io::FilesRead::note(name);
     std::error_code failure;
     auto const size = std::filesystem::file_size(name, failure);
     if (!failure) bytes_of_links_ += size;

@@ -25,9 +25,13 @@ bool ends_word(char c) { return is_blank(c) || std::strchr("(){};\"", c) != null
 /// zlib's header and tail are those of gzip.
 constexpr int gzip_window = 15 + 16;
 
-/// Hands all bytes to step(last piece), which is inflate or deflate, and gathers what comes out. Returns the state at the end.
+/// Text of meshes is packed to a fifteenth at best, damaged or evil files to a thousandth (RFC 1951).
+constexpr std::size_t most_expansion = 100, always_allowed = 16u << 20;
+
+/// Hands all bytes to step(last piece), which is inflate or deflate, and gathers what comes out, up to `most` bytes and a piece. Returns the state
+/// at the end.
 template <class Step>
-int stream_through(z_stream& stream, std::string const& bytes, std::string& out, Step const& step) {
+int stream_through(z_stream& stream, std::string const& bytes, std::string& out, std::size_t most, Step const& step) {
   constexpr std::size_t largest_piece = std::size_t(1) << 30;
   std::vector<char> chunk(std::size_t(1) << 20);
   std::size_t given = 0;
@@ -42,8 +46,8 @@ int stream_through(z_stream& stream, std::string const& bytes, std::string& out,
       stream.avail_out = uInt(chunk.size());
       state = step(given == bytes.size());
       out.append(chunk.data(), chunk.size() - stream.avail_out);
-    } while (state == Z_OK && (stream.avail_out == 0 || stream.avail_in > 0));
-  } while ((state == Z_OK || state == Z_BUF_ERROR) && given < bytes.size());
+    } while (state == Z_OK && out.size() <= most && (stream.avail_out == 0 || stream.avail_in > 0));
+  } while ((state == Z_OK || state == Z_BUF_ERROR) && out.size() <= most && given < bytes.size());
   return state;
 }
 
@@ -51,12 +55,17 @@ std::string unpacked(std::string const& path, std::string const& bytes) {
   z_stream stream{};
   if (inflateInit2(&stream, gzip_window) != Z_OK) throw MachineError(path + ": zlib cannot be started");
   std::string out;
-  int const state = stream_through(stream, bytes, out, [&](bool) {
+  std::size_t const most = always_allowed + most_expansion * bytes.size();
+  int const state = stream_through(stream, bytes, out, most, [&](bool) {
     int const now = inflate(&stream, Z_NO_FLUSH);
     if (now != Z_STREAM_END || stream.avail_in == 0) return now;
     return inflateReset(&stream);  // gzip files may follow one another
   });
   inflateEnd(&stream);
+  if (out.size() > most)
+    throw IoError(path + ": unpacks to more than " + std::to_string(most_expansion) + " times its " +
+                  std::to_string(bytes.size()) +
+                  " bytes, which no mesh does; if the file is sound, unpack it (gunzip)");
   if (state != Z_STREAM_END)
     throw IoError(path + ": is damaged: the packed data end or go wrong after " + std::to_string(out.size()) +
                   " bytes; write it again");
@@ -68,7 +77,8 @@ std::string deflated(std::string const& path, std::string const& bytes) {
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window, 8, Z_DEFAULT_STRATEGY) != Z_OK)
     throw MachineError(path + ": zlib cannot be started");
   std::string out;
-  stream_through(stream, bytes, out, [&](bool last) { return deflate(&stream, last ? Z_FINISH : Z_NO_FLUSH); });
+  stream_through(stream, bytes, out, std::numeric_limits<std::size_t>::max() / 2,
+                 [&](bool last) { return deflate(&stream, last ? Z_FINISH : Z_NO_FLUSH); });
   deflateEnd(&stream);
   return out;
 }
@@ -233,13 +243,16 @@ double FoamFile::number(std::size_t& begin, std::size_t& end) {
   return value;
 }
 
-Index FoamFile::begin_list(char const* what, Index least_bytes, char& bracket) {
+Index FoamFile::begin_list(char const* what, Index least_bytes, Index most_alike, char& bracket) {
   std::int64_t const n = integer(what);
-  // Every value takes some bytes, so that a damaged length asks for no more memory than the file is long.
+  // Every value takes some bytes, so that a damaged length asks for no more memory than the file is long. The last one of a text ends with the list.
   bracket = peek();
-  bool const one_value = bracket == '{';
+  std::size_t const after = at_ + 1, left = text_.size() - std::min(after, text_.size()) + (binary_ ? 0 : 1);
+  if (bracket == '{' && n > most_alike)
+    fail(std::string(what) + ": a list of " + std::to_string(n) + " values that are all alike; at most " +
+         std::to_string(most_alike) + " can be here");
   if (n < 0 || n > std::numeric_limits<Index32>::max() ||
-      (!one_value && std::uint64_t(n) * std::uint64_t(least_bytes) > text_.size() - at_ + 2))
+      (bracket != '{' && std::uint64_t(n) * std::uint64_t(least_bytes) > left))
     fail(std::string(what) + ": a list of " + std::to_string(n) + " does not fit into the file");
   if (bracket != '(' && bracket != '{') {
     if (n == 0) return 0;
@@ -262,9 +275,9 @@ std::int64_t FoamFile::raw_label() {
   return value;
 }
 
-std::vector<std::int64_t> FoamFile::raw_list(char const* what) {
+std::vector<std::int64_t> FoamFile::raw_list(char const* what, Index most_alike) {
   char bracket = 0;
-  Index const n = begin_list(what, binary_ ? label_bytes_ : 2, bracket);
+  Index const n = begin_list(what, binary_ ? label_bytes_ : 2, most_alike, bracket);
   std::vector<std::int64_t> out;
   if (n == 0 && bracket != '(') return out;
   out.reserve(std::size_t(n));
@@ -280,7 +293,7 @@ std::vector<std::int64_t> FoamFile::raw_list(char const* what) {
 
 void FoamFile::pass_list(char const* what, int bytes) {
   char bracket = 0;
-  Index const n = begin_list(what, 1, bracket);
+  Index const n = begin_list(what, binary_ ? bytes : 1, std::numeric_limits<Index32>::max(), bracket);
   if (n == 0 && bracket != '(') return;
   if (binary_ && bracket == '(')
     at_ += std::size_t(n) * std::size_t(bytes);
@@ -293,7 +306,7 @@ std::vector<ZoneEntry> FoamFile::zones(std::string_view wanted, Index n_labels) 
   at_ = body_;
   char bracket = 0;
   constexpr Index shortest = 4;  // "a{}\n"
-  Index const n = begin_list("zones", shortest, bracket);
+  Index const n = begin_list("zones", shortest, 1, bracket);
   if (n == 0 && bracket != '(') return {};
   if (bracket == '{') fail("zones are listed one by one");
   std::vector<ZoneEntry> out;
@@ -315,7 +328,7 @@ std::vector<ZoneEntry> FoamFile::zones(std::string_view wanted, Index n_labels) 
       if (key != wanted) {
         pass_list("a list of a zone", type == "List<bool>" ? 1 : label_bytes_);
       } else {
-        for (auto const v : raw_list("the labels of a zone")) {
+        for (auto const v : raw_list("the labels of a zone", n_labels)) {
           if (v < 0 || v >= n_labels)
             throw MeshError(path_ + ": zone '" + entry.name + "' names " + std::string(wanted) + " " +
                             std::to_string(v) + ", and there are " + std::to_string(n_labels) + ", counted from 0");
@@ -333,9 +346,9 @@ std::vector<ZoneEntry> FoamFile::zones(std::string_view wanted, Index n_labels) 
   return out;
 }
 
-std::vector<Index32> FoamFile::labels() {
+std::vector<Index32> FoamFile::labels(Index most) {
   at_ = body_;
-  auto const all = raw_list("labels");
+  auto const all = raw_list("labels", most);
   std::vector<Index32> out;
   out.reserve(all.size());
   for (auto const v : all) {
@@ -353,7 +366,7 @@ CsrGraph FoamFile::faces() {
     return Index32(v);
   };
   if (class_ == "faceCompactList") {
-    auto const first = raw_list("places of faces"), nodes = raw_list("nodes of faces");
+    auto const first = raw_list("places of faces", 1), nodes = raw_list("nodes of faces", 1);
     for (std::size_t f = 0; f < first.size(); ++f)
       if (first[f] < (f == 0 ? 0 : first[f - 1]) || (f + 1 == first.size() && first[f] != std::int64_t(nodes.size())) ||
           (f == 0 && first[f] != 0))
@@ -366,13 +379,13 @@ CsrGraph FoamFile::faces() {
   }
   char bracket = 0;
   constexpr Index shortest = 8;  // "3(0 1 2)"
-  Index const n = begin_list("faces", binary_ ? 1 : shortest, bracket);
+  Index const n = begin_list("faces", binary_ ? 1 : shortest, 1, bracket);
   if (n == 0 && bracket != '(') return out;
   if (bracket == '{') fail("faces are listed one by one");
   std::vector<Index32> face;
   for (Index f = 0; f < n; ++f) {
     face.clear();
-    for (auto const v : raw_list("a face")) face.push_back(node(v));
+    for (auto const v : raw_list("a face", 1)) face.push_back(node(v));
     out.add(face);
   }
   expect(')', "the faces");
@@ -383,7 +396,7 @@ Index FoamFile::points(std::function<void(PointText const&)> const& visit) {
   at_ = body_;
   char bracket = 0;
   constexpr Index shortest = 7;  // "(0 0 0)"
-  Index const n = begin_list("points", binary_ ? 3 * scalar_bytes_ : shortest, bracket);
+  Index const n = begin_list("points", binary_ ? 3 * scalar_bytes_ : shortest, 1, bracket);
   if (n == 0 && bracket != '(') return 0;
   if (bracket == '{') fail("points are listed one by one");
   PointText text;
@@ -445,14 +458,18 @@ std::vector<BoundaryEntry> FoamFile::boundary(Index n_faces) {
   binary_ = false;
   char bracket = 0;
   constexpr Index shortest = 4;  // "a{}\n"
-  Index const n = begin_list("patches", shortest, bracket);
+  Index const n = begin_list("patches", shortest, 1, bracket);
   if (n == 0 && bracket != '(') return {};
   if (bracket == '{') fail("patches are listed one by one");
   std::vector<BoundaryEntry> out;
+  auto counted = text_.begin();
+  int line = 1;
   for (Index p = 0; p < n; ++p) {
     BoundaryEntry entry;
     entry.name = word();
-    entry.line = 1 + int(std::count(text_.begin(), text_.begin() + std::ptrdiff_t(at_), '\n'));
+    auto const here = text_.begin() + std::ptrdiff_t(at_);
+    entry.line = line += int(std::count(counted, here, '\n'));
+    counted = here;
     if (entry.name.empty()) fail("the name of a patch is missing");
     expect('{', "the name of a patch");
     while (peek() != '}') {

@@ -55,7 +55,8 @@ class FoamFile {
 
   // What follows the header, from its start each time; each throws IoError with the line (text) or the byte (binary) where it is not what
   // it has to be.
-  std::vector<Index32> labels();
+  /// `most`: how many there can be.
+  std::vector<Index32> labels(Index most);
   CsrGraph faces();
   /// Calls visit for each number, in order. Returns the number of points.
   Index points(std::function<void(PointText const&)> const& visit);
@@ -76,10 +77,10 @@ class FoamFile {
   [[nodiscard]] std::string value_of_key();
   std::int64_t integer(char const* what);
   double number(std::size_t& begin, std::size_t& end);
-  /// Length of a list and its opening bracket.
-  Index begin_list(char const* what, Index least_bytes, char& bracket);
+  /// Length of a list and its opening bracket. `most_alike`: values that may stand as one, N{value}, which takes no room in the file.
+  Index begin_list(char const* what, Index least_bytes, Index most_alike, char& bracket);
   [[nodiscard]] std::int64_t raw_label();
-  std::vector<std::int64_t> raw_list(char const* what);
+  std::vector<std::int64_t> raw_list(char const* what, Index most_alike);
   /// A list of `bytes` per value in binary files, of words in others.
   void pass_list(char const* what, int bytes);
   [[noreturn]] void fail(std::string const& what) const;

@@ -56,8 +56,8 @@ class Reader {
     mesh_.dimension = 3;
     read_points();
     faces_ = file("faces", {"faceList", "faceCompactList"}).faces();
-    owner_ = file("owner", {"labelList"}).labels();
-    neighbour_ = file("neighbour", {"labelList"}).labels();
+    owner_ = file("owner", {"labelList"}).labels(faces_.size());
+    neighbour_ = file("neighbour", {"labelList"}).labels(faces_.size());
     // Old files name no neighbour of faces on the boundary by -1.
     while (!neighbour_.empty() && neighbour_.back() < 0) neighbour_.pop_back();
     check();

@@ -21,6 +21,12 @@ struct Folders {
 /// Nothing where there is none.
 std::optional<Folders> poly_mesh(std::filesystem::path const& path);
 
+/// All files that the mesh of a path consists of, its folders among them, up to that of the case.
+std::vector<std::filesystem::path> files_of(std::string const& path);
+/// All files and folders that write_morphed(), or TimeFolders where there are times, would write.
+std::vector<std::filesystem::path> files_to_write(std::string const& input, std::string const& output,
+                                                  std::vector<double> const& times);
+
 /// Reads the mesh of a path as poly_mesh() takes it. Cells with the faces of a usual shape become one, the others polyhedra. Patches keep
 /// their names, and their type as BC type; groups beside that of the type are families. Matching cyclics become connections; planes of
 /// type `empty` are symmetry planes, one patch for each. Throws IoError and MeshError.

@@ -1,7 +1,9 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/foam/foam_file.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/foam/foam_plane.hpp>
+#include <gridmorph/io/made_folders.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/read_file.hpp>
 
@@ -52,9 +54,13 @@ std::string with_points(FoamFile& file, Coordinates const& morphed) {
 /// Whether a folder holds a mesh with the faces of another one, as the same bytes.
 bool holds_same_faces(fs::path const& folder, fs::path const& other) {
   for (char const* name : {"faces", "faces.gz"})
-    if (std::error_code ignored; fs::exists(other / name, ignored))
-      return fs::is_regular_file(folder / name, ignored) &&
-             io::read_file((folder / name).string()) == io::read_file((other / name).string());
+    if (std::error_code ignored; fs::exists(other / name, ignored)) {
+      if (!fs::is_regular_file(folder / name, ignored)) return false;
+      bool const is_input = io::FilesRead::name_of(folder / name).has_value();
+      bool const same = io::read_file((folder / name).string()) == io::read_file((other / name).string());
+      if (!is_input) io::FilesRead::release(folder / name);  // was only looked at, and may be replaced
+      return same;
+    }
   return false;
 }
 
@@ -70,34 +76,6 @@ Coordinates of_both_planes(fs::path const& folder, FoamFile& points, Mesh const&
   return both_planes(all, *pairs, morphed);
 }
 
-/// Folders that are made for an output; those that are not kept go again.
-class MadeFolders {
- public:
-  explicit MadeFolders(fs::path const& folder) {
-    std::error_code failure;
-    for (fs::path p = folder; !p.empty() && !fs::exists(p, failure); p = p.parent_path()) made_.push_back(p);
-    fs::create_directories(folder, failure);
-    if (failure) throw MachineError(folder.string() + ": cannot be made: " + failure.message());
-  }
-  ~MadeFolders() {
-    std::error_code ignored;
-    if (!kept_)
-      for (fs::path const& p : made_) fs::remove_all(p, ignored);
-  }
-  MadeFolders(MadeFolders const&) = delete;
-  MadeFolders& operator=(MadeFolders const&) = delete;
-  void keep() { kept_ = true; }
-  [[nodiscard]] bool is_new() const { return !made_.empty(); }
-
- private:
-  std::vector<fs::path> made_;
-  bool kept_ = false;
-};
-
-}  // namespace
-
-namespace {
-
 /// Where a mesh lies below the folder by which it is named.
 fs::path place_below(fs::path const& mesh, std::string const& input) {
   std::error_code ignored;
@@ -106,28 +84,34 @@ fs::path place_below(fs::path const& mesh, std::string const& input) {
   return {};
 }
 
+/// What is made of a mesh, and appears in the end or not at all.
+struct Making {
+  io::MadeFolders folders;
+  io::OutputFiles files;
+
+  void commit() {
+    files.commit();
+    folders.keep();
+  }
+};
+
 /// All files of a mesh but its points, which are that text.
-void write_mesh_folder(std::string const& input, Folders const& from, fs::path const& folder,
-                       std::string const& points_name, std::string const& text) {
+void add_mesh_folder(std::string const& input, Folders const& from, fs::path const& folder,
+                     std::string const& points_name, std::string const& text, Making& to) {
   std::error_code ignored;
   bool const in_place = fs::exists(folder, ignored) && fs::equivalent(folder, from.mesh, ignored);
-  MadeFolders made(folder);
+  to.folders.make(folder);
   if (!in_place) {
-    if (!made.is_new() && !fs::is_empty(folder, ignored) && !holds_same_faces(folder, from.mesh))
+    if (!fs::is_empty(folder, ignored) && !holds_same_faces(folder, from.mesh))
       throw IoError(folder.string() + ": is there and holds something else than the mesh of " + input +
                     "; give another name, or remove it");
     for (fs::directory_entry const& entry : fs::directory_iterator(from.mesh)) {
       std::string const name = entry.path().filename().string();
       if (!entry.is_regular_file() || name == "points" || name == "points.gz") continue;
-      io::OutputFile copy((folder / name).string());
-      copy.copy_from(entry.path().string());
-      copy.commit();
+      to.files.add((folder / name).string()).copy_from(entry.path().string());
     }
   }
-  io::OutputFile target((folder / points_name).string());
-  target.write(text);
-  target.commit();
-  made.keep();
+  to.files.add((folder / points_name).string()).write(text);
 }
 
 std::string file_name(FoamFile const& file) { return fs::path(file.path()).filename().string(); }
@@ -137,7 +121,49 @@ std::string time_name(double time) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), time).ptr};
 }
 
+/// What lies in a folder, the folder with it.
+void add_files_in(fs::path const& folder, std::vector<fs::path>& out) {
+  out.push_back(folder);
+  std::error_code failure;
+  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure))
+    if (entry->is_regular_file(failure)) out.push_back(entry->path());
+}
+
 }  // namespace
+
+std::vector<fs::path> files_of(std::string const& path) {
+  std::vector<fs::path> out;
+  auto const folders = poly_mesh(path);
+  if (!folders) return out;
+  for (fs::path const& folder : {folders->mesh, folders->points}) {
+    add_files_in(folder, out);
+    // The case is named by its own folder, too, or by one between: nothing is written into it, whichever of them is the output.
+    auto above = fs::absolute(folder).lexically_normal();
+    if (above.filename() != "polyMesh") continue;
+    out.push_back(above = above.parent_path());
+    if (above.filename() == "constant" || folder != folders->mesh) out.push_back(above.parent_path());
+  }
+  return out;
+}
+
+std::vector<fs::path> files_to_write(std::string const& input, std::string const& output,
+                                     std::vector<double> const& times) {
+  std::vector<fs::path> out;
+  auto const from = poly_mesh(input);
+  if (!from) return out;
+  fs::path const place = times.empty() ? place_below(from->mesh, input) : fs::path("constant") / "polyMesh";
+  std::vector<fs::path> there;
+  add_files_in(from->mesh, there);
+  std::string const points = fs::exists(from->points / "points") ? "points" : "points.gz";
+  out.push_back(fs::path(output) / place);
+  out.push_back(fs::path(output) / place / points);
+  for (std::size_t n = 1; n < there.size(); ++n) out.push_back(fs::path(output) / place / there[n].filename());
+  for (double const time : times) {
+    out.push_back(fs::path(output) / time_name(time) / "polyMesh");
+    out.push_back(out.back() / points);
+  }
+  return out;
+}
 
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed) {
   auto const from = poly_mesh(input);
@@ -145,7 +171,9 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   FoamFile points((from->points / "points").string(), {"vectorField"});
   std::string const text =
       with_points(points, mesh.dimension == 2 ? of_both_planes(from->mesh, points, mesh, morphed) : morphed);
-  write_mesh_folder(input, *from, fs::path(output) / place_below(from->mesh, input), file_name(points), text);
+  Making to;
+  add_mesh_folder(input, *from, fs::path(output) / place_below(from->mesh, input), file_name(points), text, to);
+  to.commit();
 }
 
 struct TimeFolders::State {
@@ -156,8 +184,7 @@ struct TimeFolders::State {
   FoamFile points;
   std::vector<double> times;
   std::size_t written = 0;
-  std::vector<fs::path> made;  ///< folders that were not there before
-  bool kept = false;
+  Making to;
 
   State(std::string in, std::string const& out, Mesh const& m, std::vector<double> t, Folders f)
       : input(std::move(in)),
@@ -166,18 +193,6 @@ struct TimeFolders::State {
         mesh(m),
         points((from.points / "points").string(), {"vectorField"}),
         times(std::move(t)) {}
-  ~State() {
-    std::error_code ignored;
-    if (!kept)
-      for (fs::path const& p : made) fs::remove_all(p, ignored);
-  }
-
-  void make(fs::path const& folder) {
-    std::error_code failure;
-    for (fs::path p = folder; !p.empty() && !fs::exists(p, failure); p = p.parent_path()) made.push_back(p);
-    fs::create_directories(folder, failure);
-    if (failure) throw MachineError(folder.string() + ": cannot be made: " + failure.message());
-  }
 };
 
 TimeFolders::TimeFolders(std::string const& input, std::string const& output, Mesh const& mesh,
@@ -188,11 +203,8 @@ TimeFolders::TimeFolders(std::string const& input, std::string const& output, Me
     if (time_name(times[n]) == time_name(times[n - 1]))
       throw IoError(output + ": two times of the series are " + time_name(times[n]) + "; their folders would be one");
   state_ = std::make_unique<State>(input, output, mesh, times, *from);
-  fs::path const folder = state_->output / "constant" / "polyMesh";
-  std::error_code ignored;
-  for (fs::path p = folder; !p.empty() && !fs::exists(p, ignored); p = p.parent_path()) state_->made.push_back(p);
-  write_mesh_folder(input, *from, folder, file_name(state_->points),
-                    with_points(state_->points, state_->points.coordinates()));
+  add_mesh_folder(input, *from, state_->output / "constant" / "polyMesh", file_name(state_->points),
+                  with_points(state_->points, state_->points.coordinates()), state_->to);
 }
 
 TimeFolders::~TimeFolders() = default;
@@ -200,15 +212,13 @@ TimeFolders::~TimeFolders() = default;
 void TimeFolders::add(Coordinates const& morphed) {
   State& s = *state_;
   fs::path const folder = s.output / time_name(s.times.at(s.written)) / "polyMesh";
-  s.make(folder);
+  s.to.folders.make(folder);
   std::string text =
       with_points(s.points, s.mesh.dimension == 2 ? of_both_planes(s.from.mesh, s.points, s.mesh, morphed) : morphed);
-  io::OutputFile target((folder / file_name(s.points)).string());
-  target.write(text);
-  target.commit();
+  s.to.files.add((folder / file_name(s.points)).string()).write(text);
   ++s.written;
 }
 
-void TimeFolders::commit() { state_->kept = true; }
+void TimeFolders::commit() { state_->to.commit(); }
 
 }  // namespace gridmorph::foam

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/plot3d/plot3d_layout.hpp>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 namespace gridmorph::plot3d {
 
 Bytes::Bytes(std::string const& path) {
+  io::FilesRead::note(path);
   errno = 0;
   file_.open(path, std::ios::binary | std::ios::ate);
   if (!file_) throw IoError(path + ": cannot be opened for reading: " + std::strerror(errno));

@@ -146,10 +146,7 @@ class Reader {
 
   /// Numbers of surfaces that the file beside the mesh names.
   std::map<std::int64_t, SurfaceFacts> read_mapbc() {
-    fs::path beside(path_);
-    beside.replace_extension();
-    if (!in_.storage().text) beside.replace_extension();
-    beside += ".mapbc";
+    fs::path const beside = mapbc_of(path_);
     std::map<std::int64_t, SurfaceFacts> out;
     std::error_code ignored;
     if (!fs::is_regular_file(beside, ignored)) return out;
@@ -212,6 +209,13 @@ class Reader {
 }  // namespace
 
 bool is_ugrid(std::string const& path) { return path.ends_with(".ugrid"); }
+
+std::string mapbc_of(std::string const& path) {
+  fs::path beside(path);
+  beside.replace_extension();
+  if (!storage_of(path).text) beside.replace_extension();
+  return (beside += ".mapbc").string();
+}
 
 Mesh read(std::string const& path) { return Reader(path).run(); }
 

@@ -13,6 +13,9 @@ namespace gridmorph::ugrid {
 /// Whether a name ends in ".ugrid".
 bool is_ugrid(std::string const& path);
 
+/// The file with the names of the surfaces, beside a mesh, there or not.
+std::string mapbc_of(std::string const& path);
+
 /// Reads a mesh. Faces of one surface number are a patch, "surface 3", or with the name and kind that a file mesh.mapbc beside it gives. Throws
 /// IoError and MeshError.
 Mesh read(std::string const& path);

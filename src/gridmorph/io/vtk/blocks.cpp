@@ -1,10 +1,14 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/element_orders.hpp>
+#include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/kind_by_name.hpp>
+#include <gridmorph/io/made_folders.hpp>
 #include <gridmorph/io/output_file.hpp>
+#include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
+#include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
@@ -261,6 +265,21 @@ bool is_blocks(std::string_view head) {
   return text.find("<VTKFile") != std::string_view::npos && text.find("vtkMultiBlockDataSet") != std::string_view::npos;
 }
 
+fs::path name_beside(fs::path const& output, std::size_t number, std::string const& ending) {
+  std::string const stem = output.stem().string();
+  return fs::path(stem) / (stem + "_" + std::to_string(number) + ending);
+}
+
+std::vector<fs::path> files_beside(std::string const& input, fs::path const& output) {
+  std::vector<fs::path> out;
+  std::string const head = io::read_head(input);
+  bool const blocks = is_blocks(head);
+  if (!blocks && !is_parallel(head)) return out;
+  for (fs::path const& file : blocks ? files_of_blocks(input) : files_of_pieces(input))
+    out.push_back(output.parent_path() / name_beside(output, out.size(), blocks ? file.extension().string() : ".vtu"));
+  return out;
+}
+
 std::vector<fs::path> files_of_blocks(std::string const& path) {
   std::vector<fs::path> out;
   std::error_code ignored;
@@ -302,9 +321,6 @@ void write_morphed_blocks(std::string const& input, std::string const& output, M
   blocks.read();
   Coordinates const before = in_file_order(mesh, mesh.coordinates), after = in_file_order(mesh, morphed);
   OutputFields const all = in_order_of_the_file(mesh, fields);
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw MachineError(folder.string() + ": cannot be made: " + failure.message());
   std::vector<std::pair<std::string, std::string>> texts;  // path, bytes
   std::vector<Edit> edits;
   std::size_t z = 0;
@@ -319,23 +335,22 @@ void write_morphed_blocks(std::string const& input, std::string const& output, M
     } else if (blocks.is_surface(leaf)) {
       text = moved_surface(leaf, mesh, before, after);
     }
-    fs::path const name = folder.filename() / (folder.filename().string() + "_" + std::to_string(texts.size()) +
-                                               leaf.path.extension().string());
+    fs::path const name = name_beside(target, texts.size(), leaf.path.extension().string());
     edits.push_back({leaf.attribute->begin, leaf.attribute->end, escaped(name.string())});
     fs::path const place = target.parent_path() / name;
     for (Leaf const& other : blocks.leaves())
-      if (fs::exists(place, failure) && fs::equivalent(place, other.path, failure))
+      if (io::identity_of(place) == io::identity_of(other.path))
         throw IoError(place.string() +
                       ": is a file of the input, and an output would take its place; give another name");
     texts.emplace_back(place.string(), std::move(text));
   }
   if (z != mesh.zones.size()) throw IoError(input + ": holds fewer zones than the mesh; give the file that was read");
   texts.emplace_back(output, blocks.top().edited(std::move(edits)));
-  for (auto const& [path, text] : texts) {
-    io::OutputFile file(path);
-    file.write(text);
-    file.commit();
-  }
+  io::MadeFolders made(folder);
+  io::OutputFiles outputs;
+  for (auto const& [path, text] : texts) outputs.add(path).write(text);
+  outputs.commit();
+  made.keep();
 }
 
 }  // namespace gridmorph::vtk

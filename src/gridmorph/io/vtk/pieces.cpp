@@ -1,7 +1,10 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/point_numbers.hpp>
+#include <gridmorph/io/files_read.hpp>
+#include <gridmorph/io/made_folders.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/read_file.hpp>
+#include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
 #include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/mesh/file_order.hpp>
@@ -222,7 +225,7 @@ void write_morphed_pieces(std::string const& input, std::string const& output, M
   std::vector<std::pair<std::string, std::string>> texts;  // path, bytes
   std::vector<Edit> top_edits;
   fs::path const target(output), folder = fs::path(target).replace_extension();
-  std::error_code failure;
+  io::MadeFolders made;
   std::size_t z = 0;
   for (File const& file : pieces.files()) {
     std::vector<Edit> edits;
@@ -233,12 +236,11 @@ void write_morphed_pieces(std::string const& input, std::string const& output, M
     }
     fs::path place = target;
     if (pieces.top()) {
-      fs::path const name =
-          folder.filename() / (folder.filename().string() + "_" + std::to_string(texts.size()) + ".vtu");
+      fs::path const name = name_beside(target, texts.size(), ".vtu");
       top_edits.push_back({file.source->begin, file.source->end, escaped(name.string())});
       place = target.parent_path() / name;
       for (File const& other : pieces.files())
-        if (fs::exists(place, failure) && fs::equivalent(place, other.path, failure))
+        if (io::identity_of(place) == io::identity_of(other.path))
           throw IoError(place.string() +
                         ": is a file of the input, and an output would take its place; give another name");
     }
@@ -247,15 +249,12 @@ void write_morphed_pieces(std::string const& input, std::string const& output, M
   if (pieces.top()) {
     declare_fields(*pieces.top(), all, prefixes, top_edits);
     texts.emplace_back(output, pieces.top()->edited(std::move(top_edits)));
-    fs::create_directories(folder, failure);
-    if (failure) throw MachineError(folder.string() + ": cannot be made: " + failure.message());
+    made.make(folder);
   }
-  std::vector<std::unique_ptr<io::OutputFile>> outputs;
-  for (auto const& [path, text] : texts) {
-    outputs.push_back(std::make_unique<io::OutputFile>(path));
-    outputs.back()->write(text);
-  }
-  for (auto const& file : outputs) file->commit();
+  io::OutputFiles outputs;
+  for (auto const& [path, text] : texts) outputs.add(path).write(text);
+  outputs.commit();
+  made.keep();
 }
 
 }  // namespace gridmorph::vtk

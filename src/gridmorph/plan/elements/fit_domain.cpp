@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -229,7 +230,7 @@ class Boundary {
       limits.knots[a] = dimension_ == 2 ? 129 : a == 0 ? 65 : 33;
       limits.first[a] = box.low[over];
       limits.step[a] = (box.high[over] - box.low[over]) / (limits.knots[a] - 1);
-      if (!(limits.step[a] > 0)) return {};
+      if (!(limits.step[a] > 0) || !std::isfinite(limits.step[a])) return {};
     }
     auto const size = std::size_t(limits.knots[0] * limits.knots[1]);
     limits.low.assign(size, unset);
@@ -263,9 +264,10 @@ class Boundary {
     return limits.first[a] + limits.step[a] * std::clamp(double(i), inside, last - inside);
   }
   static std::pair<int, int> knots_in(Chart::Limits const& limits, std::size_t a, double low, double high) {
-    int const last = limits.knots[a] - 1;
-    return {std::clamp(int(std::floor((low - limits.first[a]) / limits.step[a])), 0, last),
-            std::clamp(int(std::ceil((high - limits.first[a]) / limits.step[a])), 0, last)};
+    // Clamped before they are whole numbers, which places far away are too large for.
+    double const last = limits.knots[a] - 1;
+    return {int(std::clamp(std::floor((low - limits.first[a]) / limits.step[a]), 0.0, last)),
+            int(std::clamp(std::ceil((high - limits.first[a]) / limits.step[a]), 0.0, last))};
   }
   static void include(Chart::Limits& limits, int i, int j, double value) {
     auto const n = std::size_t(i + limits.knots[0] * j);
@@ -321,37 +323,43 @@ class Boundary {
     return double(narrow) <= 0.04 * double(widths.size());
   }
 
-  /// Knots beside which the boundary is not take the mean of their neighbours'; whether there were any to begin with.
+  /// Knots beside which the boundary is not take the mean of their neighbours'; whether there were any to begin with. A knot is filled once, also
+  /// with a mean that leaves no room between its ends (the ends of a folded mesh may differ by round-off alone): so each round fills some.
   static bool fill(Chart::Limits& limits) {
     auto const size = limits.low.size();
-    auto missing = [&](std::size_t n) { return !(limits.high[n] > limits.low[n]); };
+    std::vector<std::uint8_t> known(size);
+    std::size_t left = 0;
+    for (std::size_t n = 0; n < size; ++n) {
+      known[n] = limits.high[n] > limits.low[n] ? 1 : 0;
+      left += 1 - known[n];
+    }
     std::vector<std::pair<std::size_t, std::array<double, 2>>> found;
-    for (;;) {
+    while (left > 0) {
       found.clear();
-      std::size_t left = 0;
       for (std::size_t n = 0; n < size; ++n) {
-        if (!missing(n)) continue;
-        ++left;
+        if (known[n] != 0) continue;
         int const i = int(n) % limits.knots[0], j = int(n) / limits.knots[0];
         std::array<double, 2> sum{};
         int count = 0;
         for (auto const& [di, dj] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
           if (i + di < 0 || i + di >= limits.knots[0] || j + dj < 0 || j + dj >= limits.knots[1]) continue;
           auto const m = std::size_t(i + di + limits.knots[0] * (j + dj));
-          if (missing(m)) continue;
+          if (known[m] == 0) continue;
           sum[0] += limits.low[m];
           sum[1] += limits.high[m];
           ++count;
         }
         if (count > 0) found.push_back({n, {sum[0] / count, sum[1] / count}});
       }
-      if (left == 0) return true;
       if (found.empty()) return false;
       for (auto const& [n, ends] : found) {
         limits.low[n] = ends[0];
         limits.high[n] = ends[1];
+        known[n] = 1;
       }
+      left -= found.size();
     }
+    return true;
   }
 
   HostInstance const& host_;

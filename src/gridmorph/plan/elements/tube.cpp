@@ -53,6 +53,7 @@ bool Tube::contains(Vec3 const& p) const {
   double const x = rounding[0] * a + rounding[1] * b, y = rounding[1] * a + rounding[2] * b;
   double turn = (std::atan2(y, x) - ring_start) / (2 * std::numbers::pi);
   turn -= std::floor(turn);
+  if (!std::isfinite(turn)) return false;  // the walls are so far apart that their sections have no shape
   int const k = std::min(int(turn * around), around - 1);
   auto const p0 = corner(k), p1 = corner(k + 1);
   return (p1[0] - p0[0]) * (b - p0[1]) - (p1[1] - p0[1]) * (a - p0[0]) >= 0;
@@ -131,6 +132,11 @@ class Fitter {
     }
     find_stretch();
     find_rings();
+    if (!std::isfinite(tube_.largest_radius()) ||
+        !std::isfinite(tube_.rounding[0] + tube_.rounding[1] + tube_.rounding[2])) {
+      note = "the walls are too far apart for their sections to have a shape";
+      return std::nullopt;
+    }
     double const width = 2 * tube_.largest_radius();
     if (tube_.length() < 1.25 * width) {
       note = "the walls with their offset are " + std::to_string(tube_.length()) + " long and " +
@@ -177,7 +183,8 @@ class Fitter {
     });
     low -= offset_;
     high += offset_;
-    int const n = std::clamp(int(2 * (high - low) / (width + 2 * offset_)), 6, 16);
+    // Clamped before it is a whole number, which lengths far beyond the width are too large for.
+    int const n = int(std::clamp(2 * (high - low) / (width + 2 * offset_), 6.0, 16.0));
     for (int j = 0; j <= n; ++j) tube_.station.push_back(j == n ? high : low + j * (high - low) / n);
   }
 
