@@ -5,6 +5,7 @@
 #include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
+#include <gridmorph/io/mesh_names.hpp>
 #include <gridmorph/io/plot3d/plot3d.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
@@ -47,6 +48,24 @@ Mesh read_without_names(std::string const& path, char const* format, ReadOptions
     return read(path);
   else
     return read(path, options);
+}
+
+Mesh read_as_named(std::string const& path, ReadOptions const& options) {
+  // A side file that says which variant of PLOT3D a file is knows it better than its first bytes.
+  bool const guess = options.plot3d_format.empty();
+  switch (guess ? mesh_format(path) : cgns::is_cgns(path) ? MeshFormat::cgns : MeshFormat::plot3d) {
+    case MeshFormat::su2: return read_without_names(path, "an SU2 mesh", options, su2::read);
+    case MeshFormat::openfoam: return read_without_names(path, "an OpenFOAM mesh", options, foam::read);
+    case MeshFormat::gmsh: return read_without_names(path, "a Gmsh mesh", options, gmsh::read);
+    case MeshFormat::vtk: return read_without_names(path, "a VTK mesh", options, vtk::read);
+    case MeshFormat::ugrid: return read_without_names(path, "a UGRID mesh", options, ugrid::read);
+    case MeshFormat::plot3d: return read_without_names(path, "a PLOT3D mesh", options, plot3d::read);
+    case MeshFormat::cgns: break;
+  }
+  cgns::File const file(path, cgns::File::Mode::read);
+  auto const tree = file.tree();
+  return kind_of(file, tree, options.leave_out) == MeshKind::structured ? io::read_blocks(file, tree, options)
+                                                                        : io::read_elements(file, tree, options);
 }
 
 }  // namespace
@@ -111,21 +130,9 @@ MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leav
 }
 
 Mesh read_mesh(std::string const& path, ReadOptions const& options) {
-  // A side file that says which variant of PLOT3D a file is knows it better than its first bytes.
-  bool const guess = options.plot3d_format.empty();
-  switch (guess ? mesh_format(path) : cgns::is_cgns(path) ? MeshFormat::cgns : MeshFormat::plot3d) {
-    case MeshFormat::su2: return read_without_names(path, "an SU2 mesh", options, su2::read);
-    case MeshFormat::openfoam: return read_without_names(path, "an OpenFOAM mesh", options, foam::read);
-    case MeshFormat::gmsh: return read_without_names(path, "a Gmsh mesh", options, gmsh::read);
-    case MeshFormat::vtk: return read_without_names(path, "a VTK mesh", options, vtk::read);
-    case MeshFormat::ugrid: return read_without_names(path, "a UGRID mesh", options, ugrid::read);
-    case MeshFormat::plot3d: return read_without_names(path, "a PLOT3D mesh", options, plot3d::read);
-    case MeshFormat::cgns: break;
-  }
-  cgns::File const file(path, cgns::File::Mode::read);
-  auto const tree = file.tree();
-  return kind_of(file, tree, options.leave_out) == MeshKind::structured ? io::read_blocks(file, tree, options)
-                                                                        : io::read_elements(file, tree, options);
+  Mesh mesh = read_as_named(path, options);
+  io::make_names_printable(mesh);
+  return mesh;
 }
 
 }  // namespace gridmorph

@@ -12,7 +12,25 @@ namespace gridmorph::cli {
 
 namespace {
 
-void prefixed(std::string_view kind, std::string_view text) {
+/// As a terminal may see it: what could set it (escape sequences, the window's title) or write over lines comes from names in files, and
+/// is shown as '?'.
+std::string harmless(std::string_view text) {
+  std::string out(text);
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    auto const c = static_cast<unsigned char>(out[n]);
+    bool const control = (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f;
+    // U+0080 ... U+009F, which are control characters too.
+    bool const second_set = c == 0xc2 && n + 1 < out.size() && (static_cast<unsigned char>(out[n + 1]) & 0xe0) == 0x80;
+    if (control) out[n] = '?';
+    if (second_set) out.replace(n, 2, "?");
+  }
+  return out;
+}
+
+void prefixed(std::string_view kind, std::string_view raw) {
+  // A message is never empty: a status without a word says nothing to anybody.
+  std::string const shown = raw.empty() ? std::string("no more is known") : harmless(raw);
+  std::string_view text = shown;
   std::string out;
   while (!text.empty()) {
     std::size_t const end = text.find('\n');
@@ -46,10 +64,10 @@ void Terminal::to_standard_output(std::string_view text) {
     error_ = errno != 0 ? errno : EIO;
 }
 
-void Terminal::result(std::string_view text) { to_standard_output(text); }
+void Terminal::result(std::string_view text) { to_standard_output(harmless(text)); }
 
 void Terminal::say(std::string_view text) {
-  if (!quiet_ && !json_) to_standard_output(text);
+  if (!quiet_ && !json_) to_standard_output(harmless(text));
 }
 
 void Terminal::document(nlohmann::json const& json) {
@@ -82,7 +100,7 @@ void Terminal::show(std::string_view text, std::optional<double> share) {
   if (quiet_) return;
   double const elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   if (!interactive_ && !pace_.due(elapsed)) return;
-  std::string const line = progress_text(text, share, elapsed);
+  std::string const line = harmless(progress_text(text, share, elapsed));
   clear_progress();
   std::fprintf(stderr, interactive_ ? "%s ..." : "gridmorph: %s ...\n", line.c_str());
   std::fflush(stderr);

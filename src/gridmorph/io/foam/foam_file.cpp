@@ -1,9 +1,12 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/io/foam/foam_file.hpp>
+#include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -235,12 +238,15 @@ std::int64_t FoamFile::integer(char const* what) {
 
 double FoamFile::number(std::size_t& begin, std::size_t& end) {
   skip_blanks();
-  double value = 0;
-  begin = at_;
-  auto const [stop, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-  if (error != std::errc() && error != std::errc::result_out_of_range) fail("a coordinate is missing, or no number");
-  at_ = end = std::size_t(stop - text_.data());
-  return value;
+  begin = end = at_;
+  while (end < text_.size() && !ends_word(text_[end])) ++end;
+  std::string_view const found = std::string_view(text_).substr(begin, end - begin);
+  auto const value = to_number(found);
+  if (!value) fail("a coordinate is missing, or no number" + (found.empty() ? "" : ": '" + io::printable(found) + "'"));
+  if (std::isinf(*value))
+    fail("the coordinate '" + io::printable(found) + "' is larger than any number that can be computed with");
+  at_ = end;
+  return *value;
 }
 
 Index FoamFile::begin_list(char const* what, Index least_bytes, Index most_alike, char& bracket) {

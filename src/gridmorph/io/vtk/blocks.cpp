@@ -114,7 +114,7 @@ class Blocks {
       Tag const *connectivity = array_of(cells, "connectivity"), *offsets = array_of(cells, "offsets");
       if (leaf.points == nullptr || connectivity == nullptr || offsets == nullptr)
         file.fail(piece, "holds no points or no cells");
-      leaf.coordinates = file.reals(*leaf.points, 3 * file.count(piece, "NumberOfPoints"));
+      leaf.coordinates = file.coordinates(*leaf.points, 3 * file.count(piece, "NumberOfPoints"));
       auto const nodes = file.integers(*connectivity), ends = file.integers(*offsets);
       std::int64_t begin = 0;
       std::vector<Index32> row;

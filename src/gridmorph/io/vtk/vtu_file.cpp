@@ -137,7 +137,7 @@ Grid read_piece(XmlFile const& file, Tag const& piece) {
   out.points = points.child("DataArray");
   if (out.points == nullptr || file.count(*out.points, "NumberOfComponents") != 3)
     file.fail(points, "<Points> holds no DataArray of 3 components");
-  out.coordinates = file.reals(*out.points, 3 * out.n_points);
+  out.coordinates = file.coordinates(*out.points, 3 * out.n_points);
   Tag const& cells = need(file, *out.piece, "Cells");
   auto const types = file.integers(need_array(file, cells, "types"), out.n_cells);
   auto const offsets = file.integers(need_array(file, cells, "offsets"), out.n_cells);

@@ -289,6 +289,13 @@ std::vector<std::int64_t> XmlFile::integers(Tag const& array, Index n) const {
 
 std::vector<double> XmlFile::reals(Tag const& array, Index n) const { return values<double>(array, n); }
 
+std::vector<double> XmlFile::coordinates(Tag const& array, Index n) const {
+  if (is_integer(array))
+    fail(array, describe(array) + " holds coordinates of type '" + std::string(array["type"]) +
+                    "', whole numbers, which cannot hold where nodes move to; write them as Float64 or Float32");
+  return reals(array, n);
+}
+
 std::vector<std::string> XmlFile::strings(Tag const& array) const {
   std::vector<std::string> out(1);
   auto const add = [&](char c) {

@@ -94,6 +94,9 @@ class Parser {
       a.begin = at_;
       a.end = end;
       a.value = plain(text_.substr(at_, end - at_));
+      if (a.value.find('\0') != std::string::npos)
+        fail("the value of the attribute '" + a.name +
+             "' holds a zero byte, which XML does not have; write the file again");
       at_ = end + 1;
       out.attributes.push_back(std::move(a));
     }

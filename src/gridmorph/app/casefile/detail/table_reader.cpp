@@ -78,6 +78,12 @@ void TableReader::require(std::string const& key, std::string_view what_to_write
                                           what_to_write, about(key)));
 }
 
+bool TableReader::is_text(std::string const& key, std::string const& value) {
+  if (value.find('\0') == std::string::npos) return true;
+  problem(key, "holds the character \\u0000, which no name and no file has; remove it");
+  return false;
+}
+
 std::optional<std::string> TableReader::string(std::string const& key) {
   auto const* value = find_as("string", key);
   if (value == nullptr) return std::nullopt;
@@ -90,6 +96,7 @@ std::optional<std::string> TableReader::string(std::string const& key) {
     problem(key, "the string is empty; give a value or remove the key");
     return std::nullopt;
   }
+  if (!is_text(key, string_of(*value))) return std::nullopt;
   return string_of(*value);
 }
 
@@ -197,6 +204,8 @@ std::optional<std::vector<std::string>> TableReader::strings(std::string const& 
     problem(key, "one of the strings is empty; give a name");
     return std::nullopt;
   }
+  for (std::string const& one : out)
+    if (!is_text(key, one)) return std::nullopt;
   return out;
 }
 

@@ -78,6 +78,8 @@ class TableReader {
   std::optional<std::vector<double>> list_of_numbers(char const* what, std::string const& key);
   /// find(), where the key is read as one thing: see KeyReading.
   toml::value const* find_as(char const* what, std::string const& key);
+  /// Whether a string could be a name; messages would end at a zero in it. Notes a problem where not.
+  bool is_text(std::string const& key, std::string const& value);
   [[nodiscard]] std::string plain_name() const;
   /// ". offset: ... (number > 0, length)", to end a message with; empty where the list of keys has nothing.
   [[nodiscard]] std::string about(std::string const& key) const;
