@@ -3,6 +3,7 @@
 
 #include <gridmorph/core/error.hpp>
 
+#include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/geometry/slip_surface.hpp>
 
 #include <algorithm>
@@ -233,6 +234,63 @@ TEST(RevolutionProfile, DoesNotDependOnTheUnit) {
       for (double x = -0.16; x < 0.2; x += 1e-4)
         EXPECT_NEAR(other(unit * x) / unit, one(x), 1e-13) << noise << " " << unit;
     }
+}
+
+double wavy_step(double x) { return 0.45 + 0.01 * std::sin(12 * x) + 0.01 * std::tanh(6 * x); }
+
+/// Nodes as a passage with resolved walls has them: clusters a few micrometres wide, a centimetre apart; several nodes round the
+/// axis at each axial position.
+Points clustered_points(double spacing, int in_cluster, double growth) {
+  Points points;
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<> rounding(-1e-16, 1e-16);
+  for (double first = -0.16; first < 0.2; first += 0.01) {
+    double x = first, step = spacing;
+    for (int n = 0; n < in_cluster; ++n, x += step, step *= growth)
+      for (int round = 0; round < 3; ++round)
+        points.emplace_back(x + rounding(random), wavy_step(x) + rounding(random));
+  }
+  return points;
+}
+
+TEST(RevolutionProfile, BetweenClustersOfPointsIsWithin1em10OfTheSizeAndTheSameInAnyUnit) {
+  double const size = 0.6;
+  for (double const spacing : {1e-6, 1e-5})
+    for (int const in_cluster : {3, 5, 12})
+      for (double const growth : {1.0, 1.25}) {
+        auto const points = clustered_points(spacing, in_cluster, growth);
+        auto const profile = RevolutionProfile::from_points(points);
+        double const first = profile.knots.front().axial, last = profile.knots.back().axial;
+        EXPECT_LT(largest_error(profile, wavy_step, first, last), 1e-10 * size) << spacing << " " << in_cluster;
+        for (double const unit : {1e3, 0.0254}) {
+          auto scaled = points;
+          for (auto& [a, r] : scaled) a *= unit, r *= unit;
+          auto const other = RevolutionProfile::from_points(scaled);
+          double apart = 0;
+          for (double x = first; x < last; x += 1e-4)
+            apart = std::max(apart, std::abs(other(unit * x) / unit - profile(x)));
+          EXPECT_LT(apart, 1e-11 * size) << spacing << " " << in_cluster << " " << unit;
+        }
+      }
+}
+
+TEST(RevolutionProfile, BetweenClustersOfPointsIsTheSameAboutATurnedAndShiftedAxis) {
+  CylindricalFrame const frame(Axis{{0, 0, 0}, {1, 0, 0}}), turned(Axis{{0.3, -0.2, 0.7}, {1, 2, -0.5}});
+  auto const meridional = [](CylindricalFrame const& of, Vec3 const& p) {
+    auto const [axial, radius] = of.meridional(p);
+    return std::pair(axial, radius);
+  };
+  Vec3 const along = turned.direction(), across = (1 / std::sqrt(5.0)) * Vec3{2, -1, 0}, third = cross(along, across);
+  Points points, others;
+  int n = 0;
+  for (auto const& [x, r] : clustered_points(2e-6, 5, 1.2)) {
+    double const angle = 0.1 * (n++ % 7);
+    double const y = r * std::cos(angle), z = r * std::sin(angle);
+    points.push_back(meridional(frame, {x, y, z}));
+    others.push_back(meridional(turned, turned.origin() + x * along + y * across + z * third));
+  }
+  auto const profile = RevolutionProfile::from_points(points), other = RevolutionProfile::from_points(others);
+  for (double x = -0.15; x < 0.19; x += 1e-4) EXPECT_NEAR(other(x), profile(x), 0.6e-11);
 }
 
 }  // namespace

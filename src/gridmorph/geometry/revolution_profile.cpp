@@ -3,6 +3,7 @@
 #include <gridmorph/geometry/slip_surface.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -36,22 +37,36 @@ double interpolate(Point const* const* p, int n, double x) {
   return sum;
 }
 
+/// How far point i is off the polynomial through `each_side` points on both sides of it; -1 where they are not so many different ones.
+double off_polynomial(Points const& p, std::size_t i, std::size_t each_side) {
+  if (i < each_side || i + each_side >= p.size()) return -1;
+  std::array<Point const*, 6> beside{};
+  std::size_t n = 0;
+  for (std::size_t k = i - each_side; k <= i + each_side; ++k) {
+    if (k == i) continue;
+    if (n > 0 && p[k].first <= beside[n - 1]->first) return -1;
+    beside[n++] = &p[k];
+  }
+  return std::abs(p[i].second - interpolate(beside.data(), int(n), p[i].first));
+}
+
 /// How far points typically lie off a curve through their neighbours. Where neighbours nearly coincide the chord
-/// between them tells, where they are far apart the cubic through four of them; of the two medians the smaller is
-/// taken, so that neither curvature nor amplified noise passes for noise.
+/// between them tells, where they are far apart the cubic through four of them, where they lie in pairs the quintic through six; of
+/// the medians the smallest is taken, so that neither curvature nor amplified noise passes for noise.
 double estimate_noise(Points const& p) {
   if (p.size() < least_for_statistics) return 0;
-  std::vector<double> chord, cubic;
+  std::vector<double> chord, cubic, quintic;
   for (std::size_t i = 2; i + 2 < p.size(); ++i) {
     Point const &a = p[i - 1], &b = p[i + 1];
     double const t = b.first > a.first ? (p[i].first - a.first) / (b.first - a.first) : 0.5;
     chord.push_back(std::abs(p[i].second - (a.second + t * (b.second - a.second))));
-    Point const* four[4] = {&p[i - 2], &a, &b, &p[i + 2]};
-    if (four[0]->first < four[1]->first && four[1]->first < four[2]->first && four[2]->first < four[3]->first)
-      cubic.push_back(std::abs(p[i].second - interpolate(four, 4, p[i].first)));
+    if (double const off = off_polynomial(p, i, 2); off >= 0) cubic.push_back(off);
+    if (double const off = off_polynomial(p, i, 3); off >= 0) quintic.push_back(off);
   }
-  double const by_chord = median(chord);
-  return cubic.size() * 2 < chord.size() ? by_chord : std::min(by_chord, median(cubic));
+  double noise = median(chord);
+  for (std::vector<double>* const off : {&cubic, &quintic})
+    if (off->size() * 2 >= chord.size()) noise = std::min(noise, median(*off));
+  return noise;
 }
 
 std::string place(double axial, double r_lo, double r_hi) {
@@ -80,15 +95,12 @@ Points merge(Points const& p, double width, double allowed_spread) {
   return out;
 }
 
-/// Drops points that lie much closer together than their surroundings: a pair of them would turn noise into slope.
+/// Drops points nearer than `least` to the one before: a pair of them would turn noise into slope.
 Points thin(Points const& p, double least) {
   if (p.size() < least_for_statistics) return p;
-  constexpr std::size_t reach = 4;
   Points out{p.front()};
   for (std::size_t i = 1; i < p.size(); ++i) {
-    std::size_t const a = i > reach ? i - reach : 0, b = std::min(i + reach, p.size() - 1);
-    double const spacing = (p[b].first - p[a].first) / double(b - a);
-    if (p[i].first - out.back().first >= std::max(0.05 * spacing, least))
+    if (p[i].first - out.back().first >= least)
       out.push_back(p[i]);
     else if (i + 1 == p.size() && out.size() > 1)
       out.back() = p[i];
@@ -96,30 +108,85 @@ Points thin(Points const& p, double least) {
   return out;
 }
 
+/// Least squares for a few unknowns by Householder reflections; rows in descending order of their weights.
+class LeastSquares {
+ public:
+  static constexpr int most_unknowns = 6;
+  using Row =
+      std::array<double, most_unknowns + 1>;  ///< factors of the unknowns, then the right-hand side at [unknowns]
+
+  explicit LeastSquares(int unknowns) : n_(unknowns) {}
+
+  void add(Row const& row) { rows_.push_back(row); }
+
+  Row solution() {
+    Row x{};
+    for (int c = 0; c < n_; ++c) reflect(c);
+    for (int c = n_ - 1; c >= 0; --c) {
+      double rest = at(c, n_);
+      for (int k = c + 1; k < n_; ++k) rest -= at(c, k) * x[std::size_t(k)];
+      x[std::size_t(c)] = at(c, c) != 0 ? rest / at(c, c) : 0;
+    }
+    return x;
+  }
+
+ private:
+  double& at(int row, int column) { return rows_[std::size_t(row)][std::size_t(column)]; }
+
+  /// Makes what is below the diagonal of one column zero.
+  void reflect(int c) {
+    int const m = int(rows_.size());
+    double square = 0;
+    for (int r = c; r < m; ++r) square += at(r, c) * at(r, c);
+    double const diagonal = std::copysign(std::sqrt(square), -at(c, c));
+    if (diagonal == 0) return;
+    at(c, c) -= diagonal;
+    double const half = -diagonal * at(c, c);  // of the square of the vector that stands in the column now
+    for (int k = c + 1; k <= n_; ++k) {
+      double dot = 0;
+      for (int r = c; r < m; ++r) dot += at(r, c) * at(r, k);
+      for (int r = c; r < m; ++r) at(r, k) -= dot / half * at(r, c);
+    }
+    at(c, c) = diagonal;
+  }
+
+  int n_;
+  std::vector<Row> rows_;
+};
+
 /// Slopes and second derivatives at the points of a profile.
 class Slopes {
  public:
-  Slopes(Points const& p, double noise) : p_(p), n_(int(p.size())) { find_kinks(noise); }
+  Slopes(Points const& p, double noise) : p_(p), n_(int(p.size())), noise_(noise), bend_(p.size(), 0.0) {
+    find_kinks();
+  }
 
-  std::vector<double> all() const {
+  std::vector<double> all() {
     std::vector<double> s(p_.size());
-    for (int i = 0; i < n_; ++i) s[i] = kink_[i] ? at_kink(i) : derivative(i, stencil(i));
+    for (int i = 0; i < n_; ++i) {
+      if (kink_[i]) {
+        s[i] = at_kink(i);
+      } else {
+        Derivatives const d = derivatives(i, stencil(i));
+        s[i] = d.first;
+        bend_[i] = d.second;
+      }
+    }
     // A short table does not tell bends from kinks: it is drawn without overshoot everywhere.
     if (is_table())
       for (int i = 0; i < n_; ++i) s[i] = limited(i, s[i]);
     return s;
   }
 
-  /// Second derivative at the lower and upper end of each piece: that of the local polynomial where the piece is smooth at
+  /// After all(): second derivative at the lower and upper end of each piece: that of the local polynomial where the piece is smooth at
   /// both ends, otherwise that of the cubic with the same slopes, which the quintic then is.
   std::vector<double> curvatures(std::vector<double> const& slope) const {
     std::vector<double> c;
     for (int i = 0; i + 1 < n_; ++i) {
       double const h = p_[i + 1].first - p_[i].first, m = secant(i);
       bool const smooth_piece = !is_table() && !kink_[i] && !kink_[i + 1];
-      c.push_back(smooth_piece ? second_derivative(i, stencil(i)) : (6 * m - 4 * slope[i] - 2 * slope[i + 1]) / h);
-      c.push_back(smooth_piece ? second_derivative(i + 1, stencil(i + 1))
-                               : (2 * slope[i] + 4 * slope[i + 1] - 6 * m) / h);
+      c.push_back(smooth_piece ? bend_[i] : (6 * m - 4 * slope[i] - 2 * slope[i + 1]) / h);
+      c.push_back(smooth_piece ? bend_[i + 1] : (2 * slope[i] + 4 * slope[i + 1] - 6 * m) / h);
     }
     return c;
   }
@@ -134,14 +201,14 @@ class Slopes {
 
   /// A kink is a second difference that stands out from those beside it, alone (kink at a point) or with its neighbour
   /// (kink between two points). In a smooth profile a second difference is about the mean of those beside it.
-  void find_kinks(double noise) {
+  void find_kinks() {
     constexpr double stands_out = 4;
     kink_.assign(p_.size(), false);
     std::vector<double> d(p_.size(), 0), floor(p_.size(), 0);
     for (int i = 1; i + 1 < n_; ++i) {
       double const l = p_[i].first - p_[i - 1].first, r = p_[i + 1].first - p_[i].first;
       d[i] = std::abs(secant(i) - secant(i - 1)) / (l + r);
-      floor[i] = 8 * noise * (1 / l + 1 / r) / (l + r);
+      floor[i] = 8 * noise_ * (1 / l + 1 / r) / (l + r);
     }
     auto const beside = [&](int i) { return i >= 1 && i + 1 < n_ ? d[i] : 0.0; };
     for (int i = 1; i + 1 < n_; ++i) {
@@ -156,8 +223,8 @@ class Slopes {
     }
   }
 
-  /// Distance between points of a stencil at i, at least: points much closer together than their surroundings tell little about a slope
-  /// beyond their noise, which their distance divides.
+  /// Distance between points of a stencil at i, at least: points much closer together than their surroundings tell little of how the
+  /// wall goes on beside their noise, which their distance divides. What they do tell comes in by fitted().
   double apart(int i) const {
     if (is_table()) return 0;
     constexpr int reach = 4;
@@ -178,6 +245,91 @@ class Slopes {
       }
       if (kink_[j]) break;
     }
+  }
+
+  struct Derivatives {
+    double first = 0, second = 0;
+  };
+
+  Derivatives derivatives(int i, Stencil const& stencil) const {
+    Stencil const all = with_skipped(i, stencil);
+    if (all.size() > stencil.size()) return fitted(i, stencil, all);
+    return {derivative(i, stencil), second_derivative(i, stencil)};
+  }
+
+  /// A stencil and what it skips beside its points, nearer than they are apart: the nearest of them, which fix slope and curvature
+  /// in clusters of points, three on either side of point i and one on either side of the others.
+  Stencil with_skipped(int i, Stencil const& stencil) const {
+    constexpr int most = 3;
+    Stencil all = stencil;
+    if (is_table()) return all;
+    double const gap = apart(i);
+    auto const take = [&](int from, int n, int step) {
+      for (int j = from + step, last = from; n > 0 && j >= 0 && j < n_; j += step, --n) {
+        if (std::abs(p_[j].first - p_[last].first) >= gap) return;
+        if (j == i) return;
+        if (std::find(all.begin(), all.end(), j) == all.end()) all.push_back(j);
+        if (kink_[j]) return;
+        last = j;
+      }
+    };
+    for (int const step : {-1, +1}) take(i, most, step);
+    for (int const j : stencil)
+      if (!kink_[j])
+        for (int const step : {-1, +1}) take(j, 1, step);
+    return all;
+  }
+
+  /// Derivatives at point i of the polynomial through it, of the degree of the one through `stencil`, that fits all points best, each as
+  /// exactly as it can be: to the noise of points, and to what the next power that the polynomial lacks makes of its distance. Near
+  /// points then fix slope and curvature as well as their noise lets them, far ones how the wall goes on. Noise counts more than what is
+  /// lacking: a fit in another unit or about another axis, with another rounding, is the same.
+  Derivatives fitted(int i, Stencil const& stencil, Stencil all) const {
+    constexpr double noise_counts = 100;
+    double const x = p_[i].first, r = p_[i].second;
+    auto const far = [&](int j) { return std::abs(p_[j].first - x); };
+    std::sort(all.begin(), all.end(), [&](int a, int b) { return std::pair(far(a), a) < std::pair(far(b), b); });
+    int const degree = int(stencil.size());
+    double const length = far(all.back()), lacking = next_coefficient(i, stencil, all) * std::pow(length, degree + 1);
+    LeastSquares fit(degree);
+    for (int const j : all) {
+      double const t = (p_[j].first - x) / length;
+      double const weight = 1 / (1 + lacking * std::pow(std::abs(t), degree + 1) / (noise_counts * noise_));
+      LeastSquares::Row row{};
+      double power = weight;
+      for (int k = 0; k < degree; ++k) row[std::size_t(k)] = power *= t;
+      row[std::size_t(degree)] = weight * (p_[j].second - r);
+      fit.add(row);
+    }
+    auto const c = fit.solution();
+    return {c[0] / length, degree > 1 ? 2 * c[1] / (length * length) : 0};
+  }
+
+  /// The largest coefficient of the next power, as the skipped points say beyond their noise.
+  double next_coefficient(int i, Stencil const& stencil, Stencil const& all) const {
+    double most = 0;
+    for (int const j : all)
+      if (std::find(stencil.begin(), stencil.end(), j) == stencil.end())
+        most = std::max(most, beyond_noise(i, stencil, j));
+    return most;
+  }
+
+  /// By how much the divided difference of point i, a stencil and point j is more than what noise may make of it.
+  double beyond_noise(int i, Stencil const& stencil, int j) const {
+    double value = 0, noise = 0;
+    auto const term = [&](int k) {
+      double product = 1;
+      auto const factor = [&](int m) { product *= k == m ? 1 : p_[k].first - p_[m].first; };
+      for (int const m : stencil) factor(m);
+      factor(i);
+      factor(j);
+      value += (p_[k].second - p_[i].second) / product;
+      noise += noise_ / std::abs(product);
+    };
+    for (int const k : stencil) term(k);
+    term(i);
+    term(j);
+    return std::abs(value) - 4 * noise;
   }
 
   /// Derivative at point i of the polynomial through it and a stencil, from differences to the value at i.
@@ -212,24 +364,29 @@ class Slopes {
     return 2 * sum;
   }
 
-  /// Points on both sides: seven in the middle; five in all where a side is short.
+  /// Points on both sides: seven in the middle; five in all where a side is short, and up to seven while each one more says more
+  /// than noise.
   Stencil stencil(int i) const {
     constexpr int each_side = 3, least = 4;
     double const gap = apart(i);
     Stencil left, right;
-    reach(i, -1, each_side, gap, left);
-    reach(i, +1, each_side, gap, right);
-    int const n_left = int(left.size()), n_right = int(right.size());
-    if (n_left < each_side) {
-      right.clear();
-      reach(i, +1, std::max(each_side, least - n_left), gap, right);
+    reach(i, -1, 2 * each_side, gap, left);
+    reach(i, +1, 2 * each_side, gap, right);
+    auto const n = [&](Stencil const& one, Stencil const& other) {
+      int const beside = std::min(each_side, int(other.size()));
+      return std::min(int(one.size()), beside < each_side ? std::max(each_side, least - beside) : each_side);
+    };
+    int n_left = n(left, right), n_right = n(right, left);
+    Stencil out(left.begin(), left.begin() + n_left);
+    out.insert(out.end(), right.begin(), right.begin() + n_right);
+    bool const one_sided = n_left < each_side || n_right < each_side;
+    for (bool more = one_sided && !is_table(); more && int(out.size()) < 2 * each_side;) {
+      Stencil const& longer = n_left < n_right ? right : left;
+      int& used = n_left < n_right ? n_right : n_left;
+      more = used < int(longer.size()) && beyond_noise(i, out, longer[std::size_t(used)]) > 0;
+      if (more) out.push_back(longer[std::size_t(used++)]);
     }
-    if (n_right < each_side) {
-      left.clear();
-      reach(i, -1, std::max(each_side, least - n_right), gap, left);
-    }
-    left.insert(left.end(), right.begin(), right.end());
-    return left;
+    return out;
   }
 
   double at_kink(int i) const {
@@ -237,7 +394,7 @@ class Slopes {
     Stencil left, right;
     reach(i, -1, one_side, apart(i), left);
     reach(i, +1, one_side, apart(i), right);
-    double const before = derivative(i, left), after = derivative(i, right);
+    double const before = derivatives(i, left).first, after = derivatives(i, right).first;
     return before * after <= 0 ? 0 : limited(i, std::abs(before) < std::abs(after) ? before : after);
   }
 
@@ -253,6 +410,8 @@ class Slopes {
 
   Points const& p_;
   int n_;
+  double noise_;
+  std::vector<double> bend_;  ///< second derivatives, beside kinks 0
   std::vector<bool> kink_;
 };
 
@@ -310,7 +469,10 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
   }
 
   RevolutionProfile profile;
-  Slopes const slopes(points, std::max(noise, 4e-16 * size));
+  // Rounding of radii, and what that of axial positions makes of them.
+  double const from_origin = std::max(std::abs(points.front().first), std::abs(points.back().first));
+  double const rounding = 4e-16 * std::max(size, from_origin * (r_hi - r_lo) / length);
+  Slopes slopes(points, std::max(noise, rounding));
   std::vector<double> const slope = slopes.all(), curvature = slopes.curvatures(slope);
   for (std::size_t n = 0; n < points.size(); ++n) {
     kernels::ProfileKnot knot{points[n].first, points[n].second, slope[n], {0, 0}};

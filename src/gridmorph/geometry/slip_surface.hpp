@@ -28,7 +28,8 @@ struct RevolutionProfile {
   double deviation = 0;           ///< largest |radius - profile(axial)| over the points it was built from
 
   /// Sorts, merges near-duplicates, estimates slopes. Between kinks a slope is the derivative of the polynomial through
-  /// up to seven neighbouring points (error of the profile of order h^6 at spacing h); stencils never cross a kink,
+  /// up to seven neighbouring points (error of the profile of order h^6 at spacing h), or of one that fits more of them beside clusters
+  /// of points, weighted by their noise and distance; stencils never cross a kink,
   /// and at one the smaller of the two one-sided slopes is taken, so that the profile does not overshoot there. A
   /// constant radius comes back bit for bit.
   ///
