@@ -1,5 +1,6 @@
 // Wheels of the demo passage: its blade stands inside the passage, so that a periodic side lies halfway between two blades.
 #include "support/expect_error.hpp"
+#include "support/scramble.hpp"
 #include "support/with_keys.hpp"
 #include "wheel/wheel_run.hpp"
 
@@ -300,6 +301,13 @@ TEST_F(PassageWheel, InPartStaysPeriodicByTheAngleOfThePart) {
                                 "\"B\"]\n[[wheel.blade]]\nname = \"A\"\n[[wheel.blade]]\nname = \"B\"\nfactor = 0.2\n");
   EXPECT_LT(distance_between(part, 1, whole, 1, n_blades), 1e-15 * size());
   EXPECT_LT(distance_between(part, 0, whole, 3, n_blades), 1e-14 * size());
+}
+
+TEST_F(PassageWheel, InPartIsWatertightHoweverItsZonesAreNumbered) {
+  for (unsigned const seed : {1U, 2U, 3U}) {
+    write_mesh(folder.file("passage.cgns"), scramble(mesh, {.seed = seed, .cuts = 2}).mesh);
+    this->wheel("passage.toml", "passages = 3\n").expect_watertight();
+  }
 }
 
 TEST_F(PassageWheel, CanNameFamiliesByPassage) {

@@ -19,20 +19,14 @@ Seams::Seams(Mesh const& mesh, SharedNodes const& shared, WheelRows const& rows,
 
 void Seams::close(int passage, Coordinates& x) {
   for (auto const& m : members_) {
-    bool const axis = on_axis_[m.group] != 0;
-    int const count = axis ? 0 : passage + m.offset;
-    int const around = count < 0 ? -((passages_ - 1 - count) / passages_) : count / passages_;
-    Points& points = open_[count - around * passages_];
-    if (points.known.empty()) {
-      points.known.assign(on_axis_.size(), 0);
-      points.position.resize(on_axis_.size());
-    }
+    int const count = on_axis_[m.group] != 0 ? 0 : passage + m.offset;
+    Points& points = points_at(count);
     if (points.known[m.group] == 0) {
       points.known[m.group] = 1;
-      points.position[m.group] = pitch_.times(-around * passages_)(x[m.node]);
-      continue;
+      points.position[m.group] = round_the_end(count, m.group).value_or(x[m.node]);
     }
-    Vec3 const decided = pitch_.times(around * passages_)(points.position[m.group]);
+    // As it is kept, with no turn in between: all nodes at one place have the same bits, where the ends of a part meet too.
+    Vec3 const decided = points.position[m.group];
     double const gap = distance(decided, x[m.node]);
     if (gap > gap_.distance) gap_ = {gap, m.node, passage};
     x.set(m.node, decided);
@@ -44,6 +38,22 @@ void Seams::close(int passage, Coordinates& x) {
     bool const met_round = count <= highest_ - 1 || count >= passages_ + lowest_ || count == 0;
     return !met_ahead && !met_round;
   });
+}
+
+Seams::Points& Seams::points_at(int count) {
+  Points& points = open_[count];
+  if (points.known.empty()) {
+    points.known.assign(on_axis_.size(), 0);
+    points.position.resize(on_axis_.size());
+  }
+  return points;
+}
+
+std::optional<Vec3> Seams::round_the_end(int count, int group) const {
+  for (auto const& [other, points] : open_)
+    if (other != count && (count - other) % passages_ == 0 && points.known[group] != 0)
+      return pitch_.times(count - other)(points.position[group]);
+  return std::nullopt;
 }
 
 }  // namespace gridmorph

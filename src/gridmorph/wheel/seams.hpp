@@ -5,6 +5,7 @@
 #include <gridmorph/wheel/shared_nodes.hpp>
 
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace gridmorph {
@@ -38,12 +39,16 @@ class Seams {
     std::vector<char> known;
   };
 
+  [[nodiscard]] Points& points_at(int count);
+  /// Where a point is that is known at the other end of the passages, turned by all of them.
+  [[nodiscard]] std::optional<Vec3> round_the_end(int count, int group) const;
+
   std::vector<SharedNodes::Member> members_;  ///< of the row, groups renumbered
   std::vector<char> on_axis_;                 ///< per group
   RowPitch pitch_;
   int passages_;
   int lowest_ = 0, highest_ = 0;  ///< offsets
-  std::map<int, Points> open_;    ///< by the passage of the group's own count
+  std::map<int, Points> open_;    ///< by the passage of the group's own count, the first one's copies before it too
   SeamGap gap_;
 };
 
