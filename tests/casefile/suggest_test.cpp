@@ -1,4 +1,4 @@
-#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/core/suggest.hpp>
 
 #include <gtest/gtest.h>
 

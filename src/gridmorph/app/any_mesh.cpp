@@ -64,7 +64,7 @@ std::string worst_step_text(CaseFile const& case_file, int step) {
 }
 
 std::vector<std::string> mapping_notes(CaseFile const& case_file) {
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = case_file.notes;
   for (auto const& use : case_file.fields) {
     notes.insert(notes.end(), use.field->notes().begin(), use.field->notes().end());
     notes.push_back(use.where + ": " + describe_mapping(*use.field));

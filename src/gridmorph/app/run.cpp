@@ -7,6 +7,7 @@
 #include <gridmorph/app/run_page.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/io/read_file.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/report/block_graph_text.hpp>
@@ -22,7 +23,29 @@
 
 namespace gridmorph::cli {
 
+namespace {
+
+/// Mesh and side file that are not there, each with the line that names it.
+void refuse_missing_files(CaseFile const& case_file) {
+  Problems problems;
+  auto const check = [&](char const* key, std::filesystem::path const& path) {
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) return;
+    auto const given = std::find_if(case_file.given.begin(), case_file.given.end(),
+                                    [&](GivenKey const& k) { return k.table == "mesh" && k.key == key; });
+    std::string const line = given == case_file.given.end() ? "" : fmt::format(":{}", given->line);
+    problems.add(fmt::format("{}{}: [mesh] {}: '{}' does not exist; {}", case_file.source.string(), line, key,
+                             path.string(), io::looked_for_at(path.string())));
+  };
+  check("input", case_file.input);
+  if (case_file.side_file) check("side_file", *case_file.side_file);
+  problems.throw_if_any<ConfigError>();
+}
+
+}  // namespace
+
 MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run) {
+  refuse_missing_files(case_file);
   MeshSource file = look_at(case_file.input, case_file.leave_out);
   refuse_ignored_keys(case_file, {file.kind == MeshKind::unstructured, run, file.format});
   return file;
@@ -39,11 +62,6 @@ bool wants_verdict(CaseFile const& case_file, Index cells) {
   if (case_file.output_options.quality) return false;
   QualityMode const mode = case_file.guard.quality;
   return mode == QualityMode::fast || (mode == QualityMode::automatic && cells > many);
-}
-
-Index newly_inverted(QualityReport const& quality) {
-  Index const at_corners = quality.near_field.newly_inverted + quality.far_field.newly_inverted;
-  return quality.certificate ? std::max(at_corners, quality.certificate->broken.cells) : at_corners;
 }
 
 void add_time(StepTimes& times, std::string const& step, double seconds, bool every_node) {

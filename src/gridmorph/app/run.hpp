@@ -8,6 +8,7 @@
 #include <gridmorph/app/clearances.hpp>
 #include <gridmorph/app/cli/terminal.hpp>
 #include <gridmorph/app/recipe.hpp>
+#include <gridmorph/quality/newly_inverted.hpp>
 #include <gridmorph/report/shortfalls.hpp>
 
 #include <array>
@@ -21,8 +22,6 @@ MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run);
 QualityThresholds thresholds_of(CaseFile const& case_file);
 /// Whether a verdict is all that is wanted of the quality of so many cells.
 bool wants_verdict(CaseFile const& case_file, Index cells);
-/// Cells turned inside out that were sound in the baseline: at their corners or, where there is a certificate, anywhere in them.
-Index newly_inverted(QualityReport const& quality);
 /// Adds to a step of that name, the last one where there is none.
 void add_time(StepTimes& times, std::string const& step, double seconds, bool every_node = true);
 

@@ -1,6 +1,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/suggest.hpp>
 
 #include <algorithm>
 #include <array>
@@ -37,8 +38,12 @@ Selection select_type(Mesh const& mesh, std::string const& selector) {
     if (type == to_string(kind)) return select_if(mesh, [kind](Patch const& p) { return p.kind == kind; });
   std::string known;
   for (PatchKind kind : kinds) known += std::string(to_string(kind)) + ", ";
-  throw MotionError("selector '" + selector + "': there is no type '" + std::string(type) + "'; the types are " +
-                    known + std::string(periodic));
+  std::vector<std::string> words{std::string(periodic)};
+  for (PatchKind kind : kinds) words.emplace_back(to_string(kind));
+  std::string const near = nearest_word(type, words);
+  throw MotionError("selector '" + selector + "': there is no type '" + std::string(type) + "'" +
+                    (near.empty() ? "" : ", did you mean 'type:" + near + "'?") + "; the types are " + known +
+                    std::string(periodic));
 }
 
 bool names_family(std::string const& pattern, std::vector<std::string> const& families) {
@@ -114,11 +119,18 @@ std::string quote_list(std::vector<std::string> const& names, std::size_t at_mos
   return text;
 }
 
-std::string describe_selectable(Mesh const& mesh) {
-  std::set<std::string> families, bcs, connections, types;
+namespace {
+
+struct Selectable {
+  std::set<std::string> families, regions, bcs, connections, types;
+};
+
+Selectable selectable(Mesh const& mesh) {
+  Selectable out;
+  auto& [families, regions, bcs, connections, types] = out;
   for (Patch const& p : mesh.patches) {
     families.insert(p.families.begin(), p.families.end());
-    (p.kind == PatchKind::connection ? connections : bcs).insert(p.name);
+    (p.kind == PatchKind::connection ? connections : p.kind == PatchKind::region ? regions : bcs).insert(p.name);
     types.insert(std::string(type_prefix) + std::string(to_string(p.kind)));
   }
   for (AnyConnection const& i : connections_of(mesh)) {
@@ -127,15 +139,35 @@ std::string describe_selectable(Mesh const& mesh) {
     connections.insert(i.name);
     types.insert(std::string(type_prefix) + std::string(periodic));
   }
+  return out;
+}
+
+}  // namespace
+
+std::string describe_selectable(Mesh const& mesh) {
+  auto const [families, regions, bcs, connections, types] = selectable(mesh);
   std::string text;
   auto const add = [&text](char const* what, std::set<std::string> const& names) {
     if (!names.empty()) text += (text.empty() ? "" : "; ") + (what + quote_list(sorted_names(names)));
   };
   add("families: ", families);
-  add("BC names: ", bcs);
-  add("connections: ", connections);
-  add("types: ", types);
+  add("regions: ", regions);
+  if (families.empty()) {
+    add("BC names: ", bcs);
+    add("connections: ", connections);
+    add("types: ", types);
+  }
   return text.empty() ? "the mesh has no patch and no periodic interface" : "there are " + text;
+}
+
+std::string matches_nothing(Mesh const& mesh, std::string const& selector) {
+  auto const names = selectable(mesh);
+  std::vector<std::string> known;
+  for (auto const* some : {&names.families, &names.regions, &names.bcs, &names.connections, &names.types})
+    known.insert(known.end(), some->begin(), some->end());
+  std::string const near = nearest_word(selector, known), there_are = describe_selectable(mesh);
+  return "selector '" + selector + "' matches nothing; " +
+         (near.empty() ? there_are : "did you mean '" + near + "'? (" + there_are + ")");
 }
 
 std::string describe_interface(Mesh const& mesh, AnyConnection const& i) {
@@ -149,7 +181,7 @@ std::vector<int> select_patches(Mesh const& mesh, std::vector<std::string> const
     try {
       Selection const s = select(mesh, selector);
       if (s.empty())
-        problems.add("selector '" + selector + "' matches nothing; " + describe_selectable(mesh));
+        problems.add(matches_nothing(mesh, selector));
       else if (s.patches.empty())
         problems.add("selector '" + selector + "' names interfaces, where patches are needed");
       chosen.insert(s.patches.begin(), s.patches.end());

@@ -41,8 +41,11 @@ Selection select(Mesh const& mesh, std::string const& selector);
 /// connection of one zone. Throws one MotionError for all selectors that name no patch; it lists what there is.
 std::vector<int> select_patches(Mesh const& mesh, std::vector<std::string> const& selectors);
 
-/// "families: ...; BC names: ...; connections: ...; types: ..." of what the mesh has, for messages.
+/// "there are families: ...; regions: ..." of what the mesh has, for messages; BC names, connections and types where it has no families.
 std::string describe_selectable(Mesh const& mesh);
+
+/// Why a selector is no use: what was probably meant, and what there is.
+std::string matches_nothing(Mesh const& mesh, std::string const& selector);
 
 /// "'a', 'b', 'c' and 4 more".
 std::string quote_list(std::vector<std::string> const& names, std::size_t at_most = 30);

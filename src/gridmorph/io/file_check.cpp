@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_check.hpp>
+#include <gridmorph/io/read_file.hpp>
 
 #include <array>
 #include <cerrno>
@@ -39,7 +40,7 @@ std::optional<FileFormat> format_of(std::string const& path) {
   namespace fs = std::filesystem;
   std::error_code failure;
   auto const status = fs::status(path, failure);
-  if (!fs::exists(status)) throw IoError(path + ": no such file; check the name and the folder it is looked up from");
+  if (!fs::exists(status)) throw IoError(path + ": no such file; " + io::looked_for_at(path));
   if (fs::is_directory(status)) throw IoError(path + ": is a folder, not a file; name a mesh file in it");
   if (!fs::is_regular_file(status)) throw IoError(path + ": is not an ordinary file");
   auto const size = fs::file_size(path, failure);

@@ -12,11 +12,17 @@
 
 namespace gridmorph::io {
 
+std::string looked_for_at(std::string const& path) {
+  std::error_code failure;
+  auto const whole = std::filesystem::absolute(path, failure);
+  return "it was looked for at " + (failure ? path : whole.lexically_normal().string());
+}
+
 std::string read_file(std::string const& path) {
   namespace fs = std::filesystem;
   std::error_code failure;
   auto const status = fs::status(path, failure);
-  if (!fs::exists(status)) throw IoError(path + ": no such file; check the name and the folder it is looked up from");
+  if (!fs::exists(status)) throw IoError(path + ": no such file; " + looked_for_at(path));
   if (!fs::is_regular_file(status)) throw IoError(path + ": is not an ordinary file");
   FilesRead::note(path);
   errno = 0;

@@ -67,7 +67,7 @@ std::string read_text_file(std::filesystem::path const& path, std::string_view w
   std::error_code error;
   auto const status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
-    throw ConfigError(fmt::format("{} '{}' does not exist; check the path", what, path.string()));
+    throw ConfigError(fmt::format("{} '{}' does not exist; {}", what, path.string(), io::looked_for_at(path.string())));
   if (std::filesystem::is_directory(status))
     throw ConfigError(fmt::format("{} '{}' is a directory; give a file", what, path.string()));
   if (!std::filesystem::is_regular_file(status))

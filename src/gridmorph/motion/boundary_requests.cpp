@@ -1,7 +1,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
+#include <gridmorph/motion/disagreements.hpp>
 
 #include <algorithm>
 #include <map>
@@ -14,11 +14,17 @@ namespace {
 
 using Request = BoundaryRequests::Request;
 
+/// As users know it: by its family where it has one.
 std::string requester(Mesh const& mesh, Request const& r) {
-  if (r.patch >= 0 && mesh.patches[std::size_t(r.patch)].kind == PatchKind::region)
-    return "'" + mesh.patches[std::size_t(r.patch)].name + "' (region)";
-  return r.patch >= 0 ? describe_patch(mesh, mesh.patches[std::size_t(r.patch)])
-                      : "'" + connections_of(mesh)[std::size_t(r.interface)].name + "' (periodic)";
+  auto const named = [](std::string const& name, std::vector<std::string> const& families) {
+    return "'" + (families.empty() ? name : families.front()) + "'";
+  };
+  if (r.patch < 0) {
+    AnyConnection const connection = connections_of(mesh)[std::size_t(r.interface)];
+    return named(connection.name, connection.families) + " (periodic)";
+  }
+  Patch const& patch = mesh.patches[std::size_t(r.patch)];
+  return patch.kind == PatchKind::region ? "'" + patch.name + "' (region)" : named(patch.name, patch.families);
 }
 
 class Evaluation {
@@ -43,36 +49,40 @@ class Evaluation {
       return;
     }
     if (yields(r, *first) || rule(*first).rank < rule(r).rank) return;
-    double const gap = distance(values_[node], value);
-    if (gap <= tolerance_) return;
-    Conflict& c = conflicts_[{requester(mesh_, *first), requester(mesh_, r)}];
-    ++c.count;
-    if (gap > c.size) c = {gap, given_by, Index(n), c.count, values_[node], value};
+    if (distance(values_[node], value) <= tolerance_) return;
+    disagreements_.add(first->node, side(*first, values_[node]), side(r, value));
   }
 
   [[nodiscard]] std::vector<Index> const& given_by() const { return given_by_; }
 
   std::vector<Vec3> result() {
     Problems problems;
-    for (auto const& [who, c] : conflicts_) {
-      Request const& first = boundary_.requests[std::size_t(c.first)];
-      Request const& second = boundary_.requests[std::size_t(c.second)];
-      problems.add("patches " + who.first + " and " + who.second + " disagree on " + std::to_string(c.count) +
-                   " common nodes, most at " + describe_node(mesh_, first.node) + ": " + to_text(c.a, 6) + " from " +
-                   rule(first).where + ", " + to_text(c.b, 6) + " from " + rule(second).where + ", apart by " +
-                   to_text(c.size, 6) +
-                   "; make the two motions agree there, let one of them slip, or give the rules different ranks");
-    }
+    for (std::string& message :
+         disagreements_.messages(mesh_, motion_.axis, [&](auto& name) { return points_of(name); }))
+      problems.add(std::move(message));
     problems.throw_if_any<MotionError>();
     return std::move(values_);
   }
 
  private:
-  struct Conflict {
-    double size = 0;
-    Index first = 0, second = 0, count = 0;
-    Vec3 a, b;
-  };
+  [[nodiscard]] Disagreeing side(Request const& r, Vec3 const& displacement) const {
+    return {requester(mesh_, r), rule(r).where, displacement, is_default(r)};
+  }
+
+  /// The nodes of everything that has this name, patch by patch.
+  [[nodiscard]] std::vector<std::vector<Vec3>> points_of(std::string const& name) const {
+    std::map<int, std::vector<Vec3>> of_patch;
+    std::map<int, bool> has_name;
+    for (Request const& r : boundary_.requests) {
+      if (r.patch < 0) continue;
+      auto const [at, added] = has_name.try_emplace(r.patch, false);
+      if (added) at->second = requester(mesh_, r) == name;
+      if (at->second) of_patch[r.patch].push_back(mesh_.coordinates[r.node]);
+    }
+    std::vector<std::vector<Vec3>> out;
+    for (auto& [patch, points] : of_patch) out.push_back(std::move(points));
+    return out;
+  }
 
   [[nodiscard]] MotionRule const& rule(Request const& r) const { return motion_.rules[std::size_t(r.rule)]; }
   [[nodiscard]] bool is_default(Request const& r) const {
@@ -96,7 +106,7 @@ class Evaluation {
   double tolerance_;
   std::vector<Vec3> values_;
   std::vector<Index> given_by_;  ///< number of the request
-  std::map<std::pair<std::string, std::string>, Conflict> conflicts_;
+  Disagreements disagreements_;
 };
 
 }  // namespace

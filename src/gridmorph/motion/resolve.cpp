@@ -196,8 +196,7 @@ class Resolver {
         problems_.add(label(r) + ": " + e.what());
         continue;
       }
-      if (s.empty())
-        problems_.add(label(r) + ": selector '" + selector + "' matches nothing; " + describe_selectable(mesh_));
+      if (s.empty()) problems_.add(label(r) + ": " + matches_nothing(mesh_, selector));
       for (int p : s.patches) claim_one(patch_claim_[p], r, describe_patch(mesh_, mesh_.patches[p]));
       for (int i : s.interfaces) claim_interface(i, r);
     }

@@ -5,8 +5,8 @@
 #include <gridmorph/app/casefile/detail/rule_reader.hpp>
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 #include <gridmorph/app/casefile/detail/wheel_reader.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>
@@ -373,6 +373,7 @@ CaseFile read(CaseDocument const& document, CaseKeyUse* asked) {
   root.finish();
   context.problems.throw_if_any<ConfigError>();
   out.files = std::move(context.files);
+  out.notes = std::move(context.notes);
   out.given.assign(context.given.begin(), context.given.end());
   return out;
 }

@@ -138,6 +138,7 @@ struct CaseFile {
   std::vector<TimedRule> timed;    ///< per rule of `motion`
   std::optional<SequenceOptions> sequence;
   std::vector<std::filesystem::path> files;  ///< tables, targets, models, ... that its keys name and that are read
+  std::vector<std::string> notes;            ///< what was taken that no key says
   std::vector<GivenKey>
       given;  ///< every key that was read, by table and line; what the mesh decides about (ignored_keys.hpp)
 };

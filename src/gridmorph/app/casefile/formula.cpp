@@ -1,5 +1,5 @@
 #include <gridmorph/app/casefile/formula.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/core/text.hpp>
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include <gridmorph/app/casefile/detail/side_tables.hpp>
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 #include <gridmorph/app/casefile/side_file.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 

@@ -1,6 +1,6 @@
 #include <gridmorph/app/casefile/detail/side_tables.hpp>
 #include <gridmorph/app/casefile/side_file.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <fmt/format.h>

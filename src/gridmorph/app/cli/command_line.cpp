@@ -1,14 +1,19 @@
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/app/cli/command_line.hpp>
 #include <gridmorph/app/cli/help.hpp>
 #include <gridmorph/app/cli/version.hpp>
+#include <gridmorph/core/suggest.hpp>
+#include <gridmorph/core/text.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -58,6 +63,20 @@ std::string quoted_words(int argc, char const* const* argv) {
   return out;
 }
 
+/// 0 to 1. What is too much for a share may be meant as per cent.
+CLI::Validator const& share() {
+  static CLI::Validator const between(
+      [](std::string& text) -> std::string {
+        auto const value = finite_number(text);
+        if (!value) return "expected a number from 0 to 1, found " + text;
+        if (*value >= 0 && *value <= 1) return {};
+        return "a share is a number from 0 to 1, found " + text +
+               (*value > 1 && *value <= 100 ? ", did you mean " + to_text(*value / 100, 6) + "?" : "");
+      },
+      "FLOAT in [0 - 1]");
+  return between;
+}
+
 CLI::App* add_morph(CLI::App& app, CommandLine& out) {
   auto* morph = app.add_subcommand("morph", "Morph a mesh as a case file says");
   morph->add_option("case", out.input, "Case file (TOML)")->required();
@@ -66,7 +85,7 @@ CLI::App* add_morph(CLI::App& app, CommandLine& out) {
   morph->add_option("--html", out.page, "Report as one page with pictures (HTML), instead of the case file's html");
   add_quality(*morph, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
   morph->add_option("--fraction", out.fraction, "Share of the motion: every rule at that share of its amplitude")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(share());
   morph->add_flag("--dry-run", out.dry_run, "Check everything and print the plan; write nothing");
   return morph;
 }
@@ -214,6 +233,58 @@ CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   return demo;
 }
 
+/// Why a word is no command, and what was meant; `next`: the word after it, or nothing.
+std::string no_command(std::string const& word, std::string const& next) {
+  std::string const text = "unknown command '" + word + "'";
+  bool const of_command = std::find(command_names.begin(), command_names.end(), next) != command_names.end();
+  if (word == "help") return text + "; did you mean 'gridmorph " + (of_command ? next + " " : "") + "--help'?";
+  if (word == "version") return text + "; did you mean 'gridmorph --version'?";
+  std::error_code error;
+  if (std::filesystem::exists(word, error))
+    return text + "; did you mean 'gridmorph " + (word.ends_with(".toml") ? "morph " : "inspect ") + word + "'?";
+  return text + suggestion(word, command_names);
+}
+
+/// The option that was meant by one that there is not; empty where nothing is near.
+std::string option_like(std::string const& word, std::vector<std::string> const& long_names,
+                        std::vector<std::string> const& short_names) {
+  auto const has = [](std::vector<std::string> const& names, std::string const& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (word == "-V" || word == "-v") return "--version";
+  if (word == "-?") return "--help";
+  std::string const name = word.substr(word.starts_with("--") ? 2 : 1);
+  if (name.size() > 1) {
+    std::string const near = has(long_names, name) ? name : nearest_word(name, long_names);
+    return near.empty() ? "" : "--" + near;
+  }
+  char const letter = name.empty() ? ' ' : name.front();
+  std::string const other(1, char(std::isupper(letter) != 0 ? std::tolower(letter) : std::toupper(letter)));
+  return has(short_names, other) ? "-" + other : "";
+}
+
+/// "unknown option '-V'; did you mean '--version'?" for the first option that neither the program nor the command has; empty where all are known.
+std::string unknown_option(CLI::App const& app, CLI::App const* command, int argc, char const* const* argv) {
+  std::vector<std::string> long_names, short_names;
+  for (CLI::App const* one : {&app, command}) {
+    if (one == nullptr) continue;
+    for (CLI::Option const* option : one->get_options()) {
+      for (auto const& name : option->get_lnames()) long_names.push_back(name);
+      for (auto const& name : option->get_snames()) short_names.push_back(name);
+    }
+  }
+  for (int a = 1; a < argc && std::string(argv[a]) != "--"; ++a) {
+    std::string const word = std::string(argv[a]).substr(0, std::string(argv[a]).find('='));
+    if (word.size() < 2 || word.front() != '-' || to_number(word)) continue;
+    bool const whole = word.starts_with("--");
+    auto const& names = whole ? long_names : short_names;
+    if (std::find(names.begin(), names.end(), whole ? word.substr(2) : word.substr(1, 1)) != names.end()) continue;
+    std::string const near = option_like(word, long_names, short_names);
+    return "unknown option '" + word + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+  }
+  return {};
+}
+
 }  // namespace
 
 std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* argv) {
@@ -265,7 +336,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
     if (word.empty() || word.front() == '-') continue;
     if (a > 1 && (std::string(argv[a - 1]) == "-t" || std::string(argv[a - 1]) == "--threads")) continue;
     if (std::find(command_names.begin(), command_names.end(), word) == command_names.end())
-      return Stop{2, "unknown command '" + word + "'" + suggestion(word, command_names)};
+      return Stop{2, no_command(word, a + 1 < argc ? argv[a + 1] : "")};
     break;
   }
 
@@ -277,7 +348,13 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
       app.exit(e, text, errors);
       return Stop{0, text.str()};
     }
-    return Stop{2, std::string(e.what()) + "; see gridmorph --help"};
+    CLI::App const* chosen = nullptr;
+    for (auto const& [subcommand, command] : commands)
+      if (std::any_of(argv + 1, argv + argc, [&](char const* word) { return subcommand->get_name() == word; }))
+        chosen = subcommand;
+    std::string const help = "; see gridmorph " + (chosen != nullptr ? chosen->get_name() + " " : "") + "--help";
+    if (std::string const text = unknown_option(app, chosen, argc, argv); !text.empty()) return Stop{2, text + help};
+    return Stop{2, std::string(e.what()) + help};
   }
   for (auto const& [subcommand, command] : commands)
     if (subcommand->parsed()) out.command = command;

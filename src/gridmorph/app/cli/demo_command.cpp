@@ -3,11 +3,11 @@
 #include <generators/passage_demo.hpp>
 #include <generators/stand_ins.hpp>
 #include <generators/text_file.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // keys: what case files can say, from the list that the reader's own messages are made of.
 #include <gridmorph/app/casefile/key_list.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/suggest.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 #include <gridmorph/app/casefile/detail/ffd_reader.hpp>
 #include <gridmorph/app/casefile/detail/number_table.hpp>
 #include <gridmorph/app/casefile/detail/toml.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 #include <gridmorph/motion/ffd/check_ffd.hpp>

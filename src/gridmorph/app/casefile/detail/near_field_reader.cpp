@@ -18,7 +18,7 @@ void read_count(TableReader& table, std::string const& key, int low, int high, i
 
 /// A mesh of the user's has a wrap of its own.
 void read_background_file(TableReader& root, TableReader& background, CaseFile& out) {
-  auto const file = background.string("file");
+  auto const file = background.input("file");
   auto const wrap = background.strings("wrap"), outer = background.strings("outer");
   if (!file) {
     for (auto const* key : {"wrap", "outer"})
@@ -27,7 +27,7 @@ void read_background_file(TableReader& root, TableReader& background, CaseFile& 
     return;
   }
   BackgroundFile& own = out.background.emplace();
-  own.path = background.context().input(*file);
+  own.path = *file;
   if (wrap) own.wrap = *wrap;
   if (outer) own.outer = *outer;
   std::string const why = "is for a background mesh that is made here, and this one is read from a file; remove it";

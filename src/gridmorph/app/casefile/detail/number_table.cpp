@@ -1,6 +1,6 @@
 #include <gridmorph/app/casefile/detail/number_table.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>

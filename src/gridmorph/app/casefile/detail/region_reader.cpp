@@ -138,7 +138,7 @@ void read_shock_search(TableReader& region, InnerRegion& out) {
   auto table = region.table("shock");
   if (!table) return;
   ShockSearch search;
-  if (auto const file = table->string("file")) search.file = table->context().input(*file).string();
+  if (auto const file = table->input("file")) search.file = file->string();
   search.solution = table->string("solution").value_or("");
   auto const sensor = table->choice("sensor", {"normal-mach", "jump"});
   if (sensor) search.sensor = ShockSearch::Sensor(*sensor);

@@ -6,8 +6,8 @@
 #include <gridmorph/app/casefile/detail/sections_reader.hpp>
 #include <gridmorph/app/casefile/detail/target_reader.hpp>
 #include <gridmorph/app/casefile/formula.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/contour.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
@@ -330,7 +330,7 @@ TimedRule read_shock(TableReader& table, CaseFile& out) {
   follow.rule = out.motion.rules.size();
   follow.where = table.context().where(table.line());
   table.require("to", "to = \"new_flow.cgns\", a CGNS file with the mesh and the solution on it");
-  if (auto const to = table.string("to")) follow.to = table.context().input(*to).string();
+  if (auto const to = table.input("to")) follow.to = to->string();
   follow.solution = table.string("solution").value_or("");
   follow.direction = table.vector("direction");
   if (follow.direction && !(norm(*follow.direction) > 0)) table.problem("direction", "[0, 0, 0] has no length");
@@ -458,6 +458,13 @@ void read_rotation(TableReader& step, RuleContext const& shared, RigidSteps& rig
     table->problem("origin", "is missing; add origin = [x, y, z], a point on the line to turn about");
   table->finish();
   if (!angle || (given && (!direction || !origin)) || (!given && !shared.axis)) return;
+  if (!given)
+    step.context().notes.push_back(
+        fmt::format("{}: the rotation names no axis; it turns about that of [mesh], through ({:.6g}, {:.6g}, {:.6g}) "
+                    "along ({:.6g}, "
+                    "{:.6g}, {:.6g})",
+                    step.where("rotation"), shared.axis->origin.x, shared.axis->origin.y, shared.axis->origin.z,
+                    shared.axis->direction.x, shared.axis->direction.y, shared.axis->direction.z));
   rigid.axis = {origin ? *origin : shared.axis->origin, given ? *direction : shared.axis->direction};
   rigid.angle_rad = *angle * std::numbers::pi / 180;
 }

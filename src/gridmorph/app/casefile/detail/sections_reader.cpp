@@ -1,5 +1,5 @@
 #include <gridmorph/app/casefile/detail/sections_reader.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/core/suggest.hpp>
 #include <gridmorph/mapping/text_table.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 #include <gridmorph/app/casefile/key_list.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/core/suggest.hpp>
+#include <gridmorph/io/read_file.hpp>
 
 #include <fmt/format.h>
 
@@ -70,6 +71,16 @@ toml::value const* TableReader::find_as(char const* what, std::string const& key
 
 void TableReader::problem(std::string const& key, std::string const& text) {
   context_->problem(line(key), fmt::format("{}{}{}: {}", name_, name_.empty() ? "" : " ", key, text));
+}
+
+std::optional<std::filesystem::path> TableReader::input(std::string const& key) {
+  auto const name = string(key);
+  if (!name) return std::nullopt;
+  auto path = context_->input(*name);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    problem(key, fmt::format("'{}' does not exist; {}", *name, io::looked_for_at(path.string())));
+  return path;
 }
 
 void TableReader::require(std::string const& key, std::string_view what_to_write) {

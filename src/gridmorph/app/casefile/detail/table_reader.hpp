@@ -27,6 +27,8 @@ struct Context {
   std::vector<std::filesystem::path> files{};  ///< that have been named as inputs
   std::shared_ptr<TomlLines const> lines{};    ///< of the file
 
+  std::vector<std::string> notes{};  ///< what was taken that nobody wrote
+
   /// A file as a key names it, to be read; noted, so that no output takes its place.
   std::filesystem::path input(std::string const& name) {
     return files.emplace_back((directory / name).lexically_normal());
@@ -66,6 +68,8 @@ class TableReader {
   /// Index in `words` of a string value; a problem that names the nearest word otherwise.
   std::optional<std::size_t> choice(std::string const& key, std::vector<std::string> const& words);
 
+  /// A file that is read later, as a key names it; noted as Context::input() does, and a problem where it is not there.
+  std::optional<std::filesystem::path> input(std::string const& key);
   /// Notes that a key is missing.
   void require(std::string const& key, std::string_view what_to_write);
   /// Notes a problem with the value of a key (with the table's own line when the key is absent).

@@ -1,5 +1,5 @@
 #include <gridmorph/app/casefile/detail/wheel_reader.hpp>
-#include <gridmorph/app/casefile/suggest.hpp>
+#include <gridmorph/core/suggest.hpp>
 
 #include <fmt/format.h>
 

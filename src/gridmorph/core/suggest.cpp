@@ -1,7 +1,4 @@
-#include <gridmorph/app/casefile/suggest.hpp>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <gridmorph/core/suggest.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -61,8 +58,10 @@ std::string nearest_word(std::string_view word, std::vector<std::string> const& 
 }
 
 std::string suggestion(std::string_view word, std::vector<std::string> const& known) {
-  if (auto const near = nearest_word(word, known); !near.empty()) return fmt::format("; did you mean '{}'?", near);
-  return known.empty() ? std::string() : fmt::format("; known here: {}", fmt::join(known, ", "));
+  if (auto const near = nearest_word(word, known); !near.empty()) return "; did you mean '" + near + "'?";
+  std::string list;
+  for (auto const& name : known) list += (list.empty() ? "; known here: " : ", ") + name;
+  return list;
 }
 
 }  // namespace gridmorph

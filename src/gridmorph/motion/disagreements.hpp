@@ -1,0 +1,66 @@
+// Patches whose rules give their common nodes different displacements, as messages.
+#pragma once
+
+#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/mesh/mesh.hpp>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph {
+
+/// One of the two that disagree on a node.
+struct Disagreeing {
+  std::string name;         ///< "'hub'", as users know it: its family where it has one
+  std::string where;        ///< of its rule
+  Vec3 displacement;        ///< that it gives the node
+  bool by_default = false;  ///< whether no rule names it
+};
+
+/// Collects nodes on which patches disagree; one message for each two names, however many patches, zones and nodes they have in common.
+class Disagreements {
+ public:
+  /// At most so many messages are written out.
+  static constexpr std::size_t most = 6;
+
+  void add(Index node, Disagreeing const& first, Disagreeing const& second);
+
+  [[nodiscard]] bool empty() const { return found_.empty(); }
+
+  /// Most nodes first. `points_of(name)`: the nodes of what has that name, patch by patch, from which is told what rule it could have.
+  template <class PointsOf>
+  [[nodiscard]] std::vector<std::string> messages(Mesh const& mesh, Axis const& axis, PointsOf const& points_of) const {
+    std::vector<std::string> out;
+    for (auto const* one : largest()) {
+      std::string text = statement(mesh, *one);
+      std::size_t const silent = text.size();
+      for (Disagreeing const* side : {&one->second.first, &one->second.second})
+        if (side->by_default) text += "; " + missing_rule(mesh, axis, side->name, points_of(side->name));
+      if (text.size() == silent)
+        text += "; make the two motions agree there, let one of them slip, or give the rules different ranks";
+      out.push_back(std::move(text));
+    }
+    if (found_.size() > most)
+      out.push_back("and " + std::to_string(found_.size() - most) + " more pairs of patches disagree");
+    return out;
+  }
+
+ private:
+  struct Found {
+    Disagreeing first, second;  ///< where they are farthest apart
+    double gap = 0;
+    Index node = 0, count = 0;
+  };
+  using Pair = std::pair<std::pair<std::string, std::string> const, Found>;
+
+  [[nodiscard]] std::vector<Pair const*> largest() const;
+  [[nodiscard]] static std::string statement(Mesh const& mesh, Pair const& pair);
+  [[nodiscard]] static std::string missing_rule(Mesh const& mesh, Axis const& axis, std::string const& name,
+                                                std::vector<std::vector<Vec3>> const& patches);
+
+  std::map<std::pair<std::string, std::string>, Found> found_;
+};
+
+}  // namespace gridmorph
