@@ -27,8 +27,10 @@ nlohmann::json json_of(std::string const& keys, Badness const& badness) {
 
 CaseFile Recipe::of(CaseFile const& case_file) const {
   CaseFile out = case_file;
-  if (mode)
+  if (mode) {
+    if (adds_table && out.plan.boundary_layers.empty()) out.plan.boundary_layers.emplace_back();
     for (BoundaryLayer& layer : out.plan.boundary_layers) layer.mode = *mode;
+  }
   if (turn) out.plan.volume.turn = turn;
   if (law) {
     out.plan.volume.law = *law;
@@ -52,7 +54,10 @@ std::string Recipe::keys(bool unstructured) const {
 }
 
 std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructured) {
-  auto const& layers = case_file.plan.boundary_layers;
+  auto layers = case_file.plan.boundary_layers;
+  // Without a table elements have the near field of one that says nothing.
+  bool const adds_table = unstructured && layers.empty();
+  if (adds_table) layers.emplace_back();
   if (layers.empty()) return {};
   auto const all_are = [&](Mode mode) {
     return std::ranges::all_of(layers, [&](BoundaryLayer const& layer) { return layer.mode == mode; });
@@ -62,6 +67,7 @@ std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructur
   if (unstructured) {
     for (Mode const mode : {Mode::rotate, Mode::blend})
       if (!all_are(mode)) out.push_back({.mode = mode});
+    for (Recipe& recipe : out) recipe.adds_table = adds_table;
     return out;
   }
   for (double const turn : {0.0, 0.25, 1.0})

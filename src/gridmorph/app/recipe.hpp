@@ -20,6 +20,7 @@ struct Recipe {
   std::optional<BoundaryLayer::Mode> mode = {};  ///< of every near field
   std::optional<double> turn = {};
   std::optional<Law> law = {};
+  bool adds_table = false;  ///< the mode is that of a near field of all moving walls, where the case file has no table
   bool by_prediction = false;  ///< order of chains
   bool smooth = false;
 
@@ -29,8 +30,8 @@ struct Recipe {
   [[nodiscard]] std::string keys(bool unstructured) const;
 };
 
-/// Near fields that translate, and that turn and hand on nothing, a quarter and all of it; those that the case file names are left out, and all
-/// where it has no near field. Of elements: that translate, rotate or blend.
+/// Near fields that translate, and that turn and hand on nothing, a quarter and all of it; those that the case file has are left out, and all
+/// where it has none. Of elements: that translate, rotate or blend, of all moving walls where it has no [boundary_layer].
 std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructured);
 /// `recipe` with each of the laws that it does not have; elements have three.
 std::vector<Recipe> other_laws(CaseFile const& case_file, Recipe const& recipe, bool unstructured);

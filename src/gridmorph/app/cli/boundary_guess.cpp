@@ -83,10 +83,23 @@ std::optional<std::string> guess_plane(MeshSummary const& s, BoundaryShape const
   return text;
 }
 
+/// A line of a 2-D mesh about its axis; whatever else such a line is, its points have one axial position, or as many as there are.
+std::optional<std::string> guess_arc(CylindricalFrame const& frame, std::vector<Vec3> const& points) {
+  double low = Box::inf, high = -Box::inf;
+  for (Vec3 const& p : points) {
+    double const radius = frame.meridional(p).radius;
+    low = std::min(low, radius);
+    high = std::max(high, radius);
+  }
+  if (high - low > flat * high) return std::nullopt;
+  return fmt::format("arc about the axis, radius {:.6g}", high);
+}
+
 std::optional<std::string> guess_revolution(MeshSummary const& s, std::vector<Vec3> const& points,
                                             AxialBounds const& bounds) {
   if (!s.axis) return std::nullopt;
   CylindricalFrame const frame(*s.axis);
+  if (s.two_dimensional) return guess_arc(frame, points);
   std::vector<std::pair<double, double>> profile;
   double low = Box::inf, high = -Box::inf;
   for (Vec3 const& p : points) {

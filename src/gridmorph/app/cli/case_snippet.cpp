@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <string_view>
+#include <system_error>
 
 namespace gridmorph::cli {
 
@@ -60,17 +61,36 @@ bool is_named(BoundarySummary const& b, std::initializer_list<std::string_view> 
   return has(b.selector) || std::any_of(b.names.begin(), b.names.end(), has);
 }
 
+/// Planes, arcs and surfaces of revolution lie across the flow or around it.
+bool is_plain(BoundarySummary const& b) {
+  return b.flat || looks_like(b, "plane ") || looks_like(b, "arc about") || looks_like(b, "surface of revolution");
+}
+
 /// Whether a boundary keeps off the limits of the mesh all round and is no plane: something in the flow.
 bool is_body(BoundarySummary const& b, MeshSummary const& s) {
-  return b.enclosed >= (s.two_dimensional ? 2 : 3) && !looks_like(b, "plane ");
+  return b.enclosed >= (s.two_dimensional ? 2 : 3) && !is_plain(b);
+}
+
+bool lies_in(Box const& inner, Box const& outer) {
+  return inner.low.x > outer.low.x && inner.low.y > outer.low.y && inner.low.z >= outer.low.z &&
+         inner.high.x < outer.high.x && inner.high.y < outer.high.y && inner.high.z <= outer.high.z;
+}
+
+/// Whether a body lies in a boundary that looks like one: then it is the limit of a mesh around the body.
+bool is_around_a_body(BoundarySummary const& b, MeshSummary const& s) {
+  return std::any_of(s.boundaries.begin(), s.boundaries.end(), [&](BoundarySummary const& other) {
+    return &other != &b && is_body(other, s) && lies_in(other.box, b.box);
+  });
 }
 
 /// The type decides, then the name, then the shape: `Null` and `UserDefined` types say nothing, and neither do many names.
 Role role_of(BoundarySummary const& b, MeshSummary const& s) {
   auto const is = [&](PatchKind kind) { return std::find(b.kinds.begin(), b.kinds.end(), kind) != b.kinds.end(); };
   bool const round = s.axis && looks_like(b, "surface of revolution");
+  // Both a row and what limits it are called by the row.
+  bool const of_row = is_named(b, {"stator", "rotor"});
   bool const blade =
-      is_named(b, {"blade", "vane", "wing", "airfoil", "aerofoil", "stator", "rotor", "fin", "flap", "slat"});
+      is_named(b, {"blade", "vane", "wing", "airfoil", "aerofoil", "fin", "flap", "slat"}) || (of_row && !b.flat);
   bool const end_wall = is_named(b, {"hub", "shroud", "casing", "case", "endwall", "end_wall", "end-wall"});
   if (is(PatchKind::wall)) {
     if (end_wall) return round ? Role::end_wall : Role::still;
@@ -83,10 +103,11 @@ Role role_of(BoundarySummary const& b, MeshSummary const& s) {
   if (!is(PatchKind::other)) return Role::still;
   // Types that say nothing.
   if (end_wall) return round ? Role::end_wall : Role::still;
+  if (is_named(b, {"mixing", "interface", "periodic"})) return Role::still;
   if (is_named(b, {"sym"}) && b.flat) return Role::symmetry;
   if (is_named(b, {"inlet", "inflow", "outlet", "outflow", "exit"})) return Role::through_flow;
-  if (is_named(b, {"far"})) return Role::far_field;
-  if (blade || is_named(b, {"wall"}) || is_body(b, s)) return Role::moving;
+  if (is_named(b, {"far", "infinity", "freestream"})) return Role::far_field;
+  if (blade || is_named(b, {"wall"}) || (is_body(b, s) && !is_around_a_body(b, s))) return Role::moving;
   return Role::still;
 }
 
@@ -94,21 +115,25 @@ bool is_kind(BoundarySummary const& b, PatchKind kind) {
   return std::find(b.kinds.begin(), b.kinds.end(), kind) != b.kinds.end();
 }
 
-/// Where no wall is known by type, name or neighbours: a body in the flow is enclosed, its surface is not flat, its cells are thin. The
-/// best of those that nothing is said about, otherwise of all, end walls last.
+/// Where no wall is known by type, name or neighbours: a body in the flow is enclosed, and its cells are thin. No plane is one, and nothing that is
+/// all of the boundary. Walls by type or name come first, then what nothing is said about, then all others; -1: there is nothing like one.
 int most_like_a_body(MeshSummary const& s, std::vector<Role> const& roles) {
   int best = -1;
   std::array<double, 4> best_rank{};
+  auto const is_wall = [](BoundarySummary const& b) {
+    return is_kind(b, PatchKind::wall) || is_named(b, {"wall", "hub", "shroud", "casing"});
+  };
   for (std::size_t b = 0; b < s.boundaries.size(); ++b) {
     auto const& boundary = s.boundaries[b];
     if (roles[b] == Role::paired || is_kind(boundary, PatchKind::degenerate) ||
         is_kind(boundary, PatchKind::connection) || looks_like(boundary, "collapsed") ||
-        looks_like(boundary, "side of a 2-D mesh"))
+        looks_like(boundary, "side of a 2-D mesh") || boundary.flat || looks_like(boundary, "plane ") ||
+        (s.boundaries.size() == 1 && looks_like(boundary, "reaches round")))
       continue;
-    std::array<double, 4> const rank{roles[b] == Role::still      ? 2.0
-                                     : roles[b] != Role::end_wall ? 1.0
-                                                                  : 0.0,
-                                     double(boundary.enclosed), boundary.flat ? 0.0 : 1.0,
+    std::array<double, 4> const rank{is_wall(boundary)         ? 2.0
+                                     : roles[b] == Role::still ? 1.0
+                                                               : 0.0,
+                                     is_plain(boundary) ? 0.0 : 1.0, double(boundary.enclosed),
                                      looks_like(boundary, "thin first cells") ? 1.0 : 0.0};
     if (best >= 0 && !(rank > best_rank)) continue;
     best = int(b);
@@ -126,7 +151,8 @@ void add_rest_of_body(MeshSummary const& s, int body, std::vector<Role>& roles) 
     front.pop_back();
     for (int const next : s.boundaries[std::size_t(at)].touches) {
       auto& role = roles[std::size_t(next)];
-      if (role != Role::still || enclosed == 0 || s.boundaries[std::size_t(next)].enclosed < enclosed) continue;
+      auto const& other = s.boundaries[std::size_t(next)];
+      if (role != Role::still || enclosed == 0 || other.enclosed < enclosed || is_plain(other)) continue;
       role = Role::moving;
       front.push_back(next);
     }
@@ -182,6 +208,25 @@ std::string path_from(std::filesystem::path const& folder, std::filesystem::path
   return (way / file.filename()).lexically_normal().string();
 }
 
+/// The name of the morphed mesh: that of the input with "_morphed" before its ending, which of binary UGRID has two parts; folders have none.
+std::string morphed_name(std::filesystem::path const& input, bool cgns) {
+  namespace fs = std::filesystem;
+  std::string const added = "_morphed";
+  std::error_code failed;
+  bool const foam = input.extension() == ".foam";
+  if (fs::is_directory(input, failed) || foam) {
+    fs::path const whole = fs::weakly_canonical(foam ? fs::absolute(input).parent_path() : input, failed);
+    std::string const name =
+        foam && !input.stem().string().starts_with(".") ? input.stem().string() : whole.filename().string();
+    return (failed || name.empty() ? "mesh" : name) + added;
+  }
+  fs::path const stem = input.stem();
+  if (cgns) return stem.string() + added + ".cgns";
+  bool const two_parts = input.extension() == ".ugrid" && stem.has_extension() && stem.extension().string().size() <= 5;
+  return two_parts ? stem.stem().string() + added + stem.extension().string() + ".ugrid"
+                   : stem.string() + added + input.extension().string();
+}
+
 class Snippet {
  public:
   Snippet(MeshSummary const& s, SnippetOptions const& options) : s_(s), options_(options) {
@@ -208,6 +253,10 @@ class Snippet {
   std::string text() {
     head();
     for (auto const& body : bodies_) moving(body);
+    if (bodies_.empty() && !s_.boundaries.empty())
+      text_ +=
+          "\n# Nothing here is known as a wall or looks like a body: give one of these a motion, such as\n"
+          "# rule = \"rigid\" with translation = [0, 0, 0].\n";
     others();
     near_field();
     return std::move(text_);
@@ -226,9 +275,8 @@ class Snippet {
 
   void head() {
     std::filesystem::path const input(s_.source);
-    std::string const ending = s_.file_variant.empty() && !s_.unstructured ? ".cgns" : input.extension().string();
     text_ = "[mesh]\ninput  = " + toml_string(path_from(options_.folder, input)) + "\n";
-    text_ += "output = " + toml_string(input.stem().string() + "_morphed" + ending) + "\n";
+    text_ += "output = " + toml_string(morphed_name(input, s_.file_variant.empty() && !s_.unstructured)) + "\n";
     if (options_.side_file)
       text_ += "side_file = " + toml_string(path_from(options_.folder, *options_.side_file)) + "\n";
     if (!options_.leave_out.empty()) text_ += "leave_out = " + toml_list(options_.leave_out) + "\n";
