@@ -3,8 +3,11 @@
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/text.hpp>
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/quality/newly_inverted.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/report/quality_json.hpp>
 
@@ -17,6 +20,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -60,6 +64,35 @@ Coordinates coordinates_from(Mesh const& mesh, Vectors const& v) {
   Coordinates out(mesh.n_nodes());
   for (Index n = 0; n < out.size(); ++n) out.set(n, values[std::size_t(n)]);
   return out;
+}
+
+/// Throws ConfigError where a file cannot be written: one that the mesh was read from, one that is there already, or one whose ending says something
+/// else than what it will be.
+void check_output(PyMesh const& self, std::string const& path, bool overwrite, std::string const& format) {
+  namespace fs = std::filesystem;
+  Mesh const& mesh = *self.mesh;
+  Call const call;
+  std::error_code error;
+  auto const refuse = [&](std::string const& why) { throw ConfigError("'" + path + "': " + why); };
+  if (fs::exists(mesh.source, error)) {
+    std::vector<std::string> inputs = look_at_mesh(mesh.source).linked;
+    inputs.push_back(mesh.source);
+    for (std::string const& input : inputs)
+      if (fs::equivalent(input, path, error)) refuse("the mesh was read from it; give another name, inputs are never overwritten");
+  }
+  if (auto const ending = format_of_ending(path); !ending.empty() && ending != format)
+    refuse("its ending stands for " + std::string(ending) + ", and it is written as " + format + "; give it another ending");
+  auto const folder = fs::path(path).parent_path();
+  if (!folder.empty() && !fs::exists(folder, error)) refuse("the folder does not exist; make it first");
+  if (!overwrite && fs::exists(path, error)) refuse("exists already; give another name, or overwrite=True");
+}
+
+/// As what write() writes a mesh.
+std::string format_of(PyMesh const& self) {
+  std::error_code error;
+  Mesh const& mesh = *self.mesh;
+  return std::string(
+      to_string(std::filesystem::exists(mesh.source, error) ? mesh_format(mesh.source) : MeshFormat::cgns));
 }
 
 void write(PyMesh const& self, std::string const& path, std::optional<Vectors> const& coordinates) {
@@ -186,6 +219,43 @@ nb::tuple facets(PyMesh const& self, Strings const& selectors) {
   return nb::make_tuple(new_numbers(std::move(offsets)), new_numbers(std::move(nodes)));
 }
 
+/// Of other coordinates, against the mesh, where there are any.
+QualityReport measured(Mesh const& mesh, std::optional<Coordinates> const& moved, bool fast,
+                       CellFields<Kokkos::HostSpace> const& fields) {
+  Kokkos::DefaultHostExecutionSpace const exec;
+  std::vector<int> walls;
+  for (int p = 0; p < int(mesh.patches.size()); ++p)
+    if (mesh.patches[std::size_t(p)].kind == PatchKind::wall) walls.push_back(p);
+  QualityReport report;
+  auto const measure = [&](auto input, auto const& of) {
+    input.coordinates = views(moved ? *moved : mesh.coordinates);
+    if (moved) input.baseline = views(mesh.coordinates);
+    input.fast = fast;
+    input.fields = fields;
+    report = of(input);
+  };
+  if (mesh.is_structured()) {
+    QualityInput<Kokkos::HostSpace> input;
+    input.walls = wall_faces(mesh, walls);
+    measure(input, [&](auto const& i) { return measure_quality(exec, mesh, i); });
+    if (moved) report.certificate = certify(exec, mesh, {views(*moved), views(mesh.coordinates)});
+  } else {
+    auto const topology = make_topology(mesh);
+    auto const face_patches = find_face_patches(mesh, topology);
+    UnstructuredQualityInput<Kokkos::HostSpace> input;
+    input.walls = walls;
+    measure(input, [&](auto const& i) { return measure_quality(exec, mesh, topology, face_patches, i); });
+    if (moved) report.certificate = certify(exec, mesh, topology, {views(*moved), views(mesh.coordinates)});
+  }
+  return report;
+}
+
+/// Cells of other coordinates that are inverted and were not in the mesh.
+Index newly_inverted_by(PyMesh const& self, Vectors const& coordinates) {
+  Call const call;
+  return newly_inverted(measured(*self.mesh, coordinates_from(*self.mesh, coordinates), true, {}));
+}
+
 /// The report as JSON text, which the package reads; and the measures cell by cell.
 std::pair<std::string, nb::dict> quality(PyMesh const& self, std::optional<Vectors> const& coordinates, bool fast,
                                          bool cells) {
@@ -196,11 +266,8 @@ std::pair<std::string, nb::dict> quality(PyMesh const& self, std::optional<Vecto
   std::vector<std::vector<double>> values;
   {
     Call const call;
-    Kokkos::DefaultHostExecutionSpace const exec;
-    Coordinates const moved = coordinates ? coordinates_from(mesh, *coordinates) : mesh.coordinates;
-    std::vector<int> walls;
-    for (int p = 0; p < int(mesh.patches.size()); ++p)
-      if (mesh.patches[std::size_t(p)].kind == PatchKind::wall) walls.push_back(p);
+    std::optional<Coordinates> moved;
+    if (coordinates) moved = coordinates_from(mesh, *coordinates);
     CellFields<Kokkos::HostSpace> fields;
     Index const n_cells = mesh.is_structured() ? mesh.n_cells() : mesh.n_elements();
     if (cells)
@@ -208,27 +275,7 @@ std::pair<std::string, nb::dict> quality(PyMesh const& self, std::optional<Vecto
         values.emplace_back(std::size_t(n_cells));
         fields[m] = Kokkos::View<double*, Kokkos::HostSpace>("gridmorph::quality", std::size_t(n_cells));
       }
-    QualityReport report;
-    auto const measure = [&](auto input, auto const& of) {
-      input.coordinates = views(moved);
-      if (coordinates) input.baseline = views(mesh.coordinates);
-      input.fast = fast && !cells;
-      input.fields = fields;
-      report = of(input);
-    };
-    if (mesh.is_structured()) {
-      QualityInput<Kokkos::HostSpace> input;
-      input.walls = wall_faces(mesh, walls);
-      measure(input, [&](auto const& i) { return measure_quality(exec, mesh, i); });
-      if (coordinates) report.certificate = certify(exec, mesh, {views(moved), views(mesh.coordinates)});
-    } else {
-      auto const topology = make_topology(mesh);
-      auto const face_patches = find_face_patches(mesh, topology);
-      UnstructuredQualityInput<Kokkos::HostSpace> input;
-      input.walls = walls;
-      measure(input, [&](auto const& i) { return measure_quality(exec, mesh, topology, face_patches, i); });
-      if (coordinates) report.certificate = certify(exec, mesh, topology, {views(moved), views(mesh.coordinates)});
-    }
+    QualityReport const report = measured(mesh, moved, fast && !cells, fields);
     json = report;
     json["cells"] = report.cells();
     json["inverted"] = report.near_field.inverted + report.far_field.inverted;
@@ -263,7 +310,11 @@ PyMesh from_blocks(
     for (Index n = 0; n < zone.size(); ++n) {
       Index3 const p = zone.index(zone.first_node + n);
       double const* const at = a.data() + p[0] * a.stride(0) + p[1] * a.stride(1) + p[2] * a.stride(2);
-      mesh.coordinates.set(zone.first_node + n, {at[0], at[a.stride(3)], at[2 * a.stride(3)]});
+      Vec3 const x{at[0], at[a.stride(3)], at[2 * a.stride(3)]};
+      if (!std::isfinite(x.x) || !std::isfinite(x.y) || !std::isfinite(x.z))
+        throw MeshError("block '" + blocks[z].first + "': node [" + std::to_string(p[0]) + ", " + std::to_string(p[1]) +
+                        ", " + std::to_string(p[2]) + "] is at " + to_text(x, 6) + "; all numbers must be finite");
+      mesh.coordinates.set(zone.first_node + n, x);
     }
   }
   return out;
@@ -289,6 +340,9 @@ void bind_mesh(nb::module_& m) {
   mesh.def_static("_read", &read)
       .def_static("_from_blocks", &from_blocks)
       .def("_add_side_text", &add_side_text)
+      .def("_check_output", &check_output, nb::arg("path"), nb::arg("overwrite"), nb::arg("format"))
+      .def("_format", &format_of)
+      .def("_newly_inverted", &newly_inverted_by, nb::arg("coordinates"))
       .def("_write", &write, nb::arg("path"), nb::arg("coordinates").none())
       .def("_write_vtk", &write_vtk_file, nb::arg("path"), nb::arg("coordinates").none())
       .def("_quality", &quality, nb::arg("coordinates").none(), nb::arg("fast"), nb::arg("cells"))

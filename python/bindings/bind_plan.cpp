@@ -1,5 +1,6 @@
 #include "objects.hpp"
 
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/morph/ffd_gradient.hpp>
 #include <gridmorph/morph/morph.hpp>
@@ -8,6 +9,9 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+
+#include <new>
+#include <set>
 
 namespace gridmorph::python {
 
@@ -28,13 +32,21 @@ class PyPlan {
       plan_ = freeze_guard(host, *mesh_, *plan_, once);
     }
     for (Index const n : plan_->boundary_nodes()) boundary_nodes_.push_back(n);
+    notes_ = motion.file.notes;
+    look_for_missing_rules(motion.file.motion);
     morpher_.emplace(exec_, *plan_, mesh_->coordinates, MorpherOptions{.velocity = true, .transpose = true});
   }
 
   [[nodiscard]] Index n_nodes() const { return plan_->n_nodes(); }
   [[nodiscard]] Index n_boundary() const { return Index(boundary_nodes_.size()); }
   [[nodiscard]] std::vector<std::int64_t> const& boundary_nodes() const { return boundary_nodes_; }
-  [[nodiscard]] std::vector<std::string> notes() const { return plan_->notes(); }
+  [[nodiscard]] std::vector<std::string> notes() const {
+    std::vector<std::string> out = notes_;
+    for (auto const& note : plan_->notes()) out.push_back(note);
+    return out;
+  }
+  /// Patches that no rule names and that share nodes with prescribed ones: cells between will be torn.
+  [[nodiscard]] std::string const& warning() const { return warning_; }
   /// Row of u, node of the mesh, patch, rotation: one of each for every place.
   [[nodiscard]] nb::tuple places() const {
     auto const found = plan_->boundary_places();
@@ -68,12 +80,14 @@ class PyPlan {
   }
   Result velocities(Vectors const& rate, std::optional<Vectors> const& u, std::optional<Vectors> const& out) {
     check_vectors(rate, n_boundary(), "rate");
+    check_finite(rate, "rate");
     return with_result(out, n_nodes(), [&](Out const& v) {
       with_boundary(u, [&](In const& b) { read(rate, [&](In const& r) { morpher_->velocities(exec_, b, r, v); }); });
     });
   }
   Result transpose(Vectors const& gradient, std::optional<Vectors> const& u, std::optional<Vectors> const& out) {
     check_vectors(gradient, n_nodes(), "gradient");
+    check_finite(gradient, "gradient");
     return with_result(out, n_boundary(), [&](Out const& g) {
       with_boundary(u, [&](In const& b) { read(gradient, [&](In const& d) { morpher_->transpose(exec_, b, d, g); }); });
     });
@@ -104,6 +118,33 @@ class PyPlan {
   }
 
  private:
+  void look_for_missing_rules(Motion const& motion) {
+    ResolvedMotion const resolved = resolve(*mesh_, motion);
+    std::vector<char> prescribed(boundary_nodes_.size(), 0);
+    auto const places = plan_->boundary_places();
+    auto const each = [&](auto const& use) {
+      for (BoundaryPlace const& place : places)
+        if (place.patch >= 0 && std::size_t(place.patch) < resolved.patch.size() &&
+            resolved.patch[std::size_t(place.patch)].rule >= 0)
+          use(place, resolved.patch[std::size_t(place.patch)]);
+    };
+    each([&](BoundaryPlace const& place, Resolution const& own) {
+      if (std::holds_alternative<PrescribedRule>(resolved.rules[std::size_t(own.rule)].rule))
+        prescribed[std::size_t(place.boundary_node)] = 1;
+    });
+    std::set<std::string> names;
+    each([&](BoundaryPlace const& place, Resolution const& own) {
+      Patch const& patch = mesh_->patches[std::size_t(place.patch)];
+      if (own.by_default && prescribed[std::size_t(place.boundary_node)] != 0)
+        names.insert(patch.families.empty() ? patch.name : patch.families.front());
+    });
+    if (names.empty()) return;
+    warning_ = "no rule names " + quote_list({names.begin(), names.end()}) +
+               ", where prescribed patches end: all their other nodes stay where they are. Give them rules, such as "
+               "{\"patches\": ..., \"rule\": \"slip\", \"surface\": \"revolution\"} (or \"plane\", \"baseline\"), or "
+               "\"fixed\" where that is meant";
+  }
+
   using Memory = Exec::memory_space;
   using In = ConstVectorView<Memory>;
   using Out = VectorView<Memory>;
@@ -160,10 +201,14 @@ class PyPlan {
   std::optional<MorphPlan> plan_;
   std::optional<Morpher<Exec>> morpher_;
   std::vector<std::int64_t> boundary_nodes_;
+  std::vector<std::string> notes_;  ///< of the rules
+  std::string warning_;
 };
 
 void check_boundary(PyPlan const& plan, std::optional<Vectors> const& u) {
-  if (u) check_vectors(*u, plan.n_boundary(), "u");
+  if (!u) return;
+  check_vectors(*u, plan.n_boundary(), "u");
+  check_finite(*u, "u");
 }
 
 }  // namespace
@@ -175,9 +220,17 @@ void bind_plan(nb::module_& m) {
                      "rules say. Other arrays have one "
                      "row per node of the mesh. float64 or float32, (n, 3), any positive strides, read in place; "
                      "results are float64, new or in `out`.")
-      .def(nb::init<PyMesh const&, PyMotion const&, bool>(), nb::arg("mesh"), nb::arg("motion"), nb::kw_only(),
-           nb::arg("freeze_guard") = false,
-           "Connects the zones, checks boundary and rules, plans. Raises MeshError, MotionError, PlanError.\n\n"
+      .def(
+          "__init__",
+          [](PyPlan* self, PyMesh const& mesh, PyMotion const& motion, bool freeze_guard) {
+            new (self) PyPlan(mesh, motion, freeze_guard);
+            if (self->warning().empty() || PyErr_WarnEx(PyExc_UserWarning, self->warning().c_str(), 1) == 0) return;
+            self->~PyPlan();
+            throw nb::python_error();
+          },
+          nb::arg("mesh"), nb::arg("motion"), nb::kw_only(), nb::arg("freeze_guard") = false,
+           "Connects the zones, checks boundary and rules, plans. Raises MeshError, MotionError, PlanError; warns "
+           "where prescribed patches end on others that no rule names.\n\n"
            "freeze_guard: what smoothing does to the rules' morph becomes a linear part of all morphs.")
       .def_prop_ro("n_nodes", &PyPlan::n_nodes)
       .def(

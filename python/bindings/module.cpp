@@ -1,10 +1,13 @@
 #include "objects.hpp"
 
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/version.hpp>
 
 #include <Kokkos_Core.hpp>
 
 #include <nanobind/stl/string.h>
+
+#include <cmath>
 
 namespace gridmorph::python {
 
@@ -21,8 +24,25 @@ void check_vectors(Vectors const& v, Index n, char const* name, bool written) {
     if (v.shape(0) > 1 && v.stride(d) < 0) refuse("a negative stride; pass numpy.ascontiguousarray(...) of it");
 }
 
+void check_finite(Vectors const& v, char const* name) {
+  auto const look = [&]<class T>(T const* data) {
+    for (std::size_t n = 0; n < v.shape(0); ++n) {
+      T const* const p = data + std::int64_t(n) * v.stride(0);
+      Vec3 const x{double(p[0]), double(p[v.stride(1)]), double(p[2 * v.stride(1)])};
+      if (!std::isfinite(x.x) || !std::isfinite(x.y) || !std::isfinite(x.z))
+        throw ConfigError(std::string(name) + ": row " + std::to_string(n) + " is " + to_text(x, 6) +
+                          "; all numbers must be finite");
+    }
+  };
+  if (v.dtype() == nb::dtype<double>())
+    look(static_cast<double const*>(v.data()));
+  else
+    look(static_cast<float const*>(v.data()));
+}
+
 std::vector<Vec3> as_vectors(Vectors const& v, char const* name) {
   check_vectors(v, -1, name);
+  check_finite(v, name);
   std::vector<Vec3> out(v.shape(0));
   auto const fill = [&]<class T>(T const* data) {
     for (std::size_t n = 0; n < out.size(); ++n) {

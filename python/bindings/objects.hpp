@@ -54,7 +54,9 @@ inline nb::ndarray<nb::numpy, double, nb::ndim<2>> as_array(std::vector<Vec3> co
 }
 
 void check_vectors(Vectors const& v, Index n, char const* name, bool written = false);
-/// Copies, in double.
+/// Throws ConfigError that names the first row which is not finite. Cost: one pass.
+void check_finite(Vectors const& v, char const* name);
+/// Copies, in double; all of them finite.
 std::vector<Vec3> as_vectors(Vectors const& v, char const* name);
 
 void bind_elements(nb::class_<PyMesh>& mesh);

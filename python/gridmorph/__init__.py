@@ -2,11 +2,17 @@
 
     import gridmorph
     mesh = gridmorph.Mesh.read("passage.cgns")
-    motion = gridmorph.Motion({"motion": [{"patches": ["blade"], "rule": "rigid", "axis": [1, 0, 0], "angle_deg": 5}]})
+    motion = gridmorph.Motion({
+        "mesh": {"axis": "x"},
+        "motion": [
+            {"patches": ["blade"], "rule": "rigid", "rotation": {"angle_deg": 0.5}},
+            {"patches": ["hub", "case"], "rule": "slip", "surface": "revolution"},
+        ],
+    })
     plan = gridmorph.Plan(mesh, motion)
     moved = plan.positions()             # (n, 3), every node
     print(mesh.quality(moved)["certificate"])
-    mesh.write("moved.cgns", moved)
+    mesh.write("moved.cgns", moved)      # refused where cells are inverted
 
 Arrays are NumPy's: (n, 3), float64 or float32, any positive strides, lengths in units of the mesh. Nodes count from 0. Calls let other
 threads of Python run, and wait for one another. docs/python.md of the project has the rest.
@@ -83,18 +89,38 @@ def _coordinates(self) -> numpy.typing.NDArray[numpy.float64]:
     return numpy.stack([self.x, self.y, self.z], axis=1)
 
 
-def _write(self, path: str | os.PathLike[str], coordinates: numpy.typing.ArrayLike | None = None) -> None:
+def _refuse_inverted(mesh, path, coordinates):
+    """Raises MeshError where coordinates have cells inverted that the mesh has not."""
+    inverted = mesh._newly_inverted(coordinates)
+    if inverted:
+        raise MeshError(f"'{path}' is not written, because cells are inverted that were not in the mesh: {inverted} of {mesh.n_cells}; "
+                        "move the boundary less, give a rule to patches that have none (plan.notes), or pass allow_inverted=True")
+
+
+def _write(self, path: str | os.PathLike[str], coordinates: numpy.typing.ArrayLike | None = None, *, overwrite: bool = False,
+           allow_inverted: bool = False) -> None:
     """Writes the mesh, with other coordinates (n_nodes, 3) where they are given.
 
     A mesh that was read comes out as its file, everything but the coordinates unchanged; others as a new CGNS file. The file appears whole or
-    not at all. Raises IoError, MeshError, MachineError.
+    not at all, and never in place of one that the mesh was read from. overwrite: where there is another file already. allow_inverted: even
+    where cells are inverted that were not in the mesh; otherwise that is a MeshError. Cost: that of measuring the cells, where coordinates
+    are given. Raises ConfigError, IoError, MeshError, MachineError.
     """
-    self._write(os.fspath(path), coordinates)
+    path = os.fspath(path)
+    self._check_output(path, overwrite, self._format())
+    if coordinates is not None and not allow_inverted:
+        _refuse_inverted(self, path, coordinates)
+    self._write(path, coordinates)
 
 
-def _write_vtk(self, path: str | os.PathLike[str], coordinates: numpy.typing.ArrayLike | None = None) -> None:
-    """Writes a .vtu file for viewers, with the displacement where coordinates are given."""
-    self._write_vtk(os.fspath(path), coordinates)
+def _write_vtk(self, path: str | os.PathLike[str], coordinates: numpy.typing.ArrayLike | None = None, *, overwrite: bool = False) -> None:
+    """Writes a .vtu file for viewers, with the displacement where coordinates are given, inverted cells or not.
+
+    overwrite: where there is a file already; one that the mesh was read from is never written. Raises ConfigError, MachineError.
+    """
+    path = os.fspath(path)
+    self._check_output(path, overwrite, "VTK")
+    self._write_vtk(path, coordinates)
 
 
 def _quality(self, coordinates: numpy.typing.ArrayLike | None = None, *, fast: bool = False, cells: bool = False) -> dict[str, typing.Any]:

@@ -31,7 +31,7 @@ import typing
 import numpy
 import numpy.typing
 
-from . import ConfigError, Mesh, Motion, Plan
+from . import ConfigError, Mesh, Motion, Plan, _refuse_inverted
 from ._surface_points import SlipPlanes, SurfacePoints, coincident
 
 __all__ = ["USMesh"]
@@ -371,14 +371,20 @@ class USMesh:
 
     # ------------------------------------------------------------------------------------------------------------------ output
 
-    def writeGrid(self, fileName: str | os.PathLike[str] | None = None) -> None:
-        """Writes the mesh as it is now, in the format of gridFile (docs/formats.md). Without a name: back into an OpenFOAM case alone."""
+    def writeGrid(self, fileName: str | os.PathLike[str] | None = None, *, allow_inverted: bool = False) -> None:
+        """Writes the mesh as it is now, in the format of gridFile (docs/formats.md). Without a name: back into an OpenFOAM case alone.
+
+        A file that is there is replaced, as IDWarp does, but never gridFile itself. allow_inverted: as in Mesh.write.
+        """
         if fileName is None:
             if str(self.getOption("fileType")).lower() != "openfoam":
                 raise ConfigError("writeGrid: fileName is missing; only OpenFOAM cases are written where they were read")
-            fileName = self.mesh.source
-        if self.comm.rank == 0:
-            self.mesh.write(fileName, self._grid)
+            if self.comm.rank == 0:  # where it was read: asked for by leaving the name out
+                if not allow_inverted:
+                    _refuse_inverted(self.mesh, self.mesh.source, self._grid)
+                self.mesh._write(self.mesh.source, self._grid)
+        elif self.comm.rank == 0:
+            self.mesh.write(fileName, self._grid, overwrite=True, allow_inverted=allow_inverted)
 
 
 def _groups(nodes, points, tolerance):

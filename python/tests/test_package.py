@@ -1,5 +1,6 @@
 """The package on meshes made here, without files, and on one that it writes itself."""
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -183,3 +184,72 @@ def test_other_threads_get_the_same_or_are_refused_clearly(plan):
             assert "takes calls from the thread alone" in result
         else:
             np.testing.assert_array_equal(result, expected)
+
+
+def test_a_mesh_is_not_written_over_what_is_there(tmp_path, mesh, plan):
+    path = tmp_path / "boxes.cgns"
+    mesh.write(path)
+    read = gridmorph.Mesh.read(path)
+    before = path.read_bytes()
+    link = tmp_path / "link.cgns"
+    link.symlink_to(path)
+    for onto in (path, link):
+        for overwrite in (False, True):
+            with pytest.raises(gridmorph.ConfigError, match="never overwritten"):
+                read.write(onto, plan.positions(), overwrite=overwrite)
+    assert path.read_bytes() == before
+    other = tmp_path / "other.cgns"
+    other.write_text("mine")
+    with pytest.raises(gridmorph.ConfigError, match="exists already"):
+        read.write(other, plan.positions())
+    assert other.read_text() == "mine"
+    read.write(other, plan.positions(), overwrite=True)
+    np.testing.assert_array_equal(gridmorph.Mesh.read(other).coordinates, plan.positions())
+
+
+@pytest.mark.parametrize("name, word", [("moved.su2", "SU2"), ("moved.vtu", "VTK"), ("moved.stl", "STL")])
+def test_endings_that_stand_for_another_format_are_refused(tmp_path, mesh, name, word):
+    with pytest.raises(gridmorph.ConfigError, match=word):
+        mesh.write(tmp_path / name)
+    if word != "VTK":
+        with pytest.raises(gridmorph.ConfigError, match=word):
+            mesh.write_vtk(tmp_path / name)
+    assert not (tmp_path / name).exists()
+
+
+def test_inverted_cells_are_written_where_that_is_asked_for_alone(tmp_path, mesh):
+    torn = mesh.coordinates
+    torn[N // 2 + N * (N // 2 + N * (N // 2))] += 0.5
+    path = tmp_path / "torn.cgns"
+    with pytest.raises(gridmorph.MeshError, match=r"inverted .*: \d+ of"):
+        mesh.write(path, torn)
+    assert not path.exists()
+    mesh.write(path, torn, allow_inverted=True)
+    np.testing.assert_array_equal(gridmorph.Mesh.read(path).coordinates, torn)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_numbers_that_are_not_finite_are_refused(tmp_path, mesh, plan, bad):
+    def spoilt(array):
+        out = np.array(array)
+        out[3, 1] = bad
+        return out
+
+    u, x = spoilt(plan.boundary_displacement), spoilt(mesh.coordinates)
+    for call in (lambda: plan.positions(u), lambda: plan.displacements(u), lambda: plan.velocities(u), lambda: plan.transpose(x),
+                 lambda: mesh.quality(x), lambda: mesh.write(tmp_path / "x.cgns", x), lambda: mesh.write_vtk(tmp_path / "x.vtu", x),
+                 lambda: gridmorph.Motion().field("floor", x, x)):
+        with pytest.raises(gridmorph.ConfigError, match=r"row 3 is .*finite"):
+            call()
+    block = box(0.0)
+    block[1, 2, 3, 0] = bad
+    with pytest.raises(gridmorph.MeshError, match=r"\[1, 2, 3\]"):
+        gridmorph.Mesh.from_blocks({"lower": block})
+
+
+def test_patches_without_a_rule_beside_prescribed_ones_are_warned_of(mesh):
+    with pytest.warns(UserWarning, match="no rule names 'sides'"):
+        gridmorph.Plan(mesh, gridmorph.Motion().prescribed("floor"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        gridmorph.Plan(mesh, gridmorph.Motion({"motion": [{"patches": ["sides"], "rule": "fixed"}]}).prescribed("floor"))
