@@ -104,6 +104,7 @@ struct RawRootTurnBack {
     Index const own = Index(table.neighbours.extent(0)) + r;
     if (g == Vec3{}) return clear(root, own);
     Fan const fan{table, root, u, u[root.slot]};
+    ArmWeights const weight(root.n_neighbours, [&](Index k) { return table.neighbours(root.first_neighbour + k).arm; });
     FanMoments sums;
     Vec3 normal, moved;
     double area = 0;
@@ -112,7 +113,7 @@ struct RawRootTurnBack {
       area += norm(before);
       normal += before;
       moved += cross(face.after[0], face.after[1]);
-      for (int m = 0; m < 2; ++m) sums.add(face.before[m], face.after[m]);
+      for (int m = 0; m < 2; ++m) sums.add(weight(face.before[m]), face.before[m], face.after[m]);
     });
     bool const folded = !(norm(normal) > folded_walls * area);
     if (folded) {
@@ -129,8 +130,8 @@ struct RawRootTurnBack {
     Vec3 sum;
     fan.for_faces(folded, [&](Arms const& face, double side, Index k) {
       Vec3 const of_face = k == 2 * kept.face ? side * of.moved + kept.moved : side * of.moved;
-      Vec3 const first = of.twist.after(face.before[0]) + cross(face.after[1], of_face);
-      Vec3 const next = of.twist.after(face.before[1]) + cross(of_face, face.after[0]);
+      Vec3 const first = of.twist.after(weight(face.before[0]) * face.before[0]) + cross(face.after[1], of_face);
+      Vec3 const next = of.twist.after(weight(face.before[1]) * face.before[1]) + cross(of_face, face.after[0]);
       parts.set(root.first_neighbour + k, first);
       parts.set(root.first_neighbour + k + 1, next);
       sum = sum - first - next;

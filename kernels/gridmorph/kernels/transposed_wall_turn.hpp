@@ -2,7 +2,7 @@
 // twist_about() (wall_turn.hpp) and of share_that_keeps_height() (kept_height.hpp). g is the gradient of what each gives; those of what it
 // takes are returned or added.
 //
-// Cost: arms are read twice, 40 and 30 flops each; 500 flops besides.
+// Cost: arms are read three times, 5, 50 and 40 flops each; 500 flops besides.
 #pragma once
 
 #include <gridmorph/kernels/rotation_gradient.hpp>
@@ -62,13 +62,14 @@ KOKKOS_INLINE_FUNCTION Vec3 unit_gradient(Vec3 const& v, Vec3 const& g) {
   return (1 / size) * (g - dot(g, u) * u);
 }
 
-/// Sums over the arms p of a fan before and q after.
+/// Sums over the arms p of a fan before and q after, with their weights w.
 struct FanMoments {
-  Mat3 before{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, after = before;  ///< of p p^T and q p^T
+  Mat3 before{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, after = before;  ///< of w p p^T and w q p^T
 
-  KOKKOS_INLINE_FUNCTION void add(Vec3 const& p, Vec3 const& q) {
-    add_product(before, p, p);
-    add_product(after, q, p);
+  KOKKOS_INLINE_FUNCTION void add(double w, Vec3 const& p, Vec3 const& q) {
+    Vec3 const weighed = w * p;
+    add_product(before, p, weighed);
+    add_product(after, q, weighed);
   }
 
  private:
@@ -79,11 +80,13 @@ struct FanMoments {
   }
 };
 
-/// Of what twist_about() takes: of axis and swing, and of each arm after, linear in that before.
+/// Of what twist_about() takes: of axis and swing, and of each arm after, linear in that before times its weight.
 struct TwistGradient {
   Vec3 axis, swing;
   Vec3 t1, t2, by1, by2;
-  KOKKOS_INLINE_FUNCTION Vec3 after(Vec3 const& before) const { return dot(by1, before) * t1 + dot(by2, before) * t2; }
+  KOKKOS_INLINE_FUNCTION Vec3 after(Vec3 const& weighed) const {
+    return dot(by1, weighed) * t1 + dot(by2, weighed) * t2;
+  }
 };
 
 /// twist_about() of a fan and its gradients, from sums over the fan alone: with t1, t2 across the axis and T1, T2 the same turned back by the

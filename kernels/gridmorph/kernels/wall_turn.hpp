@@ -7,10 +7,11 @@
 //
 // then about the normal the polar rotation of the gradient F in the wall, least squares over the nodes around,
 //
-//   atan2(F21 - F12, F11 + F22),   F = (sum of q p^T) (sum of p p^T)^-1
+//   atan2(F21 - F12, F11 + F22),   F = (sum of w q p^T) (sum of w p p^T)^-1,   w = 1 / |p|^2
 //
 // with p their places from x before, turned by the first rotation, and q those after. On structured walls n is what centred
-// differences give.
+// differences give. Every arm counts alike, whatever its length: where cells are thin along the wall, as beside an end wall that is resolved,
+// the sag of a long arm is more than a short one, and would decide how that turns.
 //
 // Cost per wall node: its faces' nodes read twice (48 bytes each, from cache), about 100 flops per face, 24 bytes written; the
 // motion around it 48 bytes read, 96 written.
@@ -19,10 +20,31 @@
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/inverse_distance.hpp>
 #include <gridmorph/kernels/kept_height.hpp>
+#include <gridmorph/kernels/lanes.hpp>
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/rotation.hpp>
 
 namespace gridmorph::kernels {
+
+/// What the arms of a fan count: the inverse squares of their lengths before. Arms shorter than a ten-millionth of the longest are round-off
+/// between nodes at one place, and count less.
+class ArmWeights {
+ public:
+  /// before(k), V each.
+  template <class Before>
+  KOKKOS_INLINE_FUNCTION ArmWeights(Index n, Before const& before) {
+    double longest = 0;
+    for (Index k = 0; k < n; ++k) {
+      Vec3 const arm = value_of(before(k));
+      longest = larger(longest, dot(arm, arm));
+    }
+    round_off_ = 1e-14 * longest + 1e-300;
+  }
+  KOKKOS_INLINE_FUNCTION double operator()(Vec3 const& before) const { return 1 / (dot(before, before) + round_off_); }
+
+ private:
+  double round_off_;
+};
 
 /// By what n arms turn about the unit vector `axis` to which a rotation `swing` has taken them: before(k) and after(k), V each.
 /// Where they lie on one line, their mean angle.
@@ -35,17 +57,20 @@ KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Bef
   V const least = V{x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1}};
   V const across = least - dot(least, axis) * axis;
   V const t1 = (1 / norm(across)) * across, t2 = cross(axis, t1);
+  ArmWeights const weight(n, before);
   Scalar c11{}, c12{}, c22{}, b11{}, b12{}, b21{}, b22{};
   for (Index k = 0; k < n; ++k) {
     V const arm = before(k), p = arm + turned_by(swing, arm), q = after(k);
+    double const w = weight(value_of(arm));
     auto const p1 = dot(p, t1), p2 = dot(p, t2), q1 = dot(q, t1), q2 = dot(q, t2);
-    c11 = c11 + p1 * p1;
-    c12 = c12 + p1 * p2;
-    c22 = c22 + p2 * p2;
-    b11 = b11 + q1 * p1;
-    b12 = b12 + q1 * p2;
-    b21 = b21 + q2 * p1;
-    b22 = b22 + q2 * p2;
+    auto const w1 = w * p1, w2 = w * p2;
+    c11 = c11 + w1 * p1;
+    c12 = c12 + w1 * p2;
+    c22 = c22 + w2 * p2;
+    b11 = b11 + q1 * w1;
+    b12 = b12 + q1 * w2;
+    b21 = b21 + q2 * w1;
+    b22 = b22 + q2 * w2;
   }
   auto const size = c11 + c22, determinant = c11 * c22 - c12 * c12;
   bool const on_a_line = !((determinant - 1e-12 * (size * size)) > 0);
