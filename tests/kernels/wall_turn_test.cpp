@@ -199,6 +199,17 @@ TEST(WallTurn, OfARigidWallIsItsRotation) {
   }
 }
 
+TEST(WallTurn, IsExactlyNothingWhereNothingMoves) {
+  Random random(11);
+  for (int n = 0; n < 200; ++n) {
+    Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v;
+    std::vector<Vec3> arms;
+    for (double const length : {1.0, 1e-3, 1.0, 2e-3}) arms.push_back(length * random.vector(1));
+    auto const arm = [&](Index k) { return arms[std::size_t(k)]; };
+    EXPECT_EQ(kernels::twist_about(axis, Vec3{}, 4, arm, arm), Vec3{});
+  }
+}
+
 TEST(WallTurn, IsZeroWhereItIsNotFollowed) {
   Wall wall(false);
   wall.table.turns = view<std::uint8_t>({0});

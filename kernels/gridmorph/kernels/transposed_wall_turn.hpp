@@ -67,16 +67,15 @@ struct FanMoments {
   Mat3 before{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, after = before;  ///< of w p p^T and w q p^T
 
   KOKKOS_INLINE_FUNCTION void add(double w, Vec3 const& p, Vec3 const& q) {
-    Vec3 const weighed = w * p;
-    add_product(before, p, weighed);
-    add_product(after, q, weighed);
+    add_product(before, w, p, p);
+    add_product(after, w, q, p);
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION static void add_product(Mat3& to, Vec3 const& a, Vec3 const& b) {
+  KOKKOS_INLINE_FUNCTION static void add_product(Mat3& to, double w, Vec3 const& a, Vec3 const& b) {
     double const left[3] = {a.x, a.y, a.z}, right[3] = {b.x, b.y, b.z};
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) to.m[i][j] += left[i] * right[j];
+      for (int j = 0; j < 3; ++j) to.m[i][j] += w * (left[i] * right[j]);
   }
 };
 

@@ -63,14 +63,14 @@ KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Bef
     V const arm = before(k), p = arm + turned_by(swing, arm), q = after(k);
     double const w = weight(value_of(arm));
     auto const p1 = dot(p, t1), p2 = dot(p, t2), q1 = dot(q, t1), q2 = dot(q, t2);
-    auto const w1 = w * p1, w2 = w * p2;
-    c11 = c11 + w1 * p1;
-    c12 = c12 + w1 * p2;
-    c22 = c22 + w2 * p2;
-    b11 = b11 + q1 * w1;
-    b12 = b12 + q1 * w2;
-    b21 = b21 + q2 * w1;
-    b22 = b22 + q2 * w2;
+    // Weights come last: where nothing moves b is c to the last bit, and nothing turns.
+    c11 = c11 + w * (p1 * p1);
+    c12 = c12 + w * (p1 * p2);
+    c22 = c22 + w * (p2 * p2);
+    b11 = b11 + w * (q1 * p1);
+    b12 = b12 + w * (q1 * p2);
+    b21 = b21 + w * (q2 * p1);
+    b22 = b22 + w * (q2 * p2);
   }
   auto const size = c11 + c22, determinant = c11 * c22 - c12 * c12;
   bool const on_a_line = !((determinant - 1e-12 * (size * size)) > 0);
