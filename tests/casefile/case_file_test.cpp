@@ -103,6 +103,20 @@ TEST(CaseFileText, TakesOneBoundaryLayerWithoutDoubleBrackets) {
   EXPECT_EQ(c.plan.boundary_layers[0].extent, BoundaryLayer::Extent::block);
 }
 
+TEST(CaseFileText, HasTheDefaultNearFieldUnlessItSaysFalse) {
+  EXPECT_TRUE(parse(smallest).plan.default_boundary_layer.has_value());
+  EXPECT_TRUE(parse("boundary_layer = true\n" + smallest).plan.default_boundary_layer.has_value());
+  CaseFile const none = parse("boundary_layer = false\n" + smallest);
+  EXPECT_TRUE(none.plan.boundary_layers.empty());
+  EXPECT_FALSE(none.plan.default_boundary_layer.has_value());
+}
+
+TEST(CaseFileText, LeavesTheExtentOfANearFieldToThePlanWhereItSaysNone) {
+  CaseFile const c = parse(smallest + "[boundary_layer]\nwalls = \"b\"\n");
+  ASSERT_EQ(c.plan.boundary_layers.size(), 1u);
+  EXPECT_EQ(c.plan.boundary_layers[0].extent, BoundaryLayer::Extent::automatic);
+}
+
 TEST(CaseFileText, KeepsTheRulesInTheirOrder) {
   CaseFile const c =
       parse(smallest + "[[motion]]\npatches = \"b\"\nrule = \"free\"\n[[motion]]\npatches = \"c\"\nrule = \"fixed\"\n");

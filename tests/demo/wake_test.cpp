@@ -47,7 +47,7 @@ void expect_turned(Mesh const& mesh, std::vector<Index> const& nodes, Coordinate
 }
 
 TEST(PassageWake, OfBlocksTurnsWithItsBlade) {
-  PreparedMorph const prepared = prepare(HostInstance(), small_passage(), turned(angle), {});
+  PreparedMorph const prepared = prepare(HostInstance(), small_passage(), turned(angle), without_near_field());
   std::vector<Index> nodes;
   for (std::size_t p = 0; p < prepared.mesh.patches.size(); ++p)
     if (prepared.mesh.patches[p].name == "wake") {
@@ -79,7 +79,7 @@ TEST(PassageWake, RepeatsFromPassageToPassage) {
   Mesh const mesh = small_passage();
   Motion m = turned(angle);
   m.rules[0].rule = function_rule([](Vec3 const& p) { return Vec3{0.1 * p.y * p.z, 0.02 * p.x, -0.1 * p.x * p.y}; });
-  PreparedMorph const prepared = prepare(HostInstance(), mesh, m, {});
+  PreparedMorph const prepared = prepare(HostInstance(), mesh, m, without_near_field());
   RigidTransform const pitch = prepared.surface.boundary().periodic_transforms().front();
   std::vector<Vec3> points, copies;
   for (Index n = 0; n < mesh.n_nodes(); n += 37)

@@ -243,6 +243,15 @@ std::vector<Case> make_cases() {
        {0.3, -0.7, 0.2},
        {"bottom", "top"}},
   };
+  // Near fields are what cases say, and in these what there is by default.
+  for (char const* name : {"bricks_one_face", "around_a_box", "o_grid", "sector"}) {
+    Case plain = *std::find_if(list.begin(), list.end(), [&](Case const& c) { return c.name == name; });
+    plain.name += "_default";
+    plain.options.boundary_layers = {BoundaryLayer{}};
+    list.push_back(std::move(plain));
+  }
+  for (Case& c : list)
+    if (c.options.boundary_layers.empty()) c.options.default_boundary_layer.reset();
   // The same with near fields that turn, and hand on some of their turn.
   for (std::size_t n = 0, count = list.size(); n < count; ++n) {
     if (list[n].options.boundary_layers.empty()) continue;

@@ -185,6 +185,8 @@ std::vector<Case> make_cases() {
     for (BoundaryLayer& layer : turned.options.boundary_layers) layer.mode = BoundaryLayer::Mode::rotate;
     list.push_back(std::move(turned));
   }
+  for (Case& c : list)
+    if (c.options.boundary_layers.empty()) c.options.default_boundary_layer.reset();
   return list;
 }
 

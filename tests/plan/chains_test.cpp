@@ -148,7 +148,8 @@ TEST(Priority, APatchWithoutATypeIsAWallWhereARuleMovesIt) {
   auto const first = [&](std::vector<std::string> moving, std::vector<std::string> fixed) {
     return first_description(
         prepare(mesh,
-                motion({rule(std::move(moving), function_rule(waves(0.01))), rule(std::move(fixed), FixedRule{})}), {})
+                motion({rule(std::move(moving), function_rule(waves(0.01))), rule(std::move(fixed), FixedRule{})}),
+                without_near_field())
             .plan());
   };
   std::string const u = first({"u_*"}, {"v_*", "w_*"}), w = first({"w_*"}, {"u_*", "v_*"});

@@ -15,7 +15,7 @@ namespace {
 
 /// A box whose faces bend, planned with cuts.
 PreparedMorph planned(std::vector<BlockCut> cuts) {
-  PlanOptions options;
+  PlanOptions options = without_near_field();
   options.volume.cuts = std::move(cuts);
   return prepare(HostInstance(), box({9, 7, 5}, Shape::curved, 1),
                  motion({rule({"u_*", "v_*", "w_*"}, function_rule(waves(0.02)))}), options);

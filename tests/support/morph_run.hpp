@@ -77,8 +77,16 @@ struct Outcome {
   [[nodiscard]] Plan const& plan() const { return prepared.plan(); }
 };
 
+/// Without a near field: what tests of lines from boundary to boundary assume.
+inline PlanOptions without_near_field() {
+  PlanOptions options;
+  options.default_boundary_layer.reset();
+  return options;
+}
+
 template <class Exec = Kokkos::DefaultHostExecutionSpace>
-Outcome morph(Mesh const& mesh, Motion const& motion, PlanOptions const& options = {}, Exec const& exec = {}) {
+Outcome morph(Mesh const& mesh, Motion const& motion, PlanOptions const& options = without_near_field(),
+              Exec const& exec = {}) {
   PreparedMorph prepared = prepare(mesh, motion, options);
   std::vector<Vec3> boundary = prepared.boundary_displacement();
   Morphed morphed = run_plan(exec, mesh, prepared.plan(), boundary);

@@ -32,7 +32,8 @@ Mesh wedge_with_a_collapsed_face() {
 TEST(Lines, OfNoLengthAreDividedByNodeCount) {
   Mesh mesh = wedge_with_a_collapsed_face();
   PreparedMorph const prepared =
-      prepare(mesh, motion({rule({"u_min", "u_max"}, function_rule(waves(0.1))), rule(sides, FreeRule{})}), {});
+      prepare(mesh, motion({rule({"u_min", "u_max"}, function_rule(waves(0.1))), rule(sides, FreeRule{})}),
+              without_near_field());
   // The two ends of a collapsed line are asked for different displacements.
   Random random(2);
   std::vector<Vec3> boundary(prepared.plan().boundary_nodes.size());
@@ -227,7 +228,7 @@ TEST(NearField, RunsThroughZoneLimits) {
 
 TEST(Morpher, ServesManyDisplacementsOneAfterAnother) {
   Mesh mesh = star(5, 1);
-  PreparedMorph const prepared = prepare(mesh, motion({rule({"*"}, function_rule(waves(0.1)))}), {});
+  PreparedMorph const prepared = prepare(mesh, motion({rule({"*"}, function_rule(waves(0.1)))}), without_near_field());
   Random random(4);
   std::vector<Vec3> one(prepared.plan().boundary_nodes.size()), two(one.size());
   for (std::size_t n = 0; n < one.size(); ++n) {
@@ -287,7 +288,7 @@ struct SlidingSector {
     Motion m = motion({rule({"inlet", "outlet"}, function_rule(turning_waves(shape, 0.05))),
                        rule({"hub", "case"}, SlipRule{SlipRule::Surface::revolution})});
     m.axis = {shape.origin, shape.axis};
-    return prepare(mesh, m, {});
+    return prepare(mesh, m, without_near_field());
   }();
 };
 

@@ -43,7 +43,7 @@ class BoxLaw : public ::testing::TestWithParam<Law> {};
 
 TEST_P(BoxLaw, SweepBetweenTwoKnownFacesIsThePapersFormula) {
   VectorField const f = waves(0.2);
-  PlanOptions options;
+  PlanOptions options = without_near_field();
   options.volume.law = GetParam();
   Outcome const r =
       morph(box({9, 7, 6}, Shape::curved, 1),
@@ -55,7 +55,7 @@ TEST_P(BoxLaw, SweepBetweenTwoKnownFacesIsThePapersFormula) {
 
 TEST_P(BoxLaw, SixKnownFacesGiveTheBooleanSum) {
   VectorField const f = waves(0.2);
-  PlanOptions options;
+  PlanOptions options = without_near_field();
   options.volume.law = GetParam();
   Outcome const r = morph(box({9, 7, 6}, Shape::curved, 2), motion({rule({"*"}, function_rule(f))}), options);
   ASSERT_EQ(r.plan().stages.size(), 1u);
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, BoxLaw, ::testing::Values(Law::linear, Law::c1, L
 TEST(Box, TheThreeLawsDiffer) {
   VectorField const f = waves(0.2);
   auto const with = [&](Law law) {
-    PlanOptions options;
+    PlanOptions options = without_near_field();
     options.volume.law = law;
     Outcome const r = morph(box({9, 7, 6}, Shape::curved, 1), motion({rule({"*"}, function_rule(f))}), options);
     return field(r.mesh, r.morphed.displacement);

@@ -30,6 +30,7 @@ CaseFile Recipe::of(CaseFile const& case_file) const {
   if (mode) {
     if (adds_table && out.plan.boundary_layers.empty()) out.plan.boundary_layers.emplace_back();
     for (BoundaryLayer& layer : out.plan.boundary_layers) layer.mode = *mode;
+    if (out.plan.default_boundary_layer) out.plan.default_boundary_layer->mode = *mode;
   }
   if (turn) out.plan.volume.turn = turn;
   if (law) {
@@ -58,6 +59,7 @@ std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructur
   // Without a table elements have the near field of one that says nothing.
   bool const adds_table = unstructured && layers.empty();
   if (adds_table) layers.emplace_back();
+  if (layers.empty() && case_file.plan.default_boundary_layer) layers = {*case_file.plan.default_boundary_layer};
   if (layers.empty()) return {};
   auto const all_are = [&](Mode mode) {
     return std::ranges::all_of(layers, [&](BoundaryLayer const& layer) { return layer.mode == mode; });

@@ -31,7 +31,7 @@ struct Recipe {
 };
 
 /// Near fields that translate, and that turn and hand on nothing, a quarter and all of it; those that the case file has are left out, and all
-/// where it has none. Of elements: that translate, rotate or blend, of all moving walls where it has no [boundary_layer].
+/// where it has `boundary_layer = false`. Of elements: that translate, rotate or blend, of all moving walls where it has no [boundary_layer].
 std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructured);
 /// `recipe` with each of the laws that it does not have; elements have three.
 std::vector<Recipe> other_laws(CaseFile const& case_file, Recipe const& recipe, bool unstructured);

@@ -35,7 +35,7 @@ std::vector<EndKind> ranked_ends(Mesh const& mesh, std::vector<PatchKind> const&
 
 /// Patches that must not share a block face: other rules, other kinds, other near fields, named by other laws.
 MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::vector<EndKind> const& ends,
-                         ChainLaws const& laws, std::vector<NearField> const& fields, std::vector<CutPlane> planes) {
+                         ChainLaws const& laws, std::vector<NearField> const& fields) {
   MergeLimits limits;
   std::map<std::tuple<int, int, int, std::vector<char>>, int> labels;
   for (int p = 0; p < int(mesh.patches.size()); ++p) {
@@ -52,7 +52,6 @@ MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::ve
             .try_emplace({motion.interface[i].rule, laws.naming(int(mesh.patches.size()) + i)},
                          int(of_interfaces.size()))
             .first->second);
-  limits.kept_planes = std::move(planes);
   return limits;
 }
 
@@ -445,6 +444,14 @@ std::vector<int> inner_boxes(Mesh const& mesh, Topology const& topology, std::ve
   return box_of_piece;
 }
 
+/// The topology with blocks that end at these planes, which become those of `limits`.
+Topology bounded_topology(Mesh const& mesh, Links const& links, std::vector<CutPlane> planes, MergeLimits& limits) {
+  std::sort(planes.begin(), planes.end());
+  planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
+  limits.kept_planes = std::move(planes);
+  return build_topology(mesh, links, limits);
+}
+
 }  // namespace
 
 Index LineTables::n_lines() const {
@@ -458,15 +465,18 @@ PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const&
   std::vector<PatchKind> kinds = ranked_kinds(mesh, links, surface, options.boundary_layers, notes);
   std::vector<EndKind> ends = ranked_ends(mesh, kinds, options.volume);
   std::vector<char> const at_gap = gap_walls(mesh, links, surface, kinds);
-  std::vector<NearField> fields = near_fields(mesh, links, surface, kinds, at_gap, options.boundary_layers);
+  std::vector<NearField> fields = near_fields(mesh, links, surface, kinds, at_gap, options);
   ChainLaws laws(mesh, options.volume);
   notes.insert(notes.end(), laws.notes().begin(), laws.notes().end());
   std::vector<CutPlane> planes = near_field_limits(mesh, links, fields);
   for (CutPlane const& plane : planes_of(mesh, options.volume.cuts)) planes.push_back(plane);
-  std::sort(planes.begin(), planes.end());
-  planes.erase(std::unique(planes.begin(), planes.end()), planes.end());
-  MergeLimits limits = merge_limits(mesh, surface.motion(), ends, laws, fields, std::move(planes));
-  Topology topology = build_topology(mesh, links, limits);
+  MergeLimits limits = merge_limits(mesh, surface.motion(), ends, laws, fields);
+  Topology topology = bounded_topology(mesh, links, std::move(planes), limits);
+  // Where near fields end that go as far as there is room shows in the blocks without them.
+  if (std::vector<CutPlane> more = room_limits(mesh, topology, fields, notes); !more.empty()) {
+    more.insert(more.end(), limits.kept_planes.begin(), limits.kept_planes.end());
+    topology = bounded_topology(mesh, links, std::move(more), limits);
+  }
   Gaps gaps(mesh, topology, surface.motion(), at_gap);
   return {mesh,
           std::move(notes),

@@ -14,7 +14,12 @@ namespace gridmorph {
 
 /// Near field of moving walls (design: stage 0). Several may be given, for different walls.
 struct BoundaryLayer {
-  enum class Extent { block, layers, thickness };
+  enum class Extent {
+    block,      ///< up to the first opposite block face
+    layers,     ///< so many cells; runs through block and zone limits
+    thickness,  ///< so far
+    automatic  ///< blocks: `block` where another block follows, else a third of the cells to the boundary; elements: `block`
+  };
   enum class Mode {
     translate,  ///< every node of a grid line or column takes the displacement of its wall node
     rotate,     ///< and the rotation of the wall there
@@ -22,9 +27,9 @@ struct BoundaryLayer {
   };
 
   std::vector<std::string> walls;  ///< selectors; empty: every wall patch whose rule moves it
-  Extent extent = Extent::block;   ///< block: up to the first opposite block face
-  int layers = 0;                  ///< cells, for Extent::layers; runs through block and zone limits
-  double thickness = 0;            ///< length, for Extent::thickness
+  Extent extent = Extent::automatic;
+  int layers = 0;        ///< cells, for Extent::layers
+  double thickness = 0;  ///< length, for Extent::thickness
   Mode mode = Mode::rotate;
 };
 
@@ -110,7 +115,9 @@ struct VolumeOptions {
 struct PlanOptions {
   TopologyOptions topology;                    ///< blocks
   std::vector<BoundaryLayer> boundary_layers;  ///< how far the near field of which walls goes, and how it turns
-  VolumeOptions volume;                        ///< of elements: `law`, along the grid lines of the background mesh
+  /// Blocks: where that list is empty, of every wall patch whose rule moves it, if there is any. Nothing: no near field.
+  std::optional<BoundaryLayer> default_boundary_layer = BoundaryLayer{};
+  VolumeOptions volume;  ///< of elements: `law`, along the grid lines of the background mesh
   ElementOptions elements;
 };
 

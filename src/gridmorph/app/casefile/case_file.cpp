@@ -140,7 +140,7 @@ BoundaryLayer read_boundary_layer(TableReader& table) {
   layer.walls = table.strings("walls").value_or(std::vector<std::string>{});
   if (auto const* extent = table.find("extent")) {
     if (extent->is_string()) {
-      table.choice("extent", {"block"});
+      if (table.choice("extent", {"block"})) layer.extent = BoundaryLayer::Extent::block;
     } else if (auto inner = table.table("extent")) {
       auto const layers = inner->integer("layers");
       auto const thickness = inner->number("thickness");
@@ -241,7 +241,11 @@ std::vector<BlockCut> read_cuts(TableReader& volume) {
 }
 
 void read_plan(TableReader& root, std::map<std::string, double> const& constants, CaseFile& out) {
-  for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
+  if (auto const* given = root.find("boundary_layer"); given != nullptr && given->is_boolean()) {
+    if (!root.boolean("boundary_layer").value_or(true)) out.plan.default_boundary_layer.reset();
+  } else {
+    for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
+  }
   auto volume = root.table("volume");
   if (!volume) return;
   std::vector<std::string> const laws{"linear", "c1", "c2", "mixed", "matched", "formula", "prediction"};

@@ -45,6 +45,8 @@ class Ignored {
   void of_unstructured() {
     std::string const why = "is for structured meshes, and '" + case_.input.string() + "' is unstructured";
     refuse("", "volume", why + ": law in [background] and weights in [near_field] say there how the volume follows");
+    if (!case_.plan.default_boundary_layer)
+      refuse("", "boundary_layer", "is false, which is for structured meshes: elements have columns off moving walls");
     refuse("mesh", "open_faces", why + ": boundary faces that no patch claims have to be given one in the mesh");
     refuse("mesh", "matching_tolerance", why + ": connections pair nodes there, which are taken as they are paired");
     refuse("guard", "smooth", why + ": elements that come out bad are always smoothed around");

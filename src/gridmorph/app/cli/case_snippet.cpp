@@ -380,8 +380,7 @@ class Snippet {
   }
 
   void near_field() {
-    // A third of the way across leaves room for the volume stages whatever lies on the other side.
-    int across = 0;
+    // Without an extent it goes as far as there is room.
     bool drives = false;
     std::vector<int> all;
     for (auto const& body : bodies_)
@@ -390,16 +389,11 @@ class Snippet {
         // Over a tip there is a gap, and no near field.
         if (blade_ >= 0 && b != blade_) continue;
         all.push_back(b);
-        if (boundary.cells_across > 0)
-          across = across == 0 ? boundary.cells_across : std::min(across, boundary.cells_across);
         drives = drives || is_kind(boundary, PatchKind::wall) || is_kind(boundary, PatchKind::other);
       }
     std::sort(all.begin(), all.end());
-    if (across >= 3)
-      text_ += fmt::format(
-          "\n[boundary_layer]  # extent = \"block\" where blocks of their own surround the walls\nwalls  = {}\n"
-          "extent = {{ layers = {} }}\n",
-          toml_list(names(all)), across / 3);
+    if (!s_.unstructured && !all.empty())
+      text_ += fmt::format("\n[boundary_layer]\nwalls = {}\n", toml_list(names(all)));
     if (s_.unstructured && !all.empty() && !drives)
       text_ += fmt::format("\n[near_field]\nwalls = {}\n", toml_list(names(all)));
   }

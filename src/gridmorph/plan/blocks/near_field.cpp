@@ -42,23 +42,72 @@ int patch_at_end(Topology const& topology, Chain const& chain) {
 
 bool is_region(Mesh const& mesh, int patch) { return patch >= 0 && mesh.patches[patch].kind == PatchKind::region; }
 
+/// Whether a chain ends on a periodic interface: what lies beyond is a copy, whose motion rules may give.
+bool ends_periodic(Mesh const& mesh, Topology const& topology, Chain const& chain) {
+  auto const faces = topology.blocks.face_entities(topology.lattice, end_face(chain.steps.back(), 1));
+  int const interface = topology.blocks.interface_of_face()[topology.lattice.class_of(faces.front())];
+  return interface >= 0 && mesh.interfaces[interface].periodic;
+}
+
+/// Every patch that ranks as a wall and that an explicit rule other than `fixed` moves.
+std::vector<int> moving_walls(BoundaryMotion const& surface, std::vector<PatchKind> const& kinds) {
+  ResolvedMotion const& motion = surface.motion();
+  std::vector<int> walls;
+  for (int p = 0; p < int(kinds.size()); ++p) {
+    int const rule = motion.patch[p].rule;
+    if (kinds[p] == PatchKind::wall && rule >= 0 && surface.is_explicit(rule) &&
+        !std::holds_alternative<FixedRule>(motion.rules[rule].rule))
+      walls.push_back(p);
+  }
+  return walls;
+}
+
+std::set<int> walls_of(std::vector<NearField> const& fields) {
+  std::set<int> walls;
+  for (NearField const& field : fields) walls.insert(field.walls.begin(), field.walls.end());
+  return walls;
+}
+
+/// Cells of a near field where so many lie between its wall and a boundary; 0: none has room. The choice is not delicate: a wing
+/// that turns keeps its angles with any from a tenth to a half (docs/method.md, "How far near fields reach").
+int layers_of(int cells_to_boundary) { return cells_to_boundary < 2 ? 0 : std::max(1, cells_to_boundary / 3); }
+
+std::string room_note(Mesh const& mesh, std::vector<NearField> const& fields, bool to_blocks,
+                      std::map<int, int> const& layers) {
+  std::set<std::string> names;
+  for (NearField const& field : fields)
+    if (field.automatic)
+      for (int const p : field.walls)
+        names.insert(mesh.patches[p].families.empty() ? mesh.patches[p].name : mesh.patches[p].families.front());
+  std::string text;
+  if (to_blocks) text = "to the next block";
+  std::string counts;
+  for (auto const& [all, some] : layers) {
+    if (some == 0) continue;
+    counts += (counts.empty() ? "" : ", ") + std::to_string(some) + " of " + std::to_string(all);
+  }
+  if (!counts.empty()) text += (text.empty() ? "" : ", and ") + counts + " cells where lines run on to a boundary";
+  if (text.empty()) text = "nowhere, as there is no room off them";
+  constexpr std::size_t most = 6;
+  return "the near field of moving walls " + quote_list({names.begin(), names.end()}, most) + " reaches " + text +
+         "; [boundary_layer] sets walls and extent, `boundary_layer = false` leaves it out";
+}
+
 }  // namespace
 
 std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
                                    std::vector<PatchKind> const& kinds, std::vector<char> const& at_gap,
-                                   std::vector<BoundaryLayer> const& options) {
+                                   PlanOptions const& options) {
   ResolvedMotion const& motion = surface.motion();
   std::vector<NearField> fields;
-  for (BoundaryLayer const& option : options) {
+  std::vector<BoundaryLayer> layers = options.boundary_layers;
+  if (layers.empty() && options.default_boundary_layer && !moving_walls(surface, kinds).empty())
+    layers = {*options.default_boundary_layer};
+  for (BoundaryLayer const& option : layers) {
     NearField field;
     field.mode = option.mode;
     if (option.walls.empty()) {
-      for (int p = 0; p < int(mesh.patches.size()); ++p) {
-        int const rule = motion.patch[p].rule;
-        if (kinds[p] == PatchKind::wall && rule >= 0 && surface.is_explicit(rule) &&
-            !std::holds_alternative<FixedRule>(motion.rules[rule].rule))
-          field.walls.push_back(p);
-      }
+      field.walls = moving_walls(surface, kinds);
       if (field.walls.empty())
         throw PlanError("the boundary layer names no walls and no wall patch has a moving rule; name its walls");
     } else {
@@ -77,6 +126,7 @@ std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, Boundar
     if (field.walls.empty()) continue;
     switch (option.extent) {
       case BoundaryLayer::Extent::block: break;
+      case BoundaryLayer::Extent::automatic: field.automatic = true; break;
       case BoundaryLayer::Extent::layers: field.layers = std::max(1, option.layers); break;
       case BoundaryLayer::Extent::thickness:
         field.layers = median_layers(mesh, links, field.walls, option.thickness);
@@ -105,6 +155,48 @@ std::vector<CutPlane> near_field_limits(Mesh const& mesh, Links const& links, st
   return planes;
 }
 
+std::vector<CutPlane> room_limits(Mesh const& mesh, Topology const& topology, std::vector<NearField> const& fields,
+                                  std::vector<std::string>& notes) {
+  if (std::none_of(fields.begin(), fields.end(), [](NearField const& f) { return f.automatic; })) return {};
+  Lattice const& lattice = topology.lattice;
+  Blocks const& blocks = topology.blocks;
+  Known const nothing(lattice.n_classes());
+  std::set<int> const all_walls = walls_of(fields);
+  std::set<int> walls;
+  for (NearField const& field : fields)
+    if (field.automatic) walls.insert(field.walls.begin(), field.walls.end());
+  std::set<BlockFace> done;
+  std::vector<CutPlane> planes;
+  std::map<int, int>
+      layers;  // of so many cells; what depends on these alone is the same for all walls that one sheet of cells lies on
+  bool to_blocks = false;
+  for (int c = 0; c < lattice.n_classes(); ++c) {
+    if (!walls.contains(blocks.patch_of_face()[c])) continue;
+    FaceSide const off_wall = lattice.face_sides(c).front();
+    BlockFace const wall = blocks.face_of(off_wall);
+    if (blocks.region_of(off_wall.piece) >= 0 || !done.insert(wall).second) continue;
+    // Its part in the first block.
+    std::optional<Chain> const chain = walk_from(mesh, topology, nothing, wall, [](Chain const&) { return true; });
+    if (!chain) continue;
+    int const beyond = patch_at_end(topology, *chain);
+    if (all_walls.contains(beyond)) continue;
+    if (is_region(mesh, beyond) || (beyond < 0 && !ends_periodic(mesh, topology, *chain))) {
+      to_blocks = true;
+      continue;
+    }
+    int const cells = lay_out(topology, *chain).n_nodes[0] - 1;
+    int const n = layers.try_emplace(cells, layers_of(cells)).first->second;
+    if (n == 0) continue;
+    for (int const entity : blocks.face_entities(lattice, wall)) {
+      LayerLimit const limit =
+          layer_limit(mesh, topology.links, lattice.zone_of(entity), closed_nodes(lattice, entity), n);
+      planes.insert(planes.end(), limit.planes.begin(), limit.planes.end());
+    }
+  }
+  notes.push_back(room_note(mesh, fields, to_blocks, layers));
+  return planes;
+}
+
 std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topology, Known const& known,
                                           std::vector<NearField> const& fields) {
   std::vector<StageChain> chains;
@@ -113,8 +205,7 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
   Lattice const& lattice = topology.lattice;
   // Nothing stops a walk off the wall but the domain's boundary.
   Known const nothing(lattice.n_classes());
-  std::set<int> all_walls;
-  for (NearField const& field : fields) all_walls.insert(field.walls.begin(), field.walls.end());
+  std::set<int> const all_walls = walls_of(fields);
   for (NearField const& field : fields) {
     std::set<int> const walls(field.walls.begin(), field.walls.end());
     for (int c = 0; c < lattice.n_classes(); ++c) {
@@ -134,6 +225,7 @@ std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topo
       int beyond = chain ? patch_at_end(topology, *chain) : -1;
       if (is_region(mesh, beyond)) beyond = -1;
       if (beyond >= 0 && field.layers == 0 && all_walls.contains(beyond)) continue;
+      if (field.automatic && (!chain || beyond >= 0 || ends_periodic(mesh, topology, *chain))) continue;
       if (!chain || beyond >= 0)
         throw PlanError("the near field of wall " + describe_patch(mesh, mesh.patches[patch]) +
                         (beyond >= 0 ? " reaches patch " + describe_patch(mesh, mesh.patches[beyond])

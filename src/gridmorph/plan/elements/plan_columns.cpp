@@ -31,6 +31,11 @@ std::vector<Index32> places_of_nodes(std::vector<Index32> const& list, Index n_n
   return place;
 }
 
+/// Whether a layer says how far columns go.
+bool is_given(BoundaryLayer const& layer) {
+  return layer.extent == BoundaryLayer::Extent::layers || layer.extent == BoundaryLayer::Extent::thickness;
+}
+
 }  // namespace
 
 void UnstructuredPlanner::find_driving_faces() {
@@ -82,7 +87,7 @@ ColumnExtent UnstructuredPlanner::extent_of_face(Index32 face) const {
   int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(face)])];
   if (l < 0) return {};
   auto const& layer = options_.boundary_layers[std::size_t(l)];
-  return {layer.extent, layer.layers, layer.thickness};
+  return {is_given(layer) ? layer.extent : BoundaryLayer::Extent::block, layer.layers, layer.thickness};
 }
 
 Columns UnstructuredPlanner::columns_on(std::vector<int> const& patches, Mask const& taken, double motion) const {
@@ -133,7 +138,7 @@ std::vector<double> UnstructuredPlanner::most_heights() const {
     if (std::isfinite(m)) m = room_in_gap(m, reach_);
   for (Index32 const f : driving_faces_)
     if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])];
-        l >= 0 && options_.boundary_layers[std::size_t(l)].extent != BoundaryLayer::Extent::block)
+        l >= 0 && is_given(options_.boundary_layers[std::size_t(l)]))
       for (Index32 const n : topology_.boundary.nodes[f]) most[std::size_t(owner(n))] = infinity;
   return most;
 }
