@@ -73,6 +73,19 @@ std::vector<double> span_stations(PassageOptions const& options, PassageCounts c
 
 }  // namespace
 
+void set_first_cells(PassageOptions& options, double share_of_span) {
+  if (!(share_of_span > 0 && share_of_span < 0.01))
+    throw ConfigError("passage: the first cells are " + std::to_string(share_of_span) +
+                      " of the span; they must be more than 0 and less than 0.01");
+  Annulus const annulus(options);
+  double const height = annulus.section_radius(1) - annulus.section_radius(0);
+  options.end_wall_first_cell = share_of_span;
+  options.first_cell = share_of_span * height / options.sections[1].chord;
+  // Growth as it has to be: what is asked for stands.
+  constexpr double any = 1000;
+  options.max_growth = options.end_wall_max_growth = any;
+}
+
 PassageCounts passage_counts(PassageOptions const& options) {
   check(options);
   CornerFractions const corner = corner_fractions(options);

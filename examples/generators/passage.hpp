@@ -114,6 +114,9 @@ struct PassageOptions {
   RigidTransform placement;
 };
 
+/// First cells of walls and end walls as high as this share of the span, however fast cells then grow.
+void set_first_cells(PassageOptions& options, double share_of_span);
+
 /// Cells in every direction for the wanted number of nodes. Throws ConfigError when the options make no passage.
 PassageCounts passage_counts(PassageOptions const& options);
 

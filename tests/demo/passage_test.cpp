@@ -249,6 +249,32 @@ TEST(PassageMesh, FirstCellsHaveTheWantedHeightNormalToTheBlade) {
   }
 }
 
+TEST(PassageMesh, FirstCellsOfWallsAndEndWallsAreTheShareOfTheSpanThatIsAskedFor) {
+  PassageOptions options = small(20'000);
+  options.hub = {0.45, 0.45, 0, 0};
+  options.casing = {0.65, 0.65, 0, 0};
+  for (auto& s : options.sections) s.chord = 0.12;
+  constexpr double span = 0.2, share = 1e-6;
+  set_first_cells(options, share);
+  Mesh const mesh = make_passage(options);
+  int const z = zone_named(mesh, "ring_upper");
+  Index3 const n = mesh.zones[z].extent;
+  auto const radius = [&](int j) {
+    Vec3 const x = node(mesh, z, {1, j, 0});
+    return std::hypot(x.y, x.z);
+  };
+  EXPECT_NEAR(radius(1) - radius(0), share * span, 1e-3 * share * span);
+  EXPECT_NEAR(radius(n[1] - 1) - radius(n[1] - 2), share * span, 1e-3 * share * span);
+  Developed const wall = develop(options, node(mesh, z, {1, 3, 0})), off = develop(options, node(mesh, z, {1, 3, 1}));
+  EXPECT_NEAR(std::hypot(off.x - wall.x, off.y - wall.y), share * span, 1e-3 * share * span);
+}
+
+TEST(PassageMesh, RefusesFirstCellsThatFillTheSpan) {
+  PassageOptions options = small();
+  for (double const share : {0.0, -1e-6, 0.5, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(set_first_cells(options, share), ConfigError) << share;
+}
+
 TEST(PassageMesh, RefusesOptionsThatMakeNoPassageAndNamesThemAll) {
   PassageOptions options = small();
   options.nodes = 12;

@@ -5,6 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <fstream>
+#include <iterator>
+
 namespace gridmorph::testing {
 namespace {
 
@@ -118,6 +121,20 @@ TEST_F(CommandLine, QuietDemoPrintsNothingAndLeavesItsFiles) {
   EXPECT_EQ(run.out, "");
   for (std::string const name : {"passage.cgns", "chord.csv", "chord.toml", "passage_chord.cgns", "passage_chord.json"})
     EXPECT_TRUE(std::filesystem::exists(path("here") / name)) << name;
+}
+
+TEST_F(CommandLine, ADemoInSinglePrecisionAboutAnotherAxisWithFineFirstCellsIsSound) {
+  Outcome const run =
+      gridmorph("demo passage -n 20000 -m chord -d fine --first-cell 1e-5 --single --axis 0,3,4 --quiet --threads 2");
+  EXPECT_LE(run.status, 1) << run.out << run.err;
+  Outcome const read = gridmorph("inspect fine/passage.cgns --json");
+  EXPECT_EQ(read.status, 0) << read.err;
+  std::ifstream in(path("fine/chord.toml"));
+  std::string const text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_NE(text.find("0.6"), std::string::npos) << text;
+  expect_bad_input(gridmorph("demo passage --axis w"), {"'w'", "1,2,3"});
+  expect_bad_input(gridmorph("demo passage --first-cell 0.5"), {"0.5", "span"});
+  expect_bad_input(gridmorph("demo ball --single"), {"--single", "'passage'"});
 }
 
 TEST_F(CommandLine, MoreThreadsThanThereArePlacesForAreCutDownWithAWarning) {

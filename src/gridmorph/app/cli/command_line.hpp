@@ -58,6 +58,9 @@ struct CommandLine {
   std::optional<std::string> demo_motion;  ///< passage
   std::optional<std::string> demo_tip;     ///< passage
   std::optional<double> demo_gap;          ///< passage, in span
+  std::optional<double> demo_first_cell;   ///< passage, in span
+  std::optional<std::string> demo_axis;    ///< passage
+  bool demo_single = false;                ///< passage
   std::optional<Index> demo_nodes;         ///< passage, aircraft
   std::optional<Index> demo_elements;      ///< ball
   std::optional<double> demo_angle_deg;    ///< ball

@@ -8,13 +8,17 @@
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/suggest.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <locale>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -39,6 +43,38 @@ int morph_demo(std::filesystem::path const& path, std::filesystem::path const& m
   return morph_once(case_file, checked_mesh_file(case_file, CaseUse::Run::morph), terminal);
 }
 
+/// "x", "y", "z" or "1,2,3".
+Vec3 direction_of(std::string const& text) {
+  if (text == "x") return {1, 0, 0};
+  if (text == "y") return {0, 1, 0};
+  if (text == "z") return {0, 0, 1};
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  Vec3 v;
+  char first = 0, second = 0, more = 0;
+  bool const read = in >> v.x >> first >> v.y >> second >> v.z && first == ',' && second == ',' && !(in >> more);
+  if (!read || !(norm(v) > 0) || !std::isfinite(norm(v)))
+    throw ConfigError(
+        fmt::format("--axis '{}' is no direction: give x, y, z or three numbers as 1,2,3, not all 0", text));
+  return (1 / norm(v)) * v;
+}
+
+/// Machines about x are turned to it the short way.
+RigidTransform placed_along(Vec3 const& direction) {
+  Vec3 const x{1, 0, 0}, about = cross(x, direction);
+  double const sine = norm(about), cosine = dot(x, direction);
+  Vec3 const across = sine > 0 ? (1 / sine) * about : Vec3{0, 0, 1};
+  return {rotation_matrix(across, std::atan2(sine, cosine)), {}};
+}
+
+void round_to_single(Mesh& mesh) {
+  for (Zone& zone : mesh.zones) zone.single_precision = true;
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const x = mesh.coordinates[n];
+    mesh.coordinates.set(n, {double(float(x.x)), double(float(x.y)), double(float(x.z))});
+  }
+}
+
 int demo_passage(CommandLine const& options, std::filesystem::path const& folder, Terminal& terminal) {
   PassageOptions passage;
   passage.nodes = options.demo_nodes.value_or(passage.nodes);
@@ -46,6 +82,8 @@ int demo_passage(CommandLine const& options, std::filesystem::path const& folder
   bool const has_gap = passage.tip != BladeTip::none;
   if (options.demo_gap && !has_gap) throw ConfigError("--gap goes with --tip flat, squealer or groove");
   passage.tip_gap = options.demo_gap.value_or(passage.tip_gap);
+  if (options.demo_first_cell) set_first_cells(passage, *options.demo_first_cell);
+  if (options.demo_axis) passage.placement = placed_along(direction_of(*options.demo_axis));
   std::vector<PassageMotion> motions;
   std::string const motion = options.demo_motion.value_or("all");
   if (motion == "all")
@@ -67,7 +105,8 @@ int demo_passage(CommandLine const& options, std::filesystem::path const& folder
     terminal.progress(fmt::format("making the passage mesh with {} nodes", passage.nodes));
     // The mesh is dropped before the morph reads it from its file: large demos need the memory.
     PassageFiles const files = [&] {
-      Mesh const mesh = make_passage(passage);
+      Mesh mesh = make_passage(passage);
+      if (options.demo_single) round_to_single(mesh);
       return write_passage_demo(folder, passage, motions[m], mesh, m == 0 ? MeshFile::write : MeshFile::keep);
     }();
     terminal.say(fmt::format("{}\n== {} ==\n", m == 0 ? "" : "\n", files.case_file.string()));
@@ -126,7 +165,10 @@ int run_demo(CommandLine const& options, std::filesystem::path const& folder, Te
   std::string const& name = options.demo_name;
   std::vector<std::pair<char const*, bool>> const passage_options{{"--motion", options.demo_motion.has_value()},
                                                                   {"--tip", options.demo_tip.has_value()},
-                                                                  {"--gap", options.demo_gap.has_value()}};
+                                                                  {"--gap", options.demo_gap.has_value()},
+                                                                  {"--first-cell", options.demo_first_cell.has_value()},
+                                                                  {"--single", options.demo_single},
+                                                                  {"--axis", options.demo_axis.has_value()}};
   if (name == "passage") {
     refuse_options_of(
         "ball", name,
