@@ -27,7 +27,7 @@ TEST(Refusals, OrdersOfChainsThatComeToNoKnownFaceAreNamed) {
   PreparedMorph const prepared = prepare(box({5, 4, 6}, Shape::straight, 1),
                                          motion({rule({"u_min"}, function_rule(constant({0, 0, 0.25}))),
                                                  rule({"u_max", "v_min", "v_max", "w_min", "w_max"}, FreeRule{})}),
-                                         {});
+                                         without_near_field());
   auto const planned = [&](ChainOrder const& first) {
     return make_plan(HostInstance(), prepared.mesh, prepared.links, prepared.surface, prepared.options, first);
   };
