@@ -104,11 +104,11 @@ TEST(CaseFileText, TakesOneBoundaryLayerWithoutDoubleBrackets) {
 }
 
 TEST(CaseFileText, HasTheDefaultNearFieldUnlessItSaysFalse) {
-  EXPECT_TRUE(parse(smallest).plan.default_boundary_layer.has_value());
-  EXPECT_TRUE(parse("boundary_layer = true\n" + smallest).plan.default_boundary_layer.has_value());
+  EXPECT_TRUE(parse(smallest).plan.default_boundary_layer);
+  EXPECT_TRUE(parse("boundary_layer = true\n" + smallest).plan.default_boundary_layer);
   CaseFile const none = parse("boundary_layer = false\n" + smallest);
   EXPECT_TRUE(none.plan.boundary_layers.empty());
-  EXPECT_FALSE(none.plan.default_boundary_layer.has_value());
+  EXPECT_FALSE(none.plan.default_boundary_layer);
 }
 
 TEST(CaseFileText, LeavesTheExtentOfANearFieldToThePlanWhereItSaysNone) {

@@ -251,7 +251,7 @@ std::vector<Case> make_cases() {
     list.push_back(std::move(plain));
   }
   for (Case& c : list)
-    if (c.options.boundary_layers.empty()) c.options.default_boundary_layer.reset();
+    if (c.options.boundary_layers.empty()) c.options.default_boundary_layer = false;
   // The same with near fields that turn, and hand on some of their turn.
   for (std::size_t n = 0, count = list.size(); n < count; ++n) {
     if (list[n].options.boundary_layers.empty()) continue;

@@ -186,7 +186,7 @@ std::vector<Case> make_cases() {
     list.push_back(std::move(turned));
   }
   for (Case& c : list)
-    if (c.options.boundary_layers.empty()) c.options.default_boundary_layer.reset();
+    if (c.options.boundary_layers.empty()) c.options.default_boundary_layer = false;
   return list;
 }
 

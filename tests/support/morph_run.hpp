@@ -80,7 +80,7 @@ struct Outcome {
 /// Without a near field: what tests of lines from boundary to boundary assume.
 inline PlanOptions without_near_field() {
   PlanOptions options;
-  options.default_boundary_layer.reset();
+  options.default_boundary_layer = false;
   return options;
 }
 

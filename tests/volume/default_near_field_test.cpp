@@ -60,7 +60,7 @@ TEST(DefaultNearField, IsThatOfABoundaryLayerWithoutWallsAndExtent) {
 
 TEST(DefaultNearField, CanBeLeftOut) {
   PlanOptions none;
-  none.default_boundary_layer.reset();
+  none.default_boundary_layer = false;
   expect_rigid_to(0, line_across(none));
 }
 

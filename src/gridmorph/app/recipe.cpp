@@ -30,7 +30,6 @@ CaseFile Recipe::of(CaseFile const& case_file) const {
   if (mode) {
     if (adds_table && out.plan.boundary_layers.empty()) out.plan.boundary_layers.emplace_back();
     for (BoundaryLayer& layer : out.plan.boundary_layers) layer.mode = *mode;
-    if (out.plan.default_boundary_layer) out.plan.default_boundary_layer->mode = *mode;
   }
   if (turn) out.plan.volume.turn = turn;
   if (law) {
@@ -56,10 +55,9 @@ std::string Recipe::keys(bool unstructured) const {
 
 std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructured) {
   auto layers = case_file.plan.boundary_layers;
-  // Without a table elements have the near field of one that says nothing.
-  bool const adds_table = unstructured && layers.empty();
+  // Without a table there is the near field of one that says nothing.
+  bool const adds_table = layers.empty() && case_file.plan.default_boundary_layer;
   if (adds_table) layers.emplace_back();
-  if (layers.empty() && case_file.plan.default_boundary_layer) layers = {*case_file.plan.default_boundary_layer};
   if (layers.empty()) return {};
   auto const all_are = [&](Mode mode) {
     return std::ranges::all_of(layers, [&](BoundaryLayer const& layer) { return layer.mode == mode; });
@@ -69,12 +67,12 @@ std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructur
   if (unstructured) {
     for (Mode const mode : {Mode::rotate, Mode::blend})
       if (!all_are(mode)) out.push_back({.mode = mode});
-    for (Recipe& recipe : out) recipe.adds_table = adds_table;
-    return out;
+  } else {
+    for (double const turn : {0.0, 0.25, 1.0})
+      if (!all_are(Mode::rotate) || case_file.plan.volume.turn != turn)
+        out.push_back({.mode = Mode::rotate, .turn = turn});
   }
-  for (double const turn : {0.0, 0.25, 1.0})
-    if (!all_are(Mode::rotate) || case_file.plan.volume.turn != turn)
-      out.push_back({.mode = Mode::rotate, .turn = turn});
+  for (Recipe& recipe : out) recipe.adds_table = adds_table;
   return out;
 }
 

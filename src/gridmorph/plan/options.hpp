@@ -115,8 +115,8 @@ struct VolumeOptions {
 struct PlanOptions {
   TopologyOptions topology;                    ///< blocks
   std::vector<BoundaryLayer> boundary_layers;  ///< how far the near field of which walls goes, and how it turns
-  /// Blocks: where that list is empty, of every wall patch whose rule moves it, if there is any. Nothing: no near field.
-  std::optional<BoundaryLayer> default_boundary_layer = BoundaryLayer{};
+  /// Blocks: whether, where that list is empty, every wall patch whose rule moves it has the near field of BoundaryLayer{}.
+  bool default_boundary_layer = true;
   VolumeOptions volume;  ///< of elements: `law`, along the grid lines of the background mesh
   ElementOptions elements;
 };

@@ -242,7 +242,7 @@ std::vector<BlockCut> read_cuts(TableReader& volume) {
 
 void read_plan(TableReader& root, std::map<std::string, double> const& constants, CaseFile& out) {
   if (auto const* given = root.find("boundary_layer"); given != nullptr && given->is_boolean()) {
-    if (!root.boolean("boundary_layer").value_or(true)) out.plan.default_boundary_layer.reset();
+    out.plan.default_boundary_layer = root.boolean("boundary_layer").value_or(true);
   } else {
     for (auto& table : root.tables("boundary_layer")) out.plan.boundary_layers.push_back(read_boundary_layer(table));
   }

@@ -69,7 +69,7 @@ std::set<int> walls_of(std::vector<NearField> const& fields) {
 }
 
 /// Cells of a near field where so many lie between its wall and a boundary; 0: none has room. The choice is not delicate: a wing
-/// that turns keeps its angles with any from a tenth to a half (docs/method.md, "How far near fields reach").
+/// that turns keeps its angles with any from a tenth to a half.
 int layers_of(int cells_to_boundary) { return cells_to_boundary < 2 ? 0 : std::max(1, cells_to_boundary / 3); }
 
 std::string room_note(Mesh const& mesh, std::vector<NearField> const& fields, bool to_blocks,
@@ -102,7 +102,7 @@ std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, Boundar
   std::vector<NearField> fields;
   std::vector<BoundaryLayer> layers = options.boundary_layers;
   if (layers.empty() && options.default_boundary_layer && !moving_walls(surface, kinds).empty())
-    layers = {*options.default_boundary_layer};
+    layers = {BoundaryLayer{}};
   for (BoundaryLayer const& option : layers) {
     NearField field;
     field.mode = option.mode;
