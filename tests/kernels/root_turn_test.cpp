@@ -10,12 +10,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::test {
 namespace {
 
 using kernels::DualVec3;
+
+/// Of the first root.
+Vec3 raw_turn(kernels::RootTable<Host> const& table, Arrays& u) {
+  Arrays raw(1);
+  kernels::RawRootTurn<Host, Vec3>{table, {u.read(), {}}, raw.field()}(0);
+  return raw.read()[0];
+}
 
 /// Slot 0 at the corner of a body where three faces meet, its neighbours along the edges at slots 1 to 3, cells as flat as those of
 /// boundary layers are; a line that leans to one face.
@@ -25,8 +33,7 @@ struct Corner {
   Arrays u{4}, rate{4};
   kernels::RootTable<Host> table;
 
-  explicit Corner(Random& random) {
-    std::array<double, 3> const length{1, 0.05, 3};
+  explicit Corner(Random& random, std::array<double, 3> const& length = {1, 0.05, 3}) {
     for (int k = 0; k < 3; ++k) {
       Vec3 direction{k == 0 ? -1.0 : 0, k == 1 ? -1.0 : 0, k == 2 ? -1.0 : 0};
       direction += random.vector(0.1);
@@ -51,11 +58,7 @@ struct Corner {
       u.field().set(n, motion(x));
     }
   }
-  [[nodiscard]] Vec3 found() {
-    Arrays raw(1);
-    kernels::RawRootTurn<Host, Vec3>{table, {u.read(), {}}, raw.field()}(0);
-    return raw.read()[0];
-  }
+  [[nodiscard]] Vec3 found() { return raw_turn(table, u); }
   [[nodiscard]] Vec3 rate_found() {
     Arrays raw(1);
     kernels::RawRootTurn<Host, DualVec3>{table, {u.read(), rate.read()}, raw.field()}(0);
@@ -87,6 +90,48 @@ TEST(RootTurn, OfARigidBodyIsItsRotationAtItsEdgesToo) {
   }
 }
 
+/// A blade where it stands on the hub of an annulus that widens to both ends: x(a, h), a along the chord, h along the span.
+struct Section {
+  double stagger, chord;
+  [[nodiscard]] Vec3 at(double a, double h) const {
+    double const axial = chord * a * std::cos(stagger), angle = chord * a * std::sin(stagger) / 0.44;
+    double const radius = 0.44 + 0.35 * axial * axial + h;
+    return {axial, radius * std::cos(angle), radius * std::sin(angle)};
+  }
+  /// Unit, at a = 0: along the chord, along the span, across both.
+  [[nodiscard]] std::array<Vec3, 3> axes() const {
+    return {Vec3{std::cos(stagger), 0, std::sin(stagger)}, {0, 1, 0}, {-std::sin(stagger), 0, std::cos(stagger)}};
+  }
+};
+
+// The lines along the chord follow the annulus: beside the span's first cells they sag by more than these are high, to one side before and
+// to the other one after.
+TEST(RootTurn, IsThatOfShortArmsToo) {
+  Section const before{0.6, 1}, after{0.2, 0.95};
+  std::array<Vec3, 3> const from = before.axes(), to = after.axes();
+  for (double const cell : {1e-3, 1e-5, 1e-6, 1e-7})
+    for (bool const at_hub : {false, true}) {
+      std::vector<std::pair<double, double>> const around{{6e-3, 0}, {0, 1.4 * cell}, {-2e-3, 0}, {0, -cell}};
+      Arrays u(5);
+      u.field().set(0, after.at(0, 0) - before.at(0, 0));
+      std::vector<kernels::RootNeighbour> neighbours;
+      for (int n = 0; n < (at_hub ? 2 : 4); ++n)
+        for (int const m : {n, (n + 1) % 4}) {
+          auto const [a, h] = around[std::size_t(m)];
+          neighbours.push_back({Index(m + 1), -1, before.at(a, h) - before.at(0, 0)});
+          u.field().set(m + 1, after.at(a, h) - before.at(a, h));
+        }
+      kernels::RootTable<Host> table;
+      table.roots = view<kernels::Root>({{0, 0, std::int32_t(neighbours.size()), 1, 0, {}}});
+      table.neighbours = view(neighbours);
+      Vec3 const found = raw_turn(table, u);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_LT(distance(from[std::size_t(k)] + kernels::turned_by(found, from[std::size_t(k)]), to[std::size_t(k)]),
+                  0.01)
+            << cell << " " << at_hub << " " << k;
+    }
+}
+
 TEST(RootTurn, KeepsLinesOffTheFacesOfAnEdgeAsWellAsNoTurnWould) {
   Random random(2);
   int limited = 0;
@@ -110,11 +155,12 @@ TEST(RootTurn, KeepsLinesOffTheFacesOfAnEdgeAsWellAsNoTurnWould) {
   EXPECT_GT(limited, 20) << "there is something to keep";
 }
 
+// Where arms are of one length, as elements do not weigh them.
 TEST(RootTurn, IsThatOfAWallOfElementsWithTheSameColumns) {
   Random random(5);
   int limited = 0;
   for (int n = 0; n < 200; ++n) {
-    Corner corner(random);
+    Corner corner(random, {1, 1, 1});
     Arrays x(4);
     std::vector<Vec3> u, rate;
     for (int k = 0; k < 4; ++k) {

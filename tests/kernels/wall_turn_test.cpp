@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -206,7 +205,7 @@ TEST(WallTurn, IsExactlyNothingWhereNothingMoves) {
     std::vector<Vec3> arms;
     for (double const length : {1.0, 1e-3, 1.0, 2e-3}) arms.push_back(length * random.vector(1));
     auto const arm = [&](Index k) { return arms[std::size_t(k)]; };
-    EXPECT_EQ(kernels::twist_about(axis, Vec3{}, 4, arm, arm), Vec3{});
+    EXPECT_EQ(kernels::twist_about(axis, Vec3{}, 4, arm, arm, kernels::ArmWeights(4, arm)), Vec3{});
   }
 }
 
@@ -256,7 +255,7 @@ TEST(WallTurn, OfAWallThatStretchesAndShearsIsThePolarRotation) {
       Vec3 const p = before(k);
       return Vec3{a * p.x + b * p.y, c * p.x + d * p.y, 0};
     };
-    Vec3 const twist = axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after));
+    Vec3 const twist = axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after, kernels::UnweighedArms{}));
     EXPECT_LT(distance(twist, {0, 0, std::atan2(c - b, a + d)}), 1e-9);
   }
 }
@@ -272,57 +271,9 @@ TEST(WallTurn, IsThatOfTheOtherArmsWhereOneIsAlongTheNormal) {
     std::vector<Vec3> const arms{axis + random.vector(1e-16), axis + across, axis + across + 0.8 * cross(axis, across)};
     auto const before = [&](Index k) { return arms[std::size_t(k)]; };
     auto const after = [&](Index k) { return rotation_about({}, axis, angle)(arms[std::size_t(k)]); };
-    Vec3 const twist = axis_times_angle(kernels::twist_about(axis, Vec3{}, 3, before, after));
+    Vec3 const twist = axis_times_angle(kernels::twist_about(axis, Vec3{}, 3, before, after, kernels::UnweighedArms{}));
     EXPECT_LT(distance(twist, angle * axis), 1e-13) << n;
   }
-}
-
-/// A blade where it stands on the hub of an annulus that widens to both ends: x(a, h), a along the chord, h along the span.
-struct Section {
-  double stagger, chord;
-  [[nodiscard]] Vec3 at(double a, double h) const {
-    double const axial = chord * a * std::cos(stagger), angle = chord * a * std::sin(stagger) / 0.44;
-    double const radius = 0.44 + 0.35 * axial * axial + h;
-    return {axial, radius * std::cos(angle), radius * std::sin(angle)};
-  }
-  /// Unit, at a = 0: along the chord, along the span, across both.
-  [[nodiscard]] std::array<Vec3, 3> axes() const {
-    return {Vec3{std::cos(stagger), 0, std::sin(stagger)}, {0, 1, 0}, {-std::sin(stagger), 0, std::cos(stagger)}};
-  }
-};
-
-// The lines along the chord follow the annulus: beside the span's first cells they sag by more than these are high, to one side before and
-// to the other one after.
-TEST(WallTurn, IsThatOfShortArmsToo) {
-  Section const before{0.6, 1}, after{0.2, 0.95};
-  std::array<Vec3, 3> const from = before.axes(), to = after.axes();
-  for (double const cell : {1e-3, 1e-5, 1e-6, 1e-7})
-    for (bool const at_hub : {false, true}) {
-      std::vector<std::pair<double, double>> const around{{6e-3, 0}, {0, 1.4 * cell}, {-2e-3, 0}, {0, -cell}};
-      Arrays x{5};
-      std::vector<Vec3> u(5);
-      for (int n = 0; n < 5; ++n) {
-        auto const [a, h] = n == 0 ? std::pair{0.0, 0.0} : around[std::size_t(n - 1)];
-        x.field().set(n, before.at(a, h));
-        u[std::size_t(n)] = after.at(a, h) - before.at(a, h);
-      }
-      std::vector<std::int32_t> const pairs =
-          at_hub ? std::vector<std::int32_t>{1, 2, 2, 3} : std::vector<std::int32_t>{1, 2, 2, 3, 3, 4, 4, 1};
-      kernels::WallTable<Host> const table{view<std::int32_t>({0}),
-                                           view<Index>({0, Index(pairs.size())}),
-                                           view(pairs),
-                                           view<std::uint8_t>({1}),
-                                           false,
-                                           {},
-                                           {},
-                                           {}};
-      Vec3 found;
-      kernels::WallTurn<Host, Vec3>{table, {x.read()}, {x.read(), u.data()}, &found}(0);
-      for (int k = 0; k < 3; ++k)
-        EXPECT_LT(distance(from[std::size_t(k)] + kernels::turned_by(found, from[std::size_t(k)]), to[std::size_t(k)]),
-                  0.01)
-            << cell << " " << at_hub << " " << k;
-    }
 }
 
 // Nodes at one place to round-off, as at poles: what is between them must decide nothing.
@@ -335,7 +286,7 @@ TEST(WallTurn, IsNotThatOfArmsOfRoundOff) {
     auto const after = [&](Index k) {
       return k == 3 ? arms[3] : rotation_about({}, {0, 0, 1}, angle)(arms[std::size_t(k)]);
     };
-    Vec3 const twist = axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after));
+    Vec3 const twist = axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after, kernels::ArmWeights(4, before)));
     EXPECT_LT(distance(twist, {0, 0, angle}), 1e-12) << n;
   }
 }

@@ -131,7 +131,8 @@ struct RawRootTurn {
     auto const size = norm(moved);
     if (!(size > 0)) return swing;
     V const axis = (1 / size) * moved;
-    V const turn = turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after));
+    ArmWeights const weight(root.n_neighbours, before);
+    V const turn = turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after, weight));
     if (!(dot(root.line, root.line) > 0)) return turn;
     auto const face_before = [&](Index k) { return cross(before(2 * k), before(2 * k + 1)); };
     auto const face_after = [&](Index k) { return cross(after(2 * k), after(2 * k + 1)); };

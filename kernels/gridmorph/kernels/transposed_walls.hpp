@@ -102,14 +102,13 @@ struct WallTurnBack {
     auto const face_before = [&](Index f) { return face_of(before(2 * f), before(2 * f + 1)); };
     auto const face_after = [&](Index f) { return face_of(after(2 * f), after(2 * f + 1)); };
     Vec3 normal, moved;
-    ArmWeights const weight(n, before);
     FanMoments sums;
     for (Index k = 0; k < n; k += 2) {
       Vec3 const p[2] = {before(k), before(k + 1)}, q[2] = {after(k), after(k + 1)};
       normal += face_of(p[0], p[1]);
       moved += face_of(q[0], q[1]);
       if (wall.flat) continue;
-      for (int m = 0; m < 2; ++m) sums.add(weight(p[m]), p[m], q[m]);
+      for (int m = 0; m < 2; ++m) sums.add(1, p[m], q[m]);
     }
     if (!(norm(moved) > 0)) return;
     KeptHeightGradient kept;
@@ -126,16 +125,12 @@ struct WallTurnBack {
       of_moved = of.moved;
       of_arms = of.twist;
     }
-    auto const of_arm = [&](Index k) {
-      Vec3 const arm = before(k);
-      return of_arms.after(weight(arm) * arm);
-    };
     Vec3 sum;
     for (Index k = 0; k < n; k += 2) {
       Vec3 const of_face = k == 2 * kept.face ? of_moved + kept.moved : of_moved;
       Vec3 const across = cross(wall.across, of_face);
-      Vec3 const first_arm = wall.flat ? -across : of_arm(k) + cross(after(k + 1), of_face);
-      Vec3 const next_arm = wall.flat ? across : of_arm(k + 1) + cross(of_face, after(k));
+      Vec3 const first_arm = wall.flat ? -across : of_arms.after(before(k)) + cross(after(k + 1), of_face);
+      Vec3 const next_arm = wall.flat ? across : of_arms.after(before(k + 1)) + cross(of_face, after(k));
       parts[first + k] = first_arm;
       parts[first + k + 1] = next_arm;
       sum = sum - first_arm - next_arm;

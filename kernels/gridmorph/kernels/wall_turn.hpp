@@ -7,11 +7,11 @@
 //
 // then about the normal the polar rotation of the gradient F in the wall, least squares over the nodes around,
 //
-//   atan2(F21 - F12, F11 + F22),   F = (sum of w q p^T) (sum of w p p^T)^-1,   w = 1 / |p|^2
+//   atan2(F21 - F12, F11 + F22),   F = (sum of w q p^T) (sum of w p p^T)^-1
 //
 // with p their places from x before, turned by the first rotation, and q those after. On structured walls n is what centred
-// differences give. Every arm counts alike, whatever its length: where cells are thin along the wall, as beside an end wall that is resolved,
-// the sag of a long arm is more than a short one, and would decide how that turns.
+// differences give. On these w = 1 / |p|^2, so that every arm counts alike, whatever its length: where cells are thin along the wall, as
+// beside an end wall that is resolved, the sag of a long arm is more than a short one, and would decide how that turns. On elements w = 1.
 //
 // Cost per wall node: its faces' nodes read twice (48 bytes each, from cache), about 100 flops per face, 24 bytes written; the
 // motion around it 48 bytes read, 96 written.
@@ -46,10 +46,16 @@ class ArmWeights {
   double round_off_;
 };
 
+/// Arms of elements, whose fans have some of any length on all sides: none is weighed.
+struct UnweighedArms {
+  KOKKOS_INLINE_FUNCTION double operator()(Vec3 const&) const { return 1; }
+};
+
 /// By what n arms turn about the unit vector `axis` to which a rotation `swing` has taken them: before(k) and after(k), V each.
-/// Where they lie on one line, their mean angle.
-template <class V, class Before, class After>
-KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Before const& before, After const& after) {
+/// Where they lie on one line, their mean angle. weight(arm before): what it counts.
+template <class V, class Before, class After, class Weight>
+KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Before const& before, After const& after,
+                                     Weight const& weight) {
   using Scalar = std::decay_t<decltype(dot(axis, axis))>;
   // Any two directions across the axis serve. Not one of the arms: an arm along the axis leaves nothing but round-off.
   Vec3 const a = value_of(axis);
@@ -57,7 +63,6 @@ KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Bef
   V const least = V{x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1}};
   V const across = least - dot(least, axis) * axis;
   V const t1 = (1 / norm(across)) * across, t2 = cross(axis, t1);
-  ArmWeights const weight(n, before);
   Scalar c11{}, c12{}, c22{}, b11{}, b12{}, b21{}, b22{};
   for (Index k = 0; k < n; ++k) {
     V const arm = before(k), p = arm + turned_by(swing, arm), q = after(k);
@@ -171,7 +176,7 @@ struct WallTurn {
     Index const first = wall.first(r);
     V const twist = twist_about(
         axis, swing, wall.first(r + 1) - first, [&](Index k) { return baseline[wall.around(first + k)] - x; },
-        [&](Index k) { return moved[wall.around(first + k)] - y; });
+        [&](Index k) { return moved[wall.around(first + k)] - y; }, UnweighedArms{});
     return turn_then(swing, twist);
   }
 };
