@@ -255,7 +255,8 @@ TEST(WallTurn, OfAWallThatStretchesAndShearsIsThePolarRotation) {
       Vec3 const p = before(k);
       return Vec3{a * p.x + b * p.y, c * p.x + d * p.y, 0};
     };
-    Vec3 const twist = axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after, kernels::UnweighedArms{}));
+    Vec3 const twist =
+        axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after, kernels::UnweighedArms{}));
     EXPECT_LT(distance(twist, {0, 0, std::atan2(c - b, a + d)}), 1e-9);
   }
 }
@@ -286,7 +287,8 @@ TEST(WallTurn, IsNotThatOfArmsOfRoundOff) {
     auto const after = [&](Index k) {
       return k == 3 ? arms[3] : rotation_about({}, {0, 0, 1}, angle)(arms[std::size_t(k)]);
     };
-    Vec3 const twist = axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after, kernels::ArmWeights(4, before)));
+    Vec3 const twist =
+        axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after, kernels::ArmWeights(4, before)));
     EXPECT_LT(distance(twist, {0, 0, angle}), 1e-12) << n;
   }
 }

@@ -91,7 +91,7 @@ class TableReader {
   Context* context_;
   toml::value const* table_;
   std::string name_;
-  std::string rule_;  ///< of the [[motion]] that this is, or is a part of
+  std::string rule_;                ///< of the [[motion]] that this is, or is a part of
   std::vector<std::string> known_;  ///< keys in the order in which they were asked for
   std::set<std::string> asked_;     ///< the same ones
 };
