@@ -51,9 +51,8 @@ CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<M
   return fields;
 }
 
-std::vector<int> predicted_steps(CaseFile const& case_file) {
-  constexpr int most_steps = 100;
-  return case_file.sequence ? case_file.sequence->some_steps(most_steps) : std::vector<int>{0};
+std::vector<int> predicted_steps(CaseFile const& case_file, int most) {
+  return case_file.sequence ? case_file.sequence->some_steps(most) : std::vector<int>{0};
 }
 
 std::string worst_step_text(CaseFile const& case_file, int step) {

@@ -158,8 +158,8 @@ CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<M
 /// Makes the folder of AnyPlan::write_stages(). Throws MachineError.
 void make_stage_folder(std::filesystem::path const& folder);
 
-/// Steps of a sequence that AnyPlan::predict() looks at, 0 without one: all, of long ones as many as take the time of a plan, spread evenly.
-std::vector<int> predicted_steps(CaseFile const& case_file);
+/// Steps of a sequence that AnyPlan::predict() looks at, 0 without one: all, of long ones `most`, spread evenly; 100 take the time of a plan.
+std::vector<int> predicted_steps(CaseFile const& case_file, int most = 100);
 /// "step 7 of 24 comes out worst: "
 std::string worst_step_text(CaseFile const& case_file, int step);
 

@@ -55,7 +55,8 @@ class BlockPlan final : public AnyPlan {
                                   locate_wakes(prepared_.surface.shared_boundary(), prepared_.surface.motion(),
                                                case_file_.measured_regions, region_notes_),
                                   region_notes_)) {
-    if (case_file_.plan.volume.by_prediction()) order_by_prediction();
+    VolumeOptions const& volume = case_file_.plan.volume;
+    if (volume.by_prediction() || volume.are_automatic()) order_by_prediction();
   }
 
   std::vector<Vec3> displacement(Moment const* when) override {
@@ -84,7 +85,8 @@ class BlockPlan final : public AnyPlan {
   }
 
   [[nodiscard]] PlanPrediction predict() override {
-    auto const [worst, step, boundary] = predict_worst();
+    auto const [some, step, boundary] = predict_worst(predicted_steps(case_file_));
+    Prediction const worst = predict_closely(exec_, prepared_, boundary);
     PlanPrediction out{describe(prepared_.mesh, worst), prediction_warnings(prepared_.mesh, worst),
                        prediction_json(prepared_.mesh, worst)};
     if (!case_file_.sequence) return out;
@@ -163,6 +165,7 @@ class BlockPlan final : public AnyPlan {
   [[nodiscard]] StepTimes times() const override {
     auto const& seconds = prepared_.seconds;
     StepTimes out{{"topology", seconds.topology}, {"rules", seconds.rules}, {"plan", seconds.plan}};
+    if (predicting_ > 0) out.push_back({"prediction", predicting_});
     if (ordering_ > 0) out.push_back({"order", ordering_});
     return out;
   }
@@ -210,21 +213,35 @@ class BlockPlan final : public AnyPlan {
     std::vector<Vec3> boundary;
   };
 
+  /// Asked for: the order of chains predicted to be best. Left to us: another one where that by priority inverts cells.
   void order_by_prediction() {
     Stopwatch watch;
-    plan_by_prediction(exec_, prepared_, predict_worst().boundary);
+    bool const asked_for = case_file_.plan.volume.by_prediction();
+    constexpr int enough = 8;  // to see whether any is needed
+    std::vector<Vec3> boundary;
+    try {
+      boundary = predict_worst(asked_for ? predicted_steps(case_file_) : predicted_steps(case_file_, enough)).boundary;
+    } catch (MotionError const&) {
+      if (asked_for) throw;
+      return;  // the plan stands; that the motion cannot be made is said where it is made
+    }
+    bool const wanted = asked_for || is_inverted_by_priority(exec_, prepared_, boundary);
+    if (!asked_for) predicting_ = watch.lap();
+    if (!wanted) return;
+    plan_by_prediction(exec_, prepared_, boundary);
     ordering_ = watch.lap();
   }
 
-  /// Of the motion as the rules stand, or of the step of a sequence that comes out worst.
-  StepPrediction predict_worst() {
+  /// Of the motion as the rules stand, or of that of these steps of a sequence that comes out worst.
+  StepPrediction predict_worst(std::vector<int> const& steps) {
     Predictor predictor(exec_, prepared_, {});
     StepPrediction worst;
-    for (int const step : predicted_steps(case_file_)) {
+    for (int const step : steps) {
       Moment const when = case_file_.sequence ? case_file_.sequence->moment(step) : Moment{};
       StepPrediction now{{}, step, displacement(case_file_.sequence ? &when : nullptr)};
       now.prediction = predictor.predict(now.boundary);
-      if (step == 0 || now.prediction.all.scaled_jacobian.value < worst.prediction.all.scaled_jacobian.value)
+      if (worst.boundary.empty() ||
+          now.prediction.all.scaled_jacobian.value < worst.prediction.all.scaled_jacobian.value)
         worst = std::move(now);
     }
     return worst;
@@ -242,6 +259,7 @@ class BlockPlan final : public AnyPlan {
   std::optional<Morpher<Exec>> morpher_;
   std::optional<FrozenSmoothing> frozen_;
   bool evaluated_ = false;
+  double predicting_ = 0;               ///< seconds that it took to see whether cells come out inverted
   double ordering_ = 0;                 ///< seconds that the order of chains took to be found
   std::optional<std::string> trimmed_;  ///< of the rules as they stand
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -49,6 +50,20 @@ class Search {
       }
     }
   }
+  /// All stages by one measure at a time, then laws for all chains of the best of these.
+  void choose_quickly() {
+    for (ChainChoice const choice :
+         {ChainChoice::long_first, ChainChoice::many_blocks, ChainChoice::short_first, ChainChoice::few_blocks,
+          ChainChoice::blunt_first, ChainChoice::sharp_first, ChainChoice::weakest_ends})
+      attempt([&] { return predictor_.try_order({}, boundary_, choice); });
+    ChainOrder const order = best_.order;
+    for (Law const law : {Law::matched, Law::mixed, Law::c1}) {
+      ChainOrder other = order;
+      for (auto& stage : other)
+        for (ChainPlace& place : stage) place.law = law;
+      attempt([&] { return predictor_.try_order(other, boundary_); });
+    }
+  }
   [[nodiscard]] FoundOrder result() && { return std::move(best_); }
 
  private:
@@ -78,6 +93,19 @@ class Search {
     ChainOrder order = best_.order;
     for (ChainPlace& place : order[stage]) place.law = law;
     return order;
+  }
+
+  /// Takes what a trial comes to if it is better by the score alone.
+  void attempt(std::function<OrderTrial()> const& make) {
+    try {
+      OrderTrial const trial = make();
+      ++best_.tried;
+      if (score(trial.prediction.all) >= score(best_.by_prediction)) return;
+      best_.by_prediction = trial.prediction.all;
+      best_.order = trial.order;
+      best_.better = true;
+    } catch (PlanError const&) {  // leaves blocks that nothing reaches
+    }
   }
 
   /// Takes an order if it is better.
@@ -163,11 +191,34 @@ FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, s
   return std::move(search).result();
 }
 
+FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
+  Search search(host, prepared, boundary);
+  search.choose_quickly();
+  return std::move(search).result();
+}
+
+Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
+  constexpr double little = 0.3;
+  constexpr Index few = 2'000'000, many = 20'000'000;
+  Prediction some = Predictor(host, prepared, {}).predict(boundary);
+  Index const n = prepared.mesh.n_nodes();
+  int const every = n <= few ? 1 : n <= many ? 4 : 8;
+  if (some.all.inverted > 0 || some.every <= every || !(some.all.kept.value < little)) return some;
+  return Predictor(host, prepared, {.every = every}).predict(boundary);
+}
+
+bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
+  if (std::all_of(boundary.begin(), boundary.end(), [](Vec3 const& u) { return u == Vec3{}; })) return false;
+  return predict_closely(host, prepared, boundary).all.inverted > 0;
+}
+
 FoundOrder plan_by_prediction(HostInstance const& host, PreparedMorph& prepared, std::span<Vec3 const> boundary) {
-  FoundOrder found = find_order(host, prepared, boundary);
+  bool const by_itself = !prepared.options.volume.by_prediction();
+  FoundOrder found = by_itself ? find_order_quickly(host, prepared, boundary) : find_order(host, prepared, boundary);
   if (found.better)
     prepared.planned = make_plan(host, prepared.mesh, prepared.links, prepared.surface, prepared.options, found.order);
-  prepared.planned.plan.notes.push_back(describe(found));
+  std::string const why = by_itself ? "by priority cells would be inverted: " : "";
+  prepared.planned.plan.notes.push_back(why + describe(found));
   return found;
 }
 

@@ -27,7 +27,9 @@ MorphPlan::MorphPlan(HostInstance const& host, Mesh const& mesh, Motion const& m
   if (mesh.is_structured()) {
     state->blocks = prepare(host, mesh, motion, options);
     state->displacement = state->blocks->boundary_displacement();
-    if (options.volume.by_prediction()) plan_by_prediction(host, *state->blocks, state->displacement);
+    if (options.volume.by_prediction() ||
+        (options.volume.are_automatic() && is_inverted_by_priority(host, *state->blocks, state->displacement)))
+      plan_by_prediction(host, *state->blocks, state->displacement);
   } else {
     check_mesh(mesh);
     UnstructuredTopology const topology = make_topology(host, mesh);

@@ -61,9 +61,9 @@ Prediction Predictor::predict(std::span<Vec3 const> boundary) {
   return measure(plan, prepared_.plan(), morphed(plan, boundary));
 }
 
-OrderTrial Predictor::try_order(ChainOrder const& first, std::span<Vec3 const> boundary) {
+OrderTrial Predictor::try_order(ChainOrder const& first, std::span<Vec3 const> boundary, ChainChoice choice) {
   OrderTrial out;
-  PlannedMorph planned = planner_.plan(first, &out.next);
+  PlannedMorph planned = planner_.plan(first, &out.next, choice);
   out.prediction = measure(planned.plan, planned.plan, morphed(planned.plan, boundary));
   out.order = std::move(planned.order);
   return out;

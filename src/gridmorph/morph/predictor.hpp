@@ -21,7 +21,8 @@ class Predictor {
   Predictor(HostInstance const& host, PreparedMorph const& prepared, PredictionOptions const& options);
 
   /// first: order of chains, as in make_plan(). Nodes in names of chains are numbered among those sampled.
-  [[nodiscard]] OrderTrial try_order(ChainOrder const& first, std::span<Vec3 const> boundary);
+  [[nodiscard]] OrderTrial try_order(ChainOrder const& first, std::span<Vec3 const> boundary,
+                                     ChainChoice choice = ChainChoice::rules);
   /// Of the plan prepared, with its names.
   [[nodiscard]] Prediction predict(std::span<Vec3 const> boundary);
 

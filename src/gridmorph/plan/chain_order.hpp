@@ -16,6 +16,18 @@ struct ChainPlace {
   friend auto operator<=>(ChainPlace const&, ChainPlace const&) = default;
 };
 
+/// What decides which of the chains that can be next come first.
+enum class ChainChoice {
+  rules,         ///< VolumeOptions::priority
+  sharp_first,   ///< the smallest angle of their cells
+  blunt_first,   ///< the largest one
+  short_first,   ///< their length over their width
+  long_first,    ///< the same, the largest first
+  few_blocks,    ///< how many blocks they run through
+  many_blocks,   ///< the same, the most first
+  weakest_ends,  ///< ranks of their ends, the last ones first
+};
+
 /// Stages of chains in order, those of the near field left out.
 using ChainOrder = std::vector<std::vector<ChainPlace>>;
 

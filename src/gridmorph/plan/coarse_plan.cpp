@@ -78,8 +78,9 @@ CoarsePlanner::CoarsePlanner(HostInstance const& host, PreparedMorph const& prep
       lines_{coarse_.mesh, topology_, GridLengths(coarse_.mesh, coarse_.lengths)},
       priority_(host, prepared.mesh, basis_.topology, prepared.options.volume, prepared.links.mesh_size) {}
 
-PlannedMorph CoarsePlanner::plan(ChainOrder const& first, ChainOrder* next) {
-  PlannedMorph planned = build_plan(basis_, priority_, lines_, prepared_.surface, prepared_.options, first, next);
+PlannedMorph CoarsePlanner::plan(ChainOrder const& first, ChainOrder* next, ChainChoice choice) {
+  PlannedMorph planned =
+      build_plan(basis_, priority_, lines_, prepared_.surface, prepared_.options, first, next, choice);
   for (Stage const& stage : planned.plan.stages)
     append_parameters(stage.lines, lines_.lengths, planned.plan.line_parameters);
   for (SpreadPass const& pass : planned.plan.spreads)

@@ -20,8 +20,9 @@ class CoarsePlanner {
 
   [[nodiscard]] int every() const { return every_; }
   [[nodiscard]] CoarseMesh const& coarse() const { return coarse_; }
-  /// With the line parameters of the mesh itself. `first`, `next`: see build_plan(). Cost: that of a plan of the lines kept.
-  [[nodiscard]] PlannedMorph plan(ChainOrder const& first, ChainOrder* next = nullptr);
+  /// With the line parameters of the mesh itself. `first`, `next`, `choice`: see build_plan(). Cost: that of a plan of the lines kept.
+  [[nodiscard]] PlannedMorph plan(ChainOrder const& first, ChainOrder* next = nullptr,
+                                  ChainChoice choice = ChainChoice::rules);
   /// Of the boundary nodes of such a plan. `boundary`: of those of the plan prepared, in order.
   [[nodiscard]] std::vector<Vec3> displacement(Plan const& plan, std::span<Vec3 const> boundary) const;
 

@@ -104,7 +104,7 @@ struct HandedOn {
 class Scheduler {
  public:
   Scheduler(PlanContext const& context, Priority& priority, ChainLaws const& laws, Gaps const& gaps,
-            BoundaryMotion const& surface, PlanOptions const& options, Plan& plan, Known& known)
+            BoundaryMotion const& surface, PlanOptions const& options, Plan& plan, Known& known, ChainChoice choice)
       : context_(context),
         surface_(surface),
         mesh_(context.mesh),
@@ -115,7 +115,8 @@ class Scheduler {
         known_(known),
         priority_(priority),
         laws_(laws),
-        gaps_(gaps) {}
+        gaps_(gaps),
+        choice_(choice) {}
 
   /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of walls
   /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
@@ -236,6 +237,10 @@ class Scheduler {
       chains = collect(Ends::one);
     }
     if (chains.empty()) throw PlanError(unreachable());
+    if (choice_ != ChainChoice::rules) {
+      put_in_order(chains);
+      return chains;
+    }
     // A measure that comes first ranks all chains; one that breaks ties is found where there are some.
     bool const ranked = priority_.quality_leads();
     if (ranked) priority_.add_quality(chains);
@@ -249,6 +254,26 @@ class Scheduler {
       priority_.sort(chains);
     }
     return chains;
+  }
+  /// By the choice that is not the rules'; those decide where it says nothing.
+  void put_in_order(std::vector<RankedChain>& chains) {
+    priority_.add_quality(chains);
+    priority_.sort(chains);
+    auto const key = [&](RankedChain const& c) -> long long {
+      switch (choice_) {
+        case ChainChoice::sharp_first: return c.quality;
+        case ChainChoice::blunt_first: return -c.quality;
+        case ChainChoice::short_first: return c.aspect_ratio;
+        case ChainChoice::long_first: return -c.aspect_ratio;
+        case ChainChoice::few_blocks: return (long long)(c.chain.steps.size());
+        case ChainChoice::many_blocks: return -(long long)(c.chain.steps.size());
+        case ChainChoice::weakest_ends: return -1000LL * c.boundary[1] - c.boundary[0];
+        case ChainChoice::rules: break;
+      }
+      return 0;
+    };
+    std::stable_sort(chains.begin(), chains.end(),
+                     [&](RankedChain const& a, RankedChain const& b) { return key(a) < key(b); });
   }
   /// What could be the next stage: all chains of one rank, in either order where they compete, and each chain by itself.
   ChainOrder alternatives() {
@@ -403,6 +428,7 @@ class Scheduler {
   Priority& priority_;
   ChainLaws const& laws_;
   Gaps const& gaps_;
+  ChainChoice choice_;
   std::vector<char> before_near_field_, after_near_field_;  ///< what was known, per entity class
 };
 
@@ -491,7 +517,7 @@ PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const&
 
 PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines const& lines,
                         BoundaryMotion const& surface, PlanOptions const& options, ChainOrder const& first,
-                        ChainOrder* next) {
+                        ChainOrder* next, ChainChoice choice) {
   ResolvedMotion const& motion = surface.motion();
   Mesh const& mesh = lines.mesh;
   Topology const& topology = lines.topology;
@@ -513,7 +539,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   WallRoots roots(context);
   context.roots = &roots;
   Known known(topology.lattice.n_classes());
-  Scheduler scheduler(context, priority, basis.laws, basis.gaps, surface, options, plan, known);
+  Scheduler scheduler(context, priority, basis.laws, basis.gaps, surface, options, plan, known, choice);
   std::vector<std::string> const& kind_order = priority.kind_order();
   planned.boundary = collect_boundary(context, surface, kind_order, known, plan);
   Known const given = known;

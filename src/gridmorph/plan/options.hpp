@@ -83,7 +83,8 @@ inline std::vector<PriorityRule> standard_priority() {
 /// What decides which chain of blocks comes first.
 enum class OrderBy {
   priority,  ///< VolumeOptions::priority
-  prediction  ///< the order of which predict() says the best, never worse than that by priority; needs the rules' displacements
+  prediction,  ///< the order of which predict() says the best, never worse than that by priority; needs the rules' displacements
+  automatic  ///< priority; where predict() finds inverted cells and `law` is linear for all chains, what a quick search for order and law finds
 };
 
 /// A plane of nodes of a zone where blocks end: chains go on through it, and those beside one another on its two sides have ranks and orders of their own.
@@ -101,7 +102,7 @@ struct VolumeOptions {
   std::vector<LawOfEnds> laws;  ///< blocks: of some chains; the first that fits, else `law`
   bool laws_by_prediction =
       false;  ///< blocks: other laws for single chains where predict() says that cells come out better
-  OrderBy order = OrderBy::priority;  ///< blocks
+  OrderBy order = OrderBy::automatic;  ///< blocks
   /// Blocks: how much of the turn of their walls near fields that rotate hand on at their outer edge, 0 to 1. Nothing: where all
   /// lines from there end on boundaries at rest that are no walls and the walls move rigidly, 1; elsewhere 0.
   std::optional<double> turn;
@@ -110,6 +111,10 @@ struct VolumeOptions {
 
   /// Whether displacements are looked at to plan.
   [[nodiscard]] bool by_prediction() const { return order == OrderBy::prediction || laws_by_prediction; }
+  /// Whether they may be, where cells would come out inverted.
+  [[nodiscard]] bool are_automatic() const {
+    return order == OrderBy::automatic && law == Law::linear && laws.empty() && !laws_by_prediction;
+  }
 };
 
 struct PlanOptions {

@@ -250,8 +250,10 @@ void read_plan(TableReader& root, std::map<std::string, double> const& constants
   if (!volume) return;
   std::vector<std::string> const laws{"linear", "c1", "c2", "mixed", "matched", "formula", "prediction"};
   VolumeOptions& to = out.plan.volume;
-  if (auto const law = casefile::read_law(*volume, laws, constants, to.law, to.own_law);
-      law && laws[*law] == "prediction") {
+  // What is said of laws is meant, even where it is what would be taken anyway.
+  auto const law = casefile::read_law(*volume, laws, constants, to.law, to.own_law);
+  if (law) to.order = OrderBy::priority;
+  if (law && laws[*law] == "prediction") {
     to.laws_by_prediction = true;
     to.law = Law::linear;
   }

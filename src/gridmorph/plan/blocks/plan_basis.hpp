@@ -37,9 +37,10 @@ struct PlanLines {
 };
 
 /// The plan of these lines. What coordinates decide (kinds, near fields, ranks) is decided on the mesh of the basis, whose angles
-/// `priority` keeps; `first` as in make_plan(); `next`: gets what the stage after those could be, in the order of ranks.
+/// `priority` keeps; `first` as in make_plan(); `next`: gets what the stage after those could be, in the order of ranks; `choice`: of the
+/// chains of stages that are not given.
 PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines const& lines,
                         BoundaryMotion const& surface, PlanOptions const& options, ChainOrder const& first,
-                        ChainOrder* next = nullptr);
+                        ChainOrder* next = nullptr, ChainChoice choice = ChainChoice::rules);
 
 }  // namespace gridmorph
