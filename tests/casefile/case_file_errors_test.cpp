@@ -42,7 +42,9 @@ TEST(CaseFileErrors, ABackgroundFromAFileHasItsOwnWrap) {
   EXPECT_TRUE(reported(problems_of(head + rule + file + "cells = 3\n"), "case.toml:8: ", {"cells", "remove it"}));
   EXPECT_TRUE(reported(problems_of(head + rule + "[background]\nouter = \"box\"\n"),
                        "case.toml:7: ", {"outer", "add file = "}));
-  EXPECT_TRUE(problems_of(head + rule + file + "wrap = [\"inner\"]\nouter = \"box\"\nlaw = \"c1\"\n").empty());
+  TemporaryFolder const folder;
+  std::string const there = "[background]\nfile = \"" + folder.write("b.cgns", "").string() + "\"\n";
+  EXPECT_TRUE(problems_of(head + rule + there + "wrap = [\"inner\"]\nouter = \"box\"\nlaw = \"c1\"\n").empty());
 }
 
 TEST(CaseFileErrors, ValuesThatCannotBeReadAreShown) {

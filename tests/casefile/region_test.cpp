@@ -76,11 +76,13 @@ TEST(AttachedRuleText, IsRead) {
 }
 
 TEST(RegionText, AShockIsASearchInASolution) {
-  InnerRegion const r = region_of(
-      "zones = \"wing*\"\nshock = { file = \"flow.cgns\", solution = \"last\", sensor = \"jump\", variable = "
-      "\"Density\", threshold = 0.2, heat_ratio = 1.3, smallest = 3, grow = 2 }");
+  TemporaryFolder const folder;
+  auto const flow = folder.write("flow.cgns", "").string();
+  InnerRegion const r = region_of("zones = \"wing*\"\nshock = { file = \"" + flow +
+                                  "\", solution = \"last\", sensor = \"jump\", variable = "
+                                  "\"Density\", threshold = 0.2, heat_ratio = 1.3, smallest = 3, grow = 2 }");
   ASSERT_NE(r.shock, nullptr);
-  EXPECT_EQ(r.shock->file, "flow.cgns");
+  EXPECT_EQ(r.shock->file, flow);
   EXPECT_EQ(r.shock->solution, "last");
   EXPECT_EQ(r.shock->sensor, ShockSearch::Sensor::jump);
   EXPECT_EQ(r.shock->variable, "Density");
@@ -92,9 +94,9 @@ TEST(RegionText, AShockIsASearchInASolution) {
   EXPECT_EQ(plain.shock->sensor, ShockSearch::Sensor::normal_mach);
   EXPECT_EQ(plain.shock->least(), 1);
   EXPECT_EQ(plain.shock->compression, 0.05);
-  CaseFile const read =
-      parse_case_file(mesh_and_rule + "[[region]]\nname = \"part\"\nshock = { file = \"flow.cgns\" }\n", "case.toml");
-  EXPECT_EQ(read.files, std::vector<std::filesystem::path>{"flow.cgns"});  // so that no output takes its place
+  CaseFile const read = parse_case_file(
+      mesh_and_rule + "[[region]]\nname = \"part\"\nshock = { file = \"flow.cgns\" }\n", folder.path("case.toml"));
+  EXPECT_EQ(read.files, std::vector<std::filesystem::path>{flow});  // so that no output takes its place
 }
 
 TEST(RegionText, EveryProblemOfAShockIsReportedWithItsLine) {
@@ -121,15 +123,17 @@ TEST(RegionText, EveryProblemOfAShockIsReportedWithItsLine) {
 }
 
 TEST(RegionText, TheRuleShockNamesTheFileThatItGoesTo) {
+  TemporaryFolder const folder;
+  auto const to = folder.write("new.cgns", "");
   CaseFile const c = parse_case_file(
       mesh_and_rule +
           "[[region]]\nname = \"part\"\nshock = {}\n[[motion]]\npatches = \"part\"\nrule = \"shock\"\nto = "
           "\"new.cgns\"\nsolution = \"last\"\ndirection = [0, 2, 0]\nsmooth = 0.5\nof = \"blade\"\nfade = 0.25\n",
-      "case.toml");
+      folder.path("case.toml"));
   ASSERT_EQ(c.shock_follows.size(), 1U);
   ShockFollow const& follow = c.shock_follows[0];
   EXPECT_EQ(follow.rule, 1U);
-  EXPECT_EQ(follow.to, "new.cgns");
+  EXPECT_EQ(follow.to, to);
   EXPECT_EQ(follow.solution, "last");
   EXPECT_EQ(*follow.direction, (Vec3{0, 2, 0}));
   EXPECT_EQ(*follow.smooth, 0.5);
