@@ -7,6 +7,7 @@
 #include <gridmorph/app/run_page.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
@@ -29,8 +30,7 @@ namespace {
 void refuse_missing_files(CaseFile const& case_file) {
   Problems problems;
   auto const check = [&](char const* key, std::filesystem::path const& path) {
-    std::error_code error;
-    if (std::filesystem::exists(path, error)) return;
+    if (is_there(path.string())) return;
     auto const given = std::find_if(case_file.given.begin(), case_file.given.end(),
                                     [&](GivenKey const& k) { return k.table == "mesh" && k.key == key; });
     std::string const line = given == case_file.given.end() ? "" : fmt::format(":{}", given->line);

@@ -177,6 +177,11 @@ Foreign foreign_folder(fs::path const& path) {
 
 }  // namespace
 
+bool is_there(std::string const& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) || is_openfoam(path);
+}
+
 std::string_view to_string(MeshFormat format) {
   switch (format) {
     case MeshFormat::cgns: return "CGNS";

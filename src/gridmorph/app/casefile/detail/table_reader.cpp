@@ -1,6 +1,7 @@
 #include <gridmorph/app/casefile/detail/table_reader.hpp>
 #include <gridmorph/app/casefile/key_list.hpp>
 #include <gridmorph/core/suggest.hpp>
+#include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/read_file.hpp>
 
 #include <fmt/format.h>
@@ -77,8 +78,7 @@ std::optional<std::filesystem::path> TableReader::input(std::string const& key) 
   auto const name = string(key);
   if (!name) return std::nullopt;
   auto path = context_->input(*name);
-  std::error_code error;
-  if (!std::filesystem::exists(path, error))
+  if (!is_there(path.string()))
     problem(key, fmt::format("'{}' does not exist; {}", *name, io::looked_for_at(path.string())));
   return path;
 }
