@@ -298,6 +298,7 @@ PreparedMorph prepare_background(HostInstance const& host, Background const& bac
   if (background.lattice && background.lattice->chart.frame != Chart::Frame::straight)
     motion.axis = {background.lattice->chart.origin, background.lattice->chart.axis};
   PlanOptions options;
+  options.default_boundary_layer = false;  // the wrap is no wall: the near field lies inside it
   options.volume.law = volume.law;
   options.volume.own_law = volume.own_law;
   return prepare(host, background.mesh, motion, options);
