@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -22,6 +23,13 @@ std::tuple<Index, long long, long long> score(PredictedCells const& cells) {
 
 bool is_no_worse(PredictedCells const& a, PredictedCells const& b) {
   return a.inverted <= b.inverted && a.scaled_jacobian.value >= b.scaled_jacobian.value && a.kept.value >= b.kept.value;
+}
+
+/// One cell in so many along each direction that a closer look takes: all of them where there are few.
+int close_sample(Mesh const& mesh) {
+  constexpr Index few = 2'000'000, many = 20'000'000;
+  Index const n = mesh.n_nodes();
+  return n <= few ? 1 : n <= many ? 4 : 8;
 }
 
 class Search {
@@ -52,6 +60,7 @@ class Search {
   }
   /// All stages by one measure at a time, then laws for all chains of the best of these.
   void choose_quickly() {
+    quick_.push_back(beam_.front().trial);
     for (ChainChoice const choice :
          {ChainChoice::long_first, ChainChoice::many_blocks, ChainChoice::short_first, ChainChoice::few_blocks,
           ChainChoice::blunt_first, ChainChoice::sharp_first, ChainChoice::weakest_ends})
@@ -63,6 +72,23 @@ class Search {
         for (ChainPlace& place : stage) place.law = law;
       attempt([&] { return predictor_.try_order(other, boundary_); });
     }
+  }
+  /// Of the best of these the first that a closer look finds sound, or the best of the few that it looks at.
+  void look_closely(HostInstance const& host, PreparedMorph const& prepared) {
+    constexpr std::size_t few = 6;
+    std::ranges::stable_sort(quick_, {}, [](OrderTrial const& t) { return score(t.prediction.all); });
+    Predictor close(host, prepared, {.every = close_sample(prepared.mesh)});
+    std::optional<PredictedCells> best;
+    for (std::size_t n = 0; n < std::min(few, quick_.size()); ++n) {
+      PredictedCells const cells = close.try_order(quick_[n].order, boundary_).prediction.all;
+      ++best_.tried;
+      if (best && score(cells) >= score(*best)) continue;
+      best = cells;
+      best_.order = quick_[n].order;
+      if (cells.inverted == 0) break;
+    }
+    best_.by_prediction = *best;
+    best_.better = best_.order != beam_.front().trial.order;
   }
   [[nodiscard]] FoundOrder result() && { return std::move(best_); }
 
@@ -100,6 +126,7 @@ class Search {
     try {
       OrderTrial const trial = make();
       ++best_.tried;
+      quick_.push_back(trial);
       if (score(trial.prediction.all) >= score(best_.by_prediction)) return;
       best_.by_prediction = trial.prediction.all;
       best_.order = trial.order;
@@ -177,6 +204,7 @@ class Search {
   std::span<Vec3 const> boundary_;
   FoundOrder best_;
   std::vector<Path> beam_;
+  std::vector<OrderTrial> quick_;  ///< what choose_quickly() tried
   std::set<ChainOrder> begun_;
   std::set<State> reached_;
 };
@@ -194,15 +222,14 @@ FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, s
 FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
   Search search(host, prepared, boundary);
   search.choose_quickly();
+  search.look_closely(host, prepared);
   return std::move(search).result();
 }
 
 Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
   constexpr double little = 0.3;
-  constexpr Index few = 2'000'000, many = 20'000'000;
   Prediction some = Predictor(host, prepared, {}).predict(boundary);
-  Index const n = prepared.mesh.n_nodes();
-  int const every = n <= few ? 1 : n <= many ? 4 : 8;
+  int const every = close_sample(prepared.mesh);
   if (some.all.inverted > 0 || some.every <= every || !(some.all.kept.value < little)) return some;
   return Predictor(host, prepared, {.every = every}).predict(boundary);
 }

@@ -26,6 +26,7 @@ FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, s
 
 /// The same question within the time of some 20 plans: the chains of all stages in the order of other measures than the rules'
 /// (ChainChoice), and the best of these orders with another law for all its chains. Fewer cells inverted count first here, whatever else they cost.
+/// Of the best six the first is taken in which predict_closely() would find none.
 FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);
 
 /// predict() of a plan, and of more of its cells where those looked at are sound and one of them keeps less than 0.3 of its scaled Jacobian: its
