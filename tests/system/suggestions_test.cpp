@@ -101,7 +101,7 @@ TEST_F(Suggestions, OnPassagesWithATipGapTakeAMotionThatClosesTheGapByHalf) {
     ASSERT_NE(at, std::string::npos) << text;
     for (std::string const& family : blade_families(tip))
       EXPECT_NE(text.rfind("\"" + family + "\"", at), std::string::npos) << text;
-    EXPECT_NE(text.find("walls  = [\"blade\"]"), std::string::npos) << text;
+    EXPECT_NE(text.find("walls = [\"blade\"]"), std::string::npos) << text;
     text.replace(at, still.size(),
                  R"keys(rule = "formula"
 dr     = "0.0015 * max(0, (r - 0.46) / 0.2)"
