@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -60,7 +59,6 @@ class Search {
   }
   /// All stages by one measure at a time, then laws for all chains of the best of these.
   void choose_quickly() {
-    quick_.push_back(beam_.front().trial);
     for (ChainChoice const choice :
          {ChainChoice::long_first, ChainChoice::many_blocks, ChainChoice::short_first, ChainChoice::few_blocks,
           ChainChoice::blunt_first, ChainChoice::sharp_first, ChainChoice::weakest_ends})
@@ -78,17 +76,18 @@ class Search {
     constexpr std::size_t few = 6;
     std::ranges::stable_sort(quick_, {}, [](OrderTrial const& t) { return score(t.prediction.all); });
     Predictor close(host, prepared, {.every = close_sample(prepared.mesh)});
-    std::optional<PredictedCells> best;
-    for (std::size_t n = 0; n < std::min(few, quick_.size()); ++n) {
-      PredictedCells const cells = close.try_order(quick_[n].order, boundary_).prediction.all;
+    auto const look = [&](ChainOrder const& order) {
       ++best_.tried;
-      if (best && score(cells) >= score(*best)) continue;
-      best = cells;
-      best_.order = quick_[n].order;
-      if (cells.inverted == 0) break;
+      return close.try_order(order, boundary_).prediction.all;
+    };
+    ChainOrder const& rules = beam_.front().trial.order;
+    best_ = {rules, look(rules), {}, best_.tried, false};
+    best_.by_prediction = best_.by_priority;
+    for (std::size_t n = 0; n < std::min(few, quick_.size()) && best_.by_prediction.inverted > 0; ++n) {
+      PredictedCells const cells = look(quick_[n].order);
+      if (score(cells) < score(best_.by_prediction))
+        best_ = {quick_[n].order, best_.by_priority, cells, best_.tried, true};
     }
-    best_.by_prediction = *best;
-    best_.better = best_.order != beam_.front().trial.order;
   }
   [[nodiscard]] FoundOrder result() && { return std::move(best_); }
 
