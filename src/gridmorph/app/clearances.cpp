@@ -67,7 +67,8 @@ Clearances::Tip Clearances::tip(ClearanceCase const& one, std::vector<int> const
   auto const blade_places = places_of_nodes(baseline(), blade);
   for (PatchesOfRow& row : patches_by_row(boundary_, walls))
     out.rows.push_back({InwardFacets(boundary_, row.patches), std::move(row.copies),
-                        at_places(baseline(), nodes_of(row.patches), blade_places, 1e-7 * boundary_.size())});
+                        at_places(baseline(), nodes_of(row.patches), blade_places,
+                                  place_tolerance(1e-7, boundary_.size(), boundary_.precision().resolution()))});
   // Nodes slide on a wall that slips, and those of a blade may be off it: the wall itself stays.
   out.wall_moves = std::any_of(walls.begin(), walls.end(), [&](int p) {
     int const r = rule_of_patch[std::size_t(p)];

@@ -4,6 +4,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_kind.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/quality/certificate.hpp>
@@ -51,8 +52,9 @@ ElementMesh::ElementMesh(Mesh as_read)
     remarks.push_back(mesh.source + ": " + describe(mesh, negative));
   if (mesh.dimension == 2 && std::fabs(plane_normal(mesh).z) != 1)
     problems.push_back(mesh.source + ": is 2-D but does not lie in a plane z = constant; turn it into one");
-  constexpr double tolerance = 1e-6;  // of the mesh size, as for connections of a file
-  for (auto const& pair : undeclared_connections(mesh, tolerance * mesh.size()))
+  // As for connections of a file.
+  double const tolerance = place_tolerance(1e-6, mesh.size(), coordinate_resolution(mesh));
+  for (auto const& pair : undeclared_connections(mesh, tolerance))
     mesh.notes.push_back(mesh.source + ": " + describe(mesh, pair));
 }
 

@@ -3,6 +3,7 @@
 #include <gridmorph/app/cli/mesh_summary.hpp>
 #include <gridmorph/app/element_mesh.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <fmt/format.h>
 
@@ -254,7 +255,8 @@ std::optional<Axis> common_axis(Mesh const& mesh) {
 /// Sides of one wall in two zones may coincide without a connection that says so: their nodes get one number.
 void join_by_position(Mesh const& mesh, std::vector<BoundarySummary> const& boundaries,
                       std::vector<std::vector<Index>>& nodes) {
-  double const tolerance = 1e-6 * mesh.size();  // as for connections of a file
+  // As for connections of a file.
+  double const tolerance = place_tolerance(1e-6, mesh.size(), coordinate_resolution(mesh));
   auto const apart = [&](Box const& a, Box const& b) {
     return a.low.x > b.high.x + tolerance || b.low.x > a.high.x + tolerance || a.low.y > b.high.y + tolerance ||
            b.low.y > a.high.y + tolerance || a.low.z > b.high.z + tolerance || b.low.z > a.high.z + tolerance;

@@ -78,7 +78,7 @@ void add_face(std::vector<int> const& corners, std::vector<GridFacet>& faces) {
 }  // namespace
 
 Boundary::Boundary(Mesh const& mesh, std::optional<double> size)
-    : mesh_(without_elements(mesh)), size_(size ? *size : mesh.size()) {
+    : mesh_(without_elements(mesh)), size_(size ? *size : mesh.size()), precision_(coordinate_precision(mesh)) {
   for (Patch const& patch : mesh.patches) surfaces_.push_back(surface_of(mesh, patch));
 }
 
@@ -86,6 +86,7 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
                    std::optional<double> size, std::span<Patch const> regions)
     : mesh_(without_elements(mesh)),
       size_(size ? *size : mesh.size()),
+      precision_(coordinate_precision(mesh)),
       plane_(mesh.dimension == 2),
       surfaces_(mesh.patches.size() + regions.size()) {
   for (std::size_t r = 0; r < regions.size(); ++r) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/geometry/facet_surface.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <array>
@@ -40,6 +41,8 @@ class Boundary {
   [[nodiscard]] Mesh const& mesh() const { return mesh_; }
   /// Of the mesh.
   [[nodiscard]] double size() const { return size_; }
+  /// Of the mesh, as exactly as its coarsest zone is known.
+  [[nodiscard]] CoordinatePrecision const& precision() const { return precision_; }
   [[nodiscard]] BoundarySurface const& surface(int patch) const { return surfaces_[std::size_t(patch)]; }
   /// Whether the patches are lines, the sides of a plane mesh.
   [[nodiscard]] bool is_plane() const { return plane_; }
@@ -68,6 +71,7 @@ class Boundary {
  private:
   Mesh mesh_;
   double size_ = 0;
+  CoordinatePrecision precision_;
   bool plane_ = false;
   Vec3 across_;  ///< of a plane mesh
   std::vector<BoundarySurface> surfaces_;

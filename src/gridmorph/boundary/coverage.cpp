@@ -1,6 +1,7 @@
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <algorithm>
 #include <map>
@@ -133,8 +134,9 @@ bool is_collapsed(Mesh const& mesh, int zone, IndexRange const& r, double size) 
             extent[a] = std::max(extent[a], distance(mesh.coordinates[n], mesh.coordinates[n + stride[a]]));
           }
       }
+  double const tolerance = std::max(1e-12 * size, coordinate_resolution(mesh, zone));
   for (int a = 0; a < 3; ++a)
-    if (r.extent(a) > 1 && extent[a] < 1e-12 * size) return true;
+    if (r.extent(a) > 1 && extent[a] < tolerance) return true;
   return false;
 }
 

@@ -3,6 +3,7 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/extent.hpp>
 
 #include <algorithm>
@@ -173,6 +174,7 @@ Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const&
     if (Vec3 const p = mesh.coordinates[n]; !std::isfinite(p.x + p.y + p.z))
       throw MeshError(mesh.source + ": " + describe_node(mesh, n) + " is not finite; repair the mesh first");
 
+  auto const precision = coordinate_precisions(mesh);
   PeriodicFits const fits(mesh, links.mesh_size);
   for (std::size_t f = 0; f < mesh.interfaces.size(); ++f) {
     Interface1to1 const& face = mesh.interfaces[f];
@@ -207,9 +209,11 @@ Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const&
     if (link.periodic) link.transform = fits.of(f);
     WorstPair const worst = worst_pair(mesh, face, link.transform, link.periodic);
     link.mismatch = worst.distance;
-    bool const single = mesh.zones[face.zone].single_precision || mesh.zones[face.donor_zone].single_precision;
     double const tolerance =
-        options.matching_tolerance > 0 ? options.matching_tolerance : (single ? 1e-6 : 1e-8) * links.mesh_size;
+        options.matching_tolerance > 0
+            ? options.matching_tolerance
+            : coincidence_tolerance(links.mesh_size, std::max(precision[face.zone].resolution(),
+                                                              precision[face.donor_zone].resolution()));
     if (!(worst.distance <= tolerance))
       problems.add(name() + ": its points do not coincide with the donor's: " + describe_node(mesh, worst.own) +
                    " and " + describe_node(mesh, worst.donor) + " are " + to_text(worst.distance, 3) +

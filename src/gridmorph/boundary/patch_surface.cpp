@@ -39,17 +39,21 @@ double box_diagonal(std::vector<Vec3> const& points) {
   return points.empty() ? 0 : distance(box.low, box.high);
 }
 
+double largest_component(std::vector<Vec3> const& points) {
+  double most = 0;
+  for (Vec3 const& p : points) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return most;
+}
+
 PatchSurface::PatchSurface(Boundary const& boundary, std::vector<int> const& patches) : lines(boundary.is_plane()) {
   Mesh const& mesh = boundary.mesh();
   std::vector<Vec3> all;
-  bool single = false;
   for (int const p : patches) {
     for (Index const n : boundary.surface(p).nodes) all.push_back(mesh.coordinates[n]);
     gridded = gridded && boundary.surface(p).grid.has_value();
-    single = single || mesh.zones[mesh.patches[p].zone].single_precision;
   }
   size = box_diagonal(all);
-  tolerance = (single ? 1e-6 : 1e-9) * size;
+  tolerance = place_tolerance(1e-9, size, boundary.precision().at(std::max(size, largest_component(all))));
   numbers = PointNumbers(tolerance);
   for (int const p : patches) {
     BoundarySurface const& own = boundary.surface(p);

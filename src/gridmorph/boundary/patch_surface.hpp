@@ -47,5 +47,6 @@ struct PatchSurface {
 };
 
 double box_diagonal(std::vector<Vec3> const& points);
+double largest_component(std::vector<Vec3> const& points);
 
 }  // namespace gridmorph

@@ -14,7 +14,7 @@ namespace {
 /// Transforms and their inverses, those that carry points alike once.
 std::vector<RigidTransform> both_ways(Boundary const& boundary, std::vector<Vec3> const& points,
                                       std::vector<RigidTransform> const& transforms) {
-  double const tolerance = 1e-6 * boundary.size();
+  double const tolerance = place_tolerance(1e-6, boundary.size(), boundary.precision().resolution());
   std::vector<RigidTransform> copies;
   auto const add = [&](RigidTransform const& transform) {
     bool const known = std::any_of(copies.begin(), copies.end(), [&](RigidTransform const& other) {

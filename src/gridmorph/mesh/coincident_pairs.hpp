@@ -14,9 +14,4 @@ namespace gridmorph {
 std::vector<std::pair<Index, Index>> coincident_pairs(Coordinates const& coordinates, std::vector<Index> const& nodes,
                                                       std::function<int(Index node)> const& zone, double tolerance);
 
-/// How close nodes must be to count as one by default: 1e-8 of the mesh size, 1e-6 in single precision.
-inline double coincidence_tolerance(double mesh_size, bool single_precision) {
-  return (single_precision ? 1e-6 : 1e-8) * mesh_size;
-}
-
 }  // namespace gridmorph

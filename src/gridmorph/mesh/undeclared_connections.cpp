@@ -1,5 +1,6 @@
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/mesh/coincident_pairs.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
@@ -62,11 +63,9 @@ std::vector<Index> open_nodes(Mesh const& mesh) {
 std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& mesh, std::span<int const> groups) {
   DisjointSets<Index32> sets(coincident_nodes(mesh));
   if (mesh.zones.size() < 2) return sets.roots();
-  bool const single =
-      std::any_of(mesh.zones.begin(), mesh.zones.end(), [](auto const& zone) { return zone.single_precision; });
   auto const pairs = coincident_pairs(
       mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of(n); },
-      coincidence_tolerance(extent_of(host, mesh.coordinates).size(), single));
+      coincidence_tolerance(extent_of(host, mesh.coordinates).size(), coordinate_resolution(mesh)));
   for (auto const& [a, b] : pairs)
     if (groups.empty() || groups[std::size_t(a)] == groups[std::size_t(b)]) sets.join(Index32(a), Index32(b));
   return sets.roots();

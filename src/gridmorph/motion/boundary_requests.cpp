@@ -34,7 +34,8 @@ class Evaluation {
         boundary_(boundary),
         rules_(motion),
         motion_(motion.motion()),
-        tolerance_(motion_.conformity_tolerance * motion.boundary().size()),
+        tolerance_(displacement_tolerance(motion_.conformity_tolerance, motion.boundary().size(),
+                                          motion.boundary().precision().resolution())),
         values_(std::size_t(boundary.n_boundary_nodes)),
         given_by_(values_.size(), -1) {}
 

@@ -211,7 +211,8 @@ struct Motion {
   /// A patch that no rule matches: its CGNS type's default (symmetry slips on its plane, periodic pairs move freely as
   /// one, everything else stays fixed), or an error when strict.
   bool strict = false;
-  /// Displacements that differ by less than this times the mesh size on a shared edge are one and the same.
+  /// Displacements that differ by less than this times the mesh size on a shared edge, or by what the rounding of coordinates makes of
+  /// them, are one and the same.
   double conformity_tolerance = 1e-9;
 };
 

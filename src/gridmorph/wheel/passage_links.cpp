@@ -2,6 +2,7 @@
 
 #include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <algorithm>
 #include <map>
@@ -33,11 +34,14 @@ PassageLinks by_zone(Mesh const& mesh, std::vector<PassageLink> all, double mesh
 }  // namespace
 
 PassageLinks passage_links(Mesh const& mesh, Links const& links, TopologyOptions const& options) {
+  auto const precision = coordinate_precisions(mesh);
   std::vector<PassageLink> all;
   for (Link const& link : links.all) {
-    bool const single = mesh.zones[link.zone].single_precision || mesh.zones[link.donor_zone].single_precision;
     double const tolerance =
-        options.matching_tolerance > 0 ? options.matching_tolerance : (single ? 1e-6 : 1e-8) * links.mesh_size;
+        options.matching_tolerance > 0
+            ? options.matching_tolerance
+            : coincidence_tolerance(links.mesh_size, std::max(precision[link.zone].resolution(),
+                                                              precision[link.donor_zone].resolution()));
     PassageLink own{link.interface, link.zone, link.donor_zone, link.periodic, link.transform, link.mismatch,
                     tolerance,      {},        link.range,      link.to_donor};
     for_each_pair(mesh, link, [&](Index from, Index to) { own.pairs.push_back({from, to}); });
@@ -48,17 +52,12 @@ PassageLinks passage_links(Mesh const& mesh, Links const& links, TopologyOptions
 
 PassageLinks passage_links(Boundary const& boundary) {
   Mesh const& mesh = boundary.mesh();
-  constexpr double coincident = 1e-6;  // of the mesh size: as far apart as readers pair nodes
+  // As far apart as readers pair nodes.
+  double const coincident = place_tolerance(1e-6, boundary.size(), boundary.precision().resolution());
   std::vector<PassageLink> all;
   for (auto const& c : connections_of(mesh)) {
-    PassageLink link{c.number,
-                     c.zone,
-                     c.donor_zone,
-                     c.periodic.has_value(),
-                     {},
-                     0,
-                     coincident * boundary.size(),
-                     boundary.pairs(c.number)};
+    PassageLink link{c.number, c.zone, c.donor_zone, c.periodic.has_value(),
+                     {},       0,      coincident,   boundary.pairs(c.number)};
     if (link.pairs.empty()) continue;
     if (link.periodic) link.transform = boundary.transform(c.number);
     for (auto const& [from, to] : link.pairs) {

@@ -1,6 +1,7 @@
 #include <gridmorph/app/casefile/detail/side_tables.hpp>
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/core/suggest.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <fmt/format.h>
@@ -16,9 +17,6 @@ namespace {
 using casefile::Context;
 using casefile::TableReader;
 
-/// Of the mesh size, as for connections of a file.
-constexpr double matching_tolerance = 1e-6;
-
 class ElementsReader {
  public:
   ElementsReader(Context& context, Mesh& mesh) : context_(context), mesh_(mesh) {}
@@ -32,6 +30,11 @@ class ElementsReader {
   }
 
  private:
+  /// As for connections of a file.
+  [[nodiscard]] double tolerance_of_pairs() const {
+    return place_tolerance(1e-6, mesh_.size(), coordinate_resolution(mesh_));
+  }
+
   /// Patches of a name; a problem where there are none.
   std::vector<int> patches(TableReader& table, std::string const& key, std::string const& example) {
     std::vector<int> out;
@@ -83,7 +86,7 @@ class ElementsReader {
   std::pair<std::vector<Index32>, Periodic> partners(std::vector<Index32> const& own,
                                                      std::vector<Index32> const& donors,
                                                      Periodic const& periodic) const {
-    double const tolerance = matching_tolerance * mesh_.size();
+    double const tolerance = tolerance_of_pairs();
     auto const found = [](std::vector<Index32> const& list) {
       return std::count_if(list.begin(), list.end(), [](Index32 n) { return n >= 0; });
     };
@@ -124,7 +127,7 @@ class ElementsReader {
           fmt::format(
               "{} of its {} nodes have none of donor_patch within {:.3g} after the transform, the first "
               "is {}; check axis, angle and unit (the donor has {} nodes)",
-              missing, out.nodes.size(), matching_tolerance * mesh_.size(),
+              missing, out.nodes.size(), tolerance_of_pairs(),
               describe_node(mesh_, out.nodes[std::size_t(std::find(list.begin(), list.end(), -1) - list.begin())]),
               others.size()));
     out.donor_nodes = std::move(list);

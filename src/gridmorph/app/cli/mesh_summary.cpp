@@ -6,6 +6,7 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -150,7 +151,8 @@ void look_for_remedies(Mesh const& mesh, MeshSummary& summary) {
   Problems ignored;
   double worst = 0;
   for (auto const& link : connect(mesh, options, ignored).all) worst = std::max(worst, link.mismatch);
-  if (worst > 1e-8 * mesh.size() && worst < gross * mesh.size()) summary.needed_tolerance = 1.1 * worst;
+  if (worst > coincidence_tolerance(mesh.size(), coordinate_resolution(mesh)) && worst < gross * mesh.size())
+    summary.needed_tolerance = 1.1 * worst;
   options.matching_tolerance = summary.needed_tolerance;
   for (bool const open : {false, true}) {
     options.open_faces = open ? "open" : "";

@@ -1,6 +1,7 @@
 #include <gridmorph/app/cli/wheel_run.hpp>
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/report/quality_table.hpp>
 
 #include <fmt/format.h>
@@ -229,7 +230,8 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
   for (PassageLink const& link : sector_->links().all) mismatch = std::max(mismatch, link.mismatch);
   // Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
   double const tolerance =
-      4 * mismatch + std::max(1e-8, case_.motion.conformity_tolerance) * sector_->links().mesh_size;
+      4 * mismatch + displacement_tolerance(std::max(1e-8, case_.motion.conformity_tolerance),
+                                            sector_->links().mesh_size, coordinate_resolution(mesh_));
   for (int r = 0; r < int(seams.size()); ++r) {
     if (passage >= setup_.blades[r].passages) continue;
     seams[r].close(passage, placed_);

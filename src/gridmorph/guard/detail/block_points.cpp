@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/guard/detail/block_points.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 
 namespace gridmorph::detail {
 
@@ -78,10 +79,11 @@ void BlockPoints::keep_near_field(PreparedMorph const& prepared) {
 /// Nodes that a rotation between periodic copies leaves in place can only move along the axis.
 void BlockPoints::keep_axes(PreparedMorph const& prepared) {
   Coordinates const& x = prepared.mesh.coordinates;
+  double const tolerance = place_tolerance(1e-9, prepared.links.mesh_size, coordinate_resolution(prepared.mesh));
   for (Link const& link : prepared.links.all)
     if (link.periodic)
       for_each_pair(prepared.mesh, link, [&](Index own, Index donor) {
-        if (own == donor || distance(x[own], x[donor]) <= 1e-9 * prepared.links.mesh_size) keep(own);
+        if (own == donor || distance(x[own], x[donor]) <= tolerance) keep(own);
       });
 }
 

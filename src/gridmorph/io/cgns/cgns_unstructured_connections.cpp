@@ -6,6 +6,7 @@
 #include <gridmorph/io/cgns/cgns_unstructured_boundary.hpp>
 #include <gridmorph/io/cgns/cgns_unstructured_points.hpp>
 #include <gridmorph/mesh/block_elements.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
@@ -16,9 +17,6 @@ namespace gridmorph::cgns {
 
 namespace {
 
-/// Of the mesh size: single-precision coordinates agree to 1e-7 of their size.
-constexpr double matching_tolerance = 1e-6;
-
 class ConnectionReader {
  public:
   ConnectionReader(File const& file, Layout const& layout, std::vector<ListedFaces>& faces, Mesh& mesh,
@@ -28,7 +26,7 @@ class ConnectionReader {
         faces_(faces),
         mesh_(mesh),
         problems_(problems),
-        tolerance_(matching_tolerance * mesh.size()) {}
+        tolerance_(place_tolerance(1e-6, mesh.size(), coordinate_resolution(mesh))) {}
 
   void read(int z, Node const& node) {
     auto const& zone = layout_.zones[std::size_t(z)];

@@ -7,6 +7,7 @@
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/su2/su2_parser.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <algorithm>
@@ -175,7 +176,7 @@ class Builder {
       c.name = "PERIODIC_INDEX " + std::to_string(index);
       c.zone = c.donor_zone = z;
       if (index > 0) c.periodic = transform(text.periodic[std::size_t(index)]);
-      double const tolerance = 1e-6 * mesh_.size();
+      double const tolerance = place_tolerance(1e-6, mesh_.size(), coordinate_resolution(mesh_));
       double const mismatch = largest_mismatch(mesh_, c);
       if (mismatch > tolerance) std::swap(c.nodes, c.donor_nodes);
       if (mismatch > tolerance && largest_mismatch(mesh_, c) > tolerance) {

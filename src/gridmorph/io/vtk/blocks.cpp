@@ -9,6 +9,7 @@
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
 #include <gridmorph/io/vtk/pieces.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
@@ -199,7 +200,7 @@ class PointFinder {
 /// For each point of a surface the nodes that lie there, in the order of the mesh.
 std::vector<std::vector<Index32>> nodes_at(Leaf const& leaf, Mesh const& mesh, Coordinates const& places) {
   std::vector<std::vector<Index32>> out(leaf.coordinates.size() / 3);
-  double const tolerance = match_tolerance * mesh.size();
+  double const tolerance = place_tolerance(match_tolerance, mesh.size(), coordinate_resolution(mesh));
   if (!(tolerance > 0)) return out;
   PointFinder const finder(leaf.coordinates, tolerance);
   for (Index n = 0; n < places.size(); ++n)

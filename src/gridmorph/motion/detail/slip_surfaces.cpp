@@ -1,5 +1,6 @@
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 
+#include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/boundary/periodic_copies.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
@@ -30,12 +31,6 @@ std::string describe(Mesh const& mesh, Patches const& patches) {
   return text;
 }
 
-double largest_component(std::vector<Vec3> const& points) {
-  double most = 0;
-  for (Vec3 const& p : points) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  return most;
-}
-
 /// Nodes on the four edges of a grid; all of a surface that is none.
 std::vector<Index> outline_nodes(BoundarySurface const& surface) {
   if (!surface.grid) return surface.nodes;
@@ -51,7 +46,7 @@ std::vector<Index> outline_nodes(BoundarySurface const& surface) {
 /// only periodic copies meet. Compares the nodes on the outlines.
 std::vector<Patches> meridionally_connected(Boundary const& boundary, CylindricalFrame const& frame,
                                             Patches const& patches) {
-  double const tolerance = 1e-6 * boundary.size();
+  double const tolerance = place_tolerance(1e-6, boundary.size(), boundary.precision().resolution());
   struct Mark {
     MeridionalPoint at;
     int member;
@@ -168,9 +163,10 @@ class Finder {
     }
   }
 
-  /// 1e-6 of the patch's size, and the rounding of single-precision coordinates wherever they are.
-  static double flat(double extent, std::vector<Vec3> const& points) {
-    return 1e-6 * extent + 2e-7 * largest_component(points);
+  /// 1e-6 of the patch's size, and the rounding of its coordinates, at least that of single precision, wherever they are.
+  [[nodiscard]] double flat(double extent, std::vector<Vec3> const& points) const {
+    double const largest = largest_component(points);
+    return 1e-6 * extent + std::max(2e-7 * largest, 2 * boundary_.precision().at(largest));
   }
 
   void plane(Patches members, std::optional<std::pair<Vec3, Vec3>> const& given) {

@@ -13,8 +13,9 @@ namespace gridmorph {
 
 namespace {
 
-/// Targets of coincident nodes may differ by this share of the surface's size: files in single precision.
-constexpr double same_place = 1e-6;
+/// By how much targets of coincident nodes may differ: 1e-6 of the surface's size, since files of targets are in single precision, or
+/// what the precision of the mesh makes of it.
+double same_place(PatchSurface const& surface) { return std::max(1e-6 * surface.size, surface.tolerance); }
 
 /// How a patch is laid over a grid of its size.
 struct Layout {
@@ -92,7 +93,7 @@ class GridMatcher {
     for (int n = 0; n < grid.extent[1 - direction]; ++n) {
       Vec3 const first = direction == 0 ? point(grid, 0, n) : point(grid, n, 0);
       Vec3 const end = direction == 0 ? point(grid, last, n) : point(grid, n, last);
-      if (distance(first, end) > same_place * surface_.size) return false;
+      if (distance(first, end) > same_place(surface_)) return false;
     }
     return last > 2;
   }
@@ -142,8 +143,7 @@ class GridMatcher {
         from.push_back(surface_.points[v]);
         to.push_back(t);
         raw += dot(t - from.back(), t - from.back());
-        if (placed[v] != 0 && distance(t, target[v]) > same_place * surface_.size)
-          torn += surface_.size * surface_.size;
+        if (placed[v] != 0 && distance(t, target[v]) > same_place(surface_)) torn += surface_.size * surface_.size;
       }
     RigidTransform const fit = fit_rigid_transform(from, to);
     double bent = 0;
@@ -175,7 +175,7 @@ std::optional<std::vector<Vec3>> match_grids(PatchSurface const& surface, std::v
   std::vector<std::string> found;
   for (PatchGrid const& patch : surface.grids)
     if (!matcher.place(patch, found)) return std::nullopt;
-  if (matcher.gap > same_place * surface.size)
+  if (matcher.gap > same_place(surface))
     throw MotionError(name + ": the grids that were matched with the patches come apart at the node " +
                       to_text(surface.points[matcher.gap_vertex], 9) + " of patch " +
                       describe_patch(mesh, mesh.patches[matcher.gap_patch]) + " by " + std::to_string(matcher.gap) +
@@ -203,7 +203,7 @@ std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> con
       if (placed[v] == 0) {
         placed[v] = 1;
         target[v] = t;
-      } else if (distance(t, target[v]) > same_place * surface.size) {
+      } else if (distance(t, target[v]) > same_place(surface)) {
         throw MotionError(name + ": the node " + to_text(surface.points[v], 9) + " of patch " +
                           describe_patch(mesh, mesh.patches[patch.patch]) +
                           " coincides with one listed before, but goes to " + to_text(t, 9) + " (point " +

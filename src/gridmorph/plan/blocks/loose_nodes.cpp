@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/mesh/coincident_pairs.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/plan/blocks/loose_nodes.hpp>
 
 #include <algorithm>
@@ -27,10 +28,9 @@ std::vector<std::pair<Index, Index>> pairs_at_one_place(Mesh const& mesh, double
   std::vector<Index> const all = patch_nodes(mesh, false), sliding = patch_nodes(mesh, true);
   std::vector<Index> nodes;
   std::set_difference(all.begin(), all.end(), sliding.begin(), sliding.end(), std::back_inserter(nodes));
-  bool const single =
-      std::any_of(mesh.zones.begin(), mesh.zones.end(), [](Zone const& z) { return z.single_precision; });
   return coincident_pairs(
-      mesh.coordinates, nodes, [&](Index n) { return mesh.zone_of(n); }, coincidence_tolerance(mesh_size, single));
+      mesh.coordinates, nodes, [&](Index n) { return mesh.zone_of(n); },
+      coincidence_tolerance(mesh_size, coordinate_resolution(mesh)));
 }
 
 /// Slots of the nodes that occur in the pairs.

@@ -5,7 +5,7 @@
 
 namespace gridmorph {
 
-/// Says in a note of the plan how many nodes of patches coincide with nodes of another zone (1e-8 of the mesh size, 1e-6 in single precision)
+/// Says in a note of the plan how many nodes of patches coincide with nodes of another zone (coincidence_tolerance())
 /// that they share no displacement with, and where the first are: without an interface each zone goes its own way there. Nodes
 /// of connections that do not match node to node are left out, as they are to slide, and those that one rule displaces on both
 /// sides. Call with the plan's skeleton complete. Cost O(n log n) in the nodes of patches.

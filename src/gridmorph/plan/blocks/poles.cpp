@@ -1,3 +1,4 @@
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/plan/blocks/poles.hpp>
 
 #include <algorithm>
@@ -47,7 +48,8 @@ std::vector<PoleFace> pole_faces(Mesh const& mesh, Topology const& topology, Res
     for (int a = 0; a < 3; ++a)
       if (p[a] % 2 == 1) axes[n++] = a;
     double const l0 = longest_edge(mesh, zone, r, axes[0]), l1 = longest_edge(mesh, zone, r, axes[1]);
-    if (std::min(l0, l1) > 1e-12 * mesh_size) continue;  // declared degenerate, but an ordinary face
+    if (std::min(l0, l1) > std::max(1e-12 * mesh_size, coordinate_resolution(mesh, lattice.zone_of(face.entity))))
+      continue;  // declared degenerate, but an ordinary face
     face.along = l0 > l1 ? axes[0] : axes[1];
     face.around = l0 > l1 ? axes[1] : axes[0];
     for (int end = 0; end < 2; ++end) {
