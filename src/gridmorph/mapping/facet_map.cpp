@@ -125,8 +125,9 @@ bool FacetMap::Impl::at_free_side(Hit const& hit) const {
   return false;
 }
 
-Stencil FacetMap::stencil(Vec3 const& q) const {
-  Impl::Hit const hit = impl_->closest(q);
+Stencil FacetMap::stencil(Vec3 const& q, Vec3 const& anchor) const {
+  Impl::Hit hit = impl_->closest(anchor);
+  if (!(anchor == q)) hit.point = impl_->shapes[hit.facet].closest(q);
   StructuralFacet const& facet = impl_->facets[hit.facet];
   FacetShape const& shape = impl_->shapes[hit.facet];
   FacetPoint const& p = hit.point;

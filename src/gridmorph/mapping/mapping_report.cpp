@@ -50,6 +50,9 @@ std::string describe_inverse(InverseField const& inverse) {
       "taken back by iteration: |X + u(X) - x| is at most {:.3g} (tolerance {:.3g}) after {} iterations of {} node "
       "positions",
       r.residual, inverse.tolerance(), r.iterations, r.evaluated);
+  if (r.held > 0)
+    text += fmt::format("; {} of them went to and fro between elements of the model and were held on one", r.held);
+  if (r.jump > 0) text += fmt::format(", where the displacement jumps by up to {:.3g} to the next", r.jump);
   if (r.one_step > 0)
     text += fmt::format("; one step, x - u(x), leaves {:.3g} at {}", r.one_step, to_text(r.worst_of_one_step, 6));
   return text;
@@ -61,6 +64,8 @@ nlohmann::json inverse_json(InverseField const& inverse) {
           {"iterations", r.iterations},
           {"tolerance", inverse.tolerance()},
           {"residual", r.residual},
+          {"held", r.held},
+          {"jump", r.jump},
           {"residual_of_one_step", r.one_step}};
 }
 

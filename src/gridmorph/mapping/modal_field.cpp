@@ -21,6 +21,17 @@ struct Group {
   std::vector<std::vector<Vec3>> further;
 };
 
+/// The sum over fields of what evaluate(f, displacement) makes of each.
+template <class Evaluate>
+void sum_over(std::size_t fields, std::span<Vec3> displacement, Evaluate const& evaluate) {
+  std::fill(displacement.begin(), displacement.end(), Vec3{0, 0, 0});
+  std::vector<Vec3> one(displacement.size());
+  for (std::size_t f = 0; f < fields; ++f) {
+    evaluate(f, std::span<Vec3>(one));
+    for (std::size_t n = 0; n < one.size(); ++n) displacement[n] += one[n];
+  }
+}
+
 }  // namespace
 
 Oscillation oscillation(double turns) {
@@ -71,8 +82,7 @@ ModalField::ModalField(std::optional<StructuralModel> mean, std::vector<Mode> mo
     fields_.push_back(std::make_shared<PointField const>(std::move(group.model), options, std::move(group.further)));
 }
 
-void ModalField::at(double periods, std::span<double const> load_factors, std::span<Vec3 const> points,
-                    std::span<Vec3> displacement, bool iterates) const {
+std::vector<std::vector<double>> ModalField::factors_at(double periods, std::span<double const> load_factors) const {
   std::vector<std::vector<double>> factors;
   for (auto const& field : fields_) factors.emplace_back(field->n_fields(), 0.0);
   if (mean_) factors[mean_->field][mean_->real] = 1;
@@ -82,12 +92,21 @@ void ModalField::at(double periods, std::span<double const> load_factors, std::s
     factors[part.field][part.real] = part.amplitude * cosine;
     if (part.complex) factors[part.field][part.imaginary] = -part.amplitude * sine;
   }
-  std::fill(displacement.begin(), displacement.end(), Vec3{0, 0, 0});
-  std::vector<Vec3> one(points.size());
-  for (std::size_t f = 0; f < fields_.size(); ++f) {
-    fields_[f]->evaluate(factors[f], points, one, iterates);
-    for (std::size_t n = 0; n < one.size(); ++n) displacement[n] += one[n];
-  }
+  return factors;
+}
+
+void ModalField::held(double periods, std::span<double const> load_factors, std::span<Vec3 const> points,
+                      std::span<Vec3 const> anchors, std::span<Vec3> displacement) const {
+  auto const factors = factors_at(periods, load_factors);
+  sum_over(fields_.size(), displacement,
+           [&](std::size_t f, std::span<Vec3> one) { fields_[f]->held(factors[f], points, anchors, one); });
+}
+
+void ModalField::at(double periods, std::span<double const> load_factors, std::span<Vec3 const> points,
+                    std::span<Vec3> displacement, bool iterates) const {
+  auto const factors = factors_at(periods, load_factors);
+  sum_over(fields_.size(), displacement,
+           [&](std::size_t f, std::span<Vec3> one) { fields_[f]->evaluate(factors[f], points, one, iterates); });
 }
 
 }  // namespace gridmorph

@@ -37,6 +37,9 @@ class ModalField {
   /// as PointField does.
   void at(double periods, std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
           bool iterates = false) const;
+  /// PointField::held(), summed.
+  void held(double periods, std::span<double const> factors, std::span<Vec3 const> points,
+            std::span<Vec3 const> anchors, std::span<Vec3> displacement) const;
   void at(double periods, std::span<Vec3 const> points, std::span<Vec3> displacement) const {
     at(periods, {}, points, displacement);
   }
@@ -54,6 +57,9 @@ class ModalField {
     bool complex = false;
     double amplitude = 1, harmonic = 0, phase_turns = 0;
   };
+  /// Of every field of every model at that time.
+  [[nodiscard]] std::vector<std::vector<double>> factors_at(double periods, std::span<double const> loads) const;
+
   std::vector<std::shared_ptr<PointField const>> fields_;
   std::vector<Part> modes_;
   std::vector<Part> loads_;

@@ -52,6 +52,8 @@ struct PointField::Impl {
   void scale();
   void check(Vec3 const& q, Stencil const& stencil) const;
   [[nodiscard]] Stencil make(Vec3 const& q) const;
+  [[nodiscard]] std::vector<Vec3> sum_of(std::span<double const> factors) const;
+  [[nodiscard]] std::vector<Vec3> rotations(std::vector<Vec3> const& field) const;
   void evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> points, std::span<Vec3> displacement,
                 bool iterates) const;
 };
@@ -116,10 +118,22 @@ void count(MappingDistance& to, double& sum, Vec3 const& q, Stencil const& stenc
 
 }  // namespace
 
+std::vector<Vec3> PointField::Impl::rotations(std::vector<Vec3> const& field) const {
+  return facets && options.turn_offset ? nodal_rotations(model, field) : std::vector<Vec3>();
+}
+
+std::vector<Vec3> PointField::Impl::sum_of(std::span<double const> factors) const {
+  std::vector<Vec3> sum(model.nodes.size());
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (factors[f] == 0) continue;
+    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += factors[f] * fields[f][n];
+  }
+  return sum;
+}
+
 void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> at, std::span<Vec3> displacement,
                                 bool iterates) const {
-  std::vector<Vec3> rotation;
-  if (facets && options.turn_offset) rotation = nodal_rotations(model, field);
+  std::vector<Vec3> const rotation = rotations(field);
   if (iterates) {
     for (std::size_t n = 0; n < at.size(); ++n) displacement[n] = apply(make(at[n]), field, rotation);
     return;
@@ -187,12 +201,16 @@ void PointField::operator()(std::span<Vec3 const> points, std::span<Vec3> displa
 
 void PointField::evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
                           bool iterates) const {
-  std::vector<Vec3> field(size());
-  for (std::size_t f = 0; f < factors.size(); ++f) {
-    if (factors[f] == 0) continue;
-    for (std::size_t n = 0; n < field.size(); ++n) field[n] += factors[f] * impl_->fields[f][n];
-  }
-  impl_->evaluate(field, points, displacement, iterates);
+  impl_->evaluate(impl_->sum_of(factors), points, displacement, iterates);
+}
+
+void PointField::held(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3 const> anchors,
+                      std::span<Vec3> displacement) const {
+  std::vector<Vec3> const field = impl_->sum_of(factors), rotation = impl_->rotations(field);
+  for (std::size_t n = 0; n < points.size(); ++n)
+    displacement[n] = apply(
+        impl_->facets ? impl_->facets->stencil(points[n], anchors[n]) : impl_->points->stencil(points[n], anchors[n]),
+        field, rotation);
 }
 
 std::size_t PointField::size() const { return impl_->model.nodes.size(); }

@@ -66,6 +66,9 @@ class PointField {
   /// `iterates`: the points are no nodes but on the way to some; they are neither kept nor counted in mapping().
   void evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
                 bool iterates = false) const;
+  /// At points that are no nodes, each by the element or the points that its anchor, a place nearby, is mapped from.
+  void held(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3 const> anchors,
+            std::span<Vec3> displacement) const;
 
   [[nodiscard]] std::size_t size() const;        ///< nodes kept
   [[nodiscard]] std::size_t n_elements() const;  ///< 0: a cloud of points

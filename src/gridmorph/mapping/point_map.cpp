@@ -110,6 +110,10 @@ struct PointMap::Impl {
   std::vector<std::unique_ptr<Level>> levels;  // all points first
   Extrapolation extrapolation;
   double coincidence = 0;
+
+  [[nodiscard]] Neighbours around(Vec3 const& q, std::optional<std::size_t> without) const;
+  /// `out` knows the nearest point.
+  [[nodiscard]] Stencil fit(Neighbours const& near, Stencil out) const;
 };
 
 PointMap::PointMap(std::vector<Vec3> const& position, Extrapolation extrapolation) : impl_(std::make_unique<Impl>()) {
@@ -138,6 +142,15 @@ std::pair<std::size_t, double> PointMap::nearest(Vec3 const& q) const {
   return {number, std::sqrt(squared)};
 }
 
+Neighbours PointMap::Impl::around(Vec3 const& q, std::optional<std::size_t> without) const {
+  Neighbours near;
+  for (auto const& level : levels) {
+    near.add(*level, q, without);
+    if (!on_a_line(near)) break;
+  }
+  return near;
+}
+
 Stencil PointMap::stencil(Vec3 const& q, std::optional<std::size_t> without) const {
   Stencil out;
   if (!without) {
@@ -147,17 +160,28 @@ Stencil PointMap::stencil(Vec3 const& q, std::optional<std::size_t> without) con
     out.coincident = d <= impl_->coincidence;
     if (out.coincident) return out;
   }
-  Neighbours near;
-  for (auto const& level : impl_->levels) {
-    near.add(*level, q, without);
-    if (!on_a_line(near)) break;
-  }
+  return impl_->fit(impl_->around(q, without), out);
+}
+
+Stencil PointMap::stencil(Vec3 const& q, Vec3 const& anchor) const {
+  Stencil out;
+  auto const [number, d] = nearest(q);
+  out.reference = std::int32_t(number);
+  out.distance = d;
+  out.coincident = d <= impl_->coincidence;
+  if (out.coincident) return out;
+  Neighbours near = impl_->around(anchor, std::nullopt);
+  for (Vec3& offset : near.offset) offset += anchor - q;
+  return impl_->fit(near, out);
+}
+
+Stencil PointMap::Impl::fit(Neighbours const& near, Stencil out) const {
   std::vector<double> w = weights(near.offset);
   auto const [centre, axes] = spread_of(near.offset, w);
   std::vector<double> gradient(w.size(), 0.0);
   double const cut = flat_like * axes.moment[0];
   Vec3 const edge = to_the_edge(near);
-  Vec3 const place = impl_->extrapolation == Extrapolation::nearest ? edge : Vec3{0, 0, 0};
+  Vec3 const place = extrapolation == Extrapolation::nearest ? edge : Vec3{0, 0, 0};
   for (int k = 0; k < 3; ++k) {
     double const lambda = axes.moment[k];
     if (!(lambda > 0)) continue;

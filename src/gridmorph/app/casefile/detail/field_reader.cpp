@@ -242,9 +242,13 @@ TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& opti
     if (inverse)
       return FunctionRule{description + ", taken back",
                           [field, when, now, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
-                            (*inverse)([&](std::span<Vec3 const> places, std::span<Vec3> there,
-                                           bool iterates) { field->at(when.periods, now, places, there, iterates); },
-                                       share, points, u);
+                            (*inverse)(
+                                [&](std::span<Vec3 const> places, std::span<Vec3> there, bool iterates) {
+                                  field->at(when.periods, now, places, there, iterates);
+                                },
+                                share, points, u,
+                                [&](std::span<Vec3 const> places, std::span<Vec3 const> anchors,
+                                    std::span<Vec3> there) { field->held(when.periods, now, places, anchors, there); });
                           }};
     return shared_field(description, share, [field, when, now](std::span<Vec3 const> points, std::span<Vec3> u) {
       field->at(when.periods, now, points, u);
@@ -322,15 +326,19 @@ TimedRule read_field(TableReader& table, RuleContext const& shared, CaseFile& ou
     TimedRule rule;
     if (inverse) {
       rule.at = [field, inverse, description](double share, Moment const&) {
-        return FunctionRule{description + ", taken back",
-                            [field, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
-                              (*inverse)(
-                                  [&](std::span<Vec3 const> places, std::span<Vec3> there, bool iterates) {
-                                    constexpr double all = 1;
-                                    field->evaluate({&all, 1}, places, there, iterates);
-                                  },
-                                  share, points, u);
-                            }};
+        return FunctionRule{
+            description + ", taken back", [field, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
+              (*inverse)(
+                  [&](std::span<Vec3 const> places, std::span<Vec3> there, bool iterates) {
+                    constexpr double all = 1;
+                    field->evaluate({&all, 1}, places, there, iterates);
+                  },
+                  share, points, u,
+                  [&](std::span<Vec3 const> places, std::span<Vec3 const> anchors, std::span<Vec3> there) {
+                    constexpr double all = 1;
+                    field->held({&all, 1}, places, anchors, there);
+                  });
+            }};
       };
       return rule;
     }
