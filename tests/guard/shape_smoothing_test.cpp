@@ -221,5 +221,76 @@ TEST_P(TangledBox, GoesBackToTheBaseline) {
 INSTANTIATE_TEST_SUITE_P(Boxes, TangledBox,
                          testing::Combine(testing::Values(Shape::straight, Shape::curved), testing::Values(0.7, 1.0)));
 
+/// Two boxes that have nothing in common: what is made of one is kept, whatever becomes of the other.
+class TwoBoxes {
+ public:
+  static Mesh mesh() {
+    MeshBuilder builder("two");
+    for (int z = 0; z < 2; ++z) {
+      Index3 const n = z == 0 ? Index3{9, 8, 7} : Index3{5, 5, 5};
+      builder.zone(z == 0 ? "near" : "far", n, [z](Index3 const& p) {
+        return Vec3{double(p[0]) + 20 * z, double(p[1]) + 0.1 * p[0], 1.2 * p[2]};
+      });
+      for (int axis = 0; axis < 3; ++axis)
+        for (int const side : {0, 1}) builder.patch("wall", PatchKind::wall, z, axis, side);
+    }
+    return builder.finish();
+  }
+
+  [[nodiscard]] Coordinates tangled(std::array<double, 2> const& amplitude, unsigned seed) const {
+    Coordinates out = copy_of(run.mesh.coordinates);
+    Random random(seed);
+    for (std::size_t z = 0; z < 2; ++z) {
+      Zone const& zone = run.mesh.zones[z];
+      for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
+        Index3 const p = zone.index(n);
+        bool inside = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) inside = inside && p[axis] > 0 && p[axis] + 1 < zone.extent[axis];
+        // The second one with its faces, so that it has cells that nothing mends.
+        if (inside || z == 1) out.set(n, out[n] + random.vector(amplitude[z]));
+      }
+    }
+    return out;
+  }
+
+  struct Kept {
+    bool changed = false;
+    Index inverted = 0;
+  };
+  /// What became of one box, as the other is at home or not.
+  [[nodiscard]] Kept of_box(std::size_t z, Coordinates const& before, Coordinates const& after) const {
+    Zone const& zone = run.mesh.zones[z];
+    Coordinates x = copy_of(run.mesh.coordinates);
+    Kept out;
+    for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
+      x.set(n, after[n]);
+      out.changed = out.changed || !same_bits(before[n], after[n]);
+    }
+    out.inverted = inside_out(run.mesh, x).first;
+    return out;
+  }
+
+  Outcome run = morph(mesh(), motion({rule({"*"}, FixedRule{})}));
+};
+
+TEST(SmoothingOfParts, IsKeptWhereItHelpsAndTakenBackWhereItDoesNot) {
+  TwoBoxes const boxes;
+  int mixed = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    Coordinates const tangled = boxes.tangled({0.6, 2}, seed);
+    auto const [x, report] = smooth(boxes.run, tangled);
+    std::array<TwoBoxes::Kept, 2> was, is;
+    for (std::size_t z = 0; z < 2; ++z) {
+      was[z] = boxes.of_box(z, tangled, tangled);
+      is[z] = boxes.of_box(z, tangled, x);
+      EXPECT_LE(is[z].inverted, was[z].inverted) << seed << " box " << z;
+    }
+    EXPECT_TRUE(is[0].changed) << seed;
+    EXPECT_LT(is[0].inverted, was[0].inverted) << seed;
+    mixed += is[0].changed && !is[1].changed ? 1 : 0;
+  }
+  EXPECT_GT(mixed, 0) << "no box is made worse";
+}
+
 }  // namespace
 }  // namespace gridmorph::test

@@ -1,3 +1,4 @@
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/guard/detail/shape_sweeps.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
@@ -34,6 +35,28 @@ struct ShapeCount {
   }
 };
 
+/// Parts of a region that have no cell in common: what becomes of one does not change another.
+struct RegionPieces {
+  std::size_t count = 0;
+  std::vector<Index32> of_cell, of_point;
+
+  explicit RegionPieces(ShapeRegion const& region) {
+    DisjointSets<Index32> sets(region.cells.size());
+    for (Index p = 0; p < region.n_points(); ++p) {
+      auto const corners = region.corners_of(p);
+      for (detail::PointCorner const& c : corners) sets.join(corners.front().cell, c.cell);
+    }
+    std::vector<Index32> number(region.cells.size(), -1);
+    for (std::size_t c = 0; c < region.cells.size(); ++c) {
+      Index32& piece = number[std::size_t(sets.root(Index32(c)))];
+      if (piece < 0) piece = Index32(count++);
+      of_cell.push_back(piece);
+    }
+    for (Index p = 0; p < region.n_points(); ++p)
+      of_point.push_back(of_cell[std::size_t(region.corners_of(p).front().cell)]);
+  }
+};
+
 class ShapeSmoothing {
  public:
   ShapeSmoothing(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,
@@ -56,13 +79,12 @@ class ShapeSmoothing {
       } else if (before.inverted == 0) {
         break;
       }
+      RegionPieces const pieces(region);
       std::vector<Vec3> const places = places_of(region);
+      std::vector<ShapeCount> const had = count(region, pieces);
       detail::smooth_region(host_, prepared_, region, round.sweeps, round.relaxation, x_);
+      if (!put_back_worse(region, pieces, had, places)) continue;
       ShapeCount const after = count(region);
-      if (!after.better_than(before)) {
-        put_back(region, places);
-        continue;
-      }
       ++report.rounds;
       report.triggered_after = after.lost;
       report.inverted_after = after.inverted;
@@ -208,8 +230,29 @@ class ShapeSmoothing {
     for (detail::PointNode const& n : region.nodes) places.push_back(x_[n.node]);
     return places;
   }
-  void put_back(ShapeRegion const& region, std::vector<Vec3> const& places) {
-    for (std::size_t n = 0; n < places.size(); ++n) x_.set(region.nodes[n].node, places[n]);
+  [[nodiscard]] std::vector<ShapeCount> count(ShapeRegion const& region, RegionPieces const& pieces) const {
+    std::vector<ShapeCount> out(pieces.count);
+    std::vector<CellShape> const all = shapes(region);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      ShapeCount& piece = out[std::size_t(pieces.of_cell[n])];
+      piece.lost += all[n].lost ? 1 : 0;
+      piece.inverted += all[n].inverted ? 1 : 0;
+      piece.smallest = std::min(piece.smallest, all[n].smallest);
+    }
+    return out;
+  }
+  /// Of pieces that are not better than they were; whether any is.
+  bool put_back_worse(ShapeRegion const& region, RegionPieces const& pieces, std::vector<ShapeCount> const& had,
+                      std::vector<Vec3> const& places) {
+    std::vector<ShapeCount> const has = count(region, pieces);
+    std::vector<std::uint8_t> better;
+    for (std::size_t p = 0; p < pieces.count; ++p) better.push_back(has[p].better_than(had[p]) ? 1 : 0);
+    for (Index point = 0; point < region.n_points(); ++point) {
+      if (better[std::size_t(pieces.of_point[std::size_t(point)])] != 0) continue;
+      for (Index n = region.first_node[std::size_t(point)]; n < region.first_node[std::size_t(point) + 1]; ++n)
+        x_.set(region.nodes[std::size_t(n)].node, places[std::size_t(n)]);
+    }
+    return std::find(better.begin(), better.end(), 1) != better.end();
   }
 
   HostInstance const& host_;

@@ -56,8 +56,8 @@ ShapeSmoothingReport smooth_frozen(HostInstance const& host, PreparedMorph const
 /// lost 98 % of its volume. Nodes that coincide, and periodic copies of them, are one point. Points of the near field, with
 /// a given displacement (but for periodic interfaces that follow a blade), on axes, poles and boundaries without a slip surface stay; points on slip surfaces slide on them.
 ///
-/// A round is kept if fewer cells are inverted after it, or as many and the smallest scaled Jacobian is larger, or the same and fewer
-/// cells have lost their shape; otherwise all nodes are put back bit for bit. Nothing happens where no cell lost
+/// A round is kept in every part of the region, of those that have no cell in common, in which fewer cells are inverted after it, or as many and the smallest
+/// scaled Jacobian is larger, or the same and fewer cells have lost their shape; nodes of the other parts are put back bit for bit. Nothing happens where no cell lost
 /// its shape. Explicit, the same bits for any number of threads. `handedness`: zone_handedness() of the baseline.
 ///
 /// Cost: one look at all cells; where some lost their shape, two bytes and two numbers per node of the mesh, and in the region
