@@ -47,7 +47,7 @@ struct Corner {
         Vec3 const& a = arm[std::size_t(m)];
         neighbours.push_back({Index(m + 1), -1, a});
       }
-    table.roots = view<kernels::Root>({{0, 0, 6, 1, 0, line}});
+    table.roots = view<kernels::Root>({{0, 0, 0, 6, 1, 0, line}});
     table.neighbours = view(neighbours);
   }
   /// Of the corner and its neighbours by a function of the place.
@@ -122,7 +122,7 @@ TEST(RootTurn, IsThatOfShortArmsToo) {
           u.field().set(m + 1, after.at(a, h) - before.at(a, h));
         }
       kernels::RootTable<Host> table;
-      table.roots = view<kernels::Root>({{0, 0, std::int32_t(neighbours.size()), 1, 0, {}}});
+      table.roots = view<kernels::Root>({{0, 0, 0, std::int32_t(neighbours.size()), 1, 0, {}}});
       table.neighbours = view(neighbours);
       Vec3 const found = raw_turn(table, u);
       for (int k = 0; k < 3; ++k)

@@ -30,6 +30,7 @@ struct RootNeighbour {
 /// Neighbours are pairs as in wall_turn.hpp.
 struct Root {
   Index slot;
+  Index centre;  ///< slot, of the same frame, whose neighbours these are: its own, or another one's whose turn it makes
   Index first_neighbour;
   std::int32_t n_neighbours;
   std::int32_t stands;  ///< a line of the near field stands on it; otherwise it is there for RootEnd::wall alone
@@ -112,7 +113,7 @@ struct RawRootTurn {
  private:
   /// By differences of displacements: nothing turns where all are the same.
   KOKKOS_INLINE_FUNCTION V turn_at(Root const& root) const {
-    V const here = u[root.slot];
+    V const here = u[root.centre];
     auto const before = [&](Index k) { return V{table.neighbours(root.first_neighbour + k).arm}; };
     auto const after = [&](Index k) {
       RootNeighbour const& other = table.neighbours(root.first_neighbour + k);

@@ -90,7 +90,7 @@ void pull_back(char const* label, Exec const& exec, Dependents<typename Exec::me
 }
 
 /// Transpose of RawRootTurn: gradients of the displacements of a root's neighbours, at their places in the table in the frame of the
-/// root's slot, and after those of all roots that of its own slot.
+/// root's slot, and after those of all roots that of its centre.
 template <class MemorySpace>
 struct RawRootTurnBack {
   RootTable<MemorySpace> table;
@@ -103,7 +103,7 @@ struct RawRootTurnBack {
     Vec3 const g = raw[r];
     Index const own = Index(table.neighbours.extent(0)) + r;
     if (g == Vec3{}) return clear(root, own);
-    Fan const fan{table, root, u, u[root.slot]};
+    Fan const fan{table, root, u, u[root.centre]};
     ArmWeights const weight(root.n_neighbours, [&](Index k) { return table.neighbours(root.first_neighbour + k).arm; });
     FanMoments sums;
     Vec3 normal, moved;

@@ -169,7 +169,7 @@ TransposedTurns<Exec> turns_of(Exec const& exec, DeviceTurns<Exec> const& turns)
   for (std::size_t r = 0; r < roots.size(); ++r) {
     for (Index k = roots[r].first_neighbour; k < roots[r].first_neighbour + roots[r].n_neighbours; ++k)
       parts.push_back({neighbours[std::size_t(k)].slot, k, neighbours[std::size_t(k)].matrix});
-    parts.push_back({roots[r].slot, Index(neighbours.size() + r)});
+    parts.push_back({roots[r].centre, Index(neighbours.size() + r)});
     for (Index m = 0; m < 2; ++m) {
       kernels::RootEnd const& end = ends[r].end[m];
       if (end.end < 0) continue;

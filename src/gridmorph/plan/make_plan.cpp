@@ -1,6 +1,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/rotation.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/plan/blocks/boundary.hpp>
 #include <gridmorph/plan/blocks/chain_laws.hpp>
 #include <gridmorph/plan/blocks/independent_chains.hpp>
@@ -470,6 +471,10 @@ std::vector<int> inner_boxes(Mesh const& mesh, Topology const& topology, std::ve
   return box_of_piece;
 }
 
+/// Arms that say how walls turn are so many times longer than what coordinates resolve. A deformation by a twentieth turns them by a
+/// twentieth of the rest, and lines of the near field that stand beside one another must not cross for that.
+constexpr double resolved_arm = 256;
+
 /// The topology with blocks that end at these planes, which become those of `limits`.
 Topology bounded_topology(Mesh const& mesh, Links const& links, std::vector<CutPlane> planes, MergeLimits& limits) {
   std::sort(planes.begin(), planes.end());
@@ -551,6 +556,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   if (std::none_of(topology.links.all.begin(), topology.links.all.end(),
                    [](Link const& link) { return link.periodic; }))
     roots.find_bodies();
+  roots.turn_as_resolved(resolved_arm * coordinate_resolution(basis.mesh));
   roots.mark(known);
   scheduler.near_field(near_field_chains(basis.mesh, basis.topology, known, basis.fields));
   HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(basis.fields, roots);

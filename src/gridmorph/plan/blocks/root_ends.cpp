@@ -76,7 +76,7 @@ class EndFinder {
         [&](Index slot) {
           if (walls_.of_slot(slot) < 0) return std::int32_t(-1);
           auto const [found, fresh] = end_node_.try_emplace(slot, std::int32_t(end_nodes_.size()));
-          if (fresh) end_nodes_.push_back({.slot = slot});
+          if (fresh) end_nodes_.push_back({.slot = slot, .centre = slot});
           return found->second;
         },
         end_nodes_);
@@ -174,8 +174,8 @@ Vec3 along_normals(RootNode const& node) {
 
 void append(std::vector<RootNode> const& nodes, bool stand, TurnTables& tables) {
   for (RootNode const& n : nodes) {
-    tables.roots.push_back({n.slot, Index(tables.neighbours.size()), std::int32_t(n.around.size()), stand ? 1 : 0,
-                            n.turn, is_edge(n) ? along_normals(n) : Vec3{}});
+    tables.roots.push_back({n.slot, n.centre, Index(tables.neighbours.size()), std::int32_t(n.around.size()),
+                            stand ? 1 : 0, n.turn, is_edge(n) ? along_normals(n) : Vec3{}});
     tables.neighbours.insert(tables.neighbours.end(), n.around.begin(), n.around.end());
   }
 }

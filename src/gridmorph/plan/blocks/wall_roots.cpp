@@ -2,7 +2,10 @@
 
 #include <gridmorph/kernels/box_tree.hpp>
 
+#include <algorithm>
 #include <numeric>
+#include <queue>
+#include <tuple>
 #include <utility>
 
 namespace gridmorph {
@@ -109,7 +112,7 @@ void WallRoots::add_walls(std::vector<int> const& patches, double turn) {
       for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
         RootFace::Node const& node = face(p, q);
         auto const [found, fresh] = of_slot_.try_emplace(node.slot, std::int32_t(nodes_.size()));
-        if (fresh) nodes_.push_back({.slot = node.slot, .turn = turn});
+        if (fresh) nodes_.push_back({.slot = node.slot, .centre = node.slot, .turn = turn});
         place_[zone.node(face.at(p, q))] = {found->second, node.copy};
       }
     add_neighbours(
@@ -207,6 +210,44 @@ void WallRoots::join_coincident() {
     list.insert(list.end(), nodes_[r].around.begin(), nodes_[r].around.end());
   }
   for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].around = together[std::size_t(first[r])];
+}
+
+void WallRoots::turn_as_resolved(double least) {
+  auto const is_resolved = [&](RootNode const& node) {
+    return std::ranges::none_of(node.around, [&](kernels::RootNeighbour const& k) {
+      double const length = norm(k.arm);
+      return length > 0 && length < least;
+    });
+  };
+  std::vector<char> resolved(nodes_.size());
+  std::ranges::transform(nodes_, resolved.begin(), is_resolved);
+  std::vector<std::int32_t> source(nodes_.size(), -1);
+  using Reached = std::tuple<double, std::int32_t, std::int32_t>;  // length of the way, its end, its source
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> ways;
+  // Turns are vectors in the frame of a slot, so that ways end where that changes.
+  auto const for_neighbours = [&](std::int32_t r, auto const& visit) {
+    for (kernels::RootNeighbour const& k : nodes_[std::size_t(r)].around)
+      if (k.matrix < 0) visit(of_slot_.at(k.slot), norm(k.arm));
+  };
+  for (std::int32_t r = 0; r < std::int32_t(nodes_.size()); ++r)
+    if (!resolved[std::size_t(r)])
+      for_neighbours(r, [&](std::int32_t other, double length) {
+        if (resolved[std::size_t(other)]) ways.emplace(length, r, other);
+      });
+  while (!ways.empty()) {
+    auto const [length, r, from] = ways.top();
+    ways.pop();
+    if (source[std::size_t(r)] >= 0) continue;
+    source[std::size_t(r)] = from;
+    for_neighbours(r, [&](std::int32_t other, double step) {
+      if (!resolved[std::size_t(other)] && source[std::size_t(other)] < 0) ways.emplace(length + step, other, from);
+    });
+  }
+  for (std::size_t r = 0; r < nodes_.size(); ++r) {
+    if (source[r] < 0) continue;
+    nodes_[r].around = nodes_[std::size_t(source[r])].around;
+    nodes_[r].centre = nodes_[std::size_t(source[r])].slot;
+  }
 }
 
 }  // namespace gridmorph

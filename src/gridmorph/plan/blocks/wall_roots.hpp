@@ -35,6 +35,7 @@ struct RootFace {
 /// A node of a wall and those beside it in its faces.
 struct RootNode {
   Index slot = -1;
+  Index centre = -1;  ///< slot whose neighbours these are
   std::vector<kernels::RootNeighbour> around = {};
   double thickness = 0;  ///< of the near field there
   double turn = 0;       ///< share of the turn that the outer edge makes
@@ -64,6 +65,9 @@ class WallRoots {
   void add_walls(std::vector<int> const& patches, double turn);
   /// Nodes at one place turn alike: those of edges that have no length. Call after all walls.
   void join_coincident();
+  /// Nodes beside which others are less than `least` away turn as the nearest node along the walls that has none so near: what coordinates
+  /// resolve there is no direction. Call after find_bodies(). Cost O(n log n) in such nodes.
+  void turn_as_resolved(double least);
   /// Finds the bodies: walls that touch. Call after all walls, where all zones share one frame.
   void find_bodies();
   /// Marks what is on the walls as coming with a rotation.
