@@ -235,7 +235,7 @@ TEST(ResolvedWalls, KeepAnglesAndHeightsOfNearFieldsThatTurn) {
 // First cells of the end walls are three times what single precision resolves there.
 TEST(ResolvedWalls, InSinglePrecisionAreSoundToo) {
   for (ResolvedPassage resolved : passages()) {
-    resolved.options.end_wall_first_cell = 1e-6 * 0.15;
+    resolved.options.end_wall_first_cell = 1e-6;
     Passage const passage(resolved, true);
     ASSERT_EQ(passage.inverted(passage.mesh().coordinates), 0) << resolved.name;
     for (auto const& [name, motion] : motions()) {
