@@ -22,6 +22,7 @@ Motion bent_wing(double share) {
   };
   AttachedRule carried;
   carried.of = {"wing"};
+  carried.near = {{15, 6, -0.35}, 1.5};
   return motion({rule({"wing", "aileron"}, function_rule(bend)), rule({"nacelle"}, carried),
                  rule({"fuselage"}, SlipRule{SlipRule::Surface::baseline, {}, {}}), rule({"symmetry"}, SlipRule{})});
 }

@@ -244,7 +244,7 @@ TEST(ResolvedWalls, InSinglePrecisionAreSoundToo) {
       EXPECT_EQ(passage.inverted(x), 0);
       EXPECT_EQ(passage.inverted(written), 0);
       EXPECT_LT(passage.change_at_wall(x).angle_deg, 0.1);
-      EXPECT_LT(passage.off_end_walls(written), 2e-7);
+      EXPECT_LT(passage.off_end_walls(written), 6e-7) << "ten times what single precision resolves there";
     }
   }
 }
