@@ -63,7 +63,7 @@ QualityReport expect_sound(Mesh const& mesh) {
 std::vector<Index32> nodes_on(Mesh const& mesh, std::string const& name) {
   std::vector<Index32> out;
   for (Patch const& patch : mesh.patches)
-    if (patch.name == name || (!patch.families.empty() && patch.families.front() == name))
+    if (patch.name == name || std::find(patch.families.begin(), patch.families.end(), name) != patch.families.end())
       for (Index32 const n : patch_nodes(patch)) out.push_back(n);
   return out;
 }
@@ -270,6 +270,52 @@ TEST(ElementFillet, WhatCannotBeFilledIsRefused) {
   std::string const message =
       message_of<MeshError>([&] { (void)fillet_of(tetrahedra, between(tetrahedra, {"hub"}, {"side"}, 0.01)); });
   expect_all_in(message, {"tetrahedron", "a face on the blade and one on the end wall"});
+}
+
+TEST(ElementFillet, ArcsHaveAFamilyOfTheirOwnThatIsTheBladesToo) {
+  double const radius = 0.06;
+  Mesh const mesh = hexahedra_of(wedge({}));
+  Mesh const made = fillet_of(mesh, between(mesh, {"blade"}, {"hub"}, radius)).mesh;
+  int arcs = 0;
+  for (Patch const& patch : made.patches) {
+    bool const arc = patch.families.front() == "blade_fillet";
+    arcs += arc ? 1 : 0;
+    if (arc) {
+      EXPECT_EQ(patch.families, (std::vector<std::string>{"blade_fillet", "blade"}));
+    }
+    for (Index32 const n : patch_nodes(patch)) {
+      Vec3 const p = made.coordinates[n];
+      if (!arc && patch.families.front() != "far" && patch.families.front() != "side") {
+        EXPECT_LT(std::abs(patch.families.front() == "hub" ? p.y : p.x), 1e-9);
+      }
+    }
+  }
+  EXPECT_EQ(arcs, 2) << "from either wall";
+}
+
+TEST(ElementFillet, ASecondFilletOverACoarseOneIsRefused) {
+  Mesh const mesh = hexahedra_of(wedge({.extent = {5, 9, 9}, .growth = {1.01, 1.01}}));
+  auto options = between(mesh, {"blade"}, {"hub"}, 0.5);
+  Mesh filled = fillet_of(mesh, options).mesh;
+  // As other programs would name them: arcs belong to the walls they are cut from.
+  for (Patch& patch : filled.patches)
+    if (patch.families.front() == "blade_fillet") {
+      double x = 0, y = 0;
+      for (Index32 const n : patch_nodes(patch)) x += filled.coordinates[n].x, y += filled.coordinates[n].y;
+      patch.families = {x > y ? "hub" : "blade"};
+    }
+  for (double const radius : {0.1, 0.4, 0.6})
+    expect_all_in(
+        message_of<MotionError>([&] { (void)fillet_of(filled, between(filled, {"blade"}, {"hub"}, radius)); }),
+        {"degrees", "already"});
+}
+
+TEST(ElementFillet, WallsOfTetrahedraAreRefused) {
+  Mesh const tetrahedra = tetrahedra_of(hexahedra_of(wedge({})));
+  for (auto const& [blade, wall] : {std::pair("blade", "hub"), std::pair("hub", "blade"), std::pair("hub", "side")})
+    expect_all_in(
+        message_of<MeshError>([&] { (void)fillet_of(tetrahedra, between(tetrahedra, {blade}, {wall}, 0.03)); }),
+        {"tetrahedron"});
 }
 
 class FilledElements : public ::testing::Test {

@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -55,7 +56,7 @@ QualityReport expect_sound(Mesh const& mesh) {
 std::vector<Vec3> nodes_of(Mesh const& mesh, std::string const& family) {
   std::vector<Vec3> out;
   for (Patch const& patch : mesh.patches) {
-    if (patch.families.empty() || patch.families.front() != family) continue;
+    if (std::find(patch.families.begin(), patch.families.end(), family) == patch.families.end()) continue;
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i)
@@ -165,6 +166,31 @@ TEST(Fillet, LeaningLinesComeToTheSameArc) {
   }
 }
 
+TEST_P(Wedges, ArcsHaveAFamilyOfTheirOwnThatIsTheBladesToo) {
+  double const angle = GetParam() * pi / 180, radius = 0.06, contact = radius / std::tan(angle / 2);
+  Mesh const mesh = wedge(angle);
+  Mesh const made = fillet_of(mesh, between(mesh, {"blade"}, {"hub"}, radius)).split.mesh;
+  int on_arc = 0;
+  for (Patch const& patch : made.patches)
+    if (patch.families.front() == "blade_fillet") {
+      EXPECT_EQ(patch.families, (std::vector<std::string>{"blade_fillet", "blade"}));
+      EXPECT_EQ(patch.kind, PatchKind::wall);
+      ++on_arc;
+    }
+  EXPECT_EQ(on_arc, 2) << "from either wall";
+  for (Vec3 const& p : nodes_of(made, "hub")) EXPECT_LT(std::abs(p.y), 1e-12);
+  for (Patch const& patch : made.patches) {
+    if (patch.families.front() != "blade") continue;
+    for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
+      for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j) {
+        Vec3 const p = made.coordinates[made.zones[std::size_t(patch.zone)].node({patch.range.begin[0], j, k})];
+        EXPECT_LT(std::abs(p.y * std::cos(angle) - p.x * std::sin(angle)), 1e-9);
+        EXPECT_GE(std::hypot(p.x, p.y), contact - 1e-9);
+      }
+  }
+  EXPECT_TRUE(std::find(made.families.begin(), made.families.end(), "blade_fillet") != made.families.end());
+}
+
 TEST(Fillet, NoRadiusLeavesTheWallsAndTheVolume) {
   Mesh const mesh = wedge(pi / 2);
   auto options = between(mesh, {"blade"}, {"hub"}, 0);
@@ -257,7 +283,8 @@ TEST(Fillet, RunsOutBeforeItsOwnEndsAlone) {
   for (Vec3 const& p : nodes_of(result.split.mesh, "blade")) {
     if (p.y < width / 2) continue;
     double const off_arc = std::hypot(width - radius - p.y, p.z - radius) - radius;
-    bool const straight = std::abs(p.y - width) < 1e-9 && p.z > radius - 1e-9;
+    // Faces of the arc end on the hub.
+    bool const straight = (std::abs(p.y - width) < 1e-9 && p.z > radius - 1e-9) || std::abs(p.z) < 1e-9;
     EXPECT_TRUE(straight || std::abs(off_arc) < 1e-6 * radius) << p.x << " " << p.y << " " << p.z;
     on_arc += straight ? 0 : 1;
   }

@@ -1,6 +1,7 @@
 #include <gridmorph/fillet/fillet.hpp>
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/fillet/arc_patches.hpp>
 #include <gridmorph/fillet/corner_lines.hpp>
 #include <gridmorph/fillet/corner_stations.hpp>
 #include <gridmorph/fillet/layer_spacing.hpp>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -66,6 +68,7 @@ class Layers {
   Layers(Mesh const& old, WallSheets const& sheets, SheetLayers const& layers, CornerStations const& stations)
       : old_(old), sheets_(sheets), layers_(layers), stations_(stations) {
     for (std::size_t c = 0; c < stations.corners().size(); ++c) mitres_.push_back(mitres_of(c));
+    arc_nodes_.resize(mitres_.size());
   }
 
   /// Nodes of a zone that is the layers of a sheet.
@@ -93,8 +96,29 @@ class Layers {
 
   [[nodiscard]] double wall_deviation() const { return wall_deviation_; }
   [[nodiscard]] bool first_cells_kept() const { return first_cells_kept_; }
+  /// Where the walls' faces have nodes on arcs; after all of fill().
+  [[nodiscard]] std::vector<ArcFaces> arcs() const {
+    std::vector<ArcFaces> out;
+    for (std::size_t c = 0; c < arc_nodes_.size(); ++c) {
+      CornerFrame const& corner = stations_.corners()[c];
+      for (int wall = 0; wall < 2; ++wall) {
+        ArcNodes const& nodes = arc_nodes_[c][std::size_t(wall)];
+        if (nodes.last < 0) continue;
+        // Faces beside the last node and beside the outermost stations have nodes of both.
+        out.push_back({c, wall, nodes.last + 1 - stations_.station(c, 0).line[std::size_t(wall)].layers,
+                       std::max(0, nodes.first_station - 1), std::min(corner.stations() - 1, nodes.last_station + 1)});
+      }
+    }
+    return out;
+  }
 
  private:
+  /// Wall nodes on the arcs of a corner.
+  struct ArcNodes {
+    int last = -1;  ///< the farthest from the corner
+    int first_station = std::numeric_limits<int>::max(), last_station = -1;
+  };
+
   /// How layers are spaced in the face where those of both walls meet.
   struct Mitre {
     std::vector<double> shares;
@@ -157,6 +181,12 @@ class Layers {
       if (g == 0) continue;
       WallPlace const middle = station.middle();
       WallPlace const foot = depth == station.line[w].layers ? middle : station.place(int(w), depth, off_wall);
+      if (foot.rounded && !station.sharp()) {
+        ArcNodes& arc = arc_nodes_[c][w];
+        arc.last = std::max(arc.last, depth);
+        arc.first_station = std::min(arc.first_station, a);
+        arc.last_station = std::max(arc.last_station, a);
+      }
       if (!foot.rounded && (w == 1 || !station.sharp()))  // where the corner is bare its line is on no blade
         wall_deviation_ = std::max(wall_deviation_, station.surface[w]->closest_point(foot.point).distance);
       LayerLine const before{old.at(0), off_wall, old.at(old.arcs.size() - 1), into_end};
@@ -178,6 +208,7 @@ class Layers {
   SheetLayers const& layers_;
   CornerStations const& stations_;
   std::vector<std::vector<Mitre>> mitres_;
+  std::vector<std::array<ArcNodes, 2>> arc_nodes_;  ///< per corner and wall
   double wall_deviation_ = 0;
   bool first_cells_kept_ = true;
 };
@@ -220,6 +251,7 @@ FilletResult make_fillet(Mesh const& mesh, Links const& links, FilletOptions con
   }
   out.wall_deviation = layers.wall_deviation();
   out.first_cells_kept = layers.first_cells_kept();
+  separate_arcs(mesh, options, sheets, out.layers, layers.arcs(), out.split);
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/fillet/arc_patches.hpp>
 #include <gridmorph/fillet/corner_lines.hpp>
 #include <gridmorph/fillet/cut_corners.hpp>
 #include <gridmorph/fillet/rounded_corner.hpp>
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -75,10 +77,12 @@ ElementFillet make_fillet(Mesh const& mesh, UnstructuredTopology const& topology
   for (auto const& line : sections.all())
     for (RootSection const& s : line)
       if (s.radius > 0) out.add_station(s.radius, s.half_arc / s.radius);
-  Coordinates rounded = round_corners(elements, edges, sections, {&blade, &end_wall});
+  std::vector<std::uint8_t> on_arc;
+  Coordinates rounded = round_corners(elements, edges, sections, {&blade, &end_wall}, on_arc);
   out.mesh = cut.empty() ? mesh : cut_corners(lattice, cut);
   out.cut_elements = out.mesh.n_elements() - mesh.n_elements();
   out.mesh.coordinates = std::move(rounded);
+  if (out.cut_elements > 0) separate_arcs(options, on_arc, out.mesh);
   return out;
 }
 

@@ -43,6 +43,24 @@ Vec3 inward_normal(Mesh const& mesh, std::span<Index32 const> nodes, Index32 ele
   return dot(normal, centre - middle) < 0 ? -normal : normal;
 }
 
+/// Faces of the walls along a root edge are those of prisms and hexahedra: nothing else has layers that could be bent around an arc.
+void require_layers(JoinedElements const& elements, WallEdges const& edges, std::array<Index32, 2> const& edge) {
+  Mesh const& mesh = elements.mesh();
+  BoundaryFaces const& faces = elements.topology().boundary;
+  for (Index32 const node : elements.nodes_at(edge[0]))
+    for (Index32 const f : elements.topology().faces_of_nodes[node]) {
+      int const wall = edges.wall_of_face(f);
+      Index32 const e = faces.element[std::size_t(f)];
+      if (wall < 0 || !elements.has(e, edge[1])) continue;
+      ElementType const type = mesh.elements.type[std::size_t(e)];
+      if (type == ElementType::prism || type == ElementType::hexahedron) continue;
+      throw MeshError(
+          mesh.source + ": " + describe_element(mesh, e) + " has a face on the " + (wall == 0 ? "blade" : "end wall") +
+          " beside the corner and is neither a prism nor a hexahedron; a fillet needs layers of these along both "
+          "walls that meet in the corner");
+    }
+}
+
 }  // namespace
 
 WallEdges::WallEdges(JoinedElements const& elements, BoundaryFacePatches const& face_patches,
@@ -126,6 +144,7 @@ std::vector<RootLine> find_root_lines(JoinedElements const& elements, WallEdges 
           " has a face on the blade and one on the end wall and is no hexahedron, so it would be flat where a "
           "fillet makes one wall of both; give both walls layers of prisms that meet in the corner, or hexahedra");
   }
+  for (auto const& edge : common) require_layers(elements, edges, edge);
   auto const goes_on = [&](Index32 place) {
     auto const& here = at[place];
     if (here.size() != 2) return false;

@@ -16,10 +16,11 @@ namespace gridmorph {
 namespace {
 
 constexpr double sharpest = 0.349, flattest = 2.618;  ///< 20 and 150 degrees
-constexpr double reach_contacts = 3;     ///< of the contacts' distances from the corner, within which walls change
-constexpr double least_contacts = 1.25;  ///< that have to be left
-constexpr double steepest = 0.5;         ///< change of the reach along the corner
-constexpr double same_side = 0.3;        ///< cosine between normals of one side of a blade
+constexpr double reach_contacts = 3;      ///< of the contacts' distances from the corner, within which walls change
+constexpr double least_contacts = 1.25;   ///< that have to be left
+constexpr double steepest = 0.5;          ///< change of the reach along the corner
+constexpr double filled_already = 0.436;  ///< 25 degrees, by which walls may turn within their reach
+constexpr double same_side = 0.3;         ///< cosine between normals of one side of a blade
 
 /// Of the parabola through a point and those beside it; towards the next one at an end.
 Vec3 tangent(RootLine const& line, std::size_t k, std::vector<Vec3> const& at) {
@@ -30,6 +31,9 @@ Vec3 tangent(RootLine const& line, std::size_t k, std::vector<Vec3> const& at) {
   if (last) return unit(before);
   return unit(norm(behind) * unit(before) + norm(before) * unit(behind));
 }
+
+/// Between walls with these normals, unit.
+double angle_of(Vec3 const& a, Vec3 const& b) { return std::numbers::pi - std::acos(std::clamp(dot(a, b), -1.0, 1.0)); }
 
 Vec3 across(Vec3 const& v, Vec3 const& along) { return unit(v - dot(v, along) * along); }
 
@@ -119,6 +123,12 @@ RootSections::RootSections(JoinedElements const& elements, BoundaryFacePatches c
       for (std::size_t w = 0; w < 2; ++w)
         s.wall[w] = WallProfile(*walls[w], s.root, s.across, ups[w], normal[w], length);
       if (wanted > small) {
+        double const far = std::min(reach_contacts * wanted / std::tan(s.angle_rad / 2), 0.95 * length);
+        double const turned = s.angle_rad - angle_of(s.wall[0].at(far).normal, s.wall[1].at(far).normal);
+        if (turned > filled_already)
+          throw MotionError("the walls turn away from each other by " + to_text(turned * 180 / std::numbers::pi, 3) +
+                            " degrees within " + to_text(far, 3) + " of the corner's node " + to_text(s.root, 9) +
+                            ": there is a fillet already, and none can be laid over it; fill the mesh that has none");
         auto const circle = circle_between(s.wall[0], s.wall[1], wanted);
         if (!circle)
           throw MotionError("the fillet does not fit at the corner's node " + to_text(s.root, 9) +

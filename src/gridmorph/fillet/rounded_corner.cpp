@@ -31,7 +31,8 @@ struct Move {
   double still = 1;  ///< CornerMove
   double bend = 0;
   int wall = 0;
-  bool near = false;  ///< the line
+  bool near = false;    ///< the line
+  bool on_arc = false;  ///< of a node on a wall
 
   [[nodiscard]] bool stays() const { return !near || (still == 1 && shift == Vec3{}); }
 };
@@ -69,6 +70,7 @@ class CornerRounding {
     out.wall = move.wall;
     if ((!on_blade && !on_end_wall) || !(section.radius() > 0) || out.stays()) return out;
     Vec3 const to = p + move.shift;
+    out.on_arc = move.on_arc || (on_blade && on_end_wall);
     if (on_blade && on_end_wall) {
       out.mended = section.middle() - to;
     } else if (move.on_arc) {
@@ -117,7 +119,7 @@ class CornerRounding {
 }  // namespace
 
 Coordinates round_corners(JoinedElements const& elements, WallEdges const& edges, RootSections const& sections,
-                          std::array<FacetSurface const*, 2> const& walls) {
+                          std::array<FacetSurface const*, 2> const& walls, std::vector<std::uint8_t>& on_arc) {
   constexpr Index share = 256;  // few nodes are near the lines, so shares are small
   Mesh const& mesh = elements.mesh();
   HostInstance const host;
@@ -134,9 +136,11 @@ Coordinates round_corners(JoinedElements const& elements, WallEdges const& edges
       if (moves[std::size_t(n)].near && edges.on(int(w), Index32(n))) on_walls[w].push_back(Index32(n));
   std::array<TargetTree, 2> const trees{tree_of(mesh, on_walls[0]), tree_of(mesh, on_walls[1])};
   Coordinates out(mesh.n_nodes());
+  on_arc.assign(std::size_t(mesh.n_nodes()), 0);
   detail::for_all(host, "gridmorph::round_corners (places)", mesh.n_nodes(), [&](Index n) {
     Index32 const place = elements.place(Index32(n));
     Move const& move = moves[std::size_t(place)];
+    on_arc[std::size_t(n)] = move.on_arc ? 1 : 0;
     Vec3 const p = mesh.coordinates[n];
     if (move.stays()) return out.set(n, p);
     Vec3 mended = move.mended;

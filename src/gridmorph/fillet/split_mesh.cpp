@@ -26,7 +26,7 @@ class Splitter {
     mesh.families = old_.families;
     for (int z = 0; z < int(old_.zones.size()); ++z) names_.insert(old_.zones[z].name);
     for (int z = 0; z < int(old_.zones.size()); ++z) split(z);
-    for (Patch const& patch : old_.patches) add(patch);
+    for (std::size_t p = 0; p < old_.patches.size(); ++p) add(int(p));
     for (Interface1to1 const& interface : old_.interfaces) add(interface);
     for (int z = 0; z < int(old_.zones.size()); ++z) join(z);
     return std::move(out_);
@@ -118,7 +118,8 @@ class Splitter {
     return out;
   }
 
-  void add(Patch const& patch) {
+  void add(int p) {
+    Patch const& patch = old_.patches[std::size_t(p)];
     for (int n : parts_[patch.zone]) {
       auto const piece = common(patch.range, out_.zones[n].box);
       if (!piece) continue;
@@ -126,6 +127,7 @@ class Splitter {
       next.zone = n;
       next.range = place(out_.zones[n], *piece);
       out_.mesh.patches.push_back(std::move(next));
+      out_.patches.push_back(p);
     }
   }
 

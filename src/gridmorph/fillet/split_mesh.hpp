@@ -26,6 +26,7 @@ struct SplitZone {
 struct SplitMesh {
   Mesh mesh;                     ///< no coordinates
   std::vector<SplitZone> zones;  ///< per Mesh::zones
+  std::vector<int> patches;      ///< per Mesh::patches, that of the old mesh
 };
 
 /// Takes the blocks out of all corners in which the two walls meet, and joins what they leave open: what was the far side of such a block

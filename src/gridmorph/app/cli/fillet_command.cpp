@@ -13,10 +13,12 @@
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
+#include <gridmorph/report/shortfalls.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,6 +30,8 @@ namespace {
 
 /// A number, or an expression of x, y, z.
 std::function<double(Vec3 const&)> radius_of(std::string const& text) {
+  if (text.find_first_not_of(" \t") == std::string::npos)
+    throw ConfigError("--radius is empty; give a number, such as 0.004, or an expression of x, y and z");
   if (uses_axis(text) || uses_time(text))
     throw ConfigError("--radius '" + text + "': it may depend on x, y and z, not on r, theta, axial, t or step");
   Problems problems;
@@ -106,6 +110,32 @@ FilletOptions options_of(CommandLine const& options, Mesh const& mesh) {
   return wanted;
 }
 
+/// What the filled mesh falls short of that the mesh without a fillet did not already.
+std::vector<Shortfall> shortfalls_of(QualityReport const& before, QualityReport const& after) {
+  QualityThresholds limits;
+  auto const loosen = [](double& limit, double had, bool larger_is_worse) {
+    if (larger_is_worse ? had > limit : had < limit) limit = had;
+  };
+  for (QualityRegion const* region : {&before.near_field, &before.far_field}) {
+    if (region->cells == 0) continue;
+    loosen(limits.cells.min_determinant, (*region)[Measure::determinant_3x3x3].min, false);
+    loosen(limits.cells.min_angle_deg, (*region)[Measure::minimum_angle_deg].min, false);
+    loosen(limits.cells.max_skewness, (*region)[Measure::equiangle_skewness].max, true);
+  }
+  return shortfalls(after, std::nullopt, limits);
+}
+
+/// Says what the filled mesh falls short of, and which status that is.
+int conclude(Terminal& terminal, nlohmann::json json, std::vector<Shortfall> const& list) {
+  auto& texts = json["shortfalls"] = nlohmann::json::array();
+  for (Shortfall const& s : list)
+    texts.push_back(
+        {{"severity", s.severity == Shortfall::Severity::failure ? "failure" : "warning"}, {"message", s.message}});
+  terminal.document(json);
+  for (Shortfall const& s : list) terminal.warn(s.message);
+  return status_of_morph(true, any_failure(list));
+}
+
 /// Says so, and what would change that.
 int refuse(CommandLine const& options, Terminal& terminal, QualityReport const& quality, std::string const& remedy) {
   terminal.say(format_table(quality));
@@ -161,8 +191,7 @@ int move_blocks(CommandLine const& options, Terminal& terminal, Mesh const& mesh
   nlohmann::json json = document(options, result, quality);
   json["zones"] = mesh.zones.size();
   json["cells"] = mesh.n_cells();
-  terminal.document(json);
-  return done;
+  return conclude(terminal, std::move(json), shortfalls_of(before.measure({}), before.measure({.morphed = &morphed})));
 }
 
 int fill_blocks(CommandLine const& options, Terminal& terminal) {
@@ -192,8 +221,7 @@ int fill_blocks(CommandLine const& options, Terminal& terminal) {
   json["wall_deviation"] = result.wall_deviation;
   json["zones"] = result.split.mesh.zones.size();
   json["cells"] = result.split.mesh.n_cells();
-  terminal.document(json);
-  return done;
+  return conclude(terminal, std::move(json), shortfalls_of(BlockMesh(mesh).measure({}), quality));
 }
 
 int fill_elements(CommandLine const& options, Terminal& terminal) {
@@ -222,8 +250,7 @@ int fill_elements(CommandLine const& options, Terminal& terminal) {
   nlohmann::json json = document(options, result, quality);
   json["elements"] = result.mesh.n_elements();
   json["cut_elements"] = result.cut_elements;
-  terminal.document(json);
-  return done;
+  return conclude(terminal, std::move(json), shortfalls_of(before.measure({}), quality));
 }
 
 }  // namespace
