@@ -295,6 +295,44 @@ TEST(BladeRow, HowTheBladeIsCutAndStoredChangesNothingBeyondRoundOff) {
   }
 }
 
+TEST(BladeRow, BladesOfDifferentMotionsAreSaidToBeFollowedByTheirMean) {
+  auto const row_of = [](bool whole, Rule second) {
+    RowMesh row;
+    auto const copy_of_blade = [](Surface surface) {
+      surface.name = "second";
+      surface.at = [at = surface.at](double s, double t) { return rotation_matrix({1, 0, 0}, pitch) * at(s, t); };
+      return surface;
+    };
+    if (whole) {
+      row.add(o_blade(161, 41));
+      row.add(copy_of_blade(o_blade(161, 41)));
+    } else {
+      for (bool const suction : {true, false}) {
+        row.add(h_side(suction, 81, 41));
+        row.add(copy_of_blade(h_side(suction, 81, 41)));
+      }
+    }
+    row.add(end_wall("hub", 0, 401, 5));
+    row.add(end_wall("case", 1, 401, 5));
+    row.add(inlet_plane(201, 5));
+    row.add(outlet_plane(41, 5));
+    row.add(periodic());
+    Motion motion = row_rules(blade_rule(redesign()));
+    motion.rules[slide_number].rule = CircumferentialSlideRule{{"blade", "second"}};
+    motion.rules[follow_number].rule = FollowRule{{"blade", "second"}};
+    motion.rules.push_back({{"second"}, std::move(second), 0, ""});
+    std::string said;
+    Mesh const mesh = row.finish();
+    BoundaryMotion const moves = motion_on(mesh, motion);
+    for (std::string const& note : moves.notes()) said += note + "\n";
+    return said;
+  };
+  for (bool const whole : {true, false}) {
+    expect_all_in(row_of(whole, FixedRule{}), {"'blade', 'second'", "do not move alike", "mean", "`of`"});
+    EXPECT_EQ(row_of(whole, blade_rule(redesign())).find("alike"), std::string::npos);
+  }
+}
+
 TEST(BladeRow, TheAxisMayBeAnywhere) {
   RigidTransform const placed = rotation_about({1, 2, 3}, {1, -2, 0.5}, 0.8).then({Mat3{}, {10, -20, 5}});
   RowMesh here, there;

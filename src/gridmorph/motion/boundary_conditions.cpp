@@ -324,12 +324,21 @@ std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& 
       surfaces, resolve(surfaces->mesh(), with_periodic_patches(*surfaces, motion, said)));
 }
 
-std::vector<Vec3> evaluate(BoundaryConditions const& boundary) {
-  return evaluate(boundary.motion->boundary().mesh(), boundary.requests, *boundary.motion, {});
+namespace {
+
+std::vector<Vec3> evaluate_copies(BoundaryConditions const& boundary, BoundaryMotion const& motion) {
+  Mesh const& mesh = boundary.motion->boundary().mesh();
+  std::vector<Vec3> out = evaluate(mesh, boundary.requests, motion, {});
+  require_equal_copies(mesh, boundary.requests, motion, out);
+  return out;
 }
 
+}  // namespace
+
+std::vector<Vec3> evaluate(BoundaryConditions const& boundary) { return evaluate_copies(boundary, *boundary.motion); }
+
 std::vector<Vec3> evaluate(BoundaryConditions const& boundary, Motion const& motion) {
-  return evaluate(boundary.motion->boundary().mesh(), boundary.requests, boundary.motion->with(motion), {});
+  return evaluate_copies(boundary, boundary.motion->with(motion));
 }
 
 double largest_norm(std::vector<Vec3> const& displacement) {

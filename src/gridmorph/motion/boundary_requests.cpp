@@ -1,11 +1,15 @@
+#include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
 #include <gridmorph/motion/disagreements.hpp>
+#include <gridmorph/motion/torn_copies.hpp>
 
 #include <algorithm>
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 namespace gridmorph {
@@ -29,9 +33,11 @@ std::string requester(Mesh const& mesh, Request const& r) {
 
 class Evaluation {
  public:
-  Evaluation(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion)
+  Evaluation(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+             std::vector<Mat3> const& rotations)
       : mesh_(mesh),
         boundary_(boundary),
+        rotations_(rotations),
         rules_(motion),
         motion_(motion.motion()),
         tolerance_(displacement_tolerance(motion_.conformity_tolerance, motion.boundary().size(),
@@ -51,7 +57,11 @@ class Evaluation {
     }
     if (yields(r, *first) || rule(*first).rank < rule(r).rank) return;
     if (distance(values_[node], value) <= tolerance_) return;
-    disagreements_.add(first->node, side(*first, values_[node]), side(r, value));
+    if (are_torn_copies(*first, r))
+      torn_.add(rule(r).where, std::string(rule_name(rule(r).rule)), requester(mesh_, *first),
+                {first->node, r.node, values_[node], value, turn_between(*first, r)});
+    else
+      disagreements_.add(first->node, side(*first, values_[node]), side(r, value));
   }
 
   [[nodiscard]] std::vector<Index> const& given_by() const { return given_by_; }
@@ -61,11 +71,25 @@ class Evaluation {
     for (std::string& message :
          disagreements_.messages(mesh_, motion_.axis, [&](auto& name) { return points_of(name); }))
       problems.add(std::move(message));
+    for (std::string& message : torn_.messages(mesh_)) problems.add(std::move(message));
     problems.throw_if_any<MotionError>();
     return std::move(values_);
   }
 
  private:
+  /// Whether one rule is asked for a node and for a periodic copy of it, elsewhere.
+  [[nodiscard]] bool are_torn_copies(Request const& a, Request const& b) const {
+    constexpr double apart = 1e-6;  // of the size
+    return a.rule == b.rule &&
+           distance(mesh_.coordinates[a.node], mesh_.coordinates[b.node]) > apart * rules_.boundary().size();
+  }
+  [[nodiscard]] double turn_between(Request const& a, Request const& b) const {
+    auto const rotation = [&](Request const& r) {
+      return r.rotation < 0 ? RigidTransform{}.rotation : rotations_[std::size_t(r.rotation)];
+    };
+    return norm(rotation_vector(rotation(b) * transpose(rotation(a))));
+  }
+
   [[nodiscard]] Disagreeing side(Request const& r, Vec3 const& displacement) const {
     return {requester(mesh_, r), rule(r).where, displacement, is_default(r)};
   }
@@ -102,12 +126,14 @@ class Evaluation {
 
   Mesh const& mesh_;
   BoundaryRequests const& boundary_;
+  std::vector<Mat3> const& rotations_;
   BoundaryMotion const& rules_;
   ResolvedMotion const& motion_;
   double tolerance_;
   std::vector<Vec3> values_;
   std::vector<Index> given_by_;  ///< number of the request
   Disagreements disagreements_;
+  TornCopies torn_;
 };
 
 }  // namespace
@@ -121,7 +147,7 @@ void BoundaryRequests::sort(std::vector<MotionRule> const& rules) {
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                            std::vector<Mat3> const& rotations) {
   auto const& requests = boundary.requests;
-  Evaluation evaluation(mesh, boundary, motion);
+  Evaluation evaluation(mesh, boundary, motion, rotations);
   for (std::size_t begin = 0, end = 0; begin < requests.size(); begin = end) {
     while (end < requests.size() && requests[end].rule == requests[begin].rule) ++end;
     std::vector<Vec3> points(end - begin), u(end - begin);
@@ -135,8 +161,47 @@ std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, B
   return evaluation.result();
 }
 
+void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+                          std::vector<Vec3> const& displacement) {
+  ResolvedMotion const& resolved = motion.motion();
+  double const size = motion.boundary().size(), tolerance = resolved.conformity_tolerance * size;
+  // The first request of a boundary node gives its value.
+  std::vector<Request const*> first(displacement.size(), nullptr);
+  std::unordered_map<Index, Index> asked;
+  for (Request const& r : boundary.requests) {
+    if (Request const*& own = first[std::size_t(r.boundary_node)]; own == nullptr) own = &r;
+    asked[r.node] = r.boundary_node;
+  }
+  TornCopies torn;
+  for (std::size_t c = 0; c < mesh.connections.size(); ++c) {
+    auto const& connection = mesh.connections[c];
+    if (!connection.periodic || resolved.interface[c].rule >= 0 || connection.nodes.empty()) continue;
+    std::vector<Vec3> from, to;
+    for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
+      from.push_back(mesh.coordinates[connection.nodes[n]]);
+      to.push_back(mesh.coordinates[connection.donor_nodes[n]]);
+    }
+    Mat3 const turn = fit_periodic(*connection.periodic, from, to, size).rotation;
+    for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
+      auto const own = asked.find(connection.nodes[n]), other = asked.find(connection.donor_nodes[n]);
+      if (own == asked.end() || other == asked.end()) continue;
+      Request const &a = *first[std::size_t(own->second)], &b = *first[std::size_t(other->second)];
+      Vec3 const u = displacement[std::size_t(own->second)];
+      Vec3 const copy = transpose(turn) * displacement[std::size_t(other->second)];
+      if (a.rule != b.rule || distance(u, copy) <= tolerance) continue;
+      MotionRule const& rule = resolved.rules[std::size_t(a.rule)];
+      torn.add(rule.where, std::string(rule_name(rule.rule)), requester(mesh, a),
+               {own->first, other->first, u, copy, norm(rotation_vector(turn))});
+    }
+  }
+  Problems problems;
+  for (std::string& message : torn.messages(mesh)) problems.add(std::move(message));
+  problems.throw_if_any<MotionError>();
+}
+
 std::vector<Index> deciding_requests(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion) {
-  Evaluation evaluation(mesh, boundary, motion);
+  std::vector<Mat3> const none;
+  Evaluation evaluation(mesh, boundary, motion, none);
   for (std::size_t n = 0; n < boundary.requests.size(); ++n) evaluation.take(n, {});  // ranks decide, not values
   return evaluation.given_by();
 }

@@ -35,6 +35,11 @@ struct BoundaryRequests {
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                            std::vector<Mat3> const& rotations);
 
+/// Meshes of elements, in which both nodes of a free periodic connection may have requests of their own: throws MotionError where one rule gives
+/// them displacements that are no copies of one another, by more than the conformity tolerance. Cost O(requests).
+void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+                          std::vector<Vec3> const& displacement);
+
 /// The request that gives every boundary node its value there, by its number; -1: none. Cost O(requests); no rule is evaluated.
 std::vector<Index> deciding_requests(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion);
 

@@ -4,6 +4,7 @@
 #include <gridmorph/motion/turbomachinery/section_interpolation.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -129,6 +130,24 @@ std::optional<SpanTable> edge_table(std::vector<std::vector<SpanLine>> const& co
   return table;
 }
 
+/// By the edges of each contour, the mean of its sides: `mean` of all of them at the leading and at the trailing edge.
+void widen(BladeSections::EdgeSpread& spread, std::vector<Side> const& sides,
+           std::vector<std::size_t> const& of_contour, std::array<Sample, 2> const& mean) {
+  double const chord = mean[1][0] - mean[0][0];
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && of_contour[end] == of_contour[begin]) ++end;
+    for (std::size_t edge = 0; edge < 2; ++edge) {
+      Sample own{};
+      for (std::size_t n = begin; n < end; ++n)
+        for (int q = 0; q < 4; ++q)
+          own[q] += (edge == 0 ? sides[n].table.front() : sides[n].table.back())[q] / double(end - begin);
+      spread.length =
+          std::max({spread.length, std::abs(own[1] - mean[edge][1]) / chord, std::abs(own[2] - mean[edge][2]) / chord});
+      spread.angle_rad = std::max(spread.angle_rad, std::abs(own[3] - mean[edge][3]));
+    }
+  }
+}
+
 }  // namespace
 
 BladeSections::BladeSections(BladeSurface const& blade) {
@@ -169,8 +188,12 @@ BladeSections::BladeSections(BladeSurface const& blade) {
   for (int s = 0; s < n_sections_; ++s) {
     double const h = span_lo_ + (span_hi_ - span_lo_) * s / (n_sections_ - 1);
     std::vector<Side> sides;
+    std::vector<std::size_t> of_contour;
     for (std::size_t c = 0; c < contours.size(); ++c)
-      for (Side& side : split_at_edges(section(c, h), blade.contours[c].closed, edges[c])) sides.push_back(side);
+      for (Side& side : split_at_edges(section(c, h), blade.contours[c].closed, edges[c])) {
+        sides.push_back(side);
+        of_contour.push_back(c);
+      }
     if (sides.empty())
       throw MotionError("at span fraction " + std::to_string(h) + " the blade has no axial chord; check the axis");
     double const share = 1.0 / double(sides.size());
@@ -186,6 +209,7 @@ BladeSections::BladeSections(BladeSurface const& blade) {
     }
     leading.add(h, first);
     trailing.add(h, last);
+    widen(edge_spread_, sides, of_contour, {first, last});
   }
   leading_ = edge_table(contours, edges, &EdgeLines::leading).value_or(leading);
   trailing_ = edge_table(contours, edges, &EdgeLines::trailing).value_or(trailing);

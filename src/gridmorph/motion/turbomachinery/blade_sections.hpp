@@ -31,6 +31,14 @@ class BladeSections {
   /// Chord fraction 0 is the leading edge, 1 the trailing edge; clamped to these.
   [[nodiscard]] CylindricalMotion motion(double span, double chord_fraction) const;
 
+  /// How far the motions of the contours' edges are from their mean, which the edges of the row get: nothing but rounding for one blade, and for copies that
+  /// move alike; what blunt edges make of two sides.
+  struct EdgeSpread {
+    double length = 0;  ///< along the flow or the span, in chords
+    double angle_rad = 0;
+  };
+  [[nodiscard]] EdgeSpread edge_spread() const { return edge_spread_; }
+
   /// BladeSurface::sliced.
   [[nodiscard]] bool sliced() const { return sliced_; }
   [[nodiscard]] double first_span() const { return span_lo_; }
@@ -48,6 +56,7 @@ class BladeSections {
   [[nodiscard]] Components tabulated(double span, double chord_fraction) const;
 
   bool sliced_ = false;
+  EdgeSpread edge_spread_;
   double span_lo_ = 0, span_hi_ = 0, lowest_ = 0, highest_ = 0;
   int n_sections_ = 0;
   std::vector<Components> motion_;  ///< (n_sections, n_chord), chord fastest

@@ -3,10 +3,12 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 namespace gridmorph {
@@ -14,6 +16,15 @@ namespace gridmorph {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
+
+std::vector<std::string> names_of_blades(Mesh const& mesh, std::vector<int> const& patches) {
+  std::set<std::string> names;
+  for (int const p : patches) {
+    Patch const& patch = mesh.patches[std::size_t(p)];
+    names.insert(patch.families.empty() ? patch.name : patch.families.front());
+  }
+  return {names.begin(), names.end()};
+}
 
 std::vector<MeridionalPoint> meridional_points(Boundary const& boundary, CylindricalFrame const& frame,
                                                std::vector<int> const& patches) {
@@ -63,6 +74,15 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
     notes.push_back("blade " + describe_patch(mesh, mesh.patches[blades.front()]) + ": " + std::to_string(left_out) +
                     " contours of splitter blades are left out; inlet, exit and periodics follow the main blade");
   BladeSections const sections(surface);
+  constexpr double apart = 1e-3;  // chords, radians: more than blunt edges make of the two sides of one blade
+  if (auto const spread = sections.edge_spread(); spread.length > apart || spread.angle_rad > apart)
+    notes.push_back("blade " + quote_list(names_of_blades(mesh, blades)) + ": its " +
+                    std::to_string(surface.contours.size()) +
+                    " contours do not move alike: their edges differ from the mean, which inlet, exit and periodics "
+                    "follow, by up to " +
+                    to_text(spread.length, 3) + " chords and " + to_text(spread.angle_rad * 180 / std::numbers::pi, 3) +
+                    " degrees about the axis; let `of` name the one blade to follow, or give copies of a blade motions "
+                    "that are the same about the axis");
   auto const closed =
       std::count_if(surface.contours.begin(), surface.contours.end(), [](auto const& c) { return c.closed; });
   notes.push_back("blade " + describe_patch(mesh, mesh.patches[blades.front()]) + ": " +
