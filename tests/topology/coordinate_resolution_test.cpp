@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 namespace gridmorph::test {
 namespace {
@@ -63,6 +64,16 @@ TEST(CoordinateResolution, OfTextIsItsLastDecimal) {
   }
   Mesh const fixed = resolution_box([](double v) { return as_text(v, "%.7f"); });
   EXPECT_NEAR(coordinate_resolution(fixed), 1e-7, 1e-12);
+}
+
+TEST(CoordinateResolution, OfTextIsThatOfTheLargestNumberWhateverIsLookedAt) {
+  // One node lies a decade farther out than all others; which nodes are looked at is nobody's business.
+  for (auto const& [format, unit] : {std::pair("%.7g", 1e-5), std::pair("%.7f", 1e-7)})
+    for (Index const far : {0, 1, 2, 100, 101, 102}) {
+      Mesh mesh = resolution_box([&](double v) { return as_text(v, format); });
+      mesh.coordinates.set(far, {as_text(12.3456789, format), 0, 0});
+      EXPECT_NEAR(coordinate_resolution(mesh), unit, 1e-6 * unit) << format << " " << far;
+    }
 }
 
 TEST(CoordinateResolution, OfRoundNumbersIsThatOfDoublePrecision) {
