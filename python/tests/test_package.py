@@ -217,6 +217,25 @@ def test_endings_that_stand_for_another_format_are_refused(tmp_path, mesh, name,
     assert not (tmp_path / name).exists()
 
 
+def test_cells_that_were_flat_may_turn_by_little(tmp_path):
+    points = box(0.0)
+    points[:, :, -1] = points[:, :, -2] + [0.5 / (N - 1), 0.0, 0.0]  # the last plane lies in the one before it
+    faces = {**FACES, "k_min": "sides", "k_max": "tip"}
+    mesh = gridmorph.Mesh.from_blocks({"wing": points}, {"patch": [{"name": name, "zone": "wing", "face": face, "kind": "wall"}
+                                                                   for face, name in faces.items()]})
+
+    def pitched(by):
+        moved = points.copy()
+        moved[:, :, -1, 2] -= by * (moved[:, :, -1, 0] - 0.5)
+        return np.stack([moved[..., c].ravel(order="F") for c in range(3)], axis=-1)
+
+    little = pitched(1e-5)
+    assert mesh.quality(little)["inverted"] == 0
+    mesh.write(tmp_path / "little.cgns", little)
+    with pytest.raises(gridmorph.MeshError, match="inverted"):
+        mesh.write(tmp_path / "much.cgns", pitched(1e-2))
+
+
 def test_inverted_cells_are_written_where_that_is_asked_for_alone(tmp_path, mesh):
     torn = mesh.coordinates
     torn[N // 2 + N * (N // 2 + N * (N // 2))] += 0.5

@@ -190,6 +190,21 @@ TEST(Shortfalls, ForgiveWhatTheBaselineAlreadyHadButSaySo) {
   EXPECT_NE(list[0].message.find("-3.5 times"), std::string::npos);
 }
 
+TEST(Shortfalls, CellsThatWereFlatAreALineOfTheirOwnAndNone) {
+  QualityReport after = morphed();
+  EXPECT_EQ(format_table(baseline(), after).find("flat before"), std::string::npos);
+  auto const without = shortfalls(baseline(), after, {});
+  after.far_field.flat = 90;
+  let_fall(after, Fall::flat_before, 90, -1.75e-4);
+  EXPECT_EQ(shortfalls(baseline(), after, {}).size(), without.size());
+  EXPECT_TRUE(has_line_with(format_table(baseline(), after), {"flat before: 90 cells", "below -0.001", "-0.000175"}));
+  nlohmann::json const json = quality_json(baseline(), after, {});
+  EXPECT_EQ(json.at("/morphed/far_field/flat_before/cells"_json_pointer), 90);
+  EXPECT_EQ(json.at("/morphed/far_field/flat_before/worst/value"_json_pointer), -1.75e-4);
+  EXPECT_FALSE(json.at("/morphed/far_field/fallen"_json_pointer).contains("flat_before"));
+  EXPECT_EQ(json.at("/morphed/far_field/newly_inverted"_json_pointer), 0);
+}
+
 TEST(Shortfalls, WarnOfLargeRelativeDisplacementsWithoutFailing) {
   auto const list = shortfalls(baseline(), morphed(), thresholds(0.05, 0.2));
   ASSERT_EQ(list.size(), 1u);

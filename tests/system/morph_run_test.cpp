@@ -2,6 +2,7 @@
 #include "run_command.hpp"
 #include "support/mesh_builders.hpp"
 #include "support/shared_mesh.hpp"
+#include "support/unstructured_meshes.hpp"
 #include "support/with_keys.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
@@ -269,6 +270,58 @@ TEST_F(MorphRun, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
   EXPECT_EQ(written.status, 1);
   EXPECT_EQ(written.out.find("valid up to"), std::string::npos) << "who wants it all does not wait for the share";
   EXPECT_TRUE(std::filesystem::exists(path("out.cgns")));
+}
+
+TEST_F(MorphRun, CellsThatWereFlatHaveALineOfTheirOwnAndBlockNoMorph) {
+  // A wing whose tip is collapsed: 90 cells lie in its plane.
+  Mesh tip = test::unit_box({10, 9, 6});
+  for (Index n = 0; n < tip.n_nodes(); ++n)
+    if (Vec3 const x = tip.coordinates[n]; x.z == 6) tip.coordinates.set(n, {x.x + 0.5, x.y, 5});
+  auto const move_tip = [&](std::string const& rule) {
+    std::filesystem::remove(path("out.cgns"));
+    write("tip.toml", "[mesh]\ninput = \"tip.cgns\"\noutput = \"out.cgns\"\n[[motion]]\npatches = [\"k_max\"]\n" +
+                          rule + "[[motion]]\npatches = [\"i_*\", \"j_*\"]\nrule = \"free\"\n");
+    return gridmorph("morph tip.toml --report r.json");
+  };
+  std::string const pitch = "rule = \"rigid\"\nrotation = { angle_deg = 0.01, axis = [0, 1, 0], origin = [5, 0, 5] }\n";
+  auto const waves = [](char const* height) {  // every node of the tip the other way than those beside it
+    return fmt::format("rule = \"formula\"\ndz = \"{} * sin(pi * x)\"\n", height);
+  };
+  auto const expect_flat = [&](std::string const& rule, int least) {
+    Outcome const run = move_tip(rule);
+    EXPECT_EQ(run.status, 0) << run.err << run.out;
+    EXPECT_NE(run.out.find("flat before: "), std::string::npos) << run.out;
+    for (auto const* words : {"valid up to", "smoothed", "falls short"})
+      EXPECT_EQ((run.out + run.err).find(words), std::string::npos) << words << run.out;
+    EXPECT_TRUE(std::filesystem::exists(path("out.cgns")));
+    Outcome const plan = gridmorph("plan tip.toml");
+    EXPECT_NE(plan.out.find(": 0 inverted"), std::string::npos) << plan.out;
+    auto const report = nlohmann::json::parse(contents(path("r.json")))["morphed"];
+    int flat = 0;
+    for (auto const* region : {"near_field", "far_field"}) {
+      EXPECT_EQ(report[region]["newly_inverted"], 0);
+      EXPECT_EQ(report[region]["inverted"], 0);
+      flat += report[region]["flat_before"]["cells"].get<int>();
+    }
+    EXPECT_GT(flat, least);
+    EXPECT_EQ(report["certificate"]["holds"], true);
+  };
+  for (Mesh const& mesh : {test::to_prisms_and_tetrahedra(tip, 0), test::to_hexahedra(tip), tip}) {
+    SCOPED_TRACE(mesh.n_elements());
+    write_mesh(path("tip.cgns").string(), mesh);
+    expect_flat(waves("1e-4"), 40);
+  }
+  expect_flat(pitch, 0);
+  // Nor has the guard anything to do.
+  Coordinates const plain = read_mesh(path("out.cgns").string()).coordinates;
+  expect_flat(pitch + "[guard]\nsmooth = true\n", 0);
+  Coordinates const guarded = read_mesh(path("out.cgns").string()).coordinates;
+  for (Index n = 0; n < plain.size(); ++n) ASSERT_EQ(plain[n], guarded[n]);
+  Outcome const torn = move_tip(waves("0.01"));
+  EXPECT_EQ(torn.status, 4) << torn.err << torn.out;
+  std::size_t const at = torn.err.find("valid up to ");
+  ASSERT_NE(at, std::string::npos) << torn.err;
+  EXPECT_GT(std::stoi(torn.err.substr(at + 12)), 0) << "flat cells may turn by little";
 }
 
 TEST_F(MorphRun, WhereAMotionIsTooLargeItSaysHowMuchOfItIsValid) {

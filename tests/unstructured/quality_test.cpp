@@ -4,6 +4,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/host_spaces.hpp>
+#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <gtest/gtest.h>
@@ -309,6 +310,118 @@ TEST(UnstructuredQuality, FlatElementsOfEveryTypeAreNeitherInvertedNorSound) {
       EXPECT_EQ(p.measure(input).far_field.newly_inverted, 0);
       EXPECT_EQ(p.measure(input).far_field.flat, r.flat);
     }
+  }
+}
+
+TEST(UnstructuredQuality, FlatCellsTurnedByLittleAreFlatBeforeInBlocksAndElements) {
+  // A collapsed tip: the nodes of the last plane lie in the one before it, half a cell aside, so that no edge is short.
+  Mesh structured = unit_box({10, 9, 5});
+  std::vector<double> share(std::size_t(structured.n_nodes()));
+  for (Index n = 0; n < structured.n_nodes(); ++n) {
+    Vec3 const x = structured.coordinates[n];
+    share[std::size_t(n)] = x.z / 5;
+    if (x.z == 5) structured.coordinates.set(n, {x.x + 0.5, x.y, 4});
+  }
+  // Pitched about the middle of the tip, less and less towards the other end.
+  auto const pitched = [&](double degrees) {
+    Coordinates out(structured.n_nodes());
+    for (Index n = 0; n < out.size(); ++n) {
+      Vec3 const x = structured.coordinates[n];
+      double const angle = share[std::size_t(n)] * degrees * std::acos(-1.0) / 180, c = std::cos(angle),
+                   s = std::sin(angle);
+      out.set(n, {5 + c * (x.x - 5) + s * (x.z - 4), x.y, 4 - s * (x.x - 5) + c * (x.z - 4)});
+    }
+    return out;
+  };
+  Coordinates const little = pitched(0.01), much = pitched(0.1);
+  auto const expect = [&](Index flat, auto const& measure, auto const& certify_it) {
+    for (bool const fast : {false, true}) {
+      QualityRegion const at_rest = measure(structured.coordinates, fast), now = measure(little, fast);
+      EXPECT_EQ(at_rest.flat, flat);
+      EXPECT_EQ(at_rest[Fall::flat_before].cells, 0);
+      FallenCells const& before = now[Fall::flat_before];
+      EXPECT_GT(before.cells, flat / 4);
+      EXPECT_LE(before.cells, flat);
+      EXPECT_GE(now.flat, before.cells);
+      EXPECT_LT(before.worst, -1e-4);
+      EXPECT_GT(before.worst, -1e-3);
+      EXPECT_EQ(now.inverted, 0);
+      EXPECT_EQ(now.newly_inverted, 0);
+      // Ten times as far those that were beyond a tenth of the allowance are inverted.
+      QualityRegion const far = measure(much, fast);
+      EXPECT_GT(far.newly_inverted, flat / 8);
+      EXPECT_EQ(far.inverted, far.newly_inverted);
+      EXPECT_GT(far[Fall::flat_before].worst, -1e-3);
+    }
+    Certificate const now = certify_it(little), far = certify_it(much);
+    EXPECT_TRUE(now.holds());
+    EXPECT_GT(now.flat_before, flat / 4);
+    EXPECT_EQ(now.negative, 0);
+    EXPECT_FALSE(far.holds());
+    EXPECT_EQ(far.broken.cells, far.negative);
+    EXPECT_GT(far.flat_before, 0);
+  };
+  auto const input_for = [&](auto input, Coordinates const& x, bool fast) {
+    input.coordinates = views(x);
+    input.baseline = views(structured.coordinates);
+    input.fast = fast;
+    return input;
+  };
+  expect(
+      90,
+      [&](Coordinates const& x, bool fast) {
+        return measure_quality(Exec(), structured, input_for(QualityInput<Kokkos::HostSpace>(), x, fast)).far_field;
+      },
+      [&](Coordinates const& x) {
+        return certify(Exec(), structured, {views(x), views(structured.coordinates)});
+      });
+  struct Kind {
+    Mesh mesh;
+    Index flat;
+  };
+  for (auto const& [mesh, flat] :
+       {Kind{to_hexahedra(structured), 90}, Kind{to_prisms_and_tetrahedra(structured, 5), 180},
+        Kind{to_prisms_and_tetrahedra(structured, 0), 540}}) {
+    Prepared const p(mesh);
+    expect(
+        flat, [&](Coordinates const& x, bool fast) { return p.measure(input_for(Input(), x, fast)).far_field; },
+        [&](Coordinates const& x) {
+          return certify(Exec(), p.mesh, p.topology, {views(x), views(structured.coordinates)});
+        });
+  }
+}
+
+TEST(UnstructuredQuality, FlatElementsOfAPlaneTurnedByLittleAreFlatBefore) {
+  // The triangles and quadrilaterals beside i = 3 have all their corners on one line.
+  for (int const layers : {0, 4}) {
+    Mesh mesh = flat_box(6, 4, layers);
+    for (Index n = 0; n < mesh.n_nodes(); ++n)
+      if (Vec3 const x = mesh.coordinates[n]; x.x == 3) mesh.coordinates.set(n, {2, x.y + 0.25, 0});
+    Prepared const p(std::move(mesh));
+    Input input;
+    auto const turned = [&](double by) {
+      Coordinates out(p.mesh.n_nodes());
+      for (Index n = 0; n < out.size(); ++n) {
+        Vec3 const x = p.mesh.coordinates[n];
+        bool const moves = x.x == 2 && x.y != std::floor(x.y);
+        out.set(n, {x.x - (moves ? by : 0), x.y, 0});
+      }
+      return out;
+    };
+    Coordinates const little = turned(1e-4), much = turned(1e-2);
+    input.baseline = views(p.mesh.coordinates);
+    for (bool const fast : {false, true}) {
+      input.fast = fast;
+      input.coordinates = views(little);
+      QualityRegion const r = p.measure(input).far_field;
+      EXPECT_EQ(r[Fall::flat_before].cells, layers == 0 ? 8 : 4);
+      EXPECT_EQ(r.inverted, 0);
+      EXPECT_EQ(r.newly_inverted, 0);
+      input.coordinates = views(much);
+      EXPECT_EQ(p.measure(input).far_field.newly_inverted, layers == 0 ? 8 : 4);
+    }
+    EXPECT_TRUE(certify(Exec(), p.mesh, p.topology, {views(little), input.baseline}).holds());
+    EXPECT_FALSE(certify(Exec(), p.mesh, p.topology, {views(much), input.baseline}).holds());
   }
 }
 

@@ -99,7 +99,8 @@ class Relaxation {
   [[nodiscard]] State state(Index32 e) const {
     double const sign = signs_[std::size_t(e)], now = tables_.determinant(now_, e, sign);
     if (now > doubtful_determinant) return State::sound;  // no determinant is above 1
-    if (negative(e, sign, now_) && !negative(e, sign, baseline_)) return State::inverted;
+    if (negative(e, sign, now_) && !negative(e, sign, baseline_))
+      return tables_.flat_element(baseline_, now_, e, sign).stays_flat() ? State::sound : State::inverted;
     if (now > options_.share) return State::sound;
     double const before = tables_.determinant(baseline_, e, sign);
     bool const is_bad = before > 0 ? !(now > options_.share * before) : before == 0 && now < 0;

@@ -25,7 +25,7 @@ struct RelaxReport {
 };
 
 /// Where the 3x3x3 determinant of an element is not above share times the baseline's (or not positive, or negative where the
-/// baseline's is zero), or the certificate finds it inside out, nodes around move so that the sum of the relative shapes f
+/// baseline's is zero), or the certificate finds it inside out (but for cells that were flat and are so still, kernels/flat_cells.hpp), nodes around move so that the sum of the relative shapes f
 /// (kernels/relative_shape.hpp) of all corners around becomes smaller: coloured Gauss-Seidel sweeps, a step per node that does not let the sum over its
 /// corners grow. Nodes on boundaries that are held and in columns stay. While elements are inverted, the next round has twice the rings and sweeps. A round that leaves
 /// more inverted elements, or as many and more bad ones, is taken back; those after it, and all in 2-D, smooth displacements: each becomes the value, at its

@@ -2,6 +2,7 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/guard/detail/shape_sweeps.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
+#include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
 
 #include <algorithm>
@@ -138,7 +139,9 @@ class ShapeSmoothing {
     auto const negative = [&](Coordinates const& x) {
       return kernels::jacobian_sign(corners(x, nodes), handedness) >= kernels::JacobianSign::negative;
     };
-    return negative(x_) && !negative(prepared_.mesh.coordinates);
+    Coordinates const& baseline = prepared_.mesh.coordinates;
+    return negative(x_) && !negative(baseline) &&
+           !kernels::flat_cell(corners(baseline, nodes), corners(x_, nodes), handedness).stays_flat();
   }
 
   [[nodiscard]] CellShape shape(CellNodes const& nodes, double handedness, unsigned changing = 0) const {
@@ -147,7 +150,7 @@ class ShapeSmoothing {
       Vec3 now[3], before[3];
       detail::corner_edges(prepared_.mesh.coordinates, nodes, c, before);
       double const was = scaled_jacobian(before);
-      if (!(std::abs(was) > 1e-12)) continue;  // collapsed
+      if (!(std::abs(was) > kernels::flat_before)) continue;  // collapsed or flat: the certificate tells
       detail::corner_edges(x_, nodes, c, now);
       double const is = std::copysign(1.0, was) * scaled_jacobian(now);
       if ((changing >> c & 1u) != 0) out.smallest = std::min(out.smallest, is);

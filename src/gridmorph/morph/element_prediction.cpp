@@ -59,6 +59,9 @@ class SampledElements {
 
 struct BeforeAndAfter {
   kernels::CellMeasures before, after;
+  kernels::FlatCell flat;  ///< of elements that are inverted and were not
+
+  [[nodiscard]] bool lost() const { return after.smallest_corner_jacobian < 0 && before.smallest_corner_jacobian >= 0; }
 };
 
 void take(Index e, BeforeAndAfter const& m, double relative, PredictedElements& to) {
@@ -68,7 +71,7 @@ void take(Index e, BeforeAndAfter const& m, double relative, PredictedElements& 
     return true;
   };
   ++to.elements;
-  if (m.after.smallest_corner_jacobian < 0 && m.before.smallest_corner_jacobian >= 0) ++to.inverted;
+  if (m.lost() && !m.flat.stays_flat()) ++to.inverted;
   if (smaller(to.determinant, m.after.determinant_3x3x3)) to.determinant_before = m.before.determinant_3x3x3;
   if (m.before.determinant_3x3x3 > 0)
     smaller(to.kept, std::min(1.0, m.after.determinant_3x3x3 / m.before.determinant_3x3x3));
@@ -120,7 +123,9 @@ ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUn
       Index const e = looked_at[std::size_t(k)];
       double const sign = signs[std::size_t(e)];
       auto const of = [&](auto const& at) { return tables.measures(at, e, sign); };
-      measures[std::size_t(k)] = {of(x), of(y)};
+      BeforeAndAfter m{of(x), of(y), {}};
+      if (m.lost()) m.flat = tables.flat_element(x, y, e, sign);
+      measures[std::size_t(k)] = m;
     });
   });
 

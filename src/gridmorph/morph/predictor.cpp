@@ -104,7 +104,8 @@ void Predictor::add(CellBox const& box, Coordinates const& morphed, std::vector<
         auto const value = [&](double v) { return CellValue{v, box.zone, cell}; };
         PredictedCells one;
         one.cells = 1;
-        one.inverted = measures.smallest_corner_jacobian < 0 ? 1 : 0;
+        one.inverted =
+            measures.smallest_corner_jacobian < 0 && !flat_cell(before, after, handedness).stays_flat() ? 1 : 0;
         one.scaled_jacobian = value(scaled_jacobian(after, handedness));
         one.scaled_jacobian_before = scaled_jacobian(before, handedness);
         if (one.scaled_jacobian_before > 0)

@@ -1,4 +1,5 @@
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
 #include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/detail/partial_sums.hpp>
@@ -14,23 +15,30 @@ using kernels::JacobianSign;
 
 /// What one chunk of cells gives.
 struct ChunkCertificate {
-  Index cells = 0, zero = 0, negative = 0, undecided = 0, broken = 0;
+  Index cells = 0, zero = 0, flat_before = 0, negative = 0, undecided = 0, broken = 0;
   Index first = -1;  ///< number of the first broken cell
 
   KOKKOS_INLINE_FUNCTION void take_positive(int count) { cells += count; }
-  /// baseline(): the sign that the cell had.
-  template <class Baseline>
-  KOKKOS_INLINE_FUNCTION void take(JacobianSign sign, Index cell, Baseline const& baseline) {
+  /// baseline(): the sign that the cell had; flat_cell(): its FlatCell.
+  template <class Baseline, class Flat>
+  KOKKOS_INLINE_FUNCTION void take(JacobianSign sign, Index cell, Baseline const& baseline, Flat const& flat_cell) {
     ++cells;
+    bool const lost = sign >= JacobianSign::negative && baseline() < JacobianSign::negative;
+    if (lost && flat_cell().stays_flat()) {
+      ++zero;
+      ++flat_before;
+      return;
+    }
     zero += sign == JacobianSign::zero ? 1 : 0;
     negative += sign == JacobianSign::negative ? 1 : 0;
     undecided += sign == JacobianSign::undecided ? 1 : 0;
-    if (sign < JacobianSign::negative || baseline() >= JacobianSign::negative) return;
+    if (!lost) return;
     if (broken++ == 0 || cell < first) first = cell;
   }
   KOKKOS_INLINE_FUNCTION void join(ChunkCertificate const& other) {
     cells += other.cells;
     zero += other.zero;
+    flat_before += other.flat_before;
     negative += other.negative;
     undecided += other.undecided;
     if (other.broken > 0 && (broken == 0 || other.first < first)) first = other.first;
@@ -52,7 +60,7 @@ Certificate sum_of(Exec const& exec, Chunks const& of_chunk, Place const& place)
   auto const host = detail::download(exec, of_chunk);
   ChunkCertificate all;
   for (std::size_t c = 0; c < host.extent(0); ++c) all.join(host(c));
-  Certificate out{all.cells, all.zero, all.negative, all.undecided, {}};
+  Certificate out{all.cells, all.zero, all.flat_before, all.negative, all.undecided, {}};
   out.broken.cells = all.broken;
   if (all.broken > 0) {
     auto const [zone, cell] = place(all.first);
@@ -101,10 +109,16 @@ Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typenam
             continue;
           }
           certificate.take(
-              kernels::jacobian_sign(now.cell(n), zone.handedness), kernels::first_cell(zone, row) + n, [&] {
+              kernels::jacobian_sign(now.cell(n), zone.handedness), kernels::first_cell(zone, row) + n,
+              [&] {
                 return against_baseline
                            ? kernels::jacobian_sign(detail::cell_row(baseline, zone, row).cell(n), zone.handedness)
                            : JacobianSign::positive;
+              },
+              [&] {
+                return against_baseline ? kernels::flat_cell(detail::cell_row(baseline, zone, row).cell(n), now.cell(n),
+                                                             zone.handedness)
+                                        : kernels::FlatCell{};
               });
         }
       });
@@ -129,8 +143,12 @@ Certificate certify(Exec const& exec, Mesh const& mesh, UnstructuredTopology con
         for (int n = 0; n < row.count; ++n) {
           Index const e = first_element(row.zone) + row.i + n;
           auto const sign_in = [&](auto const& x) { return elements.jacobian_sign(x, e, signs(e)); };
-          certificate.take(sign_in(coordinates), e,
-                           [&] { return against_baseline ? sign_in(baseline) : JacobianSign::positive; });
+          certificate.take(
+              sign_in(coordinates), e, [&] { return against_baseline ? sign_in(baseline) : JacobianSign::positive; },
+              [&] {
+                return against_baseline ? elements.flat_element(baseline, coordinates, e, signs(e))
+                                        : kernels::FlatCell{};
+              });
         }
       });
   return sum_of(exec, of_chunk, [&](Index element) { return detail::place_of_element(mesh, element); });

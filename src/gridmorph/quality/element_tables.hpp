@@ -4,6 +4,7 @@
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/cell_chunks.hpp>
 #include <gridmorph/kernels/curved_element.hpp>
+#include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/polyhedron_quality.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 #include <gridmorph/mesh/polyhedron_views.hpp>
@@ -125,6 +126,23 @@ struct ElementTables {
     if (t == ElementType::polyhedron) return kernels::polyhedron_sign(polyhedron(points, e), sign);
     if (is_curved(e)) return kernels::curved_sign(curved(points, e), corners(points, e), sign, plane_normal);
     return kernels::jacobian_sign(t, corners(points, e), sign, plane_normal);
+  }
+  /// Of straight elements kernels::scaled_jacobian(), of polyhedra their determinant, which is scaled; of curved elements what is
+  /// smaller, that of their corners or J anywhere against the element with straight edges.
+  template <class Points>
+  KOKKOS_INLINE_FUNCTION double scaled_jacobian(Points const& points, Index e, double sign) const {
+    ElementType const t = type(e);
+    if (t == ElementType::polyhedron) return determinant(points, e, sign);
+    kernels::ElementCorners const straight = corners(points, e);
+    double const at_corners = kernels::scaled_jacobian(t, straight, sign, plane_normal);
+    if (!is_curved(e)) return at_corners;
+    double const scale = kernels::curved::tolerance(t, straight) / kernels::flat_fraction;
+    double const anywhere = measures(points, e, sign).smallest_corner_jacobian / scale;
+    return kernels::is_finite(anywhere) ? kernels::smaller(at_corners, anywhere) : at_corners;
+  }
+  template <class From, class To>
+  KOKKOS_INLINE_FUNCTION kernels::FlatCell flat_element(From const& from, To const& to, Index e, double sign) const {
+    return {scaled_jacobian(from, e, sign), scaled_jacobian(to, e, sign)};
   }
   /// From one place to another.
   template <class From, class To>

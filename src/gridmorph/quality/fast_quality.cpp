@@ -50,7 +50,8 @@ struct RunOfCells {
       }
       if (may_fall && against_baseline)
         judge(region, limits, cell_measures(before.cell(n), before.handedness),
-              cell_measures(now.cell(n), now.handedness), first + n);
+              cell_measures(now.cell(n), now.handedness), first + n,
+              [&] { return kernels::flat_cell(before.cell(n), now.cell(n), now.handedness); });
     }
     region.cells += end - begin;
     double const sharpest = degrees * kernels::arc_cosine(cosine);

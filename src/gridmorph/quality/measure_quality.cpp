@@ -161,7 +161,8 @@ std::vector<detail::PartialSums> sums_of_cells(
                 if (against_baseline && screen.may_fall(m.determinant_3x3x3[n], m.minimum_angle_deg[n],
                                                         m.equiangle_skewness[n], m.collapsed[n]))
                   detail::judge(region, limits, cell_measures(before.cell(n), zone.handedness),
-                                cell_measures(now.cell(n), zone.handedness), cell + n);
+                                cell_measures(now.cell(n), zone.handedness), cell + n,
+                                [&] { return kernels::flat_cell(before.cell(n), now.cell(n), zone.handedness); });
               }
             });
       });

@@ -33,6 +33,7 @@ std::string_view to_string(Fall fall) {
     case Fall::skewness: return "skewness";
     case Fall::loss: return "loss";
     case Fall::collapsed: return "collapsed";
+    case Fall::flat_before: return "flat_before";
     case Fall::count: break;
   }
   return "unknown";

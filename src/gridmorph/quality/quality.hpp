@@ -78,6 +78,7 @@ enum class Fall {
   skewness,     ///< above max_skewness; value: the skewness
   loss,         ///< not inverted, but above max_loss; value: the loss
   collapsed,    ///< an edge has no length that had one; no value
+  flat_before,  ///< no shortfall: no volume in the baseline, and little of the wrong sign now (kernels/flat_cells.hpp); value: the scaled Jacobian
   count
 };
 
@@ -97,10 +98,11 @@ struct FallenCells {
 
 struct QualityRegion {
   Index cells = 0;
-  Index inverted = 0;        ///< smallest of the 8 corner determinants (with the zone's handedness) negative
+  Index inverted =
+      0;  ///< smallest of the 8 corner determinants (with the zone's handedness) negative, but for Fall::flat_before
   Index newly_inverted = 0;  ///< Fall::inverted: those that lost their volume by the morph (0 for the baseline itself)
-  Index flat = 0;            ///< smallest of the 8 corner determinants zero, as far as coordinates can tell
-  Index collapsed = 0;       ///< cells with an edge of length zero (poles, wedges)
+  Index flat = 0;  ///< smallest of the 8 corner determinants zero, as far as coordinates can tell, or Fall::flat_before
+  Index collapsed = 0;  ///< cells with an edge of length zero (poles, wedges)
   std::array<MeasureStatistics, n_measures> measure{};
   std::array<FallenCells, n_falls> fallen{};  ///< against the baseline
 
@@ -146,10 +148,12 @@ struct WallGroup {
 
 /// Cells by the sign of their Jacobian, taken everywhere in them (kernels/jacobian_bounds.hpp).
 struct Certificate {
-  Index cells = 0;      ///< that were looked at
-  Index zero = 0;       ///< negative nowhere, but somewhere zero, as far as coordinates can tell: collapsed, flat
-  Index negative = 0;   ///< somewhere inside out, or with a corner that is no number
-  Index undecided = 0;  ///< too close to zero to tell; none in any mesh so far
+  Index cells = 0;  ///< that were looked at
+  Index zero =
+      0;  ///< negative nowhere, but somewhere zero, as far as coordinates can tell: collapsed, flat; or flat_before
+  Index flat_before = 0;  ///< negative somewhere by little, and without volume in the baseline: as Fall::flat_before
+  Index negative = 0;     ///< somewhere inside out, or with a corner that is no number
+  Index undecided = 0;    ///< too close to zero to tell; none in any mesh so far
   /// Of those that are negative or undecided: those that were neither in the baseline (all without one), and the first of them in
   /// mesh order; FallenCells::worst has no value.
   FallenCells broken;

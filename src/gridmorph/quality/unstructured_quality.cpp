@@ -170,7 +170,8 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
           detail::count_state(region, m.smallest_corner_jacobian);
           if (against_baseline &&
               screen.may_fall(m.determinant_3x3x3, m.minimum_angle_deg, m.equiangle_skewness, m.collapsed))
-            detail::judge(region, limits, tables.measures(original, e, sign), m, e);
+            detail::judge(region, limits, tables.measures(original, e, sign), m, e,
+                          [&] { return tables.flat_element(original, coordinates, e, sign); });
           if (fast) continue;
           volumes(e) = m.volume;
           add(Measure::aspect_ratio, m.aspect_ratio);

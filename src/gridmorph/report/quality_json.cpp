@@ -29,18 +29,21 @@ json statistics_json(QualityReport const& report, MeasureStatistics const& s) {
           {"worst", worst_json(report, s)}};
 }
 
+json cells_json(QualityReport const& report, FallenCells const& cells) {
+  json entry{{"cells", cells.cells}};
+  if (cells.cells == 0) return entry;
+  MeasureStatistics at;
+  at.worst_zone = cells.worst_zone;
+  at.worst_cell = cells.worst_cell;
+  at.worst = cells.worst;
+  entry["worst"] = worst_json(report, at);
+  return entry;
+}
+
 json fallen_json(QualityReport const& report, QualityRegion const& region) {
   json list = json::object();
-  for (std::size_t f = 0; f < n_falls; ++f) {
-    FallenCells const& fallen = region.fallen[f];
-    json& entry = list[std::string(to_string(Fall(f)))] = {{"cells", fallen.cells}};
-    if (fallen.cells == 0) continue;
-    MeasureStatistics at;
-    at.worst_zone = fallen.worst_zone;
-    at.worst_cell = fallen.worst_cell;
-    at.worst = fallen.worst;
-    entry["worst"] = worst_json(report, at);
-  }
+  for (std::size_t f = 0; f < n_falls; ++f)
+    if (Fall(f) != Fall::flat_before) list[std::string(to_string(Fall(f)))] = cells_json(report, region.fallen[f]);
   return list;
 }
 
@@ -51,7 +54,10 @@ json region_json(QualityReport const& report, QualityRegion const& region) {
       measures[std::string(to_string(Measure(m)))] = statistics_json(report, region.measure[m]);
   json out{{"cells", region.cells}, {"inverted", region.inverted},   {"newly_inverted", region.newly_inverted},
            {"flat", region.flat},   {"collapsed", region.collapsed}, {"measures", std::move(measures)}};
-  if (report.against_baseline) out["fallen"] = fallen_json(report, region);
+  if (report.against_baseline) {
+    out["fallen"] = fallen_json(report, region);
+    out["flat_before"] = cells_json(report, region[Fall::flat_before]);
+  }
   return out;
 }
 
@@ -94,7 +100,13 @@ json definitions(bool unstructured) {
   list["flat"] = {
       {"formula",
        "number of cells whose smallest corner Jacobian is zero: not above 1e-8 of the product of the cell's "
-       "longest edges in its three directions, or what rounding of coordinates can make of it"}};
+       "longest edges in its three directions, or what rounding of coordinates can make of it; after a morph those of "
+       "flat_before too"}};
+  list["flat_before"] = {
+      {"formula",
+       "cells with a negative Jacobian that were flat in the baseline and are so still, which is no shortfall: the "
+       "smallest over their corners of J / product of the lengths of the edges there, the value, was within 1e-10 of "
+       "zero and is above -0.001"}};
   list["fallen"] = {
       {"formula",
        "cells beyond a threshold that were not so in the baseline; inverted: the value is the smallest corner "
@@ -103,7 +115,7 @@ json definitions(bool unstructured) {
   list["certificate"] = {
       {"formula",
        "cells by the sign of their Jacobian everywhere in them, from its Bezier coefficients; zero: negative nowhere, "
-       "as far as coordinates can tell; broken: negative somewhere, and not in the baseline"}};
+       "as far as coordinates can tell, or flat_before; broken: negative somewhere, and not in the baseline"}};
   list["collapsed"] = {{"formula",
                         "number of cells with an edge shorter than 1e-12 of the longest edge of the cell; "
                         "points where a collapsed edge makes the Jacobian vanish do not count"}};
@@ -124,8 +136,13 @@ json definitions(bool unstructured) {
 
 nlohmann::json certificate_json(QualityReport const& report) {
   Certificate const& c = *report.certificate;
-  json out{{"cells", c.cells},         {"zero", c.zero},     {"negative", c.negative},
-           {"undecided", c.undecided}, {"holds", c.holds()}, {"broken", {{"cells", c.broken.cells}}}};
+  json out{{"cells", c.cells},
+           {"zero", c.zero},
+           {"flat_before", c.flat_before},
+           {"negative", c.negative},
+           {"undecided", c.undecided},
+           {"holds", c.holds()},
+           {"broken", {{"cells", c.broken.cells}}}};
   if (c.holds()) return out;
   MeasureStatistics first;
   first.worst_zone = c.broken.worst_zone;

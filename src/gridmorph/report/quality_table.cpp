@@ -1,3 +1,4 @@
+#include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/report/measure_text.hpp>
 #include <gridmorph/report/quality_table.hpp>
 
@@ -223,6 +224,7 @@ std::string format_table(QualityReport const& baseline, std::optional<QualityRep
     for (int d = 0; d < 3; ++d) measure_row(out, list, relative_displacement_along(d), "max", &MeasureStatistics::max);
   }
   if (morphed && morphed->certificate) out += certificate_text(*morphed);
+  if (morphed) out += flat_text(*morphed);
   regions(out, baseline, morphed);
   walls(out, baseline, morphed);
   wall_groups(out, baseline, morphed);
@@ -250,6 +252,25 @@ std::string certificate_text(QualityReport const& report) {
     text += fmt::format("; {} were sound in the baseline, the first is {}", c.broken.cells, worst_place(report, first));
   } else if (bad > 0) {
     text += "; none of them was sound in the baseline";
+  }
+  return text + "\n";
+}
+
+std::string flat_text(QualityReport const& report) {
+  FallenCells const &near = report.near_field[Fall::flat_before], &far = report.far_field[Fall::flat_before];
+  Index const cells = std::max(near.cells + far.cells, report.certificate ? report.certificate->flat_before : 0);
+  if (cells == 0) return {};
+  std::string text = fmt::format(
+      "flat before: {} {} had no volume in the baseline, and {} negative by little: no scaled Jacobian is "
+      "below {}, so they count as flat",
+      cells, report.unstructured ? "elements" : "cells", cells == 1 ? "is" : "are",
+      format_value(-kernels::flat_allowance));
+  FallenCells const& worst = near.cells > 0 && (far.cells == 0 || near.worst <= far.worst) ? near : far;
+  if (worst.cells > 0) {
+    MeasureStatistics at;
+    at.worst_zone = worst.worst_zone;
+    at.worst_cell = worst.worst_cell;
+    text += fmt::format("; the smallest is {}, {}", format_value(worst.worst), worst_place(report, at));
   }
   return text + "\n";
 }

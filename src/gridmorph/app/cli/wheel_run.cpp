@@ -40,6 +40,7 @@ void add_passage(Certificate& wheel, Certificate const& passage, std::map<int, i
   }
   wheel.cells += passage.cells;
   wheel.zero += passage.zero;
+  wheel.flat_before += passage.flat_before;
   wheel.negative += passage.negative;
   wheel.undecided += passage.undecided;
   wheel.broken.cells += passage.broken.cells;
@@ -373,7 +374,7 @@ std::string wheel_text(WheelRun const& run, WheelResult const& result) {
   std::string text;
   for (auto const& note : result.notes) text += "note: " + note + "\n";
   text += describe_rows(run.sector().mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
-  text += certificate_text(result.whole);
+  text += certificate_text(result.whole) + flat_text(result.whole);
   text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
                       result.gap.distance);
   if (auto const tips = wheel_clearances(result); !tips.empty()) text += "\n" + tips;

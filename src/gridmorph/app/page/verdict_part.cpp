@@ -139,10 +139,13 @@ std::string certificate_sentence(ReportPage const& page) {
                                                                 : "";
   if (c["holds"].get<bool>())
     return fmt::format(
-        "Certified by bounds of the Jacobian over the whole of all {} {}{}, not at corners alone{}.", count(c["cells"]),
-        page.kind, of_worst,
+        "Certified by bounds of the Jacobian over the whole of all {} {}{}, not at corners alone{}{}.",
+        count(c["cells"]), page.kind, of_worst,
         c["negative"].get<Index>() > 0
             ? fmt::format("; {} that are negative somewhere were so in the baseline", count(c["negative"]))
+            : std::string(),
+        c["flat_before"].get<Index>() > 0
+            ? fmt::format("; {} that are negative by little were flat in the baseline", count(c["flat_before"]))
             : std::string());
   return fmt::format(
       "Not certified: {} of {} {}{} are negative somewhere that were not in the baseline; the first is {}.",

@@ -4,7 +4,7 @@
 // were in the baseline; only they are measured there too and judged.
 #pragma once
 
-#include <gridmorph/kernels/cell_quality.hpp>
+#include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/quality/detail/partial_sums.hpp>
 
 namespace gridmorph::detail {
@@ -42,14 +42,19 @@ KOKKOS_INLINE_FUNCTION void count_state(PartialRegion& region, double smallest_c
   region.flat += smallest_corner_jacobian == 0 ? 1 : 0;
 }
 
-/// Adds a cell to those that fell, in every way in which it did; what is inverted now has no loss.
+/// Adds a cell to those that fell, in every way in which it did; what is inverted now has no loss. flat_cell(): its FlatCell, asked for
+/// where the sign of a Jacobian is not what it was.
+template <class Flat>
 KOKKOS_INLINE_FUNCTION void judge(PartialRegion& region, CellLimits const& limits, kernels::CellMeasures const& before,
-                                  kernels::CellMeasures const& now, Index cell) {
+                                  kernels::CellMeasures const& now, Index cell, Flat const& flat_cell) {
   auto const fall = [&](Fall f, double value) {
     region.fallen[int(f)].take(larger_is_worse(f) ? -value : value, cell);
   };
   double const was = before.smallest_corner_jacobian, is = now.smallest_corner_jacobian;
-  if ((is < 0 && was >= 0) || (is == 0 && was > 0))
+  kernels::FlatCell const flat = is < 0 && was >= 0 ? flat_cell() : kernels::FlatCell{};
+  if (flat.stays_flat())
+    fall(Fall::flat_before, flat.now);
+  else if ((is < 0 && was >= 0) || (is == 0 && was > 0))
     fall(Fall::inverted,
          before.largest_corner_jacobian > 0 ? is / before.largest_corner_jacobian : now.determinant_2x2x2);
   if (now.collapsed && !before.collapsed) fall(Fall::collapsed, 0);

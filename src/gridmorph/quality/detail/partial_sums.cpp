@@ -77,6 +77,8 @@ void combine(std::size_t n_chunks, PartialSums const* sums, QualityRegion& near_
                           larger_is_worse(Fall(f)) ? -sum.worst : sum.worst};
     }
     region.newly_inverted = region[Fall::inverted].cells;
+    region.inverted -= region[Fall::flat_before].cells;
+    region.flat += region[Fall::flat_before].cells;
   }
 }
 
