@@ -36,7 +36,7 @@ ReportPage page_of(std::string const& name) {
   quality.near_field.cells = 3;
   for (auto& m : quality.near_field.measure) m = {0.5, 0.75, 1, 0, {1, 2, 3}, 0.5};
   quality.wall_groups = {{name, {}}};
-  quality.certificate = Certificate{3, 0, 1, 0, {1, 0, {1, 2, 3}, -1, 0}};
+  quality.certificate = Certificate{3, 0, 0, 1, 0, {1, 0, {1, 2, 3}, -1, 0}};
   ReportPage page;
   page.report = quality_json(quality, quality, {});
   page.report.update(
@@ -88,6 +88,10 @@ TEST(Html, SaysTheVerdictFirst) {
     std::size_t const at = text.find("<section");
     return text.substr(at, text.find("</h2>") - at);
   };
+  EXPECT_NE(verdict().find("Valid"), std::string::npos);
+  EXPECT_EQ(page_text(page).find("were flat in the baseline"), std::string::npos);
+  page.report["morphed"]["certificate"]["flat_before"] = 90;
+  EXPECT_NE(page_text(page).find("90 that are negative by little were flat in the baseline"), std::string::npos);
   EXPECT_NE(verdict().find("Valid"), std::string::npos);
   page.report["shortfalls"].push_back({{"severity", "failure"}, {"message", "small"}});
   EXPECT_NE(verdict().find("short of the thresholds"), std::string::npos);
