@@ -556,6 +556,18 @@ TEST(OpenFoam, PackedFilesThatUnpackWithoutEndAreRefused) {
   expect_all_in(said, {"points.gz", "100 times", "gunzip"});
 }
 
+TEST(OpenFoam, CoordinatesThatAreTooLargeAreRefusedWithTheirLine) {
+  TemporaryFolder const folder;
+  fs::path const path = folder / "large";
+  FoamBox const box;
+  box.write(path, {});
+  std::string points = bytes_of(path / "points");
+  auto const line = points.find("\n(", points.find("\n(") + 2);
+  auto const end = points.find(' ', line);
+  std::ofstream(path / "points", std::ios::binary) << points.replace(line + 2, end - line - 2, "1e400");
+  expect_all_in(message_of<Error>([&] { (void)read_mesh(path.string()); }), {"points:", "'1e400'", "larger than"});
+}
+
 TEST(OpenFoam, DamagedFilesAreRefusedAndNothingElseHappens) {
   TemporaryFolder const folder;
   for (Storage const storage : {Storage{}, Storage{true, 32, 64}}) {

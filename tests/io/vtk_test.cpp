@@ -823,6 +823,8 @@ TEST_F(VtuRead, ErrorsSayWhereWhatAndWhatToDo) {
   expect_all_in(error("header_type=\"UInt32\"", "compressor=\"vtkLZ4DataCompressor\""),
                 {"mesh.vtu:3", "vtkLZ4DataCompressor", "without"});
   expect_all_in(error("  9 9", "  9 69"), {"type 69", "cells of first and second order"});
+  expect_all_in(error("type=\"Float64\"", "type=\"Int32\""), {"mesh.vtu:7", "'Int32'", "whole numbers", "Float64"});
+  expect_all_in(error("format=\"ascii\"", std::string("format=\"\0\"", 10)), {"'format'", "zero byte"});
   expect_all_in(error("</Points>", "</Point>"), {"</Points> is expected"});
   expect_all_in(error("1 0 0", "1 nan 0"), {"not finite numbers"});
   expect_all_in(error("1 0 0", "1 one 0"), {"mesh.vtu:8", "expected a number, found 'one'"});
