@@ -226,6 +226,99 @@ TEST(PointField, RefusesPositionsBeyondTheLargestDistance) {
   EXPECT_TRUE(reported(lines, "d.csv: ", {"(0.5, 0, 0)", "0.5", "max_distance = 0.1"}));
 }
 
+/// A blade 0.25 high and 0.1 long of 101 x 61 nodes, off the origin and finer towards its edges.
+std::vector<Vec3> skin_of_blade(double thickness = 0.02) {
+  std::vector<Vec3> out;
+  for (int v = 0; v <= 60; ++v)
+    for (int u = 0; u <= 100; ++u) {
+      double const t = std::numbers::pi * u / 50, s = 0.5 - 0.5 * std::cos(std::numbers::pi * v / 60);
+      out.push_back({0.05 * std::cos(t), 0.5 * thickness * std::sin(t) + 0.02 * s, 0.3 + 0.25 * s});
+    }
+  return out;
+}
+
+std::vector<Vec3> mapped(std::vector<Vec3> points, std::function<Vec3(Vec3 const&)> const& map) {
+  for (Vec3& p : points) p = map(p);
+  return points;
+}
+
+std::string refusal_of(std::vector<Vec3> const& points, FieldOptions const& options = {},
+                       std::vector<Vec3> const& skin = skin_of_blade()) {
+  try {
+    PointField(cloud_of(points, wave), options).expect(skin);
+  } catch (MotionError const& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(PointField, RefusesPointsThatLieElsewhereThanTheNodes) {
+  auto const skin = skin_of_blade();
+  EXPECT_EQ(refusal_of(skin), "");
+  std::string const mm = refusal_of(mapped(skin, [](Vec3 const& p) { return 1000 * p; }));
+  EXPECT_NE(mm.find("length_scale = 0.001 would fit"), std::string::npos) << mm;
+  EXPECT_NE(mm.find("max_distance"), std::string::npos) << mm;
+  std::string const inch = refusal_of(mapped(skin, [](Vec3 const& p) { return 1 / 0.0254 * p; }));
+  EXPECT_NE(inch.find("inch"), std::string::npos) << inch;
+  EXPECT_NE(refusal_of(mapped(skin, [](Vec3 const& p) { return Vec3{p.x, p.z, p.y}; })), "") << "y and z swapped";
+  EXPECT_NE(refusal_of(mapped(skin, [](Vec3 const& p) { return Vec3{p.x, p.y, -p.z}; })), "") << "another sign";
+  EXPECT_NE(refusal_of({skin.begin(), skin.begin() + std::ptrdiff_t(skin.size() / 2)}), "") << "half of the rows";
+  EXPECT_NE(refusal_of({skin.begin(), skin.begin() + std::ptrdiff_t(skin.size() / 100)}), "") << "1 % of the rows";
+}
+
+TEST(PointField, RefusesRowsOfOneSideOfAThinBlade) {
+  // The other side is nearer than 5 % of the size, and has points all around.
+  auto const skin = skin_of_blade(0.006);
+  std::vector<Vec3> side;
+  for (std::size_t n = 0; n < skin.size(); ++n)
+    if (n % 101 <= 50) side.push_back(skin[n]);
+  std::string const said = refusal_of(side, {}, skin);
+  EXPECT_NE(said.find("farther than two spacings from its points"), std::string::npos) << said;
+}
+
+/// Every so many nodes along and across.
+std::vector<Vec3> thinned(std::vector<Vec3> const& skin, std::size_t along, std::size_t across) {
+  std::vector<Vec3> out;
+  for (std::size_t n = 0; n < skin.size(); ++n)
+    if (n / 101 % across == 0 && n % 101 % along == 0) out.push_back(skin[n]);
+  return out;
+}
+
+TEST(PointField, TakesCoarserPointsAndThoseOfAnotherSkin) {
+  auto const skin = skin_of_blade();
+  for (std::size_t const along : {1, 2, 3})
+    for (std::size_t const across : {1, 2, 3}) EXPECT_EQ(refusal_of(thinned(skin, along, across)), "");
+  auto const coarse = thinned(skin, 4, 4);
+  EXPECT_EQ(refusal_of(coarse), "");
+  EXPECT_EQ(refusal_of(mapped(coarse, [](Vec3 const& p) { return p + Vec3{0.001, 0.0005, 0}; })), "");
+}
+
+TEST(PointField, TakesPointsAsFarAsTheLargestDistanceAllows) {
+  FieldOptions options;
+  options.max_distance = 2;
+  EXPECT_EQ(refusal_of(mapped(skin_of_blade(), [](Vec3 const& p) { return Vec3{p.x, p.y, -p.z}; }), options), "");
+}
+
+TEST(PointField, SaysWhichNodesAreFarFromItsPoints) {
+  auto const skin = skin_of_blade();
+  auto const reached = [](Vec3 const& p) { return p.z < 0.3 + 0.25 * 0.97; };
+  std::vector<Vec3> points;
+  for (Vec3 const& p : skin)
+    if (reached(p)) points.push_back(p);
+  PointField const field(cloud_of(points, wave), {});
+  field.expect(skin);
+  std::vector<Vec3> u(skin.size());
+  field(skin, u);
+  field.judge();
+  std::string const text = far_from_model(field);
+  EXPECT_NE(text.find("% of the size of its patches"), std::string::npos) << text;
+
+  PointField const whole(cloud_of(skin, wave), {});
+  whole.expect(skin);
+  whole(skin, u);
+  EXPECT_EQ(far_from_model(whole), "");
+}
+
 TEST(PointField, RefusesPositionsThatAreNotFinite) {
   PointField const field(cloud_of({{0, 0, 0}, {1, 0, 0}}, linear), {});
   EXPECT_TRUE(reported(error_lines<MotionError>([&] { at(field, {NAN, 0, 0}); }), "d.csv: ", {"nan", "not finite"}));

@@ -62,6 +62,20 @@ std::string worst_step_text(CaseFile const& case_file, int step) {
              : fmt::format("step {} comes out worst of the {} that are looked at of {}: ", step + 1, looked_at, steps);
 }
 
+std::vector<Shortfall> mapping_warnings(CaseFile const& case_file) {
+  std::vector<Shortfall> out;
+  for (auto const& use : case_file.fields) {
+    try {
+      use.field->judge();
+    } catch (MotionError const& e) {
+      throw MotionError(use.where + ": " + e.what());
+    }
+    if (auto const text = far_from_model(*use.field); !text.empty() && !use.inverse)
+      out.push_back({Shortfall::Severity::warning, use.where + ": " + text});
+  }
+  return out;
+}
+
 std::vector<std::string> mapping_notes(CaseFile const& case_file) {
   std::vector<std::string> notes = case_file.notes;
   for (auto const& use : case_file.fields) {

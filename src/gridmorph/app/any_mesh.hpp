@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/app/casefile/field_check.hpp>
 #include <gridmorph/app/cli/diagnosis.hpp>
 #include <gridmorph/app/cli/inspect_text.hpp>
 #include <gridmorph/app/page/picture_mesh.hpp>
@@ -14,6 +15,7 @@
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/plan/block_graph.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/report/shortfalls.hpp>
 #include <gridmorph/report/step_times.hpp>
 
 #include <nlohmann/json.hpp>
@@ -163,6 +165,8 @@ std::vector<int> predicted_steps(CaseFile const& case_file, int most = 100);
 /// "step 7 of 24 comes out worst: "
 std::string worst_step_text(CaseFile const& case_file, int step);
 
+/// Models of `field` rules that are far from some of the nodes: a warning each. Throws MotionError where they lie elsewhere, by all nodes.
+std::vector<Shortfall> mapping_warnings(CaseFile const& case_file);
 /// How far nodes were from the models of `field` rules, and what was left out of these.
 std::vector<std::string> mapping_notes(CaseFile const& case_file);
 
@@ -217,6 +221,8 @@ class AnyMesh {
   /// As pictures see it; the mesh must outlive it.
   [[nodiscard]] virtual std::unique_ptr<page::PictureMesh> pictures() const = 0;
 
+  /// check_fields() of a case file on this mesh.
+  virtual void check_fields(CaseFile const& case_file) const = 0;
   /// Connects, checks, resolves rules, plans. The mesh must outlive the plan. Throws MeshError, MotionError, PlanError.
   [[nodiscard]] virtual std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const = 0;
 };

@@ -51,6 +51,7 @@ class BlockMesh final : public AnyMesh {
   [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const override {
     return page::picture_mesh(mesh_, handedness());
   }
+  void check_fields(CaseFile const& case_file) const override { gridmorph::check_fields(case_file, mesh_); }
   [[nodiscard]] std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const override;
 
  private:

@@ -59,6 +59,7 @@ class ElementMesh final : public AnyMesh {
   [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const override {
     return page::picture_mesh(mesh, topology, face_patches, signs);
   }
+  void check_fields(CaseFile const& case_file) const override { gridmorph::check_fields(case_file, mesh); }
   [[nodiscard]] std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const override;
 
  private:

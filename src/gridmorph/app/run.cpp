@@ -79,6 +79,7 @@ Run::Run(CaseFile const& case_file, MeshSource const& file, Terminal& terminal)
   mesh_ = load(file, case_file.side_file);
   times.push_back({"read", watch.lap(), true});
   terminal.progress(mesh_->kind().planning);
+  mesh_->check_fields(case_file);
   plan_ = mesh_->plan(case_file);
   notes = plan_->notes();
   for (auto& time : plan_->times()) times.push_back(std::move(time));
@@ -253,6 +254,10 @@ std::vector<Shortfall> Run::shortfalls_of(QualityReport const& quality) const {
   return shortfalls(baseline_, quality, thresholds_of(case_file_));
 }
 
+std::vector<Shortfall> Run::shortfalls_of_motion() const {
+  return mapping_warnings(case_file_);
+}
+
 std::vector<TipClearance> Run::clearances(Moment const* when) const {
   std::vector<TipClearance> out;
   if (case_file_.clearances.empty()) return out;
@@ -281,6 +286,9 @@ std::vector<TipClearance> Run::clearances(Moment const* when) const {
 
 nlohmann::json Run::json(QualityReport const& quality, PlanOutcome const& outcome) const {
   nlohmann::json json = quality_json(baseline_, quality, thresholds_of(case_file_));
+  auto& list = json["shortfalls"];
+  auto const of_motion = shortfalls_json(shortfalls_of_motion());
+  list.insert(list.begin(), of_motion.begin(), of_motion.end());
   json["gridmorph"] = GRIDMORPH_VERSION;
   json["case_file"] = case_file_.source.string();
   json["input"] = case_file_.input.string();
@@ -300,6 +308,8 @@ nlohmann::json Run::json(QualityReport const& quality, PlanOutcome const& outcom
 std::string Run::head() const {
   std::string text;
   for (auto const& note : notes) text += "note: " + note + "\n";
+  for (auto const& s : shortfalls_of_motion())
+    text += (s.severity == Shortfall::Severity::failure ? "falls short: " : "warning: ") + s.message + "\n";
   return text + plan_->headline();
 }
 
@@ -458,7 +468,9 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
     run.notes.push_back(valid);
     advice = valid + ": " + advice;
   }
-  auto const shortfalls = run.shortfalls_of(run.quality());
+  auto shortfalls = run.shortfalls_of_motion();
+  auto const of_quality = run.shortfalls_of(run.quality());
+  shortfalls.insert(shortfalls.end(), of_quality.begin(), of_quality.end());
   if (page) {
     terminal.progress("drawing the page");
     watch.lap();
@@ -529,6 +541,7 @@ void print_plan(CaseFile const& case_file, Terminal& terminal, PlanPrinting cons
   Run run(case_file, file, terminal);
   PlanPrediction const prediction = run.predict();
   for (auto const& warning : prediction.warnings) terminal.warn(warning);
+  for (auto const& s : run.shortfalls_of_motion()) terminal.warn(s.message);
   nlohmann::json json = run.plan().json();
   if (!prediction.json.is_null()) json["prediction"] = prediction.json;
   json["gridmorph"] = GRIDMORPH_VERSION;

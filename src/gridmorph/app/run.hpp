@@ -101,6 +101,9 @@ class Run {
 
   /// Of this quality against the baseline.
   [[nodiscard]] std::vector<Shortfall> shortfalls_of(QualityReport const& quality) const;
+  /// Of the motion, whatever became of cells: models that lie far from their nodes, displacements that slip surfaces undo. Throws MotionError
+  /// where models lie elsewhere.
+  [[nodiscard]] std::vector<Shortfall> shortfalls_of_motion() const;
   /// The report, less the name of the output.
   [[nodiscard]] nlohmann::json json(QualityReport const& quality, PlanOutcome const& outcome) const;
   /// Notes and headline; a blank line after them where there are any.

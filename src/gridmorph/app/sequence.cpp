@@ -255,7 +255,10 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
     run.times.push_back({"page", part.lap()});
   }
 
-  auto const shortfalls = run.shortfalls_of(worst_quality);
+  auto shortfalls = run.shortfalls_of_motion();
+  bool const motion_falls_short = any_failure(shortfalls);
+  auto const of_quality = run.shortfalls_of(worst_quality);
+  shortfalls.insert(shortfalls.end(), of_quality.begin(), of_quality.end());
   std::string const shortfall = shortfall_text(results);
   std::vector<std::string> warnings;
   if (terminal.quiet()) {
@@ -267,7 +270,7 @@ int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& 
        .report = case_file.output_options.report,
        .page = case_file.output_options.page,
        .written = written,
-       .falls_short = !shortfall.empty(),
+       .falls_short = !shortfall.empty() || motion_falls_short,
        .json =
            [&] {
              nlohmann::json json = run.json(worst_quality, outcome);

@@ -154,6 +154,7 @@ Stencil FacetMap::stencil(Vec3 const& q, Vec3 const& anchor) const {
       double const steps = std::max(std::fabs(da), std::fabs(db));
       if (steps > at_the_edge) {
         out.beyond = norm(da * ta + db * tb);
+        out.far_beyond = steps > 2;
         double const share = impl_->extrapolation == Extrapolation::nearest ? 0 : std::min(1.0, 1 / steps);
         da *= share;
         db *= share;

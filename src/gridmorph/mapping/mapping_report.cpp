@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <vector>
+
 namespace gridmorph {
 
 std::string describe_mapping(PointField const& field) {
@@ -26,6 +28,26 @@ std::string describe_mapping(PointField const& field) {
   return text;
 }
 
+std::string far_from_model(PointField const& field) {
+  auto const m = field.mapping();
+  std::vector<std::string> what;
+  if (has_own_nodes(m) && m.far_off > 0)
+    what.push_back(
+        fmt::format("{} of {} nodes are farther than two spacings from its points, {} of which are nodes themselves",
+                    m.far_off, m.evaluated, m.coincident));
+  else if (m.far_beyond > 0)
+    what.push_back(
+        fmt::format("{} of {} nodes are beyond the edge of its {} by more than two {} there, by {:.3g} at most, at {}",
+                    m.far_beyond, m.evaluated, field.n_elements() > 0 ? "elements" : "points",
+                    field.n_elements() > 0 ? "of them" : "spacings", m.max_beyond, to_text(m.farthest_beyond, 6)));
+  if (!field.has_max_distance() && m.patches_size > 0 && m.max > MappingLimits::notable * m.patches_size)
+    what.push_back(fmt::format("the node at {} is {:.3g} from it, {:.2g} % of the size of its patches",
+                               to_text(m.farthest, 6), m.max, 100 * m.max / m.patches_size));
+  if (what.empty()) return {};
+  return fmt::format("{}: {}; what they take from it may not be what was meant", field.source(),
+                     fmt::join(what, ", and "));
+}
+
 nlohmann::json mapping_json(PointField const& field) {
   auto const m = field.mapping();
   nlohmann::json json{{"file", field.source()},
@@ -35,7 +57,10 @@ nlohmann::json mapping_json(PointField const& field) {
                       {"evaluated", m.evaluated},
                       {"coincident", m.coincident},
                       {"extrapolated", m.extrapolated},
+                      {"far_beyond", m.far_beyond},
+                      {"far_off", m.far_off},
                       {"largest_extrapolation", m.max_beyond},
+                      {"patches_size", m.patches_size > 0 ? nlohmann::json(m.patches_size) : nlohmann::json()},
                       {"mapping_distance", {{"mean", m.mean}, {"max", m.max}}},
                       {"leave_one_out", nullptr}};
   if (m.evaluated == m.coincident) return json;

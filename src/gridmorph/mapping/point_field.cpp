@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mapping/detail/merge_nodes.hpp>
 #include <gridmorph/mapping/facet_map.hpp>
 #include <gridmorph/mapping/point_field.hpp>
@@ -49,7 +50,15 @@ struct PointField::Impl {
   mutable MappingDistance mapping;
   mutable double sum = 0;
 
+  mutable double patches_size = 0, slack = 0;
+
   void scale();
+  [[nodiscard]] double largest_displacement() const;
+  [[nodiscard]] Box box() const;
+  /// Of what lies elsewhere than the patches.
+  [[noreturn]] void refuse(std::string const& what) const;
+  void judge_distance(Vec3 const& q, double d) const;
+  void judge_left_out(MappingDistance const& nodes) const;
   void check(Vec3 const& q, Stencil const& stencil) const;
   [[nodiscard]] Stencil make(Vec3 const& q) const;
   [[nodiscard]] std::vector<Vec3> sum_of(std::span<double const> factors) const;
@@ -88,6 +97,80 @@ void PointField::Impl::check(Vec3 const& q, Stencil const& stencil) const {
            "max_extrapolation", options.max_extrapolation);
 }
 
+double PointField::Impl::largest_displacement() const {
+  double out = 0;
+  for (auto const& field : fields)
+    for (Vec3 const& u : field) out = std::max(out, norm(u));
+  return out;
+}
+
+Box PointField::Impl::box() const {
+  Box out;
+  for (Vec3 const& p : model.nodes.position) out.include(p);
+  return out;
+}
+
+namespace {
+
+std::string span_text(Box const& box) { return fmt::format("{} to {}", to_text(box.low, 4), to_text(box.high, 4)); }
+
+/// Ratios of lengths in other units that people mix up.
+struct Units {
+  double ratio;
+  char const* names;
+};
+constexpr std::array<Units, 4> mixed_up{
+    {{1000, "mm and m"}, {25.4, "mm and inch"}, {39.37, "inch and m"}, {3.281, "foot and m"}}};
+
+/// "; the file is 1000 times as large, as mm and m: length_scale = 0.001"
+std::string units_hint(double model, double patches, double length_scale) {
+  constexpr double alike = 0.1;
+  if (!(model > 0) || !(patches > 0)) return {};
+  for (Units const& u : mixed_up)
+    for (bool const larger : {true, false}) {
+      double const ratio = larger ? u.ratio : 1 / u.ratio;
+      if (std::fabs(model / patches / ratio - 1) < alike)
+        return fmt::format("; its size is {:.4g} times theirs, as with {}: length_scale = {:.4g} would fit",
+                           model / patches, u.names, length_scale / ratio);
+    }
+  return {};
+}
+
+}  // namespace
+
+void PointField::Impl::refuse(std::string const& what) const {
+  Box const own = box();
+  throw MotionError(
+      fmt::format("{}: {}; the points of the file lie from {}{}. Check length_scale, the order and signs of its "
+                  "columns, frame, and whether "
+                  "the file is whole; max_distance, the largest distance that is meant, allows more",
+                  model.nodes.source, what, span_text(own),
+                  units_hint(distance(own.low, own.high), patches_size, options.length_scale)));
+}
+
+void PointField::Impl::judge_distance(Vec3 const& q, double d) const {
+  if (options.max_distance > 0 || patches_size == 0 || d <= MappingLimits::distance * patches_size + slack) return;
+  refuse(fmt::format(
+      "the node at {} is {:.4g} from the {}, {:.3g} % of the size {:.4g} of its patches, more than {:.3g} %",
+      to_text(q, 6), d, facets ? "elements" : "nearest point", 100 * d / patches_size, patches_size,
+      100 * MappingLimits::distance));
+}
+
+void PointField::Impl::judge_left_out(MappingDistance const& nodes) const {
+  std::int64_t const count = left_out(nodes);
+  if (options.max_distance > 0 || patches_size == 0 || slack > 0 ||
+      double(count) <= MappingLimits::far_beyond * double(nodes.evaluated))
+    return;
+  std::string const where =
+      has_own_nodes(nodes)
+          ? fmt::format("are farther than two spacings from its points, {} of which are nodes themselves",
+                        nodes.coincident)
+      : facets ? "lie beyond the edge of its elements by more than two of them there"
+               : "lie beyond the edge of its points by more than two spacings there";
+  refuse(fmt::format("{} of {} nodes {}, more than {:.3g} %", count, nodes.evaluated, where,
+                     100 * MappingLimits::far_beyond));
+}
+
 Stencil PointField::Impl::make(Vec3 const& q) const {
   if (!std::isfinite(norm(q)))
     throw MotionError(fmt::format("{}: asked for the displacement at ({}, {}, {}), which is not finite",
@@ -113,6 +196,8 @@ void count(MappingDistance& to, double& sum, Vec3 const& q, Stencil const& stenc
   }
   ++to.evaluated;
   to.coincident += stencil.coincident ? 1 : 0;
+  to.far_beyond += stencil.far_beyond ? 1 : 0;
+  to.far_off += stencil.far_off ? 1 : 0;
   sum += stencil.distance;
 }
 
@@ -169,6 +254,8 @@ void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 c
   mapping.evaluated += here.evaluated;
   mapping.coincident += here.coincident;
   mapping.extrapolated += here.extrapolated;
+  mapping.far_beyond += here.far_beyond;
+  mapping.far_off += here.far_off;
   sum += here_sum;
 }
 
@@ -221,11 +308,60 @@ std::string const& PointField::source() const { return impl_->model.nodes.source
 std::string PointField::where(std::size_t node) const { return impl_->model.nodes.where(node); }
 std::vector<std::string> const& PointField::notes() const { return impl_->model.notes; }
 
+bool has_own_nodes(MappingDistance const& mapping) {
+  return double(mapping.coincident) >= MappingLimits::own_nodes * double(mapping.evaluated);
+}
+
+std::int64_t left_out(MappingDistance const& mapping) {
+  return has_own_nodes(mapping) ? std::max(mapping.far_off, mapping.far_beyond) : mapping.far_beyond;
+}
+
 MappingDistance PointField::mapping() const {
   std::lock_guard const lock(impl_->turn);
   MappingDistance all = impl_->mapping;
   if (all.evaluated > 0) all.mean = impl_->sum / double(all.evaluated);
+  all.patches_size = impl_->patches_size;
   return all;
+}
+
+bool PointField::has_max_distance() const { return impl_->options.max_distance > 0; }
+double PointField::largest_displacement() const { return impl_->largest_displacement(); }
+
+void PointField::expect(std::span<Vec3 const> nodes, double slack) const {
+  Box box;
+  for (Vec3 const& p : nodes) box.include(p);
+  if (nodes.empty()) return;
+  impl_->patches_size = std::max(impl_->patches_size, distance(box.low, box.high));
+  impl_->slack = slack;
+  if (impl_->options.max_distance > 0 || impl_->patches_size == 0) return;
+  constexpr std::size_t most = 4000;
+  std::size_t const step = (nodes.size() + most - 1) / most;
+  // Distances first: they take less than a search for neighbours far away.
+  Vec3 worst;
+  double largest = 0;
+  for (std::size_t n = 0; n < nodes.size(); n += step) {
+    double const d = impl_->points->nearest(nodes[n]).second;
+    if (!(d > largest)) continue;
+    largest = d;
+    worst = nodes[n];
+  }
+  if (largest > MappingLimits::distance * impl_->patches_size + slack)
+    impl_->judge_distance(worst, impl_->facets ? impl_->facets->stencil(worst).distance : largest);
+  MappingDistance looked_at;
+  double sum = 0;
+  for (std::size_t n = 0; n < nodes.size(); n += step) {
+    Stencil const stencil = impl_->make(nodes[n]);
+    impl_->judge_distance(nodes[n], stencil.distance);
+    count(looked_at, sum, nodes[n], stencil);
+  }
+  impl_->judge_left_out(looked_at);
+}
+
+void PointField::judge() const {
+  MappingDistance const m = mapping();
+  if (m.evaluated == 0) return;
+  impl_->judge_distance(m.farthest, m.max);
+  impl_->judge_left_out(m);
 }
 
 MappingError PointField::leave_one_out() const {

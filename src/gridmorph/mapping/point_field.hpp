@@ -24,7 +24,26 @@ struct MappingDistance {
   std::int64_t extrapolated = 0;  ///< beyond the edge of the model
   double max_beyond = 0;          ///< largest distance from that edge [length]
   Vec3 farthest_beyond;           ///< where max_beyond was found
+  std::int64_t far_beyond = 0;    ///< beyond it by more than two spacings of the points, or two elements, there
+  std::int64_t far_off = 0;       ///< farther than two spacings from the nearest point
+  double patches_size =
+      0;  ///< diagonal of the patches that take their displacement from the field, by expect(); 0: not known
 };
+
+/// How far models may lie from the patches that take their displacement from them, where FieldOptions::max_distance says nothing.
+struct MappingLimits {
+  static constexpr double distance = 0.05;    ///< share of the patches' size
+  static constexpr double far_beyond = 0.05;  ///< share of the nodes that lie beyond the edge by more than two spacings
+  static constexpr double notable = 0.01;     ///< distances above this share are a warning
+  /// From this share of nodes on that coincide with points the file is a table of the mesh's own nodes: those that are far from any point
+  /// count as if they were beyond the edge. On thin blades, rows of one side alone leave the other side without an edge between.
+  static constexpr double own_nodes = 0.2;
+};
+
+/// Nodes that are where the model says nothing, MappingLimits::far_beyond of which are too many.
+[[nodiscard]] std::int64_t left_out(MappingDistance const& mapping);
+/// Whether the points are nodes of the mesh itself.
+[[nodiscard]] bool has_own_nodes(MappingDistance const& mapping);
 
 /// Leave-one-out: the displacement of nodes of the model, interpolated from the others, against their own. Neighbours are
 /// twice as far apart as between nodes, so that on smooth fields this is about four times the error of the mapping.
@@ -78,6 +97,13 @@ class PointField {
   [[nodiscard]] std::string where(std::size_t node) const;  ///< "blade.csv:14"
   [[nodiscard]] std::vector<std::string> const& notes() const;
   [[nodiscard]] MappingDistance mapping() const;
+  /// These nodes will ask for their displacement: throws MotionError where the model lies elsewhere (MappingLimits), before any search of
+  /// theirs takes its time. `slack`: so much farther they may be [length]. Looks at 4000 of them, evenly; judge() knows all.
+  void expect(std::span<Vec3 const> nodes, double slack = 0) const;
+  /// Throws as expect() does, by all positions that were evaluated. Nothing where that was not called.
+  void judge() const;
+  [[nodiscard]] double largest_displacement() const;
+  [[nodiscard]] bool has_max_distance() const;
   /// Of the worst of the fields. Cost O(m log n) for a sample of m <= 2000 nodes.
   [[nodiscard]] MappingError leave_one_out() const;
 

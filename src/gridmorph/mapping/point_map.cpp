@@ -104,6 +104,14 @@ Vec3 to_the_edge(Neighbours const& near) {
   return mapping::closest_in_hull(spanned_part, at_the_edge * farthest);
 }
 
+/// From the middle of the neighbours to the farthest: of 13 on a regular grid two spacings.
+double reach_of(Neighbours const& near) {
+  Vec3 const centre = even_spread(near).centre;
+  double out = 0;
+  for (Vec3 const& o : near.offset) out = std::max(out, norm(o - centre));
+  return out;
+}
+
 }  // namespace
 
 struct PointMap::Impl {
@@ -198,6 +206,9 @@ Stencil PointMap::Impl::fit(Neighbours const& near, Stencil out) const {
   for (std::size_t i = 0; i < w.size(); ++i)
     out.terms.push_back({std::int32_t(near.number[i]), w[i] * (1 + gradient[i]), 0});
   out.beyond = norm(edge);
+  double const two_spacings = reach_of(near);
+  out.far_beyond = out.beyond > two_spacings;
+  out.far_off = out.distance > two_spacings;
   return out;
 }
 

@@ -22,6 +22,8 @@ struct Stencil {
   Vec3 lever;               ///< from the model's surface to the position; zero for points
   double distance = 0;      ///< to the nearest point, or to the surface of the elements [length]
   double beyond = 0;        ///< beyond the edge of the model; 0 inside [length]
+  bool far_beyond = false;  ///< by more than two spacings of its points, or two of its elements, there
+  bool far_off = false;     ///< farther than two spacings of its points from the nearest of them; of elements never
   bool coincident = false;
 };
 

@@ -179,12 +179,16 @@ nlohmann::json quality_json(QualityReport const& baseline, std::optional<Quality
                    {"max_relative_displacement", thresholds.max_relative_displacement}}}};
   if (baseline.cells() > 0) result["baseline"] = baseline;
   if (morphed) result["morphed"] = *morphed;
-  json list = json::array();
-  for (Shortfall const& s : shortfalls(baseline, morphed, thresholds))
-    list.push_back(
-        {{"severity", s.severity == Shortfall::Severity::failure ? "failure" : "warning"}, {"message", s.message}});
-  result["shortfalls"] = std::move(list);
+  result["shortfalls"] = shortfalls_json(shortfalls(baseline, morphed, thresholds));
   return result;
+}
+
+nlohmann::json shortfalls_json(std::vector<Shortfall> const& list) {
+  json out = json::array();
+  for (Shortfall const& s : list)
+    out.push_back(
+        {{"severity", s.severity == Shortfall::Severity::failure ? "failure" : "warning"}, {"message", s.message}});
+  return out;
 }
 
 }  // namespace gridmorph

@@ -23,4 +23,7 @@ nlohmann::json certificate_json(QualityReport const& report);
 nlohmann::json quality_json(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
                             QualityThresholds const& thresholds);
 
+/// [{"severity": "failure" or "warning", "message"}, ...]
+nlohmann::json shortfalls_json(std::vector<Shortfall> const& list);
+
 }  // namespace gridmorph

@@ -72,6 +72,7 @@ void WheelRun::time(std::string const& step) {
 
 void WheelRun::prepare() {
   terminal_.progress(sector_->kind().planning);
+  check_fields(case_, mesh_);
   plan_ = plan_of(case_);
   check_wave();
   time("plan");
@@ -192,7 +193,9 @@ PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates c
   for (Vec3 const& u : boundary) passage.largest_displacement = std::max(passage.largest_displacement, norm(u));
   quality_.morphed = &morphed;
   passage.quality = sector_->measure(quality_);
-  passage.shortfalls = shortfalls(baseline_, passage.quality, thresholds_of(case_));
+  passage.shortfalls = mapping_warnings(case_);
+  auto const of_quality = shortfalls(baseline_, passage.quality, thresholds_of(case_));
+  passage.shortfalls.insert(passage.shortfalls.end(), of_quality.begin(), of_quality.end());
   if (worst_of_.worst.empty() && newly_inverted(passage.quality) > 0)
     worst_of_ = diagnose(case_, plan_->for_messages(), passage.quality, morphed);
   time("quality");

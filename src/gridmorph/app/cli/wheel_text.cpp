@@ -231,15 +231,11 @@ nlohmann::json wheel_json(Mesh const& mesh, WheelRows const& rows, WheelSetup co
   json["passages"] = nlohmann::json::array();
   for (std::size_t p = 0; p < result.passages.size(); ++p) {
     auto const& passage = result.passages[p];
-    nlohmann::json shortfalls = nlohmann::json::array();
-    for (auto const& s : passage.shortfalls)
-      shortfalls.push_back(
-          {{"severity", s.severity == Shortfall::Severity::failure ? "failure" : "warning"}, {"message", s.message}});
     json["passages"].push_back({{"passage", p + 1},
                                 {"blades", passage.blades},
                                 {"largest_displacement", passage.largest_displacement},
                                 {"quality", passage.quality},
-                                {"shortfalls", std::move(shortfalls)}});
+                                {"shortfalls", shortfalls_json(passage.shortfalls)}});
     if (!passage.clearances.empty()) json["passages"].back()["clearances"] = clearance_json(passage.clearances);
   }
   json["certificate"] = certificate_json(result.whole);

@@ -32,7 +32,9 @@ FieldOptions read_options(TableReader& table) {
   options.factor = table.number("factor").value_or(1);
   if (auto const d = table.number("max_distance")) {
     options.max_distance = *d;
-    if (*d <= 0) table.problem("max_distance", fmt::format("must be positive, found {}; remove it for no limit", *d));
+    if (*d <= 0)
+      table.problem("max_distance",
+                    fmt::format("must be positive, found {}; remove it for 5 % of the size of the patches", *d));
   }
   if (auto const word = table.choice("extrapolation", {"linear", "nearest"}))
     options.extrapolation = Extrapolation(*word);
