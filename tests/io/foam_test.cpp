@@ -19,6 +19,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -566,6 +567,25 @@ TEST(OpenFoam, CoordinatesThatAreTooLargeAreRefusedWithTheirLine) {
   auto const end = points.find(' ', line);
   std::ofstream(path / "points", std::ios::binary) << points.replace(line + 2, end - line - 2, "1e400");
   expect_all_in(message_of<Error>([&] { (void)read_mesh(path.string()); }), {"points:", "'1e400'", "larger than"});
+}
+
+TEST(OpenFoam, CellsThatDoNotCloseAreRefused) {
+  TemporaryFolder const folder;
+  fs::path const path = folder / "open";
+  FoamBox const box;
+  box.write(path, {});
+  EXPECT_NO_THROW((void)read_mesh(path.string()));
+  // One face of four corners the other way round.
+  std::string faces = bytes_of(path / "faces");
+  auto const at = faces.find("4(");
+  auto const end = faces.find(')', at);
+  std::istringstream corners(faces.substr(at + 2, end - at - 2));
+  std::array<int, 4> c{};
+  for (int& one : c) corners >> one;
+  std::string const turned =
+      std::to_string(c[3]) + " " + std::to_string(c[2]) + " " + std::to_string(c[1]) + " " + std::to_string(c[0]);
+  std::ofstream(path / "faces", std::ios::binary) << faces.replace(at + 2, end - at - 2, turned);
+  expect_all_in(message_of<Error>([&] { (void)read_mesh(path.string()); }), {"do not close", "checkMesh"});
 }
 
 TEST(OpenFoam, DamagedFilesAreRefusedAndNothingElseHappens) {

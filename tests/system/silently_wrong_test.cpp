@@ -75,6 +75,22 @@ TEST_F(SilentlyWrong, NodesBeyondThePointsOfAFileAreAWarningHoweverQuietTheRun) 
   EXPECT_TRUE(says(other_units.err, "length_scale = 0.001 would fit")) << other_units.err;
 }
 
+TEST_F(SilentlyWrong, PeriodicAngleThatNodesContradictIsSaid) {
+  Mesh mesh = test::annulus_sector({}, 1);
+  bool any = false;
+  for (auto& face : mesh.interfaces)
+    if (face.periodic) {
+      // As far off as 40 blades are from 36.
+      double const sign = any ? -1 : 1;
+      face.periodic = periodic_rotation({0, 0, 0}, {0, 0, 1}, sign * 0.123);
+      any = true;
+    }
+  ASSERT_TRUE(any);
+  write_mesh(path("sector.cgns").string(), mesh);
+  Outcome const seen = gridmorph("inspect sector.cgns");
+  EXPECT_TRUE(says(seen.out, "the file declares a rotation of") && says(seen.out, "by the nodes it is")) << seen.out;
+}
+
 TEST_F(SilentlyWrong, ControlCharactersOfNamesDoNotReachTheTerminal) {
   Mesh mesh = as_hexahedra(test::box({3, 3, 3}, test::Shape::straight, 1));
   write_mesh(path("box.vtu").string(), mesh);

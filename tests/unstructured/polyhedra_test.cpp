@@ -149,6 +149,46 @@ std::vector<std::vector<Index32>> faces_of(Patch const& patch) {
   return out;
 }
 
+TEST(Polyhedra, ThatDoNotCloseAreRefused) {
+  Mesh mesh = as_polyhedra(unit_box({2, 2, 2}));
+  EXPECT_NO_THROW(check_mesh(mesh));
+  auto& p = mesh.polyhedra;
+  ASSERT_FALSE(p.element.empty());
+  // A corner of one face is another one of the cell.
+  auto const face = p.faces[p.first_face[0]];
+  auto const other = p.faces[p.first_face[0] + 1];
+  for (Index32 const n : other)
+    if (std::find(face.begin(), face.end(), n) == face.end()) {
+      p.faces.item[std::size_t(p.faces.first[std::size_t(p.first_face[0])])] = n;
+      break;
+    }
+  std::string const said = message_of<MeshError>([&] { check_mesh(mesh); });
+  EXPECT_NE(said.find("1 polyhedra do not close"), std::string::npos) << said;
+}
+
+TEST(Polyhedra, OfTwoClosedSurfacesAreRefused) {
+  Mesh const boxes = as_polyhedra(unit_box({3, 1, 1}));
+  // The first and the last of three cells in a row as one.
+  Mesh mesh = boxes;
+  mesh.elements = {};
+  mesh.polyhedra = {};
+  mesh.patches.clear();
+  mesh.zones.front().n_elements = 0;
+  mesh.polyhedra.first_face = {0};
+  std::vector<Index32> nodes;
+  for (std::size_t k : {std::size_t(0), boxes.polyhedra.element.size() - 1}) {
+    for (Index f = boxes.polyhedra.first_face[k]; f < boxes.polyhedra.first_face[k + 1]; ++f)
+      mesh.polyhedra.faces.add(boxes.polyhedra.faces[f]);
+    auto const own = boxes.elements.nodes[boxes.polyhedra.element[k]];
+    nodes.insert(nodes.end(), own.begin(), own.end());
+  }
+  mesh.polyhedra.element.push_back(0);
+  mesh.polyhedra.first_face.push_back(mesh.polyhedra.faces.size());
+  mesh.add_element(ElementType::polyhedron, nodes);
+  std::string const said = message_of<MeshError>([&] { check_mesh(mesh); });
+  EXPECT_NE(said.find("1 polyhedra have faces that make more than one closed surface"), std::string::npos) << said;
+}
+
 TEST(Polyhedra, AreWrittenByTheirFaces) {
   TemporaryFolder const folder;
   auto const path = folder.file("written.cgns");

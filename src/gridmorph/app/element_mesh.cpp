@@ -1,6 +1,7 @@
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/app/element_mesh.hpp>
 #include <gridmorph/boundary/boundary.hpp>
+#include <gridmorph/boundary/contradicted_periodics.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_kind.hpp>
@@ -61,6 +62,8 @@ ElementMesh::ElementMesh(Mesh as_read)
 std::vector<std::string> ElementMesh::notes() const {
   auto out = mesh.notes;
   out.insert(out.end(), face_patches.notes.begin(), face_patches.notes.end());
+  auto const contradicted = contradicted_periodics(mesh);
+  out.insert(out.end(), contradicted.begin(), contradicted.end());
   return out;
 }
 

@@ -1,3 +1,4 @@
+#include <gridmorph/boundary/contradicted_periodics.hpp>
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
@@ -242,6 +243,7 @@ Links connect_and_check(HostInstance const& host, Mesh& mesh, TopologyOptions co
     problems.add(e.what());
   }
   problems.throw_if_any<MeshError>();
+  for (auto& line : contradicted_periodics(mesh)) mesh.notes.push_back(std::move(line));
   return links;
 }
 

@@ -5,6 +5,7 @@
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -127,6 +128,7 @@ class MeshCheck {
     sizes();
     if (problems_.empty()) {
       elements();
+      if (problems_.empty()) polyhedra();
       patches();
       connections();
     }
@@ -181,6 +183,85 @@ class MeshCheck {
                       describe_element(mesh_, first) + "; zone '" + zone.name + "' has " + std::to_string(zone.size()) +
                       " nodes");
     }
+  }
+
+  /// Every polyhedron is one closed surface. Where a face is missing there is no volume to measure; of a second shell, a void in the cell or
+  /// a part beside it, nobody knows which side is inside.
+  void polyhedra() {
+    auto const& p = mesh_.polyhedra;
+    Index open = 0, parted = 0, first_open = -1, first_parted = -1;
+    std::vector<Index32> nodes, group;
+    for (std::size_t k = 0; k < p.element.size(); ++k) {
+      if (is_open(k) && open++ == 0) first_open = p.element[k];
+      if (n_shells(k, nodes, group) > 1 && parted++ == 0) first_parted = p.element[k];
+    }
+    auto const add = [&](Index count, Index first, char const* what, char const* advice) {
+      if (count > 0)
+        problems_.add(mesh_.source + ": " + std::to_string(count) + " polyhedra " + what + ", the first is " +
+                      describe_element(mesh_, first) + "; " + advice);
+    };
+    add(open, first_open, "do not close",
+        "a face of theirs is missing or belongs to another cell; write the mesh again");
+    add(parted, first_parted, "have faces that make more than one closed surface",
+        "cells with voids or of separate parts cannot be measured; split them in the mesh generator");
+  }
+
+  /// Edges that an odd number of faces have lie on a hole, unless nodes of smaller neighbours lie on them: then the area vectors close.
+  [[nodiscard]] bool is_open(std::size_t polyhedron) const {
+    auto const& p = mesh_.polyhedra;
+    std::uint64_t odd = 0;
+    for (Index f = p.first_face[polyhedron]; f < p.first_face[polyhedron + 1]; ++f) {
+      auto const face = p.faces[f];
+      for (std::size_t c = 0; c < face.size(); ++c) {
+        auto const [a, b] = std::minmax(face[c], face[(c + 1) % face.size()]);
+        std::uint64_t h = (std::uint64_t(a) << 32 | std::uint64_t(b)) * 0x9e3779b97f4a7c15ull;
+        h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93ull;
+        odd ^= h ^ (h >> 29);  // what comes twice cancels
+      }
+    }
+    if (odd == 0 || mesh_.coordinates.size() == 0) return odd != 0;
+    constexpr double rounding = 1e-6;
+    Vec3 sum;
+    double areas = 0;
+    for (Index f = p.first_face[polyhedron]; f < p.first_face[polyhedron + 1]; ++f) {
+      auto const face = p.faces[f];
+      Vec3 const origin = mesh_.coordinates[face[0]];
+      Vec3 area;
+      for (std::size_t c = 2; c < face.size(); ++c)
+        area += 0.5 * cross(mesh_.coordinates[face[c - 1]] - origin, mesh_.coordinates[face[c]] - origin);
+      sum += area;
+      areas += norm(area);
+    }
+    return norm(sum) > rounding * areas;
+  }
+
+  /// Groups of faces that share no node with one another. `nodes`, `group`: room.
+  [[nodiscard]] int n_shells(std::size_t polyhedron, std::vector<Index32>& nodes, std::vector<Index32>& group) const {
+    auto const& p = mesh_.polyhedra;
+    auto const all = mesh_.elements.nodes[p.element[polyhedron]];
+    nodes.assign(all.begin(), all.end());
+    std::sort(nodes.begin(), nodes.end());
+    group.resize(nodes.size());
+    for (std::size_t n = 0; n < group.size(); ++n) group[n] = Index32(n);
+    auto const root = [&](Index32 n) {
+      while (group[std::size_t(n)] != n) n = group[std::size_t(n)] = group[std::size_t(group[std::size_t(n)])];
+      return n;
+    };
+    int shells = int(nodes.size());
+    for (Index f = p.first_face[polyhedron]; f < p.first_face[polyhedron + 1]; ++f) {
+      Index32 before = -1;
+      for (Index32 const node : p.faces[f]) {
+        auto const at = std::lower_bound(nodes.begin(), nodes.end(), node);
+        if (at == nodes.end() || *at != node) continue;
+        Index32 const own = root(Index32(at - nodes.begin()));
+        if (before >= 0 && root(before) != own) {
+          group[std::size_t(own)] = root(before);
+          --shells;
+        }
+        before = own;
+      }
+    }
+    return shells;
   }
 
   void patches() {

@@ -112,7 +112,8 @@ std::string zones_text(MeshSummary const& s) {
 std::string connections_text(MeshSummary const& s) {
   int periodic = 0;
   for (auto const& p : s.periodics) periodic += p.interfaces;
-  std::string text = fmt::format("  {} as stored; {} periodic", plural(s.interfaces, "1-to-1 interface"), periodic);
+  std::string text =
+      fmt::format("  {} in the file; {} periodic, by their nodes", plural(s.interfaces, "1-to-1 interface"), periodic);
   if (s.self_interfaces > 0) text += fmt::format("; {} of a zone with itself", s.self_interfaces);
   text += "\n";
   for (auto const& p : s.periodics) {

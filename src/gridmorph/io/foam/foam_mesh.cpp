@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/foam/foam_cyclics.hpp>
 #include <gridmorph/io/foam/foam_file.hpp>
@@ -62,6 +63,7 @@ class Reader {
     while (!neighbour_.empty() && neighbour_.back() < 0) neighbour_.pop_back();
     check();
     add_cells();
+    check_closed();
     auto const boundary = file("boundary", {"polyBoundaryMesh"}).boundary(faces_.size());
     add_patches(boundary);
     add_subsets();
@@ -121,6 +123,34 @@ class Reader {
     bad(owner_, "owner");
     bad(neighbour_, "neighbour");
     problems.throw_if_any<MeshError>();
+  }
+
+  /// Area vectors of all faces of a cell add up to nothing, to the 1e-6 that checkMesh asks for, whatever their shape.
+  void check_closed() const {
+    constexpr double rounding = 1e-6;
+    Index32 last = -1;
+    for (auto const* list : {&owner_, &neighbour_})
+      for (Index32 const c : *list) last = std::max(last, c);
+    std::vector<Vec3> sum(std::size_t(last) + 1);
+    std::vector<double> areas(sum.size(), 0.0);
+    for (Index f = 0; f < faces_.size(); ++f) {
+      Vec3 const area = 0.5 * face_normal(faces_[f], mesh_.coordinates);
+      double const size = norm(area);
+      auto const add = [&](Index32 cell, Vec3 const& outwards) {
+        sum[std::size_t(cell)] += outwards;
+        areas[std::size_t(cell)] += size;
+      };
+      add(owner_[std::size_t(f)], area);
+      if (std::size_t(f) < neighbour_.size()) add(neighbour_[std::size_t(f)], -1.0 * area);
+    }
+    Index open = 0, first = -1;
+    for (std::size_t c = 0; c < sum.size(); ++c)
+      if (norm(sum[c]) > rounding * areas[c] && open++ == 0) first = Index(c);
+    if (open > 0)
+      throw MeshError(folder_.string() + ": " + std::to_string(open) + " cells do not close, the first is cell " +
+                      std::to_string(first) + ": its faces lack " + to_text(norm(sum[std::size_t(first)]), 3) +
+                      " of an area of " + to_text(areas[std::size_t(first)], 3) +
+                      "; owner, neighbour or the way round of a face is wrong (see checkMesh), write the mesh again");
   }
 
   void add_cells() {
