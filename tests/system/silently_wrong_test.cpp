@@ -3,18 +3,33 @@
 #include "support/mesh_builders.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace gridmorph::testing {
 namespace {
 
+namespace fs = std::filesystem;
+
 class SilentlyWrong : public CommandTest {
  protected:
+  /// A box of blocks or elements, its floor named and all other sides slipping on their planes.
+  void write_box(std::string const& name, bool blocks) const {
+    Mesh const box = test::box({9, 9, 9}, test::Shape::straight, 1);
+    if (blocks)
+      write_mesh(path(name).string(), box);
+    else
+      write_mesh(path(name).string(), as_hexahedra(box));
+  }
   [[nodiscard]] static bool says(std::string const& text, std::string const& words) {
     return text.find(words) != std::string::npos;
   }
@@ -24,6 +39,62 @@ bool has_shortfall(nlohmann::json const& report, std::string const& severity, st
   return std::any_of(report["shortfalls"].begin(), report["shortfalls"].end(), [&](auto const& s) {
     return s["severity"] == severity && s["message"].template get<std::string>().find(words) != std::string::npos;
   });
+}
+
+/// Of a plane patch of a box along the axes.
+Vec3 normal_of(Mesh const& mesh, Patch const& patch) {
+  Box box;
+  Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+  auto const add = [&](Index n) { box.include(mesh.coordinates[n]); };
+  if (zone.is_block())
+    for_each_node(zone, patch.range, add);
+  else
+    for (Index32 const n : patch_nodes(patch)) add(n);
+  Vec3 const size = box.high - box.low;
+  return {size.x == 0 ? 1.0 : 0.0, size.y == 0 ? 1.0 : 0.0, size.z == 0 ? 1.0 : 0.0};
+}
+
+std::string floor_of(Mesh const& mesh) { return mesh.patches.front().name; }
+
+TEST_F(SilentlyWrong, DisplacementThatASlipSurfaceUndoesForTheMostPartIsRefused) {
+  for (bool const blocks : {true, false}) {
+    SCOPED_TRACE(blocks ? "blocks" : "elements");
+    write_box("box.cgns", blocks);
+    Mesh const mesh = read_mesh(path("box.cgns").string());
+    std::string const moving = floor_of(mesh);
+    std::string others;
+    for (std::size_t p = 1; p < mesh.patches.size(); ++p)
+      others += (p > 1 ? ", \"" : "\"") + mesh.patches[p].name + "\"";
+    Vec3 const normal = normal_of(mesh, mesh.patches.front());
+    Vec3 const along = {normal.y, normal.z, normal.x};
+    auto const run = [&](double share, std::string const& guard) {
+      Vec3 const u = 0.01 * normal + share * 0.01 * along;
+      write("c.toml", fmt::format("[mesh]\ninput = \"box.cgns\"\noutput = \"o.cgns\"\n[[motion]]\npatches = "
+                                  "[\"{}\"]\nrule = \"rigid\"\ntranslation = [{}, {}, {}]\n[[motion]]\n"
+                                  "patches = [{}]\nrule = \"slip\"\nsurface = \"plane\"\n{}",
+                                  moving, u.x, u.y, u.z, others, guard));
+      return gridmorph("morph -q c.toml -r o.json");
+    };
+    // Along the floor's normal its rim stays on the sides.
+    Outcome const upright = run(0, "");
+    EXPECT_EQ(upright.status, 0) << upright.err;
+    Outcome const leaning = run(0.1, "");
+    EXPECT_EQ(leaning.status, 1) << leaning.err;
+    EXPECT_TRUE(says(leaning.err, "warning: the displacement by c.toml:4 takes ") &&
+                says(leaning.err, "off the slip surface of patch"))
+        << leaning.err;
+    auto const report = nlohmann::json::parse(contents(path("o.json")));
+    EXPECT_TRUE(has_shortfall(report, "failure", "off the slip surface"));
+    Outcome const meant = run(0.1, "[guard]\nmax_trim = 0.2\n");
+    EXPECT_EQ(meant.status, 0) << meant.err;
+    fs::remove(path("o.cgns"));
+    Outcome const across = run(1.5, "");
+    EXPECT_EQ(across.status, 2) << across.err;
+    EXPECT_TRUE(says(across.err, "off the slip surface of patch") && says(across.err, "A patch that slips does not"))
+        << across.err;
+    EXPECT_FALSE(fs::exists(path("o.cgns")));
+    EXPECT_EQ(run(1.5, "[guard]\nmax_trim = 1\n").status, 0);
+  }
 }
 
 TEST_F(SilentlyWrong, NodesBeyondThePointsOfAFileAreAWarningHoweverQuietTheRun) {
@@ -106,6 +177,16 @@ TEST_F(SilentlyWrong, NamesThatBeginWithAZeroAreToldInWords) {
   write("zero.vtm", std::string("<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><DataSet file=\"") +
                         '\0' + "q.vtu\"/></vtkMultiBlockDataSet></VTKFile>");
   expect_bad_input(gridmorph("inspect zero.vtm"), {"zero.vtm:1", "zero byte"});
+}
+
+TEST_F(SilentlyWrong, MeshWithoutBoundariesGetsNoCaseFile) {
+  Mesh mesh = as_hexahedra(test::box({3, 3, 3}, test::Shape::straight, 1));
+  mesh.patches.clear();
+  write_mesh(path("bare.cgns").string(), mesh);
+  Outcome const asked = gridmorph("inspect bare.cgns --suggest case.toml");
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_TRUE(says(asked.err, "names no boundary")) << asked.err;
+  EXPECT_FALSE(fs::exists(path("case.toml")));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <system_error>
 
 namespace gridmorph::cli {
@@ -17,6 +18,35 @@ std::string field_name(Measure measure) {
     if (c != '_') out += upper && c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
     upper = c == '_';
   }
+  return out;
+}
+
+std::vector<Shortfall> trimmed_beyond(double allowed, std::vector<Trim> const& trims) {
+  std::vector<Shortfall> out;
+  for (Trim const& trim : trims)
+    if (trim.share() > allowed) out.push_back({Shortfall::Severity::failure, describe(trim)});
+  return out;
+}
+
+void AnyPlan::take_trims(std::vector<Trim> const& trims, double allowed) {
+  refuse_undone(trims, allowed);
+  allowed_trim_ = allowed;
+  for (Trim const& trim : trims) {
+    auto const known = std::find_if(trims_.begin(), trims_.end(),
+                                    [&](Trim const& t) { return t.patch == trim.patch && t.rule == trim.rule; });
+    if (known == trims_.end())
+      trims_.push_back(trim);
+    else if (trim.share() > known->share())
+      *known = trim;
+  }
+}
+
+std::vector<Shortfall> AnyPlan::trimmed() const { return trimmed_beyond(allowed_trim_, trims_); }
+
+std::vector<std::string> AnyPlan::trim_notes() const {
+  std::vector<std::string> out;
+  for (Trim const& trim : trims_)
+    if (trim.share() <= allowed_trim_) out.push_back(describe(trim));
   return out;
 }
 

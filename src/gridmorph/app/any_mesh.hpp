@@ -14,6 +14,7 @@
 #include <gridmorph/io/surface/surface_io.hpp>
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/plan/block_graph.hpp>
+#include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/report/shortfalls.hpp>
 #include <gridmorph/report/step_times.hpp>
@@ -124,6 +125,8 @@ class AnyPlan {
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
   /// Of the motion as the rules stand; of a sequence, at the step that comes out worst. Moves nothing.
   [[nodiscard]] virtual PlanPrediction predict() { return {}; }
+  /// Displacements that the rules gave so far and slip surfaces undo, in part or for the most part. Those of which most is undone throw.
+  [[nodiscard]] std::vector<Shortfall> trimmed() const;
   /// Of planning.
   [[nodiscard]] virtual StepTimes times() const = 0;
   /// For `gridmorph plan`.
@@ -139,6 +142,10 @@ class AnyPlan {
   [[nodiscard]] virtual NearCells const& near() const = 0;
 
  protected:
+  /// Of displacements that were given. Throws MotionError for those that are undone for the most part.
+  void take_trims(std::vector<Trim> const& trims, double allowed);
+  /// Of those that are small.
+  [[nodiscard]] std::vector<std::string> trim_notes() const;
   /// Of freeze_recorded(), for the morpher; null before.
   [[nodiscard]] std::shared_ptr<SmoothingMap const> const& frozen_map() const { return frozen_map_; }
 
@@ -147,6 +154,8 @@ class AnyPlan {
   /// frozen_map() is another one from here on.
   virtual void drop_morpher() = 0;
 
+  std::vector<Trim> trims_;  ///< the worst of every rule and surface
+  double allowed_trim_ = 0;  ///< share
   std::optional<SmoothingRecord> record_;
   std::shared_ptr<SmoothingMap const> frozen_map_;
 };
@@ -165,6 +174,8 @@ std::vector<int> predicted_steps(CaseFile const& case_file, int most = 100);
 /// "step 7 of 24 comes out worst: "
 std::string worst_step_text(CaseFile const& case_file, int step);
 
+/// Those of a larger share than is allowed.
+std::vector<Shortfall> trimmed_beyond(double allowed, std::vector<Trim> const& trims);
 /// Models of `field` rules that are far from some of the nodes: a warning each. Throws MotionError where they lie elsewhere, by all nodes.
 std::vector<Shortfall> mapping_warnings(CaseFile const& case_file);
 /// How far nodes were from the models of `field` rules, and what was left out of these.

@@ -63,11 +63,15 @@ class BlockPlan final : public AnyPlan {
     evaluated_ = true;
     if (when == nullptr) {
       auto out = prepared_.boundary_displacement();
-      trimmed_ = trim_note(prepared_.mesh, prepared_.plan(), out);
+      take_trims(trims(prepared_.mesh, prepared_.plan(), prepared_.planned.boundary, prepared_.surface, out),
+                 case_file_.guard.max_trim);
       return out;
     }
-    return evaluate(prepared_.mesh, prepared_.planned.boundary, prepared_.surface.with(motion_at(case_file_, *when)),
-                    prepared_.plan().rotations);
+    BoundaryMotion const now = prepared_.surface.with(motion_at(case_file_, *when));
+    auto out = evaluate(prepared_.mesh, prepared_.planned.boundary, now, prepared_.plan().rotations);
+    take_trims(trims(prepared_.mesh, prepared_.plan(), prepared_.planned.boundary, now, out),
+               case_file_.guard.max_trim);
+    return out;
   }
 
   std::vector<Vec3> displacement(double share) const override {
@@ -153,7 +157,7 @@ class BlockPlan final : public AnyPlan {
     append(prepared_.surface.motion().notes);
     append(prepared_.surface.notes());
     append(prepared_.plan().notes);
-    if (trimmed_) out.push_back(*trimmed_);
+    append(trim_notes());
     if (frozen_ && !frozen_->cells.empty())
       out.push_back(
           fmt::format("{} cells lose their shape in some of the steps; nodes around them are smoothed in all "
@@ -259,9 +263,8 @@ class BlockPlan final : public AnyPlan {
   std::optional<Morpher<Exec>> morpher_;
   std::optional<FrozenSmoothing> frozen_;
   bool evaluated_ = false;
-  double predicting_ = 0;               ///< seconds that it took to see whether cells come out inverted
-  double ordering_ = 0;                 ///< seconds that the order of chains took to be found
-  std::optional<std::string> trimmed_;  ///< of the rules as they stand
+  double predicting_ = 0;  ///< seconds that it took to see whether cells come out inverted
+  double ordering_ = 0;    ///< seconds that the order of chains took to be found
 };
 
 }  // namespace

@@ -61,8 +61,10 @@ class ElementPlan final : public AnyPlan {
   }
 
   std::vector<Vec3> displacement(Moment const* when) override {
-    return when == nullptr ? prepared_.boundary_displacement(mesh_.mesh)
-                           : evaluate(prepared_.boundary, motion_at(case_file_, *when));
+    auto out = when == nullptr ? prepared_.boundary_displacement(mesh_.mesh)
+                               : evaluate(prepared_.boundary, motion_at(case_file_, *when));
+    take_trims(trims(prepared_.boundary, out), case_file_.guard.max_trim);
+    return out;
   }
 
   std::vector<Vec3> displacement(double share) const override {
@@ -127,7 +129,7 @@ class ElementPlan final : public AnyPlan {
 
   [[nodiscard]] std::vector<std::string> notes() const override {
     auto out = mesh_.notes();
-    for (auto const& more : {shocks_.notes, prepared_.notes, mapping_notes(case_file_)})
+    for (auto const& more : {shocks_.notes, prepared_.notes, trim_notes(), mapping_notes(case_file_)})
       out.insert(out.end(), more.begin(), more.end());
     return out;
   }

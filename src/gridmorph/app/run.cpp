@@ -255,7 +255,10 @@ std::vector<Shortfall> Run::shortfalls_of(QualityReport const& quality) const {
 }
 
 std::vector<Shortfall> Run::shortfalls_of_motion() const {
-  return mapping_warnings(case_file_);
+  std::vector<Shortfall> out = mapping_warnings(case_file_);
+  auto const trimmed = plan_->trimmed();
+  out.insert(out.end(), trimmed.begin(), trimmed.end());
+  return out;
 }
 
 std::vector<TipClearance> Run::clearances(Moment const* when) const {

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/morph/ffd_gradient.hpp>
 #include <gridmorph/motion/ffd/ffd_motion.hpp>
+#include <gridmorph/motion/goes_along.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -28,12 +29,6 @@ Asked asked_by(MorphPlan const& plan) {
     return {blocks->mesh, blocks->planned.boundary, blocks->surface, blocks->plan().rotations};
   auto const& boundary = plan.elements()->boundary;
   return {boundary.motion->boundary().mesh(), boundary.requests, *boundary.motion, none};
-}
-
-bool goes_along(Rule const& rule) {
-  return std::holds_alternative<CircumferentialSlideRule>(rule) || std::holds_alternative<FollowRule>(rule) ||
-         std::holds_alternative<AttachedRule>(rule) || std::holds_alternative<WakeRule>(rule) ||
-         std::holds_alternative<ExtendRule>(rule);
 }
 
 /// Gradients of the nodes that take no displacement from a lattice of their own, and may go along with one.

@@ -1,37 +1,147 @@
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/motion/goes_along.hpp>
+#include <gridmorph/plan/blocks/spread_plan.hpp>
 #include <gridmorph/plan/trim_note.hpp>
 
+#include <algorithm>
+#include <map>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace gridmorph {
 
-std::optional<std::string> trim_note(Mesh const& mesh, Plan const& plan, std::vector<Vec3> const& boundary) {
+namespace {
+
+/// Gathers what rules and surfaces say of one another.
+class Gathering {
+ public:
+  Gathering(Mesh const& mesh, BoundaryRequests const& requests, BoundaryMotion const& motion,
+            std::vector<Vec3> const& given)
+      : mesh_(mesh),
+        requests_(requests),
+        rules_(motion.motion().rules),
+        given_(given),
+        deciding_(deciding_requests(mesh, requests, motion)),
+        largest_(rules_.size(), 0) {
+    for (std::size_t n = 0; n < given.size(); ++n)
+      if (int const r = rule_of(n); r >= 0)
+        largest_[std::size_t(r)] = std::max(largest_[std::size_t(r)], norm(given[n]));
+  }
+
+  /// A node whose displacement is given[slot], and that lies on the surface of a patch.
+  void look(Index node, std::size_t slot, int patch, SlipSurface const& surface, double tolerance) {
+    Vec3 const u = given_[slot];
+    int const rule = rule_of(slot);
+    if (u == Vec3{} || rule < 0) return;
+    double const d = distance(surface.view().constrain(mesh_.coordinates[node], u), u);
+    if (!(d > tolerance)) return;
+    Found& found = found_[{patch, rule}];
+    found.nodes.insert(node);
+    if (d <= found.most) return;
+    found.most = d;
+    found.where = node;
+  }
+
+  [[nodiscard]] std::vector<Trim> result(std::string const& outcome) const {
+    std::vector<Trim> out;
+    for (auto const& [of, found] : found_) {
+      auto const [patch, rule] = of;
+      out.push_back({describe_patch(mesh_, mesh_.patches[std::size_t(patch)]), rules_[std::size_t(rule)].where,
+                     Index(found.nodes.size()), found.most, describe_node(mesh_, found.where),
+                     largest_[std::size_t(rule)], outcome});
+    }
+    return out;
+  }
+
+ private:
+  struct Found {
+    std::unordered_set<Index> nodes;
+    double most = 0;
+    Index where = 0;
+  };
+
+  /// That gives a node a displacement of its own; -1 where none does: what goes along with walls asks for nothing itself.
+  [[nodiscard]] int rule_of(std::size_t slot) const {
+    Index const request = slot < deciding_.size() ? deciding_[slot] : -1;
+    int const rule = request < 0 ? -1 : requests_.requests[std::size_t(request)].rule;
+    return rule >= 0 && goes_along(rules_[std::size_t(rule)].rule) ? -1 : rule;
+  }
+
+  Mesh const& mesh_;
+  BoundaryRequests const& requests_;
+  std::vector<MotionRule> const& rules_;
+  std::vector<Vec3> const& given_;
+  std::vector<Index> deciding_;
+  std::vector<double> largest_;                 ///< per rule
+  std::map<std::pair<int, int>, Found> found_;  ///< by patch and rule
+};
+
+/// For each surface of a plan of blocks the first patch that slips on it. Passages of wheels have more patches, which do not slip.
+std::vector<int> patches_of_surfaces(BoundaryMotion const& motion) {
+  std::vector<SlipSurface> surfaces;
+  std::vector<int> const number = slip_surface_numbers(motion.boundary().mesh(), motion, surfaces);
+  std::vector<int> out(surfaces.size(), -1);
+  for (std::size_t p = number.size(); p-- > 0;)
+    if (number[p] >= 0) out[std::size_t(number[p])] = int(p);
+  return out;
+}
+
+}  // namespace
+
+std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests const& requests,
+                        BoundaryMotion const& motion, std::vector<Vec3> const& boundary) {
   std::unordered_map<Index, std::size_t> slot_of;
   for (std::size_t n = 0; n < plan.boundary_nodes.size(); ++n) slot_of.emplace(plan.boundary_nodes[n], n);
-  std::unordered_set<Index> off;
-  double worst = 0;
-  Index where = 0;
+  std::vector<int> const patch_of = patches_of_surfaces(motion);
+  Gathering gathering(mesh, requests, motion, boundary);
   for (SpreadPass const& pass : plan.spreads)
     for (kernels::SlipEnd const& end : pass.ends) {
       auto const slot = slot_of.find(end.node);
       if (end.tolerance == 0 || slot == slot_of.end()) continue;
-      Vec3 const given = boundary[slot->second];
-      for (int const s : end.surface) {
-        if (s < 0) continue;
-        double const d = distance(plan.surfaces[s].view().constrain(mesh.coordinates[end.node], given), given);
-        if (d <= end.tolerance) continue;
-        off.insert(end.node);
-        if (d > worst) {
-          worst = d;
-          where = end.node;
-        }
-      }
+      for (int const s : end.surface)
+        if (s >= 0)
+          gathering.look(end.node, slot->second, patch_of[std::size_t(s)], plan.surfaces[std::size_t(s)],
+                         end.tolerance);
     }
-  if (off.empty()) return std::nullopt;
-  return "the given displacement takes " + std::to_string(off.size()) + " nodes off their slip surfaces, most " +
-         describe_node(mesh, where) + ", by " + to_text(worst, 3) +
-         "; they are put back, and the correction is spread along the span";
+  return gathering.result("they are put back, and the correction is spread along the span");
+}
+
+std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given) {
+  BoundaryMotion const& motion = *boundary.motion;
+  Mesh const& mesh = motion.boundary().mesh();
+  std::unordered_map<Index, std::size_t> slot_of;
+  for (auto const& r : boundary.requests.requests) slot_of.emplace(r.node, std::size_t(r.boundary_node));
+  Gathering gathering(mesh, boundary.requests, motion, given);
+  double const size = motion.boundary().size();
+  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+    SlipSurface const* surface = motion.slip_surface(p);
+    if (surface == nullptr) continue;
+    double const tolerance = given_tolerance(*surface, size);
+    for (Index const n : boundary.nodes_of(p))
+      if (auto const slot = slot_of.find(n); slot != slot_of.end())
+        gathering.look(n, slot->second, p, *surface, tolerance);
+  }
+  return gathering.result("they leave it");
+}
+
+std::string describe(Trim const& trim) {
+  return "the displacement by " + trim.rule + " takes " + std::to_string(trim.nodes) +
+         " nodes off the slip surface of patch " + trim.patch + ", most " + trim.where + ", by " +
+         to_text(trim.most, 3) + ", " + to_text(100 * trim.share(), 3) + " % of its largest, " +
+         to_text(trim.displacement, 3) + "; " + trim.outcome;
+}
+
+void refuse_undone(std::vector<Trim> const& trims, double allowed) {
+  constexpr double most = 0.5;
+  Problems problems;
+  for (Trim const& trim : trims)
+    if (trim.share() > std::max(most, allowed))
+      problems.add(describe(trim) +
+                   ". A patch that slips does not go along: give it the rule free or a motion of its own, or move the "
+                   "wall along it");
+  problems.throw_if_any<MotionError>();
 }
 
 }  // namespace gridmorph

@@ -1,17 +1,38 @@
-// What finalize will do to given displacements that leave a slip surface.
+// Given displacements that lead off the slip surfaces of patches that their nodes lie on as well.
 #pragma once
 
+#include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/plan/plan.hpp>
 
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace gridmorph {
 
-/// "the given displacement leaves slip surfaces at 47 nodes, most at zone ... by 0.0012; they are put back ...", or nothing
-/// when all given displacements (per Plan::boundary_nodes) stay on the slip surfaces as build_spread() asks of them.
-/// Cost: O(nodes on slip surfaces).
-std::optional<std::string> trim_note(Mesh const& mesh, Plan const& plan, std::vector<Vec3> const& boundary);
+/// What one rule, which does not go along with walls alone, asks of the nodes that lie on one slip surface too, as far as it leads off it.
+struct Trim {
+  std::string patch;        ///< that slips, as messages name it
+  std::string rule;         ///< where the displacement comes from
+  Index nodes = 0;          ///< taken off it
+  double most = 0;          ///< by so much [length]
+  std::string where;        ///< there
+  double displacement = 0;  ///< largest that the rule gives anywhere [length]
+  std::string outcome;      ///< what becomes of the nodes
+
+  /// Undone of what was asked for.
+  [[nodiscard]] double share() const { return displacement > 0 ? most / displacement : 0; }
+};
+
+/// Of blocks: displacements (per Plan::boundary_nodes) that finalize puts back. Empty when all stay on the slip surfaces as build_spread()
+/// asks of them. Cost: O(nodes on slip surfaces, requests).
+std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests const& requests,
+                        BoundaryMotion const& motion, std::vector<Vec3> const& boundary);
+/// Of elements: displacements (per BoundaryConditions::known), which arrive as they are given, off the surface.
+std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given);
+
+/// "the displacement by case.toml:12 takes 47 nodes off the slip surface of 'hub', most zone ... by 0.0012, 3 % of its largest, 0.04; they are put back ...".
+std::string describe(Trim const& trim);
+/// Throws MotionError that lists those of which more than half is undone, or more than `allowed` where that is larger.
+void refuse_undone(std::vector<Trim> const& trims, double allowed);
 
 }  // namespace gridmorph

@@ -48,6 +48,10 @@ void WheelMotion::move(std::vector<Motion> const& motions) {
   passages_.take(std::move(values));
 }
 
+std::vector<Trim> WheelMotion::trims(std::vector<Vec3> const& boundary) const {
+  return gridmorph::trims(opened_, planned_.plan, planned_.boundary, rules_.at(same_rules_[used_.front()]), boundary);
+}
+
 std::vector<Vec3> WheelMotion::displacement(int m, Motion const& motion) const {
   return evaluate(opened_, planned_.boundary, rules_.at(same_rules_[m]).with(motion), planned_.plan.rotations);
 }

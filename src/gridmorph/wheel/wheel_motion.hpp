@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/plan/make_plan.hpp>
+#include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/wheel/passage_motions.hpp>
 #include <gridmorph/wheel/rows.hpp>
 
@@ -31,6 +32,9 @@ class WheelMotion {
   void move(std::vector<Motion> const& motions);
   /// What a motion, number m at any time, gives Plan::boundary_nodes where the whole wheel has that blade.
   [[nodiscard]] std::vector<Vec3> displacement(int m, Motion const& motion) const;
+
+  /// Displacements of passages() that lead off slip surfaces.
+  [[nodiscard]] std::vector<Trim> trims(std::vector<Vec3> const& boundary) const;
 
   /// Moves any passage, in the frame of the sector mesh.
   [[nodiscard]] Plan const& plan() const { return planned_.plan; }

@@ -313,6 +313,9 @@ void read_results(TableReader& root, CaseFile& out) {
     limit(
         "max_loss", out.guard.max_loss, [](double l) { return l > 0 && l <= 1; },
         "the largest share of its determinant or smallest angle that a cell may lose, 0 < value <= 1");
+    limit(
+        "max_trim", out.guard.max_trim, [](double l) { return l > 0 && l <= 1; },
+        "the largest share of a displacement that slip surfaces may undo, 0 < value <= 1");
     if (auto const mode = guard->choice("quality", {"auto", "full", "fast"})) out.guard.quality = QualityMode(*mode);
     out.guard.write_inverted = guard->boolean("write_inverted").value_or(false);
     out.guard.retry = guard->boolean("retry").value_or(false);

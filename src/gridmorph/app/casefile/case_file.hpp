@@ -35,7 +35,9 @@ struct GuardOptions : CellLimits {
   bool retry = false;   ///< try other recipes where the mesh falls short
   bool smooth = false;  ///< move nodes where cells of blocks lost their shape
   bool freeze = false;  ///< what the guard does becomes a linear part of the plan
-  int steps = 4;        ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
+  /// Share of the largest displacement of a rule that may lead off slip surfaces before a morph falls short.
+  double max_trim = 0.01;
+  int steps = 4;  ///< most steps to try where elements of an unstructured mesh are inverted otherwise; 1: none
 };
 
 /// [output]: what comes with the coordinates.

@@ -251,6 +251,7 @@ class Snippet {
   }
 
   std::string text() {
+    if (auto const why = why_no_case(s_); !why.empty()) return "# none: " + why + "\n";
     head();
     for (auto const& body : bodies_) moving(body);
     if (bodies_.empty() && !s_.boundaries.empty())
@@ -335,13 +336,15 @@ class Snippet {
 
   void others() {
     bool const one_blade = blade_ >= 0;
-    std::vector<int> planes, surfaces, far, rest, ranked, slides;
+    std::vector<int> planes, loose, far, rest, ranked, slides;
+    // A wall goes off what is curved as it moves, and slip would undo its motion there; overset boundaries are no surface of anything.
     auto const sort_in = [&](int b, std::vector<int>& standing) {
       bool const meets = meets_a_moving_one(b);
-      (meets && s_.boundaries[std::size_t(b)].flat ? planes
-       : meets && has_facets()                     ? surfaces
-       : meets                                     ? ranked
-                                                   : standing)
+      bool const overset = is_kind(s_.boundaries[std::size_t(b)], PatchKind::connection);
+      (meets && s_.boundaries[std::size_t(b)].flat && !overset ? planes
+       : meets && (has_facets() || overset)                    ? loose
+       : meets                                                 ? ranked
+                                                               : standing)
           .push_back(b);
     };
     for (int const b : of_role(Role::symmetry)) {
@@ -359,8 +362,8 @@ class Snippet {
     rule(names(slides), "", "rule = \"circumferential-slide\"" + of_blade);
     if (one_blade && !s_.periodics.empty()) rule({"type:periodic"}, "", "rule = \"follow\"" + of_blade);
     rule(names(planes), "nodes slide on the plane", "rule = \"slip\"\nsurface = \"plane\"");
-    rule(names(surfaces), "moving walls end here: nodes slide on the surface as it is",
-         "rule = \"slip\"\nsurface = \"baseline\"");
+    rule(names(loose), "moving walls end here and take the nodes along; on a surface that stays: slip, baseline",
+         "rule = \"free\"");
     rule(names(far), "far away", "rule = \"fixed\"");
     rule(names(rest), "", "rule = \"fixed\"");
     rule(names(ranked), "where a moving wall ends here, the wall decides", "rule = \"fixed\"\nrank = 1");
@@ -411,5 +414,12 @@ class Snippet {
 }  // namespace
 
 std::string case_snippet(MeshSummary const& s, SnippetOptions const& options) { return Snippet(s, options).text(); }
+
+std::string why_no_case(MeshSummary const& s) {
+  bool const blocks_with_open_faces = !s.unstructured && s.open_faces;  // these have a rule of their own
+  if (!s.boundaries.empty() || blocks_with_open_faces) return {};
+  return "the file names no boundary, and what has no name cannot be moved; name its boundaries in the mesh generator" +
+         std::string(s.unstructured ? "" : " or in a side file (gridmorph inspect --write-side-file)");
+}
 
 }  // namespace gridmorph::cli

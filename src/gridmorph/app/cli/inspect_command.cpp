@@ -35,6 +35,8 @@ SnippetOptions snippet_options(CommandLine const& options) {
 
 /// A first case file, printed or written.
 int suggest(CommandLine const& options, MeshSummary const& summary, Terminal& terminal) {
+  if (auto const why = why_no_case(summary); !why.empty())
+    throw MeshError(options.input.string() + ": there is no case file to suggest: " + why);
   std::string const text = case_snippet(summary, snippet_options(options));
   if (options.suggest->empty()) {
     terminal.result(text);

@@ -26,6 +26,8 @@ std::string inspect_text(MeshSummary const& summary, std::string const& quality,
 /// remedy, and again when one of the motions in it is given numbers: walls that touch move as one, boundaries that moving walls end on
 /// let their nodes slide.
 std::string case_snippet(MeshSummary const& summary, SnippetOptions const& options = {});
+/// Why there is no such case file: nothing in the mesh could be moved; empty where there is one.
+std::string why_no_case(MeshSummary const& summary);
 
 /// The table of boundaries, and what is to say about each.
 std::string boundaries_text(MeshSummary const& summary);

@@ -26,6 +26,9 @@ class BlockPassagePlan final : public PassagePlan {
   [[nodiscard]] std::vector<Vec3> displacement(int m, Motion const& motion) const override {
     return motion_.displacement(m, motion);
   }
+  [[nodiscard]] std::vector<Trim> trims(std::vector<Vec3> const& boundary) const override {
+    return motion_.trims(boundary);
+  }
   [[nodiscard]] std::vector<std::string> const& notes() const override { return motion_.notes(); }
   [[nodiscard]] NearCells near() const override { return near_cells_of(mesh_, motion_.plan(), case_); }
   RelaxReport morph(std::vector<Vec3> const& boundary, Coordinates& morphed) override {

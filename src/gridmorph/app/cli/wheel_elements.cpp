@@ -32,6 +32,9 @@ class ElementPassagePlan final : public PassagePlan {
   [[nodiscard]] std::vector<Vec3> displacement(int m, Motion const& motion) const override {
     return motion_.displacement(m, motion);
   }
+  [[nodiscard]] std::vector<Trim> trims(std::vector<Vec3> const& boundary) const override {
+    return gridmorph::trims(motion_.prepared().boundary, boundary);
+  }
   [[nodiscard]] std::vector<std::string> const& notes() const override { return motion_.notes(); }
   [[nodiscard]] NearCells near() const override { return near_elements_of(motion_.prepared()); }
   RelaxReport morph(std::vector<Vec3> const& boundary, Coordinates& morphed) override {

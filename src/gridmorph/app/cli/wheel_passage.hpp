@@ -24,6 +24,8 @@ class PassagePlan {
   virtual void move(std::vector<Motion> const& motions) = 0;
   /// What a motion, number m at any time, gives the nodes of passages() where the whole wheel has that blade.
   [[nodiscard]] virtual std::vector<Vec3> displacement(int m, Motion const& motion) const = 0;
+  /// Displacements of passages() that lead off slip surfaces.
+  [[nodiscard]] virtual std::vector<Trim> trims(std::vector<Vec3> const& boundary) const = 0;
   [[nodiscard]] virtual std::vector<std::string> const& notes() const = 0;
   [[nodiscard]] virtual NearCells near() const = 0;
   /// Moves the sector from its baseline by what a passage's boundary does, and smooths around cells that came out bad where this kind of

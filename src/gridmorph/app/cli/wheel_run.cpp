@@ -194,6 +194,10 @@ PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates c
   quality_.morphed = &morphed;
   passage.quality = sector_->measure(quality_);
   passage.shortfalls = mapping_warnings(case_);
+  auto const trims = plan_->trims(boundary);
+  refuse_undone(trims, case_.guard.max_trim);
+  auto const trimmed = trimmed_beyond(case_.guard.max_trim, trims);
+  passage.shortfalls.insert(passage.shortfalls.end(), trimmed.begin(), trimmed.end());
   auto const of_quality = shortfalls(baseline_, passage.quality, thresholds_of(case_));
   passage.shortfalls.insert(passage.shortfalls.end(), of_quality.begin(), of_quality.end());
   if (worst_of_.worst.empty() && newly_inverted(passage.quality) > 0)

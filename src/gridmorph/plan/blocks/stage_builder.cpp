@@ -288,18 +288,18 @@ void add_slip_ends(PlanContext const& context, PlacedBox const& box, int entity,
     }
 }
 
-/// How far given displacements may take nodes off their surfaces before they are put back. A surface fitted to nodes that scatter is
-/// tilted by their scatter over its size: a displacement along the true one leaves it by as much.
 double given_tolerance(std::vector<int> const& surfaces, Plan const& plan) {
-  double tolerance = 1e-10 * plan.mesh_size;
-  for (int const s : surfaces) {
-    SlipSurface const& surface = plan.surfaces[s];
-    tolerance = std::max(tolerance, std::min(2 * surface.baseline_deviation, 1e-6 * surface.size));
-  }
+  double tolerance = 0;
+  for (int const s : surfaces) tolerance = std::max(tolerance, given_tolerance(plan.surfaces[s], plan.mesh_size));
   return tolerance;
 }
 
 }  // namespace
+
+/// A surface fitted to nodes that scatter is tilted by their scatter over its size: a displacement along the true one leaves it by as much.
+double given_tolerance(SlipSurface const& surface, double mesh_size) {
+  return std::max(1e-10 * mesh_size, std::min(2 * surface.baseline_deviation, 1e-6 * surface.size));
+}
 
 SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains, kernels::LineLaw law,
                         std::vector<int> const& surface_of_patch, Known const& given, Plan const& plan) {
