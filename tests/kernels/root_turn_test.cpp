@@ -4,12 +4,14 @@
 
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/kernels/root_turn.hpp>
+#include <gridmorph/kernels/turned_ends.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -18,10 +20,15 @@ namespace {
 
 using kernels::DualVec3;
 
-/// Of the first root.
-Vec3 raw_turn(kernels::RootTable<Host> const& table, Arrays& u) {
-  Arrays raw(1);
-  kernels::RawRootTurn<Host, Vec3>{table, {u.read(), {}}, raw.field()}(0);
+/// Of the first root; its rate for V = DualVec3. mean: the rotation of its body.
+template <class V>
+Vec3 raw_turn(kernels::RootTable<Host> const& table, Arrays& u, Arrays& rate, Vec3 const& mean = {}) {
+  Arrays free(1), free_rate(1), raw(1), of_body(1);
+  of_body.field().set(0, mean);
+  kernels::FreeRootTurn<Host, Vec3>{table, {u.read(), {}}, free.field()}(0);
+  kernels::FreeRootTurn<Host, DualVec3>{table, {u.read(), rate.read()}, free_rate.field()}(0);
+  kernels::RawRootTurn<Host, V>{
+      table, {u.read(), rate.read()}, {free.read(), free_rate.read()}, of_body.read(), raw.field()}(0);
   return raw.read()[0];
 }
 
@@ -47,7 +54,7 @@ struct Corner {
         Vec3 const& a = arm[std::size_t(m)];
         neighbours.push_back({Index(m + 1), -1, a});
       }
-    table.roots = view<kernels::Root>({{0, 0, 0, 6, 1, 0, line}});
+    table.roots = view<kernels::Root>({{0, 0, 0, 6, 1, 0, line, 0}});
     table.neighbours = view(neighbours);
   }
   /// Of the corner and its neighbours by a function of the place.
@@ -58,11 +65,20 @@ struct Corner {
       u.field().set(n, motion(x));
     }
   }
-  [[nodiscard]] Vec3 found() { return raw_turn(table, u); }
-  [[nodiscard]] Vec3 rate_found() {
-    Arrays raw(1);
-    kernels::RawRootTurn<Host, DualVec3>{table, {u.read(), rate.read()}, raw.field()}(0);
-    return raw.read()[0];
+  [[nodiscard]] Vec3 found(Vec3 const& mean = {}) { return raw_turn<Vec3>(table, u, rate, mean); }
+  [[nodiscard]] Vec3 rate_found(Vec3 const& mean = {}) { return raw_turn<DualVec3>(table, u, rate, mean); }
+  /// By differences.
+  [[nodiscard]] Vec3 difference_found(Vec3 const& mean = {}) {
+    std::array<Vec3, 4> at;
+    for (int k = 0; k < 4; ++k) at[std::size_t(k)] = u.read()[k];
+    double const h = 1e-6;
+    auto const moved_on = [&](double step) {
+      for (int k = 0; k < 4; ++k) u.field().set(k, at[std::size_t(k)] + step * rate.read()[k]);
+      return found(mean);
+    };
+    Vec3 const before = moved_on(-h), after = moved_on(h);
+    moved_on(0);
+    return (0.5 / h) * (after - before);
   }
   /// Sines of the angle between a line and the three faces; after: the faces as they are moved.
   [[nodiscard]] std::array<double, 3> sines(Vec3 const& along, bool after) {
@@ -124,7 +140,8 @@ TEST(RootTurn, IsThatOfShortArmsToo) {
       kernels::RootTable<Host> table;
       table.roots = view<kernels::Root>({{0, 0, 0, std::int32_t(neighbours.size()), 1, 0, {}}});
       table.neighbours = view(neighbours);
-      Vec3 const found = raw_turn(table, u);
+      Arrays still(5);
+      Vec3 const found = raw_turn<Vec3>(table, u, still);
       for (int k = 0; k < 3; ++k)
         EXPECT_LT(distance(from[std::size_t(k)] + kernels::turned_by(found, from[std::size_t(k)]), to[std::size_t(k)]),
                   0.01)
@@ -208,19 +225,59 @@ TEST(RootTurn, HasTheRateThatDifferencesHaveAtEdges) {
       corner.rate.field().set(k, 0.1 * random.vector(1));
     }
     Vec3 const rate = corner.rate_found();
-    std::vector<Vec3> u;
-    for (int k = 0; k < 4; ++k) u.push_back(corner.u.read()[k]);
-    double const h = 1e-6;
-    Vec3 side[2];
-    for (int s = 0; s < 2; ++s) {
-      for (int k = 0; k < 4; ++k)
-        corner.u.field().set(k, u[std::size_t(k)] + (s == 0 ? -h : h) * corner.rate.read()[k]);
-      side[s] = corner.found();
-    }
-    Vec3 const difference = (0.5 / h) * (side[1] - side[0]);
-    far_off += distance(rate, difference) < 1e-5 * (1 + norm(rate)) ? 0 : 1;
+    far_off += distance(rate, corner.difference_found()) < 1e-5 * (1 + norm(rate)) ? 0 : 1;
   }
   EXPECT_LE(far_off, 1) << "but where another face begins to limit";
+}
+
+/// The rotation by an angle in degrees, whose mean the body has.
+Vec3 about(Vec3 const& axis, double degrees) { return std::tan(degrees * std::numbers::pi / 720) * axis; }
+
+// Half a turn of a body that is deformed besides: whatever a node turns by, it goes the way of the body, with its rates.
+TEST(RootTurn, GoesTheWayOfItsBody) {
+  Random random(7);
+  for (double const degrees : {100.0, 125.0, 150.0, 178.0, 180.0, 182.0, 200.0})
+    for (int n = 0; n < 20; ++n) {
+      Corner corner(random, {1, 1, 1});
+      Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v, mean = about(axis, std::min(degrees, 179.9));
+      Mat3 const r = rotation_by(degrees * std::numbers::pi / 180 * axis);
+      corner.move([&](Vec3 const& x) { return r * x - x; });
+      EXPECT_LT(distance(corner.found(mean), about(axis, degrees)), 1e-12) << degrees;
+      corner.move([&](Vec3 const& x) { return r * (x + Vec3{0, 0.02 * x.x, -0.03 * x.y}) - x; });
+      EXPECT_LT(distance(corner.found(mean), about(axis, degrees)), 0.1) << degrees;
+      for (int k = 0; k < 4; ++k) corner.rate.field().set(k, random.vector(0.1));
+      Vec3 const rate = corner.rate_found(mean);
+      EXPECT_LT(distance(rate, corner.difference_found(mean)), 1e-7 * (1 + norm(rate))) << degrees;
+    }
+}
+
+TEST(RootTurn, StaysTheShorterWayWithoutABody) {
+  Random random(8);
+  Corner corner(random, {1, 1, 1});
+  corner.table.roots = view<kernels::Root>({{0, 0, 0, 6, 1, 0, corner.line}});
+  Vec3 const axis{0.48, -0.6, 0.64};
+  Mat3 const r = rotation_by(200 * std::numbers::pi / 180 * axis);
+  corner.move([&](Vec3 const& x) { return r * x - x; });
+  EXPECT_LT(distance(corner.found(about(axis, 170)), about(axis, -160)), 1e-12);
+}
+
+// What is between a wall that goes the longer way round and an outer edge that hands on none or a part of its turn goes that way too.
+TEST(NearFieldLines, GoTheWayOfTheirWall) {
+  Vec3 const axis{0.48, -0.6, 0.64}, y{1, 2, -0.5};
+  kernels::RootTable<Host> table;
+  table.roots = view<kernels::Root>({{0, 0, 0, 0, 1, 0, {}}});
+  Arrays inner(1), outer(1), position(2), turn(2);
+  kernels::TurnNearField<Host, Vec3> lines{{}, table, {}, {}, {}, position.read(), turn.field(), {}};
+  for (double const degrees : {130.0, 170.0, 190.0, 230.0})
+    for (double const share : {0.0, 0.25}) {
+      inner.field().set(0, about(axis, degrees));
+      outer.field().set(0, share * about(axis, degrees));
+      auto const found = lines.at({0, 1, 0, -1, axis, {}, 0.5}, inner.read(), inner.read(), outer.read());
+      double const edge = 4 * std::atan(share * std::tan(degrees * std::numbers::pi / 720)) * 180 / std::numbers::pi;
+      auto const middle = kernels::Quaternion<Vec3>::between(found.upper.q, found.lower.q, 0.5);
+      Vec3 const half = kernels::turned_by(about(axis, (degrees + edge) / 2), y);
+      EXPECT_LT(distance(middle.turned(y), half), 1e-12) << degrees << " " << share;
+    }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/kernels/column_motion.hpp>
+#include <gridmorph/kernels/transposed_wall_turn.hpp>
 #include <gridmorph/kernels/wall_turn.hpp>
 
 #include <gtest/gtest.h>
@@ -141,6 +142,69 @@ TEST(Rotations, HaveRatesAlsoWhereNothingTurnsYet) {
     expect_rates(then, Vec3{}, p, Vec3{}, q);
     expect_rates(by, a, p, b, q);
     expect_rates(by, Vec3{}, p, b, q);
+  }
+}
+
+TEST(Rotations, OtherWaysRoundAreTheSameRotation) {
+  Random random(10);
+  for (int n = 0; n < 100; ++n) {
+    Vec3 const r = rotation(random.vector(1.8)), other = kernels::other_way(r), v = random.vector(1);
+    if (!(norm(r) > 0.01)) continue;
+    EXPECT_LT(distance(kernels::turned_by(other, v), kernels::turned_by(r, v)), 1e-13);
+    EXPECT_LT(distance(kernels::quaternion_of(other).turned(v), kernels::turned_by(r, v)), 1e-13);
+    EXPECT_NEAR(norm(axis_times_angle(r)) + norm(axis_times_angle(other)), 2 * std::numbers::pi, 1e-13);
+    EXPECT_LT(distance(kernels::other_way(other), r), 1e-14);
+  }
+}
+
+TEST(Rotations, GoTheWayThatIsNearer) {
+  Random random(11);
+  for (int n = 0; n < 100; ++n) {
+    Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v;
+    for (double angle = 2.2; angle < 4; angle += 0.1) {
+      Vec3 const whole = rotation(angle * axis), shorter = norm(whole) > 1 ? kernels::other_way(whole) : whole;
+      for (double const mean : {angle - 0.8, angle - 0.1})
+        EXPECT_LT(distance(kernels::way_near(shorter, rotation(mean * axis + random.vector(0.2))), whole), 1e-13)
+            << angle << " " << mean;
+    }
+    Vec3 const little = rotation(2 * axis);
+    EXPECT_EQ(kernels::way_near(little, rotation(-3 * axis)), little) << "up to 120 degrees they stay as they are";
+    Vec3 const half = kernels::settled(axis);
+    EXPECT_EQ(kernels::way_near(half, Vec3{}), half) << "and where there is none that is nearer";
+  }
+}
+
+TEST(Rotations, KeepTheirWayWhereTheyAreCorrected) {
+  Random random(12);
+  for (int n = 0; n < 200; ++n) {
+    Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v, w = random.vector(1);
+    Vec3 const turn = random.between(2.2, 3.8) * axis, correction = random.vector(0.3);
+    Vec3 const both = kernels::turn_on(rotation(turn), rotation(correction));
+    EXPECT_LT(distance(w + kernels::turned_by(both, w), matrix_of(correction) * (matrix_of(turn) * w)), 1e-12);
+    EXPECT_LT(distance(both, rotation(turn)), 0.6);
+    EXPECT_LT(distance(kernels::turn_on(rotation(turn), Vec3{}), rotation(turn)), 1e-14);
+    Vec3 const less = rotation(0.5 * turn);
+    EXPECT_EQ(kernels::turn_on(less, rotation(correction)), kernels::turn_then(less, rotation(correction)));
+  }
+}
+
+TEST(Rotations, ThatGoTheLongerWayHaveRatesAndTransposes) {
+  Random random(13);
+  for (int n = 0; n < 100; ++n) {
+    Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v, p = random.vector(1), q = random.vector(1);
+    Vec3 const r = rotation(random.between(2.2, 4.1) * axis), shorter = norm(r) > 1 ? kernels::other_way(r) : r;
+    Vec3 const mean = rotation(3 * axis), correction = rotation(random.vector(0.3)), g = random.vector(1);
+    auto const near = [&](auto const& a, auto const&) { return kernels::way_near(a, mean); };
+    auto const on = [](auto const& a, auto const& b) { return kernels::turn_on(a, b); };
+    expect_rates(near, shorter, p, correction, q);
+    expect_rates(on, r, p, correction, q);
+    expect_rates(on, r, p, Vec3{}, q);
+    EXPECT_NEAR(dot(g, near(DualVec3{shorter, p}, q).rate), dot(kernels::way_near_gradient(shorter, mean, g), p),
+                1e-13);
+    Vec3 of_first, of_correction;
+    kernels::add_turn_on(r, correction, g, of_first, of_correction);
+    EXPECT_NEAR(dot(g, on(DualVec3{r, p}, DualVec3{correction, q}).rate), dot(of_first, p) + dot(of_correction, q),
+                1e-13);
   }
 }
 

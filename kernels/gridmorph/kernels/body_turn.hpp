@@ -170,23 +170,60 @@ struct BodyWalls {
   Index n_wall_chunks = 0;                              ///< chunks of bodies
 };
 
+/// R - I around the nodes that drive, by their motion; or its rate.
+struct FrameGradients {
+  AffineMotion const* frame;
+  KOKKOS_INLINE_FUNCTION Mat3 const& operator[](Index n) const { return frame[n].gradient; }
+};
+/// By rotations.
+struct TurnGradients {
+  Field<double const> turn;
+  KOKKOS_INLINE_FUNCTION Mat3 operator[](Index n) const {
+    return matrix_of_map([r = turn[n]](Vec3 const& e) { return turned_by(r, e); });
+  }
+};
+
 /// Per chunk of wall nodes: sum of w (R - I)^T. Chunks are those of the plan, so that sums do not depend on threads.
-template <class MemorySpace>
+template <class MemorySpace, class Gradients>
 struct SumBodyWalls {
   BodyWalls<MemorySpace> walls;
-  AffineMotion const* frame;  ///< around the nodes that drive; or its rates
+  Gradients gradient;
   VectorMoments* sum;
 
   [[nodiscard]] Index size() const { return walls.n_wall_chunks; }
   KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
     VectorMoments s;
     for (Index k = walls.first(c); k < walls.first(c + 1); ++k) {
-      Mat3 const& g = frame[walls.wall(k)].gradient;
+      Mat3 const& g = gradient[walls.wall(k)];
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) s.m[i][j] += walls.weight(k) * g.m[j][i];
     }
     sum[c] = s;
   }
+};
+
+/// The rotation of a body, from the sums of its chunks.
+template <class V, class MemorySpace>
+KOKKOS_INLINE_FUNCTION V mean_turn(BodyWalls<MemorySpace> const& walls, Index body, VectorMoments const* sum,
+                                   [[maybe_unused]] VectorMoments const* sum_rate = nullptr) {
+  VectorMoments s, rate;
+  for (int i = 0; i < 3; ++i) s.m[i][i] = 1;
+  for (Index c = walls.first_chunk(body); c < walls.first_chunk(body + 1); ++c) {
+    s += sum[c];
+    if constexpr (has_rate<V>) rate += sum_rate[c];
+  }
+  return best_turn<V>(s, rate, walls.axis(body));
+}
+
+/// Per body: its rotation.
+template <class MemorySpace>
+struct MeanTurns {
+  BodyWalls<MemorySpace> walls;
+  VectorMoments const* sum;
+  Field<double> turn;
+
+  [[nodiscard]] Index size() const { return Index(walls.axis.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index b) const { turn.set(b, mean_turn<Vec3>(walls, b, sum)); }
 };
 
 /// Per body: the quaternion of half its rotation; with rates: the rate of that.
@@ -198,13 +235,7 @@ struct TurnBodies {
 
   [[nodiscard]] Index size() const { return Index(walls.axis.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index b) const {
-    VectorMoments s, rate;
-    for (int i = 0; i < 3; ++i) s.m[i][i] = 1;
-    for (Index c = walls.first_chunk(b); c < walls.first_chunk(b + 1); ++c) {
-      s += sum[c];
-      if constexpr (has_rate<V>) rate += sum_rate[c];
-    }
-    auto const q = quaternion_of_half(best_turn<V>(s, rate, walls.axis(b)));
+    auto const q = quaternion_of_half(mean_turn<V>(walls, b, sum, sum_rate));
     if constexpr (has_rate<V>)
       half[b] = {q.imaginary.rate, q.less.rate};
     else

@@ -37,4 +37,18 @@ KOKKOS_INLINE_FUNCTION auto share_that_keeps_height(Vec3 const& line, V const& t
   return share;
 }
 
+/// How much a turn whose |r|^2 is `square` is held back so: wholly up to 120 degrees, not at all beyond 150, where h(f) is far from linear, and
+/// a share of the turn that is to keep the last per cent of a height may leave the line behind by a right angle.
+inline constexpr double never_held_back = 0.58879070648;  // tan(37.5 degrees)^2
+template <class Scalar>
+KOKKOS_INLINE_FUNCTION Scalar held_back(Scalar const& square) {
+  if (!(square > longer_ways)) return Scalar{1};
+  Scalar const left = (1 / (never_held_back - longer_ways)) * (Scalar{never_held_back} - square);
+  return left > 0 ? left * left * (Scalar{3} - 2 * left) : Scalar{};
+}
+KOKKOS_INLINE_FUNCTION double held_back_slope(double square) {
+  double const left = (never_held_back - square) / (never_held_back - longer_ways);
+  return left > 0 && left < 1 ? -6 * left * (1 - left) / (never_held_back - longer_ways) : 0;
+}
+
 }  // namespace gridmorph::kernels

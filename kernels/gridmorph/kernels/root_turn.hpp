@@ -1,9 +1,11 @@
 // How the near field of a wall of blocks turns, line by line. A root is the slot that a line of the near field stands on.
 //
-//   raw     the wall's rotation there (wall_turn.hpp), over all near-field walls that touch, across the edges of blocks
+//   free    the wall's rotation there (wall_turn.hpp), over all near-field walls that touch, across the edges of blocks
 //             Where faces lie on one another, as at the ends of a tip that is a line, their normals count as those of one side
+//   raw     free, the way round that is nearer to the mean of its body (way_near(), body_turn.hpp): near half a turn some nodes of a body
+//             that is deformed besides turn by 179 degrees and some by 181
 //             At an edge of the wall, where its faces may turn differently, no further than the line keeps a share of its height above
-//             each of the faces, as far as it would keep it without a turn
+//             each of the faces, as far as it would keep it without a turn; as far as free where the wall turns beyond 150 degrees
 //   inner   raw, corrected towards end walls so that lines that stand beside one stay on it:
 //             (sum over its ends of (1 - c1(h / H)) alpha) raw
 //           alpha at the end: onto a slip surface the smallest rotation that takes raw N to N', N its normal there before
@@ -11,10 +13,13 @@
 //   outer   turn * raw, where lines along the wall run between two slip surfaces turn * (Align(raw N -> N') raw), N mixed by span
 //           fraction: the outer edge turns about the spanwise direction alone
 //
+// From raw on all keeps the way round that raw goes (turn_on()).
+//
 // written for V = Vec3, or V = DualVec3 for exact rates of all but the curvature of slip surfaces, which is a difference.
-// Cost: surfaces; per root about 300 flops and its neighbours read from cache.
+// Cost: surfaces; per root about 500 flops and its neighbours read from cache.
 #pragma once
 
+#include <gridmorph/kernels/body_turn.hpp>
 #include <gridmorph/kernels/kept_height.hpp>
 #include <gridmorph/kernels/slip_surface.hpp>
 #include <gridmorph/kernels/wall_turn.hpp>
@@ -36,6 +41,7 @@ struct Root {
   std::int32_t stands;  ///< a line of the near field stands on it; otherwise it is there for RootEnd::wall alone
   double turn;          ///< share of its turn that the outer edge of the near field makes
   Vec3 line;  ///< unit, along its first edge or against it, as the wall's normals; zero but at an edge of the wall
+  std::int32_t body = -1;  ///< whose mean rotation says which way round it turns; -1: none, the shorter one
 };
 
 /// An end wall where a wall's grid lines end. Rotations and normals of it are in the frame of its root's slot.
@@ -100,25 +106,35 @@ struct ClearVectors {
 /// Normals of faces that lie on one another add up to less than this share of their area.
 inline constexpr double folded_walls = 1e-6;
 
-/// raw of every root.
+/// The arms of a root before and after. By differences of displacements: nothing turns where all are the same.
 template <class MemorySpace, class V>
-struct RawRootTurn {
+struct RootArms {
+  RootTable<MemorySpace> const& table;
+  VectorsWithRates<V> const& u;  ///< per slot
+  Root const& root;
+
+  KOKKOS_INLINE_FUNCTION V before(Index k) const { return V{table.neighbours(root.first_neighbour + k).arm}; }
+  KOKKOS_INLINE_FUNCTION V after(Index k) const {
+    RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
+    return V{other.arm} + (table.in_frame(other.matrix, u[other.slot]) - u[root.centre]);
+  }
+};
+
+/// free of every root.
+template <class MemorySpace, class V>
+struct FreeRootTurn {
   RootTable<MemorySpace> table;
   VectorsWithRates<V> u;  ///< per slot
-  Field<double> raw;      ///< per root
+  Field<double> free;     ///< per root
 
   [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { raw.set(r, written(turn_at(table.roots(r)))); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { free.set(r, written(turn_at(table.roots(r)))); }
 
  private:
-  /// By differences of displacements: nothing turns where all are the same.
   KOKKOS_INLINE_FUNCTION V turn_at(Root const& root) const {
-    V const here = u[root.centre];
-    auto const before = [&](Index k) { return V{table.neighbours(root.first_neighbour + k).arm}; };
-    auto const after = [&](Index k) {
-      RootNeighbour const& other = table.neighbours(root.first_neighbour + k);
-      return V{other.arm} + (table.in_frame(other.matrix, u[other.slot]) - here);
-    };
+    RootArms<MemorySpace, V> const arms{table, u, root};
+    auto const before = [&](Index k) { return arms.before(k); };
+    auto const after = [&](Index k) { return arms.after(k); };
     V normal{}, moved{};
     double area = 0;
     for (Index k = 0; k < root.n_neighbours; k += 2) {
@@ -133,11 +149,7 @@ struct RawRootTurn {
     if (!(size > 0)) return swing;
     V const axis = (1 / size) * moved;
     ArmWeights const weight(root.n_neighbours, before);
-    V const turn = turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after, weight));
-    if (!(dot(root.line, root.line) > 0)) return turn;
-    auto const face_before = [&](Index k) { return cross(before(2 * k), before(2 * k + 1)); };
-    auto const face_after = [&](Index k) { return cross(after(2 * k), after(2 * k + 1)); };
-    return share_that_keeps_height(root.line, turn, root.n_neighbours / 2, face_before, face_after) * turn;
+    return turn_then(swing, twist_about(axis, swing, root.n_neighbours, before, after, weight));
   }
   /// Normals of faces that lie on one another, all towards the side of the first.
   template <class Before, class After>
@@ -150,6 +162,36 @@ struct RawRootTurn {
       normal = normal + side * face;
       moved = moved + side * cross(after(k), after(k + 1));
     }
+  }
+};
+
+/// raw of every root.
+template <class MemorySpace, class V>
+struct RawRootTurn {
+  RootTable<MemorySpace> table;
+  VectorsWithRates<V> u;     ///< per slot
+  VectorsWithRates<V> free;  ///< per root
+  Field<double const> mean;  ///< rotations of bodies
+  Field<double> raw;         ///< per root
+
+  [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
+    Root const& root = table.roots(r);
+    raw.set(r, written(kept(root, root.body < 0 ? free[r] : way_near(free[r], mean[root.body]))));
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION V kept(Root const& root, V const& turn) const {
+    if (!(dot(root.line, root.line) > 0)) return turn;
+    using Scalar = std::decay_t<decltype(dot(turn, turn))>;
+    auto const held = held_back(dot(turn, turn));
+    if (!(held > 0)) return turn;
+    RootArms<MemorySpace, V> const arms{table, u, root};
+    auto const share = share_that_keeps_height(
+        root.line, turn, root.n_neighbours / 2,
+        [&](Index k) { return cross(arms.before(2 * k), arms.before(2 * k + 1)); },
+        [&](Index k) { return cross(arms.after(2 * k), arms.after(2 * k + 1)); });
+    return held < 1 ? (Scalar{1} - held * (Scalar{1} - share)) * turn : share * turn;
   }
 };
 
@@ -242,7 +284,7 @@ struct NearFieldTurn {
     for (RootEnd const& end : ends.end)
       if (end.end >= 0 && end.share > 0)
         correction = correction + end.share * table.in_frame(end.to_root, at_end.alpha(end.end));
-    V const own = raw[r], turned = turn_then(own, correction);
+    V const own = raw[r], turned = turn_on(own, correction);
     inner.set(root.slot, written(turned));
     outer.set(r, written(root.turn == 0 ? V{} : root.turn * section(ends, own, turned)));
   }
@@ -261,7 +303,7 @@ struct NearFieldTurn {
       before = before + signed_share * n;
       after = after + signed_share * table.in_frame(end.to_root, at_end.moved(end.end));
     }
-    return turn_then(own, turn_between(before + turned_by(own, before), after));
+    return turn_on(own, turn_between(before + turned_by(own, before), after));
   }
 };
 

@@ -3,7 +3,9 @@
 //   r = k tan(a / 4)
 //
 // (modified Rodrigues parameters; H. Schaub, J. L. Junkins, J. Astronaut. Sci. 44 (1996) 1): zero for none, of length one for
-// half a turn, which is one rotation with r and -r, and smooth between. Longer ones are not used: -r / |r|^2 is the same rotation.
+// half a turn, which is one rotation with r and -r, and smooth between. -r / |r|^2 is the same rotation, a - 360 degrees the other way
+// round: formulas give the shorter of the two, and where a body turns by about half a turn its rotations are all taken the way round
+// that is nearer to their mean (way_near()), up to 240 degrees. So what lies between them and no rotation goes one way round the body.
 // For small angles r is a quarter of axis times angle; a share f of it is f r, whose angle is f a to 2 degrees up to a right
 // angle, to 16 up to half a turn. By square roots and quotients, which every machine rounds alike.
 //
@@ -79,6 +81,24 @@ KOKKOS_INLINE_FUNCTION Mat3 matrix_of_map(Map const& map) {
   return {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
 }
 
+/// The same rotation the other way round.
+template <class V>
+KOKKOS_INLINE_FUNCTION V other_way(V const& r) {
+  return (1 / dot(r, r)) * -r;
+}
+
+/// |r|^2 of 120 degrees: rotations beyond that may go the longer way round.
+inline constexpr double longer_ways = 1.0 / 3;
+
+/// Rotation r the way round that is nearer to rotation `to`, if it is beyond 120 degrees: by the sign of the product of their quaternions.
+/// As it is where neither is nearer, whatever round-off says.
+template <class V>
+KOKKOS_INLINE_FUNCTION V way_near(V const& r, Vec3 const& to) {
+  Vec3 const v = value_of(r);
+  double const a = dot(v, v), b = dot(to, to);
+  return a > longer_ways && (1 - a) * (1 - b) + 4 * dot(v, to) < -1e-5 ? other_way(r) : r;
+}
+
 /// Neighbours that blend their half turns have to agree on one of r and -r, whatever round-off says of each: the direction along
 /// which z, else y, else x rises.
 template <class V>
@@ -88,22 +108,48 @@ KOKKOS_INLINE_FUNCTION V settled(V const& r) {
   Vec3 const v = value_of(r);
   auto const counts = [](double c) { return c > 0.3 || c < -0.3; };
   double const along = counts(v.z) ? v.z : counts(v.y) ? v.y : v.x;
-  return along < 0 ? (1 / square) * -r : r;
+  return along < 0 ? other_way(r) : r;
 }
 
-/// First one rotation, then the other; zero where both are.
+/// First one rotation, then the other: the product of their quaternions, times `size`.
 template <class V>
-KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
-  using Scalar = std::decay_t<decltype(dot(first, next))>;
-  auto const a = dot(first, first), b = dot(next, next);
-  auto const p = Scalar{1} - a, q = Scalar{1} - b;
-  auto real = p * q - 4 * dot(first, next);  // the product of their quaternions, times (1 + a) (1 + b)
-  V imaginary = (2 * p) * next + (2 * q) * first + 4 * cross(next, first);
-  if (real < 0) {
+struct TurnProduct {
+  using Scalar = std::decay_t<decltype(dot(V{}, V{}))>;
+  V imaginary;
+  Scalar real, size;
+
+  KOKKOS_INLINE_FUNCTION TurnProduct(V const& first, V const& next) {
+    auto const a = dot(first, first), b = dot(next, next);
+    auto const p = Scalar{1} - a, q = Scalar{1} - b;
+    real = p * q - 4 * dot(first, next);
+    imaginary = (2 * p) * next + (2 * q) * first + 4 * cross(next, first);
+    size = (Scalar{1} + a) * (Scalar{1} + b);
+  }
+  /// The other way round.
+  KOKKOS_INLINE_FUNCTION void turn_round() {
     real = -real;
     imaginary = -imaginary;
   }
-  return settled((1 / ((Scalar{1} + a) * (Scalar{1} + b) + real)) * imaginary);
+  KOKKOS_INLINE_FUNCTION V rotation() const { return (1 / (size + real)) * imaginary; }
+};
+
+/// First one rotation, then the other, the shorter way round; zero where both are.
+template <class V>
+KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
+  TurnProduct<V> product(first, next);
+  if (product.real < 0) product.turn_round();
+  return settled(product.rotation());
+}
+
+/// A rotation that is corrected keeps its way round if it is beyond 120 degrees, up to 270.
+inline constexpr double longest_way = -0.70710678118654752;  // cos(135 degrees), of half the angle
+KOKKOS_INLINE_FUNCTION bool keeps_its_way(Vec3 const& first) { return dot(first, first) > longer_ways; }
+template <class V>
+KOKKOS_INLINE_FUNCTION V turn_on(V const& first, V const& correction) {
+  if (!keeps_its_way(value_of(first))) return turn_then(first, correction);
+  TurnProduct<V> product(first, correction);
+  if (value_of(product.real) < longest_way * value_of(product.size)) product.turn_round();
+  return product.rotation();
 }
 
 /// A quaternion whose size does not matter; `less` is what its real part is less than one, exactly zero for no rotation.

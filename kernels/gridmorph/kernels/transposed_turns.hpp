@@ -89,12 +89,13 @@ void pull_back(char const* label, Exec const& exec, Dependents<typename Exec::me
   launch(label, exec, PullBack<typename Exec::memory_space, Function>{on, of, gradient});
 }
 
-/// Transpose of RawRootTurn: gradients of the displacements of a root's neighbours, at their places in the table in the frame of the
+/// Transpose of FreeRootTurn and RawRootTurn: gradients of the displacements of a root's neighbours, at their places in the table in the frame of the
 /// root's slot, and after those of all roots that of its centre.
 template <class MemorySpace>
 struct RawRootTurnBack {
   RootTable<MemorySpace> table;
   Field<double const> u, raw;  ///< displacements; gradients
+  Field<double const> mean;    ///< rotations of bodies
   Field<double> parts;
 
   [[nodiscard]] Index size() const { return Index(table.roots.extent(0)); }
@@ -126,7 +127,7 @@ struct RawRootTurnBack {
     if (!(norm(moved) > 0)) return clear(root, own);
     FanTurn const turn(normal, moved, sums);
     KeptHeightGradient kept;
-    FanTurn::Gradient const of = turn.gradient(through_line(root, fan, turn, g, kept));
+    FanTurn::Gradient const of = turn.gradient(of_free_turn(root, fan, turn.rotation(), g, kept));
     Vec3 sum;
     fan.for_faces(folded, [&](Arms const& face, double side, Index k) {
       Vec3 const of_face = k == 2 * kept.face ? side * of.moved + kept.moved : side * of.moved;
@@ -179,8 +180,14 @@ struct RawRootTurnBack {
     for (Index k = 0; k < root.n_neighbours; ++k) parts.set(root.first_neighbour + k, {});
     parts.set(own, {});
   }
+  KOKKOS_INLINE_FUNCTION Vec3 of_free_turn(Root const& root, Fan const& fan, Vec3 const& free, Vec3 const& g,
+                                           KeptHeightGradient& kept) const {
+    if (root.body < 0) return through_line(root, fan, free, g, kept);
+    Vec3 const to = mean[root.body];
+    return way_near_gradient(free, to, through_line(root, fan, way_near(free, to), g, kept));
+  }
   /// Of the turn before the line at an edge of the wall held it back; `kept`: of the face that did.
-  KOKKOS_INLINE_FUNCTION static Vec3 through_line(Root const& root, Fan const& fan, FanTurn const& turn, Vec3 const& g,
+  KOKKOS_INLINE_FUNCTION static Vec3 through_line(Root const& root, Fan const& fan, Vec3 const& turn, Vec3 const& g,
                                                   KeptHeightGradient& kept) {
     if (!(dot(root.line, root.line) > 0)) return g;
     auto const face_before = [&](Index k) {
@@ -191,11 +198,11 @@ struct RawRootTurnBack {
       Arms const face = fan.face(2 * k);
       return cross(face.after[0], face.after[1]);
     };
-    Vec3 const free = turn.rotation();
     Index const n_faces = root.n_neighbours / 2;
-    double const share = share_that_keeps_height(root.line, free, n_faces, face_before, face_after);
-    kept = kept_height_gradient(root.line, free, n_faces, face_before, face_after, dot(g, free));
-    return share * g + kept.turn;
+    double const share = share_that_keeps_height(root.line, turn, n_faces, face_before, face_after);
+    double const square = dot(turn, turn), held = held_back(square), along = dot(g, turn);
+    kept = kept_height_gradient(root.line, turn, n_faces, face_before, face_after, held * along);
+    return (1 - held * (1 - share)) * g + kept.turn + (-2 * held_back_slope(square) * (1 - share) * along) * turn;
   }
 };
 
@@ -245,10 +252,10 @@ struct NearFieldTurnBack {
     Vec3 const of_outer = root.turn * outer[r];
     bool const has_section = runs_between_surfaces(ends);
     Vec3 const of_inner = has_section ? inner[root.slot] : inner[root.slot] + of_outer;
-    if (corrected || !(dot(own, own) < 0.9))
-      add_turn_then(own, correction, of_inner, of_own, of_correction);
+    if (corrected)
+      add_turn_on(own, correction, of_inner, of_own, of_correction);
     else
-      of_own = of_inner;  // there is nothing to settled() below half a turn
+      of_own = of_inner;
     for (int m = 0; m < 2; ++m)
       if (ends.end[m].end >= 0 && ends.end[m].share > 0) parts.set(4 * r + 2 * m, ends.end[m].share * of_correction);
     if (has_section && root.turn != 0) add_section(r, ends, own, of_outer, of_own);
@@ -273,7 +280,7 @@ struct NearFieldTurnBack {
     }
     Vec3 const carried = before + turned_by(own, before);
     Vec3 of_swing;
-    add_turn_then(own, turn_between(carried, after), g, of_own, of_swing);
+    add_turn_on(own, turn_between(carried, after), g, of_own, of_swing);
     // The other way round it is the same rotation backwards.
     of_own += turned_by_gradient(own, before, turn_between_gradient(after, carried, -of_swing));
     Vec3 const of_after = turn_between_gradient(carried, after, of_swing);

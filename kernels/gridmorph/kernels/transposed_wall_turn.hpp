@@ -10,12 +10,17 @@
 
 namespace gridmorph::kernels {
 
-/// Of settled(r), r before.
-KOKKOS_INLINE_FUNCTION Vec3 settled_gradient(Vec3 const& r, Vec3 const& g) {
+/// Of other_way(r), r before.
+KOKKOS_INLINE_FUNCTION Vec3 other_way_gradient(Vec3 const& r, Vec3 const& g) {
   double const square = dot(r, r);
-  Vec3 const s = settled(r);
-  if (s == r) return g;
   return (-1 / square) * g + (2 * dot(g, r) / (square * square)) * r;
+}
+/// Of settled(r) or way_near(r), r before.
+KOKKOS_INLINE_FUNCTION Vec3 settled_gradient(Vec3 const& r, Vec3 const& g) {
+  return settled(r) == r ? g : other_way_gradient(r, g);
+}
+KOKKOS_INLINE_FUNCTION Vec3 way_near_gradient(Vec3 const& r, Vec3 const& to, Vec3 const& g) {
+  return way_near(r, to) == r ? g : other_way_gradient(r, g);
 }
 
 /// Of `after` in turn_between(before, after).
@@ -37,22 +42,33 @@ KOKKOS_INLINE_FUNCTION Vec3 turn_between_gradient(Vec3 const& before, Vec3 const
   return (of_size * norm(before) / length) * after + of_cosine * before + cross(of_c, before);
 }
 
-/// Of both rotations in turn_then(first, next): added.
-KOKKOS_INLINE_FUNCTION void add_turn_then(Vec3 const& first, Vec3 const& next, Vec3 const& g, Vec3& of_first,
-                                          Vec3& of_next) {
-  double const a = dot(first, first), b = dot(next, next), p = 1 - a, q = 1 - b;
-  double real = p * q - 4 * dot(first, next);
-  double const sign = real < 0 ? -1 : 1;
-  real *= sign;
-  Vec3 const imaginary = sign * ((2 * p) * next + (2 * q) * first + 4 * cross(next, first));
-  double const size = (1 + a) * (1 + b) + real;
-  Vec3 const r = (1 / size) * imaginary, of_r = settled_gradient(r, g);
+/// Of both rotations in their product, which has been turned round if sign is -1, from that of the rotation that it is: added.
+KOKKOS_INLINE_FUNCTION void add_product(TurnProduct<Vec3> const& product, double sign, Vec3 const& first,
+                                        Vec3 const& next, Vec3 const& of_r, Vec3& of_first, Vec3& of_next) {
+  double const a = dot(first, first), b = dot(next, next), p = 1 - a, q = 1 - b, size = product.size + product.real;
   Vec3 const of_imaginary = (sign / size) * of_r;
-  double const of_size = -dot(of_r, r) / size, of_real = sign * of_size;
+  double const of_size = -dot(of_r, product.rotation()) / size, of_real = sign * of_size;
   double const of_p = of_real * q + 2 * dot(of_imaginary, next), of_q = of_real * p + 2 * dot(of_imaginary, first);
   double const of_a = of_size * (1 + b) - of_p, of_b = of_size * (1 + a) - of_q;
   of_first += (2 * of_a) * first + (2 * q) * of_imaginary + (-4 * of_real) * next + 4 * cross(of_imaginary, next);
   of_next += (2 * of_b) * next + (2 * p) * of_imaginary + (-4 * of_real) * first + 4 * cross(first, of_imaginary);
+}
+/// Of both rotations in turn_then(first, next): added.
+KOKKOS_INLINE_FUNCTION void add_turn_then(Vec3 const& first, Vec3 const& next, Vec3 const& g, Vec3& of_first,
+                                          Vec3& of_next) {
+  TurnProduct<Vec3> product(first, next);
+  bool const round = product.real < 0;
+  if (round) product.turn_round();
+  add_product(product, round ? -1 : 1, first, next, settled_gradient(product.rotation(), g), of_first, of_next);
+}
+/// Of both rotations in turn_on(first, correction): added.
+KOKKOS_INLINE_FUNCTION void add_turn_on(Vec3 const& first, Vec3 const& correction, Vec3 const& g, Vec3& of_first,
+                                        Vec3& of_correction) {
+  if (!keeps_its_way(first)) return add_turn_then(first, correction, g, of_first, of_correction);
+  TurnProduct<Vec3> product(first, correction);
+  bool const round = product.real < longest_way * product.size;
+  if (round) product.turn_round();
+  add_product(product, round ? -1 : 1, first, correction, g, of_first, of_correction);
 }
 
 /// Of v in v / |v|.

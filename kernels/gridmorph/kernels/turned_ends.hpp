@@ -74,7 +74,9 @@ struct TurnNearField {
     Index const slot = table.roots(line.root).slot;
     V const in = table.in_frame(line.matrix, inner[slot]), out = table.in_frame(line.matrix, outer[line.root]);
     Vec3 const pivot = position[line.lower];
-    Quaternion<V> const wall = quaternion_of(in), edge = nearer(wall, quaternion_of(out));
+    // The edge's rotation has been made from a longer one, and goes its way round.
+    Quaternion<V> const wall = quaternion_of(in), own = quaternion_of(out),
+                        edge = keeps_its_way(value_of(in)) ? own : nearer(wall, own);
     auto const s = stretch(line, table.in_frame(line.matrix, raw[line.root]), Q::between(edge, wall, line.f0));
     return {in, out, {wall, pivot, s}, {edge, pivot}};
   }

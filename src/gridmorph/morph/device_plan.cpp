@@ -127,6 +127,21 @@ Workspace<typename Exec::memory_space> positions(Exec const& exec, std::vector<V
 }
 
 template <class Exec>
+void add_bodies(Exec const& exec, TurningRoots const& bodies, int fields, DeviceTurns<Exec>& turns) {
+  Index const n_bodies = Index(bodies.first_chunk.size()) - 1, n_chunks = bodies.first_chunk.back();
+  turns.bodies = {table(exec, bodies.root, "bodies::roots"),
+                  {},
+                  table(exec, bodies.weight, "bodies::weights"),
+                  table(exec, bodies.first, "bodies::first"),
+                  table(exec, bodies.first_chunk, "bodies::first_chunk"),
+                  table(exec, std::vector<Vec3>(std::size_t(n_bodies)), "bodies::axes"),
+                  n_chunks};
+  turns.body_sums = Kokkos::View<kernels::VectorMoments*, typename Exec::memory_space>(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::bodies::sums"), n_chunks);
+  turns.mean = Workspace<typename Exec::memory_space>(exec, n_bodies, fields, "bodies::turns");
+}
+
+template <class Exec>
 DeviceTurns<Exec> device_turns(Exec const& exec, Plan const& plan, JoinedTables& joined,
                                SlipSurfaceTable<typename Exec::memory_space> const& surfaces,
                                Kokkos::View<Mat3*, typename Exec::memory_space> const& rotations, int fields) {
@@ -139,8 +154,10 @@ DeviceTurns<Exec> device_turns(Exec const& exec, Plan const& plan, JoinedTables&
   out.table.surfaces = surfaces.surfaces;
   out.table.matrices = rotations;
   out.n_ends = joined.lines.n_end_values;
+  add_bodies(exec, plan.turns.bodies, fields, out);
   Index const n_roots = Index(plan.turns.roots.size());
   out.slots = Work(exec, plan.n_slots, fields, "turns");
+  out.free = Work(exec, n_roots, fields, "free_root_turns");
   out.raw = Work(exec, n_roots, fields, "root_turns");
   out.outer = Work(exec, n_roots, fields, "outer_turns");
   out.at_end = Work(exec, 3 * Index(plan.turns.end_walls.size()), fields, "end_wall_turns");

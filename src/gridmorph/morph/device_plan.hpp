@@ -92,9 +92,12 @@ template <class Exec>
 struct DeviceTurns {
   using Memory = typename Exec::memory_space;
   kernels::RootTable<Memory> table;
-  Workspace<Memory> slots, raw, outer;  ///< per slot, root, root
-  Workspace<Memory> at_end, end_turns;  ///< 3 per end wall; per line end
-  Kokkos::View<double*, Memory> ends;   ///< of fields, each as kernels::TurnedEnds has them
+  kernels::BodyWalls<Memory> bodies;                        ///< whose nodes are roots
+  Kokkos::View<kernels::VectorMoments*, Memory> body_sums;  ///< of one field at a time
+  Workspace<Memory> slots, free, raw, outer;                ///< per slot; per root
+  Workspace<Memory> mean;                                   ///< per body
+  Workspace<Memory> at_end, end_turns;                      ///< 3 per end wall; per line end
+  Kokkos::View<double*, Memory> ends;                       ///< of fields, each as kernels::TurnedEnds has them
   Workspace<Memory> end_position, end_pivot, swept_position, side_position;
   Index n_ends = 0;
 

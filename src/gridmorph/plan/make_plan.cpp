@@ -16,6 +16,7 @@
 #include <gridmorph/plan/make_plan.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -324,7 +325,7 @@ class Scheduler {
       });
     });
   }
-  /// To two per cent of its largest displacement.
+  /// To a tenth of its largest displacement, or to a fifth where it turns by more than 30 degrees: what turns far tears where it hands nothing on.
   [[nodiscard]] bool moves_rigidly(WallRoots::BodySample const& body) const {
     std::map<int, std::vector<std::size_t>> of_rule;
     for (std::size_t n = 0; n < body.places.size(); ++n)
@@ -343,8 +344,11 @@ class Scheduler {
     }
     if (!(largest > 0)) return false;
     RigidTransform const fit = fit_rigid_transform(body.places, moved);
+    auto const& r = fit.rotation.m;
+    double const cosine = (r[0][0] + r[1][1] + r[2][2] - 1) / 2;
+    double const off = (cosine < std::sqrt(0.75) ? 0.2 : 0.1) * largest;
     for (std::size_t n = 0; n < moved.size(); ++n)
-      if (distance(fit(body.places[n]), moved[n]) > 0.02 * largest) return false;
+      if (distance(fit(body.places[n]), moved[n]) > off) return false;
     return true;
   }
   [[nodiscard]] bool ends_at_rest(ChainEnd const& end) const {
@@ -552,10 +556,11 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   for (NearField const& field : basis.fields)
     if (turns(field)) roots.add_walls(field.walls, field.mode == BoundaryLayer::Mode::blend ? 0 : 1);
   roots.join_coincident();
+  roots.find_bodies();
   // A body's centre is a place in one frame; where zones are turned into one another, each line end turns about itself.
   if (std::none_of(topology.links.all.begin(), topology.links.all.end(),
                    [](Link const& link) { return link.periodic; }))
-    roots.find_bodies();
+    roots.find_centres();
   roots.turn_as_resolved(resolved_arm * coordinate_resolution(basis.mesh));
   roots.mark(known);
   scheduler.near_field(near_field_chains(basis.mesh, basis.topology, known, basis.fields));

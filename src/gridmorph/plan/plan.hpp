@@ -84,12 +84,21 @@ struct SpreadPass {
   std::vector<std::string> description;
 };
 
+/// Roots whose mean rotation says which way round they turn, body after body, in chunks that are summed in one go.
+struct TurningRoots {
+  std::vector<std::int32_t> root;
+  std::vector<double> weight;         ///< share in the area of its body
+  std::vector<Index> first{0};        ///< of `root` in each chunk, and the end
+  std::vector<Index> first_chunk{0};  ///< of each body, and the end
+};
+
 /// How near fields turn (kernels/root_turn.hpp); empty where none does.
 struct TurnTables {
   std::vector<kernels::Root> roots;
   std::vector<kernels::RootNeighbour> neighbours;
   std::vector<kernels::RootEnds> ends;
   std::vector<kernels::EndWall> end_walls;
+  TurningRoots bodies;
 };
 
 struct Plan {

@@ -81,8 +81,9 @@ class BlockTurnGradients {
               kernels::EndWallTurnBy<Memory, false>{end_walls, u, raw, of_ends}, slots);
     pull_back("gridmorph::transposed::end_wall_turns", exec, back.end_walls_of_root,
               kernels::EndWallTurnBy<Memory, true>{end_walls, u, raw, of_ends}, raw_gradient);
-    kernels::launch("gridmorph::transposed::walls", exec,
-                    kernels::RawRootTurnBack<Memory>{table, u, turns_.raw.read()[g_], parts.batch()[0]});
+    kernels::launch(
+        "gridmorph::transposed::walls", exec,
+        kernels::RawRootTurnBack<Memory>{table, u, turns_.raw.read()[g_], turns_.mean.read()[f_], parts.batch()[0]});
     kernels::copy_back<true>("gridmorph::transposed::wall_slots", exec, back.parts_of_slot, plan_.rotations,
                              parts.read()[0], slots);
   }

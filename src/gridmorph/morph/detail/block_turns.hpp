@@ -22,7 +22,11 @@ class BlockTurns {
     kernels::launch("gridmorph::turns::clear", exec, 0, turns_.slots.n,
                     kernels::ClearVectors{turns_.slots.batch()[f_]});
     kernels::launch("gridmorph::turns::walls", exec,
-                    kernels::RawRootTurn<Memory, V>{turns_.table, both(plan_.skeleton), turns_.raw.batch()[f_]});
+                    kernels::FreeRootTurn<Memory, V>{turns_.table, both(plan_.skeleton), turns_.free.batch()[f_]});
+    if constexpr (!Rate) mean_of_bodies(exec);
+    kernels::launch("gridmorph::turns::ways", exec,
+                    kernels::RawRootTurn<Memory, V>{turns_.table, both(plan_.skeleton), both(turns_.free),
+                                                    turns_.mean.read()[of_], turns_.raw.batch()[f_]});
     kernels::launch("gridmorph::turns::end_walls", exec,
                     kernels::EndWallTurn<Memory, V>{turns_.table, both(plan_.skeleton), both(turns_.raw),
                                                     turns_.at_end.batch()[f_]});
@@ -52,6 +56,14 @@ class BlockTurns {
   }
 
  private:
+  /// What it decides does not change with its rate.
+  void mean_of_bodies(Exec const& exec) const {
+    kernels::launch("gridmorph::turns::bodies", exec,
+                    kernels::SumBodyWalls<Memory, kernels::TurnGradients>{
+                        turns_.bodies, {turns_.free.read()[f_]}, turns_.body_sums.data()});
+    kernels::launch("gridmorph::turns::means", exec,
+                    kernels::MeanTurns<Memory>{turns_.bodies, turns_.body_sums.data(), turns_.mean.batch()[f_]});
+  }
   [[nodiscard]] kernels::VectorsWithRates<V> both(Workspace<Memory> const& work) const {
     return {work.read()[of_], work.read()[f_]};
   }

@@ -146,8 +146,9 @@ class TakeTurns {
   using Memory = typename Exec::memory_space;
 
   void sum(Exec const& exec, StageField<Exec> const& f, List<Exec, kernels::VectorMoments> const& to) const {
-    kernels::launch("gridmorph::bodies::sum", exec,
-                    kernels::SumBodyWalls<Memory>{tables_->walls, f.frames.data(), to.data()});
+    kernels::launch(
+        "gridmorph::bodies::sum", exec,
+        kernels::SumBodyWalls<Memory, kernels::FrameGradients>{tables_->walls, {f.frames.data()}, to.data()});
   }
   template <class V>
   void turn(Exec const& exec, List<Exec, kernels::Quaternion<Vec3>> const& to) const {

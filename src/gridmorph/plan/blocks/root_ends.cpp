@@ -190,6 +190,8 @@ TurnTables turn_tables(PlanContext const& context, Links const& links, WallRoots
   append(walls.nodes(), true, tables);
   append(finder.end_nodes(), false, tables);
   tables.end_walls = finder.found();
+  tables.bodies = walls.turning_roots();
+  for (std::size_t r = 0; r < walls.nodes().size(); ++r) tables.roots[r].body = walls.body(r);
   tables.ends.resize(tables.roots.size());
   for (std::size_t r = 0; r < walls.nodes().size(); ++r) tables.ends[r] = finder.ends(std::int32_t(r));
   return tables;

@@ -132,7 +132,7 @@ void WallRoots::mark(Known& known) const {
         which[face.along[1]] += dq;
         int const c = lattice.class_of(lattice.entity_of_piece(face.piece, which));
         known.turns[c] = 1;
-        if (!body_.empty()) known.body[c] = body_[std::size_t(of_slot(face(0, 0).slot))];
+        if (!centre_.empty()) known.body[c] = body_[std::size_t(of_slot(face(0, 0).slot))];
       }
 }
 
@@ -144,12 +144,39 @@ void WallRoots::find_bodies() {
   std::vector<int> number(nodes_.size(), no_body);
   body_.assign(nodes_.size(), no_body);
   for (std::size_t r = 0; r < nodes_.size(); ++r) {
-    if (first[r] == std::int32_t(r)) {
-      number[r] = int(centre_.size());
-      centre_.emplace_back();
-    }
+    if (first[r] == std::int32_t(r)) number[r] = n_bodies_++;
     body_[r] = number[std::size_t(first[r])];
   }
+}
+
+TurningRoots WallRoots::turning_roots() const {
+  constexpr std::size_t chunk_size = 512;
+  auto const n_bodies = std::size_t(n_bodies_);
+  std::vector<std::vector<std::int32_t>> of_body(n_bodies);
+  std::vector<char> one_frame(n_bodies, 1);
+  for (std::size_t r = 0; r < body_.size(); ++r) {
+    auto const body = std::size_t(body_[r]);
+    of_body[body].push_back(std::int32_t(r));
+    for (kernels::RootNeighbour const& k : nodes_[r].around)
+      if (k.matrix >= 0) one_frame[body] = 0;
+  }
+  TurningRoots out;
+  for (std::size_t b = 0; b < n_bodies; ++b) {
+    if (one_frame[b] == 0) of_body[b].clear();
+    double area = 0;
+    for (std::int32_t const r : of_body[b]) area += norm(fan_normal(nodes_[std::size_t(r)].around));
+    for (std::size_t k = 0; k < of_body[b].size(); ++k) {
+      out.root.push_back(of_body[b][k]);
+      out.weight.push_back(area > 0 ? norm(fan_normal(nodes_[std::size_t(of_body[b][k])].around)) / area : 0);
+      if ((k + 1) % chunk_size == 0 || k + 1 == of_body[b].size()) out.first.push_back(Index(out.root.size()));
+    }
+    out.first_chunk.push_back(Index(out.first.size()) - 1);
+  }
+  return out;
+}
+
+void WallRoots::find_centres() {
+  centre_.assign(std::size_t(n_bodies_), {});
   std::vector<kernels::Box> box(centre_.size());
   std::vector<double> area(centre_.size(), 0);
   std::vector<char> seen(nodes_.size(), 0);

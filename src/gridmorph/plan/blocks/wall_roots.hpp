@@ -68,10 +68,17 @@ class WallRoots {
   /// Nodes beside which others are less than `least` away turn as the nearest node along the walls that has none so near: what coordinates
   /// resolve there is no direction. Call after find_bodies(). Cost O(n log n) in such nodes.
   void turn_as_resolved(double least);
-  /// Finds the bodies: walls that touch. Call after all walls, where all zones share one frame.
+  /// Finds the bodies: walls that touch. Call after all walls.
   void find_bodies();
+  /// The places of bodies. Call after find_bodies(), where all zones share one frame.
+  void find_centres();
   /// Marks what is on the walls as coming with a rotation.
   void mark(Known& known) const;
+
+  /// -1: none.
+  [[nodiscard]] int body(std::size_t root) const { return body_.empty() ? no_body : body_[root]; }
+  /// The nodes of bodies whose zones share one frame: rotations in several have no mean.
+  [[nodiscard]] TurningRoots turning_roots() const;
 
   /// Places on the walls of one body, and of which patch each is.
   struct BodySample {
@@ -106,7 +113,8 @@ class WallRoots {
   std::unordered_map<Index, std::int32_t> of_slot_;
   std::unordered_map<Index, Place> place_;  ///< per node of the mesh
   std::vector<int> body_;                   ///< per root, empty before they are found
-  std::vector<Vec3> centre_;                ///< per body
+  int n_bodies_ = 0;
+  std::vector<Vec3> centre_;  ///< per body, empty before they are found
   double body_size_ = 0;
 };
 
