@@ -67,12 +67,12 @@ PreparedMorph prepared(Mesh const& mesh, VectorField const& of_wing) {
   return prepare(mesh, motion({rule({"wing"}, function_rule(of_wing)), rule({"far"}, FixedRule{})}), {});
 }
 
-struct Shapes {
+struct Corners {
   double smallest = 1;  ///< scaled Jacobian at a corner
   Index inverted = 0;   ///< corners
 };
-Shapes shapes_of(Mesh const& mesh, Coordinates const& x) {
-  Shapes out;
+Corners corners_of(Mesh const& mesh, Coordinates const& x) {
+  Corners out;
   for (Zone const& zone : mesh.zones) {
     auto const corner = [&](Coordinates const& at, Index3 const& p, Index3 const& to) {
       Vec3 edge[3];
@@ -99,8 +99,8 @@ Shapes shapes_of(Mesh const& mesh, Coordinates const& x) {
 Coordinates moved(PreparedMorph const& plan) {
   return run_plan(Exec(), plan.mesh, plan.plan(), plan.boundary_displacement()).position;
 }
-Shapes shapes_after(Mesh const& mesh, VectorField const& of_wing) {
-  return shapes_of(mesh, moved(prepared(mesh, of_wing)));
+Corners corners_after(Mesh const& mesh, VectorField const& of_wing) {
+  return corners_of(mesh, moved(prepared(mesh, of_wing)));
 }
 
 constexpr std::array<double, 12> angles{60, 90, 120, 150, 170, 178, 179.9, 180, 180.1, 182, 190, 210};
@@ -111,7 +111,7 @@ TEST(HalfTurn, LeavesAWingSoundThatIsShorterBesides) {
     for (double const way : {1.0, -1.0}) {
       double below = 0;
       for (double const degrees : angles) {
-        Shapes const found = shapes_after(mesh, turned_and_shorter(way * degrees, mirror));
+        Corners const found = corners_after(mesh, turned_and_shorter(way * degrees, mirror));
         EXPECT_EQ(found.inverted, 0) << degrees << " " << way << " " << mirror;
         EXPECT_GT(found.smallest, least_shape) << degrees << " " << way << " " << mirror;
         if (degrees == 179.9) below = found.smallest;
@@ -169,7 +169,7 @@ TEST(HalfTurn, LeavesASectionSoundThatSlipsAlongPlanes) {
   for (double const degrees : angles)
     for (double const way : {1.0, -1.0}) {
       PreparedMorph const plan = prepared_section(way * degrees);
-      Shapes const found = shapes_of(plan.mesh, moved(plan));
+      Corners const found = corners_of(plan.mesh, moved(plan));
       EXPECT_EQ(found.inverted, 0) << degrees << " " << way;
       EXPECT_GT(found.smallest, least_shape) << degrees << " " << way;
     }
