@@ -119,6 +119,20 @@ class Passage {
     return largest;
   }
 
+  /// How far nodes of the end walls move apart from those beside them, over their distance.
+  [[nodiscard]] double shear_at_end_walls(Coordinates const& x) const {
+    double largest = 0;
+    for (Zone const& zone : mesh_.zones)
+      for (int k = 0; k < zone.extent[2]; ++k)
+        for (int i = 0; i < zone.extent[0]; ++i)
+          for (auto const& [on, off] : {std::pair{0, 1}, std::pair{zone.extent[1] - 1, zone.extent[1] - 2}}) {
+            Index const a = zone.node({i, on, k}), b = zone.node({i, off, k});
+            Vec3 const before = mesh_.coordinates[b] - mesh_.coordinates[a];
+            largest = std::max(largest, distance(x[b] - x[a], before) / norm(before));
+          }
+    return largest;
+  }
+
   [[nodiscard]] Index inverted(Coordinates const& x) const {
     Index count = 0;
     for (Zone const& zone : mesh_.zones) {
@@ -244,6 +258,7 @@ TEST(ResolvedWalls, InSinglePrecisionAreSoundToo) {
       EXPECT_EQ(passage.inverted(x), 0);
       EXPECT_EQ(passage.inverted(written), 0);
       EXPECT_LT(passage.change_at_wall(x).angle_deg, 0.1);
+      EXPECT_LT(passage.shear_at_end_walls(x), 1);
       EXPECT_LT(passage.off_end_walls(written), 6e-7) << "ten times what single precision resolves there";
     }
   }

@@ -17,7 +17,7 @@ struct NearFieldLine {
   std::int32_t root;    ///< in RootTable
   std::int32_t matrix;  ///< frame of the root's slot -> chain frame, -1: the same
   Vec3 normal;          ///< of the wall, unit
-  Vec3 edge;            ///< from the wall to the first node
+  Vec3 edge;            ///< from the wall to the first node that coordinates resolve
   double f0;            ///< there
 };
 

@@ -47,12 +47,21 @@ void for_end_nodes(PlanContext const& context, Chain const& chain, ChainLayout c
   });
 }
 
-struct FirstStep {
+struct Step {
+  int at;
   double* t;
   KOKKOS_INLINE_FUNCTION void operator()(int position, double fraction) const {
-    if (position == 1) *t = fraction;
+    if (position == at) *t = fraction;
   }
 };
+
+/// Steps along a line from its wall node to the first node that is no nearer than `least`, or to the last one but one of its segment.
+int steps_to_resolved(kernels::Segment const& segment, Index node, kernels::Field<double const> const& x,
+                      double least) {
+  int steps = 1;
+  while (steps + 2 < segment.count && norm(x[node + steps * segment.stride_s] - x[node]) < least) ++steps;
+  return steps;
+}
 
 }  // namespace
 
@@ -110,9 +119,10 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
         Index const at = tube.a_begin + a + Index(device.n_a) * (tube.b_begin + b);
         auto const [root, matrix] = roots[std::size_t(at)];
         Index const node = segment.first + a * segment.stride_a + b * segment.stride_b;
-        Vec3 const edge = x[node + segment.stride_s] - x[node];
+        int const steps = steps_to_resolved(segment, node, x, context.roots->resolved_arm());
+        Vec3 const edge = x[node + steps * segment.stride_s] - x[node];
         double t = 0;
-        kernels::walk_line(table, tube, a, b, x, FirstStep{&t});
+        kernels::walk_line(table, tube, a, b, x, Step{steps, &t});
         Vec3 normal = fan_normal(context.roots->nodes()[root].around);
         if (matrix >= 0) normal = context.rotations[matrix] * normal;
         double const size = norm(normal);

@@ -240,6 +240,7 @@ void WallRoots::join_coincident() {
 }
 
 void WallRoots::turn_as_resolved(double least) {
+  resolved_arm_ = least;
   auto const is_resolved = [&](RootNode const& node) {
     return std::ranges::none_of(node.around, [&](kernels::RootNeighbour const& k) {
       double const length = norm(k.arm);

@@ -68,6 +68,8 @@ class WallRoots {
   /// Nodes beside which others are less than `least` away turn as the nearest node along the walls that has none so near: what coordinates
   /// resolve there is no direction. Call after find_bodies(). Cost O(n log n) in such nodes.
   void turn_as_resolved(double least);
+  /// `least` of the last call: how long an edge has to be to have a direction; 0 before.
+  [[nodiscard]] double resolved_arm() const { return resolved_arm_; }
   /// Finds the bodies: walls that touch. Call after all walls.
   void find_bodies();
   /// The places of bodies. Call after find_bodies(), where all zones share one frame.
@@ -116,6 +118,7 @@ class WallRoots {
   int n_bodies_ = 0;
   std::vector<Vec3> centre_;  ///< per body, empty before they are found
   double body_size_ = 0;
+  double resolved_arm_ = 0;
 };
 
 /// What bounds a wall's grid lines: slip surface per patch (-1: none), and patches that a rule moves.
