@@ -258,7 +258,7 @@ TEST(ResolvedWalls, InSinglePrecisionAreSoundToo) {
       EXPECT_EQ(passage.inverted(x), 0);
       EXPECT_EQ(passage.inverted(written), 0);
       EXPECT_LT(passage.change_at_wall(x).angle_deg, 0.1);
-      EXPECT_LT(passage.shear_at_end_walls(x), 1);
+      EXPECT_LT(passage.shear_at_end_walls(x), 4) << "some roundings over the height of first cells";
       EXPECT_LT(passage.off_end_walls(written), 6e-7) << "ten times what single precision resolves there";
     }
   }

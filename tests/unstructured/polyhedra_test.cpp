@@ -150,7 +150,7 @@ std::vector<std::vector<Index32>> faces_of(Patch const& patch) {
 }
 
 TEST(Polyhedra, ThatDoNotCloseAreRefused) {
-  Mesh mesh = as_polyhedra(unit_box({2, 2, 2}));
+  Mesh mesh = as_polyhedra(to_hexahedra(unit_box({2, 2, 2})));
   EXPECT_NO_THROW(check_mesh(mesh));
   auto& p = mesh.polyhedra;
   ASSERT_FALSE(p.element.empty());
@@ -167,7 +167,7 @@ TEST(Polyhedra, ThatDoNotCloseAreRefused) {
 }
 
 TEST(Polyhedra, OfTwoClosedSurfacesAreRefused) {
-  Mesh const boxes = as_polyhedra(unit_box({3, 1, 1}));
+  Mesh const boxes = as_polyhedra(to_hexahedra(unit_box({3, 1, 1})));
   // The first and the last of three cells in a row as one.
   Mesh mesh = boxes;
   mesh.elements = {};

@@ -361,7 +361,8 @@ TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
   // The blade ends on the case, a cylinder of radius 0.167: what it grows there is what it rubs; the mesh keeps it on the case.
   double const growth = 4e-4;
   std::string const rule = fmt::format("rule = \"formula\"\ndr = \"{} * (r - 0.09) / (0.167 - 0.09)\"", growth);
-  std::string const clearance = "[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n";
+  std::string const clearance =
+      "[guard]\nmax_trim = 1\n[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n";
   for (bool const elements : {false, true}) {
     std::string const input = elements ? "elements.cgns" : "passage.cgns";
     if (elements) write_mesh(folder.file(input), as_hexahedra(mesh));
@@ -390,7 +391,8 @@ TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
 TEST_F(WaveWheel, EveryPassageHasTheRunningClearanceOfItsOwnBlade) {
   double const growth = 4e-4;
   std::string const rule = fmt::format("rule = \"formula\"\ndr = \"{} * (r - 0.09) / (0.167 - 0.09)\"", growth);
-  std::string const clearance = "[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n";
+  std::string const clearance =
+      "[guard]\nmax_trim = 1\n[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n";
   std::vector<double> const factors{1, 0.5, 0, -0.5, 1, 1.5, 0.25, 1};
   std::string list;
   for (double const f : factors) list += fmt::format("{}{}", list.empty() ? "" : ", ", f);
@@ -429,9 +431,11 @@ TEST_F(WaveWheel, OverTimeTheSmallestClearanceIsToldWithItsStepAndPassage) {
   std::string const rule = fmt::format(
       "rule = \"formula\"\ndr = \"{} * (r - 0.09) / (0.167 - 0.09)\"\namplitude = \"sin(2 * pi * t)\"", growth);
   int const steps = 5;
-  folder.write("wheel.toml", head() + sequence(steps) + blade_rule(rule) +
-                                 "[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n" +
-                                 wave(1));
+  folder.write(
+      "wheel.toml",
+      head() + sequence(steps) + blade_rule(rule) +
+          "[guard]\nmax_trim = 1\n[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n" +
+          wave(1));
   ASSERT_LE(gridmorph("wheel wheel.toml --report w.json"), 1) << text("err");
   auto const list = nlohmann::json::parse(text("w.json"))["sequence"]["steps"];
   ASSERT_EQ(list.size(), std::size_t(steps));
@@ -456,8 +460,10 @@ TEST_F(WaveWheel, PassageTellsTheSmallestClearanceOfASequence) {
       fmt::format("rule = \"formula\"\ndr = \"{} * sin(2 * pi * t) * (r - 0.09) / (0.167 - 0.09)\"", growth);
   std::string mesh_table = head();
   mesh_table.erase(mesh_table.find("output"), std::string("output = \"morphed.cgns\"\n").size());
-  folder.write("one.toml", mesh_table + "[sequence]\nsteps = 4\noutput = \"step_{step}.cgns\"\n" + blade_rule(rule) +
-                               "[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n");
+  folder.write(
+      "one.toml",
+      mesh_table + "[sequence]\nsteps = 4\noutput = \"step_{step}.cgns\"\n" + blade_rule(rule) +
+          "[guard]\nmax_trim = 1\n[[clearance]]\nname = \"rotor\"\ntips = \"blade\"\nrim = 0.01\nwalls = \"case\"\n");
   ASSERT_LE(gridmorph("morph one.toml --report one.json"), 1) << text("err");
   auto const steps = nlohmann::json::parse(text("one.json"))["sequence"]["steps"];
   ASSERT_EQ(steps.size(), 4U);

@@ -62,7 +62,7 @@ ElementMesh::ElementMesh(Mesh as_read)
 std::vector<std::string> ElementMesh::notes() const {
   auto out = mesh.notes;
   out.insert(out.end(), face_patches.notes.begin(), face_patches.notes.end());
-  auto const contradicted = contradicted_periodics(mesh);
+  auto const contradicted = contradicted_periodics(mesh, mesh.size());
   out.insert(out.end(), contradicted.begin(), contradicted.end());
   return out;
 }

@@ -76,12 +76,12 @@ class Contradictions {
 
 }  // namespace
 
-std::vector<std::string> contradicted_periodics(Mesh const& mesh) {
+std::vector<std::string> contradicted_periodics(Mesh const& mesh, double mesh_size) {
   auto const is_periodic = [](auto const& c) { return c.periodic.has_value(); };
   if (std::none_of(mesh.interfaces.begin(), mesh.interfaces.end(), is_periodic) &&
       std::none_of(mesh.connections.begin(), mesh.connections.end(), is_periodic))
     return {};
-  Contradictions out(mesh.size());
+  Contradictions out(mesh_size);
   auto const n_zones = int(mesh.zones.size());
   for (auto const& face : mesh.interfaces) {
     bool const placed = face.zone >= 0 && face.zone < n_zones && face.donor_zone >= 0 && face.donor_zone < n_zones;

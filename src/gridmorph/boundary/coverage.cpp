@@ -243,7 +243,7 @@ Links connect_and_check(HostInstance const& host, Mesh& mesh, TopologyOptions co
     problems.add(e.what());
   }
   problems.throw_if_any<MeshError>();
-  for (auto& line : contradicted_periodics(mesh)) mesh.notes.push_back(std::move(line));
+  for (auto& line : contradicted_periodics(mesh, links.mesh_size)) mesh.notes.push_back(std::move(line));
   return links;
 }
 

@@ -31,7 +31,7 @@ std::string describe_mapping(PointField const& field) {
 std::string far_from_model(PointField const& field) {
   auto const m = field.mapping();
   std::vector<std::string> what;
-  if (has_own_nodes(m) && m.far_off > 0)
+  if (lacks_own_nodes(m))
     what.push_back(
         fmt::format("{} of {} nodes are farther than two spacings from its points, {} of which are nodes themselves",
                     m.far_off, m.evaluated, m.coincident));

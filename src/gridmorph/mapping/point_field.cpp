@@ -162,7 +162,7 @@ void PointField::Impl::judge_left_out(MappingDistance const& nodes) const {
       double(count) <= MappingLimits::far_beyond * double(nodes.evaluated))
     return;
   std::string const where =
-      has_own_nodes(nodes)
+      lacks_own_nodes(nodes)
           ? fmt::format("are farther than two spacings from its points, {} of which are nodes themselves",
                         nodes.coincident)
       : facets ? "lie beyond the edge of its elements by more than two of them there"
@@ -308,12 +308,13 @@ std::string const& PointField::source() const { return impl_->model.nodes.source
 std::string PointField::where(std::size_t node) const { return impl_->model.nodes.where(node); }
 std::vector<std::string> const& PointField::notes() const { return impl_->model.notes; }
 
-bool has_own_nodes(MappingDistance const& mapping) {
-  return double(mapping.coincident) >= MappingLimits::own_nodes * double(mapping.evaluated);
+bool lacks_own_nodes(MappingDistance const& mapping) {
+  return double(mapping.coincident) >= MappingLimits::own_nodes * double(mapping.evaluated) &&
+         double(mapping.far_off) > MappingLimits::whole_parts * double(mapping.evaluated - mapping.coincident);
 }
 
 std::int64_t left_out(MappingDistance const& mapping) {
-  return has_own_nodes(mapping) ? std::max(mapping.far_off, mapping.far_beyond) : mapping.far_beyond;
+  return lacks_own_nodes(mapping) ? std::max(mapping.far_off, mapping.far_beyond) : mapping.far_beyond;
 }
 
 MappingDistance PointField::mapping() const {

@@ -38,12 +38,14 @@ struct MappingLimits {
   /// From this share of nodes on that coincide with points the file is a table of the mesh's own nodes: those that are far from any point
   /// count as if they were beyond the edge. On thin blades, rows of one side alone leave the other side without an edge between.
   static constexpr double own_nodes = 0.2;
+  static constexpr double whole_parts =
+      0.25;  ///< and that share of its other nodes: a table that is thinned leaves few so far
 };
 
 /// Nodes that are where the model says nothing, MappingLimits::far_beyond of which are too many.
 [[nodiscard]] std::int64_t left_out(MappingDistance const& mapping);
-/// Whether the points are nodes of the mesh itself.
-[[nodiscard]] bool has_own_nodes(MappingDistance const& mapping);
+/// Whether the points are nodes of the mesh itself, and whole parts of it have none.
+[[nodiscard]] bool lacks_own_nodes(MappingDistance const& mapping);
 
 /// Leave-one-out: the displacement of nodes of the model, interpolated from the others, against their own. Neighbours are
 /// twice as far apart as between nodes, so that on smooth fields this is about four times the error of the mapping.

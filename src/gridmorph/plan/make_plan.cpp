@@ -561,7 +561,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   if (std::none_of(topology.links.all.begin(), topology.links.all.end(),
                    [](Link const& link) { return link.periodic; }))
     roots.find_centres();
-  roots.turn_as_resolved(resolved_arm * coordinate_resolution(basis.mesh));
+  roots.turn_as_resolved(coordinate_precision(basis.mesh), resolved_arm);
   roots.mark(known);
   scheduler.near_field(near_field_chains(basis.mesh, basis.topology, known, basis.fields));
   HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(basis.fields, roots);

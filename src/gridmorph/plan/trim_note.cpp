@@ -23,6 +23,7 @@ class Gathering {
         requests_(requests),
         rules_(motion.motion().rules),
         given_(given),
+        size_(motion.boundary().size()),
         deciding_(deciding_requests(mesh, requests, motion)),
         largest_(rules_.size(), 0) {
     for (std::size_t n = 0; n < given.size(); ++n)
@@ -50,7 +51,7 @@ class Gathering {
       auto const [patch, rule] = of;
       out.push_back({describe_patch(mesh_, mesh_.patches[std::size_t(patch)]), rules_[std::size_t(rule)].where,
                      Index(found.nodes.size()), found.most, describe_node(mesh_, found.where),
-                     largest_[std::size_t(rule)], outcome});
+                     largest_[std::size_t(rule)], outcome, size_});
     }
     return out;
   }
@@ -73,6 +74,7 @@ class Gathering {
   BoundaryRequests const& requests_;
   std::vector<MotionRule> const& rules_;
   std::vector<Vec3> const& given_;
+  double size_;
   std::vector<Index> deciding_;
   std::vector<double> largest_;                 ///< per rule
   std::map<std::pair<int, int>, Found> found_;  ///< by patch and rule
@@ -138,9 +140,12 @@ void refuse_undone(std::vector<Trim> const& trims, double allowed) {
   Problems problems;
   for (Trim const& trim : trims)
     if (trim.share() > std::max(most, allowed))
-      problems.add(describe(trim) +
-                   ". A patch that slips does not go along: give it the rule free or a motion of its own, or move the "
-                   "wall along it");
+      problems.add(describe(trim) + ". " +
+                   (trim.displacement > trim.mesh_size
+                        ? "The whole mesh is no larger than " + to_text(trim.mesh_size, 3) +
+                              ": displacements may be in another unit"
+                        : "A patch that slips does not go along: give it the rule free or a motion of its own, or move "
+                          "the wall along it"));
   problems.throw_if_any<MotionError>();
 }
 

@@ -18,6 +18,7 @@ struct Trim {
   std::string where;        ///< there
   double displacement = 0;  ///< largest that the rule gives anywhere [length]
   std::string outcome;      ///< what becomes of the nodes
+  double mesh_size = 0;     ///< diagonal of the box of the mesh [length]
 
   /// Undone of what was asked for.
   [[nodiscard]] double share() const { return displacement > 0 ? most / displacement : 0; }

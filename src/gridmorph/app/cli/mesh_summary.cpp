@@ -278,7 +278,7 @@ MeshSummary summarize(Mesh const& mesh) {
   out.cells = mesh.n_cells();
   out.two_dimensional = mesh.dimension == 2;
   out.notes = mesh.notes;
-  for (auto& line : contradicted_periodics(mesh)) out.notes.push_back(std::move(line));
+  for (auto& line : contradicted_periodics(mesh, mesh.size())) out.notes.push_back(std::move(line));
   for (auto const& zone : mesh.zones) {
     ZoneSummary z{zone.name, zone.extent, zone.size(), {}};
     for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) z.box.add(mesh.coordinates[n]);

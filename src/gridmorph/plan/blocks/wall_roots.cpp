@@ -3,6 +3,7 @@
 #include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <queue>
 #include <tuple>
@@ -239,7 +240,19 @@ void WallRoots::join_coincident() {
   for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].around = together[std::size_t(first[r])];
 }
 
-void WallRoots::turn_as_resolved(double least) {
+double WallRoots::largest_coordinate() const {
+  double largest = 0;
+  for (RootFace const& face : faces_)
+    for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
+      for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
+        Vec3 const x = context_.mesh.coordinates[context_.mesh.zones[face.zone].node(face.at(p, q))];
+        largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+      }
+  return largest;
+}
+
+void WallRoots::turn_as_resolved(CoordinatePrecision const& precision, double roundings) {
+  double const least = roundings * precision.at(largest_coordinate());
   resolved_arm_ = least;
   auto const is_resolved = [&](RootNode const& node) {
     return std::ranges::none_of(node.around, [&](kernels::RootNeighbour const& k) {

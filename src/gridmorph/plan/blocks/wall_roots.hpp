@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/boundary/links.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/plan/blocks/chain_tables.hpp>
 
 #include <unordered_map>
@@ -65,10 +66,10 @@ class WallRoots {
   void add_walls(std::vector<int> const& patches, double turn);
   /// Nodes at one place turn alike: those of edges that have no length. Call after all walls.
   void join_coincident();
-  /// Nodes beside which others are less than `least` away turn as the nearest node along the walls that has none so near: what coordinates
-  /// resolve there is no direction. Call after find_bodies(). Cost O(n log n) in such nodes.
-  void turn_as_resolved(double least);
-  /// `least` of the last call: how long an edge has to be to have a direction; 0 before.
+  /// Nodes beside which others are nearer than `roundings` times what coordinates resolve on the walls turn as the nearest node along the
+  /// walls that has none so near: what is between them is no direction. Call after find_bodies(). Cost O(n), and O(n log n) in such nodes.
+  void turn_as_resolved(CoordinatePrecision const& precision, double roundings);
+  /// How long an edge has to be to have a direction, since that call; 0 before.
   [[nodiscard]] double resolved_arm() const { return resolved_arm_; }
   /// Finds the bodies: walls that touch. Call after all walls.
   void find_bodies();
@@ -108,6 +109,9 @@ class WallRoots {
   }
 
  private:
+  /// Of the nodes of all walls.
+  [[nodiscard]] double largest_coordinate() const;
+
   PlanContext const& context_;
   std::vector<char> is_wall_;  ///< per patch
   std::vector<RootFace> faces_;
