@@ -268,7 +268,7 @@ TEST(PointField, RefusesPointsThatLieElsewhereThanTheNodes) {
 
 TEST(PointField, RefusesRowsOfOneSideOfAThinBlade) {
   // The other side is nearer than 5 % of the size, and has points all around.
-  auto const skin = skin_of_blade(0.006);
+  auto const skin = skin_of_blade(0.012);
   std::vector<Vec3> side;
   for (std::size_t n = 0; n < skin.size(); ++n)
     if (n % 101 <= 50) side.push_back(skin[n]);

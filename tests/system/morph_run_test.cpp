@@ -279,10 +279,10 @@ TEST_F(MorphRun, CellsThatWereFlatHaveALineOfTheirOwnAndBlockNoMorph) {
     if (Vec3 const x = tip.coordinates[n]; x.z == 6) tip.coordinates.set(n, {x.x + 0.5, x.y, 5});
   auto const move_tip = [&](std::string const& rule) {
     std::filesystem::remove(path("out.cgns"));
-    write("tip.toml",
-          "boundary_layer = false\n[mesh]\ninput = \"tip.cgns\"\noutput = \"out.cgns\"\n[[motion]]\npatches = "
-          "[\"k_max\"]\n" +
-              rule + "[[motion]]\npatches = [\"i_*\", \"j_*\"]\nrule = \"free\"\n");
+    write("tip.toml", std::string(tip.is_structured() ? "boundary_layer = false\n" : "") +
+                          "[mesh]\ninput = \"tip.cgns\"\noutput = \"out.cgns\"\n[[motion]]\npatches = "
+                          "[\"k_max\"]\n" +
+                          rule + "[[motion]]\npatches = [\"i_*\", \"j_*\"]\nrule = \"free\"\n");
     return gridmorph("morph tip.toml --report r.json");
   };
   std::string const pitch = "rule = \"rigid\"\nrotation = { angle_deg = 0.01, axis = [0, 1, 0], origin = [5, 0, 5] }\n";

@@ -138,7 +138,7 @@ TEST_F(SilentlyWrong, NodesBeyondThePointsOfAFileAreAWarningHoweverQuietTheRun) 
   EXPECT_FALSE(says(whole.err, "whole.csv")) << whole.err;
   Outcome const short_of_rows = run("fewer.csv");
   ASSERT_LE(short_of_rows.status, 1) << short_of_rows.err;
-  EXPECT_TRUE(says(short_of_rows.err, "warning: c.toml:6: fewer.csv: ")) << short_of_rows.err;
+  EXPECT_TRUE(says(short_of_rows.err, "warning: c.toml:5: fewer.csv: ")) << short_of_rows.err;
   auto const report = nlohmann::json::parse(contents(path("o.json")));
   EXPECT_TRUE(has_shortfall(report, "warning", "fewer.csv"));
   Outcome const other_units = run("mm.csv");

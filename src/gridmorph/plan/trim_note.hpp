@@ -4,6 +4,7 @@
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/plan/plan.hpp>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct Trim {
   double mesh_size = 0;     ///< diagonal of the box of the mesh [length]
 
   /// Undone of what was asked for.
-  [[nodiscard]] double share() const { return displacement > 0 ? most / displacement : 0; }
+  [[nodiscard]] double share() const { return displacement > 0 ? std::min(1.0, most / displacement) : 0; }
 };
 
 /// Of blocks: displacements (per Plan::boundary_nodes) that finalize puts back. Empty when all stay on the slip surfaces as build_spread()
