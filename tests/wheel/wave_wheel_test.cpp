@@ -379,7 +379,8 @@ TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
     expect_all_in(text("out"), {"clearance", "rotor", "-0.0004", "rubs"});
   }
   // The inlet is a plane across the axis: no radius over the axial position, so its surface is taken.
-  folder.write("one.toml", head() + blade_rule(rule) + "[[clearance]]\ntips = \"blade\"\nwalls = \"inlet\"\n");
+  folder.write("one.toml", head() + blade_rule(rule) +
+                               "[guard]\nmax_trim = 1\n[[clearance]]\ntips = \"blade\"\nwalls = \"inlet\"\n");
   ASSERT_LE(gridmorph("morph one.toml --report one.json"), 1) << text("err");
   double leading = 1;
   for (Vec3 const& x : blade(mesh)) leading = std::min(leading, x.x);
