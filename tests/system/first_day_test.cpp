@@ -322,5 +322,27 @@ TEST_F(FirstDay, RetryTriesNearFieldsWhereTheCaseFileHasNoTable) {
         << mode << tried;
 }
 
+// End walls resolved to a millionth of the span, in single precision: what a mesh generator writes, and the suggested case file with a
+// table of displacements.
+TEST_F(FirstDay, APassageWithResolvedEndWallsInSinglePrecisionMorphsByTheSuggestedCase) {
+  for (char const* motion : {"rotation", "chord"}) {
+    std::string const folder = motion;
+    Outcome const made =
+        gridmorph("demo passage -q -n 20000 --first-cell 1e-6 --single -d " + folder + " -m " + motion);
+    ASSERT_EQ(made.status, 0) << made.err;
+    ASSERT_EQ(gridmorph("inspect -q " + folder + "/passage.cgns --suggest case.toml").status, 0);
+    std::string text = contents(path("case.toml"));
+    std::string const still = "rule = \"rigid\"\ntranslation = [0, 0, 0]";
+    auto const at = text.find(still);
+    ASSERT_NE(at, std::string::npos) << text;
+    write("case.toml",
+          text.replace(at, still.size(), "rule = \"field\"\nfile = \"" + folder + "/" + motion + ".csv\""));
+    Outcome const run = gridmorph("morph case.toml -q -o " + folder + "/out.cgns --report r.json");
+    EXPECT_EQ(run.status, 0) << run.err << text;
+    auto const report = nlohmann::json::parse(contents(path("r.json")))["morphed"];
+    for (auto const* region : {"near_field", "far_field"}) EXPECT_EQ(report[region]["inverted"], 0);
+  }
+}
+
 }  // namespace
 }  // namespace gridmorph::testing
