@@ -82,7 +82,8 @@ def test_derivatives_are_those_of_centred_differences(moved, capsys):
     assert mesh.verifyWarpDeriv(dofStart=3, dofEnd=6, h=1e-6) < 1e-6
     assert "dof 3" in capsys.readouterr().out
     random = np.random.default_rng(5)
-    seed = random.standard_normal(x.shape) * np.ptp(x, axis=0).max() * 1e-6
+    # So small that no node of the tip goes over a kink: edges of walls keep the height above that face which needs it most.
+    seed = random.standard_normal(x.shape) * np.ptp(x, axis=0).max() * 1e-7
     grids = []
     for sign in (1, -1):
         mesh.setSurfaceCoordinates(x + d + sign * seed)
@@ -91,9 +92,7 @@ def test_derivatives_are_those_of_centred_differences(moved, capsys):
     mesh.setSurfaceCoordinates(x + d)
     mesh.warpMesh()
     exact = mesh.warpDerivFwd(seed)
-    # Where walls end in an edge that does not turn, lines follow a turn either way by another share: there is no derivative.
-    same = np.isclose((grids[0] - grids[1]) / 2, exact, rtol=1e-7, atol=2e-5 * np.abs(exact).max())
-    assert same.mean() > 0.999
+    np.testing.assert_allclose((grids[0] - grids[1]) / 2, exact, atol=2e-5 * np.abs(exact).max())
 
 
 @pytest.mark.parametrize("name", WINGS)
