@@ -130,7 +130,7 @@ TEST_F(SequenceRun, OtherRecipesAreTriedOnTheWorstStepAndTheirKeysGiveTheSameMes
   write_sequence("steps = 3\nperiods = 0.3\noutput = \"out_{step}.cgns\"\n", ", amplitude = 10, phase_deg = -36", near);
   std::string const text = contents(path("case.toml"));
   ASSERT_EQ(run(text).first.status, 4) << "the motion is too large";
-  auto const [out, report] = run(text + "\n[guard]\nretry = true\n");
+  auto const [out, report] = run(test::with_keys(text, "[guard] retry = true"));
   ASSERT_LE(out.status, 1) << out.err;
   auto const& retry = report["retry"];
   EXPECT_EQ(retry["step"], 2) << "at 10 times the shape";
@@ -151,7 +151,7 @@ TEST_F(SequenceRun, AFrozenGuardMendsEveryStepByOneLinearMap) {
   write_sequence("steps = 4\noutput = \"out_{step}.cgns\"\n", ", amplitude = 4.5, phase_deg = 90", near);
   std::string const text = contents(path("case.toml"));
   ASSERT_EQ(gridmorph("morph case.toml").status, 4) << "the motion is too large";
-  write("case.toml", text + "\n[guard]\nsmooth = true\nfreeze = true\n");
+  write("case.toml", test::with_keys(text, "[guard] smooth = true, [guard] freeze = true"));
   Outcome const run = gridmorph("morph case.toml --report r.json");
   ASSERT_LE(run.status, 1) << run.err;
   auto const report = nlohmann::json::parse(contents(path("r.json")));
@@ -165,7 +165,7 @@ TEST_F(SequenceRun, AFrozenGuardMendsEveryStepByOneLinearMap) {
   expect_same(mesh("out_1.cgns"), mesh("passage.cgns"));  // at rest
   expect_bad_input(
       [&] {
-        write("case.toml", text + "\n[guard]\nfreeze = true\n");
+        write("case.toml", test::with_keys(text, "[guard] freeze = true"));
         for (int step = 1; step <= 4; ++step) std::filesystem::remove(path(fmt::format("out_{}.cgns", step)));
         std::filesystem::remove(path("r.json"));
         return gridmorph("morph case.toml");
