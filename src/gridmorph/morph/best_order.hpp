@@ -24,7 +24,7 @@ struct FoundOrder {
 /// laws for single chains and for all of a stage are taken while they make it better, 400 more at most. Deterministic. Cost: a prediction per plan.
 FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);
 
-/// The same question within the time of some 20 plans: the chains of all stages in the order of other measures than the rules'
+/// The same question within the time of some 20 plans of the whole mesh: the chains of all stages in the order of other measures than the rules'
 /// (ChainChoice), and the best of these orders with another law for all its chains. Fewer cells inverted count first here, whatever else they cost.
 /// Of the best six the first is taken in which predict_closely() would find none.
 FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);
