@@ -1,6 +1,7 @@
 // Runs one example in a folder of its own and keeps both meshes.
 #pragma once
 
+#include "examples/reference.hpp"
 #include "support/shared_mesh.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
@@ -69,13 +70,17 @@ class Example : public ::testing::Test {
   /// The project's meshes where a case file in the test's folder looks for them.
   void link_meshes() const { std::filesystem::create_directory_symlink(GRIDMORPH_EXAMPLES "/meshes", path("meshes")); }
 
-  /// Runs the example: done, and nothing inverted.
+  /// Runs the example: done, nothing inverted, and where it was before.
   void run(std::string const& name) const {
     int const status = shell(run_command(meshes_, name));
     ASSERT_EQ(status, 0) << contents(path("out")) << contents(path("err")) << contents(path(name + "/log.txt"));
     auto const report = nlohmann::json::parse(contents(path(name + "/" + name + ".json")));
     for (auto const* region : {"near_field", "far_field"})
       EXPECT_EQ(report["morphed"][region]["inverted"], 0) << region;
+    for (std::string const ending : {".cgns", ".su2"})
+      if (auto const made = path(name + "/" + name + "_morphed" + ending);
+          meshes_.empty() && std::filesystem::exists(made))
+        expect_as_before(name, read_mesh(made));
   }
 
   /// Morphs and checks what holds for every structured example: run(), interfaces closed as before.

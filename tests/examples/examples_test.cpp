@@ -609,5 +609,14 @@ TEST_F(Example, ScriptSaysSoWhenAMeshIsMissing) {
   EXPECT_NE(contents(path("err")).find("none of the meshes"), std::string::npos) << contents(path("err"));
 }
 
+TEST_F(Example, DemosAreWhereTheyWere) {
+  std::string const command = "'" GRIDMORPH_EXECUTABLE "' demo ";
+  ASSERT_EQ(shell(command + "passage -q -n 20000 -d '" + path("passage") + "'"), 0) << contents(path("err"));
+  for (std::string const motion : {"rotation", "chord"})
+    expect_as_before("demo_" + motion, read_mesh(path("passage/passage_" + motion + ".cgns")));
+  ASSERT_LE(shell(command + "ball -q -e 50000 -d '" + path("ball") + "'"), 1) << contents(path("err"));
+  expect_as_before("demo_ball", read_mesh(path("ball/ball_swing.cgns")));
+}
+
 }  // namespace
 }  // namespace gridmorph::testing
