@@ -90,7 +90,7 @@ class BlockPlan final : public AnyPlan {
 
   [[nodiscard]] PlanPrediction predict() override {
     auto const [some, step, boundary] = predict_worst(predicted_steps(case_file_));
-    Prediction const worst = predict_closely(exec_, prepared_, boundary);
+    Prediction const worst = predict_closely(exec_, prepared_, boundary, some);
     PlanPrediction out{describe(prepared_.mesh, worst), prediction_warnings(prepared_.mesh, worst),
                        prediction_json(prepared_.mesh, worst)};
     if (!case_file_.sequence) return out;
@@ -222,17 +222,17 @@ class BlockPlan final : public AnyPlan {
     Stopwatch watch;
     bool const asked_for = case_file_.plan.volume.by_prediction();
     constexpr int enough = 8;  // to see whether any is needed
-    std::vector<Vec3> boundary;
+    StepPrediction worst;
     try {
-      boundary = predict_worst(asked_for ? predicted_steps(case_file_) : predicted_steps(case_file_, enough)).boundary;
+      worst = predict_worst(asked_for ? predicted_steps(case_file_) : predicted_steps(case_file_, enough));
     } catch (MotionError const&) {
       if (asked_for) throw;
       return;  // the plan stands; that the motion cannot be made is said where it is made
     }
-    bool const wanted = asked_for || is_inverted_by_priority(exec_, prepared_, boundary);
+    bool const wanted = asked_for || is_inverted_by_priority(exec_, prepared_, worst.boundary, worst.prediction);
     if (!asked_for) predicting_ = watch.lap();
     if (!wanted) return;
-    plan_by_prediction(exec_, prepared_, boundary);
+    plan_by_prediction(exec_, prepared_, worst.boundary);
     ordering_ = watch.lap();
   }
 

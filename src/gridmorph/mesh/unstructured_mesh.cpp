@@ -1,3 +1,4 @@
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
@@ -190,10 +191,10 @@ class MeshCheck {
   void polyhedra() {
     auto const& p = mesh_.polyhedra;
     Index open = 0, parted = 0, first_open = -1, first_parted = -1;
-    std::vector<Index32> nodes, group;
+    std::vector<Index32> nodes;
     for (std::size_t k = 0; k < p.element.size(); ++k) {
       if (is_open(k) && open++ == 0) first_open = p.element[k];
-      if (n_shells(k, nodes, group) > 1 && parted++ == 0) first_parted = p.element[k];
+      if (n_shells(k, nodes) > 1 && parted++ == 0) first_parted = p.element[k];
     }
     auto const add = [&](Index count, Index first, char const* what, char const* advice) {
       if (count > 0)
@@ -235,27 +236,22 @@ class MeshCheck {
     return norm(sum) > rounding * areas;
   }
 
-  /// Groups of faces that share no node with one another. `nodes`, `group`: room.
-  [[nodiscard]] int n_shells(std::size_t polyhedron, std::vector<Index32>& nodes, std::vector<Index32>& group) const {
+  /// Groups of faces that share no node with one another. `nodes`: room.
+  [[nodiscard]] int n_shells(std::size_t polyhedron, std::vector<Index32>& nodes) const {
     auto const& p = mesh_.polyhedra;
     auto const all = mesh_.elements.nodes[p.element[polyhedron]];
     nodes.assign(all.begin(), all.end());
     std::sort(nodes.begin(), nodes.end());
-    group.resize(nodes.size());
-    for (std::size_t n = 0; n < group.size(); ++n) group[n] = Index32(n);
-    auto const root = [&](Index32 n) {
-      while (group[std::size_t(n)] != n) n = group[std::size_t(n)] = group[std::size_t(group[std::size_t(n)])];
-      return n;
-    };
+    DisjointSets<Index32> groups(nodes.size());
     int shells = int(nodes.size());
     for (Index f = p.first_face[polyhedron]; f < p.first_face[polyhedron + 1]; ++f) {
       Index32 before = -1;
       for (Index32 const node : p.faces[f]) {
         auto const at = std::lower_bound(nodes.begin(), nodes.end(), node);
         if (at == nodes.end() || *at != node) continue;
-        Index32 const own = root(Index32(at - nodes.begin()));
-        if (before >= 0 && root(before) != own) {
-          group[std::size_t(own)] = root(before);
+        auto const own = Index32(at - nodes.begin());
+        if (before >= 0 && groups.root(before) != groups.root(own)) {
+          groups.join(before, own);
           --shells;
         }
         before = own;

@@ -31,6 +31,10 @@ int close_sample(Mesh const& mesh) {
   return n <= few ? 1 : n <= many ? 4 : 8;
 }
 
+bool is_at_rest(std::span<Vec3 const> boundary) {
+  return std::ranges::all_of(boundary, [](Vec3 const& u) { return u == Vec3{}; });
+}
+
 class Search {
  public:
   Search(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary)
@@ -225,17 +229,22 @@ FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& pre
   return std::move(search).result();
 }
 
-Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
+Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,
+                           Prediction const& some) {
   constexpr double little = 0.3;
-  Prediction some = Predictor(host, prepared, {}).predict(boundary);
   int const every = close_sample(prepared.mesh);
   if (some.all.inverted > 0 || some.every <= every || !(some.all.kept.value < little)) return some;
   return Predictor(host, prepared, {.every = every}).predict(boundary);
 }
 
+bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,
+                             Prediction const& some) {
+  return !is_at_rest(boundary) && predict_closely(host, prepared, boundary, some).all.inverted > 0;
+}
+
 bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
-  if (std::all_of(boundary.begin(), boundary.end(), [](Vec3 const& u) { return u == Vec3{}; })) return false;
-  return predict_closely(host, prepared, boundary).all.inverted > 0;
+  if (is_at_rest(boundary)) return false;
+  return is_inverted_by_priority(host, prepared, boundary, Predictor(host, prepared, {}).predict(boundary));
 }
 
 FoundOrder plan_by_prediction(HostInstance const& host, PreparedMorph& prepared, std::span<Vec3 const> boundary) {

@@ -29,12 +29,16 @@ FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, s
 /// Of the best six the first is taken in which predict_closely() would find none.
 FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);
 
-/// predict() of a plan, and of more of its cells where those looked at are sound and one of them keeps less than 0.3 of its scaled Jacobian: its
+/// `some`, which is predict() of a plan, or that of more of its cells where those looked at are sound and one of them keeps less than 0.3 of its scaled Jacobian: its
 /// neighbours may keep nothing. All cells are looked at in meshes of up to two million nodes, one in four along each direction up to 20 million, one in eight beyond.
-Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);
+Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,
+                           Prediction const& some);
 
 /// Where VolumeOptions leave order and law to the library: whether predict_closely() finds inverted cells. Not where nothing moves.
 bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);
+/// Where `some` is predict() already.
+bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,
+                             Prediction const& some);
 
 /// Plans again in the order found, by the search that VolumeOptions ask for, where it is better, and adds a note on what it gains.
 FoundOrder plan_by_prediction(HostInstance const& host, PreparedMorph& prepared, std::span<Vec3 const> boundary);

@@ -176,22 +176,28 @@ TurningRoots WallRoots::turning_roots() const {
   return out;
 }
 
+template <class Visit>
+void WallRoots::for_nodes(Visit const& visit) const {
+  for (RootFace const& face : faces_)
+    for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
+      for (int p = 0; p < face.nodes.extent(face.along[0]); ++p)
+        visit(face, face(p, q), context_.mesh.zones[face.zone].node(face.at(p, q)));
+}
+
 void WallRoots::find_centres() {
   centre_.assign(std::size_t(n_bodies_), {});
   std::vector<kernels::Box> box(centre_.size());
   std::vector<double> area(centre_.size(), 0);
   std::vector<char> seen(nodes_.size(), 0);
-  for (RootFace const& face : faces_)
-    for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
-      for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
-        auto const root = std::size_t(of_slot(face(p, q).slot)), body = std::size_t(body_[root]);
-        if (std::exchange(seen[root], 1) != 0) continue;
-        Vec3 const x = context_.mesh.coordinates[context_.mesh.zones[face.zone].node(face.at(p, q))];
-        double const weight = norm(fan_normal(nodes_[root].around));
-        centre_[body] += weight * x;
-        area[body] += weight;
-        box[body].include(x);
-      }
+  for_nodes([&](RootFace const&, RootFace::Node const& node, Index n) {
+    auto const root = std::size_t(of_slot(node.slot)), body = std::size_t(body_[root]);
+    if (std::exchange(seen[root], 1) != 0) return;
+    Vec3 const x = context_.mesh.coordinates[n];
+    double const weight = norm(fan_normal(nodes_[root].around));
+    centre_[body] += weight * x;
+    area[body] += weight;
+    box[body].include(x);
+  });
   for (std::size_t b = 0; b < centre_.size(); ++b) {
     if (area[b] > 0) centre_[b] = (1 / area[b]) * centre_[b];
     body_size_ = std::max(body_size_, norm(box[b].high - box[b].low));
@@ -203,14 +209,12 @@ std::vector<WallRoots::BodySample> WallRoots::sample_bodies(Index most) const {
   if (samples.empty()) return samples;
   Index const step = 1 + Index(nodes_.size()) / most;
   Index passed = 0;
-  for (RootFace const& face : faces_)
-    for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
-      for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
-        if (passed++ % step != 0) continue;
-        BodySample& sample = samples[std::size_t(body_[std::size_t(of_slot(face(p, q).slot))])];
-        sample.places.push_back(context_.mesh.coordinates[context_.mesh.zones[face.zone].node(face.at(p, q))]);
-        sample.patches.push_back(face.patch);
-      }
+  for_nodes([&](RootFace const& face, RootFace::Node const& node, Index n) {
+    if (passed++ % step != 0) return;
+    BodySample& sample = samples[std::size_t(body_[std::size_t(of_slot(node.slot))])];
+    sample.places.push_back(context_.mesh.coordinates[n]);
+    sample.patches.push_back(face.patch);
+  });
   return samples;
 }
 
@@ -242,12 +246,10 @@ void WallRoots::join_coincident() {
 
 double WallRoots::largest_coordinate() const {
   double largest = 0;
-  for (RootFace const& face : faces_)
-    for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
-      for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
-        Vec3 const x = context_.mesh.coordinates[context_.mesh.zones[face.zone].node(face.at(p, q))];
-        largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
-      }
+  for_nodes([&](RootFace const&, RootFace::Node const&, Index n) {
+    Vec3 const x = context_.mesh.coordinates[n];
+    largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+  });
   return largest;
 }
 

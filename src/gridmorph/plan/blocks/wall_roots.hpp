@@ -109,6 +109,9 @@ class WallRoots {
   }
 
  private:
+  /// visit(face, its record there, node of the mesh) for all nodes of all walls, those on borders of faces once for each.
+  template <class Visit>
+  void for_nodes(Visit const& visit) const;
   /// Of the nodes of all walls.
   [[nodiscard]] double largest_coordinate() const;
 
