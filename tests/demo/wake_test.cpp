@@ -4,7 +4,10 @@
 #include "support/unstructured_case.hpp"
 
 #include <generators/passage.hpp>
+#include <generators/passage_motion.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
+#include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/prediction.hpp>
 #include <gridmorph/motion/wake/wake_places.hpp>
 #include <gridmorph/quality/quality.hpp>
 
@@ -31,11 +34,13 @@ Motion turned(double angle) {
   return m;
 }
 
-Mesh small_passage() {
+PassageOptions small_options() {
   PassageOptions options;
   options.nodes = 10'000;
-  return make_passage(options);
+  return options;
 }
+
+Mesh small_passage() { return make_passage(small_options()); }
 
 constexpr double angle = 0.02;
 
@@ -72,6 +77,55 @@ TEST(PassageWake, OfHexahedraTurnsWithItsBlade) {
     if (boundary.mesh().patches[p].name == "wake") nodes = boundary.surface(int(p)).nodes;
   expect_turned(one.mesh, nodes, morphed.x);
   EXPECT_EQ(one.inverted(morphed.x), 0);
+}
+
+/// The sections of the blade turn by 10 degrees, and the wake goes along and fades.
+Motion turned_sections(double width, double fade) {
+  Motion m = turned(0);
+  m.rules[0].rule = function_rule(
+      [options = small_options()](Vec3 const& p) { return passage_displacement(options, rotated_sections(), p); });
+  std::get<WakeRule>(m.rules[1].rule).fade = fade;
+  m.regions[0].wake->width = width;
+  m.regions[0].wake->length = 0.1;
+  return m;
+}
+
+TEST(PassageWake, FadesToWhatThePeriodicSidesDo) {
+  PreparedMorph const prepared = prepare(HostInstance(), small_passage(), turned_sections(0.03, 0.02), {});
+  std::vector<Vec3> points;
+  for (Index n = 0; n < prepared.mesh.n_nodes(); n += 17)
+    if (prepared.mesh.coordinates[n].x > 0.1) points.push_back(prepared.mesh.coordinates[n]);
+  ASSERT_GT(points.size(), 20U);
+  std::vector<Vec3> wake(points.size()), follow(points.size());
+  prepared.surface.displacement(1, points, wake);
+  prepared.surface.displacement(3, points, follow);
+  double moved = 0;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    EXPECT_LE(distance(wake[n], follow[n]), 1e-15) << n;
+    moved = std::max(moved, norm(wake[n]));
+  }
+  EXPECT_GT(moved, 1e-3);
+}
+
+/// Short fades shear more than an angle can keep; no width and no fade inverts cells.
+TEST(PassageWake, OfAnyWidthInvertsNothing) {
+  Mesh const mesh = small_passage();
+  auto const predicted = [&](Motion const& m) {
+    MorphPlan const plan(mesh, m);
+    return predict(HostInstance(), plan, plan.boundary_displacement(), {.every = 1}).all;
+  };
+  Motion without = turned_sections(0.01, 0.1);
+  without.regions.clear();
+  without.rules.erase(without.rules.begin() + 1);
+  double const angle = predicted(without).angle_deg.value;
+  for (double const width : {0.006, 0.012, 0.02, 0.03})
+    for (double const fade : {0.05, 0.1, 0.2}) {
+      PredictedCells const cells = predicted(turned_sections(width, fade));
+      EXPECT_EQ(cells.inverted, 0) << width << ", " << fade;
+      if (fade > 0.1) {
+        EXPECT_GT(cells.angle_deg.value, 0.8 * angle) << width << ", " << fade;
+      }
+    }
 }
 
 /// Whatever the blade does, copies one pitch apart get copies of the displacement.

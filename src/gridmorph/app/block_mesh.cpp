@@ -56,7 +56,10 @@ KindTraits const& BlockMesh::traits() {
       .cells = "cells",
       .planning = "connecting zones, applying rules, planning",
       .lost = "cells had corners whose scaled Jacobian was below 0.2 and half of what it was",
-      .change = "change [volume] or [boundary_layer], set smooth or retry = true in [guard]",
+      .change =
+          "leave order, priority and law out of [volume], so that they are looked for, change [boundary_layer], set "
+          "smooth or "
+          "retry = true in [guard]",
       .change_many = "[volume] or [boundary_layer]",
       .costs = {20, 20, 2, 8, 15, 35}};
   return traits;

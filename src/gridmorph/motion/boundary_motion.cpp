@@ -203,7 +203,8 @@ struct BoundaryMotion::Impl {
         if (auto const* rule = std::get_if<AttachedRule>(&rules[r].rule))
           attached.try_emplace(int(r), *boundary, walls_of(rule->of), *rule, displacement);
         else if (auto const* wake = std::get_if<WakeRule>(&rules[r].rule))
-          wakes.try_emplace(int(r), *boundary, motion, *wake, walls_of(wake->of), *slip, displacement, said);
+          wakes.try_emplace(int(r), *boundary, motion, *wake, walls_of(wake->of), *slip, displacement, said,
+                            beside_wake_of(walls_of(wake->of)));
         else if (auto const* shock = std::get_if<ShockRule>(&rules[r].rule))
           shocks.try_emplace(int(r), *boundary, *shock, shock->of.empty() ? std::vector<int>() : walls_of(shock->of),
                              displacement);
@@ -211,6 +212,17 @@ struct BoundaryMotion::Impl {
         problems.add(label(int(r)) + ": " + e.what());
       }
     problems.throw_if_any<MotionError>();
+  }
+
+  /// Of a blade row what its periodic sides do; nothing where no rule goes along with these blades.
+  [[nodiscard]] WakeMotion::Beside beside_wake_of(std::vector<int> const& blades) const {
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      if (!std::holds_alternative<FollowRule>(rules[r].rule)) continue;
+      std::vector<int> const followed = select_patches(boundary->mesh(), *blades_of(rules[r].rule));
+      if (std::find_first_of(blades.begin(), blades.end(), followed.begin(), followed.end()) != blades.end())
+        return [row = row_of_rule[r]](Vec3 const& x) { return row->follow(x); };
+    }
+    return {};
   }
 
   void require_direct(std::vector<int> const& patches) const {

@@ -167,7 +167,7 @@ struct WakeRule {
   SectionsRule::Sections sections = SectionsRule::Sections::blade;  ///< these three as in SectionsRule
   std::optional<Vec3> span{};
   Vec3 flow{1, 0, 0};
-  std::optional<double> fade{};  ///< how far behind the edge the motion has faded to nothing [length]; absent: nowhere
+  std::optional<double> fade{};  ///< how far behind the edge the motion has faded [length]; absent: nowhere
   double turn = 1;               ///< share of the turn of the edge that the wake takes over
 };
 

@@ -13,7 +13,7 @@ constexpr double round_off_steps = 8;
 
 }  // namespace
 
-SurfaceCells::SurfaceCells(Mesh const& mesh) : mesh_(&mesh) {
+SurfaceCells::SurfaceCells(Mesh const& mesh) : mesh_(&mesh), precision_(coordinate_precisions(mesh)) {
   Index count = 0;
   for (int z = 0; z < int(mesh.zones.size()); ++z)
     for (int axis = 0; axis < 3; ++axis)
@@ -80,9 +80,7 @@ CellShape SurfaceCells::shape(Index cell) const {
     out.inward += mesh_->coordinates[n + step] - out.corner[c];
     largest = std::max({largest, std::fabs(out.corner[c].x), std::fabs(out.corner[c].y), std::fabs(out.corner[c].z)});
   }
-  double const precision =
-      zone.single_precision ? double(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon();
-  out.noise = round_off_steps * precision * largest;
+  out.noise = round_off_steps * precision_[std::size_t(face.zone)].at(largest);
   std::array<double, 4> length{};
   for (int c = 0; c < 4; ++c) length[c] = distance(out.corner[c], out.corner[(c + 1) % 4]);
   auto const zero = [&](int c) { return length[c] <= out.noise; };

@@ -1,6 +1,7 @@
 // The face cells of a mesh: their corners, sizes and which of them nothing claims. Internal to topology.
 #pragma once
 
+#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <array>
@@ -70,6 +71,7 @@ class SurfaceCells {
   void claim(int zone, IndexRange const& range);
 
   Mesh const* mesh_;
+  std::vector<CoordinatePrecision> precision_;  ///< by zone
   std::vector<ZoneFace> faces_;
   std::vector<std::uint8_t> open_;
   bool one_layer_ = true;  ///< every zone is one cell thick along an axis

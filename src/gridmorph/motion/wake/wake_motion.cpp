@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace gridmorph {
 
@@ -22,10 +23,11 @@ SectionsRule section_search(WakeRule const& rule) {
 
 WakeMotion::WakeMotion(Boundary const& boundary, ResolvedMotion const& motion, WakeRule const& rule,
                        std::vector<int> const& patches, SlipSurfaces const& surfaces,
-                       WallFaces::Displacement const& displacement, std::vector<std::string>& notes)
+                       WallFaces::Displacement const& displacement, std::vector<std::string>& notes, Beside beside)
     : rule_(rule),
       places_(boundary, motion, section_search(rule), patches, surfaces, {}, notes),
-      walls_(boundary, patches, displacement) {}
+      walls_(boundary, patches, displacement),
+      beside_(std::move(beside)) {}
 
 Vec3 WakeMotion::displacement(Vec3 const& point) const {
   WakePlace const place = places_.at(point);
@@ -58,7 +60,8 @@ WallFaces::Place WakeMotion::nearest(Vec3 const& x) const {
 
 Vec3 WakeMotion::behind_edge(Vec3 const& x, WakePlace const& place) const {
   double const share = rule_.fade ? 1 - smoothstep(place.behind / *rule_.fade) : 1.0;
-  if (share == 0) return {};
+  Vec3 const beside = share < 1 && beside_ ? (1 - share) * beside_(x) : Vec3{};
+  if (share == 0) return beside;
   SectionFrame const& frame = places_.frame();
   WallFaces::Place const edge = nearest(x + frame.displacement(x, place.to_edge[0], place.to_edge[1]));
   WallFaces::Place const camber = nearest(x + frame.displacement(x, place.to_camber[0], place.to_camber[1]));
@@ -74,8 +77,8 @@ Vec3 WakeMotion::behind_edge(Vec3 const& x, WakePlace const& place) const {
       rule_.turn * std::atan2(before[0] * after[1] - before[1] * after[0], before[0] * after[0] + before[1] * after[1]);
   double const s = -place.to_edge[0], y = -place.scale * place.to_edge[1];
   double const c = std::cos(angle) - 1, d = std::sin(angle);
-  return share * (frame.carried(edge.point, edge.displacement, x) +
-                  frame.displacement(x, c * s - d * y, (d * s + c * y) / place.scale));
+  return beside + share * (frame.carried(edge.point, edge.displacement, x) +
+                           frame.displacement(x, c * s - d * y, (d * s + c * y) / place.scale));
 }
 
 }  // namespace gridmorph

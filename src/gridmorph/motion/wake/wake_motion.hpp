@@ -4,6 +4,7 @@
 #include <gridmorph/motion/wake/wake_places.hpp>
 #include <gridmorph/motion/wall_faces.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,19 +12,21 @@ namespace gridmorph {
 
 /// A point x of the wake of a section moves by
 ///
-///     u(x) = v(x) + (1 - smoothstep(|x - x_w| / r)) (u_w - v(x_w)),   v(x) = f ( T u_e + (D - 1)(x - x_e) ),   f = 1 - smoothstep(behind / fade)
+///     u(x) = v(x) + (1 - smoothstep(|x - x_w| / r)) (u_w - v(x_w)),   v(x) = f ( T u_e + (D - 1)(x - x_e) ) + (1 - f) b(x),   f = 1 - smoothstep(behind / fade)
 ///
-/// x_e, u_e: the trailing edge of its section and its displacement; T: what keeps its components along and across the flow path and about the machine axis from there to the point (wings: its direction); D: the turn in the plane of the section by
+/// b: what the field beside the wake does, which the periodic sides of a blade row follow their blade with; nothing beside wings. x_e, u_e: the trailing edge of its section and its displacement; T: what keeps its components along and across the flow path and about the machine axis from there to the point (wings: its direction); D: the turn in the plane of the section by
 /// `turn` times the angle by which the last tenth of the camber line turns there; x_w, u_w: the nearest place of the walls, which the second term has the wake agree with; r: a
 /// tenth of the chord. A blade that moves as a whole along its row, or about the axis, takes its wake along as a whole; a wing also where it turns in the planes of its sections.
 class WakeMotion {
  public:
-  /// `displacement`: of the walls. Throws MotionError when the sections cannot be made or the walls have no faces. Keeps pointers to `surfaces`. Cost O(n log n).
+  using Beside = std::function<Vec3(Vec3 const&)>;
+
+  /// `displacement`: of the walls; `beside`: b, none where the field rests. Throws MotionError when the sections cannot be made or the walls have no faces. Keeps pointers to `surfaces`. Cost O(n log n).
   WakeMotion(Boundary const& boundary, ResolvedMotion const& motion, WakeRule const& rule,
              std::vector<int> const& patches, SlipSurfaces const& surfaces, WallFaces::Displacement const& displacement,
-             std::vector<std::string>& notes);
+             std::vector<std::string>& notes, Beside beside = {});
 
-  /// Exactly zero where the trailing edge rests. Cost O(log n), times blades and periodic copies.
+  /// Exactly zero where the trailing edge and the field beside rest. Cost O(log n), times blades and periodic copies.
   [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
 
  private:
@@ -35,6 +38,7 @@ class WakeMotion {
   WakeRule rule_;
   WakePlaces places_;
   WallFaces walls_;
+  Beside beside_;
 };
 
 }  // namespace gridmorph

@@ -1,36 +1,16 @@
 #include <gridmorph/plan/blocks/wall_roots.hpp>
 
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 #include <tuple>
 #include <utility>
 
 namespace gridmorph {
-namespace {
-
-/// Per root the first one of its group, where `pairs` calls join(a, b) for roots that belong together.
-template <class Pairs>
-std::vector<std::int32_t> first_of_groups(std::size_t n, Pairs const& pairs) {
-  std::vector<std::int32_t> first(n);
-  std::iota(first.begin(), first.end(), 0);
-  auto const find = [&](std::int32_t r) {
-    while (first[std::size_t(r)] != r) r = first[std::size_t(r)] = first[std::size_t(first[std::size_t(r)])];
-    return r;
-  };
-  pairs([&](std::int32_t a, std::int32_t b) {
-    a = find(a);
-    b = find(b);
-    first[std::size_t(std::max(a, b))] = std::min(a, b);
-  });
-  for (std::size_t r = 0; r < n; ++r) first[r] = find(std::int32_t(r));
-  return first;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 RootFace::RootFace(PlanContext const& context, FaceSide const& face)
     : piece(face.piece), axis(face.axis), side(face.side) {
@@ -138,16 +118,12 @@ void WallRoots::mark(Known& known) const {
 }
 
 void WallRoots::find_bodies() {
-  std::vector<std::int32_t> first = first_of_groups(nodes_.size(), [&](auto const& join) {
-    for (std::size_t r = 0; r < nodes_.size(); ++r)
-      for (kernels::RootNeighbour const& k : nodes_[r].around) join(std::int32_t(r), of_slot_.at(k.slot));
-  });
-  std::vector<int> number(nodes_.size(), no_body);
-  body_.assign(nodes_.size(), no_body);
-  for (std::size_t r = 0; r < nodes_.size(); ++r) {
-    if (first[r] == std::int32_t(r)) number[r] = n_bodies_++;
-    body_[r] = number[std::size_t(first[r])];
-  }
+  DisjointSets<std::int32_t> sets(nodes_.size());
+  for (std::size_t r = 0; r < nodes_.size(); ++r)
+    for (kernels::RootNeighbour const& k : nodes_[r].around) sets.join(std::int32_t(r), of_slot_.at(k.slot));
+  std::vector<std::int32_t> const number = sets.set_numbers();
+  body_.assign(number.begin(), number.end());
+  for (int const body : body_) n_bodies_ = std::max(n_bodies_, body + 1);
 }
 
 TurningRoots WallRoots::turning_roots() const {
@@ -227,15 +203,15 @@ void WallRoots::add_line(std::int32_t root, Vec3 const& line) {
 
 void WallRoots::join_coincident() {
   bool any = false;
-  std::vector<std::int32_t> const first = first_of_groups(nodes_.size(), [&](auto const& join) {
-    for (std::size_t r = 0; r < nodes_.size(); ++r)
-      for (kernels::RootNeighbour const& k : nodes_[r].around) {
-        if (norm(k.arm) > 0 || k.matrix >= 0) continue;
-        join(std::int32_t(r), of_slot_.at(k.slot));
-        any = true;
-      }
-  });
+  DisjointSets<std::int32_t> sets(nodes_.size());
+  for (std::size_t r = 0; r < nodes_.size(); ++r)
+    for (kernels::RootNeighbour const& k : nodes_[r].around) {
+      if (norm(k.arm) > 0 || k.matrix >= 0) continue;
+      sets.join(std::int32_t(r), of_slot_.at(k.slot));
+      any = true;
+    }
   if (!any) return;
+  std::vector<std::int32_t> const first = sets.roots();
   std::vector<std::vector<kernels::RootNeighbour>> together(nodes_.size());
   for (std::size_t r = 0; r < nodes_.size(); ++r) {
     auto& list = together[std::size_t(first[r])];
