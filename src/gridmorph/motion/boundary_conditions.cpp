@@ -4,6 +4,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
+#include <gridmorph/motion/detail/free_periodics.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
 
 #include <algorithm>
@@ -44,6 +45,147 @@ Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vecto
   return motion;
 }
 
+/// Whether periodic connections take a rule: resolve() says what they do with others.
+bool fits_connections(Rule const& rule) {
+  return std::holds_alternative<FollowRule>(rule) || std::holds_alternative<CircumferentialSlideRule>(rule) ||
+         std::holds_alternative<FixedRule>(rule) || std::holds_alternative<RigidRule>(rule) ||
+         std::holds_alternative<FunctionRule>(rule);
+}
+
+/// Files that list a periodic boundary twice, as patches and as a connection: a rule that names a patch there is one of the connection, and so holds
+/// for both sides, whichever of them is named. Patches on both sides with different rules keep these.
+class RulesOfConnections {
+ public:
+  RulesOfConnections(Boundary const& boundary, ResolvedMotion& motion)
+      : boundary_(boundary), mesh_(boundary.mesh()), motion_(motion), is_side_(mesh_.patches.size(), 0) {
+    std::vector<std::uint8_t> const paired = periodic_nodes(mesh_);
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+      auto const& nodes = boundary_.surface(int(p)).nodes;
+      is_side_[p] =
+          !nodes.empty() && mesh_.patches[p].kind != PatchKind::region &&
+                  std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[std::size_t(n)] != 0; })
+              ? 1
+              : 0;
+    }
+  }
+
+  void give() {
+    auto const free = detail::free_by_default(mesh_, motion_);
+    give_to_connections();
+    auto const left = detail::free_by_default(mesh_, motion_);
+    if (left == free) return;
+    auto const note = [](std::vector<std::string> const& names) {
+      return detail::default_note(detail::periodics, names, detail::move_as_one);
+    };
+    auto const said = std::find(motion_.notes.begin(), motion_.notes.end(), note(free));
+    if (said == motion_.notes.end()) return;
+    if (left.empty())
+      motion_.notes.erase(said);
+    else
+      *said = note(left);
+  }
+
+ private:
+  void give_to_connections() {
+    std::map<int, std::set<Index>> nodes_of;  // by rule
+    for (std::size_t p = 0; p < is_side_.size(); ++p) {
+      Resolution const& own = motion_.patch[p];
+      if (is_side_[p] == 0 || own.by_default || !fits_connections(motion_.patch_rule(int(p)))) continue;
+      auto const& nodes = boundary_.surface(int(p)).nodes;
+      nodes_of[own.rule].insert(nodes.begin(), nodes.end());
+    }
+    if (nodes_of.empty()) return;
+    for (std::size_t c = 0; c < mesh_.connections.size(); ++c) {
+      Connection const& connection = mesh_.connections[c];
+      if (connection.nodes.empty() || !is_left(c)) continue;
+      std::vector<int> rules;
+      for (auto const& [rule, nodes] : nodes_of)
+        if (covers(nodes, connection.nodes) || covers(nodes, connection.donor_nodes)) rules.push_back(rule);
+      if (rules.size() != 1) continue;
+      give(c, rules.front());
+    }
+    give_to_halos();
+    let_patches_go();
+  }
+
+  template <class List>
+  [[nodiscard]] static bool covers(std::set<Index> const& nodes, List const& list) {
+    return std::all_of(list.begin(), list.end(), [&](auto n) { return nodes.contains(Index(n)); });
+  }
+
+  /// Whether a connection is periodic and no rule names it, not even `free`.
+  [[nodiscard]] bool is_left(std::size_t c) const { return motion_.interface[mesh_.interfaces.size() + c].by_default; }
+
+  void give(std::size_t c, int rule) {
+    Connection const& connection = mesh_.connections[c];
+    motion_.interface[mesh_.interfaces.size() + c] = {rule, false};
+    held_[rule].insert(connection.nodes.begin(), connection.nodes.end());
+    held_[rule].insert(connection.donor_nodes.begin(), connection.donor_nodes.end());
+    given_.push_back({c, rule});
+  }
+
+  /// Connections of the same periodicity that no patch lists: rows of elements beyond the sides that belong to the passage behind, and what they are
+  /// copies of. They move with the sides.
+  void give_to_halos() {
+    std::set<Index> of_sides;
+    for (std::size_t p = 0; p < is_side_.size(); ++p)
+      if (is_side_[p] != 0)
+        of_sides.insert(boundary_.surface(int(p)).nodes.begin(), boundary_.surface(int(p)).nodes.end());
+    auto const first = mesh_.interfaces.size();
+    auto const sides = given_;
+    for (std::size_t c = 0; c < mesh_.connections.size(); ++c) {
+      Connection const& connection = mesh_.connections[c];
+      if (connection.nodes.empty() || !is_left(c)) continue;
+      auto const is_free = [&](Index32 n) { return !of_sides.contains(Index(n)); };
+      if (!std::all_of(connection.nodes.begin(), connection.nodes.end(), is_free) ||
+          !std::all_of(connection.donor_nodes.begin(), connection.donor_nodes.end(), is_free))
+        continue;
+      RigidTransform const own = boundary_.transform(int(first + c));
+      auto const side = std::find_if(sides.begin(), sides.end(), [&](auto const& s) {
+        RigidTransform const other = boundary_.transform(int(first + s.first));
+        return are_alike(own, other, boundary_.size()) || are_alike(own, other.inverse(), boundary_.size());
+      });
+      if (side != sides.end()) give(c, side->second);
+    }
+  }
+
+  /// Thin inlets and walls, all of whose nodes lie on the edges of sides, are none of these.
+  [[nodiscard]] bool has_no_kind(std::size_t p) const {
+    return mesh_.patches[p].kind == PatchKind::other || mesh_.patches[p].kind == PatchKind::connection;
+  }
+
+  /// Patches all of whose nodes connections now have the rule for.
+  void let_patches_go() {
+    std::vector<std::string> names;
+    for (std::size_t p = 0; p < is_side_.size(); ++p) {
+      Resolution& own = motion_.patch[p];
+      if (is_side_[p] == 0) continue;
+      auto const& nodes = boundary_.surface(int(p)).nodes;
+      if (std::none_of(held_.begin(), held_.end(), [&](auto const& held) {
+            return (own.rule == held.first || (own.by_default && has_no_kind(p))) && covers(held.second, nodes);
+          }))
+        continue;
+      own.rule = int(motion_.rules.size());
+      names.push_back(mesh_.patches[p].name);
+    }
+    if (!names.empty()) motion_.rules.push_back({std::move(names), FreeRule{}, 0, "default of periodic patches"});
+  }
+
+  Boundary const& boundary_;
+  Mesh const& mesh_;
+  ResolvedMotion& motion_;
+  std::vector<std::uint8_t> is_side_;
+  std::vector<std::pair<std::size_t, int>> given_;  ///< connections and the rules that they have from patches
+  std::map<int, std::set<Index>> held_;             ///< nodes of connections by the rule they have from a patch
+};
+
+/// The rules of a mesh of elements.
+ResolvedMotion resolve_on(Boundary const& boundary, Motion const& motion, std::vector<std::string>& notes) {
+  ResolvedMotion out = resolve(boundary.mesh(), with_periodic_patches(boundary, motion, notes));
+  RulesOfConnections(boundary, out).give();
+  return out;
+}
+
 class Finder {
  public:
   Finder(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
@@ -58,7 +200,7 @@ class Finder {
     std::vector<Patch> const regions = regions_of_elements(mesh_, located(motion), out_.notes);
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_, regions);
     patches_ = boundary->mesh().patches;
-    ResolvedMotion const resolved = resolve(boundary->mesh(), with_periodic_patches(*boundary, motion, out_.notes));
+    ResolvedMotion const resolved = resolve_on(*boundary, motion, out_.notes);
     out_.notes.insert(out_.notes.end(), resolved.notes.begin(), resolved.notes.end());
     out_.motion = std::make_shared<BoundaryMotion const>(boundary, resolved);
     out_.notes.insert(out_.notes.end(), out_.motion->notes().begin(), out_.motion->notes().end());
@@ -75,8 +217,8 @@ class Finder {
     if (!have_wakes(motion.regions)) return motion.regions;
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
     std::vector<std::string> notes;  // those of the rules come again
-    Motion const rules = with_periodic_patches(*boundary, without_regions(boundary->mesh(), motion), notes);
-    return locate_wakes(boundary, resolve(boundary->mesh(), rules), motion.regions, notes);
+    return locate_wakes(boundary, resolve_on(*boundary, without_regions(boundary->mesh(), motion), notes),
+                        motion.regions, notes);
   }
 
   Index32 owner(Index n) const { return graph_.representative[std::size_t(n)]; }
@@ -320,8 +462,7 @@ BoundaryConditions boundary_conditions(HostInstance const& host, Mesh const& mes
 std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& boundary, Motion const& motion) {
   auto const surfaces = boundary.motion->shared_boundary();
   std::vector<std::string> said;  // with the notes of the first motion
-  return std::make_shared<BoundaryMotion const>(
-      surfaces, resolve(surfaces->mesh(), with_periodic_patches(*surfaces, motion, said)));
+  return std::make_shared<BoundaryMotion const>(surfaces, resolve_on(*surfaces, motion, said));
 }
 
 namespace {
