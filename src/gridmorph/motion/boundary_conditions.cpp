@@ -5,6 +5,7 @@
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/motion/detail/free_periodics.hpp>
+#include <gridmorph/motion/detail/joint_slip.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
 
 #include <algorithm>
@@ -329,35 +330,45 @@ class Finder {
 
   void find_slip_nodes() {
     std::vector<std::set<Index32>> surfaces;
-    std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
+    place_.assign(std::size_t(mesh_.n_nodes()), -1);
     for (std::size_t p = 0; p < patches_.size(); ++p) {
       int const surface = out_.motion->slip_surface_of(int(p));
       if (surface < 0) continue;
       for (Index const n : out_.nodes_of(int(p))) {
         Index32 const o = owner(n);
-        if (is_known_[std::size_t(o)]) continue;
-        if (place[std::size_t(o)] < 0) {
-          place[std::size_t(o)] = Index32(surfaces.size());
+        if (is_known_[std::size_t(o)]) out_.given_on_slip.push_back({slot_of(o), Index32(n), int(p)});
+        if (place_[std::size_t(o)] < 0) {
+          place_[std::size_t(o)] = Index32(surfaces.size());
           surfaces.emplace_back();
         }
-        surfaces[std::size_t(place[std::size_t(o)])].insert(Index32(surface));
+        surfaces[std::size_t(place_[std::size_t(o)])].insert(Index32(surface));
       }
     }
-    for (std::size_t n = 0; n < place.size(); ++n)
-      if (place[n] >= 0) {
+    for (auto const& set : surfaces) surfaces_at_.add(std::vector<Index32>(set.begin(), set.end()));
+    for (std::size_t n = 0; n < place_.size(); ++n)
+      if (place_[n] >= 0 && !is_known_[n]) {
         out_.slip_nodes.push_back(Index32(n));
-        auto const& set = surfaces[std::size_t(place[n])];
-        std::vector<Index32> const list(set.begin(), set.end());
-        out_.slip_surfaces.add(list);
+        out_.slip_surfaces.add(surfaces_at_[place_[n]]);
       }
   }
 
-  /// Nodes joined by free periodic connections, with the rotation from the one that carries their displacement.
+  [[nodiscard]] Index32 slot_of(Index32 known) const {
+    return Index32(std::lower_bound(out_.known.begin(), out_.known.end(), known) - out_.known.begin());
+  }
+  /// Numbers of the slip surfaces that a representative lies on.
+  [[nodiscard]] std::span<Index32 const> surfaces_of(Index32 n) const {
+    Index32 const at = place_[std::size_t(n)];
+    return at < 0 ? std::span<Index32 const>{} : surfaces_at_[at];
+  }
+
+  /// Nodes joined by free periodic connections, with the rotation from the one that carries their displacement, and what they are held on
+  /// together.
   void find_images() {
     struct Link {
       Index32 to;
       std::int32_t rotation;  ///< own displacement -> that of `to`
     };
+    detail::RotationNumbers rotations;
     std::map<Index32, std::vector<Link>> links;
     for (std::size_t c = 0; c < mesh_.connections.size(); ++c) {
       auto const& connection = mesh_.connections[c];
@@ -372,49 +383,63 @@ class Finder {
       std::int32_t there = -1, back = -1;
       if (turns) {
         Mat3 const rotation = fit_periodic(*connection.periodic, from, to, size_).rotation;
-        there = std::int32_t(out_.rotations.size());
-        out_.rotations.push_back(rotation);
-        back = std::int32_t(out_.rotations.size());
-        out_.rotations.push_back(transpose(rotation));
+        there = rotations.add(rotation);
+        back = rotations.add(transpose(rotation));
       }
       for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
         Index32 const a = owner(connection.nodes[n]), b = owner(connection.donor_nodes[n]);
-        if (a == b) continue;
-        links[a].push_back({b, there});
-        links[b].push_back({a, back});
+        if (a != b || turns) links[a].push_back({b, there});
+        if (a != b) links[b].push_back({a, back});
       }
     }
+    detail::JointSlipFinder joint(
+        mesh_.coordinates, out_.motion->slip_surfaces(), size_, [this](Index32 n) { return surfaces_of(n); },
+        rotations);
     std::map<Index32, std::int32_t> reached;  // rotation from the owner of its class
-    std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> composed;
-    auto const compose = [&](std::int32_t first, std::int32_t next) {
-      if (first < 0) return next;
-      if (next < 0) return first;
-      auto const [at, fresh] = composed.try_emplace({first, next}, std::int32_t(out_.rotations.size()));
-      if (fresh) out_.rotations.push_back(out_.rotations[std::size_t(next)] * out_.rotations[std::size_t(first)]);
-      return at->second;
-    };
+    std::vector<std::uint8_t> done(out_.known.size(), 0);
     auto const spread = [&](Index32 start) {
       if (reached.contains(start)) return;
       reached[start] = -1;
+      std::vector<detail::ClassMember> members{{start, -1}};
+      std::vector<Mat3> around;
       std::vector<Index32> front{start};
       while (!front.empty()) {
         Index32 const a = front.back();
         front.pop_back();
         for (Link const& link : links[a]) {
-          if (reached.contains(link.to)) continue;
-          std::int32_t const rotation = compose(reached[a], link.rotation);
+          if (auto const known = reached.find(link.to); known != reached.end()) {
+            // The long way round leads back to where the node is, turned.
+            if (known->second >= 0 || link.rotation >= 0 || reached[a] >= 0)
+              around.push_back(transpose(rotations[known->second]) *
+                               (rotations[link.rotation] * rotations[reached[a]]));
+            continue;
+          }
+          std::int32_t const rotation = rotations.then(reached[a], link.rotation);
           reached[link.to] = rotation;
+          members.push_back({link.to, rotation});
           if (!is_known_[std::size_t(link.to)]) out_.images.push_back({link.to, start, rotation});
           front.push_back(link.to);
         }
       }
+      if (!is_known_[std::size_t(start)]) return joint.add(members, 0, around, start, out_.joint_slip);
+      for (std::size_t m = 0; m < members.size(); ++m)
+        if (is_known_[std::size_t(members[m].node)]) {
+          Index32 const slot = slot_of(members[m].node);
+          done[std::size_t(slot)] = 1;
+          joint.add(members, m, {}, slot, out_.given_slip);
+        }
     };
     // Nodes whose displacement is known pass it on; the others move by the mean of their class.
     for (auto const& [n, own] : links)
       if (is_known_[std::size_t(n)]) spread(n);
     for (auto const& [n, own] : links) spread(n);
+    for (std::size_t k = 0; k < out_.known.size(); ++k)
+      if (done[k] == 0 && !surfaces_of(out_.known[k]).empty())
+        joint.add({{out_.known[k], -1}}, 0, {}, Index32(k), out_.given_slip);
     std::sort(out_.images.begin(), out_.images.end(),
               [](PeriodicImage const& a, PeriodicImage const& b) { return a.node < b.node; });
+    out_.rotations = rotations.all();
+    out_.across_axes = std::move(joint).across_axes();
   }
 
   Mesh const& mesh_;
@@ -425,9 +450,17 @@ class Finder {
   std::vector<Patch> patches_;  ///< of the mesh without their faces, then regions
   BoundaryConditions out_;
   std::vector<std::uint8_t> is_known_;
+  std::vector<Index32> place_;  ///< of each node in surfaces_at_, -1: on no slip surface
+  CsrGraph surfaces_at_;
 };
 
 }  // namespace
+
+std::vector<SlipSurface> BoundaryConditions::surfaces() const {
+  std::vector<SlipSurface> out = motion->slip_surfaces();
+  out.insert(out.end(), across_axes.begin(), across_axes.end());
+  return out;
+}
 
 std::vector<int> row_of_nodes(Mesh const& mesh, Motion const& motion) {
   std::vector<int> out;
