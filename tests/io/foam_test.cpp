@@ -433,6 +433,58 @@ TEST(OpenFoam, CyclicsAreConnectionsWithTheirTransform) {
   EXPECT_EQ(mesh.patches.size(), 6U);
 }
 
+TEST(OpenFoam, MappedSidesAreConnectionsWhereTheirNodesMatch) {
+  TemporaryFolder const folder;
+  double const pitch = 0.4;
+  FoamBox shifted, turned, near, coarse;
+  shifted.keys["z0"] = "type cyclicAMI; transform translational; separationVector (0 0 1.4); neighbourPatch z1;";
+  shifted.keys["z1"] = "type cyclicAMI; transform translational; separationVector (0 0 -1.4); neighbourPatch z0;";
+  turned.keys["z0"] =
+      "type cyclicAMI; transform rotational; rotationAxis (2 0 0); rotationCentre (5 0 0); neighbourPatch z1;";
+  turned.keys["z1"] =
+      "type cyclicAMI; transform rotational; rotationAxis (2 0 0); rotationCentre (5 0 0); neighbourPatch z0;";
+  // The sides nearly meet in the axis in the second one.
+  for (FoamBox* box : {&turned, &near}) {
+    double const inner = box == &turned ? 1 : 0;
+    box->keys = turned.keys;
+    box->place = [=](Index3 const& p) {
+      double const r = inner + 0.2 * p[1] + 1e-3, a = pitch * p[2] / 2.0;
+      return Vec3{0.3 * p[0], r * std::cos(a), r * std::sin(a)};
+    };
+  }
+  shifted.write(folder / "shifted");
+  turned.write(folder / "turned");
+  near.write(folder / "near");
+  for (char const* name : {"shifted", "turned", "near"}) {
+    Mesh const mesh = read_mesh((folder / name).string());
+    EXPECT_EQ(mesh.patches.size(), 4U) << name;
+    ASSERT_EQ(mesh.connections.size(), 2U) << name;
+    EXPECT_EQ(mesh.connections[0].name, "z0");
+    EXPECT_EQ(mesh.connections[1].name, "z1");
+    for (Connection const& c : mesh.connections) {
+      EXPECT_EQ(c.nodes.size(), 12U);
+      ASSERT_TRUE(c.periodic);
+      for (std::size_t n = 0; n < c.nodes.size(); ++n)
+        EXPECT_LE(distance(c.periodic->declared(mesh.coordinates[c.nodes[n]]), mesh.coordinates[c.donor_nodes[n]]),
+                  1e-14);
+      EXPECT_NEAR(norm(c.periodic->rotation_angle_rad), std::string(name) == "shifted" ? 0 : pitch, 1e-14);
+    }
+  }
+  // Another node on one side is no match, and nothing is lost.
+  coarse.keys = shifted.keys;
+  coarse.place = [](Index3 const& p) {
+    return Vec3{0.1 * p[0] + (p[0] == 1 && p[2] == 2 ? 0.01 : 0), 0.3 * p[1], 0.7 * p[2]};
+  };
+  coarse.write(folder / "coarse");
+  Mesh const mesh = read_mesh((folder / "coarse").string());
+  EXPECT_TRUE(mesh.connections.empty());
+  EXPECT_EQ(mesh.patches.size(), 6U);
+  EXPECT_EQ(mesh.patches[4].kind, PatchKind::connection);
+  EXPECT_TRUE(std::any_of(mesh.notes.begin(), mesh.notes.end(), [](std::string const& note) {
+    return note.find("'z0' and 'z1' do not match") != std::string::npos;
+  }));
+}
+
 TEST(OpenFoam, ZonesOfCellsAndFacesAreSubsets) {
   TemporaryFolder const folder;
   FoamBox const box;  // 3 x 2 x 2 cells

@@ -1,6 +1,7 @@
 // The transpose of a morph of elements against its derivative forwards, each kind of stage and boundary in turn.
 #include "support/made_bodies.hpp"
 #include "support/morph_run.hpp"
+#include "support/sector.hpp"
 #include "support/transpose_check.hpp"
 #include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
@@ -64,6 +65,17 @@ SlipRule on_the_case() {
   for (int k = 0; k <= 64; ++k) profile.emplace_back(k * std::numbers::pi / 64, case_radius(k * std::numbers::pi / 64));
   return {.surface = SlipRule::Surface::revolution, .profile = profile};
 }
+/// About x, with a conical shroud.
+Sector sector(double inner) {
+  return {.inner = inner,
+          .outer = inner + 1,
+          .cells = {3, 3, 5},
+          .frame = rotation_about({}, {0, 1, 0}, std::numbers::pi / 2),
+          .cone = 0.2};
+}
+Rule bulges(Sector const& s) {
+  return s.by([](Vec3 const& p) { return Vec3{0.05 * std::sin(3 * p.z + 1), 0.06 * p.z, 0.03}; });
+}
 /// A body beside another one that stands, near a wall that slips.
 Mesh two_bodies() {
   return box_around({12, 7, 6}, [](Vec3 const& p) {
@@ -118,6 +130,20 @@ std::vector<Kind> kinds() {
        half_annulus,
        {rule_for({"j_min"}, bends(0.03, {1, 0, 0})), rule_for({"j_max"}, on_the_case()),
         rule_for({"i_min", "i_max", "k_min", "k_max"}, FreeRule{})},
+       {}},
+      {"given_on_slip",
+       box,
+       {moves(), rule_for({"i_max"}, bends(0.05)), rule_for({"j_min", "k_min"}, SlipRule{}),
+        rule_for({"i_min", "j_max", "k_max"}, FreeRule{})},
+       with_layers(1)},
+      {"periodic_axis",
+       [] { return sector(0).mesh(); },
+       {rule_for({"shroud"}, bulges(sector(0))), rule_for({"inlet", "outlet"}, FreeRule{})},
+       {}},
+      {"periodic_slip",
+       [] { return sector(1).mesh(); },
+       {rule_for({"hub", "inlet"}, bulges(sector(1))), rule_for({"outlet"}, FreeRule{}),
+        rule_for({"shroud"}, SlipRule{SlipRule::Surface::revolution})},
        {}},
   };
 }

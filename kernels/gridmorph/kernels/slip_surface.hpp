@@ -166,7 +166,8 @@ struct SlipSurfaceView {
   FacetSurfaceView facets{};      ///< facets only
 
   /// The point of the surface that p slides to: orthogonally (plane), along the normals (facets), radially at constant axial
-  /// position and angle (revolution), or as MeridionalFrame says. A point on the axis has no radial direction and stays.
+  /// position and angle (revolution), or as MeridionalFrame says. A point on the axis has no radial direction: it stays, or
+  /// goes along the axis to a wall across it.
   /// Kind axial: p itself.
   KOKKOS_INLINE_FUNCTION Vec3 project(Vec3 const& p) const {
     if (kind == SlipKind::facets) return facets.slide(facets.closest_point(p), p);
@@ -176,7 +177,11 @@ struct SlipSurfaceView {
     if (kind == SlipKind::axial) return p;
     Vec3 const radial = d - a * direction;
     double const r = norm(radial);
-    if (!(r > 0)) return p;
+    if (!(r > 0)) {
+      if (!lies_across()) return p;
+      MeridionalFoot const f = foot(a, 0);
+      return p - (f.away * f.axial) * direction;
+    }
     if (kind == SlipKind::meridional) {
       MeridionalFoot const f = foot(a, r);
       return p - f.away * (f.axial * direction + (f.radial / r) * radial);
@@ -224,7 +229,11 @@ struct SlipSurfaceView {
     Vec3 const radial = d - a * direction;
     Vec3 const moved = radial + (u - du * direction);
     double const r = norm(moved);
-    if (!(r > 0)) return u;
+    if (!(r > 0)) {
+      if (!lies_across()) return u;
+      MeridionalFoot const f = foot(a + du, 0);
+      return small(f.away - own, tolerance) ? u : u - ((f.away - own) * f.axial) * direction;
+    }
     if (kind == SlipKind::meridional) {
       MeridionalFoot const f = foot(a + du, r);
       double const too_far = f.away - own;
@@ -245,7 +254,7 @@ struct SlipSurfaceView {
     Vec3 const radial = d - a * direction;
     Vec3 const moved = radial + (u - du * direction), moved_rate = rate - axial_rate * direction;
     double const r = norm(moved);
-    if (!(r > 0)) return rate;
+    if (!(r > 0)) return lies_across() ? moved_rate : rate;
     double const r_rate = dot(moved, moved_rate) / r;
     if (kind == SlipKind::meridional) return rate - meridional_rate(a + du, moved, axial_rate, moved_rate, r_rate, own);
     ProfileSample const wall = profile.sample(a + du);
@@ -281,7 +290,12 @@ struct SlipSurfaceView {
     if (kind == SlipKind::plane) return du + (is_own(a) ? 0.0 : a);
     Vec3 const moved = (d - a * direction) + (u - du * direction);
     double const r = norm(moved);
-    if (!(r > 0)) return 0;
+    if (!(r > 0)) {
+      if (!lies_across()) return 0;
+      MeridionalFoot const f = foot(a + du, 0);
+      gradient = f.axial * direction;
+      return f.away - own;
+    }
     if (kind == SlipKind::meridional) {
       MeridionalFoot const f = foot(a + du, r);
       // Away is measured along the ordinate where the frame is not inclined, and falls along the abscissa by the slope.
@@ -317,6 +331,8 @@ struct SlipSurfaceView {
     Vec3 const normal_rate = turn * (f.radial * direction - f.axial * outwards) + f.radial * outwards_rate;
     return away_rate * normal + too_far * normal_rate;
   }
+  /// Whether nodes come back along the axis: then those on it do too.
+  KOKKOS_INLINE_FUNCTION bool lies_across() const { return kind == SlipKind::meridional && frame.cosine == 0; }
   KOKKOS_INLINE_FUNCTION static bool small(double v, double tolerance) { return v <= tolerance && v >= -tolerance; }
   KOKKOS_INLINE_FUNCTION bool is_own(double offset) const {
     return small(offset, baseline_deviation * (1 + 1e-6) + 1e-14 * size);

@@ -75,4 +75,11 @@ RigidTransform fit_periodic(Periodic const& declared, std::vector<Vec3> const& f
   return {Mat3{}, (1 / double(from.size())) * way};
 }
 
+bool are_alike(RigidTransform const& a, RigidTransform const& b, double size) {
+  double difference = distance(a.translation, b.translation);
+  for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+    difference += size * distance(a.rotation * e, b.rotation * e);
+  return difference < 1e-4 * size;
+}
+
 }  // namespace gridmorph

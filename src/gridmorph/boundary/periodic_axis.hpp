@@ -25,4 +25,8 @@ std::optional<AxisTurn> as_turn(RigidTransform const& t, double tolerance);
 RigidTransform fit_periodic(Periodic const& declared, std::vector<Vec3> const& from, std::vector<Vec3> const& to,
                             double size);
 
+/// Whether two transforms take the places of a mesh to the same ones, to within 1e-4 of its size: files declare the periodicity of one
+/// passage in several connections.
+bool are_alike(RigidTransform const& a, RigidTransform const& b, double size);
+
 }  // namespace gridmorph

@@ -2,6 +2,7 @@
 #include <gridmorph/guard/motion_path.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/plan/given_slip.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <algorithm>
@@ -22,7 +23,8 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
         "a background mesh of your own stands still while the walls move: it serves one step alone; leave it out to "
         "morph in "
         "steps");
-  MotionPath const path(mesh.coordinates, prepared.graph, prepared.boundary, displacement);
+  std::vector<Vec3> const kept = put_back_given(prepared.plan, mesh.coordinates, displacement);
+  MotionPath const path(mesh.coordinates, prepared.graph, prepared.boundary, kept);
   auto const& known = prepared.plan.known;
   Mesh now = mesh;
   for (int step = 1; step <= options.steps; ++step) {
@@ -41,7 +43,7 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
   }
   Coordinates moved = now.coordinates;
   // Steps round, their sum is given.
-  for (std::size_t k = 0; k < known.size(); ++k) moved.set(known[k], mesh.coordinates[known[k]] + displacement[k]);
+  for (std::size_t k = 0; k < known.size(); ++k) moved.set(known[k], mesh.coordinates[known[k]] + kept[k]);
   for (std::size_t k = 0; k < prepared.plan.copies.size(); ++k)
     if (std::binary_search(known.begin(), known.end(), prepared.plan.copied[k]))
       moved.set(prepared.plan.copies[k], moved[prepared.plan.copied[k]]);

@@ -54,6 +54,13 @@ struct Morpher<Exec>::State {
     for (Out const& field : out) require_all_nodes(who, field.size(), n_nodes);
   }
 
+  /// What stages are to read of what the caller gives.
+  void put_back(Exec const& exec, Field& f) const {
+    if (!list.given) return;
+    ProfilingRegion const region(list.given->region);
+    list.given->enqueue(exec, flat.field, f);
+  }
+
   /// Calls run(stage) for each stage in a profiling region of its own.
   template <class Run>
   void for_each_stage(Run const& run) const {
@@ -84,6 +91,7 @@ struct Morpher<Exec>::State {
       for (std::size_t k = 0; k < n; ++k) {
         Field f = list.fields[k];
         f.boundary = boundary[done + k].array();
+        put_back(exec, f);
         for_each_stage([&](auto const& stage) { stage.enqueue(exec, flat.field, f); });
       }
       write<Move>(exec, {list.fields.data(), n}, out.subspan(done, n));
@@ -102,6 +110,11 @@ struct Morpher<Exec>::State {
     f.boundary = boundary.array();
     r.boundary = boundary_rate.array();
     r.of = f.number;
+    Field const given = f, given_rate = r;
+    if (list.given) {
+      ProfilingRegion const region(list.given->region);
+      list.given->rate(exec, flat.field, f, r);
+    }
     for_each_stage([&](auto const& stage) {
       if constexpr (requires { stage.rate(exec, flat.field, f, r); }) {
         stage.rate(exec, flat.field, f, r);
@@ -113,7 +126,7 @@ struct Morpher<Exec>::State {
     write<false>(exec, {&r, 1}, {&v, 1});
     if (!list.shifts) return;
     ProfilingRegion const region(list.shifts->region);
-    list.shifts->add_rate(exec, f, r, v);
+    list.shifts->add_rate(exec, given, given_rate, v);
   }
 
   /// How many stages come up to the last one whose derivative depends on where the mesh is.
@@ -155,11 +168,13 @@ struct Morpher<Exec>::State {
     g.nodes = dJ_du.array();
     g.baseline = baseline.array();
     g.boundary = dJ_db.array();
+    Field const given = f;
+    put_back(exec, f);
     linearise(exec, f);
     std::visit([&](auto const& writer) { writer.transpose(exec, g); }, list.writer);
     if (list.shifts) {
       ProfilingRegion const region(list.shifts->region);
-      list.shifts->transpose_nodes(exec, f, g);
+      list.shifts->transpose_nodes(exec, given, g);
     }
     for (auto any = list.stages.rbegin(); any != list.stages.rend(); ++any)
       std::visit(
@@ -168,6 +183,10 @@ struct Morpher<Exec>::State {
             stage.transpose(exec, flat.field, f, g);
           },
           *any);
+    if (list.given) {
+      ProfilingRegion const region("transposed " + list.given->region);
+      list.given->transpose(exec, flat.field, given.boundary, g);
+    }
     if (list.shifts) list.shifts->transpose_boundary(exec, g);
   }
 };

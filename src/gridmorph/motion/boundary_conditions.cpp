@@ -4,6 +4,8 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
+#include <gridmorph/motion/detail/free_periodics.hpp>
+#include <gridmorph/motion/detail/joint_slip.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
 
 #include <algorithm>
@@ -44,6 +46,147 @@ Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vecto
   return motion;
 }
 
+/// Whether periodic connections take a rule: resolve() says what they do with others.
+bool fits_connections(Rule const& rule) {
+  return std::holds_alternative<FollowRule>(rule) || std::holds_alternative<CircumferentialSlideRule>(rule) ||
+         std::holds_alternative<FixedRule>(rule) || std::holds_alternative<RigidRule>(rule) ||
+         std::holds_alternative<FunctionRule>(rule);
+}
+
+/// Files that list a periodic boundary twice, as patches and as a connection: a rule that names a patch there is one of the connection, and so holds
+/// for both sides, whichever of them is named. Patches on both sides with different rules keep these.
+class RulesOfConnections {
+ public:
+  RulesOfConnections(Boundary const& boundary, ResolvedMotion& motion)
+      : boundary_(boundary), mesh_(boundary.mesh()), motion_(motion), is_side_(mesh_.patches.size(), 0) {
+    std::vector<std::uint8_t> const paired = periodic_nodes(mesh_);
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+      auto const& nodes = boundary_.surface(int(p)).nodes;
+      is_side_[p] =
+          !nodes.empty() && mesh_.patches[p].kind != PatchKind::region &&
+                  std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[std::size_t(n)] != 0; })
+              ? 1
+              : 0;
+    }
+  }
+
+  void give() {
+    auto const free = detail::free_by_default(mesh_, motion_);
+    give_to_connections();
+    auto const left = detail::free_by_default(mesh_, motion_);
+    if (left == free) return;
+    auto const note = [](std::vector<std::string> const& names) {
+      return detail::default_note(detail::periodics, names, detail::move_as_one);
+    };
+    auto const said = std::find(motion_.notes.begin(), motion_.notes.end(), note(free));
+    if (said == motion_.notes.end()) return;
+    if (left.empty())
+      motion_.notes.erase(said);
+    else
+      *said = note(left);
+  }
+
+ private:
+  void give_to_connections() {
+    std::map<int, std::set<Index>> nodes_of;  // by rule
+    for (std::size_t p = 0; p < is_side_.size(); ++p) {
+      Resolution const& own = motion_.patch[p];
+      if (is_side_[p] == 0 || own.by_default || !fits_connections(motion_.patch_rule(int(p)))) continue;
+      auto const& nodes = boundary_.surface(int(p)).nodes;
+      nodes_of[own.rule].insert(nodes.begin(), nodes.end());
+    }
+    if (nodes_of.empty()) return;
+    for (std::size_t c = 0; c < mesh_.connections.size(); ++c) {
+      Connection const& connection = mesh_.connections[c];
+      if (connection.nodes.empty() || !is_left(c)) continue;
+      std::vector<int> rules;
+      for (auto const& [rule, nodes] : nodes_of)
+        if (covers(nodes, connection.nodes) || covers(nodes, connection.donor_nodes)) rules.push_back(rule);
+      if (rules.size() != 1) continue;
+      give(c, rules.front());
+    }
+    give_to_halos();
+    let_patches_go();
+  }
+
+  template <class List>
+  [[nodiscard]] static bool covers(std::set<Index> const& nodes, List const& list) {
+    return std::all_of(list.begin(), list.end(), [&](auto n) { return nodes.contains(Index(n)); });
+  }
+
+  /// Whether a connection is periodic and no rule names it, not even `free`.
+  [[nodiscard]] bool is_left(std::size_t c) const { return motion_.interface[mesh_.interfaces.size() + c].by_default; }
+
+  void give(std::size_t c, int rule) {
+    Connection const& connection = mesh_.connections[c];
+    motion_.interface[mesh_.interfaces.size() + c] = {rule, false};
+    held_[rule].insert(connection.nodes.begin(), connection.nodes.end());
+    held_[rule].insert(connection.donor_nodes.begin(), connection.donor_nodes.end());
+    given_.push_back({c, rule});
+  }
+
+  /// Connections of the same periodicity that no patch lists: rows of elements beyond the sides that belong to the passage behind, and what they are
+  /// copies of. They move with the sides.
+  void give_to_halos() {
+    std::set<Index> of_sides;
+    for (std::size_t p = 0; p < is_side_.size(); ++p)
+      if (is_side_[p] != 0)
+        of_sides.insert(boundary_.surface(int(p)).nodes.begin(), boundary_.surface(int(p)).nodes.end());
+    auto const first = mesh_.interfaces.size();
+    auto const sides = given_;
+    for (std::size_t c = 0; c < mesh_.connections.size(); ++c) {
+      Connection const& connection = mesh_.connections[c];
+      if (connection.nodes.empty() || !is_left(c)) continue;
+      auto const is_free = [&](Index32 n) { return !of_sides.contains(Index(n)); };
+      if (!std::all_of(connection.nodes.begin(), connection.nodes.end(), is_free) ||
+          !std::all_of(connection.donor_nodes.begin(), connection.donor_nodes.end(), is_free))
+        continue;
+      RigidTransform const own = boundary_.transform(int(first + c));
+      auto const side = std::find_if(sides.begin(), sides.end(), [&](auto const& s) {
+        RigidTransform const other = boundary_.transform(int(first + s.first));
+        return are_alike(own, other, boundary_.size()) || are_alike(own, other.inverse(), boundary_.size());
+      });
+      if (side != sides.end()) give(c, side->second);
+    }
+  }
+
+  /// Thin inlets and walls, all of whose nodes lie on the edges of sides, are none of these.
+  [[nodiscard]] bool has_no_kind(std::size_t p) const {
+    return mesh_.patches[p].kind == PatchKind::other || mesh_.patches[p].kind == PatchKind::connection;
+  }
+
+  /// Patches all of whose nodes connections now have the rule for.
+  void let_patches_go() {
+    std::vector<std::string> names;
+    for (std::size_t p = 0; p < is_side_.size(); ++p) {
+      Resolution& own = motion_.patch[p];
+      if (is_side_[p] == 0) continue;
+      auto const& nodes = boundary_.surface(int(p)).nodes;
+      if (std::none_of(held_.begin(), held_.end(), [&](auto const& held) {
+            return (own.rule == held.first || (own.by_default && has_no_kind(p))) && covers(held.second, nodes);
+          }))
+        continue;
+      own.rule = int(motion_.rules.size());
+      names.push_back(mesh_.patches[p].name);
+    }
+    if (!names.empty()) motion_.rules.push_back({std::move(names), FreeRule{}, 0, "default of periodic patches"});
+  }
+
+  Boundary const& boundary_;
+  Mesh const& mesh_;
+  ResolvedMotion& motion_;
+  std::vector<std::uint8_t> is_side_;
+  std::vector<std::pair<std::size_t, int>> given_;  ///< connections and the rules that they have from patches
+  std::map<int, std::set<Index>> held_;             ///< nodes of connections by the rule they have from a patch
+};
+
+/// The rules of a mesh of elements.
+ResolvedMotion resolve_on(Boundary const& boundary, Motion const& motion, std::vector<std::string>& notes) {
+  ResolvedMotion out = resolve(boundary.mesh(), with_periodic_patches(boundary, motion, notes));
+  RulesOfConnections(boundary, out).give();
+  return out;
+}
+
 class Finder {
  public:
   Finder(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
@@ -58,7 +201,7 @@ class Finder {
     std::vector<Patch> const regions = regions_of_elements(mesh_, located(motion), out_.notes);
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_, regions);
     patches_ = boundary->mesh().patches;
-    ResolvedMotion const resolved = resolve(boundary->mesh(), with_periodic_patches(*boundary, motion, out_.notes));
+    ResolvedMotion const resolved = resolve_on(*boundary, motion, out_.notes);
     out_.notes.insert(out_.notes.end(), resolved.notes.begin(), resolved.notes.end());
     out_.motion = std::make_shared<BoundaryMotion const>(boundary, resolved);
     out_.notes.insert(out_.notes.end(), out_.motion->notes().begin(), out_.motion->notes().end());
@@ -75,8 +218,8 @@ class Finder {
     if (!have_wakes(motion.regions)) return motion.regions;
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
     std::vector<std::string> notes;  // those of the rules come again
-    Motion const rules = with_periodic_patches(*boundary, without_regions(boundary->mesh(), motion), notes);
-    return locate_wakes(boundary, resolve(boundary->mesh(), rules), motion.regions, notes);
+    return locate_wakes(boundary, resolve_on(*boundary, without_regions(boundary->mesh(), motion), notes),
+                        motion.regions, notes);
   }
 
   Index32 owner(Index n) const { return graph_.representative[std::size_t(n)]; }
@@ -187,35 +330,45 @@ class Finder {
 
   void find_slip_nodes() {
     std::vector<std::set<Index32>> surfaces;
-    std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
+    place_.assign(std::size_t(mesh_.n_nodes()), -1);
     for (std::size_t p = 0; p < patches_.size(); ++p) {
       int const surface = out_.motion->slip_surface_of(int(p));
       if (surface < 0) continue;
       for (Index const n : out_.nodes_of(int(p))) {
         Index32 const o = owner(n);
-        if (is_known_[std::size_t(o)]) continue;
-        if (place[std::size_t(o)] < 0) {
-          place[std::size_t(o)] = Index32(surfaces.size());
+        if (is_known_[std::size_t(o)]) out_.given_on_slip.push_back({slot_of(o), Index32(n), int(p)});
+        if (place_[std::size_t(o)] < 0) {
+          place_[std::size_t(o)] = Index32(surfaces.size());
           surfaces.emplace_back();
         }
-        surfaces[std::size_t(place[std::size_t(o)])].insert(Index32(surface));
+        surfaces[std::size_t(place_[std::size_t(o)])].insert(Index32(surface));
       }
     }
-    for (std::size_t n = 0; n < place.size(); ++n)
-      if (place[n] >= 0) {
+    for (auto const& set : surfaces) surfaces_at_.add(std::vector<Index32>(set.begin(), set.end()));
+    for (std::size_t n = 0; n < place_.size(); ++n)
+      if (place_[n] >= 0 && !is_known_[n]) {
         out_.slip_nodes.push_back(Index32(n));
-        auto const& set = surfaces[std::size_t(place[n])];
-        std::vector<Index32> const list(set.begin(), set.end());
-        out_.slip_surfaces.add(list);
+        out_.slip_surfaces.add(surfaces_at_[place_[n]]);
       }
   }
 
-  /// Nodes joined by free periodic connections, with the rotation from the one that carries their displacement.
+  [[nodiscard]] Index32 slot_of(Index32 known) const {
+    return Index32(std::lower_bound(out_.known.begin(), out_.known.end(), known) - out_.known.begin());
+  }
+  /// Numbers of the slip surfaces that a representative lies on.
+  [[nodiscard]] std::span<Index32 const> surfaces_of(Index32 n) const {
+    Index32 const at = place_[std::size_t(n)];
+    return at < 0 ? std::span<Index32 const>{} : surfaces_at_[at];
+  }
+
+  /// Nodes joined by free periodic connections, with the rotation from the one that carries their displacement, and what they are held on
+  /// together.
   void find_images() {
     struct Link {
       Index32 to;
       std::int32_t rotation;  ///< own displacement -> that of `to`
     };
+    detail::RotationNumbers rotations;
     std::map<Index32, std::vector<Link>> links;
     for (std::size_t c = 0; c < mesh_.connections.size(); ++c) {
       auto const& connection = mesh_.connections[c];
@@ -230,49 +383,63 @@ class Finder {
       std::int32_t there = -1, back = -1;
       if (turns) {
         Mat3 const rotation = fit_periodic(*connection.periodic, from, to, size_).rotation;
-        there = std::int32_t(out_.rotations.size());
-        out_.rotations.push_back(rotation);
-        back = std::int32_t(out_.rotations.size());
-        out_.rotations.push_back(transpose(rotation));
+        there = rotations.add(rotation);
+        back = rotations.add(transpose(rotation));
       }
       for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
         Index32 const a = owner(connection.nodes[n]), b = owner(connection.donor_nodes[n]);
-        if (a == b) continue;
-        links[a].push_back({b, there});
-        links[b].push_back({a, back});
+        if (a != b || turns) links[a].push_back({b, there});
+        if (a != b) links[b].push_back({a, back});
       }
     }
+    detail::JointSlipFinder joint(
+        mesh_.coordinates, out_.motion->slip_surfaces(), size_, [this](Index32 n) { return surfaces_of(n); },
+        rotations);
     std::map<Index32, std::int32_t> reached;  // rotation from the owner of its class
-    std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> composed;
-    auto const compose = [&](std::int32_t first, std::int32_t next) {
-      if (first < 0) return next;
-      if (next < 0) return first;
-      auto const [at, fresh] = composed.try_emplace({first, next}, std::int32_t(out_.rotations.size()));
-      if (fresh) out_.rotations.push_back(out_.rotations[std::size_t(next)] * out_.rotations[std::size_t(first)]);
-      return at->second;
-    };
+    std::vector<std::uint8_t> done(out_.known.size(), 0);
     auto const spread = [&](Index32 start) {
       if (reached.contains(start)) return;
       reached[start] = -1;
+      std::vector<detail::ClassMember> members{{start, -1}};
+      std::vector<Mat3> around;
       std::vector<Index32> front{start};
       while (!front.empty()) {
         Index32 const a = front.back();
         front.pop_back();
         for (Link const& link : links[a]) {
-          if (reached.contains(link.to)) continue;
-          std::int32_t const rotation = compose(reached[a], link.rotation);
+          if (auto const known = reached.find(link.to); known != reached.end()) {
+            // The long way round leads back to where the node is, turned.
+            if (known->second >= 0 || link.rotation >= 0 || reached[a] >= 0)
+              around.push_back(transpose(rotations[known->second]) *
+                               (rotations[link.rotation] * rotations[reached[a]]));
+            continue;
+          }
+          std::int32_t const rotation = rotations.then(reached[a], link.rotation);
           reached[link.to] = rotation;
+          members.push_back({link.to, rotation});
           if (!is_known_[std::size_t(link.to)]) out_.images.push_back({link.to, start, rotation});
           front.push_back(link.to);
         }
       }
+      if (!is_known_[std::size_t(start)]) return joint.add(members, 0, around, start, out_.joint_slip);
+      for (std::size_t m = 0; m < members.size(); ++m)
+        if (is_known_[std::size_t(members[m].node)]) {
+          Index32 const slot = slot_of(members[m].node);
+          done[std::size_t(slot)] = 1;
+          joint.add(members, m, {}, slot, out_.given_slip);
+        }
     };
     // Nodes whose displacement is known pass it on; the others move by the mean of their class.
     for (auto const& [n, own] : links)
       if (is_known_[std::size_t(n)]) spread(n);
     for (auto const& [n, own] : links) spread(n);
+    for (std::size_t k = 0; k < out_.known.size(); ++k)
+      if (done[k] == 0 && !surfaces_of(out_.known[k]).empty())
+        joint.add({{out_.known[k], -1}}, 0, {}, Index32(k), out_.given_slip);
     std::sort(out_.images.begin(), out_.images.end(),
               [](PeriodicImage const& a, PeriodicImage const& b) { return a.node < b.node; });
+    out_.rotations = rotations.all();
+    out_.across_axes = std::move(joint).across_axes();
   }
 
   Mesh const& mesh_;
@@ -283,9 +450,17 @@ class Finder {
   std::vector<Patch> patches_;  ///< of the mesh without their faces, then regions
   BoundaryConditions out_;
   std::vector<std::uint8_t> is_known_;
+  std::vector<Index32> place_;  ///< of each node in surfaces_at_, -1: on no slip surface
+  CsrGraph surfaces_at_;
 };
 
 }  // namespace
+
+std::vector<SlipSurface> BoundaryConditions::surfaces() const {
+  std::vector<SlipSurface> out = motion->slip_surfaces();
+  out.insert(out.end(), across_axes.begin(), across_axes.end());
+  return out;
+}
 
 std::vector<int> row_of_nodes(Mesh const& mesh, Motion const& motion) {
   std::vector<int> out;
@@ -320,8 +495,7 @@ BoundaryConditions boundary_conditions(HostInstance const& host, Mesh const& mes
 std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& boundary, Motion const& motion) {
   auto const surfaces = boundary.motion->shared_boundary();
   std::vector<std::string> said;  // with the notes of the first motion
-  return std::make_shared<BoundaryMotion const>(
-      surfaces, resolve(surfaces->mesh(), with_periodic_patches(*surfaces, motion, said)));
+  return std::make_shared<BoundaryMotion const>(surfaces, resolve_on(*surfaces, motion, said));
 }
 
 namespace {

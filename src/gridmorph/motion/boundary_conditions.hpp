@@ -19,6 +19,18 @@ struct PeriodicImage {
   std::int32_t rotation = -1;  ///< number in BoundaryConditions::rotations; -1: none
 };
 
+/// The surfaces that nodes are held on which move as one: of each entry those of its node, then those of its periodic images.
+struct JointSlip {
+  std::vector<Index32> of;       ///< per entry: the node, or its slot in BoundaryConditions::known
+  std::vector<Index> first{0};   ///< (entries + 1)
+  std::vector<Index32> surface;  ///< numbers in BoundaryConditions::surfaces()
+  std::vector<Index32> place;    ///< the node that is on it
+  std::vector<std::int32_t>
+      turned;  ///< displacement of the entry -> that of `place`, a number in BoundaryConditions::rotations; -1: none
+
+  [[nodiscard]] bool empty() const { return of.empty(); }
+};
+
 /// All node numbers are those of representatives (NodeGraph).
 struct BoundaryConditions {
   std::shared_ptr<BoundaryMotion const> motion;  ///< the rules, on the boundary of the mesh
@@ -36,12 +48,27 @@ struct BoundaryConditions {
   std::vector<PeriodicImage> images;  ///< by node
   std::vector<Mat3> rotations;
 
+  /// Known nodes that lie on patches that slip, patch by patch.
+  struct OnSlipPatch {
+    Index32 slot = -1;  ///< in `known`
+    Index32 node = -1;  ///< of the patch
+    int patch = -1;
+  };
+  std::vector<OnSlipPatch> given_on_slip;
+  JointSlip given_slip;  ///< what puts these back, of slots
+  JointSlip
+      joint_slip;  ///< what the mean of periodic images is held on, of their owners and of nodes where periodic sides meet
+  /// Directions in which nodes do not move where periodic sides meet in their axis; of kind axial.
+  std::vector<SlipSurface> across_axes;
+
   std::vector<int> driving_patches;   ///< numbers of the patches that move walls, ascending
   std::vector<int> sliding_patches;   ///< of walls, and patches of no kind, whose nodes slip, ascending
   std::vector<int> standing_patches;  ///< of walls, and patches of no kind, that their rule holds in place, ascending
   std::vector<std::string> notes;
 
   [[nodiscard]] std::vector<Index> const& nodes_of(int patch) const { return motion->boundary().surface(patch).nodes; }
+  /// All that nodes are held on: those of the rules, then `across_axes`.
+  [[nodiscard]] std::vector<SlipSurface> surfaces() const;
 };
 
 /// What a plan reckons with.

@@ -164,7 +164,9 @@ std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, B
 void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                           std::vector<Vec3> const& displacement) {
   ResolvedMotion const& resolved = motion.motion();
-  double const size = motion.boundary().size(), tolerance = resolved.conformity_tolerance * size;
+  double const size = motion.boundary().size();
+  double const tolerance =
+      displacement_tolerance(resolved.conformity_tolerance, size, motion.boundary().precision().resolution());
   // The first request of a boundary node gives its value.
   std::vector<Request const*> first(displacement.size(), nullptr);
   std::unordered_map<Index, Index> asked;
@@ -175,7 +177,7 @@ void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, Bo
   TornCopies torn;
   for (std::size_t c = 0; c < mesh.connections.size(); ++c) {
     auto const& connection = mesh.connections[c];
-    if (!connection.periodic || resolved.interface[c].rule >= 0 || connection.nodes.empty()) continue;
+    if (!connection.periodic || connection.nodes.empty()) continue;
     std::vector<Vec3> from, to;
     for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
       from.push_back(mesh.coordinates[connection.nodes[n]]);

@@ -35,8 +35,8 @@ struct BoundaryRequests {
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                            std::vector<Mat3> const& rotations);
 
-/// Meshes of elements, in which both nodes of a free periodic connection may have requests of their own: throws MotionError where one rule gives
-/// them displacements that are no copies of one another, by more than the conformity tolerance. Cost O(requests).
+/// Meshes of elements, in which both nodes of a periodic connection may have requests of their own: throws MotionError where one rule gives
+/// them displacements that are no copies of one another, by more than evaluate() lets rules differ. Cost O(requests).
 void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                           std::vector<Vec3> const& displacement);
 

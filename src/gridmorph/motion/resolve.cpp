@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/detail/free_periodics.hpp>
 #include <gridmorph/motion/ffd/check_ffd.hpp>
 #include <gridmorph/motion/motion.hpp>
 
@@ -250,19 +251,15 @@ class Resolver {
   }
 
   void settle_interfaces() {
-    std::set<std::string> defaulted;
     for (std::size_t i = 0; i < connections_.size(); ++i) {
-      AnyConnection const& interface = connections_[i];
       int const r = interface_claim_[i];
-      if (r != unclaimed) {
+      if (r != unclaimed)
         result_.interface[i].rule = is<FreeRule>(motion_.rules[r].rule) ? -1 : r;
-      } else if (interface.periodic) {
-        result_.interface[i].by_default = true;
-        defaulted.insert(interface.families.empty() ? interface.name : interface.families.front());
-      }
+      else
+        result_.interface[i].by_default = connections_[i].periodic.has_value();
     }
-    if (!defaulted.empty())
-      took_default("periodic interfaces", {defaulted.begin(), defaulted.end()}, "both copies move freely as one");
+    if (auto const free = detail::free_by_default(mesh_, result_); !free.empty())
+      took_default(detail::periodics, free, detail::move_as_one);
   }
 
   void settle_patches() {
@@ -290,14 +287,13 @@ class Resolver {
   }
 
   void took_default(std::string const& what, std::vector<std::string> const& names, std::string const& decision) {
-    std::string const list = what + " " + quote_list(names);
     if (motion_.strict)
-      problems_.add("no rule names the " + list +
+      problems_.add("no rule names the " + what + " " + quote_list(names) +
                     ", and the motion is strict; give each a rule (the default "
                     "would be: " +
                     decision + ")");
     else
-      result_.notes.push_back(list + ": no rule names them; default: " + decision);
+      result_.notes.push_back(detail::default_note(what, names, decision));
   }
 
   void check_blades(int r) {

@@ -113,19 +113,13 @@ std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests con
 std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given) {
   BoundaryMotion const& motion = *boundary.motion;
   Mesh const& mesh = motion.boundary().mesh();
-  std::unordered_map<Index, std::size_t> slot_of;
-  for (auto const& r : boundary.requests.requests) slot_of.emplace(r.node, std::size_t(r.boundary_node));
   Gathering gathering(mesh, boundary.requests, motion, given);
   double const size = motion.boundary().size();
-  for (int p = 0; p < int(mesh.patches.size()); ++p) {
-    SlipSurface const* surface = motion.slip_surface(p);
-    if (surface == nullptr) continue;
-    double const tolerance = given_tolerance(*surface, size);
-    for (Index const n : boundary.nodes_of(p))
-      if (auto const slot = slot_of.find(n); slot != slot_of.end())
-        gathering.look(n, slot->second, p, *surface, tolerance);
+  for (auto const& at : boundary.given_on_slip) {
+    SlipSurface const& surface = *motion.slip_surface(at.patch);
+    gathering.look(at.node, std::size_t(at.slot), at.patch, surface, given_tolerance(surface, size));
   }
-  return gathering.result("they leave it");
+  return gathering.result("they are put back");
 }
 
 std::string describe(Trim const& trim) {

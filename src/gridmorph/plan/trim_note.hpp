@@ -29,7 +29,7 @@ struct Trim {
 /// asks of them. Cost: O(nodes on slip surfaces, requests).
 std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests const& requests,
                         BoundaryMotion const& motion, std::vector<Vec3> const& boundary);
-/// Of elements: displacements (per BoundaryConditions::known), which arrive as they are given, off the surface.
+/// Of elements: displacements (per BoundaryConditions::known) that a morph puts back before anything else.
 std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given);
 
 /// "the displacement by case.toml:12 takes 47 nodes off the slip surface of 'hub', most zone ... by 0.0012, 3 % of its largest, 0.04; they are put back ...".

@@ -57,7 +57,10 @@ struct UnstructuredPlan {
   Vec3 plane_normal{0, 0, 1};  ///< of a 2-D mesh
   int dimension = 3;
 
-  std::vector<Index32> known;          ///< as in BoundaryConditions: the order of boundary displacements
+  std::vector<Index32> known;  ///< as in BoundaryConditions: the order of boundary displacements
+  /// What puts given displacements back on slip surfaces before all else, of slots in `known`, and how far off it leaves them alone.
+  JointSlip given_slip;
+  std::vector<double> given_tolerance;
   std::vector<Index32> driving;        ///< nodes of moving walls, ascending
   std::vector<Index32> driving_slots;  ///< where they are in `known`
   std::vector<std::uint8_t> turns;     ///< (driving) whether the rotation of the wall there is followed
@@ -99,7 +102,14 @@ struct UnstructuredPlan {
     std::vector<Index32> node;        ///< those
     std::vector<float> fade, detail_fade;
   } start;
-  std::vector<SlipSurface> surfaces;
+  std::vector<SlipSurface> surfaces;  ///< BoundaryConditions::surfaces()
+  /// Nodes that move as one, held on the surfaces of all of them once they have their mean.
+  struct JointNodes {
+    JointSlip slip;   ///< of nodes: owners of images, or nodes of their own
+    CsrGraph images;  ///< entries of `images`, per entry
+  };
+  JointNodes joint;                   ///< but for those with
+  JointNodes joint_sliding;           ///< nodes of `sliding`, once these have gone along
   std::vector<PeriodicImage> images;  ///< their owners and they are in `residual_nodes`
   std::vector<Index32> image_owners;  ///< ascending; known ones have no mean
   CsrGraph images_of_owner;           ///< entries of `images`
@@ -118,6 +128,7 @@ struct UnstructuredPlan {
     CsrGraph surfaces;
     std::vector<Index32> image_owners;
     CsrGraph images_of_owner;  ///< entries of `images`
+    JointNodes joint;
   } middle_boundary;
 };
 

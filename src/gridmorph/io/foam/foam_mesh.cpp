@@ -183,7 +183,14 @@ class Reader {
 
   void add_patches(std::vector<BoundaryEntry> const& entries) {
     Problems problems;
-    std::vector<BoundaryEntry const*> cyclics;
+    std::vector<BoundaryEntry const*> cyclics, mapped;
+    for (BoundaryEntry const& entry : entries)
+      if (entry["type"] == "cyclicAMI" && entry.size > 0) mapped.push_back(&entry);
+    std::vector<Connection> matched = matching_sides(mapped, faces_, mesh_);
+    auto const is_matched = [&](BoundaryEntry const& entry) {
+      return entry["type"] == "cyclicAMI" &&
+             std::any_of(matched.begin(), matched.end(), [&](Connection const& c) { return c.name == entry.name; });
+    };
     for (BoundaryEntry const& entry : entries) {
       if (entry.size == 0) continue;
       std::string const type(entry["type"]);
@@ -194,11 +201,12 @@ class Reader {
         cyclics.push_back(&entry);
       else if (type == "empty")
         add_planes(entry);
-      else
+      else if (!is_matched(entry))
         add_patch(entry, type);
     }
     problems.throw_if_any<MeshError>();
     add_cyclics(cyclics, faces_, mesh_);
+    std::move(matched.begin(), matched.end(), std::back_inserter(mesh_.connections));
   }
 
   void add_subsets() {

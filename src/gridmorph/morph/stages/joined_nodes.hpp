@@ -6,6 +6,7 @@
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/kernels/slip_nodes.hpp>
 #include <gridmorph/morph/stages/asked_back.hpp>
+#include <gridmorph/morph/stages/joint_slip.hpp>
 #include <gridmorph/morph/stages/periodic_table.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -22,11 +23,13 @@ class JoinedNodes {
         copies_(upload(exec, plan.copies, name("copies"))),
         copied_(upload(exec, plan.copied, name("copied"))) {
     auto const& at = plan.middle_boundary;
-    if (at.surfaces.item.size() > 0) surfaces_ = SlipSurfaceTable<Memory>(exec, plan.surfaces);
+    if (at.surfaces.item.size() > 0 || !at.joint.slip.empty())
+      surfaces_ = SlipSurfaceTable<Memory>(exec, plan.surfaces);
     boundary_ = {upload(exec, at.node, name("boundary")), upload(exec, at.slot, name("slot")),
                  upload(exec, at.surfaces.first, name("surfaces::first")),
                  upload(exec, at.surfaces.item, name("surfaces::item")), surfaces_.surfaces};
     if (!at.image_owners.empty()) periodic_ = periodic_table(exec, plan, at.image_owners, at.images_of_owner);
+    joint_ = JointNodes<Exec>(exec, plan, at.joint, surfaces_, back, name("joint"));
     if (!back) return;
     middle_back_ = transposed(exec, plan.middle, name("middle_back"));
     copies_back_ = transposed(exec, plan.copied, &plan.copies, name("copies_back"));
@@ -35,19 +38,28 @@ class JoinedNodes {
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     follow_corners(exec, f);
-    kernels::launch("gridmorph::middle::boundary", exec,
-                    kernels::AskNodes<Memory, false>{boundary_, f.boundary, {}, x, f.u.data(), nullptr});
-    join(exec, f);
+    ask(exec, x, f);
+    joint_.enqueue(exec, x, f.u);
+    copy(exec, f);
   }
-  [[nodiscard]] bool bends() const { return asked_back_.bends(); }
-  void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
+  [[nodiscard]] bool bends() const { return asked_back_.bends() || !joint_.empty(); }
+  void keep(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     follow_corners(exec, f);
     asked_back_.keep(exec, boundary_, f.boundary, f.u);
+    if (joint_.empty()) return;
+    ask(exec, x, f);
+    joint_.keep(exec, f.u);
+  }
+  /// Where fields go on behind the last stage.
+  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    keep(exec, x, f);
+    enqueue(exec, x, f);
   }
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
     using kernels::launch;
     kernels::gather_rows("gridmorph::transposed::copies", exec, copies_back_, g.u.data(), g.u.data());
     launch("gridmorph::transposed::copies::done", exec, kernels::ClearListed<Memory>{copies_, g.u.data()});
+    joint_.transpose(exec, x, g.u);
     launch("gridmorph::transposed::middle::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.u.data()});
     asked_back_.enqueue(exec, boundary_, x, g.u, g.given);
     kernels::gather_rows("gridmorph::transposed::middle", exec, middle_back_, g.u.data(), g.u.data());
@@ -60,8 +72,11 @@ class JoinedNodes {
     follow_corners(exec, r);
     kernels::launch("gridmorph::middle::boundary", exec,
                     kernels::AskNodes<Memory, true>{boundary_, f.boundary, r.boundary, x, f.u.data(), r.u.data()});
-    join(exec, f);
-    join(exec, r);
+    average(exec, f);
+    average(exec, r);
+    joint_.rate(exec, x, f.u, r.u);
+    copy(exec, f);
+    copy(exec, r);
   }
 
  private:
@@ -71,8 +86,16 @@ class JoinedNodes {
   void follow_corners(Exec const& exec, StageField<Exec> const& f) const {
     kernels::interpolate("gridmorph::middle", exec, middle_, f.u.data(), f.u.data());
   }
-  void join(Exec const& exec, StageField<Exec> const& f) const {
+  /// By rules and surfaces, and of what moves as one the mean.
+  void ask(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    kernels::launch("gridmorph::middle::boundary", exec,
+                    kernels::AskNodes<Memory, false>{boundary_, f.boundary, {}, x, f.u.data(), nullptr});
+    average(exec, f);
+  }
+  void average(Exec const& exec, StageField<Exec> const& f) const {
     kernels::launch("gridmorph::middle::periodic", exec, kernels::PeriodicMean<Memory>{periodic_, f.u.data()});
+  }
+  void copy(Exec const& exec, StageField<Exec> const& f) const {
     kernels::launch("gridmorph::copies", exec, kernels::CopyListed<Memory>{copies_, copied_, f.u.data()});
   }
 
@@ -80,6 +103,7 @@ class JoinedNodes {
   SlipSurfaceTable<Memory> surfaces_;
   kernels::SlipNodeTable<Memory> boundary_;
   kernels::PeriodicTable<Memory> periodic_;
+  JointNodes<Exec> joint_;
   List<Exec, Index32> copies_, copied_;
   kernels::TransposedRows<Memory> middle_back_, copies_back_;
   AskedBack<Exec> asked_back_;

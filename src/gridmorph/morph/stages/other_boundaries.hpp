@@ -5,6 +5,7 @@
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/kernels/slip_nodes.hpp>
 #include <gridmorph/morph/stages/asked_back.hpp>
+#include <gridmorph/morph/stages/joint_slip.hpp>
 #include <gridmorph/morph/stages/periodic_table.hpp>
 #include <gridmorph/morph/stages/smooth_field.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
@@ -29,6 +30,8 @@ class OtherBoundaries {
         sliding_(upload(exec, plan.sliding, name("sliding"))),
         sliding_root_(upload(exec, plan.sliding_root, name("sliding_root"))),
         periodic_(periodic_table(exec, plan, plan.image_owners, plan.images_of_owner)),
+        joint_(exec, plan, plan.joint, surfaces_, back != nullptr, name("joint")),
+        joint_sliding_(exec, plan, plan.joint_sliding, surfaces_, back != nullptr, name("joint_sliding")),
         residual_(exec, plan.residual, name("residual")),
         lacked_(room_for<Vec3>(exec, plan.residual_nodes.size(), name("lacked"))),
         fade_(upload(exec, plan.fade, name("fade"))),
@@ -50,21 +53,25 @@ class OtherBoundaries {
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     start_.enqueue(exec, x, f);
-    kernels::launch("gridmorph::residual_nodes", exec,
-                    kernels::AskNodes<Memory, false>{nodes_, f.boundary, {}, x, f.work.data(), nullptr});
+    ask(exec, x, f);
+    join<false>(exec, x, f);
     take(exec, x, f);
   }
   /// The same, kept for the transpose.
   void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
-    keep(exec, x, f);
-    kernels::launch("gridmorph::residual_nodes", exec,
-                    kernels::AskNodes<Memory, false>{nodes_, f.boundary, {}, x, f.work.data(), nullptr});
+    start_.enqueue(exec, x, f);
+    asked_back_.keep(exec, nodes_, f.boundary, f.work);
+    ask(exec, x, f);
+    join<true>(exec, x, f);
     take(exec, x, f);
   }
-  [[nodiscard]] bool bends() const { return asked_back_.bends(); }
+  [[nodiscard]] bool bends() const { return asked_back_.bends() || !joint_.empty() || !joint_sliding_.empty(); }
   void keep(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     start_.enqueue(exec, x, f);
     asked_back_.keep(exec, nodes_, f.boundary, f.work);
+    if (joint_.empty() && joint_sliding_.empty()) return;
+    ask(exec, x, f);
+    join<true>(exec, x, f);
   }
 
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
@@ -74,13 +81,15 @@ class OtherBoundaries {
     if (!residual_.empty()) spread_back(exec, x, g);
     launch("gridmorph::transposed::residual_nodes::take", exec,
            kernels::TakeAskedBack<Memory>{nodes_.node, g.u.data(), g.work.data(), lacked_.data()});
-    launch("gridmorph::transposed::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.work.data()});
     if (sliding_.extent(0) > 0) {
+      joint_sliding_.transpose(exec, x, g.work);
+      launch("gridmorph::transposed::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.work.data()});
       kernels::gather_rows("gridmorph::transposed::sliding_columns", exec, sliding_back_, g.work.data(), g.work.data());
       launch("gridmorph::transposed::sliding_columns::done", exec,
              kernels::ClearListed<Memory>{sliding_, g.work.data()});
-      launch("gridmorph::transposed::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.work.data()});
     }
+    joint_.transpose(exec, x, g.work);
+    launch("gridmorph::transposed::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.work.data()});
     asked_back_.enqueue(exec, nodes_, x, g.work, g.given);
     start_.transpose(exec, x, g);
   }
@@ -91,6 +100,14 @@ class OtherBoundaries {
     start_.enqueue(exec, x, r);
     kernels::launch("gridmorph::residual_nodes", exec,
                     kernels::AskNodes<Memory, true>{nodes_, f.boundary, r.boundary, x, f.work.data(), r.work.data()});
+    average(exec, f);
+    average(exec, r);
+    joint_.rate(exec, x, f.work, r.work);
+    if (sliding_.extent(0) > 0) {
+      go_along(exec, f);
+      go_along(exec, r);
+      joint_sliding_.rate(exec, x, f.work, r.work);
+    }
     take(exec, x, f);
     take(exec, x, r);
   }
@@ -165,14 +182,34 @@ class OtherBoundaries {
     kernels::TransposedRows<Memory> slots_back_;
   };
 
+  /// By rules, and by the surfaces that each node lies on.
+  void ask(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    kernels::launch("gridmorph::residual_nodes", exec,
+                    kernels::AskNodes<Memory, false>{nodes_, f.boundary, {}, x, f.work.data(), nullptr});
+  }
+  void average(Exec const& exec, StageField<Exec> const& f) const {
+    kernels::launch("gridmorph::periodic", exec, kernels::PeriodicMean<Memory>{periodic_, f.work.data()});
+  }
+  void go_along(Exec const& exec, StageField<Exec> const& f) const {
+    kernels::launch("gridmorph::sliding_columns", exec,
+                    kernels::CopyListed<Memory>{sliding_, sliding_root_, f.work.data()});
+    average(exec, f);
+  }
+  /// What moves as one, on the surfaces of all of it; columns on walls that slip go along.
+  template <bool Keep>
+  void join(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    average(exec, f);
+    if constexpr (Keep) joint_.keep(exec, f.work);
+    joint_.enqueue(exec, x, f.work);
+    if (sliding_.extent(0) == 0) return;
+    go_along(exec, f);
+    if constexpr (Keep) joint_sliding_.keep(exec, f.work);
+    joint_sliding_.enqueue(exec, x, f.work);
+  }
+
   /// What is asked for holds; what the field so far lacked of it spreads.
   void take(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
-    launch("gridmorph::periodic", exec, kernels::PeriodicMean<Memory>{periodic_, f.work.data()});
-    if (sliding_.extent(0) > 0) {
-      launch("gridmorph::sliding_columns", exec, kernels::CopyListed<Memory>{sliding_, sliding_root_, f.work.data()});
-      launch("gridmorph::periodic", exec, kernels::PeriodicMean<Memory>{periodic_, f.work.data()});
-    }
     launch("gridmorph::residual_nodes::take", exec,
            kernels::TakeAsked<Memory>{nodes_.node, f.u.data(), f.work.data(), lacked_.data()});
     if (residual_.empty()) return;
@@ -205,6 +242,7 @@ class OtherBoundaries {
   kernels::SlipNodeTable<Memory> nodes_;
   List<Exec, Index32> sliding_, sliding_root_;
   kernels::PeriodicTable<Memory> periodic_;
+  JointNodes<Exec> joint_, joint_sliding_;
   SmoothField<Exec, Vec3> residual_;
   List<Exec, Vec3> lacked_;
   List<Exec, float> fade_;

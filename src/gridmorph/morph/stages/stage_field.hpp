@@ -36,10 +36,11 @@ struct StageField {
   kernels::Field<double> residuals{nullptr, nullptr, nullptr};  ///< on known sides of chains
 
   // Elements.
-  List<Exec, Vec3> u;      ///< (n_nodes)
-  List<Exec, Vec3> work;   ///< (n_nodes)
-  List<Exec, Vec3> given;  ///< of gradients: those of boundary nodes
-  List<Exec, Vec3> read;   ///< of gradients: those of what nodes read of lattices, (n_nodes)
+  List<Exec, Vec3> u;           ///< (n_nodes)
+  List<Exec, Vec3> work;        ///< (n_nodes)
+  List<Exec, Vec3> given;       ///< of gradients: those of boundary nodes
+  List<Exec, Vec3> kept_given;  ///< `boundary` on slip surfaces, where these hold any of it
+  List<Exec, Vec3> read;        ///< of gradients: those of what nodes read of lattices, (n_nodes)
   List<Exec, kernels::AffineMotion>
       frames;  ///< motions of the moving walls around their nodes, then of what moves beside them
 };

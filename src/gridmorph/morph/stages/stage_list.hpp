@@ -6,6 +6,7 @@
 #include <gridmorph/morph/stages/far_field.hpp>
 #include <gridmorph/morph/stages/frozen_shifts.hpp>
 #include <gridmorph/morph/stages/joined_nodes.hpp>
+#include <gridmorph/morph/stages/joint_slip.hpp>
 #include <gridmorph/morph/stages/near_field.hpp>
 #include <gridmorph/morph/stages/near_layers.hpp>
 #include <gridmorph/morph/stages/other_boundaries.hpp>
@@ -34,6 +35,7 @@ struct StageList {
   std::vector<StageField<Exec>> fields;  ///< that one pass through the stages may have
   std::variant<WriteBlocks<Exec>, WriteElements<Exec>> writer;
   std::optional<FrozenShifts<Exec>> shifts;  ///< after it
+  std::optional<GivenSlip<Exec>> given{};    ///< before all stages; shifts know what is given as the caller gives it
 };
 
 /// x: only while the list is made.
@@ -81,6 +83,7 @@ StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Basel
   if (turns) out.stages.emplace_back(AddTurns<Exec>(turns));
   out.stages.emplace_back(OtherBoundaries<Exec>(exec, plan, back));
   out.stages.emplace_back(JoinedNodes<Exec>(exec, plan, back != nullptr));
+  if (!plan.given_slip.empty()) out.given.emplace(exec, plan);
   auto const n = std::size_t(plan.n_nodes);
   for (int f = 0; f < (options.velocity || options.transpose ? 2 : 1); ++f) {
     StageField<Exec> field;
@@ -88,6 +91,7 @@ StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Basel
     field.work = room_for<Vec3>(exec, n, "gridmorph::Morpher::work");
     field.frames = room_for<kernels::AffineMotion>(exec, plan.driving.size() + plan.beside_slots.size(),
                                                    "gridmorph::Morpher::frames");
+    if (out.given) field.kept_given = room_for<Vec3>(exec, plan.known.size(), "gridmorph::Morpher::kept_given");
     if (options.transpose && f == 1) {
       field.given = room_for<Vec3>(exec, plan.known.size(), "gridmorph::Morpher::given");
       field.read = room_for<Vec3>(exec, n, "gridmorph::Morpher::read");

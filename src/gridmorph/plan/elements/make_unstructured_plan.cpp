@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/check_coordinates.hpp>
+#include <gridmorph/plan/blocks/stage_builder.hpp>
 #include <gridmorph/plan/elements/middle_rows.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
@@ -42,7 +43,15 @@ void UnstructuredPlanner::take_boundary() {
   UnstructuredPlan& plan = out_.plan;
   out_.notes = b.notes;
   plan.known = b.known;
-  plan.surfaces = b.motion->slip_surfaces();
+  plan.surfaces = b.surfaces();
+  plan.given_slip = b.given_slip;
+  for (std::size_t k = 0; k < b.given_slip.of.size(); ++k) {
+    double tolerance = 0;
+    for (Index s = b.given_slip.first[k]; s < b.given_slip.first[k + 1]; ++s)
+      tolerance = std::max(tolerance, given_tolerance(plan.surfaces[std::size_t(b.given_slip.surface[std::size_t(s)])],
+                                                      b.motion->boundary().size()));
+    plan.given_tolerance.push_back(tolerance);
+  }
   plan.images = b.images;
   plan.rotations = b.rotations;
   plan.middle = middle_rows(mesh_, out_.graph);
@@ -71,6 +80,8 @@ void UnstructuredPlanner::measure_distances() {
     if (!b.drives[k]) is_other_[std::size_t(b.known[k])] = 1;
   for (Index32 const n : b.slip_nodes) is_other_[std::size_t(n)] = 1;
   for (auto const& image : b.images) is_other_[std::size_t(image.node)] = is_other_[std::size_t(image.owner)] = 1;
+  for (Index32 const n : b.joint_slip.of)
+    is_other_[std::size_t(n)] = 1;  // where periodic sides meet nodes have no images
   for (Index32 const n : out_.plan.middle.target) is_other_[std::size_t(n)] = 0;
   std::vector<Index32> walls, others;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {

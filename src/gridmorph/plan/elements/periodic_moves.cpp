@@ -15,13 +15,6 @@ std::vector<RigidTransform> periodic_moves(HostInstance const& host, Mesh const&
   std::vector<RigidTransform> out{RigidTransform{}};
   if (joined.empty()) return out;
   double const size = extent_of(host, mesh.coordinates).size();
-  // Transforms are alike where they take all places to the same one.
-  auto const alike = [&](RigidTransform const& a, RigidTransform const& b) {
-    double difference = distance(a.translation, b.translation);
-    for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
-      difference += size * distance(a.rotation * e, b.rotation * e);
-    return difference < 1e-4 * size;
-  };
   for (auto const& connection : mesh.connections) {
     if (!connection.periodic || connection.nodes.empty()) continue;
     std::vector<Vec3> from, to;
@@ -36,7 +29,8 @@ std::vector<RigidTransform> periodic_moves(HostInstance const& host, Mesh const&
     for (RigidTransform const& step : {once, once.inverse()}) {
       RigidTransform move = step;
       for (int k = 0; k < passages; ++k) {
-        if (std::none_of(out.begin(), out.end(), [&](RigidTransform const& other) { return alike(move, other); }))
+        if (std::none_of(out.begin(), out.end(),
+                         [&](RigidTransform const& other) { return are_alike(move, other, size); }))
           out.push_back(move);
         move = move.then(step);
       }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
 
 namespace gridmorph::detail {
@@ -13,6 +14,7 @@ void UnstructuredPlanner::plan_residual() {
   UnstructuredPlan& plan = out_.plan;
   plan_other_nodes();
   plan_middle_nodes();
+  plan_joint_nodes();
   plan.fade.assign(is_other_.size(), 0);
   for_all(host_, "gridmorph::fade", mesh_.n_nodes(), [&](Index at) {
     auto const n = std::size_t(at);
@@ -185,6 +187,51 @@ void UnstructuredPlanner::plan_middle_nodes() {
     at.surfaces.add(b.slip_surfaces[Index(k)]);
   }
   group_images(true, at.image_owners, at.images_of_owner);
+}
+
+void UnstructuredPlanner::plan_joint_nodes() {
+  UnstructuredPlan& plan = out_.plan;
+  BoundaryConditions const& b = out_.boundary;
+  Mask slides = mask(), has_images = mask();
+  for (Index32 const n : plan.sliding) slides[std::size_t(n)] = 1;
+  std::unordered_map<Index32, std::vector<Index32>> images_of;
+  for (std::size_t k = 0; k < b.images.size(); ++k) {
+    has_images[std::size_t(b.images[k].node)] = has_images[std::size_t(b.images[k].owner)] = 1;
+    images_of[b.images[k].owner].push_back(Index32(k));
+  }
+  JointSlip const& all = b.joint_slip;
+  for (std::size_t k = 0; k < all.of.size(); ++k) {
+    Index32 const owner = all.of[k];
+    std::vector<Index32> const images = images_of.contains(owner) ? images_of.at(owner) : std::vector<Index32>();
+    bool const slide = slides[std::size_t(owner)] != 0 || std::any_of(images.begin(), images.end(), [&](Index32 i) {
+                         return slides[std::size_t(b.images[std::size_t(i)].node)] != 0;
+                       });
+    auto& to = is_middle_[std::size_t(owner)] != 0 ? plan.middle_boundary.joint
+               : slide                             ? plan.joint_sliding
+                                                   : plan.joint;
+    to.images.add(images);
+    to.slip.of.push_back(owner);
+    for (auto s = std::size_t(all.first[k]); s < std::size_t(all.first[k + 1]); ++s) {
+      to.slip.surface.push_back(all.surface[s]);
+      to.slip.place.push_back(all.place[s]);
+      to.slip.turned.push_back(all.turned[s]);
+    }
+    to.slip.first.push_back(Index(to.slip.surface.size()));
+  }
+  // What goes along with a wall that slips may lie on another surface that slips.
+  for (std::size_t k = 0; k < b.slip_nodes.size(); ++k) {
+    Index32 const n = b.slip_nodes[k];
+    if (slides[std::size_t(n)] == 0 || has_images[std::size_t(n)] != 0) continue;
+    JointSlip& to = plan.joint_sliding.slip;
+    plan.joint_sliding.images.add({});
+    to.of.push_back(n);
+    for (Index32 const s : b.slip_surfaces[Index(k)]) {
+      to.surface.push_back(s);
+      to.place.push_back(n);
+      to.turned.push_back(-1);
+    }
+    to.first.push_back(Index(to.surface.size()));
+  }
 }
 
 std::function<double(Index32, Index32)> UnstructuredPlanner::inverse_distance() const {

@@ -130,6 +130,8 @@ class UnstructuredPlanner {
   void plan_other_nodes();
   /// What boundaries ask of further nodes of second-order elements.
   void plan_middle_nodes();
+  /// What nodes that move as one are held on.
+  void plan_joint_nodes();
   /// Entries of BoundaryConditions::images by their owners, of further nodes or of all others.
   void group_images(bool middle, std::vector<Index32>& owners, CsrGraph& images_of_owner) const;
   /// What boundaries with a rule ask for, at nodes that slide or have images.
