@@ -185,6 +185,24 @@ TEST(CommonMotion, TurnsAboutTheAxisOfASurfaceOfRevolutionAndOfPeriodicSides) {
   }
 }
 
+TEST(CommonMotion, IsThatOfColumnsOnWallsThatSlideToo) {
+  // Walls of no kind, on which nodes slide, have columns that go along with them.
+  Mesh mesh = box_around({7, 7, 7}, in_the_middle);
+  for (Patch& patch : mesh.patches)
+    if (patch.name.starts_with("k_")) patch.kind = PatchKind::wall;
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const p = mesh.coordinates[n];
+    mesh.coordinates.set(n, {p.x, p.y, p.z < 2 ? 0.1 * p.z : p.z});
+  }
+  Case const c(mesh);
+  RigidTransform const r = rotation_about({3, -2, 0}, {0, 0, 1}, 1.2);
+  Map const map = [&](Vec3 const& p) { return r(Vec3{p.x, p.y, 0.5 * p.z}); };
+  auto const scaled = c.morph(
+      motion_of({rule_for({"body", "i_*", "j_*", "k_max"}, moves_as(map)), rule_for({"k_min"}, SlipRule{})}), coarse());
+  ASSERT_FALSE(scaled.prepared.plan.parts.front().plan->sliding.empty());
+  EXPECT_LE(distance_from(scaled.x, c.mesh.coordinates, map), 1e-12);
+}
+
 TEST(CommonMotion, IsTakenOffWhereWallsMoveBesideIt) {
   // Turned as a whole, and the body by a little besides: as the little turn alone, seen from the frame that turns, but for what is small of second order.
   Case const c(box_around({7, 7, 7}, in_the_middle));

@@ -139,6 +139,18 @@ std::vector<Kind> kinds() {
        {rule_for({"body", "i_*", "j_*"}, RigidRule{{{{1.2, 0.4, 0}, {-0.3, 1, 0}, {0, 0, 1}}}, {}}),
         rule_for({"k_min", "k_max"}, SlipRule{})},
        with_layers(1)},
+      {"common_motion_of_sliding_columns",
+       [] {
+         Mesh mesh = box();
+         for (Patch& patch : mesh.patches)
+           if (patch.name == "k_min") patch.kind = PatchKind::wall;
+         for (Index n = 0; n < mesh.n_nodes(); ++n)
+           if (Vec3 const p = mesh.coordinates[n]; p.z < 2) mesh.coordinates.set(n, {p.x, p.y, 0.1 * p.z});
+         return mesh;
+       },
+       {rule_for({"body", "i_*", "j_*", "k_max"}, RigidRule{{{{1.2, 0.4, 0}, {-0.3, 1, 0}, {0, 0, 1.1}}}, {}}),
+        rule_for({"k_min"}, SlipRule{})},
+       with_layers(1)},
       {"two_parts",
        two_parts,
        {moves(), rule_for({"side"}, translation({0.1, 0, 0})), rule_for({"j_*", "k_*"}, SlipRule{})},

@@ -2,6 +2,7 @@
 //
 //   the fit once more, to u - A(x) at boundary nodes, which mathematics has nothing left for: A is then good to the last bits of its coefficients
 //   u - A(x) of all nodes, whose means get A at their own place
+//   nodes that go along with another one: A(x) less A there besides
 //
 // Cost: 72 bytes per node.
 #pragma once
@@ -66,6 +67,36 @@ struct AddCommonAt {
 
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u[node(k)] += move->map(frame, x[node(k)]); }
+};
+
+/// y at listed nodes less y at others, one for each.
+template <class MemorySpace>
+struct CommonDistances {
+  CommonFrame frame;
+  Kokkos::View<std::int32_t const*, MemorySpace> node, from;
+  Field<double const> x;
+  Vec3* distance;
+
+  [[nodiscard]] Index size() const { return Index(node.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
+    Vec3 const d = x[node(k)] - x[from(k)];
+    distance[k] = {dot(frame.axis[0], d), dot(frame.axis[1], d), dot(frame.axis[2], d)};
+  }
+};
+
+/// u(n) += A(x(n)) less A at the other node.
+template <class MemorySpace>
+struct AddCommonDistances {
+  Kokkos::View<std::int32_t const*, MemorySpace> node;
+  Kokkos::View<Vec3 const*, MemorySpace> distance;
+  CommonMove const* move;
+  Vec3* u;
+
+  [[nodiscard]] Index size() const { return Index(distance.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
+    Vec3 const d = distance(k);
+    u[node(k)] += d.x * move->map.a[1] + d.y * move->map.a[2] + d.z * move->map.a[3];
+  }
 };
 
 }  // namespace gridmorph::kernels

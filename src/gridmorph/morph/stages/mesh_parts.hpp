@@ -47,7 +47,7 @@ struct ElementStages {
       walls.emplace_back(NearField<Exec>(exec, plan, back));
     if (plan.background) walls.emplace_back(FarField<Exec>(exec, plan, velocity, back != nullptr));
     if (turns) walls.emplace_back(AddTurns<Exec>(turns));
-    others.emplace_back(OtherBoundaries<Exec>(exec, plan, back));
+    others.emplace_back(OtherBoundaries<Exec>(exec, plan, back, common, x));
     others.emplace_back(JoinedNodes<Exec>(exec, plan, back != nullptr, common, x));
   }
 
@@ -126,7 +126,7 @@ class MorphParts {
     std::array<List<Exec, Vec3>, 2> given, left;  ///< of each field; left: less what is in common
     List<Exec, Vec3> of_left;                     ///< gradients of that
     List<Exec, Vec3> before;  ///< where transposes are taken at: displacements before what is in common is added
-    Index n_node_chunks = 0, n_middle_chunks = 0;  ///< of gradients that are summed
+    Index n_node_chunks = 0, n_other_chunks = 0;  ///< of gradients that are summed
 
     Part(Exec const& exec, PartPlan const& part, Baseline const& all, bool velocity, std::vector<Vec3> const* positions)
         : nodes(upload(exec, part.nodes, name("nodes"))),
@@ -140,10 +140,11 @@ class MorphParts {
       std::size_t const n_fields = velocity || back ? 2 : 1;
       if (back) {
         n_node_chunks = kernels::common_chunks(Index(part.nodes.size()));
-        n_middle_chunks = kernels::common_chunks(part.plan->middle.size());
+        n_other_chunks =
+            kernels::common_chunks(part.plan->middle.size()) + kernels::common_chunks(Index(part.plan->sliding.size()));
       }
       if (part.common) {
-        common.emplace(exec, *part.common, int(n_fields), n_node_chunks + n_middle_chunks, true);
+        common.emplace(exec, *part.common, int(n_fields), n_node_chunks + n_other_chunks, true);
         if (back) before = room_for<Vec3>(exec, part.nodes.size(), name("before"));
       }
       for (std::size_t f = 0; f < n_fields; ++f) {
@@ -187,7 +188,10 @@ class MorphParts {
       if (common) common->take(exec, given[0].data(), 0, left[0]);
       linearise(stages.walls, on ? stages.walls.size() : n_that_bend(stages.walls), on, exec, x, field(0, left));
       if (!on) return;
-      if (common) Kokkos::deep_copy(exec, before, fields[0].u);
+      if (common)
+        kernels::launch(
+            "gridmorph::parts::before", exec, 0, Index(before.extent(0)),
+            gridmorph::detail::CopyVectors{VectorView<Memory>(fields[0].u).array(), as_field(before.data())});
       add(exec);
       linearise(stages.others, n_others, false, exec, x, whole(0));
     }
@@ -211,7 +215,7 @@ class MorphParts {
       g.given = given[1];
       clear<Vec3>(exec, g.given);
       transpose_all(stages.walls, exec, x, field(0, left), g);
-      if (common) common->fit_back(exec, n_node_chunks + n_middle_chunks, left[0].data(), 0, 2, of_left, of_given);
+      if (common) common->fit_back(exec, n_node_chunks + n_other_chunks, left[0].data(), 0, 2, of_left, of_given);
       launch("gridmorph::transposed::parts::slots", exec,
              kernels::AddPart<Memory>{slots, of_given.data(), of_left.data(), all.boundary});
     }
