@@ -83,6 +83,22 @@ Mesh two_bodies() {
   });
 }
 
+/// As a whole, and by a little that is the body's own.
+Rule turned_and_bent(double size = 0.02) {
+  RigidTransform const turn = rotation_about({1, 2, 3}, {1, -2, 1}, 0.7);
+  return FunctionRule{"turned and bent", [=](std::span<Vec3 const> x, std::span<Vec3> u) {
+                        for (std::size_t n = 0; n < x.size(); ++n)
+                          u[n] = turn(x[n] + size * Vec3{std::sin(x[n].y), 0.3, x[n].x * x[n].x / 7}) - x[n];
+                      }};
+}
+/// A box around a body, and beyond a gap one that has a part of its side to itself.
+Mesh two_parts() {
+  Mesh mesh = part_of(
+      box_around({12, 7, 7}, in_the_middle), [](Vec3 const& p) { return p.x < 7 || p.x > 8; }, "side",
+      PatchKind::inflow);
+  return mesh;
+}
+
 struct Kind {
   std::string name;
   std::function<Mesh()> mesh;
@@ -126,6 +142,37 @@ std::vector<Kind> kinds() {
       {"airfoil", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, with_layers(2)},
       {"airfoil_alone", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, {}},
       {"periodic", [] { return periodic_flat_box(8, 5, 2); }, {rule_for({"j_min"}, translation({0, 0.3, 0}))}, {}},
+      {"common_motion",
+       box,
+       {rule_for({"body"}, turned_and_bent()), rule_for({"?_min", "?_max"}, turned_and_bent(0))},
+       with_layers(1)},
+      {"common_motion_along_a_plane",
+       box,
+       {rule_for({"body", "i_*", "j_*"}, RigidRule{{{{1.2, 0.4, 0}, {-0.3, 1, 0}, {0, 0, 1}}}, {}}),
+        rule_for({"k_min", "k_max"}, SlipRule{})},
+       with_layers(1)},
+      {"common_motion_of_sliding_columns",
+       [] {
+         Mesh mesh = box();
+         for (Patch& patch : mesh.patches)
+           if (patch.name == "k_min") patch.kind = PatchKind::wall;
+         for (Index n = 0; n < mesh.n_nodes(); ++n)
+           if (Vec3 const p = mesh.coordinates[n]; p.z < 2) mesh.coordinates.set(n, {p.x, p.y, 0.1 * p.z});
+         return mesh;
+       },
+       {rule_for({"body", "i_*", "j_*", "k_max"}, RigidRule{{{{1.2, 0.4, 0}, {-0.3, 1, 0}, {0, 0, 1.1}}}, {}}),
+        rule_for({"k_min"}, SlipRule{})},
+       with_layers(1)},
+      {"two_parts",
+       two_parts,
+       {moves(), rule_for({"side"}, translation({0.1, 0, 0})), rule_for({"j_*", "k_*"}, SlipRule{})},
+       with_layers(1)},
+      {"common_motion_of_second_order",
+       [] { return second_order(box(), true, [](Vec3 const& p) {
+              return p + Vec3{0.01 * p.y * p.y, 0, 0};
+            }); },
+       {rule_for({"body"}, turned_and_bent()), rule_for({"?_min", "?_max"}, turned_and_bent(0))},
+       with_layers(1)},
       {"revolution",
        half_annulus,
        {rule_for({"j_min"}, bends(0.03, {1, 0, 0})), rule_for({"j_max"}, on_the_case()),

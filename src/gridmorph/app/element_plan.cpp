@@ -116,12 +116,17 @@ class ElementPlan final : public AnyPlan {
     make_stage_folder(folder);
     auto const path = [&](std::size_t n) { return (folder / stage_names[n]).string(); };
     write_regions(path(0), morphed);
-    if (prepared_.report.wrap) write_mesh(path(1), wrap_mesh(*prepared_.report.wrap));
-    if (!prepared_.plan.background) return;
-    Mesh background = prepared_.plan.background->mesh;
+    // Of several parts the first one with moving walls.
+    auto const parts = planned_parts();
+    auto const part = std::find_if(parts.begin(), parts.end(),
+                                   [](PlannedPart const& p) { return p.report.wrap || p.plan.background; });
+    if (part == parts.end()) return;
+    if (part->report.wrap) write_mesh(path(1), wrap_mesh(*part->report.wrap));
+    if (!part->plan.background) return;
+    Mesh background = part->plan.background->mesh;
     write_mesh(path(2), background);
     Coordinates moved(background.n_nodes());
-    auto const u = morpher_->background_displacements();
+    auto const u = morpher_->background_displacements(part->number);
     for (Index n = 0; n < moved.size(); ++n) moved.set(n, background.coordinates[n] + u.array()[n]);
     background.coordinates = moved;
     write_mesh(path(3), background);
@@ -162,49 +167,38 @@ class ElementPlan final : public AnyPlan {
   }
 
   [[nodiscard]] nlohmann::json json() const override {
-    auto const& r = prepared_.report;
-    auto const& p = prepared_.plan;
-    nlohmann::json plan{
-        {"offset", r.offset},
-        {"columns", r.n_columns},
-        {"layer_height", r.layer_height},
-        {"elements",
-         {{"near", r.regions.n_near}, {"partially_wrapped", r.regions.n_partial}, {"far", r.regions.n_far}}},
-        {"layers", p.near.n_layers()},
-        {"background",
-         {{"shape", shape()},
-          {"zones", p.background ? p.background->mesh.zones.size() : 0},
-          {"nodes", p.background ? p.background->mesh.n_nodes() : 0}}},
-        {"wrap_nodes", r.wrap_nodes},
-        {"wrap_nodes_outside", r.wrap_outside},
-        {"wrap_largest_distance", r.wrap_distance},
-        {"far_nodes", r.far_nodes},
-        {"far_nodes_outside", r.far_outside},
-        {"unreached_nodes", r.unreached},
-        {"seconds",
-         {{"boundary", r.seconds.boundary},
-          {"columns", r.seconds.columns},
-          {"distances", r.seconds.distances},
-          {"wrap", r.seconds.wrap},
-          {"layers", r.seconds.layers},
-          {"background", r.seconds.background},
-          {"location", r.seconds.location},
-          {"residual", r.seconds.residual}}}};
+    nlohmann::json plan = json(prepared_.report, prepared_.plan);
+    if (!prepared_.plan.parts.empty()) {
+      nlohmann::json parts = nlohmann::json::array();
+      for (PlannedPart const& part : planned_parts()) {
+        parts.push_back(json(part.report, part.plan));
+        parts.back()["nodes"] = part.plan.n_nodes;
+        parts.back()["common_motion"] = prepared_.plan.parts[part.number].common.has_value();
+      }
+      plan["parts"] = std::move(parts);
+    }
     return {{"elements", mesh_.mesh.n_elements()}, {"plan", std::move(plan)}};
   }
 
   [[nodiscard]] std::string headline() const override {
-    auto const& r = prepared_.report;
-    auto const& p = prepared_.plan;
-    std::string text = fmt::format(
-        "near field: {}, {} columns up to {:.4g} high, {} near elements, {} partially wrapped, {} far; {} layers\n",
-        r.wrap ? fmt::format("offset {:.4g}", r.offset) : std::string("the hole of the background mesh"), r.n_columns,
-        r.layer_height, r.regions.n_near, r.regions.n_partial, r.regions.n_far, p.near.n_layers());
-    if (p.background)
-      text += fmt::format(
-          "background mesh: {}, {} zones, {} nodes; {} on the wrap; {} nodes of the mesh take their displacement from "
-          "it\n",
-          shape(), p.background->mesh.zones.size(), p.background->mesh.n_nodes(), r.wrap_nodes, r.far_nodes);
+    if (prepared_.plan.parts.empty()) return headline(prepared_.report, prepared_.plan);
+    std::string text;
+    Index at_rest = 0, n_at_rest = 0;
+    for (PlannedPart const& part : planned_parts()) {
+      bool const common = prepared_.plan.parts[part.number].common.has_value();
+      if (part.plan.driving.empty() && !common) {
+        ++at_rest;
+        n_at_rest += part.plan.n_nodes;
+        continue;
+      }
+      text +=
+          fmt::format("part {} of {}, {} nodes{}\n", part.number + 1, prepared_.plan.parts.size(), part.plan.n_nodes,
+                      common ? ": the motion that its boundaries have in common, and what is left of theirs" : "");
+      if (!part.plan.driving.empty()) text += headline(part.report, part.plan);
+    }
+    if (at_rest > 0)
+      text += fmt::format("{} part{} without moving walls, {} nodes: the motions of other boundaries alone\n", at_rest,
+                          at_rest == 1 ? "" : "s", n_at_rest);
     return text;
   }
 
@@ -215,9 +209,63 @@ class ElementPlan final : public AnyPlan {
   [[nodiscard]] NearCells const& near() const override { return near_; }
 
  private:
+  /// A plan without parts, with what was found on the way.
+  struct PlannedPart {
+    UnstructuredReport const& report;
+    UnstructuredPlan const& plan;
+    std::size_t number;
+  };
+  [[nodiscard]] std::vector<PlannedPart> planned_parts() const {
+    if (prepared_.plan.parts.empty()) return {{prepared_.report, prepared_.plan, 0}};
+    std::vector<PlannedPart> out;
+    for (std::size_t n = 0; n < prepared_.plan.parts.size(); ++n)
+      out.push_back({prepared_.part_reports[n], *prepared_.plan.parts[n].plan, n});
+    return out;
+  }
+
+  static nlohmann::json json(UnstructuredReport const& r, UnstructuredPlan const& p) {
+    return {{"offset", r.offset},
+            {"columns", r.n_columns},
+            {"layer_height", r.layer_height},
+            {"elements",
+             {{"near", r.regions.n_near}, {"partially_wrapped", r.regions.n_partial}, {"far", r.regions.n_far}}},
+            {"layers", r.n_layers},
+            {"background",
+             {{"shape", shape(r)},
+              {"zones", p.background ? p.background->mesh.zones.size() : 0},
+              {"nodes", p.background ? p.background->mesh.n_nodes() : 0}}},
+            {"wrap_nodes", r.wrap_nodes},
+            {"wrap_nodes_outside", r.wrap_outside},
+            {"wrap_largest_distance", r.wrap_distance},
+            {"far_nodes", r.far_nodes},
+            {"far_nodes_outside", r.far_outside},
+            {"unreached_nodes", r.unreached},
+            {"seconds",
+             {{"boundary", r.seconds.boundary},
+              {"columns", r.seconds.columns},
+              {"distances", r.seconds.distances},
+              {"wrap", r.seconds.wrap},
+              {"layers", r.seconds.layers},
+              {"background", r.seconds.background},
+              {"location", r.seconds.location},
+              {"residual", r.seconds.residual}}}};
+  }
+
+  static std::string headline(UnstructuredReport const& r, UnstructuredPlan const& p) {
+    std::string text = fmt::format(
+        "near field: {}, {} columns up to {:.4g} high, {} near elements, {} partially wrapped, {} far; {} layers\n",
+        r.wrap ? fmt::format("offset {:.4g}", r.offset) : std::string("the hole of the background mesh"), r.n_columns,
+        r.layer_height, r.regions.n_near, r.regions.n_partial, r.regions.n_far, r.n_layers);
+    if (p.background)
+      text += fmt::format(
+          "background mesh: {}, {} zones, {} nodes; {} on the wrap; {} nodes of the mesh take their displacement from "
+          "it\n",
+          shape(r), p.background->mesh.zones.size(), p.background->mesh.n_nodes(), r.wrap_nodes, r.far_nodes);
+    return text;
+  }
+
   /// What the background mesh fills.
-  [[nodiscard]] std::string shape() const {
-    auto const& r = prepared_.report;
+  static std::string shape(UnstructuredReport const& r) {
     if (!r.wrap) return "read from a file";
     if (r.wrap->tube) return "O-type around a tube";
     std::string text = r.wrap->domain.chart.name();

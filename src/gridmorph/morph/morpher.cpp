@@ -3,6 +3,7 @@
 #include <gridmorph/morph/detail/baseline.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/stages/run_stages.hpp>
 #include <gridmorph/morph/stages/stage_list.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
 #include <gridmorph/plan/prepare.hpp>
@@ -61,18 +62,6 @@ struct Morpher<Exec>::State {
     list.given->enqueue(exec, flat.field, f);
   }
 
-  /// Calls run(stage) for each stage in a profiling region of its own.
-  template <class Run>
-  void for_each_stage(Run const& run) const {
-    for (auto const& any : list.stages)
-      std::visit(
-          [&](auto const& stage) {
-            ProfilingRegion const region(stage.region);
-            run(stage);
-          },
-          any);
-  }
-
   template <bool Move>
   void write(Exec const& exec, std::span<Field const> fields, std::span<Out const> out) const {
     static std::string const name = "gridmorph::all nodes";
@@ -92,7 +81,7 @@ struct Morpher<Exec>::State {
         Field f = list.fields[k];
         f.boundary = boundary[done + k].array();
         put_back(exec, f);
-        for_each_stage([&](auto const& stage) { stage.enqueue(exec, flat.field, f); });
+        stages::enqueue_all(list.stages, exec, flat.field, f);
       }
       write<Move>(exec, {list.fields.data(), n}, out.subspan(done, n));
       if (!list.shifts) continue;
@@ -115,51 +104,18 @@ struct Morpher<Exec>::State {
       ProfilingRegion const region(list.given->region);
       list.given->rate(exec, flat.field, f, r);
     }
-    for_each_stage([&](auto const& stage) {
-      if constexpr (requires { stage.rate(exec, flat.field, f, r); }) {
-        stage.rate(exec, flat.field, f, r);
-      } else {
-        stage.enqueue(exec, flat.field, f);
-        stage.enqueue(exec, flat.field, r);
-      }
-    });
+    stages::enqueue_rates(list.stages, exec, flat.field, f, r);
     write<false>(exec, {&r, 1}, {&v, 1});
     if (!list.shifts) return;
     ProfilingRegion const region(list.shifts->region);
     list.shifts->add_rate(exec, given, given_rate, v);
   }
 
-  /// How many stages come up to the last one whose derivative depends on where the mesh is.
-  [[nodiscard]] std::size_t n_that_bend() const {
-    std::size_t n = 0;
-    for (std::size_t k = 0; k < list.stages.size(); ++k)
-      std::visit(
-          [&](auto const& stage) {
-            if constexpr (requires { stage.bends(); })
-              if (stage.bends()) n = k + 1;
-          },
-          list.stages[k]);
-    return n;
-  }
-
   /// What transposes are taken at, forwards; nothing that no transpose asks for.
   void linearise(Exec const& exec, Field const& f) const {
     bool const all = list.shifts && list.shifts->bends();
-    std::size_t const n = all ? list.stages.size() : n_that_bend();
-    for (std::size_t k = 0; k < n; ++k)
-      std::visit(
-          [&](auto const& stage) {
-            ProfilingRegion const region(stage.region);
-            constexpr bool keeps = requires { stage.keep(exec, flat.field, f); };
-            if (keeps && k + 1 == n && !all) {
-              if constexpr (keeps) stage.keep(exec, flat.field, f);
-            } else if constexpr (requires { stage.enqueue_kept(exec, flat.field, f); }) {
-              stage.enqueue_kept(exec, flat.field, f);
-            } else {
-              stage.enqueue(exec, flat.field, f);
-            }
-          },
-          list.stages[k]);
+    stages::linearise(list.stages, all ? list.stages.size() : stages::n_that_bend(list.stages), all, exec, flat.field,
+                      f);
   }
 
   void run_transpose(Exec const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const {
@@ -176,13 +132,7 @@ struct Morpher<Exec>::State {
       ProfilingRegion const region(list.shifts->region);
       list.shifts->transpose_nodes(exec, given, g);
     }
-    for (auto any = list.stages.rbegin(); any != list.stages.rend(); ++any)
-      std::visit(
-          [&](auto const& stage) {
-            ProfilingRegion const region("transposed " + stage.region);
-            stage.transpose(exec, flat.field, f, g);
-          },
-          *any);
+    stages::transpose_all(list.stages, exec, flat.field, f, g);
     if (list.given) {
       ProfilingRegion const region("transposed " + list.given->region);
       list.given->transpose(exec, flat.field, given.boundary, g);
@@ -266,9 +216,12 @@ void Morpher<Exec>::transpose(Exec const& exec, In const& boundary, In const& dJ
 }
 
 template <class Exec>
-typename Morpher<Exec>::In Morpher<Exec>::background_displacements() const {
-  for (auto const& any : state_->list.stages)
-    if (auto const* far = std::get_if<stages::FarField<Exec>>(&any)) return far->displacements();
+typename Morpher<Exec>::In Morpher<Exec>::background_displacements(std::size_t part) const {
+  for (auto const& any : state_->list.stages) {
+    auto const* far = std::get_if<stages::FarField<Exec>>(&any);
+    if (auto const* parts = std::get_if<stages::MorphParts<Exec>>(&any)) far = parts->far_field(part);
+    if (far != nullptr) return far->displacements();
+  }
   return Kokkos::View<Vec3 const*, MemorySpace>();
 }
 

@@ -5,6 +5,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include <cstddef>
 #include <memory>
 #include <span>
 
@@ -77,8 +78,9 @@ class Morpher {
   /// node 32 bytes read for each chain through it, more where chains have known sides (kernels/transposed_sides.hpp).
   void transpose(ExecutionSpace const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const;
 
-  /// For pictures: of the nodes of the background mesh between wrap and outer box, by the last call. Empty where the plan has none.
-  [[nodiscard]] In background_displacements() const;
+  /// For pictures: of the nodes of the background mesh between wrap and outer box, by the last call; part: which of UnstructuredPlan::parts, where
+  /// there are any. Empty where the plan has none.
+  [[nodiscard]] In background_displacements(std::size_t part = 0) const;
 
  private:
   struct State;

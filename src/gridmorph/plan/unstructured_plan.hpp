@@ -9,6 +9,7 @@
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/body_turn.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
+#include <gridmorph/plan/common_motion.hpp>
 #include <gridmorph/plan/elements/background.hpp>
 #include <gridmorph/plan/elements/classify.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
@@ -52,7 +53,21 @@ struct TurningBodies {
   [[nodiscard]] Index size() const { return Index(centre.size()); }
 };
 
+struct UnstructuredPlan;
+
+/// A part of a mesh that nothing connects with the others, or whose boundaries have a motion in common; it has a plan of its own.
+struct PartPlan {
+  std::vector<Index32> nodes;          ///< of the part -> of the mesh, ascending
+  std::vector<Index32> slots;          ///< of its known nodes -> of the mesh's
+  std::optional<CommonMotion> common;  ///< taken off before its stages, added after those that are linear
+  std::shared_ptr<UnstructuredPlan const> plan;
+};
+
 struct UnstructuredPlan {
+  /// Where there are any they make the morph, and of what follows only the lists of boundary nodes, walls, columns, copies and further nodes
+  /// are filled, for guards and reports. Nodes of no part stay.
+  std::vector<PartPlan> parts;
+
   Index n_nodes = 0;
   Vec3 plane_normal{0, 0, 1};  ///< of a 2-D mesh
   int dimension = 3;
@@ -144,6 +159,7 @@ struct UnstructuredReport {
   double wrap_distance = 0;                ///< largest distance of those
   Index far_nodes = 0, far_outside = 0;
   Index unreached = 0;  ///< near nodes that no chain of edges joins to a moving wall
+  Index n_layers = 0;
   struct Seconds {
     double boundary = 0, columns = 0, distances = 0, wrap = 0, layers = 0, background = 0, location = 0, residual = 0;
   } seconds{};
@@ -154,6 +170,7 @@ struct PreparedUnstructured {
   BoundaryConditions boundary;
   UnstructuredPlan plan;
   UnstructuredReport report;
+  std::vector<UnstructuredReport> part_reports;  ///< of UnstructuredPlan::parts; `report` adds them up
   std::vector<std::string> notes;
   /// Of UnstructuredPlan::known, which planning reckoned with: by the rules as they stand, or given to prepare(). None where ElementOptions::motion was given.
   std::optional<std::vector<Vec3>> displacement;

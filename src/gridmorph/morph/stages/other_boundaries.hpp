@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/geometry/slip_surface.hpp>
+#include <gridmorph/kernels/common_rest.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/kernels/slip_nodes.hpp>
 #include <gridmorph/morph/stages/asked_back.hpp>
@@ -20,8 +21,9 @@ class OtherBoundaries {
  public:
   static inline std::string const region = "gridmorph::OtherBoundaries";
 
-  /// back: positions of all nodes, where the transpose is asked for.
-  OtherBoundaries(Exec const& exec, UnstructuredPlan const& plan, std::vector<Vec3> const* back)
+  /// back: positions of all nodes, where the transpose is asked for. common, x: as for JoinedNodes.
+  OtherBoundaries(Exec const& exec, UnstructuredPlan const& plan, std::vector<Vec3> const* back,
+                  CommonMotion const* common = nullptr, Baseline const& x = {})
       : start_(exec, plan.start, plan.n_nodes, back),
         surfaces_(exec, plan.surfaces),
         nodes_{upload(exec, plan.residual_nodes, name("node")), upload(exec, plan.residual_slot, name("slot")),
@@ -39,6 +41,13 @@ class OtherBoundaries {
         detail_begins_(
             upload_sources(exec, plan.residual_nodes, plan.residual_detail, plan.n_nodes, name("detail_begins"))),
         detail_fade_(upload(exec, plan.detail_fade, name("detail_fade"))) {
+    if (common != nullptr && !plan.sliding.empty()) {
+      sliding_distance_ = room_for<Vec3>(exec, plan.sliding.size(), name("sliding_distance"));
+      kernels::launch(
+          "gridmorph::sliding_columns::distances", exec,
+          kernels::CommonDistances<Memory>{common->frame, sliding_, sliding_root_, x, sliding_distance_.data()});
+      first_part_ = kernels::common_chunks(plan.middle.size());
+    }
     if (back == nullptr) return;
     asked_back_ = AskedBack<Exec>(exec, plan.residual_slot, plan.residual_surfaces.item.size() > 0, name("asked_back"));
     sliding_back_ = transposed(exec, plan.sliding_root, &plan.sliding, name("sliding_back"));
@@ -84,6 +93,10 @@ class OtherBoundaries {
     if (sliding_.extent(0) > 0) {
       joint_sliding_.transpose(exec, x, g.work);
       launch("gridmorph::transposed::periodic", exec, kernels::PeriodicMeanBack<Memory>{periodic_, g.work.data()});
+      if (g.common_parts != nullptr)
+        launch("gridmorph::transposed::sliding_columns::common", exec,
+               kernels::CommonDefectsBack<Memory>{sliding_, sliding_distance_, g.work.data(),
+                                                  g.common_parts + first_part_});
       kernels::gather_rows("gridmorph::transposed::sliding_columns", exec, sliding_back_, g.work.data(), g.work.data());
       launch("gridmorph::transposed::sliding_columns::done", exec,
              kernels::ClearListed<Memory>{sliding_, g.work.data()});
@@ -193,6 +206,9 @@ class OtherBoundaries {
   void go_along(Exec const& exec, StageField<Exec> const& f) const {
     kernels::launch("gridmorph::sliding_columns", exec,
                     kernels::CopyListed<Memory>{sliding_, sliding_root_, f.work.data()});
+    if (f.common != nullptr)
+      kernels::launch("gridmorph::sliding_columns::common", exec,
+                      kernels::AddCommonDistances<Memory>{sliding_, sliding_distance_, f.common, f.work.data()});
     average(exec, f);
   }
   /// What moves as one, on the surfaces of all of it; columns on walls that slip go along.
@@ -241,6 +257,8 @@ class OtherBoundaries {
   SlipSurfaceTable<Memory> surfaces_;
   kernels::SlipNodeTable<Memory> nodes_;
   List<Exec, Index32> sliding_, sliding_root_;
+  List<Exec, Vec3> sliding_distance_;  ///< from their roots, in the frame of the motion in common
+  Index first_part_ = 0;               ///< of what is handed back to that
   kernels::PeriodicTable<Memory> periodic_;
   JointNodes<Exec> joint_, joint_sliding_;
   SmoothField<Exec, Vec3> residual_;

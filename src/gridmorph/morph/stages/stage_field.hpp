@@ -16,6 +16,7 @@
 // What comes last writes the nodes: write<Move>(exec, x, baseline, fields, out), with Move baseline + u, otherwise u.
 #pragma once
 
+#include <gridmorph/kernels/common_motion.hpp>
 #include <gridmorph/kernels/inverse_distance.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 #include <gridmorph/morph/stages/upload.hpp>
@@ -36,11 +37,13 @@ struct StageField {
   kernels::Field<double> residuals{nullptr, nullptr, nullptr};  ///< on known sides of chains
 
   // Elements.
-  List<Exec, Vec3> u;           ///< (n_nodes)
-  List<Exec, Vec3> work;        ///< (n_nodes)
-  List<Exec, Vec3> given;       ///< of gradients: those of boundary nodes
-  List<Exec, Vec3> kept_given;  ///< `boundary` on slip surfaces, where these hold any of it
-  List<Exec, Vec3> read;        ///< of gradients: those of what nodes read of lattices, (n_nodes)
+  List<Exec, Vec3> u;                           ///< (n_nodes)
+  List<Exec, Vec3> work;                        ///< (n_nodes)
+  List<Exec, Vec3> given;                       ///< of gradients: those of boundary nodes
+  List<Exec, Vec3> kept_given;                  ///< `boundary` on slip surfaces, where these hold any of it
+  List<Exec, Vec3> read;                        ///< of gradients: those of what nodes read of lattices, (n_nodes)
+  kernels::CommonMove const* common = nullptr;  ///< what u has besides what stages have made of it
+  kernels::CommonMap* common_parts = nullptr;   ///< of gradients: room for what is handed to that
   List<Exec, kernels::AffineMotion>
       frames;  ///< motions of the moving walls around their nodes, then of what moves beside them
 };

@@ -2,22 +2,17 @@
 #pragma once
 
 #include <gridmorph/kernels/kokkos_compat.hpp>
-#include <gridmorph/morph/stages/body_turns.hpp>
-#include <gridmorph/morph/stages/far_field.hpp>
 #include <gridmorph/morph/stages/frozen_shifts.hpp>
-#include <gridmorph/morph/stages/joined_nodes.hpp>
 #include <gridmorph/morph/stages/joint_slip.hpp>
-#include <gridmorph/morph/stages/near_field.hpp>
-#include <gridmorph/morph/stages/near_layers.hpp>
-#include <gridmorph/morph/stages/other_boundaries.hpp>
+#include <gridmorph/morph/stages/mesh_parts.hpp>
 #include <gridmorph/morph/stages/skeleton.hpp>
-#include <gridmorph/morph/stages/wall_motion.hpp>
 #include <gridmorph/morph/stages/write_nodes.hpp>
 
 #include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -27,7 +22,7 @@ namespace gridmorph::stages {
 template <class Exec>
 using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, SlipSpread<Exec>, WallMotion<Exec>, TakeTurns<Exec>,
                            NearField<Exec>, NearLayers<Exec>, FarField<Exec>, AddTurns<Exec>, OtherBoundaries<Exec>,
-                           JoinedNodes<Exec>>;
+                           JoinedNodes<Exec>, MorphParts<Exec>>;
 
 template <class Exec>
 struct StageList {
@@ -69,33 +64,25 @@ StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Basel
   // Stages make what their transposes need where positions come with them.
   auto const* const back = options.transpose ? &positions : nullptr;
   StageList<Exec> out{{}, {}, WriteElements<Exec>(), {}};
-  out.stages.emplace_back(WallMotion<Exec>(exec, plan, options.velocity, back));
-  SharedBodyTurns<Exec> turns;
-  if (plan.turns_of_bodies.size() > 0) {
-    turns = std::make_shared<BodyTurnTables<Exec> const>(exec, plan, options.velocity, back != nullptr);
-    out.stages.emplace_back(TakeTurns<Exec>(turns));
+  bool const two = options.velocity || options.transpose;
+  if (plan.parts.empty()) {
+    ElementStages<Exec> made(exec, plan, options.velocity, back);
+    for (auto* const list : {&made.walls, &made.others})
+      for (auto& any : *list) std::visit([&](auto& stage) { out.stages.emplace_back(std::move(stage)); }, any);
+  } else {
+    out.stages.emplace_back(MorphParts<Exec>(exec, plan, x, options.velocity, back));
   }
-  if (plan.walls.empty())
-    out.stages.emplace_back(NearLayers<Exec>(exec, plan, back));
-  else
-    out.stages.emplace_back(NearField<Exec>(exec, plan, back));
-  if (plan.background) out.stages.emplace_back(FarField<Exec>(exec, plan, options.velocity, back != nullptr));
-  if (turns) out.stages.emplace_back(AddTurns<Exec>(turns));
-  out.stages.emplace_back(OtherBoundaries<Exec>(exec, plan, back));
-  out.stages.emplace_back(JoinedNodes<Exec>(exec, plan, back != nullptr));
   if (!plan.given_slip.empty()) out.given.emplace(exec, plan);
-  auto const n = std::size_t(plan.n_nodes);
-  for (int f = 0; f < (options.velocity || options.transpose ? 2 : 1); ++f) {
+  for (int f = 0; f < (two ? 2 : 1); ++f) {
     StageField<Exec> field;
-    field.u = room_for<Vec3>(exec, n, "gridmorph::Morpher::u");
-    field.work = room_for<Vec3>(exec, n, "gridmorph::Morpher::work");
-    field.frames = room_for<kernels::AffineMotion>(exec, plan.driving.size() + plan.beside_slots.size(),
-                                                   "gridmorph::Morpher::frames");
-    if (out.given) field.kept_given = room_for<Vec3>(exec, plan.known.size(), "gridmorph::Morpher::kept_given");
-    if (options.transpose && f == 1) {
-      field.given = room_for<Vec3>(exec, plan.known.size(), "gridmorph::Morpher::given");
-      field.read = room_for<Vec3>(exec, n, "gridmorph::Morpher::read");
+    if (plan.parts.empty()) {
+      field = element_field(exec, plan, f == 1, options.transpose);
+    } else {
+      field.u = room_for<Vec3>(exec, std::size_t(plan.n_nodes), "gridmorph::Morpher::u");
+      if (options.transpose && f == 1)
+        field.given = room_for<Vec3>(exec, plan.known.size(), "gridmorph::Morpher::given");
     }
+    if (out.given) field.kept_given = room_for<Vec3>(exec, plan.known.size(), "gridmorph::Morpher::kept_given");
     out.fields.push_back(field);
   }
   if (options.smoothing && options.smoothing->n_modes > 0)

@@ -27,7 +27,19 @@ PreparedUnstructured UnstructuredPlanner::run() {
   out_.plan.plane_normal = plane_normal(mesh_);
   if (mesh_.dimension == 2 && !(std::abs(out_.plan.plane_normal.z) == 1))
     throw MeshError("mesh " + mesh_.source + " is 2-D but does not lie in a plane z = constant; turn it into one");
-  timed(out_.report.seconds.boundary, [&] { take_boundary(); });
+  std::vector<Part> parts;
+  timed(out_.report.seconds.boundary, [&] {
+    take_boundary();
+    if (!is_part_) parts = find_parts();
+  });
+  if (parts.empty())
+    plan_whole();
+  else
+    plan_parts(std::move(parts));
+  return std::move(out_);
+}
+
+void UnstructuredPlanner::plan_whole() {
   timed(out_.report.seconds.distances, [&] { measure_distances(); });
   timed(out_.report.seconds.columns, [&] { find_columns(); });
   timed(out_.report.seconds.wrap, [&] { find_regions(); });
@@ -35,7 +47,6 @@ PreparedUnstructured UnstructuredPlanner::run() {
   timed(out_.report.seconds.background, [&] { plan_background(); });
   timed(out_.report.seconds.location, [&] { plan_projections(); });
   timed(out_.report.seconds.residual, [&] { plan_residual(); });
-  return std::move(out_);
 }
 
 void UnstructuredPlanner::take_boundary() {

@@ -63,7 +63,7 @@ void UnstructuredPlanner::find_driving_faces() {
       driving_faces_.push_back(Index32(f));
   }
   sort_by_place(mesh_, topology_, driving_faces_);
-  if (driving_faces_.empty())
+  if (driving_faces_.empty() && !is_part_)
     throw MotionError(
         "the moving walls have no faces on the boundary of the elements; their patches list nodes of other places");
 }
@@ -79,7 +79,8 @@ void UnstructuredPlanner::find_columns() {
   columns_ = cut(columns_, smooth_ends(out_.graph, columns_, most_heights()));
   for (double const h : columns_.full_rise) out_.report.layer_height = std::max(out_.report.layer_height, h);
   plan_columns();
-  find_other_columns();
+  if (!driving_faces_.empty()) find_held_columns();
+  measure_others();
   plan_turns();
 }
 
@@ -107,7 +108,7 @@ Columns UnstructuredPlanner::columns_on(std::vector<int> const& patches, Mask co
   return cut(whole, smooth_ends(out_.graph, whole, most));
 }
 
-void UnstructuredPlanner::find_other_columns() {
+void UnstructuredPlanner::find_held_columns() {
   Mask taken = is_known_;
   for (Index32 const n : columns_.node) taken[std::size_t(n)] = 1;
   standing_ = columns_on(out_.boundary.standing_patches, taken, reach_);
@@ -117,8 +118,11 @@ void UnstructuredPlanner::find_other_columns() {
   // They follow the motion, as far as their wall does.
   sliding_ = columns_on(out_.boundary.sliding_patches, taken, 0);
   for (Index32 const n : sliding_.node) is_other_[std::size_t(n)] = 1;
-  std::vector<Index32> others, given;
   for (Index32 const n : standing_.node) is_other_[std::size_t(n)] = 1;
+}
+
+void UnstructuredPlanner::measure_others() {
+  std::vector<Index32> others, given;
   Mask stands = mask();
   for (Index32 const n : standing_.node) stands[std::size_t(n)] = 1;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {

@@ -40,7 +40,8 @@ void UnstructuredPlanner::plan_layers() {
   for (std::size_t n = 0; n < seeds.size(); ++n)
     if (seeds[n] || !out_.graph.carries(Index32(n))) wanted[n] = 0;
   plan.near = make_layers(host_, out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
-  if (options_.elements.method == NearFieldMethod::lattice)
+  out_.report.n_layers = plan.near.n_layers();
+  if (options_.elements.method == NearFieldMethod::lattice && !driving_faces_.empty())
     plan_smooth_walls();
   else
     plan_layer_turns();

@@ -45,6 +45,15 @@ void UnstructuredPlanner::find_regions() {
 }
 
 void UnstructuredPlanner::classify_by_wrap() {
+  if (driving_faces_.empty()) {
+    auto const n_nodes = std::size_t(mesh_.n_nodes());
+    auto& regions = out_.report.regions;
+    regions.element.assign(std::size_t(mesh_.n_elements()), Region::far);
+    regions.near.assign(n_nodes, 0);
+    regions.inside.assign(n_nodes, 0);
+    regions.count();
+    return;
+  }
   out_.report.offset = offset();
   CsrGraph faces;
   for (Index32 const f : driving_faces_) faces.add(topology_.boundary.nodes[f]);

@@ -5,6 +5,7 @@
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
+#include <gridmorph/plan/elements/mesh_parts.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/wall_distance.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -47,7 +48,26 @@ class UnstructuredPlanner {
 
   // make_unstructured_plan.cpp
   void take_boundary();
+  /// Of a mesh, or of a part of it, as a whole.
+  void plan_whole();
   void measure_distances();
+
+  // plan_parts.cpp
+  /// Nodes whose motion has nothing to do with that of the others, or that have a motion in common.
+  struct Part {
+    Mask nodes;
+    std::optional<CommonMotion> common;
+  };
+  /// None where the mesh is one part without a motion in common.
+  [[nodiscard]] std::vector<Part> find_parts() const;
+  /// Of the nodes with a number in a list, that motion, where boundaries have one in common.
+  [[nodiscard]] std::optional<CommonMotion> motion_in_common(std::vector<Index32> const& number, Index32 of,
+                                                             std::vector<Index32> const& slots) const;
+  [[nodiscard]] CommonLimits common_limits(std::vector<Index32> const& number, Index32 of) const;
+  void plan_parts(std::vector<Part> parts);
+  void plan_part(Part part);
+  /// Its columns, residual nodes and report, in numbers of the mesh.
+  void take_part(PartPlan const& part, std::vector<Index32> const& elements, PreparedUnstructured const& planned);
 
   // plan_columns.cpp
   /// Faces of moving walls with the boundary layer that a user gave their patch.
@@ -59,7 +79,9 @@ class UnstructuredPlanner {
   void find_wall_lines();
   void plan_columns();
   /// Columns of walls that stand: they are held in place, as far as moving walls leave room. Then those of walls that slip: they go along.
-  void find_other_columns();
+  void find_held_columns();
+  /// From the ends of those columns, and from boundaries beyond the moving walls.
+  void measure_others();
   /// No higher than leaves room where moving walls come nearer by `motion`.
   [[nodiscard]] Columns columns_on(std::vector<int> const& patches, Mask const& taken, double motion) const;
   [[nodiscard]] Index n_held() const { return standing_.size() + sliding_.size(); }
@@ -142,6 +164,7 @@ class UnstructuredPlanner {
   UnstructuredTopology const& topology_;
   BoundaryFacePatches const& face_patches_;
   PlanOptions const& options_;
+  bool is_part_ = false;
   PreparedUnstructured out_;
   std::vector<int> layer_of_patch_;
   std::vector<Index32> driving_faces_;
