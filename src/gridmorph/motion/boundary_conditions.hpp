@@ -53,6 +53,7 @@ struct BoundaryConditions {
     Index32 slot = -1;  ///< in `known`
     Index32 node = -1;  ///< of the patch
     int patch = -1;
+    int surface = -1;  ///< in BoundaryMotion::slip_surfaces()
   };
   std::vector<OnSlipPatch> given_on_slip;
   JointSlip given_slip;  ///< what puts these back, of slots

@@ -116,7 +116,7 @@ std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> co
   Gathering gathering(mesh, boundary.requests, motion, given);
   double const size = motion.boundary().size();
   for (auto const& at : boundary.given_on_slip) {
-    SlipSurface const& surface = *motion.slip_surface(at.patch);
+    SlipSurface const& surface = motion.slip_surfaces()[std::size_t(at.surface)];
     gathering.look(at.node, std::size_t(at.slot), at.patch, surface, given_tolerance(surface, size));
   }
   return gathering.result("they are put back");
