@@ -504,6 +504,21 @@ TEST(OpenFoam, AMeshOneCellThickIsAPlaneMeshAndBothPlanesMoveAlike) {
   }
 }
 
+TEST(OpenFoam, KeysOfPatchesMayBeDictionaries) {
+  TemporaryFolder const folder;
+  FoamBox box;
+  box.write(folder / "plain");
+  box.keys["x1"] = "type wall; surface { type none; inner { a 1; } } list ((1 2) { b 3; }); last { c \"}\"; };";
+  box.write(folder / "nested");
+  Mesh const plain = read_mesh((folder / "plain").string()), nested = read_mesh((folder / "nested").string());
+  expect_equal(plain, nested, 0);
+  EXPECT_EQ(nested.patches[1].name, plain.patches[1].name);
+  EXPECT_EQ(nested.patches[1].faces.item, plain.patches[1].faces.item);
+  box.keys["x1"] = "type wall; surface { type none;";
+  box.write(folder / "open");
+  EXPECT_NE(message_of<IoError>([&] { read_mesh((folder / "open").string()); }), "");
+}
+
 TEST(OpenFoam, PartsOfDecomposedMeshesAndCasesWithoutMeshAreRefused) {
   TemporaryFolder const folder;
   FoamBox box;

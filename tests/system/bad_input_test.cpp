@@ -25,6 +25,24 @@ TEST_F(BadInput, FilesThatAreNoMesh) {
   expect_bad_input(gridmorph("morph passage.cgns"), {"passage.cgns", "not a text file"});
 }
 
+TEST_F(BadInput, MeshesOfOtherProgramsAreNamed) {
+  std::string const cards = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nENDDATA\n";
+  for (auto const& [text, is] : std::vector<std::pair<std::string, char const*>>{
+           {"# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n", "a legacy VTK file (.vtk)"},
+           {"$ made by a mesher\n\nSOL 101\nCEND\nBEGIN BULK\n" + cards, "a Nastran mesh"},
+           {std::string(3000, '$') + "\n" + cards, "a Nastran mesh"},
+           {"grid*   1\n*\n" + cards, "a Nastran mesh"},
+           {"CTETRA  1       1       1       2       3       4\n" + cards, "a Nastran mesh"},
+           {"    -1\n   164\n         1  SI\n    -1\n    -1\n  2411\n", "an I-deas mesh (UNV)"},
+           {"** comment\n*Part, name=a\n*Node\n1, 0, 0, 0\n", "an Abaqus mesh"}}) {
+    write("mesh.any", text);
+    expect_bad_input(gridmorph("inspect mesh.any"), {"mesh.any: is ", is});
+  }
+  // Words and numbers of other files are none of these.
+  write("mesh.any", "grids of words\n");
+  expect_bad_input(gridmorph("inspect mesh.any"), {"not a CGNS file"});
+}
+
 TEST_F(BadInput, TruncatedMesh) {
   std::string const whole = contents(path("passage.cgns"));
   for (double const share : {0.02, 0.3, 0.9}) {

@@ -74,6 +74,79 @@ TEST_P(UnstructuredCgns, PeriodicConnectionsComeThrough) {
       2 * 4);
 }
 
+/// `mesh` with nodes that nothing has, at places of their own: before, between and behind the others of each zone.
+Mesh with_unused_nodes(Mesh const& mesh) {
+  NodesOfFile file;
+  std::vector<Vec3> x;
+  Mesh out = mesh;
+  out.file_order.left_out = 3 * Index(mesh.zones.size());
+  for (auto const& zone : mesh.zones) {
+    Index const in_front = zone.size() / 2;
+    x.push_back({1e5, -0.0, 0});
+    for (Index n = 0; n < zone.size(); ++n) {
+      if (n == in_front) x.push_back({-7, 1e5, 0});
+      out.file_order.node.push_back(Index32(zone.first_node + n + (n < in_front ? 1 : 2)));
+      x.push_back(mesh.coordinates[zone.first_node + n]);
+    }
+    x.push_back({1, 1, -1e5});
+    file.n_nodes.push_back(zone.size() + 3);
+  }
+  file.coordinates = Coordinates(Index(x.size()));
+  for (std::size_t n = 0; n < x.size(); ++n) file.coordinates.set(Index(n), x[n]);
+  return with_all_nodes(out, file);
+}
+
+TEST_P(UnstructuredCgns, NodesOfNoElementAreLeftToTheFile) {
+  for (Mesh const& mesh : {mixed_box(), to_hexahedra(two_zones({}, true))}) {
+    auto const input = folder_.file("in.cgns"), output = folder_.file("out.cgns"), plain = folder_.file("plain.cgns");
+    Mesh const all = with_unused_nodes(mesh);
+    ASSERT_EQ(all.n_nodes(), mesh.n_nodes() + 3 * Index(mesh.zones.size()));
+    write_mesh(input, all, {.format = GetParam()});
+    write_mesh(plain, mesh, {.format = GetParam()});
+    Mesh read = read_mesh(input);
+    expect_same_mesh(read, read_mesh(plain));
+    EXPECT_NE(read.notes.back().find("belong to no element"), std::string::npos);
+    EXPECT_EQ(node_number_in_file(read, 0), 2);
+    EXPECT_EQ(read_mesh(plain).file_order.node, std::vector<Index32>());
+    for (bool const ordered : {false, true}) {
+      if (ordered) reorder(read, order_by_position(read));
+      Coordinates after(read.n_nodes());
+      for (Index n = 0; n < read.n_nodes(); ++n) after.set(n, wavy(read.coordinates[n], 0.1));
+      OutputFields const fields{
+          true, {{"x", {read.coordinates.x.data(), read.coordinates.x.data() + read.n_nodes()}}}, {}};
+      write_morphed(input, output, read, after, fields);
+      SeriesWriter series(input, folder_.file("series.cgns"), read, {0, 1});
+      series.add(read.coordinates);
+      series.add(after);
+      series.commit();
+      // As the file has them, whatever is read of it.
+      cgns::File const file(output, cgns::File::Mode::read), steps(folder_.file("series.cgns"), cgns::File::Mode::read);
+      auto const tree = file.tree(), tree_of_steps = steps.tree();
+      for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+        auto const at = [](cgns::Node const& root, std::size_t zone) {
+          std::size_t n = 0;
+          for (auto const* base : root.all("CGNSBase_t"))
+            for (auto const* one : base->all("Zone_t"))
+              if (n++ == zone) return one;
+          throw std::runtime_error("no such zone");
+        };
+        auto const* morphed = at(tree, z)->child("GridCoordinates")->child("CoordinateX");
+        auto const* step = at(tree_of_steps, z)->child("GridCoordinates_2")->child("CoordinateX");
+        std::vector<double> const x = file.reals(*morphed), x_of_step = steps.reals(*step);
+        ASSERT_EQ(Index(x.size()), all.zones[z].size());
+        EXPECT_EQ(x, x_of_step);
+        Index const first = all.zones[z].first_node, middle = mesh.zones[z].size() / 2 + 1;
+        EXPECT_EQ(x.front(), 1e5);
+        EXPECT_EQ(x[std::size_t(middle)], -7);
+        EXPECT_EQ(x.back(), 1);
+        for (Index n = 0; n < all.zones[z].size(); ++n)
+          if (n != 0 && n != middle && n + 1 != all.zones[z].size())
+            EXPECT_EQ(x[std::size_t(n)], wavy(all.coordinates[first + n], 0.1).x) << n;
+      }
+    }
+  }
+}
+
 TEST_P(UnstructuredCgns, FilesOfAnOrderedMeshAreInTheOrderOfTheFile) {
   for (auto const& mesh : {mixed_box(), to_hexahedra(two_zones({}, true))}) {
     auto ordered = mesh;

@@ -1,4 +1,5 @@
 // Whole morphs of unstructured meshes: what must hold whatever the mesh, on made meshes of all element types.
+#include "support/expect_error.hpp"
 #include "support/made_bodies.hpp"
 #include "support/morph_run.hpp"
 #include "support/unstructured_case.hpp"
@@ -42,6 +43,75 @@ TEST(UnstructuredMorph, WithoutMotionNothingChangesBitForBit) {
     Vec3 const a = c.mesh.coordinates[n], b = m.x[n];
     ASSERT_TRUE(a.x == b.x && a.y == b.y && a.z == b.z) << n;
   }
+}
+
+TEST(UnstructuredMorph, ZerosKeepTheirSigns) {
+  Mesh mesh = box_with_body(9);
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    if (mesh.coordinates.z(n) == 0) mesh.coordinates.z(n) = -0.0;
+  Case const c(std::move(mesh));
+  Morphed const m = c.morph(body_moves(translation({0.2, 0, 0})));
+  Index zeros = 0;
+  for (Index n = 0; n < c.mesh.n_nodes(); ++n)
+    if (c.mesh.coordinates.z(n) == 0 && m.x.z(n) == 0) {
+      ++zeros;
+      EXPECT_TRUE(std::signbit(m.x.z(n))) << n;
+    }
+  EXPECT_GT(zeros, 0);
+}
+
+TEST(UnstructuredMorph, PlanesUnderOneNameAreAsMany) {
+  Motion const bent =
+      test::motion_of({test::rule_for({"k_min"}, FunctionRule{"bent",
+                                                              [](std::span<Vec3 const> x, std::span<Vec3> u) {
+                                                                for (std::size_t n = 0; n < x.size(); ++n)
+                                                                  u[n] = {0, 0, 0.1 * x[n].x * x[n].y};
+                                                              }}),
+                       test::rule_for({"k_max"}, FixedRule{}),
+                       test::rule_for({"i_*", "j_*", "side"}, SlipRule{SlipRule::Surface::plane})});
+  for (bool const second_order : {false, true}) {
+    Mesh const apart = second_order ? test::second_order(test::unit_box({4, 3, 5})) : test::unit_box({4, 3, 5});
+    // Opposite sides, and sides that meet in an edge.
+    for (auto const& names : {std::pair<std::string, std::string>("j_min", "j_max"), {"i_max", "j_min"}}) {
+      Mesh together = apart;
+      Patch both{"side"};
+      both.zone = 0;
+      std::erase_if(together.patches, [&](Patch const& patch) {
+        if (patch.name != names.first && patch.name != names.second) return false;
+        both.kind = patch.kind;
+        for (Index f = 0; f < patch.faces.size(); ++f) both.faces.add(patch.faces[f]);
+        return true;
+      });
+      together.patches.push_back(both);
+      Case const a(apart), b(std::move(together));
+      Morphed const x = a.morph(bent), y = b.morph(bent);
+      for (Index n = 0; n < apart.n_nodes(); ++n) ASSERT_LT(distance(x.x[n], y.x[n]), 1e-12) << n;
+    }
+  }
+  // What bends is no plane, and no two.
+  Mesh curved = test::unit_box({4, 3, 5});
+  for (Index n = 0; n < curved.n_nodes(); ++n)
+    curved.coordinates.y(n) += 0.05 * curved.coordinates.x(n) * curved.coordinates.x(n);
+  EXPECT_NE(test::message_of<MotionError>([&] { (void)Case(curved).morph(bent); }).find("off the nearest plane"),
+            std::string::npos);
+}
+
+TEST(UnstructuredMorph, MotionsOutOfThePlaneOfAPlaneMeshAreRefused) {
+  Case const c(test::flat_box(6, 5, 2));
+  auto const moved_by = [&](Rule rule) {
+    return test::message_of<MotionError>([&] {
+      (void)c.morph(
+          test::motion_of({test::rule_for({"j_min"}, std::move(rule)), test::rule_for({"i_*", "j_max"}, FreeRule{})}));
+    });
+  };
+  for (Vec3 const& axis : {Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{1, 0, 1}}) {
+    std::string const said = moved_by(rotation({3, 1, 0}, axis, 0.4));
+    EXPECT_NE(said.find("out of the plane of a 2-D mesh"), std::string::npos) << said;
+    EXPECT_NE(said.find("j_min"), std::string::npos) << said;
+  }
+  EXPECT_NE(moved_by(translation({0, 0.1, 0.02})).find("out of the plane"), std::string::npos);
+  // What rounding leaves of a turn within the plane is no such motion.
+  EXPECT_EQ(moved_by(rotation({3, 1, 0}, {1e-17, 0, 1}, 0.05)), "");
 }
 
 TEST(UnstructuredMorph, AMotionOfAllBoundariesMovesAllNodesAlike) {

@@ -122,6 +122,20 @@ TEST_F(Su2, AWrittenFileDiffersInTheCoordinatesThatMoved) {
   expect_same_coordinates(read_mesh(out).coordinates, after);
 }
 
+TEST_F(Su2, PointsOfNoElementStayAsTheyAre) {
+  std::string more = replaced(square, "NPOIN= 6", "NPOIN= 8");
+  more = replaced(more, "1 1 5\n", "1 1 5\n-0 1e+5 6\n7.50 -3 7\n");
+  auto const plain = read(square), mesh = read(more);
+  expect_same_mesh(plain, mesh);
+  Coordinates moved(mesh.n_nodes());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.25, 0, 0});
+  std::string const output = folder_.file("out.su2");
+  write_morphed(path_, output, mesh, moved);
+  std::string const written = bytes_of(output);
+  EXPECT_NE(written.find("\n-0 1e+5 6\n7.50 -3 7\n"), std::string::npos) << written;
+  EXPECT_EQ(read_mesh(output).coordinates[5], (Vec3{1.25, 1, 0}));
+}
+
 TEST_F(Su2, FieldsAndOtherMeshesAreRefused) {
   auto const mesh = read(square);
   auto const out = folder_.file("out.su2");

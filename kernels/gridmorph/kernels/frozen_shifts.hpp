@@ -10,6 +10,7 @@
 
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/launch.hpp>
+#include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/slip_edge.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 
@@ -68,7 +69,7 @@ struct AddShifts {
 
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    if (Vec3 const s = shift(k); !(s == Vec3{})) out.set(node(k), out[node(k)] + s);
+    if (Vec3 const s = shift(k); !(s == Vec3{})) out.set(node(k), moved(out[node(k)], s));
   }
 };
 
@@ -112,7 +113,7 @@ struct AddSlidingShifts {
     constrain(slide, wanted, wanted_rate);
     Vec3 const more = Rate ? wanted_rate - rate_before : wanted - before;
     Vec3 const of_slot = slide.to_node < 0 ? more : transpose(matrices(slide.to_node)) * more;
-    out.set(at.node, out[at.node] + in_frame(at.to_node, of_slot));
+    out.set(at.node, moved(out[at.node], in_frame(at.to_node, of_slot)));
   }
 
   /// The rate with which a point that slides moves where what it is asked to does by `rate`, in the frame of SlidingShift::node.

@@ -5,6 +5,7 @@
 
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/launch.hpp>
+#include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 
 namespace gridmorph::kernels {
@@ -85,7 +86,7 @@ struct WriteNodes {
   Vec3 const* u;
   Field<double const> x;
   VectorArray out;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { out.set(n, Move ? x[n] + u[n] : u[n]); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { out.set(n, Move ? moved(x[n], u[n]) : u[n]); }
 };
 
 }  // namespace gridmorph::kernels

@@ -104,7 +104,7 @@ Coordinates ElementMesh::coordinates_of(std::filesystem::path const& path,
   for (std::size_t z = 0; same && z < mesh.zones.size(); ++z)
     same = mesh.zones[z].size() == other.zones[z].size() && mesh.zones[z].n_elements == other.zones[z].n_elements;
   if (same) {
-    if (!mesh.file_order.node.empty()) reorder(other, mesh.file_order);
+    if (!mesh.file_order.element.empty()) reorder(other, {node_places(mesh), mesh.file_order.element});
     same = mesh.elements.type == other.elements.type && mesh.elements.nodes.item == other.elements.nodes.item;
   }
   if (!same)

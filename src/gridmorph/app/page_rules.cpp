@@ -134,15 +134,14 @@ page::BoundaryCheck boundary_check(BoundaryMotion const& rules, Coordinates cons
       out.periodic = std::max(out.periodic, norm(rotation * u(own) - u(donor)));
     }
   }
-  for (int p = 0; p < int(boundary.mesh().patches.size()); ++p) {
-    SlipSurface const* const surface = rules.slip_surface(p);
-    if (surface == nullptr) continue;
-    auto const view = surface->view();
-    for (Index const n : boundary.surface(p).nodes) {
-      ++out.slip_nodes;
-      if (norm(u(n)) > 0) out.slip = std::max(out.slip, distance_from(view, baseline[n], morphed[n]));
-    }
-  }
+  for (int p = 0; p < int(boundary.mesh().patches.size()); ++p)
+    rules.each_slip_surface(p, [&](int s, std::vector<Index> const& nodes) {
+      auto const view = rules.slip_surfaces()[std::size_t(s)].view();
+      for (Index const n : nodes) {
+        ++out.slip_nodes;
+        if (norm(u(n)) > 0) out.slip = std::max(out.slip, distance_from(view, baseline[n], morphed[n]));
+      }
+    });
   return out;
 }
 

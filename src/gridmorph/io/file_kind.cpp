@@ -114,9 +114,59 @@ bool is_fluent(std::string_view text) {
   return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0;
 }
 
+/// Up to the end of the line, without it and blanks around it.
+std::string_view first_line(std::string_view text) {
+  auto const line = without_blanks(text.substr(0, text.find('\n')));
+  return line.substr(0, line.find_last_not_of(" \t\r\n") + 1);
+}
+
+std::string_view after_line(std::string_view text) {
+  auto const end = text.find('\n');
+  return end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+}
+
+/// From the first line on that says something: no blank one, and none that begins as comments do.
+std::string_view without_comments(std::string_view text, std::string_view comment) {
+  while (!text.empty() && (first_line(text).empty() || first_line(text).starts_with(comment))) text = after_line(text);
+  return text;
+}
+
+/// Whether a line begins with one of these words, whatever their case, and it ends there.
+bool begins_with(std::string_view line, std::initializer_list<std::string_view> words) {
+  auto const upper = [](char c) { return char(std::toupper(static_cast<unsigned char>(c))); };
+  return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
+    return line.size() >= word.size() &&
+           std::equal(word.begin(), word.end(), line.begin(), [&](char a, char b) { return a == upper(b); }) &&
+           (line.size() == word.size() || has(" ,*\t=('", line.substr(word.size(), 1)));
+  });
+}
+
+/// The first card of a bulk data file, or what comes before them: executive and case control.
+bool is_nastran(std::string_view text) {
+  return begins_with(first_line(without_comments(text, "$")),
+                     {"NASTRAN", "SOL",    "CEND",   "ID",     "ASSIGN", "INIT",   "BEGIN BULK", "INCLUDE", "TITLE",
+                      "GRID",    "GRDSET", "CORD2R", "CORD2C", "CTETRA", "CPENTA", "CHEXA",      "CPYRAM",  "CQUAD4",
+                      "CQUAD8",  "CTRIA3", "CTRIA6", "PSOLID", "PSHELL", "MAT1",   "PARAM"}) &&
+         (text.starts_with('$') || begins_with(first_line(text), {"NASTRAN", "SOL", "CEND", "BEGIN BULK"}) ||
+          has_all(text, {"GRID"}));
+}
+
+/// Data sets between lines of -1, each beginning with its number.
+bool is_unv(std::string_view text) {
+  if (first_line(text) != "-1") return false;
+  auto const number = first_line(after_line(text));
+  return !number.empty() && number.size() <= 6 &&
+         std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+bool is_abaqus(std::string_view text) {
+  return begins_with(first_line(without_comments(text, "**")),
+                     {"*HEADING", "*NODE", "*PART", "*PREPRINT", "*ELEMENT", "*INCLUDE", "*PARAMETER"});
+}
+
 Foreign foreign_text(std::string_view head) {
   auto const text = without_blanks(head);
-  if (text.starts_with("# vtk DataFile")) return {"a VTK file", by_paraview};
+  if (text.starts_with("# vtk DataFile")) return {"a legacy VTK file (.vtk)", by_paraview};
   auto const start = text.substr(0, 1024);
   if (has(start, "<VTKFile")) return {"a VTK file (XML)", by_paraview};
   if (has(start, "<Xdmf")) return {"an XDMF file", by_paraview};
@@ -130,11 +180,12 @@ Foreign foreign_text(std::string_view head) {
   if (text.starts_with("#!TDV") || text.starts_with("#!SZ")) return {"a Tecplot file", "export CGNS from Tecplot"};
   if (has_all(start, {"VARIABLES", "ZONE"}) && (text.starts_with("TITLE") || text.starts_with("VARIABLES")))
     return {"a Tecplot file", "export CGNS from Tecplot"};
-  if (text.starts_with("*HEADING") || text.starts_with("*Heading") || text.starts_with("*NODE"))
-    return {"an Abaqus mesh", by_gmsh};
-  if (has(start, "BEGIN BULK") || text.starts_with("$ NASTRAN") || text.starts_with("GRID,") ||
-      text.starts_with("GRID  "))
-    return {"a Nastran mesh", by_gmsh};
+  if (is_abaqus(text)) return {"an Abaqus mesh", by_gmsh};
+  if (has(start, "BEGIN BULK") || is_nastran(text)) return {"a Nastran mesh", by_gmsh};
+  if (is_unv(text)) return {"an I-deas mesh (UNV)", by_gmsh};
+  if (text.starts_with("/COM,ANSYS") || text.starts_with("/PREP7") || text.starts_with("NBLOCK,"))
+    return {"an Ansys mesh (CDB)", by_maker};
+  if (text.starts_with("CONTROL INFO")) return {"a Gambit neutral file", by_maker};
   if (text.starts_with("# vtk") || text.starts_with("<?xml")) return {"an XML file", by_maker};
   if (has(head, "[[motion]]") || has(start, "[mesh]"))
     return {"a case file", "give it to gridmorph morph or plan; here the mesh itself is asked for"};

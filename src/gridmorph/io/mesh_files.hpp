@@ -1,8 +1,9 @@
 // The two halves of mesh_io.hpp: files of blocks and files of elements. Internal to io.
 #pragma once
 
-#include <gridmorph/io/cgns/cgns_file.hpp>
+#include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/io/mesh_io.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 
 #include <string>
 #include <vector>
@@ -12,6 +13,10 @@ namespace gridmorph::io {
 /// Of a CGNS file and its tree.
 Mesh read_blocks(cgns::File const& file, cgns::Node const& tree, ReadOptions const& options);
 Mesh read_elements(cgns::File const& file, cgns::Node const& tree, ReadOptions const& options);
+/// Of all zones of a file of elements, n_nodes together.
+Coordinates read_coordinates(cgns::File const& file, cgns::Layout const& layout, Index n_nodes);
+/// All nodes of the file that a mesh of elements was read from, those too that it left there.
+NodesOfFile nodes_of_file(std::string const& path, Mesh const& mesh);
 
 void write_blocks(std::string const& path, Mesh const& mesh, WriteOptions const& options);
 /// With other coordinates than those of the mesh, and with fields.

@@ -13,6 +13,15 @@ namespace gridmorph::io {
 
 namespace {
 
+/// The last zone's cells as its elements, counted as its own.
+void add_block(Mesh& mesh) {
+  auto const& zone = mesh.zones.back();
+  add_cells(mesh, zone, mesh.coordinates);
+  for (Index e = 0; e < zone.n_elements; ++e) mesh.elements.number.push_back(Index32(e + 1));
+}
+
+}  // namespace
+
 Coordinates read_coordinates(cgns::File const& file, cgns::Layout const& layout, Index n_nodes) {
   Coordinates out(n_nodes);
   std::array<double*, 3> const arrays{out.x.data(), out.y.data(), out.z.data()};
@@ -23,15 +32,6 @@ Coordinates read_coordinates(cgns::File const& file, cgns::Layout const& layout,
   }
   return out;
 }
-
-/// The last zone's cells as its elements, counted as its own.
-void add_block(Mesh& mesh) {
-  auto const& zone = mesh.zones.back();
-  add_cells(mesh, zone, mesh.coordinates);
-  for (Index e = 0; e < zone.n_elements; ++e) mesh.elements.number.push_back(Index32(e + 1));
-}
-
-}  // namespace
 
 Mesh read_elements(cgns::File const& file, cgns::Node const& tree, ReadOptions const& options) {
   std::string const& path = file.path();

@@ -6,6 +6,7 @@
 #include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/mesh_names.hpp>
+#include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/plot3d/plot3d.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
@@ -13,6 +14,7 @@
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 
 #include <filesystem>
 #include <set>
@@ -132,7 +134,28 @@ MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leav
 Mesh read_mesh(std::string const& path, ReadOptions const& options) {
   Mesh mesh = read_as_named(path, options);
   io::make_names_printable(mesh);
+  if (Index const unused = leave_out_unused_nodes(mesh); unused > 0)
+    mesh.notes.push_back(path + ": " + std::to_string(unused) + (unused == 1 ? " node belongs" : " nodes belong") +
+                         " to no element of the mesh and " +
+                         (unused == 1 ? "stays where it is" : "stay where they are"));
   return mesh;
+}
+
+NodesOfFile io::nodes_of_file(std::string const& path, Mesh const& mesh) {
+  NodesOfFile out;
+  if (mesh_format(path) != MeshFormat::cgns) {
+    Mesh const all = read_as_named(path, {});
+    for (Zone const& zone : all.zones) out.n_nodes.push_back(zone.size());
+    out.coordinates = all.coordinates;
+    return out;
+  }
+  cgns::File const file(path, cgns::File::Mode::read);
+  auto const tree = file.tree();
+  auto const layout = cgns::zones_of(file, tree, mesh);
+  Index n_nodes = 0;
+  for (auto const& zone : layout.zones) n_nodes += out.n_nodes.emplace_back(zone.nodes_in_file());
+  out.coordinates = io::read_coordinates(file, layout, n_nodes);
+  return out;
 }
 
 }  // namespace gridmorph

@@ -5,6 +5,7 @@
 #include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/read_solution.hpp>
+#include <gridmorph/mesh/file_order.hpp>
 
 #include <algorithm>
 #include <array>
@@ -80,11 +81,19 @@ class SolutionReader {
       return problem(zone, " of the mesh is not there; the zones are " + quote_list(names, most));
     }
     Index const n_nodes = mesh_.is_structured() && at->flat_axis >= 0 ? zone.size() / 2 : zone.size();
-    if (at->nodes_in_file() != n_nodes)
+    // Of a file that nodes were left to only the last place is known that the mesh has.
+    if (mesh_.file_order.left_out > 0 ? at->nodes_in_file() <= last_place(zone) : at->nodes_in_file() != n_nodes)
       return problem(zone, " has " + std::to_string(at->nodes_in_file()) + " nodes, but the mesh has " +
                                std::to_string(n_nodes) + " there; give a solution on this mesh");
     Node const* solution = choose(zone, solutions_[std::size_t(at - layout_.zones.begin())]);
     if (solution != nullptr) read_arrays(zone, *at, *solution);
+  }
+
+  /// Where the node of a zone stands that comes last in the file, counted from the first of the zone.
+  [[nodiscard]] Index last_place(Zone const& zone) const {
+    auto const begin = mesh_.file_order.node.begin() + std::ptrdiff_t(zone.first_node);
+    auto const end = begin + std::ptrdiff_t(zone.size());
+    return begin == end ? -1 : Index(*std::max_element(begin, end)) - zone.first_node;
   }
 
   /// The solution by its name; in the first zone perhaps the best one.

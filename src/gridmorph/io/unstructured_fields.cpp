@@ -32,17 +32,18 @@ class FieldsWriter {
           file_, layout_.zones[z], present_[z], "MorphNodes", "Vertex", sizes(z, 0),
           io::names_of_nodes(fields, {layout_.zones[z].array[0] != nullptr, layout_.zones[z].array[1] != nullptr,
                                       layout_.zones[z].array[2] != nullptr}));
+    auto const places = node_places(mesh_);
     auto const before = io::components(mesh_.coordinates), after = io::components(morphed);
     std::vector<double> difference(fields.displacement ? std::size_t(mesh_.n_nodes()) : 0);
     for (std::size_t c = 0; fields.displacement && c < 3; ++c) {
       for (std::size_t n = 0; n < difference.size(); ++n) difference[n] = after[c][n] - before[c][n];
-      auto const ordered = in_file_order(mesh_.file_order.node, difference);
+      auto const ordered = in_file_order(places, difference);
       for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
         if (layout_.zones[z].array[c])
           solutions[z].add_displacement(io::displacement_names[c], ordered.data() + mesh_.zones[z].first_node, int(c));
     }
     for (auto const& field : fields.nodes) {
-      auto const ordered = in_file_order(mesh_.file_order.node, field.values);
+      auto const ordered = in_file_order(places, field.values);
       for (std::size_t z = 0; z < mesh_.zones.size(); ++z)
         solutions[z].add(field.name, ordered.data() + mesh_.zones[z].first_node, field.unit);
     }

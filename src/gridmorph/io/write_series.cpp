@@ -2,6 +2,7 @@
 #include <gridmorph/io/file_check.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/mesh_files.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/output_fields.hpp>
 #include <gridmorph/io/output_file.hpp>
@@ -67,7 +68,20 @@ struct SeriesWriter::Impl {
   }
   virtual ~Impl() = default;
 
-  void add(Coordinates const& morphed) {
+  /// `mesh` where the one of the caller left nodes to its file.
+  struct AllNodes {
+    Mesh const& of_caller;
+    NodesOfFile file;
+    Mesh mesh;
+  };
+
+  void add(Coordinates const& of_caller) {
+    if (all && of_caller.size() == all->of_caller.n_nodes())
+      add_all(with_all_nodes(all->of_caller, all->file, of_caller));
+    else
+      add_all(of_caller);
+  }
+  void add_all(Coordinates const& morphed) {
     if (written == steps)
       throw MeshError(name + ": more steps than the " + std::to_string(steps) + " times of the series");
     if (morphed.size() != mesh.n_nodes())
@@ -103,6 +117,7 @@ struct SeriesWriter::Impl {
   }
 
   std::string name;
+  std::unique_ptr<AllNodes> all;
   Mesh const& mesh;
   std::size_t steps;
   std::size_t written = 0;
@@ -225,6 +240,14 @@ struct FoamSeries final : SeriesWriter::Impl {
 
 SeriesWriter::SeriesWriter(std::string const& input, std::string const& output, Mesh const& mesh,
                            std::vector<double> const& times) {
+  if (mesh.file_order.left_out > 0) {
+    NodesOfFile file = io::nodes_of_file(input, mesh);
+    Mesh whole = with_all_nodes(mesh, file);
+    auto all = std::make_unique<Impl::AllNodes>(Impl::AllNodes{mesh, std::move(file), std::move(whole)});
+    impl_ = std::move(SeriesWriter(input, output, all->mesh, times).impl_);
+    impl_->all = std::move(all);
+    return;
+  }
   MeshFormat const format = mesh_format(input);
   if (!mesh.is_structured() && !holds_series(format))
     throw IoError(output + ": " + std::string(to_string(format)) +

@@ -55,6 +55,16 @@ void write_cgns(std::string const& input, std::string const& output, Mesh const&
   target.commit();
 }
 
+/// The mesh with all nodes of its file.
+void write_with_all_nodes(std::string const& input, std::string const& output, Mesh const& mesh,
+                          Coordinates const& morphed, OutputFields const& fields) {
+  NodesOfFile const file = io::nodes_of_file(input, mesh);
+  OutputFields of_file = fields;
+  for (auto& field : of_file.nodes) field.values = with_all_nodes(mesh, file, field.values);
+  for (auto& field : of_file.cells) field.values = in_file_order(mesh.file_order.element, field.values);
+  io::write_morphed_elements(input, output, with_all_nodes(mesh, file), with_all_nodes(mesh, file, morphed), of_file);
+}
+
 }  // namespace
 
 void io::write_morphed_elements(std::string const& input, std::string const& output, Mesh const& mesh,
@@ -63,6 +73,7 @@ void io::write_morphed_elements(std::string const& input, std::string const& out
   Problems problems;
   io::check_finite(mesh, morphed, "morphed mesh", problems);
   problems.throw_if_any<MeshError>();
+  if (mesh.file_order.left_out > 0) return write_with_all_nodes(input, output, mesh, morphed, fields);
   MeshFormat const format = mesh_format(input);
   if (format == MeshFormat::cgns) return write_cgns(input, output, mesh, morphed, fields);
   if (format == MeshFormat::vtk) return vtk::write_morphed(input, output, mesh, morphed, fields);

@@ -44,6 +44,7 @@ struct Polyhedra {
 struct FileOrder {
   std::vector<Index32> node;     ///< (n_nodes) or empty
   std::vector<Index32> element;  ///< (n_elements) or empty
+  Index left_out = 0;            ///< nodes that the file has and the mesh does not, see leave_out_unused_nodes()
 };
 
 /// Compressed element lists in a memory space, for kernels.

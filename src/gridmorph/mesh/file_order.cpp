@@ -64,6 +64,20 @@ void translate(std::vector<Index32>& numbers, std::vector<Index32> const& transl
   for (Index32& n : numbers) n = translation[std::size_t(n)];
 }
 
+/// Nodes in patches, connections and faces of subsets.
+void translate_nodes(Mesh& mesh, std::vector<Index32> const& new_node) {
+  for (auto& patch : mesh.patches) {
+    translate(patch.faces.item, new_node);
+    translate(patch.nodes, new_node);
+    std::sort(patch.nodes.begin(), patch.nodes.end());
+  }
+  for (auto& connection : mesh.connections) {
+    translate(connection.nodes, new_node);
+    translate(connection.donor_nodes, new_node);
+  }
+  for (auto& subset : mesh.subsets) translate(subset.faces.item, new_node);
+}
+
 /// Polyhedra in the order of their elements, their nodes translated.
 Polyhedra gather(Polyhedra const& polyhedra, std::vector<Index32> const& new_element,
                  std::vector<Index32> const& new_node) {
@@ -98,30 +112,61 @@ Mesh permuted(HostInstance const& host, Mesh const& mesh, FileOrder const& order
   if (!mesh.polyhedra.element.empty())
     out.polyhedra = gather(mesh.polyhedra, inverse_of(host, order.element), new_node);
   out.patches = mesh.patches;
-  for (auto& patch : out.patches) {
-    translate(patch.faces.item, new_node);
-    translate(patch.nodes, new_node);
-    std::sort(patch.nodes.begin(), patch.nodes.end());
-  }
   out.connections = mesh.connections;
-  for (auto& connection : out.connections) {
-    translate(connection.nodes, new_node);
-    translate(connection.donor_nodes, new_node);
-  }
   out.families = mesh.families;
   out.subsets = mesh.subsets;
+  translate_nodes(out, new_node);
   if (!out.subsets.empty()) {
     auto const new_element = inverse_of(host, order.element);
     for (auto& subset : out.subsets) {
       translate(subset.elements, new_element);
       std::sort(subset.elements.begin(), subset.elements.end());
-      translate(subset.faces.item, new_node);
     }
   }
   if (mesh.coordinates.size() > 0) out.coordinates = gather(host, mesh.coordinates, order.node);
   out.source = mesh.source;
   out.notes = mesh.notes;
   out.first_number = mesh.first_number;
+  return out;
+}
+
+/// Gives the zones those numbers of nodes, and everything that names nodes their new numbers; the mesh is in the order of its file.
+void renumber(Mesh& mesh, std::vector<Index> const& n_nodes, std::vector<Index32> const& new_node) {
+  Index first = 0;
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+    Zone& zone = mesh.zones[z];
+    zone.first_node = first;
+    if (!zone.is_block()) zone.n_nodes = n_nodes[z];
+    first += zone.size();
+  }
+  translate(mesh.elements.nodes.item, new_node);
+  translate(mesh.polyhedra.faces.item, new_node);
+  translate_nodes(mesh, new_node);
+}
+
+/// Number among all nodes of the file of each of the mesh.
+std::vector<Index32> numbers_in(NodesOfFile const& file, Mesh const& mesh) {
+  auto const refuse = [&](std::string const& why) {
+    throw MeshError(mesh.source + ": " + why + "; give the file that the mesh was read from");
+  };
+  if (file.n_nodes.size() != mesh.zones.size())
+    refuse("has " + std::to_string(mesh.zones.size()) + " zones and its file " + std::to_string(file.n_nodes.size()));
+  std::vector<Index32> out(std::size_t(mesh.n_nodes()));
+  Index first = 0;
+  for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+    Zone const& zone = mesh.zones[z];
+    for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
+      Index const place = mesh.file_order.node[std::size_t(n)] - zone.first_node;
+      if (place >= file.n_nodes[z])
+        refuse("zone '" + zone.name + "' has " + std::to_string(file.n_nodes[z]) + " nodes in its file, and node " +
+               std::to_string(place + mesh.first_number) + " is wanted");
+      out[std::size_t(n)] = Index32(first + place);
+    }
+    first += file.n_nodes[z];
+  }
+  if (first != file.coordinates.size())
+    refuse("zones of its file have " + std::to_string(first) + " nodes, and there are coordinates of " +
+           std::to_string(file.coordinates.size()));
   return out;
 }
 
@@ -219,7 +264,8 @@ FileOrder order_by_position(HostInstance const& host, Mesh const& mesh) {
 }
 
 void reorder(HostInstance const& host, Mesh& mesh, FileOrder order) {
-  if (!mesh.file_order.node.empty())
+  Index const left_out = mesh.file_order.left_out;
+  if (left_out > 0 ? !mesh.file_order.element.empty() : !mesh.file_order.node.empty())
     throw MeshError("reorder: '" + mesh.source + "' is not in the order of its file; put it back with in_file_order()");
   if (Index(order.node.size()) != mesh.n_nodes() || Index(order.element.size()) != mesh.n_elements())
     throw MeshError("reorder: the order is one of " + std::to_string(order.node.size()) + " nodes and " +
@@ -229,18 +275,26 @@ void reorder(HostInstance const& host, Mesh& mesh, FileOrder order) {
     if (zone.is_block() &&
         !(stays(order.node, zone.first_node, zone.size()) && stays(order.element, zone.first_element, zone.n_elements)))
       throw MeshError("reorder: the order moves nodes or cells of '" + zone.name + "', a block; leave them in place");
+  auto const place = std::move(mesh.file_order.node);
   mesh = permuted(host, mesh, order);
+  if (left_out > 0) order.node = gather(host, place, order.node);
+  order.left_out = left_out;
   mesh.file_order = std::move(order);
 }
 
 Mesh in_file_order(HostInstance const& host, Mesh const& mesh) {
   if (mesh.file_order.node.empty()) return mesh;
-  return permuted(host, mesh, {inverse_of(host, mesh.file_order.node), inverse_of(host, mesh.file_order.element)});
+  if (mesh.file_order.element.empty()) {  // left nodes to its file, and was not reordered
+    Mesh out = mesh;
+    out.file_order = {};
+    return out;
+  }
+  return permuted(host, mesh, {inverse_of(host, node_places(mesh)), inverse_of(host, mesh.file_order.element)});
 }
 
 Coordinates in_file_order(HostInstance const& host, Mesh const& mesh, Coordinates const& coordinates) {
   if (mesh.file_order.node.empty()) return coordinates;
-  return gather(host, coordinates, inverse_of(host, mesh.file_order.node));
+  return gather(host, coordinates, inverse_of(host, node_places(mesh)));
 }
 
 std::vector<double> in_file_order(HostInstance const& host, std::span<Index32 const> place,
@@ -248,6 +302,92 @@ std::vector<double> in_file_order(HostInstance const& host, std::span<Index32 co
   std::vector<double> out(values.begin(), values.end());
   for_all(host, "gridmorph::in_file_order", Index(place.size()),
           [&](Index n) { out[std::size_t(place[std::size_t(n)])] = values[std::size_t(n)]; });
+  return out;
+}
+
+Index leave_out_unused_nodes(Mesh& mesh) {
+  if (mesh.is_structured() || !mesh.file_order.node.empty()) return 0;
+  std::vector<Index32> new_node(std::size_t(mesh.n_nodes()), -1);
+  auto const take = [&](std::vector<Index32> const& nodes) {
+    for (Index32 const n : nodes) new_node[std::size_t(n)] = 0;
+  };
+  take(mesh.elements.nodes.item);
+  for (auto const& patch : mesh.patches) take(patch.faces.item);
+  for (auto const& connection : mesh.connections) {
+    take(connection.nodes);
+    take(connection.donor_nodes);
+  }
+  for (auto const& subset : mesh.subsets) take(subset.faces.item);
+  for (auto const& zone : mesh.zones)
+    if (zone.is_block())
+      std::fill_n(new_node.begin() + std::ptrdiff_t(zone.first_node), std::size_t(zone.size()), Index32(0));
+  auto const unused = Index(std::count(new_node.begin(), new_node.end(), -1));
+  if (unused == 0) return 0;
+
+  std::vector<Index> n_nodes;
+  std::vector<Index32> place;
+  place.reserve(new_node.size() - std::size_t(unused));
+  std::vector<Index32> old;
+  old.reserve(place.capacity());
+  for (auto const& zone : mesh.zones) {
+    auto const first = Index32(place.size());
+    for (Index n = 0; n < zone.size(); ++n) {
+      auto const at = std::size_t(zone.first_node + n);
+      if (new_node[at] < 0) continue;
+      new_node[at] = Index32(place.size());
+      place.push_back(Index32(first + n));
+      old.push_back(Index32(at));
+    }
+    n_nodes.push_back(Index(place.size()) - first);
+  }
+  // Patches that list nodes say where boundaries are, and there is none at these.
+  for (auto& patch : mesh.patches) std::erase_if(patch.nodes, [&](Index32 n) { return new_node[std::size_t(n)] < 0; });
+  Coordinates used{Index(old.size())};
+  for (std::size_t n = 0; n < old.size(); ++n) used.set(Index(n), mesh.coordinates[old[n]]);
+  mesh.coordinates = used;
+  renumber(mesh, n_nodes, new_node);
+  mesh.file_order.node = std::move(place);
+  mesh.file_order.left_out = unused;
+  return unused;
+}
+
+std::vector<Index32> node_places(Mesh const& mesh) {
+  auto out = mesh.file_order.node;
+  if (mesh.file_order.left_out == 0) return out;
+  for (auto const& zone : mesh.zones) {
+    auto const begin = out.begin() + std::ptrdiff_t(zone.first_node), end = begin + std::ptrdiff_t(zone.size());
+    if (begin == end) continue;
+    std::vector<Index32> rank(std::size_t(*std::max_element(begin, end) - zone.first_node) + 1, 0);
+    for (auto p = begin; p != end; ++p) rank[std::size_t(*p - zone.first_node)] = 1;
+    std::exclusive_scan(rank.begin(), rank.end(), rank.begin(), Index32(zone.first_node));
+    for (auto p = begin; p != end; ++p) *p = rank[std::size_t(*p - zone.first_node)];
+  }
+  return out;
+}
+
+Mesh with_all_nodes(Mesh const& mesh, NodesOfFile const& file) {
+  auto const number = numbers_in(file, mesh);
+  Mesh out = in_file_order(mesh);
+  std::vector<Index32> new_node(number.size());
+  auto const place = node_places(mesh);
+  for (std::size_t n = 0; n < number.size(); ++n) new_node[std::size_t(place[n])] = number[n];
+  renumber(out, file.n_nodes, new_node);
+  out.coordinates = file.coordinates;
+  return out;
+}
+
+Coordinates with_all_nodes(Mesh const& mesh, NodesOfFile const& file, Coordinates const& coordinates) {
+  auto const number = numbers_in(file, mesh);
+  Coordinates out(file.coordinates.size());
+  for (Index n = 0; n < out.size(); ++n) out.set(n, file.coordinates[n]);
+  for (std::size_t n = 0; n < number.size(); ++n) out.set(number[n], coordinates[Index(n)]);
+  return out;
+}
+
+std::vector<double> with_all_nodes(Mesh const& mesh, NodesOfFile const& file, std::span<double const> values) {
+  auto const number = numbers_in(file, mesh);
+  std::vector<double> out(std::size_t(file.coordinates.size()), 0.0);
+  for (std::size_t n = 0; n < number.size(); ++n) out[std::size_t(number[n])] = values[n];
   return out;
 }
 

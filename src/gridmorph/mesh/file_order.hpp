@@ -31,7 +31,7 @@ inline FileOrder order_by_position(Mesh const& mesh) { return order_by_position(
 void reorder(HostInstance const& host, Mesh& mesh, FileOrder order);
 inline void reorder(Mesh& mesh, FileOrder order) { reorder(HostInstance(), mesh, std::move(order)); }
 
-/// The mesh as its file numbers it.
+/// The mesh as its file numbers it, without the nodes that it left to it.
 Mesh in_file_order(HostInstance const& host, Mesh const& mesh);
 inline Mesh in_file_order(Mesh const& mesh) { return in_file_order(HostInstance(), mesh); }
 /// Coordinates as the file of the mesh numbers them.
@@ -39,11 +39,31 @@ Coordinates in_file_order(HostInstance const& host, Mesh const& mesh, Coordinate
 inline Coordinates in_file_order(Mesh const& mesh, Coordinates const& coordinates) {
   return in_file_order(HostInstance(), mesh, coordinates);
 }
-/// A value for each node or each element of the mesh, as its file numbers them. `place` is file_order.node or .element.
+/// A value for each node or each element of the mesh, as its file numbers them. `place` is node_places() or file_order.element.
 std::vector<double> in_file_order(HostInstance const& host, std::span<Index32 const> place,
                                   std::span<double const> values);
 inline std::vector<double> in_file_order(std::span<Index32 const> place, std::span<double const> values) {
   return in_file_order(HostInstance(), place, values);
 }
+
+/// Nodes that no element has (centres of circles, points of a mesh that was cut away, ...) are no part of a mesh that is read, so that
+/// they change nothing: neither its size nor what is found around its nodes. Takes those that neither an element, nor a face of a patch or a subset, nor a
+/// connection has out of a mesh in the order of its file; blocks keep theirs. Then FileOrder::node has the place of each node that stays among all those of its zone,
+/// counted on from Zone::first_node. Returns how many were taken out; a mesh without any stays as it is. Linear cost.
+Index leave_out_unused_nodes(Mesh& mesh);
+/// FileOrder::node among the nodes that the mesh has: what in_file_order() takes for values of nodes.
+std::vector<Index32> node_places(Mesh const& mesh);
+
+/// What a file has that left nodes to it: `n_nodes` of each zone, and where all of them are.
+struct NodesOfFile {
+  std::vector<Index> n_nodes;
+  Coordinates coordinates;
+};
+/// The mesh in the order of its file, with all of its nodes. Throws MeshError where the file has fewer nodes than the mesh, or other zones.
+Mesh with_all_nodes(Mesh const& mesh, NodesOfFile const& file);
+/// Coordinates of all nodes of the file: `coordinates` of those that the mesh has, where the file has them of the others.
+Coordinates with_all_nodes(Mesh const& mesh, NodesOfFile const& file, Coordinates const& coordinates);
+/// A value for each node of the file, zero of those that the mesh does not have.
+std::vector<double> with_all_nodes(Mesh const& mesh, NodesOfFile const& file, std::span<double const> values);
 
 }  // namespace gridmorph

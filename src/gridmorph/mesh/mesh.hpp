@@ -158,7 +158,7 @@ struct Mesh {
   std::string file_variant;
   std::vector<std::string> notes;  ///< what the reader skipped or assumed, for `inspect` and logs
   int first_number = 1;            ///< of nodes of elements in messages: 1 in CGNS, 0 in SU2 files
-  FileOrder file_order;            ///< set by reorder(); readers leave it empty
+  FileOrder file_order;            ///< set by reorder() and leave_out_unused_nodes(); empty where nothing is to be said
 
   /// Whether all cells are those of blocks. Blocks beside zones of elements have theirs among these.
   [[nodiscard]] bool is_structured() const;

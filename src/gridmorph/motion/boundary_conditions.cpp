@@ -188,19 +188,18 @@ class Finder {
   void find_slip_nodes() {
     std::vector<std::set<Index32>> surfaces;
     std::vector<Index32> place(std::size_t(mesh_.n_nodes()), -1);
-    for (std::size_t p = 0; p < patches_.size(); ++p) {
-      int const surface = out_.motion->slip_surface_of(int(p));
-      if (surface < 0) continue;
-      for (Index const n : out_.nodes_of(int(p))) {
-        Index32 const o = owner(n);
-        if (is_known_[std::size_t(o)]) continue;
-        if (place[std::size_t(o)] < 0) {
-          place[std::size_t(o)] = Index32(surfaces.size());
-          surfaces.emplace_back();
+    for (std::size_t p = 0; p < patches_.size(); ++p)
+      out_.motion->each_slip_surface(int(p), [&](int surface, std::vector<Index> const& nodes) {
+        for (Index const n : nodes) {
+          Index32 const o = owner(n);
+          if (is_known_[std::size_t(o)]) continue;
+          if (place[std::size_t(o)] < 0) {
+            place[std::size_t(o)] = Index32(surfaces.size());
+            surfaces.emplace_back();
+          }
+          surfaces[std::size_t(place[std::size_t(o)])].insert(Index32(surface));
         }
-        surfaces[std::size_t(place[std::size_t(o)])].insert(Index32(surface));
-      }
-    }
+      });
     for (std::size_t n = 0; n < place.size(); ++n)
       if (place[n] >= 0) {
         out_.slip_nodes.push_back(Index32(n));

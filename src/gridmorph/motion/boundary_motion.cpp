@@ -350,6 +350,15 @@ ResolvedMotion const& BoundaryMotion::motion() const { return impl_->motion; }
 std::vector<SlipSurface> const& BoundaryMotion::slip_surfaces() const { return impl_->slip->surfaces; }
 int BoundaryMotion::slip_surface_of(int patch) const { return impl_->slip->of_patch[std::size_t(patch)]; }
 
+void BoundaryMotion::each_slip_surface(int patch,
+                                       std::function<void(int, std::vector<Index> const&)> const& visit) const {
+  if (auto const pieces = impl_->slip->pieces.find(patch); pieces != impl_->slip->pieces.end()) {
+    for (SlipPiece const& piece : pieces->second) visit(piece.surface, piece.nodes);
+  } else if (int const s = slip_surface_of(patch); s >= 0) {
+    visit(s, impl_->boundary->surface(patch).nodes);
+  }
+}
+
 SlipSurface const* BoundaryMotion::slip_surface(int patch) const {
   int const s = slip_surface_of(patch);
   return s < 0 ? nullptr : &slip_surfaces()[std::size_t(s)];

@@ -6,6 +6,7 @@
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/motion/target_reach.hpp>
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -45,8 +46,10 @@ class BoundaryMotion {
 
   /// The surfaces that slip (or constrained free) rules keep nodes on, each once.
   [[nodiscard]] std::vector<SlipSurface> const& slip_surfaces() const;
-  /// Number in slip_surfaces() of that of patch p; -1 for other rules.
+  /// Number in slip_surfaces() of that of patch p; -1 for other rules. Patches of elements may lie on several: this is one of them.
   [[nodiscard]] int slip_surface_of(int patch) const;
+  /// Calls visit(number in slip_surfaces(), nodes) for each surface of patch p with its nodes on it; nodes where two meet come with both.
+  void each_slip_surface(int patch, std::function<void(int, std::vector<Index> const&)> const& visit) const;
   /// That surface, or null.
   [[nodiscard]] SlipSurface const* slip_surface(int patch) const;
 

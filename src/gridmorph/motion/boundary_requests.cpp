@@ -1,12 +1,14 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
 #include <gridmorph/motion/disagreements.hpp>
 #include <gridmorph/motion/torn_copies.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <unordered_map>
@@ -144,6 +146,39 @@ void BoundaryRequests::sort(std::vector<MotionRule> const& rules) {
                    [&](Request const& a, Request const& b) { return order(a) < order(b); });
 }
 
+namespace {
+
+/// What leads out of the plane of a mesh that has no other: it would be dropped, and a body that is turned out of its plane squeezed.
+void require_in_plane(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+                      std::vector<Vec3> const& displacement) {
+  Boundary const& surfaces = motion.boundary();
+  if (!surfaces.is_plane()) return;
+  constexpr double rounding = 1e-6;  // of the largest displacement: tables have six digits and more
+  Vec3 const normal = (1 / norm(surfaces.across())) * surfaces.across();
+  double largest = 0, most = 0;
+  Request const* out = nullptr;
+  for (Request const& r : boundary.requests) {
+    Vec3 const& u = displacement[std::size_t(r.boundary_node)];
+    largest = std::max(largest, norm(u));
+    if (double const off = std::abs(dot(normal, u)); off > most) {
+      most = off;
+      out = &r;
+    }
+  }
+  double const tolerance =
+      displacement_tolerance(motion.motion().conformity_tolerance, surfaces.size(), surfaces.precision().resolution());
+  if (out == nullptr || most <= std::max(tolerance, rounding * largest)) return;
+  MotionRule const& rule = motion.motion().rules[std::size_t(out->rule)];
+  throw MotionError((rule.where.empty() ? "rule " + std::to_string(out->rule + 1) : rule.where) + ": rule '" +
+                    std::string(rule_name(rule.rule)) + "' displaces " + describe_node(mesh, out->node) + " of " +
+                    requester(mesh, *out) + " by " + to_text(displacement[std::size_t(out->boundary_node)], 3) + ", " +
+                    to_text(most, 3) +
+                    " of it out of the plane of a 2-D mesh; move it within its plane, turn it about " +
+                    to_text(normal, 3));
+}
+
+}  // namespace
+
 std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                            std::vector<Mat3> const& rotations) {
   auto const& requests = boundary.requests;
@@ -158,7 +193,9 @@ std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, B
       evaluation.take(n, r < 0 ? u[n - begin] : transpose(rotations[std::size_t(r)]) * u[n - begin]);
     }
   }
-  return evaluation.result();
+  auto out = evaluation.result();
+  require_in_plane(mesh, boundary, motion, out);
+  return out;
 }
 
 void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,

@@ -117,14 +117,14 @@ std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> co
   for (auto const& r : boundary.requests.requests) slot_of.emplace(r.node, std::size_t(r.boundary_node));
   Gathering gathering(mesh, boundary.requests, motion, given);
   double const size = motion.boundary().size();
-  for (int p = 0; p < int(mesh.patches.size()); ++p) {
-    SlipSurface const* surface = motion.slip_surface(p);
-    if (surface == nullptr) continue;
-    double const tolerance = given_tolerance(*surface, size);
-    for (Index const n : boundary.nodes_of(p))
-      if (auto const slot = slot_of.find(n); slot != slot_of.end())
-        gathering.look(n, slot->second, p, *surface, tolerance);
-  }
+  for (int p = 0; p < int(mesh.patches.size()); ++p)
+    motion.each_slip_surface(p, [&](int s, std::vector<Index> const& nodes) {
+      SlipSurface const& surface = motion.slip_surfaces()[std::size_t(s)];
+      double const tolerance = given_tolerance(surface, size);
+      for (Index const n : nodes)
+        if (auto const slot = slot_of.find(n); slot != slot_of.end())
+          gathering.look(n, slot->second, p, surface, tolerance);
+    });
   return gathering.result("they leave it");
 }
 

@@ -77,9 +77,10 @@ class ElementPassage final : public PassageMesh {
     if (mesh().file_order.node.empty()) return make_wheel_mesh(mesh(), links_, rows, passages, families);
     Mesh const ordered = gridmorph::in_file_order(mesh());
     PassageLinks links = links_;
+    auto const place = node_places(mesh());
     for (PassageLink& link : links.all)
       for (auto& pair : link.pairs)
-        for (Index& n : pair) n = mesh().file_order.node[std::size_t(n)];
+        for (Index& n : pair) n = place[std::size_t(n)];
     return make_wheel_mesh(ordered, links, rows, passages, families);
   }
   [[nodiscard]] Coordinates in_file_order(Coordinates const& x) const override {

@@ -170,6 +170,8 @@ std::string FoamFile::value_of_key() {
   skip_blanks();
   std::string out;
   int depth = 0;
+  // A dictionary is a value without ';': `surface { type none; }`.
+  bool const dictionary = at_ < text_.size() && text_[at_] == '{';
   while (true) {
     if (at_ >= text_.size()) fail("a value does not end; ';' is missing");
     char const c = text_[at_];
@@ -188,6 +190,10 @@ std::string FoamFile::value_of_key() {
     depth += c == '(' || c == '{' ? 1 : c == ')' || c == '}' ? -1 : 0;
     out += c;
     ++at_;
+    if (dictionary && depth == 0) {
+      if (peek() == ';') ++at_;
+      break;
+    }
   }
   while (!out.empty() && is_blank(out.back())) out.pop_back();
   return out;

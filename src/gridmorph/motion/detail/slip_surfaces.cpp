@@ -9,6 +9,7 @@
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
 #include <gridmorph/motion/detail/baseline_facets.hpp>
+#include <gridmorph/motion/detail/flat_pieces.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -122,17 +123,24 @@ class Finder {
 
  private:
   void store(SlipSurface surface, Patches const& patches, std::vector<Vec3> const& points) {
+    int const number = store(std::move(surface), points);
+    for (int p : patches) out_.of_patch[p] = number;
+  }
+
+  /// Its number.
+  int store(SlipSurface surface, std::vector<Vec3> const& points) {
     for (Vec3 const& p : points) surface.size = std::max(surface.size, distance(p, surface.origin));
     // Two rules may give one surface: a node on both slides on it, not along an edge.
     auto const known = std::find_if(out_.surfaces.begin(), out_.surfaces.end(),
                                     [&](SlipSurface const& other) { return same_surface(surface, other); });
-    for (int p : patches) out_.of_patch[p] = int(known - out_.surfaces.begin());
+    int const number = int(known - out_.surfaces.begin());
     if (known == out_.surfaces.end()) {
       out_.surfaces.push_back(std::move(surface));
     } else {
       known->size = std::max(known->size, surface.size);
       known->baseline_deviation = std::max(known->baseline_deviation, surface.baseline_deviation);
     }
+    return number;
   }
 
   void axial(Patches const& patches) {
@@ -143,23 +151,86 @@ class Finder {
     store(std::move(surface), patches, boundary_.points(patches));
   }
 
-  /// Patches on one plane share it: largest first, each takes those that lie on its plane.
-  void planes(Patches patches, std::optional<std::pair<Vec3, Vec3>> const& given) {
-    std::map<int, PlaneFit> fits;
-    for (int p : patches) fits[p] = fit_plane(boundary_.points(p));
-    std::stable_sort(patches.begin(), patches.end(), [&](int a, int b) { return fits[a].extent > fits[b].extent; });
-    while (!patches.empty()) {
-      PlaneFit const seed = fits[patches.front()];
-      Patches members, rest;
-      for (int p : patches) {
-        auto const points = boundary_.points(p);
-        bool const same =
-            p == patches.front() || given ||
-            (seed.determined && deviation_from_plane(points, seed.origin, seed.normal) <= flat(seed.extent, points));
-        (same ? members : rest).push_back(p);
+  /// A patch, or one of the planes that it lies on.
+  struct Part {
+    int patch = -1;
+    std::vector<Index> nodes{};  ///< none: all of the patch
+    std::vector<Vec3> points;
+    PlaneFit fit;
+  };
+
+  /// As Boundary::points().
+  [[nodiscard]] std::vector<Vec3> points_of(std::vector<Index> const& nodes) const {
+    std::vector<Vec3> out;
+    for (Index const n : nodes) out.push_back(mesh_.coordinates[n]);
+    if (boundary_.is_plane())
+      for (Index const n : nodes) out.push_back(mesh_.coordinates[n] + boundary_.across());
+    return out;
+  }
+
+  /// The patch, or its planes where it lies on several.
+  [[nodiscard]] std::vector<Part> parts_of(int p) const {
+    Part whole{p, {}, boundary_.points(p), {}};
+    whole.fit = fit_plane(whole.points);
+    std::vector<Part> parts;
+    if (whole.fit.determined && !is_flat(whole)) parts = planes_of(p);
+    if (parts.size() < 2) parts = {std::move(whole)};
+    return parts;
+  }
+
+  /// The planes of a patch; none where it lies on something else.
+  [[nodiscard]] std::vector<Part> planes_of(int p) const {
+    std::vector<Part> out;
+    std::vector<Index> listed;
+    for (auto& nodes : flat_pieces(boundary_, p)) {
+      auto points = points_of(nodes);
+      PlaneFit const fit = fit_plane(points);
+      listed.insert(listed.end(), nodes.begin(), nodes.end());
+      out.push_back({p, std::move(nodes), std::move(points), fit});
+      if (!fit.determined || !is_flat(out.back())) return {};
+    }
+    // Further nodes of second-order faces are no corners; they lie on the planes that they are on.
+    std::sort(listed.begin(), listed.end());
+    for (Index const n : boundary_.surface(p).nodes) {
+      if (std::binary_search(listed.begin(), listed.end(), n)) continue;
+      std::vector<Vec3> const point{mesh_.coordinates[n]};
+      bool found = false;
+      for (Part& part : out) {
+        if (deviation_from_plane(point, part.fit.origin, part.fit.normal) > flat(part.fit.extent, point)) continue;
+        part.nodes.push_back(n);
+        found = true;
       }
-      plane(members, given);
-      patches = rest;
+      if (!found) return {};
+    }
+    return out;
+  }
+
+  [[nodiscard]] bool is_flat(Part const& part) const {
+    return deviation_from_plane(part.points, part.fit.origin, part.fit.normal) <= flat(part.fit.extent, part.points);
+  }
+
+  /// Patches on one plane share it: largest first, each takes those that lie on its plane.
+  void planes(Patches const& patches, std::optional<std::pair<Vec3, Vec3>> const& given) {
+    if (given) {
+      if (!patches.empty()) plane(patches, given);
+      return;
+    }
+    std::vector<Part> parts;
+    for (int const p : patches)
+      for (Part& part : parts_of(p)) parts.push_back(std::move(part));
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](Part const& a, Part const& b) { return a.fit.extent > b.fit.extent; });
+    while (!parts.empty()) {
+      PlaneFit const seed = parts.front().fit;
+      std::vector<Part> members, rest;
+      for (std::size_t n = 0; n < parts.size(); ++n) {
+        Part& part = parts[n];
+        bool const same = n == 0 || (seed.determined && deviation_from_plane(part.points, seed.origin, seed.normal) <=
+                                                            flat(seed.extent, part.points));
+        (same ? members : rest).push_back(std::move(part));
+      }
+      plane(members);
+      parts = std::move(rest);
     }
   }
 
@@ -169,9 +240,35 @@ class Finder {
     return 1e-6 * extent + std::max(2e-7 * largest, 2 * boundary_.precision().at(largest));
   }
 
+  /// Of whole patches, and of parts of others.
+  void plane(std::vector<Part> const& parts) {
+    Patches whole, all;
+    for (Part const& part : parts) {
+      all.push_back(part.patch);
+      if (part.nodes.empty()) whole.push_back(part.patch);
+    }
+    if (whole.size() == all.size()) return plane(whole, std::nullopt);
+    std::sort(all.begin(), all.end());
+    std::vector<Vec3> points;
+    for (Part const& part : parts) points.insert(points.end(), part.points.begin(), part.points.end());
+    auto surface = plane_through(all, points, std::nullopt);
+    if (!surface) return;
+    int const number = store(std::move(*surface), points);
+    for (Part const& part : parts) {
+      if (int& first = out_.of_patch[part.patch]; first < 0) first = number;
+      if (!part.nodes.empty()) out_.pieces[part.patch].push_back({number, part.nodes});
+    }
+  }
+
   void plane(Patches members, std::optional<std::pair<Vec3, Vec3>> const& given) {
     std::sort(members.begin(), members.end());
     auto const points = boundary_.points(members);
+    if (auto surface = plane_through(members, points, given)) store(std::move(*surface), members, points);
+  }
+
+  /// Nothing, and a problem, where there is none.
+  std::optional<SlipSurface> plane_through(Patches const& members, std::vector<Vec3> const& points,
+                                           std::optional<std::pair<Vec3, Vec3>> const& given) {
     PlaneFit const fit = fit_plane(points);
     SlipSurface surface;
     surface.kind = SlipSurface::Kind::plane;
@@ -183,15 +280,15 @@ class Finder {
       problems_.add(who +
                     " is collapsed to a line, which lies on many planes; "
                     "give the plane, or another rule");
-      return;
+      return std::nullopt;
     }
     if (double const limit = flat(fit.extent, points); surface.baseline_deviation > limit) {
       problems_.add(who + " is up to " + to_text(surface.baseline_deviation, 3) + " off " +
                     (given ? "the given plane" : "the nearest plane") + " (allowed: " + to_text(limit, 3) +
                     "); give it another rule, such as fixed" + (given ? ", or another plane" : ""));
-      return;
+      return std::nullopt;
     }
-    store(std::move(surface), members, points);
+    return surface;
   }
 
   void baseline(Patches const& patches, SlipRule const& slip) {
