@@ -10,8 +10,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <numbers>
+#include <tuple>
 
 namespace gridmorph {
 namespace {
@@ -70,7 +74,8 @@ TEST(UnstructuredMorph, PlanesUnderOneNameAreAsMany) {
                        test::rule_for({"k_max"}, FixedRule{}),
                        test::rule_for({"i_*", "j_*", "side"}, SlipRule{SlipRule::Surface::plane})});
   for (bool const second_order : {false, true}) {
-    Mesh const apart = second_order ? test::second_order(test::unit_box({4, 3, 5})) : test::unit_box({4, 3, 5});
+    Mesh const apart = second_order ? test::second_order(test::to_hexahedra(test::unit_box({4, 3, 5})))
+                                    : test::to_hexahedra(test::unit_box({4, 3, 5}));
     // Opposite sides, and sides that meet in an edge.
     for (auto const& names : {std::pair<std::string, std::string>("j_min", "j_max"), {"i_max", "j_min"}}) {
       Mesh together = apart;
@@ -89,11 +94,141 @@ TEST(UnstructuredMorph, PlanesUnderOneNameAreAsMany) {
     }
   }
   // What bends is no plane, and no two.
-  Mesh curved = test::unit_box({4, 3, 5});
+  Mesh curved = test::to_hexahedra(test::unit_box({4, 3, 5}));
   for (Index n = 0; n < curved.n_nodes(); ++n)
     curved.coordinates.y(n) += 0.05 * curved.coordinates.x(n) * curved.coordinates.x(n);
   EXPECT_NE(test::message_of<MotionError>([&] { (void)Case(curved).morph(bent); }).find("off the nearest plane"),
             std::string::npos);
+}
+
+/// Sides inside the mesh all of whose nodes are accepted, each once.
+template <class Accept>
+std::vector<std::vector<Index32>> inner_faces(Mesh const& mesh, Accept const& accept) {
+  std::map<std::vector<Index32>, std::vector<Index32>> found;
+  std::array<Index32, max_face_corners> room{};
+  for (Index e = 0; e < mesh.n_elements(); ++e)
+    for (int s = 0; s < n_sides(mesh, e); ++s) {
+      auto const nodes = side_nodes(mesh, e, s, room);
+      if (!std::all_of(nodes.begin(), nodes.end(), [&](Index32 n) { return accept(mesh.coordinates[n]); })) continue;
+      std::vector<Index32> key(nodes.begin(), nodes.end());
+      std::sort(key.begin(), key.end());
+      found.try_emplace(std::move(key), nodes.begin(), nodes.end());
+    }
+  std::vector<std::vector<Index32>> out;
+  for (auto const& [key, nodes] : found) out.push_back(nodes);
+  return out;
+}
+
+/// `mesh` with a wall of these faces inside of it: one patch, or one for each side; every other face listed the other way round if `mixed`.
+Mesh with_plate(Mesh mesh, std::vector<std::vector<Index32>> const& faces, bool two_patches, bool mixed) {
+  for (int side = 0; side < (two_patches ? 2 : 1); ++side) {
+    Patch plate{two_patches ? side == 0 ? "plate_master" : "plate_slave" : "plate"};
+    plate.zone = 0;
+    plate.kind = PatchKind::wall;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      auto nodes = faces[f];
+      if ((side == 1) != (mixed && f % 2 == 1)) std::reverse(nodes.begin(), nodes.end());
+      plate.faces.add(nodes);
+    }
+    mesh.patches.push_back(std::move(plate));
+  }
+  return mesh;
+}
+
+TEST(UnstructuredMorph, BafflesMoveAsTheyAreToldOnBothSides) {
+  for (bool const plane : {true, false}) {
+    SCOPED_TRACE(plane ? "2-D" : "3-D");
+    Mesh const box = plane ? test::flat_box(8, 8, 8) : test::to_hexahedra(test::unit_box({8, 6, 6}));
+    auto const faces =
+        inner_faces(box, [&](Vec3 const& p) { return p.x == 4 && p.y <= 4 && (plane || (p.z >= 1 && p.z <= 4)); });
+    ASSERT_GT(faces.size(), 3U);
+    Motion const bends =
+        test::motion_of({test::rule_for({"plate*"}, FunctionRule{"bent",
+                                                                 [](std::span<Vec3 const> x, std::span<Vec3> u) {
+                                                                   for (std::size_t n = 0; n < x.size(); ++n)
+                                                                     u[n] = {0.05 * x[n].y * x[n].y, 0, 0};
+                                                                 }}),
+                         test::rule_for({"?_m*"}, FixedRule{})});
+    std::vector<Coordinates> results;
+    for (auto const& [two_patches, mixed] : {std::pair(false, false), {true, false}, {false, true}, {true, true}}) {
+      Case const c(with_plate(box, faces, two_patches, mixed));
+      EXPECT_TRUE(c.face_patches.problems.empty());
+      auto const& behind = c.topology.boundary.behind;
+      ASSERT_EQ(Index(behind.size()), c.topology.boundary.size());
+      EXPECT_EQ(std::size_t(std::count_if(behind.begin(), behind.end(), [](Index32 f) { return f >= 0; })),
+                2 * faces.size());
+      for (std::size_t f = 0; f < behind.size(); ++f)
+        if (behind[f] >= 0) EXPECT_EQ(behind[std::size_t(behind[f])], Index32(f));
+      for (std::size_t p = 4 + (plane ? 0 : 2); p < c.mesh.patches.size(); ++p)
+        EXPECT_EQ(c.face_patches.faces_of_patch[p], Index(faces.size()) * (two_patches ? 1 : 2));
+      Morphed const m = c.morph(bends);
+      EXPECT_EQ(c.largest_miss(m), 0);
+      EXPECT_EQ(c.inverted(m.x), 0);
+      results.push_back(m.x);
+    }
+    // Which side a patch lists, and which way round, says nothing about where nodes go.
+    for (auto const& other : results)
+      for (Index n = 0; n < box.n_nodes(); ++n) ASSERT_LT(distance(other[n], results.front()[n]), 1e-6) << n;
+    // What is on both sides alike moves alike: u(4 + d) is u(4 - d), the walls around being the same.
+    std::map<std::array<double, 3>, Index> at;
+    for (Index n = 0; n < box.n_nodes(); ++n)
+      at[{box.coordinates.x(n), box.coordinates.y(n), box.coordinates.z(n)}] = n;
+    for (Index n = 0; n < box.n_nodes(); ++n) {
+      Vec3 const x = box.coordinates[n];
+      Index const mirrored = at.at({8 - x.x, x.y, x.z});
+      double const u = results[0].x(n) - x.x, v = results[0].x(mirrored) - box.coordinates.x(mirrored);
+      EXPECT_NEAR(u, v, 1e-6) << n;
+    }
+    // A plate that goes along with everything.
+    Case const c(with_plate(box, faces, true, false));
+    Vec3 const t{0.3, -0.2, 0};
+    Morphed const m = c.morph(test::motion_of({test::rule_for({"*"}, translation(t))}));
+    for (Index n = 0; n < c.mesh.n_nodes(); ++n)
+      ASSERT_NEAR(distance(m.x[n], c.mesh.coordinates[n] + t), 0, 1e-13 * c.mesh.size()) << n;
+  }
+}
+
+TEST(UnstructuredMorph, ATargetThatGoesOnBeyondTheSidesIsTheOneThatEndsThere) {
+  auto const slope = [](double low, double high, int n) {
+    TargetGeometry out;
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) {
+        double const x = low + (high - low) * i / n, y = low + (high - low) * j / n;
+        out.points.push_back({x, y, 0.1 * x + 0.05 * y});
+      }
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        int const a = i + (n + 1) * j;
+        out.triangles.push_back({a, a + 1, a + n + 2});
+        out.triangles.push_back({a, a + n + 2, a + n + 1});
+      }
+    TargetRule rule;
+    rule.target = std::make_shared<TargetGeometry const>(std::move(out));
+    rule.mapping = TargetRule::Mapping::projection;
+    return rule;
+  };
+  Mesh const box = test::unit_box({6, 6, 5});
+  for (bool const blocks : {true, false}) {
+    SCOPED_TRACE(blocks ? "blocks" : "elements");
+    Case const c(test::to_hexahedra(box));
+    auto const moved = [&](TargetRule rule) {
+      Motion const motion =
+          test::motion_of({test::rule_for({"k_min"}, std::move(rule)), test::rule_for({"k_max"}, FixedRule{}),
+                           test::rule_for({"i_*", "j_*"}, SlipRule{SlipRule::Surface::plane})});
+      return blocks ? test::morph(box, motion).morphed.position : c.morph(motion).x;
+    };
+    Coordinates const cut = moved(slope(0, 6, 12));
+    for (auto const& [low, high, n] : {std::tuple(-0.6, 6.6, 9), {-27.0, 33.0, 7}, {-1e-3, 6 + 1e-3, 5}}) {
+      Coordinates const x = moved(slope(low, high, n));
+      for (Index v = 0; v < box.n_nodes(); ++v) {
+        ASSERT_LT(distance(x[v], cut[v]), 1e-10) << v << " of a target from " << low;
+        Vec3 const before = box.coordinates[v];
+        for (auto const& [was, is] : {std::pair(before.x, x.x(v)), {before.y, x.y(v)}})
+          if (was == 0 || was == 6) EXPECT_NEAR(is, was, 1e-10);
+        if (before.z == 0) EXPECT_NEAR(x.z(v), 0.1 * x.x(v) + 0.05 * x.y(v), 1e-10);
+      }
+    }
+  }
 }
 
 TEST(UnstructuredMorph, MotionsOutOfThePlaneOfAPlaneMeshAreRefused) {

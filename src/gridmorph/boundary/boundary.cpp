@@ -123,7 +123,14 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
              mesh.file_order.node[std::size_t(list[std::size_t(b)])];
     });
   }
+  // Both sides of a surface inside the mesh that are one patch are one surface.
+  auto const is_back = [&](Index f) {
+    auto const& behind = topology.boundary.behind;
+    Index32 const other = behind.empty() ? -1 : behind[std::size_t(f)];
+    return other >= 0 && other < f && face_patches.patch[std::size_t(other)] == face_patches.patch[std::size_t(f)];
+  };
   each_face([&](Index f, BoundarySurface& surface) {
+    if (is_back(f)) return;
     add_face(inward_face(mesh, topology, f, surface.nodes, across_), surface.faces);
   });
 }

@@ -17,6 +17,7 @@ class FacePatchFinder {
 
   BoundaryFacePatches run() {
     for (std::size_t p = 0; p < mesh_.patches.size(); ++p) listed_faces(int(p));
+    other_sides();
     listed_nodes();
     connections();
     count();
@@ -30,11 +31,12 @@ class FacePatchFinder {
     Index inside = 0, twice = 0;
     int other = -1;
     for (Index f = 0; f < patch.faces.size(); ++f) {
-      Index32 const face = find_boundary_face(topology_, patch.faces[f]);
+      Index32 face = find_boundary_face(topology_, patch.faces[f]);
       if (face < 0) {
         ++inside;
         continue;
       }
+      if (is_inner(face)) face = side_listed(face, patch.faces[f]);
       int& patch_of_face = out_.patch[std::size_t(face)];
       if (patch_of_face >= 0 && patch_of_face != p && twice++ == 0) other = patch_of_face;
       if (patch_of_face < 0) patch_of_face = p;
@@ -46,6 +48,30 @@ class FacePatchFinder {
       out_.problems.push_back("patch " + describe_patch(mesh_, patch) + ": " + std::to_string(twice) +
                               " of its faces belong to patch " +
                               describe_patch(mesh_, mesh_.patches[std::size_t(other)]) + " too");
+  }
+
+  [[nodiscard]] bool is_inner(Index32 face) const {
+    auto const& behind = topology_.boundary.behind;
+    return !behind.empty() && behind[std::size_t(face)] >= 0;
+  }
+
+  /// Of a face inside the mesh the side whose nodes run as they are listed, unless a patch has it and none the other.
+  [[nodiscard]] Index32 side_listed(Index32 face, std::span<Index32 const> listed) const {
+    Index32 const other = topology_.boundary.behind[std::size_t(face)];
+    auto const nodes = topology_.boundary.nodes[face];
+    auto const at = std::find(nodes.begin(), nodes.end(), listed[0]) - nodes.begin();
+    bool const same_way = nodes[std::size_t(at + 1) % nodes.size()] == listed[1];
+    Index32 const first = same_way ? face : other, second = same_way ? other : face;
+    auto const taken = [&](Index32 f) { return out_.patch[std::size_t(f)] >= 0; };
+    return taken(first) && !taken(second) ? second : first;
+  }
+
+  /// Of faces inside the mesh that are listed once, both sides belong to the patch.
+  void other_sides() {
+    for (std::size_t f = 0; f < topology_.boundary.behind.size(); ++f) {
+      Index32 const other = topology_.boundary.behind[f];
+      if (other >= 0 && out_.patch[f] == BoundaryFacePatches::open) out_.patch[f] = out_.patch[std::size_t(other)];
+    }
   }
 
   void listed_nodes() {

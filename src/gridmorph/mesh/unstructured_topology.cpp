@@ -157,6 +157,54 @@ BoundaryFaces boundary_faces(Mesh const& mesh, ElementSides const& sides) {
   return out;
 }
 
+/// A side of an element inside the mesh, and the same one of its neighbour.
+struct InnerSide {
+  std::array<Index32, 2> element{-1, -1}, side{-1, -1};
+};
+
+/// Sides inside the mesh that patches list, each once; they become boundary.
+std::vector<InnerSide> open_inner_sides(Mesh const& mesh, UnstructuredTopology& topology) {
+  std::vector<InnerSide> out;
+  std::array<Index32, max_face_corners> room{};
+  std::vector<Index32> nodes;
+  for (Patch const& patch : mesh.patches)
+    for (Index f = 0; f < patch.faces.size(); ++f) {
+      if (find_boundary_face(topology, patch.faces[f]) >= 0) continue;
+      nodes.clear();
+      for (Index32 const n : patch.faces[f])
+        if (!contains(nodes, n)) nodes.push_back(n);
+      if (int(nodes.size()) < mesh.dimension) continue;
+      InnerSide inner;
+      int found = 0;
+      for (Index32 const e : topology.elements_of_nodes[rarest(topology.elements_of_nodes, nodes)])
+        for (int s = 0; s < n_sides(mesh, e); ++s) {
+          if (topology.sides.of(e)[std::size_t(s)] < 0 || !same_set(side_nodes(mesh, e, s, room), nodes)) continue;
+          if (found < 2) inner.element[std::size_t(found)] = e, inner.side[std::size_t(found)] = Index32(s);
+          ++found;
+        }
+      if (found != 2) continue;  // no side, or one that was opened for another patch
+      for (std::size_t k = 0; k < 2; ++k)
+        topology.sides.neighbour[std::size_t(topology.sides.first[std::size_t(inner.element[k])] + inner.side[k])] =
+            ElementSides::boundary;
+      out.push_back(inner);
+    }
+  return out;
+}
+
+void pair_inner_faces(std::vector<InnerSide> const& inner, BoundaryFaces& boundary) {
+  boundary.behind.assign(boundary.element.size(), -1);
+  auto const face = [&](Index32 element, Index32 side) {
+    auto f = std::lower_bound(boundary.element.begin(), boundary.element.end(), element) - boundary.element.begin();
+    while (boundary.side[std::size_t(f)] != side) ++f;
+    return Index32(f);
+  };
+  for (InnerSide const& one : inner) {
+    Index32 const a = face(one.element[0], one.side[0]), b = face(one.element[1], one.side[1]);
+    boundary.behind[std::size_t(a)] = b;
+    boundary.behind[std::size_t(b)] = a;
+  }
+}
+
 /// Finds the faces behind connections: a face whose nodes are all paired, with a face of the donors there.
 void cross_connections(Mesh const& mesh, UnstructuredTopology& topology) {
   std::vector<Index32> donor(std::size_t(mesh.n_nodes()), -1);
@@ -232,9 +280,16 @@ UnstructuredTopology make_topology(HostInstance const& host, Mesh const& mesh) {
   out.elements_of_nodes = elements_of_nodes(host, mesh);
   out.sides = element_sides(host, mesh);
   out.crowded_sides = std::count(out.sides.neighbour.begin(), out.sides.neighbour.end(), ElementSides::crowded);
-  out.boundary = boundary_faces(mesh, out.sides);
-  out.faces_of_nodes = invert(host, "gridmorph::faces_of_nodes", mesh.n_nodes(), out.boundary.size(),
-                              [&](Index f) { return out.boundary.nodes[f]; });
+  auto const find_boundary = [&] {
+    out.boundary = boundary_faces(mesh, out.sides);
+    out.faces_of_nodes = invert(host, "gridmorph::faces_of_nodes", mesh.n_nodes(), out.boundary.size(),
+                                [&](Index f) { return out.boundary.nodes[f]; });
+  };
+  find_boundary();
+  if (auto const inner = open_inner_sides(mesh, out); !inner.empty()) {
+    find_boundary();
+    pair_inner_faces(inner, out.boundary);
+  }
   cross_connections(mesh, out);
   return out;
 }

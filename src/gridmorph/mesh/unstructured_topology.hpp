@@ -41,10 +41,14 @@ struct BoundaryFaces {
   std::vector<Index32> across;   ///< the face behind a connection, periodic ones too; -1: none
   /// The connection: 2 c where the face has nodes of Mesh::connections[c], 2 c + 1 where it has donor nodes of it; -1: none.
   std::vector<Index32> connection;
+  /// Of baffles and other surfaces inside the mesh that patches list: the face on the other side, with the same nodes; -1: none. Empty where the mesh has
+  /// no such surfaces.
+  std::vector<Index32> behind;
   [[nodiscard]] Index size() const { return nodes.size(); }
 };
 
-/// All of it. The mesh must have passed check_mesh().
+/// All of it. The mesh must have passed check_mesh(). Faces that patches list inside the mesh, where elements on both sides have the same nodes (createBaffles of
+/// OpenFOAM, MARKER_INTERNAL of SU2, inner physical surfaces of Gmsh), are boundary: its elements are no neighbours there.
 struct UnstructuredTopology {
   CsrGraph elements_of_nodes;
   ElementSides sides;
@@ -56,7 +60,8 @@ struct UnstructuredTopology {
 UnstructuredTopology make_topology(HostInstance const& host, Mesh const& mesh);
 inline UnstructuredTopology make_topology(Mesh const& mesh) { return make_topology(HostInstance(), mesh); }
 
-/// The boundary face with exactly these corner nodes, in any order (a node may be named twice); -1 where there is none.
+/// The boundary face with exactly these corner nodes, in any order (a node may be named twice); -1 where there is none. Of a surface inside the
+/// mesh either side; the other one is behind it.
 Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index32 const> nodes);
 
 /// Which patch each boundary face belongs to.

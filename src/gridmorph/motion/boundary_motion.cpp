@@ -115,7 +115,7 @@ struct BoundaryMotion::Impl {
       if (target == nullptr) continue;
       try {
         targets[int(r)] = std::make_shared<TargetMotion const>(*boundary, patches_of(int(r)), *target, motion.axis,
-                                                               label(int(r)), notes);
+                                                               slip->surfaces, label(int(r)), notes);
       } catch (MotionError const& e) {
         problems.add(e.what());
       }

@@ -2,6 +2,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/motion/target/cut_target.hpp>
 #include <gridmorph/motion/target/target_nodes.hpp>
 #include <gridmorph/motion/target/target_profile.hpp>
 #include <gridmorph/motion/target/target_projection.hpp>
@@ -91,7 +92,8 @@ TargetTree target_facets(TargetGeometry const& target, std::string const& name) 
 }
 
 TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& patches, TargetRule const& rule,
-                           Axis const& axis, std::string const& name, std::vector<std::string>& notes)
+                           Axis const& axis, std::vector<SlipSurface> const& slides, std::string const& name,
+                           std::vector<std::string>& notes)
     : surface_(boundary, patches), name_(name), share_(rule.share) {
   if (!rule.target) throw MotionError(name + ": it has no target");
   TargetGeometry const& target = *rule.target;
@@ -101,7 +103,7 @@ TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& pat
   if (patches.empty()) throw MotionError(name + ": it moves patches only, and names none");
   if (!(surface_.size > 0)) throw MotionError(name + ": the nodes of its patches are one point");
   if (!surface_.gridded) {
-    map_faces(boundary, rule, axis, notes);
+    map_faces(boundary, rule, axis, slides, notes);
     return;
   }
   bool const automatic = rule.mapping == Mapping::automatic;
@@ -128,8 +130,7 @@ TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& pat
     return;
   }
   mapping_ = Mapping::projection;
-  facets_ = target_facets(target, name);
-  displacement_ = project_to_target(surface_, facets_, rule.crease_angle_deg, name, notes);
+  project(rule, slides, notes);
 }
 
 TargetMotion::TargetMotion(TargetMotion const& other, double share) : TargetMotion(other) { share_ = share; }
@@ -144,8 +145,14 @@ void TargetMotion::map_onto_sections(Boundary const& boundary, TargetRule const&
   to_target_ = std::move(mapped.to_target);
 }
 
+void TargetMotion::project(TargetRule const& rule, std::vector<SlipSurface> const& slides,
+                           std::vector<std::string>& notes) {
+  facets_ = cut_at_sides(target_facets(*rule.target, name_), surface_.points, slides);
+  displacement_ = project_to_target(surface_, facets_, rule.crease_angle_deg, name_, notes);
+}
+
 void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
-                             std::vector<std::string>& notes) {
+                             std::vector<SlipSurface> const& slides, std::vector<std::string>& notes) {
   TargetGeometry const& target = *rule.target;
   for (PatchGrid const& grid : surface_.grids)
     if (grid.faces.empty())
@@ -174,8 +181,7 @@ void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, A
     map_onto_sections(boundary, rule, axis, notes);
     return;
   }
-  facets_ = target_facets(target, name_);
-  displacement_ = project_to_target(surface_, facets_, rule.crease_angle_deg, name_, notes);
+  project(rule, slides, notes);
 }
 
 void TargetMotion::displacement(std::span<Vec3 const> points, std::span<Vec3> out) const {

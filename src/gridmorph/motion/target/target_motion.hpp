@@ -3,6 +3,7 @@
 
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
+#include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/geometry/target_tree.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/motion/target_reach.hpp>
@@ -15,9 +16,10 @@ namespace gridmorph {
 
 class TargetMotion {
  public:
-  /// Throws MotionError when the target is not usable for these patches. `name` begins its messages and notes.
+  /// Throws MotionError when the target is not usable for these patches. `name` begins its messages and notes. `slides`: what nodes of other
+  /// patches slide on; a target to project to is cut off at the planes among them that these patches end on.
   TargetMotion(Boundary const& boundary, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
-               std::string const& name, std::vector<std::string>& notes);
+               std::vector<SlipSurface> const& slides, std::string const& name, std::vector<std::string>& notes);
 
   /// The same with another share of the way.
   TargetMotion(TargetMotion const& other, double share);
@@ -35,7 +37,9 @@ class TargetMotion {
   using Mapping = TargetRule::Mapping;
 
   /// Patches of an unstructured mesh: node for node as listed, by sections, or onto the surface or profile.
-  void map_faces(Boundary const& boundary, TargetRule const& rule, Axis const& axis, std::vector<std::string>& notes);
+  void map_faces(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
+                 std::vector<SlipSurface> const& slides, std::vector<std::string>& notes);
+  void project(TargetRule const& rule, std::vector<SlipSurface> const& slides, std::vector<std::string>& notes);
   void map_onto_sections(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
                          std::vector<std::string>& notes);
 

@@ -17,10 +17,11 @@ struct Front {
   std::size_t face;  ///< number in the list of wall faces
 };
 
-/// (n_nodes) Sums of the faces' area vectors at wall nodes; in 2-D of their edges.
+/// (n_nodes) Sums of the faces' area vectors at wall nodes; in 2-D of their edges. Zero where they cancel.
 std::vector<Vec3> wall_directions(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                                   std::vector<Index32> const& faces) {
   std::vector<Vec3> out(std::size_t(mesh.n_nodes()));
+  std::vector<double> lengths(out.size(), 0);
   Coordinates const& x = mesh.coordinates;
   for (Index32 const f : faces) {
     auto const corners = topology.boundary.nodes[f];
@@ -28,8 +29,17 @@ std::vector<Vec3> wall_directions(Mesh const& mesh, UnstructuredTopology const& 
     if (mesh.dimension == 2) sum = x[corners[1]] - x[corners[0]];
     for (std::size_t c = 1; c + 1 < corners.size(); ++c)
       sum += cross(x[corners[c]] - x[corners[0]], x[corners[c + 1]] - x[corners[0]]);
-    for (Index32 const n : corners) out[std::size_t(graph.representative[std::size_t(n)])] += sum;
+    double const length = norm(sum);
+    for (Index32 const n : corners) {
+      auto const o = std::size_t(graph.representative[std::size_t(n)]);
+      out[o] += sum;
+      lengths[o] += length;
+    }
   }
+  // Both sides of a thin wall cancel, but for rounding, which is no direction.
+  constexpr double rounding = 1e-9;
+  for (std::size_t n = 0; n < out.size(); ++n)
+    if (norm(out[n]) <= rounding * lengths[n]) out[n] = {};
   return out;
 }
 

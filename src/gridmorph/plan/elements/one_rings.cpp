@@ -2,6 +2,8 @@
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <set>
@@ -12,10 +14,60 @@ namespace gridmorph::detail {
 
 namespace {
 
-/// The faces without those that have the nodes of another in a zone before theirs: the other side of a wall between zones, whose normal is the opposite. Were
+/// Of surfaces inside the mesh one side, neighbours the same one, whatever the numbers of their faces: 1 for faces of the other.
+std::vector<std::uint8_t> backs_of_inner_faces(Mesh const& mesh, UnstructuredTopology const& topology,
+                                               std::vector<Index32> const& faces) {
+  auto const& behind = topology.boundary.behind;
+  std::vector<std::uint8_t> back(std::size_t(topology.boundary.size()), 0);
+  // Faces on one side run along their common edge in opposite senses; in the plane one ends where the other begins.
+  using Key = std::array<Index32, 2>;
+  auto const keys = [&](Index32 f, bool of_neighbour) {
+    auto const face = topology.boundary.nodes[f];
+    std::vector<Key> out;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      Index32 const a = face[k], b = face[(k + 1) % face.size()];
+      out.push_back(mesh.dimension == 2 ? Key{a, Index32(of_neighbour ? 1 - k : k)}
+                    : of_neighbour      ? Key{b, a}
+                                        : Key{a, b});
+    }
+    return out;
+  };
+  std::map<Key, std::vector<Index32>> faces_with;
+  for (Index32 const f : faces)
+    if (behind[std::size_t(f)] >= 0)
+      for (Key const& key : keys(f, false)) faces_with[key].push_back(f);
+  std::vector<std::uint8_t> decided(back.size(), 0);
+  for (Index32 const start : faces) {
+    if (behind[std::size_t(start)] < 0 || decided[std::size_t(start)] != 0) continue;
+    std::vector<Index32> front{start};
+    auto const decide = [&](Index32 f) {
+      Index32 const other = behind[std::size_t(f)];
+      decided[std::size_t(f)] = decided[std::size_t(other)] = back[std::size_t(other)] = 1;
+    };
+    decide(start);
+    while (!front.empty()) {
+      Index32 const f = front.back();
+      front.pop_back();
+      for (Key const& key : keys(f, true))
+        for (Index32 const next : faces_with[key]) {
+          if (decided[std::size_t(next)] != 0) continue;
+          decide(next);
+          front.push_back(next);
+        }
+    }
+  }
+  return back;
+}
+
+/// The faces without the backs of surfaces inside the mesh, and without those that have the nodes of another in a zone before theirs: the other side of a wall between zones, whose normal is the opposite. Were
 /// it left to places, which are the same, normals of either zone would cancel around a node.
 std::vector<Index32> one_sided(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
-                               std::vector<Index32> const& faces) {
+                               std::vector<Index32> const& all_faces) {
+  std::vector<Index32> faces = all_faces;
+  if (!topology.boundary.behind.empty()) {
+    auto const back = backs_of_inner_faces(mesh, topology, faces);
+    std::erase_if(faces, [&](Index32 f) { return back[std::size_t(f)] != 0; });
+  }
   auto const owner = [&](Index32 n) { return graph.representative[std::size_t(n)]; };
   bool const joined = std::any_of(faces.begin(), faces.end(), [&](Index32 f) {
     auto const face = topology.boundary.nodes[f];
