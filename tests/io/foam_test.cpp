@@ -4,7 +4,7 @@
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
-
+#include <gridmorph/quality/unstructured_quality.hpp>
 #include "support/expect_error.hpp"
 #include "support/random.hpp"
 #include "support/temporary_folder.hpp"
@@ -470,37 +470,62 @@ TEST(OpenFoam, ZonesOfCellsAndFacesAreSubsets) {
 }
 
 TEST(OpenFoam, AMeshOneCellThickIsAPlaneMeshAndBothPlanesMoveAlike) {
-  TemporaryFolder const folder;
-  FoamBox box;
-  box.n = {3, 2, 1};
-  box.patches = {"x0", "x1", "y0", "y1", "z2"};
-  box.keys["z2"] = "type empty; inGroups List<word> 1(empty);";
-  box.write(folder / "case");
-  Mesh const mesh = read_mesh((folder / "case").string());
-  EXPECT_EQ(mesh.dimension, 2);
-  EXPECT_EQ(mesh.n_nodes(), 12);
-  EXPECT_EQ(mesh.n_elements(), 6);
-  ASSERT_EQ(mesh.patches.size(), 4U);
-  EXPECT_EQ(mesh.patches[0].faces.size(), 2);
-  EXPECT_EQ(mesh.patches[2].faces.size(), 3);
-  Coordinates moved(mesh.n_nodes());
-  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.1 / double(n + 3), 0.01, 0});
-  write_morphed((folder / "case").string(), (folder / "out").string(), mesh, moved);
-  Mesh const back = read_mesh((folder / "out").string());
-  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
-  // Seen as a mesh of volumes, points across the cell have the same x and y still.
-  for (char const* which : {"case", "out"}) {
-    std::string text = bytes_of(folder / which / "boundary");
-    text.replace(text.find("type empty"), 10, "type patch");
-    write_bytes(folder / which / "boundary", text);
-  }
-  Mesh const before = read_mesh((folder / "case").string()), after = read_mesh((folder / "out").string());
-  EXPECT_EQ(after.dimension, 3);
-  ASSERT_EQ(after.n_nodes(), 24);
-  for (Index n = 0; n < 12; ++n) {
-    EXPECT_EQ(after.coordinates.x(n), after.coordinates.x(n + 12));
-    EXPECT_EQ(after.coordinates.y(n), after.coordinates.y(n + 12));
-    EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n));
+  for (int const axis : {0, 1, 2}) {
+    SCOPED_TRACE(axis);
+    TemporaryFolder const folder;
+    FoamBox box;
+    int const u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;  // in the plane
+    std::string const names = "xyz";
+    box.n[axis] = 1;
+    box.n[u] = 3;
+    box.n[v] = 2;
+    std::string const planes = names.substr(std::size_t(axis), 1) + "2";
+    box.patches = {};
+    for (int const side : {u, v})
+      for (char const* end : {"0", "1"}) box.patches.push_back(names.substr(std::size_t(side), 1) + end);
+    box.patches.push_back(planes);
+    box.keys[planes] = "type empty; inGroups List<word> 1(empty);";
+    box.write(folder / "case");
+    Mesh const mesh = read_mesh((folder / "case").string());
+    EXPECT_EQ(mesh.dimension, 2);
+    EXPECT_EQ(mesh.n_nodes(), 12);
+    EXPECT_EQ(mesh.n_elements(), 6);
+    ASSERT_EQ(mesh.patches.size(), 4U);
+    EXPECT_EQ(mesh.patches[0].faces.size(), 2);
+    EXPECT_EQ(mesh.patches[2].faces.size(), 3);
+    auto const component = [](Vec3 const& p, int k) { return k == 0 ? p.x : k == 1 ? p.y : p.z; };
+    EXPECT_EQ(component(plane_normal(mesh), axis), 1);
+    EXPECT_TRUE(negative_elements(mesh).empty());
+    Coordinates moved(mesh.n_nodes());
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      std::array<double, 3> by{0.01, 0.01, 0.01};
+      by[std::size_t(u)] = 0.1 / double(n + 3);
+      by[std::size_t(axis)] = 0;
+      moved.set(n, mesh.coordinates[n] + Vec3{by[0], by[1], by[2]});
+    }
+    write_morphed((folder / "case").string(), (folder / "out").string(), mesh, moved);
+    Mesh const back = read_mesh((folder / "out").string());
+    for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
+    // Seen as a mesh of volumes, points across the cell differ in nothing else still.
+    for (char const* which : {"case", "out"}) {
+      std::string text = bytes_of(folder / which / "boundary");
+      text.replace(text.find("type empty"), 10, "type patch");
+      write_bytes(folder / which / "boundary", text);
+    }
+    Mesh const before = read_mesh((folder / "case").string()), after = read_mesh((folder / "out").string());
+    EXPECT_EQ(after.dimension, 3);
+    ASSERT_EQ(after.n_nodes(), 24);
+    Index pairs = 0;
+    for (Index n = 0; n < 24; ++n)
+      for (Index m = 0; m < n; ++m) {
+        Vec3 const across = before.coordinates[n] - before.coordinates[m];
+        if (component(across, u) != 0 || component(across, v) != 0) continue;
+        ++pairs;
+        EXPECT_EQ(component(after.coordinates[n], u), component(after.coordinates[m], u));
+        EXPECT_EQ(component(after.coordinates[n], v), component(after.coordinates[m], v));
+        EXPECT_EQ(component(after.coordinates[n], axis), component(before.coordinates[n], axis));
+      }
+    EXPECT_EQ(pairs, 12);
   }
 }
 

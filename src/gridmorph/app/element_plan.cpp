@@ -7,6 +7,7 @@
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/element_prediction.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
+#include <gridmorph/plan/elements/plane_axes.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/report/element_prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
@@ -116,15 +117,20 @@ class ElementPlan final : public AnyPlan {
     make_stage_folder(folder);
     auto const path = [&](std::size_t n) { return (folder / stage_names[n]).string(); };
     write_regions(path(0), morphed);
-    if (prepared_.report.wrap) write_mesh(path(1), wrap_mesh(*prepared_.report.wrap));
+    auto const& axes = prepared_.plan.axes;
+    auto const write_stage = [&](std::size_t n, Mesh stage) {
+      stage.coordinates = back_from_axes(axes, stage.coordinates);
+      write_mesh(path(n), stage);
+    };
+    if (prepared_.report.wrap) write_stage(1, wrap_mesh(*prepared_.report.wrap));
     if (!prepared_.plan.background) return;
     Mesh background = prepared_.plan.background->mesh;
-    write_mesh(path(2), background);
+    write_stage(2, background);
     Coordinates moved(background.n_nodes());
     auto const u = morpher_->background_displacements();
     for (Index n = 0; n < moved.size(); ++n) moved.set(n, background.coordinates[n] + u.array()[n]);
     background.coordinates = moved;
-    write_mesh(path(3), background);
+    write_stage(3, background);
   }
 
   [[nodiscard]] std::vector<std::string> notes() const override {

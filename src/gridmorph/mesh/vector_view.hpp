@@ -104,6 +104,18 @@ class BasicVectorView {
   requires(ReadOnly && !Other) BasicVectorView(BasicVectorView<MemorySpace, Other> const& v)
       : size_(v.size_), array_(v.array_), zones_(v.zones_) {}
 
+  /// The same vectors with components axes[0], axes[1] and axes[2] as x, y and z. Of one list, not of zones apart.
+  [[nodiscard]] BasicVectorView with_axes(std::array<int, 3> const& axes) const {
+    if (array_.zones != nullptr && axes != std::array<int, 3>{0, 1, 2})
+      detail::refuse_vectors("components of zones apart are not exchanged; give one list");
+    BasicVectorView out = *this;
+    void* const components[] = {array_.x, array_.y, array_.z};
+    out.array_.x = components[axes[0]];
+    out.array_.y = components[axes[1]];
+    out.array_.z = components[axes[2]];
+    return out;
+  }
+
   /// Number of vectors.
   [[nodiscard]] Index size() const { return size_; }
   /// For kernels, while this object lives.

@@ -8,6 +8,7 @@
 #include <gridmorph/plan/prepare.hpp>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -28,6 +29,7 @@ struct Morpher<Exec>::State {
   FlatBaseline<Exec> flat;
   stages::StageList<Exec> list;
   bool transposed = false;
+  std::array<int, 3> axes{0, 1, 2};  ///< of the plan, see UnstructuredPlan
 
   State(Exec const& exec, Plan const& plan, In const& x, MorpherOptions const& options)
       : n_nodes(plan.n_nodes),
@@ -41,10 +43,11 @@ struct Morpher<Exec>::State {
   State(Exec const& exec, UnstructuredPlan const& plan, In const& x, MorpherOptions const& options)
       : n_nodes(plan.n_nodes),
         n_boundary(plan.known.size()),
-        baseline(x),
-        flat(exec, x),
+        baseline(x.with_axes(plan.axes)),
+        flat(exec, baseline),
         list(stages::stage_list(exec, plan, flat.field, options)),
-        transposed(options.transpose) {}
+        transposed(options.transpose),
+        axes(plan.axes) {}
 
   /// All that can be asked before anything is enqueued.
   void require(char const* who, std::span<In const> boundary, std::span<Out const> out) const {
@@ -70,6 +73,17 @@ struct Morpher<Exec>::State {
   void write(Exec const& exec, std::span<Field const> fields, std::span<Out const> out) const {
     static std::string const name = "gridmorph::all nodes";
     ProfilingRegion const region(name);
+    if (axes != std::array<int, 3>{0, 1, 2}) {
+      for (std::size_t k = 0; k < out.size(); ++k) {
+        Out const seen = out[k].with_axes(axes);
+        std::visit(
+            [&](auto const& writer) {
+              writer.template write<Move>(exec, flat.field, baseline.array(), fields.subspan(k, 1), {&seen, 1});
+            },
+            list.writer);
+      }
+      return;
+    }
     std::visit(
         [&](auto const& writer) { writer.template write<Move>(exec, flat.field, baseline.array(), fields, out); },
         list.writer);
@@ -83,7 +97,7 @@ struct Morpher<Exec>::State {
       std::size_t const n = std::min(out.size() - done, list.fields.size());
       for (std::size_t k = 0; k < n; ++k) {
         Field f = list.fields[k];
-        f.boundary = boundary[done + k].array();
+        f.boundary = boundary[done + k].with_axes(axes).array();
         for_each_stage([&](auto const& stage) { stage.enqueue(exec, flat.field, f); });
       }
       write<Move>(exec, {list.fields.data(), n}, out.subspan(done, n));
@@ -99,8 +113,8 @@ struct Morpher<Exec>::State {
 
   void run_rate(Exec const& exec, In const& boundary, In const& boundary_rate, Out const& v) const {
     Field f = list.fields[0], r = list.fields[1];
-    f.boundary = boundary.array();
-    r.boundary = boundary_rate.array();
+    f.boundary = boundary.with_axes(axes).array();
+    r.boundary = boundary_rate.with_axes(axes).array();
     r.of = f.number;
     for_each_stage([&](auto const& stage) {
       if constexpr (requires { stage.rate(exec, flat.field, f, r); }) {
@@ -112,6 +126,9 @@ struct Morpher<Exec>::State {
     });
     write<false>(exec, {&r, 1}, {&v, 1});
     if (!list.shifts) return;
+    // What a guard did is in the axes of the mesh.
+    f.boundary = boundary.array();
+    r.boundary = boundary_rate.array();
     ProfilingRegion const region(list.shifts->region);
     list.shifts->add_rate(exec, f, r, v);
   }
@@ -151,10 +168,10 @@ struct Morpher<Exec>::State {
 
   void run_transpose(Exec const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const {
     Field f = list.fields[0], g = list.fields[1];
-    f.boundary = boundary.array();
-    g.nodes = dJ_du.array();
+    f.boundary = boundary.with_axes(axes).array();
+    g.nodes = dJ_du.with_axes(axes).array();
     g.baseline = baseline.array();
-    g.boundary = dJ_db.array();
+    g.boundary = dJ_db.with_axes(axes).array();
     linearise(exec, f);
     std::visit([&](auto const& writer) { writer.transpose(exec, g); }, list.writer);
     if (list.shifts) {

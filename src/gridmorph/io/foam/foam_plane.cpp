@@ -10,6 +10,19 @@ namespace {
 
 constexpr double opposite = 1e-6;  // of the mesh size
 
+double component(Vec3 const& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+/// The axis that planes of type `empty` lie across: that of the largest component of their first face's normal.
+int axis_across(std::vector<BoundaryEntry> const& boundary, CsrGraph const& faces, Coordinates const& coordinates) {
+  for (BoundaryEntry const& entry : boundary) {
+    if (entry["type"] != "empty" || entry.size == 0) continue;
+    Vec3 const normal = face_normal(faces[entry.start], coordinates);
+    double const x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
+    return z >= x && z >= y ? 2 : y >= x ? 1 : 0;
+  }
+  return 2;
+}
+
 enum Side : char { none, upper, lower };
 
 }  // namespace
@@ -31,18 +44,19 @@ std::optional<PlanePairs> plane_pairs(std::vector<BoundaryEntry> const& boundary
     }
   std::vector<char> side(std::size_t(coordinates.size()), none);
   bool any = false;
+  int const axis = axis_across(boundary, faces, coordinates);
   for (BoundaryEntry const& entry : boundary) {
     if (entry["type"] != "empty") continue;
     for (Index f = entry.start; f < entry.start + entry.size; ++f) {
       any = true;
-      char const own = face_normal(faces[f], coordinates).z > 0 ? upper : lower;
+      char const own = component(face_normal(faces[f], coordinates), axis) > 0 ? upper : lower;
       if (own == upper && faces[f].size() > 4) {
         why_not = "cells with more than four corners";
         return std::nullopt;
       }
       for (Index32 const n : faces[f]) {
         if (side[std::size_t(n)] != none && side[std::size_t(n)] != own) {
-          why_not = "planes of type empty that do not lie across z";
+          why_not = "planes of type empty that do not lie across x, y or z";
           return std::nullopt;
         }
         side[std::size_t(n)] = own;
@@ -65,10 +79,12 @@ std::optional<PlanePairs> plane_pairs(std::vector<BoundaryEntry> const& boundary
   for (std::size_t n = 1; n < pairs.size(); ++n) one_to_one = one_to_one && pairs[n][0] != pairs[n - 1][0];
   for (auto const& [a, b] : pairs) {
     Vec3 const across = coordinates[a] - coordinates[b];
-    one_to_one = one_to_one && std::hypot(across.x, across.y) <= opposite * size;
+    one_to_one = one_to_one && norm(across) > 0 &&
+                 std::sqrt(std::max(0.0, dot(across, across) - component(across, axis) * component(across, axis))) <=
+                     opposite * size;
   }
   if (one_to_one) return pairs;
-  why_not = "nodes of its planes of type empty that are not opposite one another along z";
+  why_not = "nodes of its planes of type empty that are not opposite one another along x, y or z";
   return std::nullopt;
 }
 
@@ -137,10 +153,18 @@ Coordinates both_planes(Coordinates const& all, PlanePairs const& pairs, Coordin
   Coordinates out(all.size());
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     Vec3 const to = morphed[Index(n)], from = all[pairs[n][0]], below = all[pairs[n][1]];
-    // Equal numbers stay equal.
-    auto const moved = [](double below, double from, double to) { return below == from ? to : below + (to - from); };
-    out.set(pairs[n][0], {to.x, to.y, from.z});
-    out.set(pairs[n][1], {moved(below.x, from.x, to.x), moved(below.y, from.y, to.y), below.z});
+    Vec3 const across = from - below;
+    double const x = std::abs(across.x), y = std::abs(across.y), z = std::abs(across.z);
+    int const axis = z >= x && z >= y ? 2 : y >= x ? 1 : 0;
+    // Equal numbers stay equal, and those that do not change their bits.
+    auto const moved = [](double below, double from, double to) {
+      return to == from ? below : below == from ? to : below + (to - from);
+    };
+    auto const stays = [axis](int k, double before, double after) { return k == axis ? before : after; };
+    out.set(pairs[n][0], {stays(0, from.x, to.x), stays(1, from.y, to.y), stays(2, from.z, to.z)});
+    out.set(pairs[n][1],
+            {stays(0, below.x, moved(below.x, from.x, to.x)), stays(1, below.y, moved(below.y, from.y, to.y)),
+             stays(2, below.z, moved(below.z, from.z, to.z))});
   }
   return out;
 }

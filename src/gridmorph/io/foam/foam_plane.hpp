@@ -15,10 +15,10 @@ namespace gridmorph::foam {
 /// Of the fan of triangles from its first node, twice as long as its area.
 Vec3 face_normal(std::span<Index32 const> nodes, Coordinates const& coordinates);
 
-/// Nodes of the upper plane (its faces look along z), ascending, each with the one of the lower plane that an edge joins it with.
+/// Nodes of the upper plane (its faces look along x, y or z), ascending, each with the one of the lower plane that an edge joins it with.
 using PlanePairs = std::vector<std::array<Index32, 2>>;
 
-/// The pairs of a mesh whose nodes are all on planes of type `empty`, that are opposite one another along z (1e-6 of its size), and whose cells are
+/// The pairs of a mesh whose nodes are all on planes of type `empty`, that are opposite one another along x, y or z (1e-6 of its size), and whose cells are
 /// prisms and hexahedra between these; nothing for other meshes, `why_not` saying what keeps a mesh with such planes from being one.
 std::optional<PlanePairs> plane_pairs(std::vector<BoundaryEntry> const& boundary, CsrGraph const& faces,
                                       Coordinates const& coordinates, double size, std::string& why_not);
@@ -27,7 +27,7 @@ std::optional<PlanePairs> plane_pairs(std::vector<BoundaryEntry> const& boundary
 /// `owner`: cell of each face.
 Mesh upper_plane(Mesh const& mesh, PlanePairs const& pairs, CsrGraph const& faces, std::vector<Index32> const& owner);
 
-/// Coordinates of all nodes where those of the upper plane are `morphed`: both planes move alike, along x and y.
+/// Coordinates of all nodes where those of the upper plane are `morphed`: both planes move alike, along themselves.
 Coordinates both_planes(Coordinates const& all, PlanePairs const& pairs, Coordinates const& morphed);
 
 }  // namespace gridmorph::foam

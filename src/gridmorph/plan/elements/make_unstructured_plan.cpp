@@ -25,7 +25,8 @@ PreparedUnstructured UnstructuredPlanner::run() {
   out_.plan.dimension = mesh_.dimension;
   out_.plan.plane_normal = plane_normal(mesh_);
   if (mesh_.dimension == 2 && !(std::abs(out_.plan.plane_normal.z) == 1))
-    throw MeshError("mesh " + mesh_.source + " is 2-D but does not lie in a plane z = constant; turn it into one");
+    throw MeshError("mesh " + mesh_.source +
+                    " is 2-D but does not lie in a plane x, y or z = constant; turn it into one");
   timed(out_.report.seconds.boundary, [&] { take_boundary(); });
   timed(out_.report.seconds.distances, [&] { measure_distances(); });
   timed(out_.report.seconds.columns, [&] { find_columns(); });
@@ -42,7 +43,7 @@ void UnstructuredPlanner::take_boundary() {
   UnstructuredPlan& plan = out_.plan;
   out_.notes = b.notes;
   plan.known = b.known;
-  plan.surfaces = b.motion->slip_surfaces();
+  plan.surfaces = slip_surfaces_;
   plan.images = b.images;
   plan.rotations = b.rotations;
   plan.middle = middle_rows(mesh_, out_.graph);
@@ -114,9 +115,29 @@ PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, Unstruc
                              PlanOptions const& options, std::optional<std::vector<Vec3>> displacement) {
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
-  return detail::UnstructuredPlanner(host, mesh, topology, face_patches, std::move(graph), std::move(boundary), options,
-                                     std::move(displacement))
-      .run();
+  auto const axes = plane_axes(mesh);
+  if (axes == std::array<int, 3>{0, 1, 2})
+    return detail::UnstructuredPlanner(host, mesh, topology, face_patches, std::move(graph), std::move(boundary),
+                                       options, std::move(displacement))
+        .run();
+  if (options.elements.background)
+    throw PlanError("mesh " + mesh.source +
+                    " is 2-D across another axis than z, and a background mesh of your own is for ones across z; turn "
+                    "both, or leave it out");
+  Mesh seen = mesh;
+  seen.coordinates = along_axes(axes, mesh.coordinates);
+  auto const rotations = boundary.rotations;
+  for (Mat3& rotation : boundary.rotations) rotation = along_axes(axes, rotation);
+  if (!displacement && options.elements.motion < 0) displacement = evaluate(boundary);
+  auto const given = displacement;
+  if (displacement)
+    for (Vec3& u : *displacement) u = along_axes(axes, u);
+  auto out = detail::UnstructuredPlanner(host, seen, topology, face_patches, std::move(graph), std::move(boundary),
+                                         options, std::move(displacement), axes)
+                 .run();
+  out.boundary.rotations = rotations;
+  out.displacement = given;
+  return out;
 }
 
 }  // namespace gridmorph

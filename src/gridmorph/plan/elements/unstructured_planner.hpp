@@ -5,10 +5,12 @@
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
+#include <gridmorph/plan/elements/plane_axes.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/wall_distance.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -24,8 +26,15 @@ class UnstructuredPlanner {
  public:
   UnstructuredPlanner(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                       BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
-                      PlanOptions const& options, std::optional<std::vector<Vec3>> displacement)
-      : host_(host), mesh_(mesh), topology_(topology), face_patches_(face_patches), options_(options) {
+                      PlanOptions const& options, std::optional<std::vector<Vec3>> displacement,
+                      std::array<int, 3> const& axes = {0, 1, 2})
+      : host_(host),
+        mesh_(mesh),
+        topology_(topology),
+        face_patches_(face_patches),
+        options_(options),
+        slip_surfaces_(along_axes(axes, boundary.motion->slip_surfaces())) {
+    out_.plan.axes = axes;
     out_.graph = std::move(graph);
     out_.boundary = std::move(boundary);
     out_.displacement = std::move(displacement);
@@ -140,6 +149,7 @@ class UnstructuredPlanner {
   UnstructuredTopology const& topology_;
   BoundaryFacePatches const& face_patches_;
   PlanOptions const& options_;
+  std::vector<SlipSurface> slip_surfaces_;  ///< of the rules, in the axes of the plan as everything here
   PreparedUnstructured out_;
   std::vector<int> layer_of_patch_;
   std::vector<Index32> driving_faces_;
