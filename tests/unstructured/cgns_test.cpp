@@ -140,8 +140,9 @@ TEST_P(UnstructuredCgns, NodesOfNoElementAreLeftToTheFile) {
         EXPECT_EQ(x[std::size_t(middle)], -7);
         EXPECT_EQ(x.back(), 1);
         for (Index n = 0; n < all.zones[z].size(); ++n)
-          if (n != 0 && n != middle && n + 1 != all.zones[z].size())
+          if (n != 0 && n != middle && n + 1 != all.zones[z].size()) {
             EXPECT_EQ(x[std::size_t(n)], wavy(all.coordinates[first + n], 0.1).x) << n;
+          }
       }
     }
   }

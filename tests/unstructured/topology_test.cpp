@@ -126,13 +126,25 @@ TEST(UnstructuredTopology, FacesClaimedTwiceAndFacesInsideAreSaid) {
   auto mesh = to_hexahedra(unit_box({2, 2, 2}));
   mesh.patches.push_back(mesh.patches[0]);
   mesh.patches.back().name = "again";
-  auto const baffle = std::array<Index32, 4>{1, 4, 13, 10};  // the plane i = 2 between two cells
-  mesh.patches[1].faces.add(baffle);
+  auto const no_side = std::array<Index32, 4>{0, 4, 13, 10};
+  mesh.patches[1].faces.add(no_side);
   auto const face_patches = find_face_patches(mesh, make_topology(mesh));
   ASSERT_EQ(face_patches.problems.size(), 1u);
   EXPECT_NE(face_patches.problems[0].find("'again'"), std::string::npos);
   ASSERT_EQ(face_patches.notes.size(), 2u);
   EXPECT_NE(face_patches.notes[0].find("1 of its 5 faces are not on the boundary"), std::string::npos);
+  // The plane i = 2 between two cells is boundary where a patch lists it, on both sides.
+  auto with_baffle = to_hexahedra(unit_box({2, 2, 2}));
+  auto const baffle = std::array<Index32, 4>{1, 4, 13, 10};
+  with_baffle.patches[1].faces.add(baffle);
+  EXPECT_TRUE(make_topology(with_baffle).boundary.behind.empty());
+  with_baffle.patches[1].kind = PatchKind::wall;
+  auto const topology = make_topology(with_baffle);
+  auto const patches = find_face_patches(with_baffle, topology);
+  EXPECT_TRUE(patches.problems.empty());
+  EXPECT_TRUE(patches.notes.empty());
+  EXPECT_EQ(topology.boundary.size(), 26);
+  EXPECT_EQ(patches.faces_of_patch[1], 6);
 }
 
 TEST(UnstructuredTopology, ElementsThatOverlapAreSaid) {

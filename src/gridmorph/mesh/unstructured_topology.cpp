@@ -162,13 +162,14 @@ struct InnerSide {
   std::array<Index32, 2> element{-1, -1}, side{-1, -1};
 };
 
-/// Sides inside the mesh that patches list, each once; they become boundary.
+/// Sides inside the mesh that walls list, each once; they become boundary. Files list other things inside meshes too, such as where a periodic
+/// side comes again.
 std::vector<InnerSide> open_inner_sides(Mesh const& mesh, UnstructuredTopology& topology) {
   std::vector<InnerSide> out;
   std::array<Index32, max_face_corners> room{};
   std::vector<Index32> nodes;
   for (Patch const& patch : mesh.patches)
-    for (Index f = 0; f < patch.faces.size(); ++f) {
+    for (Index f = 0; f < patch.faces.size() && patch.kind == PatchKind::wall; ++f) {
       if (find_boundary_face(topology, patch.faces[f]) >= 0) continue;
       nodes.clear();
       for (Index32 const n : patch.faces[f])

@@ -47,7 +47,7 @@ struct BoundaryFaces {
   [[nodiscard]] Index size() const { return nodes.size(); }
 };
 
-/// All of it. The mesh must have passed check_mesh(). Faces that patches list inside the mesh, where elements on both sides have the same nodes (createBaffles of
+/// All of it. The mesh must have passed check_mesh(). Faces that walls list inside the mesh, where elements on both sides have the same nodes (createBaffles of
 /// OpenFOAM, MARKER_INTERNAL of SU2, inner physical surfaces of Gmsh), are boundary: its elements are no neighbours there.
 struct UnstructuredTopology {
   CsrGraph elements_of_nodes;
