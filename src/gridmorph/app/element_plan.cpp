@@ -7,7 +7,7 @@
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/element_prediction.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
-#include <gridmorph/plan/elements/plane_axes.hpp>
+#include <gridmorph/plan/plane_axes.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/report/element_prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>

@@ -5,9 +5,9 @@
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
-#include <gridmorph/plan/elements/plane_axes.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/wall_distance.hpp>
+#include <gridmorph/plan/plane_axes.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <array>

@@ -1,4 +1,4 @@
-#include <gridmorph/plan/elements/plane_axes.hpp>
+#include <gridmorph/plan/plane_axes.hpp>
 
 #include <cmath>
 
