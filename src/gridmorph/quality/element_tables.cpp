@@ -5,7 +5,7 @@
 namespace gridmorph::detail {
 
 std::vector<Index32> neighbours_across(UnstructuredTopology const& topology) {
-  auto const& [nodes, element, side, across, connection] = topology.boundary;
+  auto const& [nodes, element, side, across, connection, behind] = topology.boundary;
   if (std::none_of(across.begin(), across.end(), [](Index32 f) { return f >= 0; })) return {};
   std::vector<Index32> out = topology.sides.neighbour;
   for (std::size_t f = 0; f < across.size(); ++f)
@@ -15,7 +15,7 @@ std::vector<Index32> neighbours_across(UnstructuredTopology const& topology) {
 }
 
 LinkedSides linked_sides(Mesh const& mesh, UnstructuredTopology const& topology) {
-  auto const& [nodes, element, side, across, connection] = topology.boundary;
+  auto const& [nodes, element, side, across, connection, behind] = topology.boundary;
   LinkedSides out;
   // Bindings are named one by one, since clang below 16 captures none in code for OpenMP.
   auto const side_of = [&topology, &element = element, &side = side](std::size_t f) {
