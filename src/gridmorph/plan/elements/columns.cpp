@@ -17,7 +17,7 @@ struct Front {
   std::size_t face;  ///< number in the list of wall faces
 };
 
-/// (n_nodes) Sums of the faces' area vectors at wall nodes; in 2-D of their edges. Zero where they cancel.
+/// (n_nodes) Sums of the faces' area vectors at wall nodes; in 2-D of their edges. Zero where those of a wall inside a zone cancel.
 std::vector<Vec3> wall_directions(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                                   std::vector<Index32> const& faces) {
   std::vector<Vec3> out(std::size_t(mesh.n_nodes()));
@@ -36,7 +36,8 @@ std::vector<Vec3> wall_directions(Mesh const& mesh, UnstructuredTopology const& 
       lengths[o] += length;
     }
   }
-  // Both sides of a thin wall cancel, but for rounding, which is no direction.
+  if (topology.boundary.behind.empty()) return out;
+  // Both sides of a wall inside a zone cancel, but for rounding, which is no direction.
   constexpr double rounding = 1e-9;
   for (std::size_t n = 0; n < out.size(); ++n)
     if (norm(out[n]) <= rounding * lengths[n]) out[n] = {};
