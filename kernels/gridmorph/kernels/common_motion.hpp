@@ -131,7 +131,8 @@ struct CommonMoments {
   }
 };
 
-/// The one item: P times the sum of the parts.
+/// The one item: P times the sum of the parts, with `Adds` besides the map that is there.
+template <bool Adds>
 struct SumCommonMoments {
   CommonFrame frame;
   CommonMap const* partial;
@@ -145,7 +146,9 @@ struct SumCommonMoments {
     CommonMap sum;
     for (Index c = 0; c < n_chunks; ++c)
       for (int i = 0; i < 4; ++i) sum.a[i] += partial[c].a[i];
-    *move = common_move(frame, *projection * sum, pulls);
+    CommonMap map = *projection * sum;
+    for (int i = 0; Adds && i < 4; ++i) map.a[i] += move->map.a[i];
+    *move = common_move(frame, map, pulls);
   }
 };
 

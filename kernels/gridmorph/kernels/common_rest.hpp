@@ -26,26 +26,6 @@ struct RestBeyondCommon {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { rest[k] = u[k] - move->map(frame, position(k)); }
 };
 
-/// The one item: A and P times the sum of the parts.
-struct AddCommonMoments {
-  CommonFrame frame;
-  CommonMap const* partial;
-  Index n_chunks;
-  CommonProjection const* projection;
-  bool pulls;
-  CommonMove* move;
-
-  [[nodiscard]] static Index size() { return 1; }
-  KOKKOS_INLINE_FUNCTION void operator()(Index /*item*/) const {
-    CommonMap sum;
-    for (Index c = 0; c < n_chunks; ++c)
-      for (int i = 0; i < 4; ++i) sum.a[i] += partial[c].a[i];
-    CommonMap more = *projection * sum;
-    for (int i = 0; i < 4; ++i) more.a[i] += move->map.a[i];
-    *move = common_move(frame, more, pulls);
-  }
-};
-
 /// rest(n) = u(n) - A(x(n)) of all nodes.
 struct NodesBeyondCommon {
   CommonFrame frame;

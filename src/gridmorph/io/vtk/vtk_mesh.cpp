@@ -296,7 +296,8 @@ OutputFields part(OutputFields const& all, Zone const& zone) {
 
 OutputFields in_order_of_the_file(Mesh const& mesh, OutputFields const& fields) {
   OutputFields out = fields;
-  for (auto& field : out.nodes) field.values = in_file_order(node_places(mesh), field.values);
+  auto const places = node_places(mesh);
+  for (auto& field : out.nodes) field.values = in_file_order(places, field.values);
   for (auto& field : out.cells) field.values = in_file_order(mesh.file_order.element, field.values);
   return out;
 }

@@ -194,7 +194,8 @@ void write_vtk(std::string const& path, Mesh const& mesh, Coordinates const& mor
   Mesh ordered = in_file_order(mesh);
   Coordinates const places = in_file_order(mesh, morphed);
   OutputFields in_order = fields;
-  for (auto& field : in_order.nodes) field.values = in_file_order(node_places(mesh), field.values);
+  auto const of_nodes = node_places(mesh);
+  for (auto& field : in_order.nodes) field.values = in_file_order(of_nodes, field.values);
   for (auto& field : in_order.cells) field.values = in_file_order(mesh.file_order.element, field.values);
   ordered.file_order = {};
   vtk::write_elements(path, ordered, places, in_order);

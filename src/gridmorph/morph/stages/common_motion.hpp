@@ -45,16 +45,14 @@ struct CommonMotionTables {
   void fit(Exec const& exec, Vec3 const* given, int to) const {
     kernels::CommonMoments<Memory> const moments{frame, position, weight, given, nullptr, nullptr, 1, partial.data()};
     kernels::launch("gridmorph::common::moments", exec, moments);
-    sum(exec, moments.size(), pulls, to);
+    sum<false>(exec, moments.size(), pulls, to);
     // Once more, for what rounding has left of large displacements.
     kernels::launch("gridmorph::common::beyond", exec,
                     kernels::RestBeyondCommon<Memory>{frame, position, of(to), given, beyond.data()});
     kernels::CommonMoments<Memory> const more{frame,   position, weight, beyond.data(),
                                               nullptr, nullptr,  1,      partial.data()};
     kernels::launch("gridmorph::common::moments", exec, more);
-    kernels::launch(
-        "gridmorph::common::add_moments", exec,
-        kernels::AddCommonMoments{frame, partial.data(), more.size(), projection.data(), pulls, move.data() + to});
+    sum<true>(exec, more.size(), pulls, to);
   }
   void take(Exec const& exec, Vec3 const* given, int f, List<Exec, Vec3> const& rest) const {
     kernels::launch("gridmorph::common::take", exec,
@@ -91,7 +89,7 @@ struct CommonMotionTables {
     kernels::CommonMoments<Memory> const moments{frame, position, {}, of_rest.data(),
                                                  rest,  of(f),    -1, partial.data() + n_chunks};
     kernels::launch("gridmorph::transposed::common::rest", exec, moments);
-    sum(exec, n_chunks + moments.size(), false, of_gradients);
+    sum<false>(exec, n_chunks + moments.size(), false, of_gradients);
     kernels::launch("gridmorph::transposed::common::fit", exec,
                     kernels::CommonMotionBack<Memory>{frame, position, weight, of(of_gradients), to.data()});
   }
@@ -99,10 +97,11 @@ struct CommonMotionTables {
  private:
   static std::string name(char const* what) { return std::string("gridmorph::CommonMotion::") + what; }
 
+  template <bool Adds>
   void sum(Exec const& exec, Index n_chunks, bool pull, int to) const {
     kernels::launch(
         "gridmorph::common::sum", exec,
-        kernels::SumCommonMoments{frame, partial.data(), n_chunks, projection.data(), pull, move.data() + to});
+        kernels::SumCommonMoments<Adds>{frame, partial.data(), n_chunks, projection.data(), pull, move.data() + to});
   }
 };
 
