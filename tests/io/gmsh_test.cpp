@@ -36,6 +36,8 @@ struct MshMesh {
   std::vector<Block> blocks;
   std::map<std::pair<int, int>, std::vector<int>> physical;  ///< of (dimension, entity)
   std::map<std::pair<int, int>, std::string> names;
+  std::map<std::pair<int, int>, std::array<int, 2>>
+      cut_from;                                       ///< of pieces of parts: dimension and entity of the whole
   std::vector<std::array<std::int64_t, 2>> periodic;  ///< image, master
   std::string affine;                                 ///< of these
   int periodic_dimension = 2;
@@ -93,13 +95,34 @@ struct MshMesh {
 
     void entities() {
       out += "$Entities\n";
+      pieces(false);
+      out += "\n$EndEntities\n";
+      if (mesh.cut_from.empty()) return;
+      out += "$PartitionedEntities\n";
+      s(2);
+      s(1);
+      line();
+      i(77);
+      i(2);
+      line();
+      pieces(true);
+      out += "\n$EndPartitionedEntities\n";
+    }
+
+    void pieces(bool of_parts) {
       std::array<std::vector<std::pair<int, std::vector<int>>>, 4> of;
-      for (auto const& [key, groups] : mesh.physical) of[std::size_t(key.first)].emplace_back(key.second, groups);
+      for (auto const& [key, groups] : mesh.physical)
+        if (mesh.cut_from.contains(key) == of_parts) of[std::size_t(key.first)].emplace_back(key.second, groups);
       for (auto const& list : of) s(std::int64_t(list.size()));
       line();
       for (int dimension = 0; dimension < 4; ++dimension)
         for (auto const& [tag, groups] : of[std::size_t(dimension)]) {
           i(tag);
+          if (of_parts) {
+            for (int const whole : mesh.cut_from.at({dimension, tag})) i(whole);
+            s(1);
+            i(1 + tag % 2);
+          }
           for (int c = 0; c < (dimension == 0 && how.version == 41 ? 3 : 6); ++c) d(0.5 * c);
           s(std::int64_t(groups.size()));
           for (int const g : groups) i(g);
@@ -109,7 +132,6 @@ struct MshMesh {
           }
           line();
         }
-      out += "\n$EndEntities\n";
     }
 
     void parameters(int dimension) {
@@ -360,6 +382,54 @@ TEST_P(Gmsh, ElementsOfSeveralGroupsAreOnePatchOfAllOfThem) {
   EXPECT_EQ(mesh.patches[3].name, "physical surface 44");
 }
 
+/// The elements of each piece of geometry in two parts, and the faces where the parts of the volume meet, which are of its physical group.
+MshMesh in_parts(MshMesh whole) {
+  MshMesh out = whole;
+  out.blocks.clear();
+  std::map<std::pair<int, int>, std::vector<int>> const groups = whole.physical;
+  auto const part = [&](Block const& of, int entity, std::size_t begin, std::size_t end, std::array<int, 2> cut_from) {
+    out.blocks.push_back({of.dimension,
+                          entity,
+                          of.type,
+                          {of.nodes.begin() + std::ptrdiff_t(begin), of.nodes.begin() + std::ptrdiff_t(end)}});
+    out.cut_from[{of.dimension, entity}] = cut_from;
+    out.physical[{of.dimension, entity}] = groups.at({cut_from[0], cut_from[1]});
+  };
+  for (Block const& b : whole.blocks) {
+    std::size_t const half = b.nodes.size() / 2;
+    part(b, 100 + 2 * b.entity, 0, half, {b.dimension, b.entity});
+    part(b, 101 + 2 * b.entity, half, b.nodes.size(), {b.dimension, b.entity});
+  }
+  // Any corners of a tetrahedron will do.
+  auto const tetrahedra =
+      std::find_if(whole.blocks.begin(), whole.blocks.end(), [](auto const& b) { return b.type == 4; });
+  auto face = tetrahedra->nodes.front();
+  face.pop_back();
+  part({2, 0, 2, {face}}, 300, 0, 1, {3, 1});
+  return out;
+}
+
+TEST(GmshInParts, IsTheMeshThatItWasCutFrom) {
+  for (bool const binary : {false, true}) {
+    TemporaryFolder folder;
+    MshMesh whole = msh_of(box());
+    whole.physical[{2, 3}] = {};  // of no group: by its piece of geometry
+    for (Index n = 0; n < box().n_nodes(); ++n)
+      if (n % 3 == 2) whole.periodic.push_back({whole.tags[std::size_t(n)], whole.tags[std::size_t(n) - 2]});
+    write_bytes(folder.file("whole.msh"), whole.text({41, binary}));
+    write_bytes(folder.file("parts.msh"), in_parts(whole).text({41, binary}));
+    Mesh const want = read_mesh(folder.file("whole.msh")), mesh = read_mesh(folder.file("parts.msh"));
+    EXPECT_EQ(mesh.elements.nodes.item, want.elements.nodes.item);
+    ASSERT_EQ(mesh.patches.size(), want.patches.size());
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+      EXPECT_EQ(mesh.patches[p].name, want.patches[p].name);
+      EXPECT_EQ(mesh.patches[p].faces.item, want.patches[p].faces.item);
+    }
+    EXPECT_EQ(mesh.connections.size(), 1U);
+    expect_coordinates_replaced(folder.file("parts.msh"), folder.file("out.msh"), false);
+  }
+}
+
 TEST_P(Gmsh, NodesOfNoElementAreLeftWhereTheyAre) {
   MshMesh msh = msh_of(box());
   msh.tags.insert(msh.tags.begin() + 3, 7);  // the centre of a circle
@@ -374,6 +444,22 @@ TEST_P(Gmsh, NodesOfNoElementAreLeftWhereTheyAre) {
   write_morphed(path_, path_, mesh, moved);
   Mesh const back = read_mesh(path_);
   for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
+}
+
+TEST_P(Gmsh, FacesInNoGroupThatWereNotSavedAreAPatch) {
+  MshMesh msh = msh_of(box());
+  auto const is_first = [](Block const& b) { return b.dimension == 2 && b.entity == 1; };
+  std::erase_if(msh.blocks, is_first);
+  Mesh const mesh = read(msh), want = box();
+  ASSERT_EQ(mesh.patches.size(), want.patches.size());
+  EXPECT_EQ(mesh.patches.back().name, "boundary");
+  EXPECT_EQ(patch_nodes(mesh.patches.back()), patch_nodes(want.patches[0]));
+  EXPECT_EQ(mesh.patches.back().faces.size(), want.patches[0].faces.size());
+  // Volumes that were not saved leave a shell behind.
+  std::erase_if(msh.blocks, [](Block const& b) { return b.dimension == 3; });
+  Mesh const shell = read(msh);
+  EXPECT_TRUE(std::any_of(shell.notes.begin(), shell.notes.end(),
+                          [](auto const& n) { return n.find("no volumes") != std::string::npos; }));
 }
 
 /// A sector between two planes through the x axis, with the file's transform and with none.
@@ -524,7 +610,8 @@ TEST_F(GmshErrors, SayWhereWhatAndWhatToDo) {
   expect_all_in(error("1 0 0 ", "1 nan 0 "), {"not finite numbers", "node 2"});
   expect_all_in(error("1 0 0 ", "1 zero 0 "), {"expected a coordinate", "'zero'"});
   expect_all_in(error("$EndNodes", "$EndNods"), {"expected $EndNodes", "'$EndNods'"});
-  expect_all_in(error("$Elements", "$PartitionedEntities"), {"in parts"});
+  expect_all_in(error("$EndEntities", "$EndEntities\n$PartitionedEntities\n2 0\n0 0 1 0\n7 0 1 "),
+                {"mesh.msh:2", "a part of dimension 2 is cut from one of dimension 0"});
   expect_all_in(error("$EndElements", "$EndElements\n17"), {"expected the beginning of a section", "'17'"});
 }
 

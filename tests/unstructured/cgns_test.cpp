@@ -4,6 +4,7 @@
 #include "support/made_bodies.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
@@ -286,10 +287,15 @@ class HandMadeFile {
     int section = 0;
     check(cg_section_write(file_, base_, zone_, name, type, first, last, 0, nodes.data(), &section));
   }
-  void family(char const* name, CGNS_ENUMT(BCType_t) type) {
+  void family(char const* name, CGNS_ENUMT(BCType_t) type, char const* own_name = nullptr) {
     int family = 0, bc = 0;
     check(cg_family_write(file_, base_, name, &family));
     check(cg_fambc_write(file_, base_, family, "FamilyBC", type, &bc));
+    if (own_name != nullptr) check(cg_family_name_write(file_, base_, family, own_name, own_name));
+  }
+  void family_of(int condition, char const* name) {
+    check(cg_goto(file_, base_, "Zone_t", zone_, "ZoneBC_t", 1, "BC_t", condition, "end"));
+    check(cg_famname_write(name));
   }
 
  private:
@@ -344,6 +350,26 @@ TEST(UnstructuredBoundary, SectionsThatNoConditionNamesBecomePatchesOfTheirFamil
   EXPECT_EQ(mesh.patches[0].faces.size(), 2);
   ASSERT_EQ(mesh.notes.size(), 1u);
   EXPECT_NE(mesh.notes[0].find("no boundary condition names them"), std::string::npos);
+}
+
+/// As Gmsh writes its physical groups: a family for each piece of geometry, which has the group's name below it.
+TEST(UnstructuredBoundary, NamesThatAFamilyGivesItselfAreFamiliesOfThePatch) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("bc.cgns");
+  {
+    HandMadeFile file(path);
+    file.family("S_1", CGNS_ENUMV(BCInflow), "left side");
+    file.family("S_2", CGNS_ENUMV(BCOutflow), "right side");
+    file.bc("one", CGNS_ENUMV(PointList), {3}, CGNS_ENUMV(FaceCenter));
+    file.family_of(1, "S_1");
+    file.bc("other", CGNS_ENUMV(PointList), {4}, CGNS_ENUMV(FaceCenter));
+    file.family_of(2, "S_2");
+  }
+  auto const mesh = read_mesh(path);
+  ASSERT_EQ(mesh.patches.size(), 2u);
+  EXPECT_EQ(mesh.patches[0].families, (std::vector<std::string>{"S_1", "left side"}));
+  EXPECT_EQ(mesh.patches[1].families, (std::vector<std::string>{"S_2", "right side"}));
+  EXPECT_EQ(select_patches(mesh, {"right side"}), std::vector<int>{1});
 }
 
 TEST(UnstructuredBoundary, ANodeListTakesTheFacesOfTheSectionOfItsName) {
@@ -490,6 +516,60 @@ TEST(UnstructuredFiles, SecondOrderElementsKeepAllTheirNodes) {
 }
 
 // As the CGNS library writes them; hybrid_test.cpp has the rest.
+/// Programs that raise the order of a periodic mesh may list the corners of its sides alone.
+TEST(UnstructuredFiles, MiddleNodesOfConnectionsThatListCornersAloneArePaired) {
+  for (bool const all_nodes : {false, true}) {
+    TemporaryFolder const folder;
+    Mesh mesh = second_order(to_prisms_and_tetrahedra(unit_box({2, 2, 4}), 2), all_nodes);
+    Connection periodic;
+    periodic.name = "sides";
+    periodic.periodic = Periodic{{}, {}, {0, 1, 0}, {.translation = {0, 1, 0}}};
+    for (Index n = 0; n < mesh.n_nodes(); ++n)
+      for (Index m = 0; m < mesh.n_nodes(); ++m)
+        if (mesh.coordinates[n].y == 0 && distance(mesh.coordinates[n] + Vec3{0, 1, 0}, mesh.coordinates[m]) < 1e-12) {
+          periodic.nodes.push_back(Index32(n));
+          periodic.donor_nodes.push_back(Index32(m));
+        }
+    mesh.connections = {periodic};
+    std::vector<char> corners(std::size_t(mesh.n_nodes()), 0);
+    for (Index e = 0; e < mesh.n_elements(); ++e)
+      for (Index32 const n : mesh.elements.corners(e)) corners[std::size_t(n)] = 1;
+    auto const pairs = periodic;
+    for (auto* list : {&mesh.connections[0].nodes, &mesh.connections[0].donor_nodes})
+      std::erase_if(*list, [&](Index32 n) { return corners[std::size_t(n)] == 0; });
+    ASSERT_LT(mesh.connections[0].nodes.size(), pairs.nodes.size());
+    write_mesh(folder.file("mesh.cgns"), mesh);
+    Mesh const read = read_mesh(folder.file("mesh.cgns"));
+    ASSERT_EQ(read.connections.size(), 1u);
+    auto const sorted_pairs = [](Connection const& c) {
+      std::vector<std::pair<Index32, Index32>> out;
+      for (std::size_t n = 0; n < c.nodes.size(); ++n) out.emplace_back(c.nodes[n], c.donor_nodes[n]);
+      std::sort(out.begin(), out.end());
+      return out;
+    };
+    EXPECT_EQ(sorted_pairs(read.connections[0]), sorted_pairs(pairs));
+  }
+}
+
+/// Conditions on points and edges, as Gmsh has them for each piece of geometry, bound nothing.
+TEST(UnstructuredBoundary, ConditionsOnPointsAndEdgesAreLeftAlone) {
+  TemporaryFolder const folder;
+  auto const path = folder.file("bc.cgns");
+  {
+    HandMadeFile file(path);
+    file.section("points", CGNS_ENUMV(NODE), 5, 6, {1, 2});
+    file.section("edges", CGNS_ENUMV(BAR_2), 7, 7, {1, 2});
+    file.bc("P", CGNS_ENUMV(PointRange), {5, 6}, CGNS_ENUMV(CellCenter));
+    file.bc("L", CGNS_ENUMV(PointRange), {7, 7}, CGNS_ENUMV(CellCenter));
+    file.bc("sides", CGNS_ENUMV(PointRange), {3, 4}, CGNS_ENUMV(CellCenter));
+  }
+  auto const mesh = read_mesh(path);
+  ASSERT_EQ(mesh.patches.size(), 1u);
+  EXPECT_EQ(mesh.patches[0].name, "sides");
+  ASSERT_EQ(mesh.notes.size(), 1u);
+  EXPECT_NE(mesh.notes[0].find("BC 'P' and 1 more of the zone: left alone, of points or edges"), std::string::npos);
+}
+
 TEST(UnstructuredFiles, BlocksBesideElementsAreRead) {
   TemporaryFolder const folder;
   auto const path = folder.file("hybrid.cgns");
@@ -511,6 +591,17 @@ TEST(UnstructuredFiles, ElementsThatNameNodesOutsideTheZoneAreRefused) {
   auto const message = message_of<IoError>([&] { read_mesh(path); });
   for (auto const* part : {"elements 'bad'", "element 6", "node 99", "12 nodes"})
     EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
+TEST(UnstructuredFiles, ZonesWhoseNamesEndInABlankAreFoundAsDonors) {
+  TemporaryFolder const folder;
+  auto mesh = to_hexahedra(two_zones({}, false));
+  for (Zone& zone : mesh.zones) zone.name += " ";
+  write_mesh(folder.file("mesh.cgns"), mesh);
+  auto const read = read_mesh(folder.file("mesh.cgns"));
+  ASSERT_EQ(read.connections.size(), mesh.connections.size());
+  EXPECT_EQ(read.connections[0].donor_nodes, mesh.connections[0].donor_nodes);
+  EXPECT_TRUE(read.notes.empty());
 }
 
 TEST(UnstructuredFiles, ConnectionsAreFoundByPositionWhereTheirListsAreNotInOrder) {

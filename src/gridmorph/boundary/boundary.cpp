@@ -103,9 +103,9 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
   each_face([&](Index f, BoundarySurface& surface) {
     auto const face = topology.boundary.nodes[f];
     surface.nodes.insert(surface.nodes.end(), face.begin(), face.end());
-    auto const middles =
-        side_middles(mesh, topology.boundary.element[std::size_t(f)], topology.boundary.side[std::size_t(f)]);
-    surface.nodes.insert(surface.nodes.end(), middles.begin(), middles.end());
+    for (auto const& m :
+         side_middles(mesh, topology.boundary.element[std::size_t(f)], topology.boundary.side[std::size_t(f)]))
+      surface.nodes.push_back(m.node);
   });
   for (std::size_t p = 0; p < surfaces_.size(); ++p) {
     auto& [nodes, grid, faces, in_file_order] = surfaces_[p];

@@ -15,6 +15,7 @@
 #include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 #include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/mesh/middle_pairs.hpp>
 
 #include <filesystem>
 #include <set>
@@ -138,6 +139,9 @@ Mesh read_mesh(std::string const& path, ReadOptions const& options) {
     mesh.notes.push_back(path + ": " + std::to_string(unused) + (unused == 1 ? " node belongs" : " nodes belong") +
                          " to no element of the mesh and " +
                          (unused == 1 ? "stays where it is" : "stay where they are"));
+  // Nodes in text have six digits and more.
+  constexpr double same_place = 1e-5;
+  pair_middle_nodes(mesh, same_place * mesh.size());
   return mesh;
 }
 

@@ -56,8 +56,8 @@ std::span<Index32 const> side_nodes(Mesh const& mesh, Index element, int side,
   return {room.data(), kept};
 }
 
-std::vector<Index32> side_middles(Mesh const& mesh, Index element, int side) {
-  std::vector<Index32> out;
+std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side) {
+  std::vector<MiddleNode> out;
   ElementType const type = mesh.elements.type[std::size_t(element)];
   auto const nodes = mesh.elements.nodes[element];
   int const corners = int(mesh.elements.corners(element).size());
@@ -67,15 +67,21 @@ std::vector<Index32> side_middles(Mesh const& mesh, Index element, int side) {
       if (face_corner(type, side, c) == corner) return true;
     return false;
   };
-  auto const take = [&](int place) {
-    if (std::size_t(place) < nodes.size()) out.push_back(nodes[std::size_t(place)]);
+  auto const take = [&](int place, std::vector<Index32> amid) {
+    if (std::size_t(place) >= nodes.size()) return;
+    std::sort(amid.begin(), amid.end());
+    out.push_back({nodes[std::size_t(place)], std::move(amid)});
   };
+  auto const corner = [&](int c) { return nodes[std::size_t(c)]; };
   for (int e = 0; e < n_edges(type); ++e)
-    if (on_side(edge_corner(type, e, 0)) && on_side(edge_corner(type, e, 1))) take(corners + e);
+    if (on_side(edge_corner(type, e, 0)) && on_side(edge_corner(type, e, 1)))
+      take(corners + e, {corner(edge_corner(type, e, 0)), corner(edge_corner(type, e, 1))});
   if (is_surface(type) || n_face_corners(type, side) != 4) return out;
   int squares_before = 0;
   for (int f = 0; f < side; ++f) squares_before += n_face_corners(type, f) == 4 ? 1 : 0;
-  take(corners + n_edges(type) + squares_before);
+  std::array<Index32, max_face_corners> room{};
+  auto const all = side_nodes(mesh, element, side, room);
+  take(corners + n_edges(type) + squares_before, {all.begin(), all.end()});
   return out;
 }
 

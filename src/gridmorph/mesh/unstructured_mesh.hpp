@@ -19,8 +19,13 @@ int n_sides(Mesh const& mesh, Index element);
 std::span<Index32 const> side_nodes(Mesh const& mesh, Index element, int side,
                                     std::array<Index32, max_face_corners>& room);
 
-/// Further nodes of a second-order element on one of its sides: amid its edges, then amid the side where the element has such nodes.
-std::vector<Index32> side_middles(Mesh const& mesh, Index element, int side);
+/// A further node of a second-order element on one of its sides.
+struct MiddleNode {
+  Index32 node = 0;
+  std::vector<Index32> amid;  ///< corners of the edge, or of the side, ascending
+};
+/// Those amid its edges, then the one amid the side where the element has such nodes.
+std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side);
 
 /// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the mean
 /// normal of its elements. (0, 0, 1) for a 3-D mesh.

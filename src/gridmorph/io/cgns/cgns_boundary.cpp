@@ -25,11 +25,10 @@ void read_block_boundary(File const& file, Node const& tree, Layout const& layou
       Patch patch;
       patch.name = bc->name;
       patch.zone = z;
-      patch.families = families_of(file, *bc);
+      patch.families = families_of(file, *zone.base, *bc);
       patch.bc_type = file.text(*bc);
       if (patch.bc_type == "FamilySpecified") {
-        auto const type =
-            patch.families.empty() ? std::nullopt : family_bc_type(file, tree, *zone.base, patch.families.front());
+        auto const type = family_bc_type(file, tree, *zone.base, patch.families);
         if (type)
           patch.bc_type = *type;
         else

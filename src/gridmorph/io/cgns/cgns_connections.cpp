@@ -1,3 +1,4 @@
+#include <gridmorph/io/blanks.hpp>
 #include <gridmorph/io/cgns/cgns_boundary.hpp>
 #include <gridmorph/io/cgns/cgns_families.hpp>
 #include <gridmorph/io/cgns/cgns_interface.hpp>
@@ -59,7 +60,7 @@ class ConnectionReader {
     patch.name = node.name;
     patch.bc_type = type;
     patch.kind = PatchKind::connection;
-    patch.families = families_of(file_, node);
+    patch.families = families_of(file_, *layout_.zones[z].base, node);
     patch.zone = z;
     patch.range = face.range;
     mesh_.patches.push_back(std::move(patch));
@@ -76,7 +77,7 @@ class ConnectionReader {
   Interface1to1 start(int z, Node const& node) const {
     Interface1to1 face;
     face.name = node.name;
-    face.families = families_of(file_, node);
+    face.families = families_of(file_, *layout_.zones[z].base, node);
     face.zone = z;
     return face;
   }
@@ -103,7 +104,8 @@ class ConnectionReader {
     IndexRange const range = node_range(zone, own);
     if (!face_normal(zone, range)) return note("skipped, it leads to a zone that is left out and is on no face");
     note("leads to zone '" + file_.text(node) + "', which is left out; taken as a patch");
-    mesh_.patches.push_back({node.name, "Abutting1to1", PatchKind::connection, families_of(file_, node), z, range});
+    mesh_.patches.push_back(
+        {node.name, "Abutting1to1", PatchKind::connection, families_of(file_, *layout_.zones[z].base, node), z, range});
   }
 
   int donor_zone(ZoneLayout const& zone, std::string const& name, Corners const& range) {
@@ -163,10 +165,19 @@ class ConnectionReader {
 }  // namespace
 
 int find_donor(Layout const& layout, ZoneLayout const& zone, std::string const& name) {
-  for (std::size_t d = 0; d < layout.zones.size(); ++d)
-    if (layout.zones[d].base == zone.base && layout.zones[d].node->name == name) return int(d);
-  for (std::size_t d = 0; d < layout.zones.size(); ++d)
-    if (layout.zones[d].base->name + "/" + layout.zones[d].node->name == name) return int(d);
+  auto const find = [&](auto const& is_meant) {
+    auto const at = std::find_if(layout.zones.begin(), layout.zones.end(), is_meant);
+    return at == layout.zones.end() ? -1 : int(at - layout.zones.begin());
+  };
+  // Texts lose the blanks at their end where they are read, names of zones keep them; a zone of the very name goes first.
+  for (bool const exactly : {true, false}) {
+    auto const is_it = [&](std::string const& own) {
+      return exactly ? own == name : io::without_blanks_around(own) == io::without_blanks_around(name);
+    };
+    int out = find([&](ZoneLayout const& z) { return z.base == zone.base && is_it(z.node->name); });
+    if (out < 0) out = find([&](ZoneLayout const& z) { return is_it(z.base->name + "/" + z.node->name); });
+    if (out >= 0) return out;
+  }
   return -1;
 }
 

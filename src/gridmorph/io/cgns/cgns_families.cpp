@@ -25,17 +25,28 @@ std::vector<std::string> split(std::string const& path) {
   return parts;
 }
 
-/// The type at the end of a path of families below `top`; false in `.first` when there is no such path.
-std::pair<bool, std::optional<std::string>> follow(File const& file, Node const& top,
-                                                   std::vector<std::string> const& path) {
+/// The families along a path of their names below `top`; empty where there is no such path.
+std::vector<Node const*> follow(Node const& top, std::vector<std::string> const& path) {
+  std::vector<Node const*> out;
   Node const* at = &top;
-  std::optional<std::string> type;
   for (auto const& name : path) {
     at = at->child(name);
-    if (!at || at->label != "Family_t") return {false, std::nullopt};
-    if (auto const* bc = at->labelled("FamilyBC_t")) type = file.text(*bc);
+    if (!at || at->label != "Family_t") return {};
+    out.push_back(at);
   }
-  return {!path.empty(), type};
+  return out;
+}
+
+/// The nearest type above the end of a path.
+std::optional<std::string> type_along(File const& file, std::vector<Node const*> const& path) {
+  std::optional<std::string> type;
+  for (Node const* family : path)
+    if (auto const* bc = family->labelled("FamilyBC_t")) type = file.text(*bc);
+  return type;
+}
+
+void add_once(std::vector<std::string>& names, std::string name) {
+  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
 }
 
 }  // namespace
@@ -46,25 +57,33 @@ std::vector<std::string> family_names(Node const& base) {
   return names;
 }
 
-std::vector<std::string> families_of(File const& file, Node const& owner) {
+std::vector<std::string> families_of(File const& file, Node const& base, Node const& owner) {
   std::vector<std::string> names;
   for (auto const* label : {"FamilyName_t", "AdditionalFamilyName_t"})
-    for (auto const* node : owner.all(label)) {
-      auto name = file.text(*node);
-      if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
-    }
-  return names;
+    for (auto const* node : owner.all(label)) add_once(names, file.text(*node));
+  std::vector<std::string> own, above;
+  for (auto const& name : names)
+    if (auto const path = follow(base, split(name)); !path.empty())
+      for (auto const* node : path.back()->all("FamilyName_t")) {
+        auto const text = file.text(*node);
+        add_once(follow(base, split(text)).empty() ? own : above, text);
+      }
+  for (auto const* list : {&names, &above})
+    for (auto const& name : *list) add_once(own, name);
+  return own;
 }
 
 std::optional<std::string> family_bc_type(File const& file, Node const& tree, Node const& base,
-                                          std::string const& name) {
-  auto path = split(name);
-  if (auto const [found, type] = follow(file, base, path); found) return type;
-  if (path.size() < 2) return std::nullopt;
-  auto const* other = tree.child(path.front());
-  if (!other || other->label != "CGNSBase_t") return std::nullopt;
-  path.erase(path.begin());
-  return follow(file, *other, path).second;
+                                          std::vector<std::string> const& names) {
+  for (auto const& name : names) {
+    auto path = split(name);
+    if (auto const found = follow(base, path); !found.empty()) return type_along(file, found);
+    auto const* other = path.size() < 2 ? nullptr : tree.child(path.front());
+    if (!other || other->label != "CGNSBase_t") continue;
+    path.erase(path.begin());
+    return type_along(file, follow(*other, path));
+  }
+  return std::nullopt;
 }
 
 PatchKind patch_kind(std::string_view bc_type) {

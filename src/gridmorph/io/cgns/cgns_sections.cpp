@@ -266,6 +266,11 @@ Index ListedFaces::find(std::int64_t file_number) const {
   return -1;
 }
 
+bool ListedFaces::is_smaller(std::int64_t file_number) const {
+  return std::any_of(smaller.begin(), smaller.end(),
+                     [&](auto const& range) { return range[0] <= file_number && file_number <= range[1]; });
+}
+
 ListedFaces add_elements(std::vector<Section> const& sections, std::string const& where, Mesh& mesh,
                          Problems& problems) {
   ListedFaces faces;
@@ -309,6 +314,8 @@ ListedFaces add_elements(std::vector<Section> const& sections, std::string const
         mesh.elements.number.push_back(Index32(s.first + e));
       } else if (kind->dimension == mesh.dimension - 1) {
         add_face(s, e, std::size_t(kind->corners));
+      } else {
+        faces.add_smaller(s.first + e);
       }
     }
     group.end = faces.nodes.size();

@@ -4,6 +4,8 @@
 #include <gridmorph/io/cgns/cgns_layout.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -65,9 +67,17 @@ struct ListedFaces {
   CsrGraph nodes;                    ///< corners, numbered as in the mesh
   std::vector<char> claimed;         ///< by a boundary condition
   std::vector<Group> groups;
+  std::vector<std::array<std::int64_t, 2>>
+      smaller;  ///< first and last of elements of lower dimension: points, and edges in 3-D
 
   /// Face with this number, or -1.
   [[nodiscard]] Index find(std::int64_t file_number) const;
+  void add_smaller(std::int64_t file_number) {
+    if (smaller.empty() || smaller.back()[1] + 1 != file_number) smaller.push_back({file_number, file_number});
+    smaller.back()[1] = file_number;
+  }
+  /// Whether the number is that of a point or an edge, which bounds no element.
+  [[nodiscard]] bool is_smaller(std::int64_t file_number) const;
 };
 
 /// Appends the elements of a zone (of `dimension`) to its place in the mesh and collects its faces.

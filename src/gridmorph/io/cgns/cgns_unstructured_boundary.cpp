@@ -23,6 +23,7 @@ class BoundaryReader {
     std::int64_t const largest = largest_number(zone, faces_[std::size_t(z)], mesh_, z);
     for (auto const* zone_bc : zone.node->all("ZoneBC_t"))
       for (auto const* bc : zone_bc->all("BC_t")) condition(z, *bc, largest);
+    smaller();
     sections(z);
   }
 
@@ -40,22 +41,22 @@ class BoundaryReader {
     Patch patch;
     patch.name = bc.name;
     patch.zone = z;
-    patch.families = families_of(file_, bc);
+    patch.families = families_of(file_, *zone.base, bc);
     patch.bc_type = file_.text(bc);
     // Meshers that call condition and family alike may leave out the name of the family.
     bool const alike = patch.families.empty() &&
                        std::find(mesh_.families.begin(), mesh_.families.end(), bc.name) != mesh_.families.end();
     if (alike) patch.families.push_back(bc.name);
+    std::string unknown;
     if (patch.bc_type == "FamilySpecified") {
-      auto const type =
-          patch.families.empty() ? std::nullopt : family_bc_type(file_, tree_, *zone.base, patch.families.front());
+      auto const type = family_bc_type(file_, tree_, *zone.base, patch.families);
       if (type)
         patch.bc_type = *type;
       else
-        note(
+        unknown =
             "is FamilySpecified, but " +
             (patch.families.empty() ? "names no family" : "family '" + patch.families.front() + "' has no FamilyBC_t") +
-            "; its kind is not known");
+            "; its kind is not known";
     }
     patch.kind = patch_kind(patch.bc_type);
     std::string why;
@@ -70,7 +71,17 @@ class BoundaryReader {
       return;
     }
     if (patch.nodes.empty() && patch.faces.size() == 0) return note("skipped, its point set is empty");
+    if (!unknown.empty()) note(unknown);
     mesh_.patches.push_back(std::move(patch));
+  }
+
+  /// Programs that name every piece of geometry (Gmsh) have conditions on its corners and edges too.
+  void smaller() {
+    if (n_smaller_ > 0)
+      mesh_.notes.push_back(first_smaller_ +
+                            (n_smaller_ > 1 ? " and " + std::to_string(n_smaller_ - 1) + " more of the zone" : "") +
+                            ": left alone, of points or edges, which are no part of the boundary");
+    n_smaller_ = 0;
   }
 
   void note(std::string const& what) { mesh_.notes.push_back(where_ + ": " + what); }
@@ -92,6 +103,11 @@ class BoundaryReader {
 
   bool add_faces(int z, std::vector<std::int64_t> const& numbers, Patch& patch) {
     auto& faces = faces_[std::size_t(z)];
+    if (!numbers.empty() &&
+        std::all_of(numbers.begin(), numbers.end(), [&](auto const n) { return faces.is_smaller(n); })) {
+      if (n_smaller_++ == 0) first_smaller_ = where_;
+      return false;
+    }
     Index missing = 0;
     std::int64_t first = 0;
     for (auto const n : numbers) {
@@ -158,7 +174,7 @@ class BoundaryReader {
       patch.zone = z;
       if (std::find(mesh_.families.begin(), mesh_.families.end(), group.name) != mesh_.families.end()) {
         patch.families.push_back(group.name);
-        patch.bc_type = family_bc_type(file_, tree_, *zone.base, group.name).value_or("");
+        patch.bc_type = family_bc_type(file_, tree_, *zone.base, {group.name}).value_or("");
       }
       patch.kind = patch_kind(patch.bc_type);
       for (Index f = group.begin; f < group.end; ++f) patch.faces.add(faces.nodes[f]);
@@ -174,7 +190,9 @@ class BoundaryReader {
   Mesh& mesh_;
   Problems& problems_;
   std::string where_;  ///< the boundary condition being read
-  std::string taken_;  ///< the section whose faces it got
+  std::string first_smaller_;
+  Index n_smaller_ = 0;  ///< conditions of the zone on points or edges
+  std::string taken_;    ///< the section whose faces it got
 };
 
 }  // namespace

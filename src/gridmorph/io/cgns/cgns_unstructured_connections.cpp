@@ -53,7 +53,7 @@ class ConnectionReader {
     patch.name = node.name;
     patch.bc_type = type;
     patch.kind = PatchKind::connection;
-    patch.families = families_of(file_, node);
+    patch.families = families_of(file_, *layout_.zones[std::size_t(z)].base, node);
     patch.zone = z;
     patch.faces = own->faces;
     if (patch.faces.size() == 0) patch.nodes = sorted(own->all);
@@ -227,7 +227,7 @@ class ConnectionReader {
     bool const by_nodes = !location || file_.text(*location) == "Vertex";
     Connection c;
     c.name = node.name;
-    c.families = families_of(file_, node);
+    c.families = families_of(file_, *layout_.zones[std::size_t(z)].base, node);
     c.zone = z;
     c.donor_zone = donor;
     c.periodic = read_periodic(file_, *zone.base, *zone.node, node, where_, mesh_.notes);

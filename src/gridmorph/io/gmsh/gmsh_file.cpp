@@ -25,9 +25,10 @@ class Parser {
       if ((is_nodes && has_nodes_) || (name == "Elements" && has_elements_))
         text_.fail("$" + name + " for the second time");
       if ((name == "Elements" || name == "Periodic") && !has_nodes_) text_.fail("$" + name + " comes before $Nodes");
-      if (name == "PartitionedEntities")
+      if (name == "PartitionedEntities" && version_ != 41)
         text_.fail(
-            "is a mesh in parts; put them together: gmsh -save FILE -part 0 -o mesh.msh, or save it without parts");
+            "is a mesh in parts of version 4.0, read are those of 4.1; write it again: gmsh -save FILE -format "
+            "msh41 -o mesh.msh");
       if (is_nodes)
         nodes(name == "ParametricNodes");
       else if (name == "Elements")
@@ -36,11 +37,14 @@ class Parser {
         physical_names();
       else if (name == "Entities" && version_ >= 40)
         entities();
+      else if (name == "PartitionedEntities")
+        parts();
       else if (name == "Periodic")
         periodic();
       else {
         text_.skip_section(name);
-        if (name != "Comments") out_.passed_over.push_back("$" + name);
+        // What cells of other parts a part sees is a copy of what is in the file anyway.
+        if (name != "Comments" && name != "GhostElements") out_.passed_over.push_back("$" + name);
         continue;
       }
       text_.end_section(name);
@@ -192,6 +196,7 @@ class Parser {
   }
 
   void old_elements() {
+    out_.repeats_elements = true;
     Index const n = text_.count_word("the number of elements", 6);
     text_.begin_raw();
     auto const read = [&] { return text_.number32("a node number"); };
@@ -254,8 +259,7 @@ class Parser {
       if (out_.nodes.size() + size > n)
         text_.fail("blocks hold more elements than the " + std::to_string(n) + " of the section");
       auto const known = entities_.find({f.dimension, entity});
-      out_.groups.push_back(
-          {f.dimension, entity, known == entities_.end() ? std::vector<std::int64_t>() : known->second});
+      out_.groups.push_back(known == entities_.end() ? Group{f.dimension, entity, {}} : known->second);
       for (Index k = 0; k < size; ++k)
         element(type, f, version_ == 41 ? text_.number64("an element number") : text_.number32("an element number"),
                 Index32(out_.groups.size()) - 1, read);
@@ -280,11 +284,38 @@ class Parser {
 
   void entities() {
     text_.begin_raw();
+    pieces_of_geometry([](Group&) {});
+  }
+
+  /// Pieces of the geometry that fall into parts of the mesh, as if they were whole: a piece of a part is what it is cut from.
+  void parts() {
+    text_.begin_raw();
+    text_.number64("the number of parts");
+    Index const n_ghosts = text_.count("the number of pieces of ghost elements", 4, true);
+    for (Index k = 0; k < 2 * n_ghosts; ++k) text_.number32("a piece of ghost elements");
+    pieces_of_geometry([&](Group& piece) {
+      std::int64_t const dimension = text_.number32("the dimension of what a part is cut from");
+      std::int64_t const whole = text_.number32("the number of what a part is cut from");
+      if (dimension < piece.dimension || dimension > most_dimensions)
+        text_.fail("a part of dimension " + std::to_string(piece.dimension) + " is cut from one of dimension " +
+                   std::to_string(dimension));
+      piece.between_parts = dimension > piece.dimension;
+      piece.entity = whole;
+      Index const n_parts = text_.count("the number of parts of a piece", 2, true);
+      for (Index p = 0; p < n_parts; ++p) text_.number32("a part");
+    });
+  }
+
+  /// `more` reads what comes behind the number of a piece.
+  template <class More>
+  void pieces_of_geometry(More const& more) {
     std::array<Index, 4> n{};
     for (Index& count : n) count = text_.count("the number of pieces of geometry", 4, true);
     for (int dimension = 0; dimension <= most_dimensions; ++dimension)
       for (Index k = 0; k < n[std::size_t(dimension)]; ++k) {
         std::int64_t const tag = text_.number32("the number of a piece of geometry");
+        Group piece{dimension, tag, {}};
+        more(piece);
         int const box = dimension == 0 && version_ == 41 ? 3 : 6;
         for (int c = 0; c < box; ++c) text_.skip_real("a coordinate of a piece of geometry");
         std::set<std::int64_t> physical;
@@ -293,7 +324,8 @@ class Parser {
           std::int64_t const group = text_.number32("a physical group");
           physical.insert(group < 0 ? -group : group);
         }
-        entities_[{dimension, tag}].assign(physical.begin(), physical.end());
+        piece.physical.assign(physical.begin(), physical.end());
+        entities_[{dimension, tag}] = std::move(piece);
         if (dimension == 0) continue;
         Index const n_sides = text_.count("the number of pieces of a boundary", 2, true);
         for (Index s = 0; s < n_sides; ++s) text_.number32("a piece of a boundary");
@@ -350,7 +382,7 @@ class Parser {
   File out_;
   TagPlaces places_;
   bool has_nodes_ = false, has_elements_ = false;
-  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> entities_;
+  std::map<std::pair<int, std::int64_t>, Group> entities_;  ///< by dimension and number in the file
   std::map<std::array<std::int64_t, 3>, Index32> old_groups_;
   std::array<std::int64_t, 3> last_key_{-1, -1, -1};
   Index32 last_group_ = -1;

@@ -21,6 +21,7 @@ struct Group {
   int dimension = 0;
   std::int64_t entity = 0;
   std::vector<std::int64_t> physical;  ///< ascending, each once, positive
+  bool between_parts = false;          ///< of a mesh in parts: faces that two of them share, no boundary
 };
 
 /// Nodes of one piece of geometry and those they repeat.
@@ -44,6 +45,7 @@ struct File {
   std::vector<Index32> group;
   CsrGraph nodes;
   std::vector<Group> groups;
+  bool repeats_elements = false;  ///< an element is there once for each of its physical groups (2.2)
 
   std::map<std::pair<int, std::int64_t>, std::string> names;  ///< of physical groups, by dimension and number
   std::vector<PeriodicLink> periodic;

@@ -7,7 +7,9 @@
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/periodic_transform.hpp>
 #include <gridmorph/io/replaced_text.hpp>
+#include <gridmorph/io/rest_of_boundary.hpp>
 #include <gridmorph/io/used_nodes.hpp>
+#include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <algorithm>
@@ -59,8 +61,9 @@ class Builder {
     elements();
     patches();
     connections();
-    notes();
     check_mesh(mesh_);
+    ungrouped_ = io::add_rest_of_boundary(mesh_);
+    notes();
     return std::move(mesh_);
   }
 
@@ -77,6 +80,7 @@ class Builder {
 
   /// In version 2.2 an element that belongs to several physical groups is there once for each of them.
   void gather_groups() {
+    if (!file_.repeats_elements) return;
     std::map<std::pair<int, std::int64_t>, int> with_entity;
     for (auto const& group : file_.groups) ++with_entity[{group.dimension, group.entity}];
     std::vector<char> several(file_.groups.size());
@@ -130,7 +134,7 @@ class Builder {
     std::vector<Index32> face;
     for (Index e = 0; e < file_.nodes.size(); ++e) {
       auto const& group = group_of(e);
-      if (group.dimension != dimension || is_repeated(e)) continue;
+      if (group.dimension != dimension || group.between_parts || is_repeated(e)) continue;
       face.clear();
       auto const corners = file_.nodes[e].first(std::size_t(io::gmsh_shape(file_.type[std::size_t(e)]).corners));
       for (Index32 const n : corners) face.push_back(number_[std::size_t(n)]);
@@ -215,6 +219,12 @@ class Builder {
     return io::periodic_of(t.inverse(), allowed);
   }
 
+  [[nodiscard]] bool is_a_shell() const {
+    MeshExtent const box = extent_of(mesh_.coordinates);
+    Vec3 const size = box.high - box.low;
+    return mesh_.dimension == 2 && std::min({size.x, size.y, size.z}) > periodic_tolerance * mesh_.size();
+  }
+
   void notes() {
     auto const add = [&](std::string const& text) { mesh_.notes.push_back(path_ + ": " + text); };
     if (by_name_) add("Gmsh files do not say what a patch is; kinds are taken from the names");
@@ -225,6 +235,12 @@ class Builder {
     if (!in_order) add("nodes are not numbered 1, 2, 3, ...; messages count them in the order of the file");
     if (auto const unused = Index(file_.tag.size()) - mesh_.n_nodes(); unused > 0)
       add(std::to_string(unused) + " nodes belong to no element of the mesh and stay where they are");
+    if (ungrouped_ > 0)
+      add(std::to_string(ungrouped_) +
+          " faces of its boundary are in no physical group, so Gmsh did not save them; they are the patch 'boundary'");
+    if (is_a_shell())
+      add("has surfaces that are not plane and no volumes: Gmsh saves what is in a physical group alone. Give the "
+          "volumes one (Physical Volume), or save all: gmsh -save_all");
     if (loose_ > 0) add(std::to_string(loose_) + " elements of its boundary are not at the mesh; left alone");
     if (file_.parametric) add("parameters of nodes on the geometry are left as they are");
     for (auto const& name : file_.passed_over) add(name + " plays no part in morphing; left alone");
@@ -236,7 +252,7 @@ class Builder {
   std::vector<Index32> number_;
   std::vector<Index> repeated_;
   std::map<Index, std::vector<std::int64_t>> further_;  ///< physical groups of elements that are there several times
-  Index loose_ = 0;
+  Index loose_ = 0, ungrouped_ = 0;
   bool by_name_ = false;
 };
 

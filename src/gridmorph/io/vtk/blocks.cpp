@@ -6,6 +6,7 @@
 #include <gridmorph/io/made_folders.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/read_file.hpp>
+#include <gridmorph/io/rest_of_boundary.hpp>
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
 #include <gridmorph/io/vtk/pieces.hpp>
@@ -308,7 +309,7 @@ Mesh read_blocks(std::string const& path) {
   for (Leaf const& leaf : blocks.leaves())
     if (blocks.is_surface(leaf)) add_surface(mesh, leaf);
   check_mesh(mesh);
-  add_rest_of_boundary(mesh);
+  io::add_rest_of_boundary(mesh);
   return mesh;
 }
 

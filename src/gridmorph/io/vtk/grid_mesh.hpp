@@ -16,9 +16,6 @@ Mesh mesh_of(XmlFile const& file, Grid const& grid);
 /// Meshes of one zone each as one mesh of zones with those names.
 Mesh joined(std::vector<std::string> const& names, std::vector<Mesh> const& meshes);
 
-/// Faces on the boundary that no patch and no connection has become the patch `boundary`, zone by zone.
-void add_rest_of_boundary(Mesh& mesh);
-
 /// Of a zone's own part of what all zones have.
 Coordinates part(Coordinates const& all, Zone const& zone);
 OutputFields part(OutputFields const& all, Zone const& zone);

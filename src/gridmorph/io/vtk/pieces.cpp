@@ -4,6 +4,7 @@
 #include <gridmorph/io/made_folders.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/io/read_file.hpp>
+#include <gridmorph/io/rest_of_boundary.hpp>
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/grid_mesh.hpp>
 #include <gridmorph/io/vtk/pieces.hpp>
@@ -117,7 +118,8 @@ class Joiner {
     auto const add = [&](Index32 n) { out.emplace_back(numbers_.find_or_add(mesh_.coordinates[n], int(n)), n); };
     BoundaryFaces const& faces = topology_.boundary;
     for (Index32 const n : faces.nodes[face]) add(n);
-    for (Index32 const n : side_middles(mesh_, faces.element[std::size_t(face)], faces.side[std::size_t(face)])) add(n);
+    for (auto const& m : side_middles(mesh_, faces.element[std::size_t(face)], faces.side[std::size_t(face)]))
+      add(m.node);
     std::sort(out.begin(), out.end());
     return out;
   }
@@ -208,7 +210,7 @@ Mesh read_pieces(std::string const& path) {
                          std::to_string(pairs) + " pairs of points that lie in the same places");
     check_mesh(mesh);
   }
-  add_rest_of_boundary(mesh);
+  io::add_rest_of_boundary(mesh);
   return mesh;
 }
 

@@ -248,23 +248,6 @@ bool is_vtu(std::string_view head) {
 
 Mesh mesh_of(XmlFile const& file, Grid const& grid) { return Builder(file, grid).run(); }
 
-void add_rest_of_boundary(Mesh& mesh) {
-  auto const topology = make_topology(mesh);
-  auto const of_face = find_face_patches(mesh, topology);
-  std::vector<Patch> rest(mesh.zones.size());
-  for (Index f = 0; f < topology.boundary.size(); ++f) {
-    auto const nodes = topology.boundary.nodes[f];
-    if (of_face.patch[std::size_t(f)] == BoundaryFacePatches::open)
-      rest[std::size_t(mesh.zone_of(nodes[0]))].faces.add(nodes);
-  }
-  for (std::size_t z = 0; z < rest.size(); ++z) {
-    if (rest[z].faces.size() == 0) continue;
-    rest[z].zone = int(z);
-    rest[z].name = "boundary";
-    mesh.patches.push_back(std::move(rest[z]));
-  }
-}
-
 Mesh joined(std::vector<std::string> const& names, std::vector<Mesh> const& meshes) {
   Mesh all;
   all.first_number = 0;
