@@ -31,6 +31,17 @@ struct ScatterPart {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { to[list(k)] = from[k]; }
 };
 
+/// The same to a Field.
+template <class MemorySpace>
+struct SetPart {
+  Kokkos::View<std::int32_t const*, MemorySpace> list;
+  Vec3 const* from;
+  Field<double> to;
+
+  [[nodiscard]] Index size() const { return Index(list.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { to.set(list(k), from[k]); }
+};
+
 /// to(list(k)) += a(k) + b(k) of a list without repetition.
 template <class MemorySpace>
 struct AddPart {

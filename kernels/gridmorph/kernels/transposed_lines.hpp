@@ -15,6 +15,7 @@
 // flops per end that turns. Nothing is written but at the ends.
 #pragma once
 
+#include <gridmorph/kernels/common_rows.hpp>
 #include <gridmorph/kernels/row_correction.hpp>
 #include <gridmorph/kernels/skeleton_sweep.hpp>
 #include <gridmorph/kernels/transposed_turns.hpp>
@@ -43,7 +44,8 @@ struct LineBundle {
   LineStep t_step;
   Index x;  ///< position likewise: in SkeletonTurns::position; nodes: as `value`
   LineStep x_step;
-  Vec3 offset;  ///< of nodes: position in the chain's frame is matrix^T x + offset
+  Vec3 offset;               ///< of nodes: position in the chain's frame is matrix^T x + offset
+  std::int32_t common = -1;  ///< of nodes: which part's motion in common they have, -1: none
 };
 
 struct LineGroup {
@@ -64,6 +66,8 @@ struct BundleGradients {
   VectorArray nodes;
   Field<double const> slot_turns, position;
   VectorArray baseline;
+  CommonMove const* moves = nullptr;  ///< of parts; null: gradients are not handed through motions in common
+  Index n_moves = 0;                  ///< from part to part
 
   KOKKOS_INLINE_FUNCTION static Index at(Index first, LineStep const& step, int s, int a, int b) {
     return first + s * step.s + a * step.a + b * step.b;
@@ -71,7 +75,8 @@ struct BundleGradients {
   /// (s, a, b): from the first of the bundle. All in the frame of the chain.
   KOKKOS_INLINE_FUNCTION Vec3 gradient(LineBundle const& p, int s, int a, int b) const {
     Index const n = at(p.value, p.value_step, s, a, b);
-    Vec3 const g = p.in_volume != 0 ? nodes[n] : slots[n];
+    Vec3 g = p.in_volume != 0 ? nodes[n] : slots[n];
+    if (is_pulled(p)) g = transpose(moves[p.common * n_moves].forward) * g;
     return p.matrix < 0 ? g : transpose(matrices(p.matrix)) * g;
   }
   KOKKOS_INLINE_FUNCTION double parameter(LineBundle const& p, int s, int a, int b) const {
@@ -83,6 +88,7 @@ struct BundleGradients {
   KOKKOS_INLINE_FUNCTION void row(LineBundle const& p, int s, int a, int b, int n, VectorRow<width>& g) const {
     Index const first = at(p.value, p.value_step, s, a, b), step = row_step<along>(p.value_step);
     p.in_volume != 0 ? read(nodes, first, step, n, g) : read(slots, first, step, n, g);
+    if (is_pulled(p)) pull_row(moves[p.common * n_moves], n, g);
     turn_back(p, n, g);
   }
   template <RowAlong along, int width>
@@ -110,6 +116,8 @@ struct BundleGradients {
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION bool is_pulled(LineBundle const& p) const { return moves != nullptr && p.common >= 0; }
+
   template <class Real, int width>
   KOKKOS_INLINE_FUNCTION static void read(Real const* x, Real const* y, Real const* z, Index step, int n,
                                           VectorRow<width>& to) {

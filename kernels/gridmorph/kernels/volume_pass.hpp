@@ -6,9 +6,10 @@
 // End values are two-dimensional tables that stay in cache; no neighbour of a node is read.
 // Cost per node: 24 bytes of coordinates read and 24 written (none read where the displacement itself is asked for), 8 read
 // per line parameter: 0 in a near field (8 where it turns), 8 in the far field, 8 more under a slip surface. Where line ends turn
-// (turned_line.hpp), the coordinates are read for displacements too.
+// (turned_line.hpp), the coordinates are read for displacements too, and where parts have a motion in common (common_rows.hpp).
 #pragma once
 
+#include <gridmorph/kernels/common_rows.hpp>
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/row_correction.hpp>
@@ -26,6 +27,8 @@ struct VolumeBox {
   Index stride_j, stride_k;  ///< along i nodes follow one another
   std::int32_t n[3];
   std::int32_t first_term, n_terms;
+  std::int32_t common = -1;  ///< which part's motion in common its nodes have, -1: none
+  std::int32_t n_swept = 0;  ///< that comes after so many terms, those of stages; 0: none does
 };
 
 /// What one chain adds to the nodes of a box.
@@ -77,6 +80,7 @@ struct VolumePass {
   VectorArray baseline;
   VectorArray out[most_fields_at_once];
   int n_fields = 1;
+  CommonMoves<MemorySpace> common = {};
 
   static constexpr int width = Shape::volume_i;
   using Row = VectorRow<width>;
@@ -88,6 +92,8 @@ struct VolumePass {
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     int const entry = entry_of(first_item, item);
     VolumeBox const& box = boxes(entry);
+    int const n_terms = common.leaves_out ? box.n_swept : box.n_terms;
+    if (common.leaves_out && n_terms == 0) return;
     Index local = item - first_item(entry);
     Index const tiles_i = tiles(box.n[0], Shape::volume_i), tiles_j = tiles(box.n[1], Shape::volume_j);
     int const i = int(local % tiles_i) * Shape::volume_i;
@@ -99,8 +105,12 @@ struct VolumePass {
       for (int j = j0; j < j1; ++j)
         for (int f = 0; f < n_fields; ++f) {
           Row u;
-          for (int m = 0; m < box.n_terms; ++m) add_term(box, terms(box.first_term + m), m == 0, f, i, j, k, n, u);
-          write(box.first + i + j * box.stride_j + k * box.stride_k, n, u, out[f]);
+          Index const node = box.first + i + j * box.stride_j + k * box.stride_k;
+          for (int m = 0; m < n_terms; ++m) {
+            add_term(box, terms(box.first_term + m), m == 0, f, i, j, k, n, u);
+            if (m + 1 == box.n_swept && !common.leaves_out) add_common(box, f, node, n, u);
+          }
+          write(node, n, u, out[f]);
         }
   }
 
@@ -146,18 +156,26 @@ struct VolumePass {
   KOKKOS_INLINE_FUNCTION void add_turned(Chain const& chain, VolumeTerm const& term, int f, RowEnds const& row,
                                          Index node, Row& v) const {
     Row x;
-    baseline.with_row(node, [&](auto const& at) {
-      for (int w = 0; w < row.n; ++w) {
-        x.x[w] = double(at.x[w * at.stride]);
-        x.y[w] = double(at.y[w * at.stride]);
-        x.z[w] = double(at.z[w * at.stride]);
-      }
-    });
+    read_baseline(node, row.n, x);
     if (term.matrix >= 0) turn(transpose(matrices(term.matrix)), row.n, x);
     add_vector(term.offset, row.n, x);
     TurnedEndsWithRates const turned_ends = turned[f];
     TurnedRow<width> const turned_row{turned_ends, chain, row.lower, row.t, row.n};
     with_step(row.step, [&](auto step) { turned_row.add_to(step, x, v); });
+  }
+  KOKKOS_INLINE_FUNCTION void add_common(VolumeBox const& box, int f, Index node, int n, Row& u) const {
+    Row x;
+    read_baseline(node, n, x);
+    common.add_to(box.common, f, node, n, x, u);
+  }
+  KOKKOS_INLINE_FUNCTION void read_baseline(Index node, int n, Row& x) const {
+    baseline.with_row(node, [&](auto const& at) {
+      for (int w = 0; w < n; ++w) {
+        x.x[w] = double(at.x[w * at.stride]);
+        x.y[w] = double(at.y[w * at.stride]);
+        x.z[w] = double(at.z[w * at.stride]);
+      }
+    });
   }
   KOKKOS_INLINE_FUNCTION static void add_vector(Vec3 const& a, int n, Row& x) {
     for (int w = 0; w < n; ++w) {

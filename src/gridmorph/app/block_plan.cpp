@@ -10,6 +10,7 @@
 #include <gridmorph/morph/best_order.hpp>
 #include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
+#include <gridmorph/plan/common_parts.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/report/prediction_text.hpp>
@@ -55,6 +56,7 @@ class BlockPlan final : public AnyPlan {
                                   locate_wakes(prepared_.surface.shared_boundary(), prepared_.surface.motion(),
                                                case_file_.measured_regions, region_notes_),
                                   region_notes_)) {
+    split_common();
     VolumeOptions const& volume = case_file_.plan.volume;
     if (volume.by_prediction() || volume.are_automatic()) order_by_prediction();
   }
@@ -216,6 +218,18 @@ class BlockPlan final : public AnyPlan {
     int step = 0;
     std::vector<Vec3> boundary;
   };
+
+  /// Of a sequence the displacements are still to come.
+  void split_common() {
+    split_common_motions(prepared_, [&]() -> std::optional<std::vector<Vec3>> {
+      if (case_file_.sequence) return {};
+      try {
+        return prepared_.boundary_displacement();
+      } catch (MotionError const&) {
+        return {};  // that the motion cannot be made is said where it is made
+      }
+    });
+  }
 
   /// Asked for: the order of chains predicted to be best. Left to us: another one where that by priority inverts cells.
   void order_by_prediction() {

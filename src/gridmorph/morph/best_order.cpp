@@ -2,6 +2,7 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/morph/best_order.hpp>
 #include <gridmorph/morph/predictor.hpp>
+#include <gridmorph/plan/common_parts.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -250,8 +251,12 @@ bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prep
 FoundOrder plan_by_prediction(HostInstance const& host, PreparedMorph& prepared, std::span<Vec3 const> boundary) {
   bool const by_itself = !prepared.options.volume.by_prediction();
   FoundOrder found = by_itself ? find_order_quickly(host, prepared, boundary) : find_order(host, prepared, boundary);
-  if (found.better)
-    prepared.planned = make_plan(host, prepared.mesh, prepared.links, prepared.surface, prepared.options, found.order);
+  if (found.better) {
+    PlannedMorph planned =
+        make_plan(host, prepared.mesh, prepared.links, prepared.surface, prepared.options, found.order);
+    carry_common_motions(prepared, planned);
+    prepared.planned = std::move(planned);
+  }
   std::string const why = by_itself ? "by priority cells would be inverted: " : "";
   prepared.planned.plan.notes.push_back(why + describe(found));
   return found;

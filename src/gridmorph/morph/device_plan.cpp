@@ -213,6 +213,9 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     // The host lists of this stage end here, and uploads may still read them.
     compat::fence(exec, "gridmorph::Morpher (host tables of a stage may go)");
   }
+  std::vector<std::int32_t> n_swept;
+  for (std::size_t b = 0; b < plan.boxes.size(); ++b)
+    n_swept.push_back(plan.boxes[b].common >= 0 ? std::int32_t(of_box[b].size()) : 0);
   for (SpreadPass const& pass : plan.spreads) {
     Shift const shift(joined);
     DeviceSpread<Exec> device;
@@ -235,6 +238,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     kernels::VolumeBox box = plan.boxes[b];
     box.first_term = std::int32_t(joined.terms.size());
     box.n_terms = std::int32_t(of_box[b].size());
+    box.n_swept = n_swept[b];
     append(joined.terms, of_box[b]);
     joined.boxes.push_back(box);
   }

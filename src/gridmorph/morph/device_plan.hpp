@@ -14,6 +14,11 @@
 #include <string>
 #include <vector>
 
+namespace gridmorph::stages {
+template <class Exec>
+struct BlockCommon;
+}
+
 namespace gridmorph::detail {
 
 /// A table of a Morpher; see enqueue_copy().
@@ -145,7 +150,8 @@ struct DevicePlan {
   Workspace<Memory> skeleton, ends, residuals;
   DeviceTurns<Exec> turns;
   int fields = 1;
-  std::shared_ptr<TransposedPlan<Exec> const> transposed;  ///< where gradients are asked for
+  std::shared_ptr<TransposedPlan<Exec> const> transposed;   ///< where gradients are asked for
+  std::shared_ptr<stages::BlockCommon<Exec> const> common;  ///< where parts have motions in common
 
   DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<double const> x, int n_fields);
 };

@@ -140,6 +140,7 @@ PlacedBundle bundle_of(kernels::VolumeBox const& box, kernels::VolumeTerm const&
   out.bundle.matrix = term.matrix;
   out.bundle.in_volume = 1;
   out.bundle.offset = term.offset;
+  out.bundle.common = box.common;
   return out;
 }
 

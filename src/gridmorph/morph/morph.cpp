@@ -3,6 +3,7 @@
 #include <gridmorph/morph/best_order.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/plan/common_parts.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
@@ -27,6 +28,7 @@ MorphPlan::MorphPlan(HostInstance const& host, Mesh const& mesh, Motion const& m
   if (mesh.is_structured()) {
     state->blocks = prepare(host, mesh, motion, options);
     state->displacement = state->blocks->boundary_displacement();
+    split_common_motions(*state->blocks, [&] { return std::optional(state->displacement); });
     if (options.volume.by_prediction() ||
         (options.volume.are_automatic() && is_inverted_by_priority(host, *state->blocks, state->displacement)))
       plan_by_prediction(host, *state->blocks, state->displacement);

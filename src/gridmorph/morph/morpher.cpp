@@ -80,6 +80,7 @@ struct Morpher<Exec>::State {
       for (std::size_t k = 0; k < n; ++k) {
         Field f = list.fields[k];
         f.boundary = boundary[done + k].array();
+        f.baseline = baseline.array();
         put_back(exec, f);
         stages::enqueue_all(list.stages, exec, flat.field, f);
       }
@@ -97,6 +98,7 @@ struct Morpher<Exec>::State {
   void run_rate(Exec const& exec, In const& boundary, In const& boundary_rate, Out const& v) const {
     Field f = list.fields[0], r = list.fields[1];
     f.boundary = boundary.array();
+    f.baseline = baseline.array();
     r.boundary = boundary_rate.array();
     r.of = f.number;
     Field const given = f, given_rate = r;
@@ -121,6 +123,7 @@ struct Morpher<Exec>::State {
   void run_transpose(Exec const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const {
     Field f = list.fields[0], g = list.fields[1];
     f.boundary = boundary.array();
+    f.baseline = baseline.array();
     g.nodes = dJ_du.array();
     g.baseline = baseline.array();
     g.boundary = dJ_db.array();

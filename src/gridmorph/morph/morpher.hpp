@@ -36,7 +36,7 @@ struct MorpherOptions {
 /// pieces; while it is made, 24 bytes per node more where the baseline is in float or zone by zone. A Morpher's workspace serves
 /// one call at a time; copies of a Morpher share it. Elements: 48 bytes per node (96 with MorpherOptions::velocity), about 60 per near
 /// node, 70 per far node, 50 for the residual, 8 for each body that turns, and the background mesh. With MorpherOptions::transpose about 50 bytes more per node on
-/// the faces of pieces; elements 12 more for each item of their rows, 4 for each node that reads a lattice, 150 per node.
+/// the faces of pieces, 24 per node with it or with MorpherOptions::velocity where parts have a motion in common (kernels/common_motion.hpp); elements 12 more for each item of their rows, 4 for each node that reads a lattice, 150 per node.
 template <class ExecutionSpace>
 class Morpher {
  public:

@@ -1,6 +1,7 @@
 #include <gridmorph/morph/predictor.hpp>
 
 #include <gridmorph/kernels/cell_quality.hpp>
+#include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
@@ -73,11 +74,12 @@ Coordinates Predictor::morphed(Plan const& plan, std::span<Vec3 const> boundary)
   require_boundary_size("gridmorph::predict", boundary.size(), prepared_.plan().boundary_nodes.size(),
                         "MorphPlan::boundary_nodes()");
   Coordinates const& baseline = planner_.coarse().mesh.coordinates;
+  Plan const with_common = planner_.with_common_motions(plan, boundary);
   Coordinates out(baseline.size());
   std::vector<Vec3> const given = planner_.displacement(plan, boundary);
   host_.visit([&](auto const& exec) {
     using Exec = std::remove_cvref_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, plan, baseline);
+    Morpher<Exec> const morpher(exec, with_common, baseline);
     morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(given.data(), given.size()), out);
     compat::fence(exec, "gridmorph::predict (read by the host)");
   });

@@ -1,4 +1,5 @@
 #include <gridmorph/plan/coarse_plan.hpp>
+#include <gridmorph/plan/common_parts.hpp>
 
 #include <gridmorph/plan/blocks/host_lines.hpp>
 
@@ -86,6 +87,11 @@ PlannedMorph CoarsePlanner::plan(ChainOrder const& first, ChainOrder* next, Chai
   for (SpreadPass const& pass : planned.plan.spreads)
     append_parameters(pass.lines, lines_.lengths, planned.plan.line_parameters);
   return planned;
+}
+
+Plan CoarsePlanner::with_common_motions(Plan plan, std::span<Vec3 const> boundary) const {
+  carry_common_motions(prepared_, boundary, coarse_.mesh, plan);
+  return plan;
 }
 
 std::vector<Vec3> CoarsePlanner::displacement(Plan const& plan, std::span<Vec3 const> boundary) const {

@@ -23,6 +23,8 @@ class CoarsePlanner {
   /// With the line parameters of the mesh itself. `first`, `next`, `choice`: see build_plan(). Cost: that of a plan of the lines kept.
   [[nodiscard]] PlannedMorph plan(ChainOrder const& first, ChainOrder* next = nullptr,
                                   ChainChoice choice = ChainChoice::rules);
+  /// Such a plan, with what parts have in common by `boundary`. Cost: a copy.
+  [[nodiscard]] Plan with_common_motions(Plan plan, std::span<Vec3 const> boundary) const;
   /// Of the boundary nodes of such a plan. `boundary`: of those of the plan prepared, in order.
   [[nodiscard]] std::vector<Vec3> displacement(Plan const& plan, std::span<Vec3 const> boundary) const;
 

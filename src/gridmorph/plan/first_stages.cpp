@@ -13,6 +13,29 @@ std::string name_of(Stage const& stage) {
   return numbered ? "iteration " + stage.name : stage.name;
 }
 
+/// Slots that are given, or that some stage sweeps.
+std::vector<char> reached_slots(Plan const& plan) {
+  std::vector<char> out(std::size_t(plan.n_slots), 0);
+  for (Index const slot : plan.boundary_slots) out[std::size_t(slot)] = 1;
+  for (Stage const& stage : plan.stages)
+    for (kernels::SkeletonSweep const& sweep : stage.sweeps)
+      for (Index q = 0; q < sweep.n_q; ++q)
+        for (Index p = 0; p < sweep.n_p; ++p) out[std::size_t(sweep.slot + p + q * sweep.slot_q)] = 1;
+  return out;
+}
+
+/// Leaves nodes that nothing has reached where they are.
+void keep_reached(std::vector<char> const& reached, CommonPart& part) {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < part.slots.size(); ++k) {
+    if (reached[std::size_t(part.slots[k])] == 0) continue;
+    part.slots[n] = part.slots[k];
+    part.position[n++] = part.position[k];
+  }
+  part.slots.resize(n);
+  part.position.resize(n);
+}
+
 /// Keeps the boxes that some chain adds to: nodes of the others are not to be written.
 class KeptBoxes {
  public:
@@ -61,6 +84,8 @@ Plan first_stages(Plan const& plan, StagesDone const& done) {
     n_parameters += pass.lines.n_parameters;
   }
   boxes.finish();
+  auto const reached = reached_slots(out);
+  for (CommonPart& part : out.common) keep_reached(reached, part);
   if (!out.line_parameters.empty()) out.line_parameters.resize(std::size_t(n_parameters));
   std::vector<char> given(std::size_t(plan.n_slots), 0);
   for (Index const slot : plan.boundary_slots) given[std::size_t(slot)] = 1;

@@ -10,10 +10,12 @@
 #include <gridmorph/kernels/volume_pass.hpp>
 #include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/plan/blocks/chain.hpp>
+#include <gridmorph/plan/common_motion.hpp>
 #include <gridmorph/plan/options.hpp>
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -101,6 +103,16 @@ struct TurnTables {
   TurningRoots bodies;
 };
 
+/// A part of the mesh whose boundaries have a motion in common: it is taken off what they are given, and added to all nodes of the part.
+struct CommonPart {
+  std::vector<int> zones;                 ///< ascending
+  CommonMotion motion;                    ///< of `boundary`
+  std::optional<kernels::CommonMap> map;  ///< instead of the fit to what is given
+  std::vector<std::int32_t> boundary;     ///< in Plan::boundary_nodes
+  std::vector<std::int32_t> slots;        ///< of the skeleton
+  std::vector<Vec3> position;             ///< of their owners, as `slots`
+};
+
 struct Plan {
   /// Owner nodes whose displacement the motion gives, in the order that morph() expects their values.
   std::vector<Index> boundary_nodes;
@@ -111,7 +123,8 @@ struct Plan {
   std::vector<kernels::NodeCopy> skeleton_nodes;  ///< from slots to all nodes of the skeleton
   std::vector<kernels::VolumeBox> boxes;          ///< the nodes inside pieces; terms come from stages and spreads
   TurnTables turns;
-  std::vector<double> law_knots;  ///< of laws of the user's own, see kernels::table_weight()
+  std::vector<CommonPart> common;  ///< boxes say which they belong to
+  std::vector<double> law_knots;   ///< of laws of the user's own, see kernels::table_weight()
   std::vector<SlipSurface> surfaces;
   std::vector<Mat3> rotations;
   std::vector<CellBox> near_field;        ///< cells of the near field of moving walls

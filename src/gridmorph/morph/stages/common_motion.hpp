@@ -25,8 +25,9 @@ struct CommonMotionTables {
   List<Exec, kernels::CommonMove> move;  ///< of each field, and of gradients
   bool pulls;                            ///< whether what is left is seen from the moved mesh
 
-  /// n_chunks: of nodes that gradients are summed over, where the transpose is asked for.
-  CommonMotionTables(Exec const& exec, CommonMotion const& plan, int n_fields, Index n_chunks, bool pull)
+  /// n_chunks: of nodes that gradients are summed over, where the transpose is asked for. moves: room for `move`; none: it is made.
+  CommonMotionTables(Exec const& exec, CommonMotion const& plan, int n_fields, Index n_chunks, bool pull,
+                     List<Exec, kernels::CommonMove> const& moves = {})
       : frame(plan.frame),
         position(upload(exec, plan.position, name("position"))),
         weight(upload(exec, plan.weight, name("weight"))),
@@ -34,7 +35,8 @@ struct CommonMotionTables {
         beyond(room_for<Vec3>(exec, plan.position.size(), name("beyond"))),
         partial(room_for<kernels::CommonMap>(
             exec, std::size_t(kernels::common_chunks(Index(plan.position.size())) + n_chunks), name("partial"))),
-        move(room_for<kernels::CommonMove>(exec, std::size_t(n_fields) + 1, name("move"))),
+        move(moves.extent(0) > 0 ? moves
+                                 : room_for<kernels::CommonMove>(exec, std::size_t(n_fields) + 1, name("move"))),
         pulls(pull) {
     compat::fence(exec, "gridmorph::CommonMotion (host tables may go)");
   }

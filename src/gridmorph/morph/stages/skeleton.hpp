@@ -5,6 +5,7 @@
 #include <gridmorph/morph/detail/block_turns.hpp>
 #include <gridmorph/morph/detail/transposed_plan.hpp>
 #include <gridmorph/morph/device_plan.hpp>
+#include <gridmorph/morph/stages/block_volume.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 
 #include <cstddef>
@@ -16,8 +17,6 @@ namespace gridmorph::stages {
 /// The tables that the stages of a plan share.
 template <class Exec>
 using BlockTables = std::shared_ptr<detail::DevicePlan<Exec> const>;
-
-inline Baseline read(kernels::Field<double> const& f) { return {f.x, f.y, f.z, f.stride}; }
 
 /// What stages on a skeleton do with the tables they share.
 template <class Exec>
@@ -45,28 +44,33 @@ class OnSkeleton {
                                  plan().turns.of_skeleton(f.number, f.of));
   }
 
-  /// Where the transposes of sweeps and of the volume read gradients.
+  /// Where the transposes of sweeps and of the volume read gradients: of displacements before what is in common is added, or after it.
   [[nodiscard]] kernels::BundleGradients<Memory> gradients(detail::TransposedLines<Exec> const& lines,
-                                                           StageField<Exec> const& g) const {
+                                                           StageField<Exec> const& f, StageField<Exec> const& g,
+                                                           bool before_common) const {
     kernels::BundleGradients<Memory> from{lines.bundles, plan().rotations, plan().t.data(), read(g.skeleton),
                                           g.nodes,       no_field(),       no_field(),      g.baseline};
     if (plan().turns.any()) {
       from.slot_turns = plan().turns.slots.read()[g.number];
       from.position = plan().turns.swept_position.read()[0];
     }
+    if (before_common && plan().common) {
+      from.moves = plan().common->moves.data() + f.number;
+      from.n_moves = plan().common->n_moves();
+    }
     return from;
   }
   /// Gradients of the ends of lines, from those of all nodes between.
   void sum_lines(Exec const& exec, detail::TransposedLines<Exec> const& lines, Index first_end, Index n_ends,
-                 StageField<Exec> const& f, StageField<Exec> const& g) const {
+                 StageField<Exec> const& f, StageField<Exec> const& g, bool before_common) const {
     auto const& turns = plan().turns;
     kernels::launch("gridmorph::transposed::clear_ends", exec, first_end, first_end + n_ends,
                     kernels::ClearVectors{g.ends});
     kernels::launch("gridmorph::transposed::lines", exec, 0, lines.groups.n_items,
                     kernels::LineGradients<Memory, kernels::TileShape<Exec>::lines>{
-                        lines.groups.entries, lines.groups.first_item, plan().lines.chains, gradients(lines, g),
-                        plan().law_knots.data(), turns.any() ? turns.read_ends(f.number, f.number).values : no_ends(),
-                        end_gradients(g)});
+                        lines.groups.entries, lines.groups.first_item, plan().lines.chains,
+                        gradients(lines, f, g, before_common), plan().law_knots.data(),
+                        turns.any() ? turns.read_ends(f.number, f.number).values : no_ends(), end_gradients(g)});
   }
   [[nodiscard]] kernels::EndGradients end_gradients(StageField<Exec> const& g) const {
     kernels::EndGradients to{g.ends, {}, {nullptr, nullptr, nullptr}};
@@ -77,6 +81,13 @@ class OnSkeleton {
     return to;
   }
 
+  /// Those that have a motion in common.
+  template <class Visit>
+  void each_part(Visit const& visit) const {
+    if (plan().common)
+      for (auto const& part : plan().common->parts) visit(part);
+  }
+
  private:
   static Baseline no_field() { return {nullptr, nullptr, nullptr}; }
   static kernels::TurnedEnds<double const> no_ends() { return {}; }
@@ -84,7 +95,7 @@ class OnSkeleton {
   BlockTables<Exec> tables_;
 };
 
-/// First: the boundary's displacement goes to its slots, and how walls turn is taken from it. Linear where none does.
+/// First: the boundary's displacement, less what parts have in common, goes to its slots, and how walls turn is taken from it. Linear where none does.
 template <class Exec>
 class BoundaryValues : OnSkeleton<Exec> {
  public:
@@ -92,34 +103,40 @@ class BoundaryValues : OnSkeleton<Exec> {
 
   explicit BoundaryValues(BlockTables<Exec> tables) : OnSkeleton<Exec>(std::move(tables)) {}
 
-  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const { set<false>(exec, f); }
-  void rate(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& r) const {
-    set<false>(exec, f);
-    set<true>(exec, r);
+  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
+    scatter(exec, f, [&](auto const& part) { part.take(exec, f); });
+    turn<false>(exec, f);
+  }
+  void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
+    enqueue(exec, x, f);
+    scatter(exec, r, [&](auto const& part) { part.take_rate(exec, f, r); });
+    turn<true>(exec, r);
   }
   [[nodiscard]] bool bends() const { return this->plan().turns.any(); }
   /// g.boundary is written: gradients of the boundary's displacement.
   void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
     auto const& plan = this->plan();
-    scatter(
-        exec,
-        f);  // where the walls were when they turned: passes over slip surfaces have trimmed some of their nodes since
+    // Where the walls were when they turned: passes over slip surfaces have trimmed some of their nodes since.
+    scatter(exec, f, [&](auto const& part) { part.put_left(exec, f, 0); });
     detail::BlockTurnGradients<Exec>(plan, f.number, g.number).of_walls(exec);
     kernels::copy_back<false>("gridmorph::transposed::axis", exec, plan.transposed->boundary_projections,
                               plan.rotations, read(g.skeleton), g.skeleton);
+    this->each_part([&](auto const& part) { part.hold_back(exec, g); });
     kernels::launch(
         "gridmorph::transposed::boundary", exec,
         kernels::GatherBoundary<typename Exec::memory_space>{plan.boundary_slots, read(g.skeleton), g.boundary});
+    this->each_part([&](auto const& part) { part.take_back(exec, f, g, plan.common->n_fields); });
   }
 
  private:
-  void scatter(Exec const& exec, StageField<Exec> const& f) const {
+  template <class Take>
+  void scatter(Exec const& exec, StageField<Exec> const& f, Take const& take) const {
     kernels::scatter_boundary(exec, this->plan().boundary_slots, f.boundary, f.skeleton);
+    this->each_part(take);
     this->copy("gridmorph::boundary::axis", exec, this->plan().boundary_projections, f.skeleton, f.skeleton);
   }
   template <bool Rate>
-  void set(Exec const& exec, StageField<Exec> const& f) const {
-    scatter(exec, f);
+  void turn(Exec const& exec, StageField<Exec> const& f) const {
     detail::BlockTurns<Exec, Rate>(this->plan(), f.number, f.of).of_walls(exec);
   }
 };
@@ -148,7 +165,7 @@ class LineSweep : OnSkeleton<Exec> {
     auto const& back = this->plan().transposed->stages[number_];
     detail::BlockTurnGradients<Exec> const turns(this->plan(), f.number, g.number);
     turns.clear_ends(exec, stage);
-    this->sum_lines(exec, back.lines, stage.first_end_value, stage.n_end_values, f, g);
+    this->sum_lines(exec, back.lines, stage.first_end_value, stage.n_end_values, f, g, true);
     if (stage.side_lines.extent(0) > 0) sum_sides(exec, stage, back, f, g);
     turns.of_ends(exec, stage, back, g.ends);
     kernels::copy_back<true>("gridmorph::transposed::chain_ends", exec, back.ends, this->plan().rotations, read(g.ends),
@@ -171,7 +188,7 @@ class LineSweep : OnSkeleton<Exec> {
     launch("gridmorph::transposed::clear_edges", exec, 0, plan.transposed->edges.n, kernels::ClearVectors{edges});
     launch("gridmorph::transposed::sides", exec,
            kernels::SideGradients<Memory>{back.slabs, back.lines.groups.entries, chains, sides,
-                                          this->gradients(back.lines, g), g.residuals, edges});
+                                          this->gradients(back.lines, f, g, true), g.residuals, edges});
     launch("gridmorph::transposed::sum_edges", exec,
            kernels::EdgeSums<Memory>{chains, sides, stage.corrected, back.first_part, read(edges), g.residuals});
     launch("gridmorph::transposed::fill_sides", exec,
@@ -207,6 +224,46 @@ class LineSweep : OnSkeleton<Exec> {
   std::size_t number_;
 };
 
+/// What parts have in common, added to the skeleton: slip surfaces see the whole, the pass through the volume adds it elsewhere.
+template <class Exec>
+class AddCommon : OnSkeleton<Exec> {
+ public:
+  static inline std::string const region = "gridmorph::motion in common";
+
+  explicit AddCommon(BlockTables<Exec> tables) : OnSkeleton<Exec>(std::move(tables)) {}
+
+  void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
+    this->each_part([&](auto const& part) { part.add(exec, f); });
+  }
+  void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
+    keep_nodes(exec, f);
+    this->each_part([&](auto const& part) { part.add_rate(exec, f, r); });
+    enqueue(exec, x, f);
+  }
+
+  [[nodiscard]] static bool bends() { return true; }
+  void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
+    keep_nodes(exec, f);
+    this->each_part([&](auto const& part) { part.keep(exec, f); });
+  }
+  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    keep(exec, x, f);
+    enqueue(exec, x, f);
+  }
+  void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
+    this->each_part([&](auto const& part) { part.add_back(exec, f, g, this->plan().common->before.data()); });
+  }
+
+ private:
+  /// Nodes inside pieces, before.
+  void keep_nodes(Exec const& exec, StageField<Exec> const& f) const {
+    auto volume = volume_pass<false>(this->plan(), f.baseline, f);
+    volume.common.leaves_out = true;
+    volume.out[volume.n_fields++] = VectorView<typename Exec::memory_space>(this->plan().common->before).array();
+    kernels::pass_volume(exec, this->plan().boxes.n_items, volume);
+  }
+};
+
 /// One SpreadPass of the plan: ends of lines go back onto slip surfaces, and the correction along the lines between.
 template <class Exec>
 class SlipSpread : OnSkeleton<Exec> {
@@ -237,7 +294,7 @@ class SlipSpread : OnSkeleton<Exec> {
     enqueue(exec, x, f);
   }
   void transpose(Exec const& exec, Baseline const&, StageField<Exec> const& f, StageField<Exec> const& g) const {
-    this->sum_lines(exec, back().lines, pass().first_value, pass().n_values, f, g);
+    this->sum_lines(exec, back().lines, pass().first_value, pass().n_values, f, g, false);
     kernels::SlipEndValues<Memory, false> const values{pass().ends,
                                                        pass().baselines,
                                                        this->plan().surfaces.surfaces,

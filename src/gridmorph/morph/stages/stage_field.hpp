@@ -27,7 +27,7 @@ template <class Exec>
 struct StageField {
   kernels::VectorArray boundary;  ///< displacements of MorphPlan::boundary_nodes()
   kernels::VectorArray nodes;     ///< gradients of all nodes, where a field holds gradients
-  kernels::VectorArray baseline;  ///< coordinates, there too
+  kernels::VectorArray baseline;  ///< coordinates, as the caller has them
 
   // Blocks: parts of the workspaces of DevicePlan.
   int number = 0;                                               ///< which field of theirs

@@ -20,9 +20,9 @@ namespace gridmorph::stages {
 
 /// Visited by the host, once per stage and call.
 template <class Exec>
-using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, SlipSpread<Exec>, WallMotion<Exec>, TakeTurns<Exec>,
-                           NearField<Exec>, NearLayers<Exec>, FarField<Exec>, AddTurns<Exec>, OtherBoundaries<Exec>,
-                           JoinedNodes<Exec>, MorphParts<Exec>>;
+using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, AddCommon<Exec>, SlipSpread<Exec>, WallMotion<Exec>,
+                           TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, FarField<Exec>, AddTurns<Exec>,
+                           OtherBoundaries<Exec>, JoinedNodes<Exec>, MorphParts<Exec>>;
 
 template <class Exec>
 struct StageList {
@@ -39,9 +39,13 @@ StageList<Exec> stage_list(Exec const& exec, Plan const& plan, Baseline const& x
   int const n_fields = std::max(options.fields, options.velocity || options.transpose ? 2 : 1);
   auto const tables = std::make_shared<detail::DevicePlan<Exec>>(exec, plan, x, n_fields);
   if (options.transpose) tables->transposed = std::make_shared<detail::TransposedPlan<Exec> const>(exec, *tables);
+  if (!plan.common.empty())
+    tables->common = std::make_shared<BlockCommon<Exec> const>(exec, plan, n_fields, options.transpose,
+                                                               options.velocity || options.transpose);
   StageList<Exec> out{{}, {}, WriteBlocks<Exec>(tables), {}};
   out.stages.emplace_back(BoundaryValues<Exec>(tables));
   for (std::size_t n = 0; n < tables->stages.size(); ++n) out.stages.emplace_back(LineSweep<Exec>(tables, n));
+  if (tables->common) out.stages.emplace_back(AddCommon<Exec>(tables));
   for (std::size_t n = 0; n < tables->spreads.size(); ++n) out.stages.emplace_back(SlipSpread<Exec>(tables, n));
   for (int f = 0; f < n_fields; ++f) {
     StageField<Exec> field;

@@ -3,6 +3,7 @@
 
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
+#include <gridmorph/morph/stages/block_volume.hpp>
 #include <gridmorph/morph/stages/skeleton.hpp>
 #include <gridmorph/morph/stages/transposed_tables.hpp>
 
@@ -41,27 +42,11 @@ class WriteBlocks {
   }
 
  private:
-  using Shape = kernels::TileShape<Exec>;
-
   template <bool Move>
   void write_at_once(Exec const& exec, kernels::VectorArray const& x, std::span<StageField<Exec> const> fields,
                      std::span<Out const> out) const {
     auto const& plan = *tables_;
-    kernels::VolumePass<typename Exec::memory_space, Shape, Move> volume{
-        plan.boxes.entries,
-        plan.terms,
-        plan.boxes.first_item,
-        plan.lines.chains,
-        plan.rotations,
-        plan.sides,
-        plan.t.data(),
-        plan.law_knots.data(),
-        {read(fields.front().ends), plan.ends.read().stride},
-        {read(fields.front().residuals), plan.residuals.read().stride},
-        {plan.turns.read_ends(fields.front().number, fields.front().of), plan.turns.ends_stride()},
-        x,
-        {},
-        0};
+    auto volume = volume_pass<Move>(plan, x, fields.front());
     for (Out const& field : out) {
       kernels::write_skeleton_nodes<Move>(exec, plan.skeleton_nodes, plan.rotations,
                                           read(fields[std::size_t(volume.n_fields)].skeleton), field.array(), x);
