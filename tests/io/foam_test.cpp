@@ -4,7 +4,7 @@
 #include <gridmorph/io/write_series.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
-
+#include <gridmorph/quality/unstructured_quality.hpp>
 #include "support/expect_error.hpp"
 #include "support/random.hpp"
 #include "support/temporary_folder.hpp"
@@ -15,10 +15,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -128,6 +130,32 @@ class FoamWriter {
   mutable Storage storage_;
 };
 
+/// What a polyMesh folder says.
+struct FoamLists {
+  using Labels = std::vector<std::int64_t>;
+  struct PatchOfFaces {
+    std::string name, keys;
+    std::size_t start, size;
+  };
+  std::vector<Vec3> points;
+  std::vector<Labels> faces;
+  Labels owner, neighbour;
+  std::vector<PatchOfFaces> patches;
+
+  void write(fs::path const& folder, Storage storage = {}) const {
+    FoamWriter const out(folder, storage);
+    out.points(points);
+    out.faces(faces);
+    out.labels("owner", owner);
+    out.labels("neighbour", neighbour);
+    std::string boundary = std::to_string(patches.size()) + "\n(\n";
+    for (auto const& patch : patches)
+      boundary += patch.name + "\n{\n " + patch.keys + "\n nFaces " + std::to_string(patch.size) + ";\n startFace " +
+                  std::to_string(patch.start) + ";\n}\n";
+    out.boundary(boundary + ")");
+  }
+};
+
 /// A box of n[0] x n[1] x n[2] cells, its nodes at place(i, j, k), i fastest; patches x0, x1, y0, ... with `keys`.
 struct FoamBox {
   Index3 n{3, 2, 2};
@@ -135,7 +163,10 @@ struct FoamBox {
   std::map<std::string, std::string> keys;  ///< "type wall;" where nothing else is said
   std::vector<std::string> patches{"x0", "x1", "y0", "y1", "z0", "z1"};
 
-  void write(fs::path const& folder, Storage storage = {}) const {
+  void write(fs::path const& folder, Storage storage = {}) const { lists().write(folder, storage); }
+
+  [[nodiscard]] FoamLists lists() const {
+    FoamLists out;
     auto const node = [&](int i, int j, int k) {
       return std::int64_t(i) + (n[0] + 1) * (j + std::int64_t(n[1] + 1) * k);
     };
@@ -144,18 +175,17 @@ struct FoamBox {
     auto const face = [&](Index3 c, int axis, int side) {
       c[axis] += side;
       int const u = (axis + 1) % 3, v = (axis + 2) % 3;
-      std::vector<std::int64_t> out;
+      FoamLists::Labels of_face;
       for (auto const& [a, b] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
         Index3 p = c;
         p[u] += a;
         p[v] += b;
-        out.push_back(node(p[0], p[1], p[2]));
+        of_face.push_back(node(p[0], p[1], p[2]));
       }
-      if (side == 0) std::reverse(out.begin() + 1, out.end());
-      return out;
+      if (side == 0) std::reverse(of_face.begin() + 1, of_face.end());
+      return of_face;
     };
-    std::vector<std::vector<std::int64_t>> faces;
-    std::vector<std::int64_t> owner, neighbour;
+    auto& [points, faces, owner, neighbour, of_patches] = out;
     auto const each_cell = [&](auto&& visit) {
       Index3 c{};
       for (c[2] = 0; c[2] < n[2]; ++c[2])
@@ -172,7 +202,6 @@ struct FoamBox {
         neighbour.push_back(cell(next));
       }
     });
-    std::string boundary = std::to_string(patches.size()) + "\n(\n";
     for (std::string const& name : patches) {
       std::size_t const start = faces.size();
       // "xy0": the faces of several sides in one patch.
@@ -187,21 +216,142 @@ struct FoamBox {
           });
       }
       auto const own = keys.find(name);
-      boundary += name + "\n{\n " + (own == keys.end() ? "type wall; inGroups 1(wall);" : own->second) + "\n nFaces " +
-                  std::to_string(faces.size() - start) + ";\n startFace " + std::to_string(start) + ";\n}\n";
+      of_patches.push_back(
+          {name, own == keys.end() ? "type wall; inGroups 1(wall);" : own->second, start, faces.size() - start});
     }
-    FoamWriter const out(folder, storage);
-    std::vector<Vec3> points;
     for (int k = 0; k <= n[2]; ++k)
       for (int j = 0; j <= n[1]; ++j)
         for (int i = 0; i <= n[0]; ++i) points.push_back(place({i, j, k}));
-    out.points(points);
-    out.faces(faces);
-    out.labels("owner", owner);
-    out.labels("neighbour", neighbour);
-    out.boundary(boundary + ")");
+    return out;
   }
 };
+
+/// A mesh cut into parts as decomposePar does it: a folder processor<p> with the cells that part(cell) says. Of each part's points their
+/// number in the whole mesh.
+class Cut {
+ public:
+  Cut(FoamLists const& whole, int n_parts, std::function<int(std::int64_t)> part)
+      : all_(whole), part_(std::move(part)) {
+    for (auto const& patch : all_.patches)
+      for (std::size_t k = 0; k < patch.size; ++k) patch_of_face_[patch.start + k] = {&patch, k};
+    for (int p = 0; p < n_parts; ++p) add(p, n_parts);
+  }
+
+  void write(fs::path const& of_case, bool addressing, Storage storage = {}) const {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      fs::path const folder = of_case / ("processor" + std::to_string(p)) / "constant" / "polyMesh";
+      parts[p].lists.write(folder, storage);
+      if (!addressing) continue;
+      FoamWriter const out(folder, storage);
+      out.labels("pointProcAddressing", parts[p].points);
+      out.labels("cellProcAddressing", parts[p].cells);
+      out.labels("faceProcAddressing", parts[p].faces);
+    }
+  }
+
+  struct PartOfMesh {
+    FoamLists lists;
+    FoamLists::Labels points, cells, faces;
+  };
+  std::vector<PartOfMesh> parts;
+
+ private:
+  using Labels = FoamLists::Labels;
+
+  /// The face of the other side of a cyclic patch; none of others.
+  [[nodiscard]] std::int64_t opposite(std::size_t f) const {
+    auto const found = patch_of_face_.find(f);
+    std::string const key = "neighbourPatch ";
+    if (found == patch_of_face_.end()) return -1;
+    auto const& [patch, k] = found->second;
+    std::size_t const at = patch->keys.find(key);
+    if (at == std::string::npos) return -1;
+    std::string const name = patch->keys.substr(at + key.size(), patch->keys.find(';', at) - at - key.size());
+    for (auto const& other : all_.patches)
+      if (other.name == name) return std::int64_t(other.start + k);
+    return -1;
+  }
+  [[nodiscard]] int owner_part(std::size_t f) const { return part_(all_.owner[f]); }
+
+  void add(int p, int n_parts) {
+    PartOfMesh out;
+    std::map<std::int64_t, std::int64_t> cell, node;
+    for (std::size_t f = 0; f < all_.faces.size(); ++f) {
+      if (owner_part(f) == p) cell[all_.owner[f]];
+      if (f < all_.neighbour.size() && part_(all_.neighbour[f]) == p) cell[all_.neighbour[f]];
+    }
+    for (auto& [number, own] : cell) {
+      own = std::int64_t(out.cells.size());
+      out.cells.push_back(number);
+    }
+    auto const take = [&](std::size_t f, bool other_way = false) {
+      Labels face = all_.faces[f];
+      if (other_way) std::reverse(face.begin() + 1, face.end());
+      out.lists.faces.push_back(face);
+      out.lists.owner.push_back(cell.at(other_way ? all_.neighbour[f] : all_.owner[f]));
+      out.faces.push_back(other_way ? -std::int64_t(f) - 1 : std::int64_t(f) + 1);
+    };
+    auto const patch = [&](std::string const& name, std::string const& keys, auto const& body) {
+      std::size_t const start = out.faces.size();
+      body();
+      out.lists.patches.push_back({name, keys, start, out.faces.size() - start});
+    };
+    std::size_t const n_inside = all_.neighbour.size();
+    for (std::size_t f = 0; f < n_inside; ++f)
+      if (owner_part(f) == p && part_(all_.neighbour[f]) == p) {
+        take(f);
+        out.lists.neighbour.push_back(cell.at(all_.neighbour[f]));
+      }
+    for (auto const& whole : all_.patches)
+      patch(whole.name, whole.keys, [&] {
+        for (std::size_t f = whole.start; f < whole.start + whole.size; ++f)
+          if (owner_part(f) == p && (opposite(f) < 0 || owner_part(std::size_t(opposite(f))) == p)) take(f);
+      });
+    for (int q = 0; q < n_parts; ++q) {
+      if (q == p) continue;
+      std::string const name = "procBoundary" + std::to_string(p) + "to" + std::to_string(q),
+                        keys = " myProcNo " + std::to_string(p) + "; neighbProcNo " + std::to_string(q) + ";";
+      patch(name, "type processor; inGroups 1(processor);" + keys, [&] {
+        for (std::size_t f = 0; f < n_inside; ++f) {
+          if (owner_part(f) == p && part_(all_.neighbour[f]) == q) take(f);
+          if (owner_part(f) == q && part_(all_.neighbour[f]) == p) take(f, true);
+        }
+      });
+      for (auto const& whole : all_.patches) {
+        if (whole.keys.find("type cyclic;") == std::string::npos) continue;
+        patch(name + "through" + whole.name, "type processorCyclic;" + keys + " referPatch " + whole.name + ";", [&] {
+          for (std::size_t f = whole.start; f < whole.start + whole.size; ++f)
+            if (owner_part(f) == p && owner_part(std::size_t(opposite(f))) == q) take(f);
+        });
+      }
+    }
+    for (auto const& face : out.lists.faces)
+      for (std::int64_t const n : face) node[n];
+    for (auto& [number, own] : node) {
+      own = std::int64_t(out.points.size());
+      out.points.push_back(number);
+      out.lists.points.push_back(all_.points[std::size_t(number)]);
+    }
+    for (auto& face : out.lists.faces)
+      for (std::int64_t& n : face) n = node.at(n);
+    parts.push_back(std::move(out));
+  }
+
+  FoamLists const& all_;
+  std::function<int(std::int64_t)> part_;
+  std::map<std::size_t, std::pair<FoamLists::PatchOfFaces const*, std::size_t>> patch_of_face_;
+};
+
+/// The numbers of a points file in text.
+std::vector<Vec3> points_of(fs::path const& file) {
+  std::ifstream in(file);
+  std::vector<Vec3> out;
+  for (std::string line; std::getline(in, line);) {
+    Vec3 p;
+    if (std::sscanf(line.c_str(), "(%lf %lf %lf)", &p.x, &p.y, &p.z) == 3) out.push_back(p);
+  }
+  return out;
+}
 
 /// Volume of all hexahedra, by their corners in SIDS order: six tetrahedra each.
 double volume(Mesh const& mesh) {
@@ -522,38 +672,284 @@ TEST(OpenFoam, ZonesOfCellsAndFacesAreSubsets) {
 }
 
 TEST(OpenFoam, AMeshOneCellThickIsAPlaneMeshAndBothPlanesMoveAlike) {
+  for (int const axis : {0, 1, 2}) {
+    SCOPED_TRACE(axis);
+    TemporaryFolder const folder;
+    FoamBox box;
+    int const u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;  // in the plane
+    std::string const names = "xyz";
+    box.n[axis] = 1;
+    box.n[u] = 3;
+    box.n[v] = 2;
+    std::string const planes = names.substr(std::size_t(axis), 1) + "2";
+    box.patches = {};
+    for (int const side : {u, v})
+      for (char const* end : {"0", "1"}) box.patches.push_back(names.substr(std::size_t(side), 1) + end);
+    box.patches.push_back(planes);
+    box.keys[planes] = "type empty; inGroups List<word> 1(empty);";
+    box.write(folder / "case");
+    Mesh const mesh = read_mesh((folder / "case").string());
+    EXPECT_EQ(mesh.dimension, 2);
+    EXPECT_EQ(mesh.n_nodes(), 12);
+    EXPECT_EQ(mesh.n_elements(), 6);
+    ASSERT_EQ(mesh.patches.size(), 4U);
+    EXPECT_EQ(mesh.patches[0].faces.size(), 2);
+    EXPECT_EQ(mesh.patches[2].faces.size(), 3);
+    auto const component = [](Vec3 const& p, int k) { return k == 0 ? p.x : k == 1 ? p.y : p.z; };
+    EXPECT_EQ(component(plane_normal(mesh), axis), 1);
+    EXPECT_TRUE(negative_elements(mesh).empty());
+    Coordinates moved(mesh.n_nodes());
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      std::array<double, 3> by{0.01, 0.01, 0.01};
+      by[std::size_t(u)] = 0.1 / double(n + 3);
+      by[std::size_t(axis)] = 0;
+      moved.set(n, mesh.coordinates[n] + Vec3{by[0], by[1], by[2]});
+    }
+    write_morphed((folder / "case").string(), (folder / "out").string(), mesh, moved);
+    Mesh const back = read_mesh((folder / "out").string());
+    for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
+    // Seen as a mesh of volumes, points across the cell differ in nothing else still.
+    for (char const* which : {"case", "out"}) {
+      std::string text = bytes_of(folder / which / "boundary");
+      text.replace(text.find("type empty"), 10, "type patch");
+      write_bytes(folder / which / "boundary", text);
+    }
+    Mesh const before = read_mesh((folder / "case").string()), after = read_mesh((folder / "out").string());
+    EXPECT_EQ(after.dimension, 3);
+    ASSERT_EQ(after.n_nodes(), 24);
+    Index pairs = 0;
+    for (Index n = 0; n < 24; ++n)
+      for (Index m = 0; m < n; ++m) {
+        Vec3 const across = before.coordinates[n] - before.coordinates[m];
+        if (component(across, u) != 0 || component(across, v) != 0) continue;
+        ++pairs;
+        EXPECT_EQ(component(after.coordinates[n], u), component(after.coordinates[m], u));
+        EXPECT_EQ(component(after.coordinates[n], v), component(after.coordinates[m], v));
+        EXPECT_EQ(component(after.coordinates[n], axis), component(before.coordinates[n], axis));
+      }
+    EXPECT_EQ(pairs, 12);
+  }
+}
+
+/// Nodes j = 0 of the two ends k become one, as blockMesh collapses them; the faces between them go.
+FoamLists collapsed(FoamBox const& box) {
+  FoamLists all = box.lists();
+  std::int64_t const layer = (box.n[0] + 1) * (box.n[1] + 1);
+  std::map<std::int64_t, std::int64_t> number;
+  auto const kept = [&](std::int64_t n) { return n >= layer && n - layer <= box.n[0] ? n - layer : n; };
+  FoamLists out;
+  for (std::int64_t n = 0; n < std::int64_t(all.points.size()); ++n)
+    if (kept(n) == n) {
+      number[n] = std::int64_t(out.points.size());
+      out.points.push_back(all.points[std::size_t(n)]);
+    }
+  out.neighbour = all.neighbour;
+  out.patches = all.patches;
+  for (auto& patch : out.patches) patch.size = 0;
+  for (std::size_t f = 0; f < all.faces.size(); ++f) {
+    FoamLists::Labels face;
+    for (std::int64_t const n : all.faces[f])
+      if (auto const to = number.at(kept(n)); std::find(face.begin(), face.end(), to) == face.end()) face.push_back(to);
+    if (face.size() < 3) continue;
+    for (std::size_t p = 0; p < all.patches.size(); ++p)
+      if (f >= all.patches[p].start && f < all.patches[p].start + all.patches[p].size && out.patches[p].size++ == 0)
+        out.patches[p].start = out.faces.size();
+    out.faces.push_back(face);
+    out.owner.push_back(all.owner[f]);
+  }
+  for (auto& patch : out.patches)
+    if (patch.size == 0) patch.start = out.faces.size();
+  return out;
+}
+
+TEST(OpenFoam, TheTwoPlanesOfAWedgeStayPlanesAndCopies) {
+  double const half = 2.5 * std::numbers::pi / 180;
+  for (int const turn : {0, 1, 2})  // the axis along x, y, z
+    for (bool const hole : {false, true}) {
+      SCOPED_TRACE(std::to_string(turn) + (hole ? ", with a hole" : ""));
+      auto const to_mesh = [&](Vec3 const& p) {
+        return turn == 0 ? p : turn == 1 ? Vec3{p.z, p.x, p.y} : Vec3{p.y, p.z, p.x};
+      };
+      auto const on_side = [&](Vec3 const& p, double angle) {  // of a point between
+        return to_mesh({p.x, p.y * std::cos(angle), p.y * std::sin(angle)});
+      };
+      TemporaryFolder const folder;
+      FoamBox box;
+      box.n = {4, 3, 1};
+      for (char const* side : {"z0", "z1"}) box.keys[side] = "type wedge;";
+      if (!hole) box.keys["y0"] = "type empty;";
+      auto const between = [&](Index3 const& p) { return Vec3{0.3 * p[0], (hole ? 0.5 : 0) + 0.2 * p[1], 0}; };
+      box.place = [&](Index3 const& p) { return on_side(between(p), p[2] == 0 ? -half : half); };
+      (hole ? box.lists() : collapsed(box)).write(folder / "case");
+      Mesh const mesh = read_mesh((folder / "case").string());
+      ASSERT_EQ(mesh.dimension, 2);
+      ASSERT_EQ(mesh.n_nodes(), 20);
+      EXPECT_EQ(mesh.n_elements(), 12);
+      EXPECT_TRUE(negative_elements(mesh).empty());
+      ASSERT_EQ(mesh.patches.size(), 4U);
+      Patch const& inner = *std::find_if(mesh.patches.begin(), mesh.patches.end(),
+                                         [](Patch const& patch) { return patch.name == "y0"; });
+      EXPECT_EQ(inner.faces.size(), 4);
+      EXPECT_EQ(inner.kind, hole ? PatchKind::wall : PatchKind::symmetry);
+      // What is moved, by where it was.
+      auto const goes_to = [&](Vec3 const& p) {
+        return p + Vec3{0.01 + 0.02 * p.y * p.y, p.y == 0 ? 0 : 0.03 * std::sin(5 * p.x), 0};
+      };
+      auto const back = [&](Vec3 const& p) {
+        return turn == 0 ? p : turn == 1 ? Vec3{p.y, p.z, p.x} : Vec3{p.z, p.x, p.y};
+      };
+      Coordinates moved(mesh.n_nodes());
+      for (Index n = 0; n < mesh.n_nodes(); ++n) {
+        Vec3 const p = back(mesh.coordinates[n]);
+        EXPECT_EQ(p.z, 0);
+        EXPECT_NEAR(std::remainder(p.x, 0.3), 0, 1e-15);
+        EXPECT_NEAR(std::remainder(p.y - (hole ? 0.5 : 0), 0.2), 0, 1e-14);
+        moved.set(n, to_mesh(goes_to(p)));
+      }
+      write_morphed((folder / "case").string(), (folder / "same").string(), mesh, mesh.coordinates);
+      EXPECT_EQ(bytes_of(folder / "same" / "points"), bytes_of(folder / "case" / "points"));
+      write_morphed((folder / "case").string(), (folder / "out").string(), mesh, moved);
+      auto const before = points_of(folder / "case" / "points"), after = points_of(folder / "out" / "points");
+      ASSERT_EQ(before.size(), hole ? 40U : 35U);
+      ASSERT_EQ(after.size(), before.size());
+      for (std::size_t n = 0; n < before.size(); ++n) {
+        Vec3 const p = back(before[n]);
+        double const r = std::hypot(p.y, p.z);
+        EXPECT_LT(distance(after[n], on_side(goes_to({p.x, r, 0}), std::atan2(p.z, p.y))), 1e-14) << n;
+      }
+    }
+  // Planes that are no copies of one another are sides of a mesh of volumes.
   TemporaryFolder const folder;
   FoamBox box;
-  box.n = {3, 2, 1};
-  box.patches = {"x0", "x1", "y0", "y1", "z2"};
-  box.keys["z2"] = "type empty; inGroups List<word> 1(empty);";
+  box.n = {4, 3, 1};
+  for (char const* side : {"z0", "z1"}) box.keys[side] = "type wedge;";
+  box.place = [&](Index3 const& p) {
+    double const r = 0.5 + 0.2 * p[1] + (p[0] == 1 && p[2] == 1 ? 0.01 : 0), a = p[2] == 0 ? -half : half;
+    return Vec3{0.3 * p[0], r * std::cos(a), r * std::sin(a)};
+  };
   box.write(folder / "case");
   Mesh const mesh = read_mesh((folder / "case").string());
+  EXPECT_EQ(mesh.dimension, 3);
+  ASSERT_FALSE(mesh.notes.empty());
+  EXPECT_NE(mesh.notes.back().find("no copies of one another"), std::string::npos);
+}
+
+TEST(OpenFoam, DecomposedMeshesAreReadAsOneAndWrittenAsTheyLie) {
+  FoamBox box;
+  box.n = {4, 3, 2};
+  box.keys["z0"] = "type cyclic; neighbourPatch z1;";
+  box.keys["z1"] = "type cyclic; neighbourPatch z0;";
+  box.keys["x1"] = "type patch; inGroups 1(rotor);";
+  FoamLists const lists = box.lists();
+  auto const moved_by = [](Vec3 const& p) { return p + Vec3{0.01 * std::sin(9 * p.y), 1.0 / 3 * p.x, -0.02 * p.z}; };
+  struct How {
+    int n_parts;
+    std::function<int(std::int64_t)> part;
+  };
+  for (How const& how :
+       {How{2, [](std::int64_t c) { return int(c % 4 / 2); }}, How{2, [](std::int64_t c) { return int(c / 12); }},
+        How{3, [](std::int64_t c) { return int(7 * c % 3); }}})
+    for (auto const& [addressing, binary] : {std::pair(true, false), {false, how.n_parts == 3}}) {
+      SCOPED_TRACE(std::to_string(how.n_parts) + (addressing ? " with" : " without") + " addressing");
+      TemporaryFolder const folder;
+      lists.write(folder / "whole" / "constant" / "polyMesh");
+      Cut const cut(lists, how.n_parts, how.part);
+      cut.write(folder / "case", addressing, {binary, 32, 64});
+      std::string const path = (folder / "case").string(), out = (folder / "out").string();
+      Mesh const whole = read_mesh((folder / "whole").string()), mesh = read_mesh(path);
+      EXPECT_EQ(look_at_mesh(path).format, MeshFormat::openfoam);
+      ASSERT_EQ(mesh.n_nodes(), whole.n_nodes());
+      EXPECT_NEAR(volume(mesh), volume(whole), 1e-15);
+      if (addressing) expect_equal(mesh, whole, 0);
+      ASSERT_EQ(mesh.patches.size(), whole.patches.size());
+      for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+        EXPECT_EQ(mesh.patches[p].name, whole.patches[p].name);
+        EXPECT_EQ(mesh.patches[p].families, whole.patches[p].families);
+        EXPECT_EQ(mesh.patches[p].faces.size(), whole.patches[p].faces.size());
+      }
+      ASSERT_EQ(mesh.connections.size(), 1U);
+      EXPECT_EQ(mesh.connections[0].nodes.size(), whole.connections[0].nodes.size());
+      for (std::size_t n = 0; n < mesh.connections[0].nodes.size(); ++n)
+        EXPECT_LT(distance(mesh.coordinates[mesh.connections[0].nodes[n]] + Vec3{0, 0, 1.4},
+                           mesh.coordinates[mesh.connections[0].donor_nodes[n]]),
+                  1e-14);
+      if (addressing) {
+        EXPECT_EQ(mesh.connections[0].nodes, whole.connections[0].nodes);
+      }
+      Coordinates moved(mesh.n_nodes());
+      for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, moved_by(mesh.coordinates[n]));
+      write_morphed(path, out, mesh, moved);
+      expect_equal(read_mesh((folder / "out" / "processor1").string()), read_mesh(out), 0);
+      for (std::size_t p = 0; p < cut.parts.size(); ++p) {
+        fs::path const place = fs::path("processor" + std::to_string(p)) / "constant" / "polyMesh";
+        for (char const* name : {"faces", "owner", "neighbour", "boundary"})
+          EXPECT_EQ(bytes_of(folder / "out" / place / name), bytes_of(folder / "case" / place / name)) << name;
+        if (binary) continue;
+        auto const points = points_of(folder / "out" / place / "points");
+        ASSERT_EQ(points.size(), cut.parts[p].points.size());
+        for (std::size_t n = 0; n < points.size(); ++n)
+          EXPECT_EQ(points[n], moved_by(lists.points[std::size_t(cut.parts[p].points[n])])) << n;
+      }
+      SeriesWriter series(path, (folder / "times").string(), mesh, {0.25});
+      series.add(moved);
+      series.commit();
+      Mesh const step = read_mesh((folder / "times" / "0.25").string());
+      for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(step.coordinates[n], moved[n]);
+    }
+}
+
+TEST(OpenFoam, PlaneMeshesMayBeDecomposed) {
+  FoamBox box;
+  box.n = {4, 1, 3};
+  box.keys["y0"] = box.keys["y1"] = "type empty;";
+  FoamLists const lists = box.lists();
+  TemporaryFolder const folder;
+  Cut const cut(lists, 2, [](std::int64_t c) { return int(c % 4 / 2); });
+  cut.write(folder / "case", true);
+  std::string const path = (folder / "case").string();
+  Mesh const mesh = read_mesh(path);
   EXPECT_EQ(mesh.dimension, 2);
-  EXPECT_EQ(mesh.n_nodes(), 12);
-  EXPECT_EQ(mesh.n_elements(), 6);
-  ASSERT_EQ(mesh.patches.size(), 4U);
-  EXPECT_EQ(mesh.patches[0].faces.size(), 2);
-  EXPECT_EQ(mesh.patches[2].faces.size(), 3);
+  ASSERT_EQ(mesh.n_nodes(), 20);
+  auto const moved_by = [](Vec3 const& p) { return p + Vec3{0.01 * p.z, 0, 0.02 * p.x}; };
   Coordinates moved(mesh.n_nodes());
-  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.1 / double(n + 3), 0.01, 0});
-  write_morphed((folder / "case").string(), (folder / "out").string(), mesh, moved);
-  Mesh const back = read_mesh((folder / "out").string());
-  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back.coordinates[n], moved[n]);
-  // Seen as a mesh of volumes, points across the cell have the same x and y still.
-  for (char const* which : {"case", "out"}) {
-    std::string text = bytes_of(folder / which / "boundary");
-    text.replace(text.find("type empty"), 10, "type patch");
-    write_bytes(folder / which / "boundary", text);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) moved.set(n, moved_by(mesh.coordinates[n]));
+  write_morphed(path, (folder / "out").string(), mesh, moved);
+  for (std::size_t p = 0; p < cut.parts.size(); ++p) {
+    auto const points =
+        points_of(folder / "out" / ("processor" + std::to_string(p)) / "constant" / "polyMesh" / "points");
+    ASSERT_EQ(points.size(), cut.parts[p].points.size());
+    for (std::size_t n = 0; n < points.size(); ++n)
+      EXPECT_EQ(points[n], moved_by(lists.points[std::size_t(cut.parts[p].points[n])])) << n;
   }
-  Mesh const before = read_mesh((folder / "case").string()), after = read_mesh((folder / "out").string());
-  EXPECT_EQ(after.dimension, 3);
-  ASSERT_EQ(after.n_nodes(), 24);
-  for (Index n = 0; n < 12; ++n) {
-    EXPECT_EQ(after.coordinates.x(n), after.coordinates.x(n + 12));
-    EXPECT_EQ(after.coordinates.y(n), after.coordinates.y(n + 12));
-    EXPECT_EQ(after.coordinates.z(n), before.coordinates.z(n));
-  }
+}
+
+TEST(OpenFoam, PartsThatAreMissingOrElsewhereAreSaid) {
+  FoamBox const box;
+  FoamLists const lists = box.lists();
+  TemporaryFolder const folder;
+  Cut cut(lists, 2, [](std::int64_t c) { return int(c % 3 / 2); });
+  cut.write(folder / "case", false);
+  std::string const path = (folder / "case").string();
+  auto const said = [&] { return message_of<MeshError>([&] { (void)read_mesh(path); }); };
+  fs::rename(folder / "case" / "processor1", folder / "processor1");
+  expect_all_in(said(), {"'procBoundary0to1'", "processor1", "reconstructParMesh"});
+  for (auto& p : cut.parts[1].lists.points) p.y += 1e-3;
+  cut.write(folder / "case", false);
+  expect_all_in(said(), {"face 0 of patch 'procBoundary0to1'", "0.001 apart", "decomposePar"});
+  for (auto& p : cut.parts[1].lists.points) p.y -= 1e-3;
+  cut.parts[1].lists.patches.back().size -= 1;
+  cut.write(folder / "case", false);
+  EXPECT_THROW((void)read_mesh(path), Error);
+  fs::create_directories(folder / "collated" / "processors4" / "constant");
+  expect_all_in(message_of<IoError>([&] { (void)read_mesh((folder / "collated").string()); }), {"uncollated"});
+  // The mesh as a whole comes first, and a note says that there are parts.
+  cut.parts[1].lists.patches.back().size += 1;
+  cut.write(folder / "case", false);
+  lists.write(folder / "case" / "constant" / "polyMesh");
+  Mesh const whole = read_mesh(path);
+  ASSERT_FALSE(whole.notes.empty());
+  expect_all_in(whole.notes.back(), {"processor0"});
+  EXPECT_TRUE(read_mesh((folder / "case" / "processor0").string()).notes.empty());
 }
 
 TEST(OpenFoam, KeysOfPatchesMayBeDictionaries) {

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -241,6 +242,97 @@ TEST(UnstructuredMorph, ATargetThatGoesOnBeyondTheSidesIsTheOneThatEndsThere) {
         }
       }
     }
+  }
+}
+
+TEST(UnstructuredMorph, PlaneMeshesMoveAlikeAcrossAnyAxis) {
+  // Where x, y and z of the plane across z go.
+  using Map = std::function<Vec3(Vec3 const&)>;
+  struct Turned {
+    Map to, from;
+  };
+  std::array<Turned, 3> const ways{{{[](Vec3 const& v) { return v; }, [](Vec3 const& v) { return v; }},
+                                    {[](Vec3 const& v) {
+                                       return Vec3{v.y, v.z, v.x};
+                                     },
+                                     [](Vec3 const& v) {
+                                       return Vec3{v.z, v.x, v.y};
+                                     }},
+                                    {[](Vec3 const& v) {
+                                       return Vec3{v.z, v.x, v.y};
+                                     },
+                                     [](Vec3 const& v) {
+                                       return Vec3{v.y, v.z, v.x};
+                                     }}}};
+  std::vector<Vec3> reference;
+  for (auto const& [way, periodic] : {std::pair(ways[0], false),
+                                      {ways[1], false},
+                                      {ways[2], false},
+                                      {ways[0], true},
+                                      {ways[1], true},
+                                      {ways[2], true}}) {
+    if (periodic && test::reduced()) continue;
+    bool const is_first = way.to({1, 0, 0}).x == 1;
+    if (is_first) reference.clear();
+    Mesh const flat = periodic ? test::periodic_flat_box(9, 7, 3) : test::flat_box(9, 7, 3);
+    Mesh mesh = flat;
+    for (Connection& connection : mesh.connections)
+      connection.periodic = periodic_translation(way.to(connection.periodic->declared.translation));
+    mesh.coordinates = Coordinates(flat.n_nodes());
+    for (Index n = 0; n < flat.n_nodes(); ++n) {
+      Vec3 const p = flat.coordinates[n];
+      mesh.coordinates.set(n, way.to({p.x + 0.03 * p.y, p.y, 0.25}));
+    }
+    Case const c(std::move(mesh));
+    auto const bends = [&, &way = way, periodic = periodic](double amount) {
+      FunctionRule bent{"bent", [&way, periodic, amount](std::span<Vec3 const> x, std::span<Vec3> u) {
+                          for (std::size_t n = 0; n < x.size(); ++n) {
+                            double const s = way.from(x[n]).x / 9, bump = 4 * s * (1 - s);
+                            u[n] = way.to({amount * (periodic ? bump : s * s), amount * bump, 0});
+                          }
+                        }};
+      std::vector<MotionRule> rules{test::rule_for({"j_min"}, std::move(bent)), test::rule_for({"j_max"}, FixedRule{})};
+      // The corner of the wall is taken off the side, and put back.
+      if (!periodic) rules.push_back(test::rule_for({"i_max"}, SlipRule{SlipRule::Surface::plane}));
+      return test::motion_of(std::move(rules));
+    };
+    Motion const motion = bends(0.2);
+    Morphed const m = c.guarded_morph(motion);
+    EXPECT_EQ(c.inverted(m.x), 0);
+    for (Index n = 0; n < c.mesh.n_nodes(); ++n) {
+      Vec3 const x = way.from(m.x[n]);
+      EXPECT_EQ(x.z, 0.25) << n;
+      if (is_first)
+        reference.push_back(x);
+      else
+        ASSERT_LT(distance(x, reference[std::size_t(n)]), 1e-12) << n;
+    }
+    auto const rate =
+        test::rate_error(c, m.prepared.plan, [&](double t) { return evaluate(m.prepared.boundary, bends(0.2 + t)); });
+    EXPECT_LT(rate.error, 1e-6 * rate.largest);
+    // The transpose is that of the velocities.
+    auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, {});
+    MorpherOptions options{1, true};
+    options.transpose = true;
+    Morpher<Case::Host> const morpher(Case::Host(), prepared.plan, c.mesh.coordinates, options);
+    auto const as_view = [](std::vector<Vec3> const& v) {
+      return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(v.data(), v.size());
+    };
+    auto const u = evaluate(prepared.boundary, motion);
+    std::vector<Vec3> du, dJ_dx, dJ_db(u.size());
+    for (std::size_t k = 0; k < u.size(); ++k)
+      du.push_back(way.to({0.1 + 0.01 * double(k % 7), 0.2 - 0.02 * double(k % 5), 0}));
+    for (Index n = 0; n < c.mesh.n_nodes(); ++n)
+      dJ_dx.push_back(way.to({0.3 - 0.01 * double(n % 11), 0.1 + 0.03 * double(n % 3), 0}));
+    Coordinates v(c.mesh.n_nodes());
+    morpher.velocities(Case::Host(), as_view(u), as_view(du), v);
+    morpher.transpose(Case::Host(), as_view(u), as_view(dJ_dx),
+                      Kokkos::View<Vec3*, Kokkos::HostSpace>(dJ_db.data(), dJ_db.size()));
+    Case::Host().fence();
+    double forwards = 0, backwards = 0;
+    for (Index n = 0; n < c.mesh.n_nodes(); ++n) forwards += dot(dJ_dx[std::size_t(n)], v[n]);
+    for (std::size_t k = 0; k < u.size(); ++k) backwards += dot(dJ_db[k], du[k]);
+    EXPECT_NEAR(forwards, backwards, 1e-10 * std::abs(forwards));
   }
 }
 

@@ -207,6 +207,52 @@ TEST(PolyhedronQuality, TheSameElementsAreInverted) {
   EXPECT_EQ(valid().smallest_determinant, b[Measure::determinant_3x3x3].min);
 }
 
+TEST(PolyhedronQuality, ConcaveElementsBesidePolyhedraAreWhatTheirPyramidsAre) {
+  Mesh const hexahedra = to_hexahedra(unit_box({3, 3, 3})), mixed = with_joined_elements(hexahedra, 1);
+  ASSERT_FALSE(mixed.polyhedra.element.empty());
+  // A corner of the box whose element is a hexahedron, and goes inwards along its diagonal.
+  Index element = -1;
+  Vec3 corner, inwards;
+  for (Index e = 0; e < mixed.n_elements() && element < 0; ++e) {
+    if (mixed.elements.type[std::size_t(e)] != ElementType::hexahedron) continue;
+    Vec3 middle;
+    for (Index32 const n : mixed.elements.corners(e)) middle += 0.125 * mixed.coordinates[n];
+    Vec3 const out{middle.x < 1 ? -0.5 : 0.5, middle.y < 1 ? -0.5 : 0.5, middle.z < 1 ? -0.5 : 0.5}, at = middle + out;
+    auto const is_end = [](double v) { return std::abs(v) < 1e-12 || std::abs(v - 3) < 1e-12; };
+    if (!is_end(at.x) || !is_end(at.y) || !is_end(at.z)) continue;
+    element = e;
+    corner = at;
+    inwards = -2.0 * out;
+  }
+  ASSERT_GE(element, 0);
+  auto const dented = [&](Mesh const& mesh, double by) {
+    return moved_by(mesh, [&](Vec3 const& p) { return distance(p, corner) < 1e-12 ? p + by * inwards : p; });
+  };
+  // Three faces of a unit cube stop to be convex there at a third of the diagonal; the pyramids lose their volume beyond the opposite corner.
+  struct {
+    double by;
+    Index of_types, of_faces;
+  } const steps[] = {{0.3, 0, 0}, {0.37, 1, 0}, {0.6, 1, 0}, {1.2, 1, 1}};
+  for (auto const& [by, of_types, of_faces] : steps)
+    for (Mesh const* mesh : {&hexahedra, &mixed}) {
+      SCOPED_TRACE(by);
+      auto const topology = make_topology(*mesh);
+      auto const x = dented(*mesh, by), before = dented(*mesh, 0.2);
+      Index const expected = mesh == &mixed ? of_faces : of_types;
+      Input input;
+      input.coordinates = views(x);
+      input.baseline = views(before);
+      auto const report = measure_quality(Exec(), *mesh, topology, find_face_patches(*mesh, topology), input).far_field;
+      EXPECT_EQ(report.inverted, expected);
+      EXPECT_EQ(report.newly_inverted, expected);
+      EXPECT_EQ(certify(Exec(), *mesh, topology, {views(x), views(before), {}, {}}).broken.cells, expected);
+      ValidityCheck<Exec> const check(Exec(), *mesh, topology);
+      auto const valid = check(Exec(), ConstVectorView<Kokkos::HostSpace>(x.x, x.y, x.z));
+      Kokkos::fence();
+      EXPECT_EQ(valid().inverted, expected);
+    }
+}
+
 TEST(FaceQuality, OfAShearedBoxIsItsShear) {
   // Lattice cells have their centres in line: no skewness inside, and angles of the shear between lines and faces.
   Mesh const mesh = to_hexahedra(one_zone({6, 6, 6}, [](Index3 const& p) {

@@ -51,8 +51,9 @@ ElementMesh::ElementMesh(Mesh as_read)
   signs = numbering_signs(mesh, topology.sides, volumes);
   for (auto const& negative : negative_elements(mesh, volumes))
     remarks.push_back(mesh.source + ": " + describe(mesh, negative));
-  if (mesh.dimension == 2 && std::fabs(plane_normal(mesh).z) != 1)
-    problems.push_back(mesh.source + ": is 2-D but does not lie in a plane z = constant; turn it into one");
+  if (Vec3 const up = plane_normal(mesh);
+      mesh.dimension == 2 && std::max({std::fabs(up.x), std::fabs(up.y), std::fabs(up.z)}) != 1)
+    problems.push_back(mesh.source + ": is 2-D but does not lie in a plane x, y or z = constant; turn it into one");
   // As for connections of a file.
   double const tolerance = place_tolerance(1e-6, mesh.size(), coordinate_resolution(mesh));
   for (auto const& pair : undeclared_connections(mesh, tolerance))

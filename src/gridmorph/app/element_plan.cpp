@@ -7,6 +7,7 @@
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/element_prediction.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
+#include <gridmorph/plan/plane_axes.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/report/element_prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
@@ -121,15 +122,20 @@ class ElementPlan final : public AnyPlan {
     auto const part = std::find_if(parts.begin(), parts.end(),
                                    [](PlannedPart const& p) { return p.report.wrap || p.plan.background; });
     if (part == parts.end()) return;
-    if (part->report.wrap) write_mesh(path(1), wrap_mesh(*part->report.wrap));
+    auto const& axes = prepared_.plan.axes;
+    auto const write_stage = [&](std::size_t n, Mesh stage) {
+      stage.coordinates = back_from_axes(axes, stage.coordinates);
+      write_mesh(path(n), stage);
+    };
+    if (part->report.wrap) write_stage(1, wrap_mesh(*part->report.wrap));
     if (!part->plan.background) return;
     Mesh background = part->plan.background->mesh;
-    write_mesh(path(2), background);
+    write_stage(2, background);
     Coordinates moved(background.n_nodes());
     auto const u = morpher_->background_displacements(part->number);
     for (Index n = 0; n < moved.size(); ++n) moved.set(n, background.coordinates[n] + u.array()[n]);
     background.coordinates = moved;
-    write_mesh(path(3), background);
+    write_stage(3, background);
   }
 
   [[nodiscard]] std::vector<std::string> notes() const override {

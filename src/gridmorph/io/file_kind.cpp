@@ -215,12 +215,18 @@ Foreign foreign(std::string_view head, std::uintmax_t size, std::string const& e
 /// A folder, or an empty file in it that stands for it, as ParaView wants it.
 bool is_openfoam(fs::path const& path) {
   std::error_code ignored;
-  bool const named = ending_of(path.string()) == "foam" || path.filename() == "latestTime";
-  return (fs::is_directory(path, ignored) || named) && foam::poly_mesh(path).has_value();
+  // Times of a decomposed case are folders of its parts.
+  bool const named = ending_of(path.string()) == "foam" || !fs::exists(path, ignored);
+  return (fs::is_directory(path, ignored) || named) && !foam::parts_of(path).empty();
 }
 
 Foreign foreign_folder(fs::path const& path) {
   std::error_code ignored;
+  for (fs::directory_iterator entry(path, ignored), end; !ignored && entry != end; entry.increment(ignored))
+    if (entry->path().filename().string().starts_with("processors"))
+      return {"a decomposed OpenFOAM case with the parts of several processors in one file",
+              "write a folder for each processor (-fileHandler uncollated), or put the parts together "
+              "(reconstructParMesh)"};
   if (fs::exists(path / "constant", ignored) || fs::exists(path / "system", ignored))
     return {"an OpenFOAM case without a mesh", "make it first (blockMesh, snappyHexMesh, reconstructParMesh)"};
   return {};

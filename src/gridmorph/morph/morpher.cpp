@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/morph/detail/baseline.hpp>
+#include <gridmorph/morph/detail/with_axes.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/stages/run_stages.hpp>
@@ -9,6 +10,7 @@
 #include <gridmorph/plan/prepare.hpp>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -18,6 +20,7 @@ using detail::FlatBaseline;
 using detail::ProfilingRegion;
 using detail::require_all_nodes;
 using detail::require_as_many;
+using detail::with_axes;
 
 template <class Exec>
 struct Morpher<Exec>::State {
@@ -29,6 +32,8 @@ struct Morpher<Exec>::State {
   FlatBaseline<Exec> flat;
   stages::StageList<Exec> list;
   bool transposed = false;
+  std::array<int, 3> axes{
+      0, 1, 2};  ///< UnstructuredPlan::axes: those of all stages; shifts of a guard have those of the mesh
 
   State(Exec const& exec, Plan const& plan, In const& x, MorpherOptions const& options)
       : n_nodes(plan.n_nodes),
@@ -42,10 +47,11 @@ struct Morpher<Exec>::State {
   State(Exec const& exec, UnstructuredPlan const& plan, In const& x, MorpherOptions const& options)
       : n_nodes(plan.n_nodes),
         n_boundary(plan.known.size()),
-        baseline(x),
-        flat(exec, x),
+        baseline(with_axes(x, plan.axes)),
+        flat(exec, baseline),
         list(stages::stage_list(exec, plan, flat.field, options)),
-        transposed(options.transpose) {}
+        transposed(options.transpose),
+        axes(plan.axes) {}
 
   /// All that can be asked before anything is enqueued.
   void require(char const* who, std::span<In const> boundary, std::span<Out const> out) const {
@@ -53,6 +59,8 @@ struct Morpher<Exec>::State {
     for (In const& given : boundary)
       require_boundary_size(who, std::size_t(given.size()), n_boundary, "MorphPlan::boundary_nodes()");
     for (Out const& field : out) require_all_nodes(who, field.size(), n_nodes);
+    for (In const& given : boundary) (void)with_axes(given, axes);
+    for (Out const& field : out) (void)with_axes(field, axes);
   }
 
   /// What stages are to read of what the caller gives.
@@ -66,9 +74,15 @@ struct Morpher<Exec>::State {
   void write(Exec const& exec, std::span<Field const> fields, std::span<Out const> out) const {
     static std::string const name = "gridmorph::all nodes";
     ProfilingRegion const region(name);
-    std::visit(
-        [&](auto const& writer) { writer.template write<Move>(exec, flat.field, baseline.array(), fields, out); },
-        list.writer);
+    auto const pass = [&](std::span<Field const> from, std::span<Out const> to) {
+      std::visit([&](auto const& writer) { writer.template write<Move>(exec, flat.field, baseline.array(), from, to); },
+                 list.writer);
+    };
+    if (axes == std::array<int, 3>{0, 1, 2}) return pass(fields, out);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      Out const seen = with_axes(out[k], axes);
+      pass(fields.subspan(k, 1), {&seen, 1});
+    }
   }
 
   /// As many fields at once as there is room for.
@@ -79,7 +93,7 @@ struct Morpher<Exec>::State {
       std::size_t const n = std::min(out.size() - done, list.fields.size());
       for (std::size_t k = 0; k < n; ++k) {
         Field f = list.fields[k];
-        f.boundary = boundary[done + k].array();
+        f.boundary = with_axes(boundary[done + k], axes).array();
         f.baseline = baseline.array();
         put_back(exec, f);
         stages::enqueue_all(list.stages, exec, flat.field, f);
@@ -97,11 +111,10 @@ struct Morpher<Exec>::State {
 
   void run_rate(Exec const& exec, In const& boundary, In const& boundary_rate, Out const& v) const {
     Field f = list.fields[0], r = list.fields[1];
-    f.boundary = boundary.array();
+    f.boundary = with_axes(boundary, axes).array();
     f.baseline = baseline.array();
-    r.boundary = boundary_rate.array();
+    r.boundary = with_axes(boundary_rate, axes).array();
     r.of = f.number;
-    Field const given = f, given_rate = r;
     if (list.given) {
       ProfilingRegion const region(list.given->region);
       list.given->rate(exec, flat.field, f, r);
@@ -110,7 +123,9 @@ struct Morpher<Exec>::State {
     write<false>(exec, {&r, 1}, {&v, 1});
     if (!list.shifts) return;
     ProfilingRegion const region(list.shifts->region);
-    list.shifts->add_rate(exec, given, given_rate, v);
+    f.boundary = boundary.array();
+    r.boundary = boundary_rate.array();
+    list.shifts->add_rate(exec, f, r, v);
   }
 
   /// What transposes are taken at, forwards; nothing that no transpose asks for.
@@ -122,25 +137,29 @@ struct Morpher<Exec>::State {
 
   void run_transpose(Exec const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const {
     Field f = list.fields[0], g = list.fields[1];
-    f.boundary = boundary.array();
+    f.boundary = with_axes(boundary, axes).array();
     f.baseline = baseline.array();
-    g.nodes = dJ_du.array();
+    g.nodes = with_axes(dJ_du, axes).array();
     g.baseline = baseline.array();
-    g.boundary = dJ_db.array();
-    Field const given = f;
+    g.boundary = with_axes(dJ_db, axes).array();
+    auto const given = f.boundary;
+    Field of_shifts = f, to_shifts = g;
+    of_shifts.boundary = boundary.array();
+    to_shifts.nodes = dJ_du.array();
+    to_shifts.boundary = dJ_db.array();
     put_back(exec, f);
     linearise(exec, f);
     std::visit([&](auto const& writer) { writer.transpose(exec, g); }, list.writer);
     if (list.shifts) {
       ProfilingRegion const region(list.shifts->region);
-      list.shifts->transpose_nodes(exec, given, g);
+      list.shifts->transpose_nodes(exec, of_shifts, to_shifts);
     }
     stages::transpose_all(list.stages, exec, flat.field, f, g);
     if (list.given) {
       ProfilingRegion const region("transposed " + list.given->region);
-      list.given->transpose(exec, flat.field, given.boundary, g);
+      list.given->transpose(exec, flat.field, given, g);
     }
-    if (list.shifts) list.shifts->transpose_boundary(exec, g);
+    if (list.shifts) list.shifts->transpose_boundary(exec, to_shifts);
   }
 };
 

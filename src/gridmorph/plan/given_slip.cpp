@@ -1,5 +1,6 @@
 #include <gridmorph/kernels/joint_slip.hpp>
 #include <gridmorph/plan/given_slip.hpp>
+#include <gridmorph/plan/plane_axes.hpp>
 
 #include <utility>
 
@@ -14,15 +15,16 @@ std::vector<Vec3> put_back_given(UnstructuredPlan const& plan, Coordinates const
     auto const surface = [&](int m) {
       std::size_t const at = from + std::size_t(m);
       std::int32_t const turned = slip.turned[at];
-      return kernels::SurfaceOfImage(surfaces[std::size_t(slip.surface[at])], x[slip.place[at]],
+      return kernels::SurfaceOfImage(surfaces[std::size_t(slip.surface[at])], along_axes(plan.axes, x[slip.place[at]]),
                                      turned < 0 ? nullptr : &plan.rotations[std::size_t(turned)]);
     };
-    Vec3& own = given[std::size_t(slip.of[k])];
+    Vec3& asked = given[std::size_t(slip.of[k])];
+    Vec3 const own = along_axes(plan.axes, asked);
     Vec3 u = own, rate;
     kernels::constrain_to_all<false>(
         int(slip.first[k + 1] - slip.first[k]), surface, [&](int m) { return surface(m).own_offset(); }, Vec3{}, u,
         rate);
-    if (norm(u - own) > plan.given_tolerance[k]) own = u;
+    if (norm(u - own) > plan.given_tolerance[k]) asked = back_from_axes(plan.axes, u);
   }
   return given;
 }

@@ -19,6 +19,7 @@
 #include <gridmorph/plan/options.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -71,6 +72,9 @@ struct UnstructuredPlan {
   Index n_nodes = 0;
   Vec3 plane_normal{0, 0, 1};  ///< of a 2-D mesh
   int dimension = 3;
+  /// Components of the mesh that are x, y and z here: plane meshes across x or y are planned, and moved, as ones across z. Everything in
+  /// this plan has those; what goes in and out of a Morpher has those of the mesh.
+  std::array<int, 3> axes{0, 1, 2};
 
   std::vector<Index32> known;  ///< as in BoundaryConditions: the order of boundary displacements
   /// What puts given displacements back on slip surfaces before all else, of slots in `known`, and how far off it leaves them alone.

@@ -71,6 +71,8 @@ struct ElementTables {
   ElementViews<MemorySpace> elements;
   PolyhedronViews<MemorySpace> polyhedra;
   Vec3 plane_normal;
+  /// Of a mesh with polyhedra, which solvers take by faces, whatever types its elements have: those with J < 0 are what their pyramids are.
+  bool by_faces;
 
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
   template <class Points>
@@ -97,13 +99,30 @@ struct ElementTables {
     if (n < kernels::n_curved_nodes(out.type)) kernels::curved::complete(out);
     return out;
   }
+  /// The pyramids of an element with J < 0 in a mesh that is taken by its faces, if all of them have volume: S . (f - x_c) > 0, what checkMesh of OpenFOAM
+  /// asks of every cell (primitiveMeshCheck, checkFacePyramids). take(pyramids)
+  template <class Points, class Take>
+  KOKKOS_INLINE_FUNCTION bool is_sound_by_faces(Points const& points, Index e, double sign, Take const& take) const {
+    if (!by_faces) return false;
+    auto const pyramids = kernels::polyhedron::pyramids(FacesAt{type(e), corners(points, e)}, sign);
+    if (!kernels::is_finite(pyramids.volume) || !(pyramids.least > 0)) return false;
+    take(pyramids);
+    return true;
+  }
   /// All measures of element e; sign: -1 where it is numbered inside out.
   template <class Points>
   KOKKOS_INLINE_FUNCTION kernels::CellMeasures measures(Points const& points, Index e, double sign) const {
     ElementType const t = type(e);
     if (t == ElementType::polyhedron) return kernels::polyhedron_measures(polyhedron(points, e), sign);
     if (is_curved(e)) return kernels::curved_measures(curved(points, e), corners(points, e), sign, plane_normal);
-    return element_measures(t, corners(points, e), sign, plane_normal);
+    kernels::CellMeasures m = element_measures(t, corners(points, e), sign, plane_normal);
+    if (m.smallest_corner_jacobian < 0 || m.determinant_3x3x3 < 0)
+      is_sound_by_faces(points, e, sign, [&](kernels::polyhedron::Pyramids const& pyramids) {
+        m.smallest_corner_jacobian = pyramids.least;
+        m.largest_corner_jacobian = pyramids.largest;
+        m.determinant_2x2x2 = m.determinant_3x3x3 = kernels::smaller(1.0, pyramids.share);
+      });
+    return m;
   }
   template <class Points>
   KOKKOS_INLINE_FUNCTION double determinant(Points const& points, Index e, double sign) const {
@@ -111,7 +130,12 @@ struct ElementTables {
     if (t == ElementType::polyhedron) return kernels::polyhedron_determinant(polyhedron(points, e), sign);
     if (is_curved(e))
       return kernels::curved_measures(curved(points, e), corners(points, e), sign, plane_normal).determinant_3x3x3;
-    return element_determinant(t, corners(points, e), sign, plane_normal);
+    double out = element_determinant(t, corners(points, e), sign, plane_normal);
+    if (out < 0)
+      is_sound_by_faces(points, e, sign, [&](kernels::polyhedron::Pyramids const& pyramids) {
+        out = kernels::smaller(1.0, pyramids.share);
+      });
+    return out;
   }
   template <class Points>
   KOKKOS_INLINE_FUNCTION double volume(Points const& points, Index e) const {
@@ -125,7 +149,10 @@ struct ElementTables {
     ElementType const t = type(e);
     if (t == ElementType::polyhedron) return kernels::polyhedron_sign(polyhedron(points, e), sign);
     if (is_curved(e)) return kernels::curved_sign(curved(points, e), corners(points, e), sign, plane_normal);
-    return kernels::jacobian_sign(t, corners(points, e), sign, plane_normal);
+    kernels::JacobianSign const out = kernels::jacobian_sign(t, corners(points, e), sign, plane_normal);
+    bool const sound = out >= kernels::JacobianSign::negative &&
+                       is_sound_by_faces(points, e, sign, [](kernels::polyhedron::Pyramids const&) {});
+    return sound ? kernels::JacobianSign::positive : out;
   }
   /// Of straight elements kernels::scaled_jacobian(), of polyhedra their determinant, which is scaled; of curved elements what is
   /// smaller, that of their corners or J anywhere against the element with straight edges.
@@ -165,7 +192,7 @@ struct ElementTables {
 
 template <class Exec>
 ElementTables<typename Exec::memory_space> element_tables(Exec const& exec, Mesh const& mesh) {
-  return {views(exec, mesh.elements), views(exec, mesh.polyhedra), plane_normal(mesh)};
+  return {views(exec, mesh.elements), views(exec, mesh.polyhedra), plane_normal(mesh), !mesh.polyhedra.element.empty()};
 }
 
 /// Elements zone after zone in chunks of cells_per_chunk; box_extent[0] counts those of the zone.

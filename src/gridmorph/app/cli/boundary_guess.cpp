@@ -47,8 +47,13 @@ bool one_cell_thick(Mesh const& mesh, BoundarySummary const& b) {
 
 /// The plane of the points; in a 2-D mesh of the points and of what lies above them.
 PlaneFit plane_of(MeshSummary const& s, std::vector<Vec3> points, double size) {
-  if (s.unstructured && s.two_dimensional)
-    for (std::size_t n = points.size(); n > 0; --n) points.push_back(points[n - 1] + Vec3{0, 0, size});
+  if (s.unstructured && s.two_dimensional) {
+    Vec3 const filled = s.box.high - s.box.low;
+    Vec3 const across = filled.z <= std::min(filled.x, filled.y) ? Vec3{0, 0, size}
+                        : filled.y <= filled.x                   ? Vec3{0, size, 0}
+                                                                 : Vec3{size, 0, 0};
+    for (std::size_t n = points.size(); n > 0; --n) points.push_back(points[n - 1] + across);
+  }
   return fit_plane(points);
 }
 

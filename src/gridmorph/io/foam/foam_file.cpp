@@ -358,13 +358,14 @@ std::vector<ZoneEntry> FoamFile::zones(std::string_view wanted, Index n_labels) 
   return out;
 }
 
-std::vector<Index32> FoamFile::labels(Index most) {
+std::vector<Index32> FoamFile::labels(Index most, std::int64_t least) {
   at_ = body_;
   auto const all = raw_list("labels", most);
   std::vector<Index32> out;
   out.reserve(all.size());
   for (auto const v : all) {
-    if (v < -1 || v > std::numeric_limits<Index32>::max()) fail("the label " + std::to_string(v) + " is out of range");
+    if (v < least || v > std::numeric_limits<Index32>::max())
+      fail("the label " + std::to_string(v) + " is out of range");
     out.push_back(Index32(v));
   }
   return out;

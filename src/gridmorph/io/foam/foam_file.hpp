@@ -55,8 +55,8 @@ class FoamFile {
 
   // What follows the header, from its start each time; each throws IoError with the line (text) or the byte (binary) where it is not what
   // it has to be.
-  /// `most`: how many there can be.
-  std::vector<Index32> labels(Index most);
+  /// `most`: how many there can be. Those below `least` are errors.
+  std::vector<Index32> labels(Index most, std::int64_t least = -1);
   CsrGraph faces();
   /// Calls visit for each number, in order. Returns the number of points.
   Index points(std::function<void(PointText const&)> const& visit);

@@ -2,8 +2,9 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/io/finite_check.hpp>
 #include <gridmorph/io/foam/foam_cyclics.hpp>
-#include <gridmorph/io/foam/foam_file.hpp>
+#include <gridmorph/io/foam/foam_lists.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/foam/foam_parts.hpp>
 #include <gridmorph/io/foam/foam_plane.hpp>
 #include <gridmorph/io/kind_by_name.hpp>
 #include <gridmorph/io/polyhedron.hpp>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <charconv>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 namespace gridmorph::foam {
@@ -46,33 +48,60 @@ std::optional<fs::path> latest_points(fs::path const& of_case) {
   return out;
 }
 
+/// Without the empty file that stands for a case, and the stroke at the end.
+fs::path folder_named(fs::path const& path) {
+  std::error_code ignored;
+  bool const named = path.extension() == ".foam" || path.extension() == ".OpenFOAM";
+  fs::path const folder = named && !fs::is_directory(path, ignored) ? path.parent_path() : path;
+  return folder.filename().empty() ? folder.parent_path() : folder;
+}
+
+fs::path above(fs::path const& folder) { return folder.parent_path().empty() ? fs::path(".") : folder.parent_path(); }
+
+/// The number of a folder processor<number>.
+std::optional<int> processor_of(fs::path const& folder) {
+  std::string const name = folder.filename().string();
+  std::string_view const wanted = "processor";
+  int value = 0;
+  if (!name.starts_with(wanted)) return std::nullopt;
+  auto const [end, failure] = std::from_chars(name.data() + wanted.size(), name.data() + name.size(), value);
+  return failure != std::errc() || end != name.data() + name.size() ? std::nullopt : std::optional(value);
+}
+
+/// Those with a mesh, at a time if one is given.
+std::vector<Part> parts_below(fs::path const& of_case, fs::path const& time) {
+  std::vector<Part> out;
+  std::error_code failure;
+  for (fs::directory_iterator entry(of_case.empty() ? "." : of_case, failure), end; !failure && entry != end;
+       entry.increment(failure))
+    if (auto const number = processor_of(entry->path()))
+      if (auto folders = poly_mesh(time.empty() ? entry->path() : entry->path() / time))
+        out.push_back({std::move(*folders), *number, entry->path()});
+  std::sort(out.begin(), out.end(), [](Part const& a, Part const& b) { return a.number < b.number; });
+  return out;
+}
+
 class Reader {
  public:
-  Reader(std::string const& path, Folders const& folders)
-      : path_(path), folder_(folders.mesh), points_(folders.points) {}
+  Reader(std::string const& path, Lists lists) : path_(path), lists_(std::move(lists)) {}
 
   Mesh run() {
     mesh_.source = path_;
     mesh_.first_number = 0;
     mesh_.dimension = 3;
-    read_points();
-    faces_ = file("faces", {"faceList", "faceCompactList"}).faces();
-    owner_ = file("owner", {"labelList"}).labels(faces_.size());
-    neighbour_ = file("neighbour", {"labelList"}).labels(faces_.size());
-    // Old files name no neighbour of faces on the boundary by -1.
-    while (!neighbour_.empty() && neighbour_.back() < 0) neighbour_.pop_back();
-    check();
+    mesh_.coordinates = lists_.points;
+    mesh_.add_zone("internalMesh", mesh_.coordinates.size());
+    mesh_.zones.back().single_precision = lists_.single_precision;
     add_cells();
     check_closed();
-    auto const boundary = file("boundary", {"polyBoundaryMesh"}).boundary(faces_.size());
-    add_patches(boundary);
+    add_patches(lists_.boundary);
     add_subsets();
     Problems problems;
     io::check_finite(mesh_, mesh_.coordinates, path_, problems);
     problems.throw_if_any<MeshError>();
     std::string why_not;
-    if (auto const pairs = plane_pairs(boundary, faces_, mesh_.coordinates, mesh_.size(), why_not))
-      mesh_ = upper_plane(mesh_, *pairs, faces_, owner_);
+    if (auto const planes = find_planes(lists_, why_not))
+      mesh_ = upper_plane(mesh_, *planes, lists_);
     else if (!why_not.empty())
       mesh_.notes.push_back(
           path_ + ": has " + why_not +
@@ -82,56 +111,10 @@ class Reader {
   }
 
  private:
-  [[nodiscard]] FoamFile file(char const* name, std::vector<std::string_view> const& classes) const {
-    return {(folder_ / name).string(), classes};
-  }
-
-  void read_points() {
-    FoamFile points((points_ / "points").string(), {"vectorField"});
-    mesh_.coordinates = points.coordinates();
-    mesh_.add_zone("internalMesh", mesh_.coordinates.size());
-    mesh_.zones.back().single_precision = points.is_binary() && points.scalar_bytes() == 4;
-  }
-
-  /// What the lists say of one another.
-  void check() const {
-    std::string const where = folder_.string() + ": ";
-    Problems problems;
-    if (owner_.size() != std::size_t(faces_.size()))
-      problems.add(where + "owner has " + std::to_string(owner_.size()) + " values for " +
-                   std::to_string(faces_.size()) + " faces");
-    if (neighbour_.size() > owner_.size())
-      problems.add(where + "neighbour has " + std::to_string(neighbour_.size()) + " values, more than there are faces");
-    Index const n = mesh_.n_nodes();
-    for (Index f = 0; f < faces_.size() && problems.empty(); ++f) {
-      auto const nodes = faces_[f];
-      if (nodes.size() < 3)
-        problems.add(where + "face " + std::to_string(f) + " has " + std::to_string(nodes.size()) + " nodes");
-      for (Index32 const v : nodes)
-        if (v >= n && problems.empty())
-          problems.add(where + "face " + std::to_string(f) + " has node " + std::to_string(v) + ", and there are " +
-                       std::to_string(n) + " points, counted from 0");
-    }
-    // Every cell has four faces at least, so that damaged labels ask for no memory.
-    auto const most = Index32(faces_.size() / 2 + 1);
-    auto const bad = [&](std::vector<Index32> const& list, char const* name) {
-      auto const at = std::find_if(list.begin(), list.end(), [&](Index32 c) { return c < 0 || c >= most; });
-      if (at != list.end())
-        problems.add(where + name + " of face " + std::to_string(at - list.begin()) + " is cell " +
-                     std::to_string(*at) + ", which " + std::to_string(faces_.size()) + " faces cannot make");
-    };
-    bad(owner_, "owner");
-    bad(neighbour_, "neighbour");
-    problems.throw_if_any<MeshError>();
-  }
-
   /// Area vectors of all faces of a cell add up to nothing, to the 1e-6 that checkMesh asks for, whatever their shape.
   void check_closed() const {
     constexpr double rounding = 1e-6;
-    Index32 last = -1;
-    for (auto const* list : {&owner_, &neighbour_})
-      for (Index32 const c : *list) last = std::max(last, c);
-    std::vector<Vec3> sum(std::size_t(last) + 1);
+    std::vector<Vec3> sum(std::size_t(lists_.n_cells()));
     std::vector<double> areas(sum.size(), 0.0);
     for (Index f = 0; f < faces_.size(); ++f) {
       Vec3 const area = 0.5 * face_normal(faces_[f], mesh_.coordinates);
@@ -147,18 +130,16 @@ class Reader {
     for (std::size_t c = 0; c < sum.size(); ++c)
       if (norm(sum[c]) > rounding * areas[c] && open++ == 0) first = Index(c);
     if (open > 0)
-      throw MeshError(folder_.string() + ": " + std::to_string(open) + " cells do not close, the first is cell " +
+      throw MeshError(path_ + ": " + std::to_string(open) + " cells do not close, the first is cell " +
                       std::to_string(first) + ": its faces lack " + to_text(norm(sum[std::size_t(first)]), 3) +
                       " of an area of " + to_text(areas[std::size_t(first)], 3) +
                       "; owner, neighbour or the way round of a face is wrong (see checkMesh), write the mesh again");
   }
 
   void add_cells() {
-    Index32 last = -1;
-    for (auto const* list : {&owner_, &neighbour_})
-      for (Index32 const c : *list) last = std::max(last, c);
+    Index32 const n_cells = lists_.n_cells();
     // Faces of each cell, ascending; faces that lead into it as -1 - face.
-    std::vector<Index> first(std::size_t(last) + 2, 0);
+    std::vector<Index> first(std::size_t(n_cells) + 1, 0);
     for (auto const* list : {&owner_, &neighbour_})
       for (Index32 const c : *list) ++first[std::size_t(c) + 1];
     for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
@@ -169,14 +150,14 @@ class Reader {
       if (f < neighbour_.size()) of_cell[std::size_t(next[std::size_t(neighbour_[f])]++)] = -1 - Index32(f);
     }
     io::ElementsByFaces elements(mesh_);
-    for (Index32 c = 0; c <= last; ++c) {
+    for (Index32 c = 0; c < n_cells; ++c) {
       for (Index k = first[std::size_t(c)]; k < first[std::size_t(c) + 1]; ++k) {
         Index32 const f = of_cell[std::size_t(k)];
         elements.add_face(faces_[f < 0 ? -1 - f : f], f >= 0);
       }
       if (elements.n_faces() < 4)
-        throw MeshError(folder_.string() + ": cell " + std::to_string(c) + " has " +
-                        std::to_string(elements.n_faces()) + " faces; a volume needs 4");
+        throw MeshError(path_ + ": cell " + std::to_string(c) + " has " + std::to_string(elements.n_faces()) +
+                        " faces; a volume needs 4");
       elements.end_element(c);
     }
   }
@@ -196,7 +177,8 @@ class Reader {
       std::string const type(entry["type"]);
       if (type.starts_with("processor"))
         problems.add(path_ + ": patch '" + entry.name + "' is of type " + type +
-                     ": this is one part of a decomposed mesh; put the parts together (reconstructParMesh)");
+                     ": this is one part of a decomposed mesh; name the case above all of its folders processor0, "
+                     "processor1, ..., or put the parts together (reconstructParMesh)");
       else if (type == "cyclic")
         cyclics.push_back(&entry);
       else if (type == "empty")
@@ -210,14 +192,11 @@ class Reader {
   }
 
   void add_subsets() {
-    if (is_there((folder_ / "cellZones").string()))
-      for (ZoneEntry& zone : file("cellZones", {"regIOobject"}).zones("cellLabels", mesh_.n_elements()))
-        mesh_.subsets.push_back({std::move(zone.name), std::move(zone.labels)});
-    if (is_there((folder_ / "faceZones").string()))
-      for (ZoneEntry& zone : file("faceZones", {"regIOobject"}).zones("faceLabels", faces_.size())) {
-        mesh_.subsets.push_back({std::move(zone.name), {}});
-        for (Index32 const f : zone.labels) mesh_.subsets.back().faces.add(faces_[f]);
-      }
+    for (ZoneEntry& zone : lists_.cell_zones) mesh_.subsets.push_back({std::move(zone.name), std::move(zone.labels)});
+    for (ZoneEntry& zone : lists_.face_zones) {
+      mesh_.subsets.push_back({std::move(zone.name), {}});
+      for (Index32 const f : zone.labels) mesh_.subsets.back().faces.add(faces_[f]);
+    }
   }
 
   Patch patch_of(BoundaryEntry const& entry, std::string const& type) {
@@ -259,21 +238,19 @@ class Reader {
   }
 
   std::string const& path_;
-  fs::path folder_, points_;
+  Lists lists_;
+  CsrGraph const& faces_ = lists_.faces;
+  std::vector<Index32> const &owner_ = lists_.owner, &neighbour_ = lists_.neighbour;
   Mesh mesh_;
-  CsrGraph faces_;
-  std::vector<Index32> owner_, neighbour_;
 };
 
 }  // namespace
 
 std::optional<Folders> poly_mesh(fs::path const& path) {
   std::error_code ignored;
-  bool const named = path.extension() == ".foam" || path.extension() == ".OpenFOAM";
-  fs::path folder = named && !fs::is_directory(path, ignored) ? path.parent_path() : path;
-  if (folder.filename().empty()) folder = folder.parent_path();
+  fs::path folder = folder_named(path);
   if (folder.filename() == latest_time && !fs::exists(folder, ignored)) {
-    fs::path const of_case = folder.parent_path().empty() ? fs::path(".") : folder.parent_path();
+    fs::path const of_case = above(folder);
     folder = latest_points(of_case).value_or(of_case);
   }
   for (fs::path const& candidate : {folder / "constant" / "polyMesh", folder / "polyMesh", folder})
@@ -284,13 +261,26 @@ std::optional<Folders> poly_mesh(fs::path const& path) {
   return std::nullopt;
 }
 
+std::vector<Part> parts_of(fs::path const& path) {
+  fs::path const folder = folder_named(path);
+  if (processor_of(folder)) return parts_below(above(folder), {});
+  if (auto whole = poly_mesh(path)) return {{std::move(*whole), -1, {}}};
+  if (folder.filename() == latest_time || time_of(folder)) return parts_below(above(folder), folder.filename());
+  return parts_below(folder, {});
+}
+
 Mesh read(std::string const& path) {
-  auto const folders = poly_mesh(path);
-  if (!folders)
+  auto const parts = parts_of(path);
+  if (parts.empty())
     throw IoError(path +
                   ": holds no mesh of OpenFOAM (constant/polyMesh with points and faces); make it first "
                   "(blockMesh, snappyHexMesh), or name the folder");
-  return Reader(path, *folders).run();
+  if (parts.front().number >= 0) return Reader(path, join(parts, path).lists).run();
+  Mesh mesh = Reader(path, read_lists(parts.front().folders)).run();
+  if (auto const beside = parts_below(folder_named(path), {}); !beside.empty())
+    mesh.notes.push_back(path + ": is the mesh as a whole; that of its " + std::to_string(beside.size()) +
+                         " processor folders is another one, which " + beside.front().folder.string() + " names");
+  return mesh;
 }
 
 }  // namespace gridmorph::foam

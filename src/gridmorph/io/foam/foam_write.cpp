@@ -2,6 +2,7 @@
 #include <gridmorph/io/files_read.hpp>
 #include <gridmorph/io/foam/foam_file.hpp>
 #include <gridmorph/io/foam/foam_mesh.hpp>
+#include <gridmorph/io/foam/foam_parts.hpp>
 #include <gridmorph/io/foam/foam_plane.hpp>
 #include <gridmorph/io/made_folders.hpp>
 #include <gridmorph/io/output_file.hpp>
@@ -10,8 +11,11 @@
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <optional>
+#include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace gridmorph::foam {
 
@@ -64,17 +68,50 @@ bool holds_same_faces(fs::path const& folder, fs::path const& other) {
   return false;
 }
 
-/// All points of a plane mesh.
-Coordinates of_both_planes(fs::path const& folder, FoamFile& points, Mesh const& mesh, Coordinates const& morphed) {
-  Coordinates const all = points.coordinates();
-  CsrGraph const faces = FoamFile((folder / "faces").string(), {"faceList", "faceCompactList"}).faces();
-  std::string why_not;
-  auto const pairs = plane_pairs(FoamFile((folder / "boundary").string(), {"polyBoundaryMesh"}).boundary(faces.size()),
-                                 faces, all, mesh.size(), why_not);
-  if (!pairs || Index(pairs->size()) != mesh.n_nodes())
-    throw IoError(folder.string() + ": holds another mesh than the one that was read; give the folder of that one");
-  return both_planes(all, *pairs, morphed);
-}
+/// The points of a mesh, a file for each of its parts.
+class PointFiles {
+ public:
+  PointFiles(std::string const& input, Mesh const& mesh) : input_(input), mesh_(mesh), parts_(parts_of(input)) {
+    if (parts_.empty()) throw IoError(input + ": holds no mesh of OpenFOAM any more");
+    for (Part const& part : parts_) files_.emplace_back((part.folders.points / "points").string(), vectors);
+    if (parts_.front().number >= 0) joined_ = join(parts_, input);
+  }
+
+  [[nodiscard]] std::vector<Part> const& parts() const { return parts_; }
+  [[nodiscard]] std::string name(std::size_t part) const { return fs::path(files_[part].path()).filename().string(); }
+  /// All points, where the nodes of the mesh are `morphed`.
+  [[nodiscard]] Coordinates all(Coordinates const& morphed) const {
+    return mesh_.dimension == 2 ? of_both_planes(morphed) : morphed;
+  }
+  /// Of one part, of `all`.
+  std::string text(std::size_t part, Coordinates const& all) {
+    if (joined_ && all.size() != joined_->lists.points.size()) refuse();
+    return with_points(files_[part], joined_ ? points_of_part(*joined_, part, all) : all);
+  }
+  /// As they are.
+  std::string text(std::size_t part) { return with_points(files_[part], files_[part].coordinates()); }
+
+ private:
+  static inline std::vector<std::string_view> const vectors{"vectorField"};
+
+  [[noreturn]] void refuse() const {
+    throw IoError(input_ + ": holds another mesh than the one that was read; give the folder of that one");
+  }
+  /// All points of a plane mesh.
+  [[nodiscard]] Coordinates of_both_planes(Coordinates const& morphed) const {
+    Lists const lists = joined_ ? joined_->lists : read_lists(parts_.front().folders);
+    std::string why_not;
+    auto const planes = find_planes(lists, why_not);
+    if (!planes || Index(planes->pairs.size()) != mesh_.n_nodes()) refuse();
+    return both_planes(lists.points, *planes, morphed);
+  }
+
+  std::string input_;
+  Mesh const& mesh_;
+  std::vector<Part> parts_;
+  std::vector<FoamFile> files_;
+  std::optional<JoinedLists> joined_;
+};
 
 /// Where a mesh lies below the folder by which it is named.
 fs::path place_below(fs::path const& mesh, std::string const& input) {
@@ -82,6 +119,13 @@ fs::path place_below(fs::path const& mesh, std::string const& input) {
   for (fs::path const& part : {fs::path("constant") / "polyMesh", fs::path("polyMesh")})
     if (mesh.string().ends_with(part.string()) && !fs::equivalent(mesh, input, ignored)) return part;
   return {};
+}
+
+/// Where a part goes below the output.
+fs::path place_of(Part const& part, std::string const& input, bool is_series) {
+  fs::path const constant = fs::path("constant") / "polyMesh";
+  if (part.number >= 0) return part.folder.filename() / constant;
+  return is_series ? constant : place_below(part.folders.mesh, input);
 }
 
 /// What is made of a mesh, and appears in the end or not at all.
@@ -114,11 +158,14 @@ void add_mesh_folder(std::string const& input, Folders const& from, fs::path con
   to.files.add((folder / points_name).string()).write(text);
 }
 
-std::string file_name(FoamFile const& file) { return fs::path(file.path()).filename().string(); }
-
 std::string time_name(double time) {
   std::array<char, 32> digits{};
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), time).ptr};
+}
+
+/// Of the points of a part.
+fs::path time_folder(Part const& part, fs::path const& output, double time) {
+  return output / part.folder.filename() / time_name(time) / "polyMesh";
 }
 
 /// What lies in a folder, the folder with it.
@@ -133,89 +180,82 @@ void add_files_in(fs::path const& folder, std::vector<fs::path>& out) {
 
 std::vector<fs::path> files_of(std::string const& path) {
   std::vector<fs::path> out;
-  auto const folders = poly_mesh(path);
-  if (!folders) return out;
-  for (fs::path const& folder : {folders->mesh, folders->points}) {
-    add_files_in(folder, out);
-    // The case is named by its own folder, too, or by one between: nothing is written into it, whichever of them is the output.
-    auto above = fs::absolute(folder).lexically_normal();
-    if (above.filename() != "polyMesh") continue;
-    out.push_back(above = above.parent_path());
-    if (above.filename() == "constant" || folder != folders->mesh) out.push_back(above.parent_path());
-  }
+  for (Part const& part : parts_of(path))
+    for (fs::path const& folder : {part.folders.mesh, part.folders.points}) {
+      add_files_in(folder, out);
+      // The case is named by its own folder, too, or by one between: nothing is written into it, whichever of them is the output.
+      auto above = fs::absolute(folder).lexically_normal();
+      if (above.filename() != "polyMesh") continue;
+      out.push_back(above = above.parent_path());
+      if (above.filename() == "constant" || folder != part.folders.mesh) out.push_back(above = above.parent_path());
+      if (part.number >= 0) out.push_back(fs::absolute(part.folder).lexically_normal().parent_path());
+    }
   return out;
 }
 
 std::vector<fs::path> files_to_write(std::string const& input, std::string const& output,
                                      std::vector<double> const& times) {
   std::vector<fs::path> out;
-  auto const from = poly_mesh(input);
-  if (!from) return out;
-  fs::path const place = times.empty() ? place_below(from->mesh, input) : fs::path("constant") / "polyMesh";
-  std::vector<fs::path> there;
-  add_files_in(from->mesh, there);
-  std::string const points = fs::exists(from->points / "points") ? "points" : "points.gz";
-  out.push_back(fs::path(output) / place);
-  out.push_back(fs::path(output) / place / points);
-  for (std::size_t n = 1; n < there.size(); ++n) out.push_back(fs::path(output) / place / there[n].filename());
-  for (double const time : times) {
-    out.push_back(fs::path(output) / time_name(time) / "polyMesh");
-    out.push_back(out.back() / points);
+  for (Part const& part : parts_of(input)) {
+    fs::path const to = fs::path(output) / place_of(part, input, !times.empty());
+    std::vector<fs::path> there;
+    add_files_in(part.folders.mesh, there);
+    std::string const points = fs::exists(part.folders.points / "points") ? "points" : "points.gz";
+    out.push_back(to);
+    out.push_back(to / points);
+    for (std::size_t n = 1; n < there.size(); ++n) out.push_back(to / there[n].filename());
+    for (double const time : times) {
+      out.push_back(time_folder(part, output, time));
+      out.push_back(out.back() / points);
+    }
   }
   return out;
 }
 
 void write_morphed(std::string const& input, std::string const& output, Mesh const& mesh, Coordinates const& morphed) {
-  auto const from = poly_mesh(input);
-  if (!from) throw IoError(input + ": holds no mesh of OpenFOAM any more");
-  FoamFile points((from->points / "points").string(), {"vectorField"});
-  std::string const text =
-      with_points(points, mesh.dimension == 2 ? of_both_planes(from->mesh, points, mesh, morphed) : morphed);
+  PointFiles points(input, mesh);
+  Coordinates const all = points.all(morphed);
   Making to;
-  add_mesh_folder(input, *from, fs::path(output) / place_below(from->mesh, input), file_name(points), text, to);
+  for (std::size_t p = 0; p < points.parts().size(); ++p) {
+    Part const& part = points.parts()[p];
+    add_mesh_folder(input, part.folders, fs::path(output) / place_of(part, input, false), points.name(p),
+                    points.text(p, all), to);
+  }
   to.commit();
 }
 
 struct TimeFolders::State {
-  std::string input;
   fs::path output;
-  Folders from;
-  Mesh const& mesh;
-  FoamFile points;
+  PointFiles points;
   std::vector<double> times;
   std::size_t written = 0;
   Making to;
-
-  State(std::string in, std::string const& out, Mesh const& m, std::vector<double> t, Folders f)
-      : input(std::move(in)),
-        output(out),
-        from(std::move(f)),
-        mesh(m),
-        points((from.points / "points").string(), {"vectorField"}),
-        times(std::move(t)) {}
 };
 
 TimeFolders::TimeFolders(std::string const& input, std::string const& output, Mesh const& mesh,
-                         std::vector<double> const& times) {
-  auto from = poly_mesh(input);
-  if (!from) throw IoError(input + ": holds no mesh of OpenFOAM any more");
+                         std::vector<double> const& times)
+    : state_(new State{output, PointFiles(input, mesh), times, 0, {}}) {
   for (std::size_t n = 1; n < times.size(); ++n)
     if (time_name(times[n]) == time_name(times[n - 1]))
       throw IoError(output + ": two times of the series are " + time_name(times[n]) + "; their folders would be one");
-  state_ = std::make_unique<State>(input, output, mesh, times, *from);
-  add_mesh_folder(input, *from, state_->output / "constant" / "polyMesh", file_name(state_->points),
-                  with_points(state_->points, state_->points.coordinates()), state_->to);
+  State& s = *state_;
+  for (std::size_t p = 0; p < s.points.parts().size(); ++p) {
+    Part const& part = s.points.parts()[p];
+    add_mesh_folder(input, part.folders, s.output / place_of(part, input, true), s.points.name(p), s.points.text(p),
+                    s.to);
+  }
 }
 
 TimeFolders::~TimeFolders() = default;
 
 void TimeFolders::add(Coordinates const& morphed) {
   State& s = *state_;
-  fs::path const folder = s.output / time_name(s.times.at(s.written)) / "polyMesh";
-  s.to.folders.make(folder);
-  std::string text =
-      with_points(s.points, s.mesh.dimension == 2 ? of_both_planes(s.from.mesh, s.points, s.mesh, morphed) : morphed);
-  s.to.files.add((folder / file_name(s.points)).string()).write(text);
+  Coordinates const all = s.points.all(morphed);
+  for (std::size_t p = 0; p < s.points.parts().size(); ++p) {
+    fs::path const folder = time_folder(s.points.parts()[p], s.output, s.times.at(s.written));
+    s.to.folders.make(folder);
+    s.to.files.add((folder / s.points.name(p)).string()).write(s.points.text(p, all));
+  }
   ++s.written;
 }
 

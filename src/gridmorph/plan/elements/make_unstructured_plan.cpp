@@ -19,6 +19,22 @@ void refuse_open_faces(BoundaryFacePatches const& face_patches) {
   problems.throw_if_any<MeshError>();
 }
 
+Periodic turned_along(std::array<int, 3> const& axes, Periodic const& p) {
+  return {along_axes(axes, p.rotation_center),
+          along_axes(axes, p.rotation_angle_rad),
+          along_axes(axes, p.translation),
+          {along_axes(axes, p.declared.rotation), along_axes(axes, p.declared.translation)}};
+}
+
+/// The mesh with its components in that order; coordinates are shared.
+Mesh seen_along(std::array<int, 3> const& axes, Mesh const& mesh) {
+  Mesh out = mesh;
+  out.coordinates = along_axes(axes, mesh.coordinates);
+  for (Connection& connection : out.connections)
+    if (connection.periodic) connection.periodic = turned_along(axes, *connection.periodic);
+  return out;
+}
+
 }  // namespace
 
 PreparedUnstructured UnstructuredPlanner::run() {
@@ -26,7 +42,8 @@ PreparedUnstructured UnstructuredPlanner::run() {
   out_.plan.dimension = mesh_.dimension;
   out_.plan.plane_normal = plane_normal(mesh_);
   if (mesh_.dimension == 2 && !(std::abs(out_.plan.plane_normal.z) == 1))
-    throw MeshError("mesh " + mesh_.source + " is 2-D but does not lie in a plane z = constant; turn it into one");
+    throw MeshError("mesh " + mesh_.source +
+                    " is 2-D but does not lie in a plane x, y or z = constant; turn it into one");
   std::vector<Part> parts;
   timed(out_.report.seconds.boundary, [&] {
     take_boundary();
@@ -54,7 +71,7 @@ void UnstructuredPlanner::take_boundary() {
   UnstructuredPlan& plan = out_.plan;
   out_.notes = b.notes;
   plan.known = b.known;
-  plan.surfaces = b.surfaces();
+  plan.surfaces = along_axes(plan.axes, b.surfaces());
   plan.given_slip = b.given_slip;
   for (std::size_t k = 0; k < b.given_slip.of.size(); ++k) {
     double tolerance = 0;
@@ -136,9 +153,28 @@ PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, Unstruc
                              PlanOptions const& options, std::optional<std::vector<Vec3>> displacement) {
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
-  return detail::UnstructuredPlanner(host, mesh, topology, face_patches, std::move(graph), std::move(boundary), options,
-                                     std::move(displacement))
-      .run();
+  auto const axes = plane_axes(mesh);
+  if (axes == std::array<int, 3>{0, 1, 2})
+    return detail::UnstructuredPlanner(host, mesh, topology, face_patches, std::move(graph), std::move(boundary),
+                                       options, std::move(displacement), axes)
+        .run();
+  if (options.elements.background)
+    throw PlanError("mesh " + mesh.source +
+                    " is 2-D across another axis than z, and a background mesh of your own is for ones across z; turn "
+                    "both, or leave it out");
+  Mesh const seen = detail::seen_along(axes, mesh);
+  if (!displacement && options.elements.motion < 0) displacement = evaluate(boundary);
+  auto given = displacement;
+  auto rotations = boundary.rotations;
+  if (displacement)
+    for (Vec3& u : *displacement) u = along_axes(axes, u);
+  for (Mat3& rotation : boundary.rotations) rotation = along_axes(axes, rotation);
+  auto out = detail::UnstructuredPlanner(host, seen, topology, face_patches, std::move(graph), std::move(boundary),
+                                         options, std::move(displacement), axes)
+                 .run();
+  out.boundary.rotations = std::move(rotations);
+  out.displacement = std::move(given);
+  return out;
 }
 
 }  // namespace gridmorph

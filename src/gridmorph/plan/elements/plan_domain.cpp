@@ -9,8 +9,9 @@ ChartedDomain UnstructuredPlanner::find_domain() const {
   BoundaryConditions const& b = out_.boundary;
   Mask moves(std::size_t(topology_.boundary.size()), 0);
   for (Index32 const f : driving_faces_) moves[std::size_t(f)] = 1;
-  std::vector<Axis> axes{b.motion->motion().axis};
-  for (SlipSurface const& s : b.motion->slip_surfaces())
+  Axis const& axis = b.motion->motion().axis;
+  std::vector<Axis> axes{{along_axes(out_.plan.axes, axis.origin), along_axes(out_.plan.axes, axis.direction)}};
+  for (SlipSurface const& s : out_.plan.surfaces)
     if (s.kind == SlipKind::revolution || s.kind == SlipKind::meridional) axes.push_back({s.origin, s.direction});
   FittedDomain fitted = fit_domain(host_, mesh_, topology_.boundary, moves, axes);
 

@@ -187,7 +187,7 @@ void UnstructuredPlanner::plan_part(Part part) {
   boundary.notes.clear();  // they are here already
   UnstructuredPlanner planner(host_, taken ? taken->mesh : mesh_, taken ? taken->topology : topology_,
                               taken ? taken->face_patches : face_patches_, taken ? std::move(taken->graph) : out_.graph,
-                              std::move(boundary), options_, std::move(rest));
+                              std::move(boundary), options_, std::move(rest), out_.plan.axes);
   planner.is_part_ = true;
   PreparedUnstructured planned = planner.run();
   for (auto& note : planned.notes)

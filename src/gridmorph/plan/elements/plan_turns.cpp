@@ -27,7 +27,7 @@ void UnstructuredPlanner::find_turning_bodies() {
     return gridmorph::distance(box.low, box.high);
   };
   wall_bodies_ = find_wall_bodies(mesh_, topology_, face_patches_, out_.graph, out_.boundary, driving_faces_,
-                                  out_.plan.plane_normal);
+                                  out_.plan.surfaces, out_.plan.plane_normal);
   plan_one_rings();
   auto const modes = modes_of_walls();
   std::vector<WallBody> turning;

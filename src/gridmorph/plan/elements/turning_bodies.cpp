@@ -63,7 +63,7 @@ bool are_parallel(Vec3 const& a, Vec3 const& b) { return norm(cross(a, b)) < 1e-
 WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topology,
                             BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                             BoundaryConditions const& boundary, std::vector<Index32> const& driving_faces,
-                            Vec3 const& plane_normal) {
+                            std::vector<SlipSurface> const& surfaces, Vec3 const& plane_normal) {
   WallBodies out;
   std::vector<Index32> nodes;
   auto const nodes_of = [&](Index f) -> std::vector<Index32> const& {
@@ -123,7 +123,6 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
     for (Index32 const n : nodes) {
       if (body_of[std::size_t(n)] < 0) continue;
       WallBody& body = out.bodies[std::size_t(body_of[std::size_t(n)])];
-      auto const& surfaces = boundary.motion->slip_surfaces();
       if (slips && surfaces[std::size_t(face.surface)].kind == SlipSurface::Kind::plane)
         limit_to(surfaces[std::size_t(face.surface)].direction, body);
       else

@@ -35,7 +35,7 @@ struct WallBodies {
 WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topology,
                             BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                             BoundaryConditions const& boundary, std::vector<Index32> const& driving_faces,
-                            Vec3 const& plane_normal);
+                            std::vector<SlipSurface> const& surfaces, Vec3 const& plane_normal);
 
 /// Whether two unit vectors point along one line.
 bool are_parallel(Vec3 const& a, Vec3 const& b);

@@ -8,8 +8,10 @@
 #include <gridmorph/plan/elements/mesh_parts.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/wall_distance.hpp>
+#include <gridmorph/plan/plane_axes.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -25,8 +27,10 @@ class UnstructuredPlanner {
  public:
   UnstructuredPlanner(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                       BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
-                      PlanOptions const& options, std::optional<std::vector<Vec3>> displacement)
+                      PlanOptions const& options, std::optional<std::vector<Vec3>> displacement,
+                      std::array<int, 3> const& axes)
       : host_(host), mesh_(mesh), topology_(topology), face_patches_(face_patches), options_(options) {
+    out_.plan.axes = axes;
     out_.graph = std::move(graph);
     out_.boundary = std::move(boundary);
     out_.displacement = std::move(displacement);
