@@ -12,7 +12,6 @@
 #include <random>
 
 #include "plate_with_holes.hpp"
-#include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
 #include "target_cases.hpp"
 
@@ -400,12 +399,13 @@ Vec3 swept(Vec3 const& p) {
 // What another rule made of a surface with holes, given as a target: each hole is where it was, the sides too, and nothing folds.
 TEST(TargetProjection, RimsOfHolesGoToThoseOfTheTarget) {
   Mesh const mesh = plate_with_holes();
-  UnstructuredCase const elements(to_hexahedra(mesh));
+  Mesh const elements = to_hexahedra(mesh);
+  auto const topology = make_topology(elements);
   for (bool const blocks : {true, false}) {
     SCOPED_TRACE(blocks ? "blocks" : "elements");
     auto const boundary =
         blocks ? std::make_shared<Boundary const>(mesh)
-               : std::make_shared<Boundary const>(elements.mesh, elements.topology, elements.face_patches);
+               : std::make_shared<Boundary const>(elements, topology, find_face_patches(elements, topology));
     std::vector<int> const patches = select_patches(boundary->mesh(), {"plate"});
     PatchSurface const surface(*boundary, patches);
     TargetGeometry target;
