@@ -1,14 +1,18 @@
 // Targets that share only their shape with the mesh.
 #include <gtest/gtest.h>
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/geometry/target_tree.hpp>
 #include <gridmorph/motion/target/feature_edges.hpp>
+#include <gridmorph/motion/target/feature_loops.hpp>
 #include <gridmorph/motion/target/feature_path.hpp>
 #include <gridmorph/motion/target/surface_pieces.hpp>
 
 #include <random>
 
+#include "plate_with_holes.hpp"
+#include "support/unstructured_meshes.hpp"
 #include "target_cases.hpp"
 
 namespace gridmorph::test {
@@ -384,6 +388,69 @@ TEST(TargetProjection, FacetsThatFoldAreSaidSo) {
   for (auto const& note : run.surface.notes())
     said = said || note.find("facets of the patches fold") != std::string::npos;
   EXPECT_TRUE(said);
+}
+
+/// Holes move by two and a half of their radii and past one another's places; the sides stay.
+Vec3 swept(Vec3 const& p) {
+  double const s = std::sin(std::numbers::pi * p.x / 16), t = std::sin(std::numbers::pi * p.y / 10);
+  return p + Vec3{2.5 * s * s * t, 0.3 * s * t, 0.5 * s * s * t};
+}
+
+// What another rule made of a surface with holes, given as a target: each hole is where it was, the sides too, and nothing folds.
+TEST(TargetProjection, RimsOfHolesGoToThoseOfTheTarget) {
+  Mesh const mesh = plate_with_holes();
+  Mesh const elements = to_hexahedra(mesh);
+  auto const topology = make_topology(elements);
+  for (bool const blocks : {true, false}) {
+    SCOPED_TRACE(blocks ? "blocks" : "elements");
+    auto const boundary =
+        blocks ? std::make_shared<Boundary const>(mesh)
+               : std::make_shared<Boundary const>(elements, topology, find_face_patches(elements, topology));
+    std::vector<int> const patches = select_patches(boundary->mesh(), {"plate"});
+    PatchSurface const surface(*boundary, patches);
+    TargetGeometry target;
+    for (Vec3 const& x : surface.points) target.points.push_back(swept(x));
+    for (GridFacet const& f : surface.facets()) {
+      target.triangles.push_back({f[0], f[1], f[2]});
+      target.triangles.push_back({f[0], f[2], f[3]});
+    }
+    Motion motion;
+    motion.rules = {{{"plate"}, rule_of(target), 0, "test"}};
+    BoundaryMotion const moves(boundary, resolve(boundary->mesh(), motion));
+    std::vector<Vec3> u(surface.points.size());
+    moves.displacement(0, surface.points, u);
+    auto const is_side = [&](Vec3 const& x) { return x.x < 1e-9 || x.x > 16 - 1e-9 || x.y < 1e-9 || x.y > 10 - 1e-9; };
+    for (double const middle : {5.0, 11.0}) {
+      std::vector<Vec3> rim;
+      for (Vec3 const& x : surface.points)
+        if (std::hypot(x.x - middle, x.y - 5) < 1 + 1e-9) rim.push_back(x);
+      ASSERT_EQ(rim.size(), 16u);
+      std::sort(rim.begin(), rim.end(), [&](Vec3 const& a, Vec3 const& b) {
+        return std::atan2(a.y - 5, a.x - middle) < std::atan2(b.y - 5, b.x - middle);
+      });
+      std::vector<Vec3> line;
+      for (std::size_t n = 0; n <= rim.size(); ++n) line.push_back(swept(rim[n % rim.size()]));
+      Polyline const there(line);
+      for (std::size_t v = 0; v < u.size(); ++v)
+        if (std::hypot(surface.points[v].x - middle, surface.points[v].y - 5) < 1 + 1e-9) {
+          EXPECT_LT(there.distance_to(surface.points[v] + u[v]), 1e-10);
+          EXPECT_LT(distance(surface.points[v] + u[v], swept(surface.points[v])), 0.2);
+        }
+    }
+    for (std::size_t v = 0; v < u.size(); ++v) EXPECT_LT(is_side(surface.points[v]) ? norm(u[v]) : 0, 1e-10);
+    for (std::string const& note : moves.notes()) EXPECT_EQ(note.find("fold"), std::string::npos) << note;
+  }
+}
+
+TEST(FeatureLoops, ArePairedOneToOneWhateverTheyHaveInCommon) {
+  auto const loop = [](double x, double length, bool boundary) { return FeatureLoop{{}, {x, 0, 0}, length, boundary}; };
+  std::vector<FeatureLoop> from, to;
+  for (int k = 0; k < 6; ++k) from.push_back(loop(k, 1, true));
+  for (int const k : {3, 0, 5, 1, 4, 2}) to.push_back(loop(k + 1.4, 1.2, true));
+  to.push_back(loop(0, 1, false));
+  to.push_back(loop(0, 2.5, true));
+  EXPECT_EQ(pair_loops(from, to, 10), (std::vector{1, 3, 5, 0, 4, 2}));
+  EXPECT_EQ(pair_loops({from[0]}, {to[0], to[6], to[7]}, 1), std::vector{-1});
 }
 
 TEST(SurfacePieces, AreWhatCutsLeaveConnected) {

@@ -73,7 +73,8 @@ Clearances::Tip Clearances::tip(ClearanceCase const& one, std::vector<int> const
   out.wall_moves = std::any_of(walls.begin(), walls.end(), [&](int p) {
     int const r = rule_of_patch[std::size_t(p)];
     return r >= 0 && (case_file_.timed[std::size_t(r)].at ||
-                      std::holds_alternative<AttachedRule>(case_file_.motion.rules[std::size_t(r)].rule));
+                      std::holds_alternative<AttachedRule>(case_file_.motion.rules[std::size_t(r)].rule) ||
+                      std::holds_alternative<CarryRule>(case_file_.motion.rules[std::size_t(r)].rule));
   });
   out.before = revolution(out, baseline());
   if (!out.before) {

@@ -33,6 +33,11 @@ bool points_out_of_mesh(Mesh const& mesh, Patch const& patch) {
 
 }  // namespace
 
+Vec3 facet_normal(std::vector<Vec3> const& points, GridFacet const& f) {
+  if (f[3] < 0) return cross(points[f[1]] - points[f[0]], points[f[2]] - points[f[0]]);
+  return cross(points[f[2]] - points[f[0]], points[f[3]] - points[f[1]]);
+}
+
 double box_diagonal(std::vector<Vec3> const& points) {
   Box box;
   for (Vec3 const& p : points) box.include(p);

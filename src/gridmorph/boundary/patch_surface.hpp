@@ -46,6 +46,8 @@ struct PatchSurface {
   [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
 };
 
+/// Normal of a facet with three or four corners, right-handed about their order and as long as twice its area.
+Vec3 facet_normal(std::vector<Vec3> const& points, GridFacet const& f);
 double box_diagonal(std::vector<Vec3> const& points);
 double largest_component(std::vector<Vec3> const& points);
 

@@ -19,10 +19,17 @@ RigidTransform RigidTransform::then(RigidTransform const& next) const {
 
 namespace {
 
-Vec3 mean_of(std::span<Vec3 const> points) {
+/// None: all alike.
+double weight_of(std::span<double const> weights, std::size_t n) { return weights.empty() ? 1 : weights[n]; }
+
+Vec3 mean_of(std::span<Vec3 const> points, std::span<double const> weights) {
   Vec3 sum;
-  for (Vec3 const& p : points) sum += p;
-  return (1 / double(points.size())) * sum;
+  double total = 0;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    sum += weight_of(weights, n) * points[n];
+    total += weight_of(weights, n);
+  }
+  return (1 / total) * sum;
 }
 
 /// Eigenvectors are quaternions (w, x, y, z); s[a][b] = sum of from_a to_b.
@@ -46,12 +53,13 @@ struct Correlation {
   Vec3 from, to;  ///< means
   SmallMatrix<3> sum{};
 
-  Correlation(std::span<Vec3 const> before, std::span<Vec3 const> after) : from(mean_of(before)), to(mean_of(after)) {
+  Correlation(std::span<Vec3 const> before, std::span<Vec3 const> after, std::span<double const> weights = {})
+      : from(mean_of(before, weights)), to(mean_of(after, weights)) {
     for (std::size_t n = 0; n < before.size(); ++n) {
       Vec3 const f = before[n] - from, t = after[n] - to;
       std::array<double, 3> const fv{f.x, f.y, f.z}, tv{t.x, t.y, t.z};
       for (std::size_t a = 0; a < 3; ++a)
-        for (std::size_t b = 0; b < 3; ++b) sum[a][b] += fv[a] * tv[b];
+        for (std::size_t b = 0; b < 3; ++b) sum[a][b] += weight_of(weights, n) * (fv[a] * tv[b]);
     }
   }
   [[nodiscard]] double size() const {
@@ -113,9 +121,10 @@ RigidTransform fit_rigid_transform(std::span<Vec3 const> from, std::span<Vec3 co
   return {r, c.to - r * c.from};
 }
 
-std::optional<RigidFit> rigid_fit(std::span<Vec3 const> before, std::span<Vec3 const> after) {
+std::optional<RigidFit> rigid_fit(std::span<Vec3 const> before, std::span<Vec3 const> after,
+                                  std::span<double const> weights) {
   if (before.empty()) return {};
-  Correlation const c(before, after);
+  Correlation const c(before, after, weights);
   double const size = c.size();
   // With singular values a >= b >= c of the sum, negative c where it mirrors, the two greatest eigenvalues are a + b + c and a - b - c.
   constexpr double mirrored = 1e-9, alone = 6e-5;

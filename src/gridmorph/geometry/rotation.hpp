@@ -29,7 +29,15 @@ struct RigidFit {
   Mat3 rotation;
 };
 
-/// The same fit; nothing where it is not the only one (points on a line), and for a motion that mirrors the points.
-std::optional<RigidFit> rigid_fit(std::span<Vec3 const> before, std::span<Vec3 const> after);
+/// Of a point at x.
+inline Vec3 displacement(RigidFit const& fit, Vec3 const& x) {
+  Vec3 const arm = x - fit.from;
+  return (fit.rotation * arm - arm) + (fit.to - fit.from);
+}
+
+/// The same fit; nothing where it is not the only one (points on a line), and for a motion that mirrors the points. `weights`: how much each
+/// point counts, none negative and some positive; all alike where there are none.
+std::optional<RigidFit> rigid_fit(std::span<Vec3 const> before, std::span<Vec3 const> after,
+                                  std::span<double const> weights = {});
 
 }  // namespace gridmorph

@@ -13,7 +13,7 @@ namespace gridmorph {
 ///   dJ/dd_ijk = share * sum over boundary nodes m of B_i(s_m) B_j(t_m) B_k(w_m) dJ/du(m) + what rules beside it make of it
 ///
 /// exactly, as u is linear in d. dJ/du(m) is dJ_db(m) in the frame of the patch's node; summed in the order of boundary_nodes(). Nodes with another rule that the lattice moves all the same
-/// (followers, wakes, what is attached, blades and walls that are extended) take centred differences of the rules, by 1e-5 of the size of the lattice. Zero for control points that a face
+/// (followers, wakes, what is attached or carried, blades and walls that are extended) take centred differences of the rules, by 1e-5 of the size of the lattice. Zero for control points that a face
 /// through which the patches run out holds.
 ///
 /// rule: number in Motion::rules, as the plan was made with. dJ_db: one for each of MorphPlan::boundary_nodes(). Throws ConfigError where the rule is no ffd rule or lengths do not fit, MotionError.

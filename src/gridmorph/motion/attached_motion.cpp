@@ -52,8 +52,7 @@ AttachedMotion::AttachedMotion(Boundary const& boundary, std::vector<int> const&
 
 Vec3 AttachedMotion::displacement(Vec3 const& point) const {
   if (!faces_.empty()) return faces_.nearest(point).displacement;
-  Vec3 const arm = point - fit_.from;
-  return (fit_.rotation * arm - arm) + (fit_.to - fit_.from);
+  return gridmorph::displacement(fit_, point);
 }
 
 }  // namespace gridmorph

@@ -1,9 +1,11 @@
 #include <gridmorph/motion/boundary_motion.hpp>
 
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/attached_motion.hpp>
+#include <gridmorph/motion/carry/carrying_wall.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
 #include <gridmorph/motion/end_walls/wall_shift.hpp>
 #include <gridmorph/motion/ffd/ffd_motion.hpp>
@@ -47,6 +49,8 @@ struct BoundaryMotion::Impl {
   std::map<int, MovedWall> moved_walls;                          ///< by rule, those that blades are extended to
   std::map<int, ExtensionMotion> extensions;                     ///< by rule
   std::map<int, WallShift> wall_shifts;                          ///< by the rule of the wall
+  std::map<int, CarriedFeatures> carried;                        ///< by rule
+  std::map<int, std::shared_ptr<CarryingWall const>> carrying;   ///< by the rule of the wall
   std::map<int, AttachedMotion> attached;                        ///< by rule
   std::map<int, WakeMotion> wakes;                               ///< by rule
   std::map<int, ShockMotion> shocks;                             ///< by rule
@@ -61,6 +65,7 @@ struct BoundaryMotion::Impl {
         [&](int r, FfdRule const& rule) { lattices.try_emplace(r, *boundary, patches_of(r), rule, label(r), notes); });
     extend(notes);
     make_blades();
+    carry();
     attach(notes);
   }
 
@@ -75,6 +80,7 @@ struct BoundaryMotion::Impl {
     std::vector<std::string> said;  // with the notes of the first motion
     extend(said);
     make_blades();
+    carry();
     attach(said);
   }
 
@@ -188,6 +194,46 @@ struct BoundaryMotion::Impl {
     return moved_walls.try_emplace(w, *boundary, patches_of(w), displacement, anywhere, name).first->second;
   }
 
+  /// After all that moves walls, and before what is attached to them as they go. Walls that carry features together are one.
+  void carry() {
+    auto const displacement = [this](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
+      evaluate(motion.patch[std::size_t(p)].rule, points, out);
+    };
+    DisjointSets<int> together(rules.size());  // carrying rules and those of their walls
+    each<CarryRule>([&](int r, CarryRule const& rule) {
+      std::vector<int> const walls = select_patches(boundary->mesh(), rule.of);
+      require_direct(walls);
+      carried.try_emplace(r, *boundary, motion, patches_of(r), rule, walls, displacement, label(r));
+      for (int const p : walls) together.join(r, motion.patch[std::size_t(p)].rule);
+    });
+    std::map<int, std::shared_ptr<CarryingWall const>> made;  // none changes what the others start from
+    for (auto const& [r, features] : carried)
+      if (auto const at = made.try_emplace(together.root(r)); at.second)
+        at.first->second = carrying_wall(together.roots(), together.root(r), displacement);
+    for (std::size_t r = 0; r < rules.size(); ++r)
+      if (auto const wall = made.find(together.root(int(r))); wall != made.end() && is_direct(rules[r].rule))
+        carrying[int(r)] = wall->second;
+  }
+
+  /// The walls and features of one set of rules; patches with a displacement of their own that are none of it limit how far they reach.
+  [[nodiscard]] std::shared_ptr<CarryingWall const> carrying_wall(std::vector<int> const& set_of_rule, int set,
+                                                                  CarriedFeatures::Displacement const& own) const {
+    std::vector<int> walls;
+    std::vector<char> limits(motion.patch.size(), 0);
+    for (std::size_t p = 0; p < motion.patch.size(); ++p) {
+      int const r = motion.patch[p].rule;
+      if (set_of_rule[std::size_t(r)] != set)
+        limits[p] = is_explicit(r) ? 1 : 0;
+      else if (is_direct(rules[std::size_t(r)].rule))
+        walls.push_back(int(p));
+    }
+    std::vector<CarriedFeatures::Feature const*> features;
+    for (auto const& [r, of_rule] : carried)
+      if (set_of_rule[std::size_t(r)] == set)
+        for (auto const& feature : of_rule.features()) features.push_back(&feature);
+    return std::make_shared<CarryingWall const>(*boundary, walls, features, limits, own);
+  }
+
   /// After all that parts can be attached to.
   void attach(std::vector<std::string>& said) {
     Problems problems;
@@ -252,6 +298,14 @@ struct BoundaryMotion::Impl {
            std::holds_alternative<FfdRule>(rule);
   }
 
+  [[nodiscard]] bool is_explicit(int rule) const {
+    Rule const& own = rules[std::size_t(rule)].rule;
+    return is_direct(own) || row_of_rule[std::size_t(rule)] != nullptr || std::holds_alternative<AttachedRule>(own) ||
+           std::holds_alternative<CarryRule>(own) || std::holds_alternative<WakeRule>(own) ||
+           std::holds_alternative<ShockRule>(own) || std::holds_alternative<PrescribedRule>(own) ||
+           std::holds_alternative<ExtendRule>(own);
+  }
+
   [[nodiscard]] std::vector<int> patches_of(int r) const {
     std::vector<int> patches;
     for (std::size_t p = 0; p < motion.patch.size(); ++p)
@@ -279,6 +333,7 @@ struct BoundaryMotion::Impl {
       shift->second.displacement(points, out);
     else
       evaluate_rule(r, points, out);
+    if (auto const wall = carrying.find(r); wall != carrying.end()) wall->second->change(points, out);
   }
 
   void evaluate_rule(int r, std::span<Vec3 const> points, std::span<Vec3> out) const {
@@ -301,6 +356,8 @@ struct BoundaryMotion::Impl {
       lattices.at(r).displacement(points, out);
     } else if (std::holds_alternative<ExtendRule>(rule)) {
       extensions.at(r).displacement(points, out);
+    } else if (std::holds_alternative<CarryRule>(rule)) {
+      carried.at(r).displacement(points, out);
     } else if (std::holds_alternative<AttachedRule>(rule)) {
       AttachedMotion const& motion_of_walls = attached.at(r);
       std::transform(points.begin(), points.end(), out.begin(),
@@ -335,12 +392,7 @@ BoundaryMotion::~BoundaryMotion() = default;
 BoundaryMotion::BoundaryMotion(BoundaryMotion&&) noexcept = default;
 BoundaryMotion& BoundaryMotion::operator=(BoundaryMotion&&) noexcept = default;
 
-bool BoundaryMotion::is_explicit(int rule) const {
-  Rule const& own = impl_->rules[rule].rule;
-  return Impl::is_direct(own) || impl_->row_of_rule[rule] != nullptr || std::holds_alternative<AttachedRule>(own) ||
-         std::holds_alternative<WakeRule>(own) || std::holds_alternative<ShockRule>(own) ||
-         std::holds_alternative<PrescribedRule>(own) || std::holds_alternative<ExtendRule>(own);
-}
+bool BoundaryMotion::is_explicit(int rule) const { return impl_->is_explicit(rule); }
 
 void BoundaryMotion::displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const {
   if (!is_explicit(rule))
@@ -391,7 +443,9 @@ FfdMotion const* BoundaryMotion::lattice(int rule) const {
   return found == impl_->lattices.end() ? nullptr : &found->second;
 }
 
-bool BoundaryMotion::alone(int rule) const { return impl_->wall_shifts.count(rule) == 0; }
+bool BoundaryMotion::alone(int rule) const {
+  return impl_->wall_shifts.count(rule) == 0 && impl_->carrying.count(rule) == 0;
+}
 
 std::vector<TargetReach> BoundaryMotion::target_reach(Coordinates const& morphed) const {
   std::vector<TargetReach> out;

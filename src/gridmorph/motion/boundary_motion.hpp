@@ -37,7 +37,7 @@ class BoundaryMotion {
   [[nodiscard]] ResolvedMotion const& motion() const;
 
   /// Whether rule number r (in ResolvedMotion::rules) fixes displacements before the volume stage (fixed, rigid,
-  /// function, sections, target, inflate, ffd, extend, circumferential-slide, follow, attached, wake, prescribed).
+  /// function, sections, target, inflate, ffd, extend, circumferential-slide, follow, attached, carry, wake, prescribed).
   [[nodiscard]] bool is_explicit(int rule) const;
 
   /// Displacement that rule number r gives to baseline points; zero where the caller prescribes it. Throws MotionError (rule, point
@@ -62,7 +62,7 @@ class BoundaryMotion {
 
   /// Of rule number r, an ffd rule; null for others.
   [[nodiscard]] FfdMotion const* lattice(int rule) const;
-  /// Whether rule number r alone displaces its points: no blades are extended to them.
+  /// Whether rule number r alone displaces its points: no blades are extended to them, and no features carried on them.
   [[nodiscard]] bool alone(int rule) const;
 
   /// How far the nodes of each target rule ended from their target; rules in order, without those that go a share of the way only.

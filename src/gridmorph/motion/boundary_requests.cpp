@@ -93,7 +93,16 @@ class Evaluation {
   }
 
   [[nodiscard]] Disagreeing side(Request const& r, Vec3 const& displacement) const {
-    return {requester(mesh_, r), rule(r).where, displacement, is_default(r)};
+    return {requester(mesh_, r), rule(r).where, displacement, is_default(r), advice(r)};
+  }
+
+  /// One motion for all nodes of a part parts it from walls that bend.
+  [[nodiscard]] std::string advice(Request const& r) const {
+    auto const* attached = std::get_if<AttachedRule>(&rule(r).rule);
+    if (attached == nullptr || attached->how == AttachedRule::How::nearest) return {};
+    return "what " + requester(mesh_, r) +
+           " is attached to bends there: take how = \"nearest\", with which every node follows the walls, or rule = "
+           "\"carry\", with which it keeps its shape and the walls around go along";
   }
 
   /// The nodes of everything that has this name, patch by patch.

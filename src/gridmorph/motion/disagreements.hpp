@@ -17,6 +17,7 @@ struct Disagreeing {
   std::string where;        ///< of its rule
   Vec3 displacement;        ///< that it gives the node
   bool by_default = false;  ///< whether no rule names it
+  std::string advice;       ///< what its rule could be instead
 };
 
 /// Collects nodes on which patches disagree; one message for each two names, however many patches, zones and nodes they have in common.
@@ -38,6 +39,8 @@ class Disagreements {
       std::size_t const silent = text.size();
       for (Disagreeing const* side : {&one->second.first, &one->second.second})
         if (side->by_default) text += "; " + missing_rule(mesh, axis, side->name, points_of(side->name));
+      for (Disagreeing const* side : {&one->second.first, &one->second.second})
+        if (text.size() == silent && !side->advice.empty()) text += "; " + side->advice;
       if (text.size() == silent)
         text += "; make the two motions agree there, let one of them slip, or give the rules different ranks";
       out.push_back(std::move(text));

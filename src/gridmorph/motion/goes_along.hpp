@@ -9,7 +9,7 @@ namespace gridmorph {
 inline bool goes_along(Rule const& rule) {
   return std::holds_alternative<CircumferentialSlideRule>(rule) || std::holds_alternative<FollowRule>(rule) ||
          std::holds_alternative<AttachedRule>(rule) || std::holds_alternative<WakeRule>(rule) ||
-         std::holds_alternative<ExtendRule>(rule);
+         std::holds_alternative<ExtendRule>(rule) || std::holds_alternative<CarryRule>(rule);
 }
 
 }  // namespace gridmorph

@@ -2,7 +2,7 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// inflate, ffd, extend, circumferential slide, follow, attached, wake, shock, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
+// inflate, ffd, extend, circumferential slide, follow, attached, carry, wake, shock, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
 // carries the nodes and the finalize step puts them back on their surface). Regions inside the domain are addressed by their names
 // and take explicit rules that need no surface.
 #pragma once
@@ -161,6 +161,16 @@ struct AttachedRule {
   std::optional<std::pair<Vec3, double>> near{};
 };
 
+/// Features that sit on walls which other rules move: holes, squealers, shrouds, sensors. Each connected one keeps its shape and goes with the
+/// wall where its rim meets it; the wall around goes along, and fades to its own motion. CarriedFeatures has the formulas.
+struct CarryRule {
+  std::vector<std::string> of;  ///< patches with a rule of their own that the features sit on
+  /// axial: the axial position of every node is kept; plane: nodes stay on the planes of the feature's flat patches.
+  FreeRule::Constraint constraint = FreeRule::Constraint::none;
+  std::optional<double>
+      fade{};  ///< how far from a rim the walls have their own motion again [length]; absent: the size of the rim
+};
+
 /// Goes along with trailing edges that other rules move: wakes (WakeMotion has the formula).
 struct WakeRule {
   std::vector<std::string> of;  ///< patches with a rule of their own: whole blades or wings
@@ -190,7 +200,7 @@ struct ExtendRule {
 
 using Rule = std::variant<FixedRule, RigidRule, FunctionRule, CircumferentialSlideRule, FollowRule, SlipRule, FreeRule,
                           SectionsRule, TargetRule, PrescribedRule, AttachedRule, InflateRule, ExtendRule, WakeRule,
-                          FfdRule, ShockRule>;
+                          FfdRule, ShockRule, CarryRule>;
 
 /// "fixed", "rigid", ... as spelled in case files ("formula" and "field" are both FunctionRule and print as
 /// "function").

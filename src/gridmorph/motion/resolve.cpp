@@ -136,6 +136,10 @@ class Resolver {
                       " rad; it must be positive");
     } else if (auto const* sections = std::get_if<SectionsRule>(&rule)) {
       check_sections(r, *sections);
+    } else if (auto const* carry = std::get_if<CarryRule>(&rule); carry != nullptr && carry->fade) {
+      if (!std::isfinite(*carry->fade) || !(*carry->fade > 0))
+        problems_.add(label(r) + ": the distance within which the motion of its features fades is " +
+                      std::to_string(*carry->fade) + "; give a positive length, or none");
     } else if (auto const* attached = std::get_if<AttachedRule>(&rule); attached != nullptr && attached->near) {
       auto const& [place, distance] = *attached->near;
       if (!finite(place) || !std::isfinite(distance) || !(distance > 0))
@@ -214,7 +218,7 @@ class Resolver {
     Rule const& rule = motion_.rules[r].rule;
     auto const* free = std::get_if<FreeRule>(&rule);
     if (is<SlipRule>(rule) || is<SectionsRule>(rule) || is<TargetRule>(rule) || is<AttachedRule>(rule) ||
-        is<InflateRule>(rule) || is<ExtendRule>(rule) || is<FfdRule>(rule) ||
+        is<CarryRule>(rule) || is<InflateRule>(rule) || is<ExtendRule>(rule) || is<FfdRule>(rule) ||
         (free != nullptr && free->constraint != FreeRule::Constraint::none)) {
       problems_.add(label(r) + " names the periodic " + name +
                     "; periodic interfaces take free without constraint, "
@@ -302,6 +306,7 @@ class Resolver {
     if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule)) of = &slide->of;
     if (auto const* follow = std::get_if<FollowRule>(&rule)) of = &follow->of;
     if (auto const* attached = std::get_if<AttachedRule>(&rule)) of = &attached->of;
+    if (auto const* carry = std::get_if<CarryRule>(&rule)) of = &carry->of;
     if (auto const* wake = std::get_if<WakeRule>(&rule)) of = &wake->of;
     if (auto const* shock = std::get_if<ShockRule>(&rule); shock != nullptr && !shock->of.empty()) of = &shock->of;
     if (auto const* extend = std::get_if<ExtendRule>(&rule)) of = &extend->of;
@@ -313,6 +318,7 @@ class Resolver {
     } catch (MotionError const& e) {
       problems_.add(label(r) + ": of: " + e.what());
     }
+    if (is<CarryRule>(rule)) check_named(r, blades);
     std::map<int, std::vector<int>> unfit;
     for (int p : blades)
       if (int const own = result_.patch[p].rule; !is_direct(result_.rules[own].rule)) unfit[own].push_back(p);
@@ -321,6 +327,17 @@ class Resolver {
                     std::string(rule_name(result_.rules[own].rule)) +
                     "', whose displacement is not known beforehand; give it "
                     "fixed, rigid, formula, field, sections, target, inflate or ffd");
+  }
+
+  /// Walls that features sit on have a rule that says how they move.
+  void check_named(int r, std::vector<int> const& walls) {
+    std::vector<int> unnamed;
+    for (int const p : walls)
+      if (result_.patch[p].by_default) unnamed.push_back(p);
+    if (!unnamed.empty())
+      problems_.add(
+          label(r) + ": of: no rule names " + quote_list(names_of(mesh_, unnamed)) +
+          ", so nothing says how the walls move that the features sit on; give them one (\"fixed\" if they stand)");
   }
 
   /// What is asked for at places inside the domain, with no surface to go by.
@@ -355,7 +372,8 @@ std::string_view rule_name(Rule const& rule) {
       "fixed",  "rigid",      "function", "circumferential-slide",
       "follow", "slip",       "free",     "sections",
       "target", "prescribed", "attached", "inflate",
-      "extend", "wake",       "ffd",      "shock"};
+      "extend", "wake",       "ffd",      "shock",
+      "carry"};
   return names[rule.index()];
 }
 

@@ -32,28 +32,31 @@ std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface co
   return out;
 }
 
-std::vector<double> edge_distances(PatchSurface const& surface, std::vector<VertexImage> const& images,
-                                   std::vector<int> const& sources) {
+EdgeDistances edge_distances_and_sources(PatchSurface const& surface, std::vector<VertexImage> const& images,
+                                         std::vector<int> const& sources) {
   auto const& points = surface.points;
   auto const neighbours = surface.neighbours();
   std::vector<std::vector<int>> same(points.size());
   for (VertexImage const& image : images) same[std::size_t(image.vertex)].push_back(image.image);
-  std::vector<double> out(points.size(), std::numeric_limits<double>::infinity());
+  EdgeDistances out{std::vector<double>(points.size(), std::numeric_limits<double>::infinity()),
+                    std::vector<int>(points.size(), -1)};
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-  auto const reach = [&](int v, double there) {
-    if (there >= out[std::size_t(v)]) return;
-    out[std::size_t(v)] = there;
+  auto const reach = [&](int v, double there, int source) {
+    if (there >= out.distance[std::size_t(v)]) return;
+    out.distance[std::size_t(v)] = there;
+    out.source[std::size_t(v)] = source;
     front.emplace(there, v);
   };
-  for (int const v : sources) reach(v, 0);
+  for (std::size_t s = 0; s < sources.size(); ++s) reach(sources[s], 0, int(s));
   while (!front.empty()) {
     auto const [d, v] = front.top();
     front.pop();
-    if (d > out[std::size_t(v)]) continue;
+    if (d > out.distance[std::size_t(v)]) continue;
+    int const source = out.source[std::size_t(v)];
     for (int const w : neighbours[std::size_t(v)])
-      reach(w, d + distance(points[std::size_t(v)], points[std::size_t(w)]));
-    for (int const w : same[std::size_t(v)]) reach(w, d);
+      reach(w, d + distance(points[std::size_t(v)], points[std::size_t(w)]), source);
+    for (int const w : same[std::size_t(v)]) reach(w, d, source);
   }
   return out;
 }

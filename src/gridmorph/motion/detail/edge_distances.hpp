@@ -16,9 +16,18 @@ struct VertexImage {
 /// Both ways of every pair of vertices of the surface that a periodic connection of the mesh joins, each once.
 std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface const& surface);
 
-/// Of every vertex from the nearest of the sources, along grid lines and sides of faces; images are one place. Infinite where nothing
-/// leads. Cost O(n log n).
-std::vector<double> edge_distances(PatchSurface const& surface, std::vector<VertexImage> const& images,
-                                   std::vector<int> const& sources);
+struct EdgeDistances {
+  std::vector<double> distance;  ///< infinite where nothing leads
+  std::vector<int> source;       ///< place of the nearest one in the list of sources, -1: none
+};
+
+/// Of every vertex from the nearest of the sources, along grid lines and sides of faces; images are one place. Cost O(n log n).
+EdgeDistances edge_distances_and_sources(PatchSurface const& surface, std::vector<VertexImage> const& images,
+                                         std::vector<int> const& sources);
+/// The distances alone.
+inline std::vector<double> edge_distances(PatchSurface const& surface, std::vector<VertexImage> const& images,
+                                          std::vector<int> const& sources) {
+  return edge_distances_and_sources(surface, images, sources).distance;
+}
 
 }  // namespace gridmorph

@@ -1,11 +1,13 @@
 #include <gridmorph/motion/target/edge_images.hpp>
 
 #include <gridmorph/geometry/affine_fit.hpp>
+#include <gridmorph/motion/target/feature_loops.hpp>
 #include <gridmorph/motion/target/feature_path.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 namespace gridmorph {
@@ -16,6 +18,13 @@ double mean_distance(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
   double sum = 0;
   for (std::size_t n = 0; n < a.size(); ++n) sum += distance(a[n], b[n]);
   return sum / double(a.size());
+}
+
+std::set<std::pair<int, int>> boundary_edges(std::vector<FeatureEdge> const& edges) {
+  std::set<std::pair<int, int>> out;
+  for (FeatureEdge const& e : edges)
+    if (e.boundary) out.insert({e.a, e.b});
+  return out;
 }
 
 class EdgeMapper {
@@ -29,9 +38,11 @@ class EdgeMapper {
         neighbours_(feature_neighbours(points.size(), edges)),
         corner_(points.size(), 0),
         network_(target.points(), target_edges),
-        place_(points.size(), -1) {
+        place_(points.size(), -1),
+        loop_(points.size()) {
     out_.known.assign(points.size(), 0);
     out_.image.resize(points.size());
+    find_loops(boundary_edges(edges), boundary_edges(target_edges));
   }
 
   EdgeImages run() {
@@ -65,6 +76,38 @@ class EdgeMapper {
     double cost;
     int vertex, place;
   };
+  /// Of a vertex on a loop that has a partner on the target.
+  struct LoopVertex {
+    int partner = -1;  ///< number of the target's loop
+    int place = -1;    ///< one on it
+    Vec3 shift;        ///< from the guess to the partner, where they are apart
+  };
+
+  /// Holes are farther from where they go than from one another as soon as they move by more than they are wide: the nearest edge is
+  /// another hole's. So loops go to loops, and the guess is brought to them where it is off by more than half their radius.
+  void find_loops(std::set<std::pair<int, int>> const& boundary, std::set<std::pair<int, int>> const& of_target) {
+    std::vector<Vec3> guessed = points_;
+    for (std::size_t v = 0; v < points_.size(); ++v)
+      if (!neighbours_[v].empty()) guessed[v] = guess_(points_[v]);
+    auto const own =
+        feature_loops(guessed, neighbours_, [&](int a, int b) { return boundary.contains(std::minmax(a, b)); });
+    auto const there = feature_loops(network_.points(), network_.neighbours(),
+                                     [&](int a, int b) { return of_target.contains(network_.edge_between(a, b)); });
+    place_loop_.assign(network_.points().size(), -1);
+    for (std::size_t k = 0; k < there.size(); ++k)
+      for (int const q : there[k].vertices) place_loop_[std::size_t(q)] = int(k);
+    auto const partner = pair_loops(own, there, 0.5 * size_);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (partner[k] < 0) continue;
+      FeatureLoop const& to = there[std::size_t(partner[k])];
+      Vec3 const shift = to.middle - own[k].middle;
+      bool const apart = norm(shift) > own[k].length / (4 * std::numbers::pi);
+      for (int const v : own[k].vertices)
+        loop_[std::size_t(v)] = {partner[k], to.vertices.front(), apart ? shift : Vec3{}};
+    }
+  }
+
+  [[nodiscard]] Vec3 guess_of(int vertex) const { return guess_(points_[vertex]) + loop_[std::size_t(vertex)].shift; }
 
   [[nodiscard]] int free_end(int vertex) const { return neighbours_[vertex].size() == 1 ? 1 : 0; }
   void count(bool mapped) { ++(mapped ? out_.mapped : out_.unmapped); }
@@ -115,8 +158,10 @@ class EdgeMapper {
     for (int v = 0; v < int(points_.size()); ++v) {
       std::size_t const degree = neighbours_[v].size();
       if (degree < 2 || (degree == 2 && corner_[v] == 0)) continue;
-      Vec3 const g = guess_(points_[v]);
+      Vec3 const g = guess_of(v);
+      int const loop = loop_[std::size_t(v)].partner;
       for (int const q : places) {
+        if (loop >= 0 && place_loop_[std::size_t(q)] != loop) continue;
         bool const alike = network_.neighbours()[q].size() == degree;
         double const limit = alike && degree != 2 ? 0.5 * size_ : reach_[v];
         double const d = distance(g, network_.point(q));
@@ -142,7 +187,7 @@ class EdgeMapper {
     for (int v = 0; v < int(points_.size()); ++v)
       if (place_[v] >= 0) paired.push_back(v);
     auto const cost = [&](int v, int place) {
-      Vec3 const d = network_.point(place) - guess_(points_[v]);
+      Vec3 const d = network_.point(place) - guess_of(v);
       return dot(d, d);
     };
     bool swapped = paired.size() < 2000;
@@ -151,7 +196,9 @@ class EdgeMapper {
       for (std::size_t i = 0; i < paired.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
           int const v = paired[i], w = paired[j];
-          if (neighbours_[v].size() != neighbours_[w].size()) continue;
+          if (neighbours_[v].size() != neighbours_[w].size() ||
+              loop_[std::size_t(v)].partner != loop_[std::size_t(w)].partner)
+            continue;
           double const now = cost(v, place_[v]) + cost(w, place_[w]), then = cost(v, place_[w]) + cost(w, place_[v]);
           if (then < now - 1e-14 * size_ * size_) {
             std::swap(place_[v], place_[w]);
@@ -162,9 +209,10 @@ class EdgeMapper {
   }
 
   /// Where the end of a chain goes: to its partner, or to the nearest point of an edge, of those that ways from the partner
-  /// of the other end lead to.
+  /// of the other end lead to, or of those of its loop's partner.
   int place_of(int vertex, int other_end) {
-    if (place_[vertex] < 0) place_[vertex] = network_.nearest_place(guess_(points_[vertex]), place_[other_end]);
+    int const start = place_[other_end] >= 0 ? place_[other_end] : loop_[std::size_t(vertex)].place;
+    if (place_[vertex] < 0) place_[vertex] = network_.nearest_place(guess_of(vertex), start);
     return place_[vertex];
   }
 
@@ -182,7 +230,7 @@ class EdgeMapper {
     std::vector<Vec3> own, guessed;
     for (int const v : chain.vertices) {
       own.push_back(points_[v]);
-      guessed.push_back(guess_(points_[v]));
+      guessed.push_back(guess_of(v));
     }
     Polyline const line(own), guide(guessed);
     if (!(line.length() > 0) || !(guide.length() > 0)) return false;
@@ -228,9 +276,11 @@ class EdgeMapper {
     std::size_t half = 1;
     while (half + 2 < chain.vertices.size() && guide.fraction(half) < 0.5) ++half;
     int const first_vertex = chain.vertices.front();
-    int const start =
-        is_corner(first_vertex) ? place_of(first_vertex, first_vertex) : network_.nearest_place(points.front());
-    int const middle = network_.nearest_place(points[half] + network_.point(start) - points.front());
+    int const start = is_corner(first_vertex)
+                          ? place_of(first_vertex, first_vertex)
+                          : network_.nearest_place(points.front(), loop_[std::size_t(first_vertex)].place);
+    int const middle = network_.nearest_place(points[half] + network_.point(start) - points.front(),
+                                              loop_[std::size_t(first_vertex)].partner < 0 ? -1 : start);
     if (start == middle) return std::nullopt;
     auto const at_half = points.begin() + std::ptrdiff_t(half);
     auto first = way_beside(start, middle, {points.begin(), at_half + 1});
@@ -295,7 +345,9 @@ class EdgeMapper {
   std::vector<std::vector<int>> neighbours_;
   std::vector<char> corner_;
   FeatureNetwork network_;
-  std::vector<int> place_;  ///< of each corner in the network, -1: none yet
+  std::vector<int> place_;        ///< of each corner in the network, -1: none yet
+  std::vector<LoopVertex> loop_;  ///< per vertex
+  std::vector<int> place_loop_;   ///< per place of the network as it is at first: the number of its loop, -1: none
   std::vector<double> reach_;
   EdgeImages out_;
 };

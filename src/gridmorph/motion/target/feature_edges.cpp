@@ -18,11 +18,6 @@ struct Side {
   bool forward;
 };
 
-Vec3 facet_normal(std::vector<Vec3> const& points, GridFacet const& f) {
-  if (f[3] < 0) return cross(points[f[1]] - points[f[0]], points[f[2]] - points[f[0]]);
-  return cross(points[f[2]] - points[f[0]], points[f[3]] - points[f[1]]);
-}
-
 }  // namespace
 
 std::vector<FeatureEdge> find_feature_edges(std::vector<Vec3> const& points, std::vector<GridFacet> const& facets,

@@ -130,11 +130,6 @@ class Projection {
   }
 
  private:
-  static Vec3 facet_normal(std::vector<Vec3> const& points, GridFacet const& f) {
-    if (f[3] < 0) return cross(points[f[1]] - points[f[0]], points[f[2]] - points[f[0]]);
-    return cross(points[f[2]] - points[f[0]], points[f[3]] - points[f[1]]);
-  }
-
   /// Where the vertices of a surface without edges go, roughly: with its size and its middle, by area; with the sides of its box
   /// where that comes much closer.
   [[nodiscard]] std::vector<Vec3> closed_guess() const {

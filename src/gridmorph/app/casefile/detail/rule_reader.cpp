@@ -28,7 +28,7 @@ namespace {
 std::vector<std::string> const rule_names{"fixed",   "rigid",    "formula", "field",    "circumferential-slide",
                                           "follow",  "slip",     "free",    "sections", "target",
                                           "contour", "attached", "inflate", "bulb",     "extend",
-                                          "wake",    "ffd",      "shock"};
+                                          "wake",    "ffd",      "shock",   "carry"};
 
 /// scale = 0.95, scale = [sx, sy, sz], or scale = { factor = one of these, origin = [x, y, z] }.
 void read_scale(TableReader& step, RigidSteps& rigid) {
@@ -243,12 +243,12 @@ Rule read_slip(TableReader& table, RuleContext const& shared) {
   return rule;
 }
 
-Rule read_free(TableReader& table, RuleContext const& shared) {
-  FreeRule rule;
-  if (auto const c = table.choice("constraint", {"none", "axial", "plane"})) rule.constraint = FreeRule::Constraint(*c);
-  if (rule.constraint == FreeRule::Constraint::axial && !shared.axis)
+FreeRule::Constraint read_constraint(TableReader& table, RuleContext const& shared) {
+  auto const number = table.choice("constraint", {"none", "axial", "plane"});
+  auto const constraint = number ? FreeRule::Constraint(*number) : FreeRule::Constraint::none;
+  if (constraint == FreeRule::Constraint::axial && !shared.axis)
     table.problem("constraint", "\"axial\" needs the machine axis; add axis to [mesh]");
-  return rule;
+  return constraint;
 }
 
 void needs_axis(TableReader& table, RuleContext const& shared, std::string const& name) {
@@ -400,6 +400,14 @@ Rule read_attached(TableReader& table) {
   return rule;
 }
 
+Rule read_carry(TableReader& table, RuleContext const& shared) {
+  CarryRule rule;
+  rule.of = read_of(table);
+  rule.constraint = read_constraint(table, shared);
+  rule.fade = read_length(table, "fade");
+  return rule;
+}
+
 Rule read_wake(TableReader& table, RuleContext const& shared) {
   WakeRule rule;
   rule.of = read_of(table);
@@ -420,10 +428,11 @@ Rule read_other(std::size_t number, TableReader& table, RuleContext const& share
     case 4: needs_axis(table, shared, rule_names[number]); return CircumferentialSlideRule{read_of(table)};
     case 5: needs_axis(table, shared, rule_names[number]); return FollowRule{read_of(table)};
     case 6: return read_slip(table, shared);
-    case 7: return read_free(table, shared);
+    case 7: return FreeRule{read_constraint(table, shared)};
     case 11: return read_attached(table);
     case 14: return ExtendRule{read_of(table)};
     case 15: return read_wake(table, shared);
+    case 18: return read_carry(table, shared);
     default: return FixedRule{};
   }
 }
@@ -536,7 +545,7 @@ void read_motion_rule(TableReader& table, RuleContext const& shared, CaseFile& o
   } else {
     motion.rule = read_other(number, table, shared);
     if (table.find("amplitude") != nullptr)
-      table.problem("amplitude", number == 4 || number == 5 || number == 11 || number == 14
+      table.problem("amplitude", number == 4 || number == 5 || number == 11 || number == 14 || number == 18
                                      ? "belongs to the rule of the blade or wall, which this rule goes along with"
                                      : fmt::format("multiplies a displacement, and \"{}\" gives none", *name));
   }
