@@ -56,6 +56,8 @@ class Example : public ::testing::Test {
     int const code = std::system(line.c_str());
     return WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code);
   }
+  /// Some meshes are made by Gmsh, which is no part of what gridmorph needs.
+  [[nodiscard]] bool has_gmsh() const { return shell("command -v gmsh") == 0; }
   [[nodiscard]] std::string path(std::string const& name) const { return (folder_ / name).string(); }
   /// meshes: folder of meshes that are used instead of their stand-ins; none: "".
   [[nodiscard]] std::string run_command(std::string const& meshes, std::string const& name) const {

@@ -184,5 +184,56 @@ TEST_F(UnstructuredExample, TheRowOfATurbineBladeGoesAlongWithIt) {
       EXPECT_LT(distance(displacement(connection.nodes[k]), displacement(connection.donor_nodes[k])), 1e-15);
 }
 
+/// What the case file gives the blade.
+Vec3 grown_blade(Vec3 const& p) {
+  double const h = p.z / 1.5, turn = 12 * h * std::acos(-1.0) / 180, grow = 1 + 0.15 * h;
+  return {p.x * grow * std::cos(turn) - p.y * std::sin(turn),
+          p.x * grow * std::sin(turn) + p.y * std::cos(turn) + 0.25 * h * h, p.z};
+}
+
+/// How much longer or shorter the ways between places become, at most.
+double distortion(std::vector<Vec3> const& before, std::vector<Vec3> const& after) {
+  double most = 0;
+  for (std::size_t n = 0; n < before.size(); ++n)
+    for (std::size_t m = 0; m < n; ++m)
+      most = std::max(most, std::abs(distance(after[n], after[m]) / distance(before[n], before[m]) - 1));
+  return most;
+}
+
+TEST_F(UnstructuredExample, CooledBladeKeepsTheShapesOfItsFeatures) {
+  if (!has_gmsh()) GTEST_SKIP() << "Gmsh, which makes the mesh, is not there";
+  ASSERT_NO_FATAL_FAILURE(run("cooled_blade", "cooled_blade.msh", "cooled_blade_morphed.msh"));
+  double most = 0;
+  for (auto const& [patch, count] : {std::pair("holes", 6u), {"shroud", 2u}, {"squealer", 1u}}) {
+    std::map<std::pair<int, bool>, std::vector<Index32>> features;  // by height and side
+    bool const one = count == 1;
+    for (Index32 const n : nodes_of(patch))
+      features[{one ? 0 : int(std::lround((mesh.coordinates.z(n) - 0.3) / 0.45)), one || mesh.coordinates.y(n) > 0}]
+          .push_back(n);
+    EXPECT_EQ(features.size(), count) << patch;
+    for (auto const& [place, nodes] : features) {
+      std::vector<Vec3> x, y, by_blade;
+      double farthest = 0;
+      for (Index32 const n : nodes) {
+        x.push_back(mesh.coordinates[n]);
+        y.push_back(moved[n]);
+        by_blade.push_back(grown_blade(x.back()));
+        farthest = std::max(farthest, distance(x.back(), y.back()));
+      }
+      EXPECT_LT(distortion(x, y), 1e-10) << patch << " at " << place.first;
+      most = std::max(most, distortion(x, by_blade));
+      EXPECT_GT(farthest, 0.003);
+    }
+  }
+  EXPECT_GT(most, 0.05) << "what the blade would do to them";
+  std::size_t as_told = 0;
+  for (Index32 const n : nodes_of("blade")) {
+    double const off = distance(moved[n], grown_blade(mesh.coordinates[n]));
+    EXPECT_LT(off, 0.08);
+    as_told += off < 1e-12 ? 1 : 0;
+  }
+  EXPECT_GT(as_told, nodes_of("blade").size() / 4);
+}
+
 }  // namespace
 }  // namespace gridmorph::testing
