@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace gridmorph::test {
 namespace {
@@ -57,6 +58,27 @@ TEST(RotationVector, IsAngleTimesAxisAtAllAngles) {
   }
   EXPECT_EQ(rotation_vector(Mat3()), Vec3{});
   EXPECT_EQ(difference(rotation_by({}), Mat3()), 0);
+}
+
+TEST(RigidFit, APointOfWeightThreeCountsAsThreeAndStillPointsStayExactly) {
+  Random random(7);
+  std::vector<Vec3> before, after, before_each, after_each;
+  std::vector<double> weights;
+  for (int n = 0; n < 12; ++n) {
+    Vec3 const x = random.vector(1), y = matrix_of({0.3, -0.2, 0.9}) * x + random.vector(0.1);
+    before.push_back(x);
+    after.push_back(y);
+    weights.push_back(n % 4);
+    for (int k = 0; k < n % 4; ++k) {
+      before_each.push_back(x);
+      after_each.push_back(y);
+    }
+  }
+  auto const fit = rigid_fit(before, after, weights), each = rigid_fit(before_each, after_each);
+  ASSERT_TRUE(fit && each);
+  EXPECT_LT(difference(fit->rotation, each->rotation), 1e-14);
+  EXPECT_LT(distance(displacement(*fit, {1, 2, 3}), displacement(*each, {1, 2, 3})), 1e-14);
+  EXPECT_EQ(displacement(*rigid_fit(before, before, weights), {1, 2, 3}), Vec3{});
 }
 
 }  // namespace

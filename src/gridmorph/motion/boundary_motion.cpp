@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace gridmorph {
@@ -65,7 +66,7 @@ struct BoundaryMotion::Impl {
         [&](int r, FfdRule const& rule) { lattices.try_emplace(r, *boundary, patches_of(r), rule, label(r), notes); });
     extend(notes);
     make_blades();
-    carry();
+    carry(notes);
     attach(notes);
   }
 
@@ -80,7 +81,7 @@ struct BoundaryMotion::Impl {
     std::vector<std::string> said;  // with the notes of the first motion
     extend(said);
     make_blades();
-    carry();
+    carry(said);
     attach(said);
   }
 
@@ -195,7 +196,7 @@ struct BoundaryMotion::Impl {
   }
 
   /// After all that moves walls, and before what is attached to them as they go. Walls that carry features together are one.
-  void carry() {
+  void carry(std::vector<std::string>& said) {
     auto const displacement = [this](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[std::size_t(p)].rule, points, out);
     };
@@ -205,6 +206,7 @@ struct BoundaryMotion::Impl {
       require_direct(walls);
       carried.try_emplace(r, *boundary, motion, patches_of(r), rule, walls, displacement, label(r));
       for (int const p : walls) together.join(r, motion.patch[std::size_t(p)].rule);
+      said.push_back(label(r) + ": " + described(carried.at(r).features()));
     });
     std::map<int, std::shared_ptr<CarryingWall const>> made;  // none changes what the others start from
     for (auto const& [r, features] : carried)
@@ -213,6 +215,17 @@ struct BoundaryMotion::Impl {
     for (std::size_t r = 0; r < rules.size(); ++r)
       if (auto const wall = made.find(together.root(int(r))); wall != made.end() && is_direct(rules[r].rule))
         carrying[int(r)] = wall->second;
+  }
+
+  static std::string described(std::vector<CarriedFeatures::Feature> const& features) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (auto const& feature : features) {
+      least = std::min(least, feature.fade);
+      most = std::max(most, feature.fade);
+    }
+    return std::to_string(features.size()) + (features.size() == 1 ? " feature" : " features") +
+           ", with which the walls go along as far as " + to_text(least, 3) +
+           (least < most ? " to " + to_text(most, 3) : "") + " around, where they have room";
   }
 
   /// The walls and features of one set of rules; patches with a displacement of their own that are none of it limit how far they reach.
