@@ -523,7 +523,7 @@ TEST(UnstructuredFiles, MiddleNodesOfConnectionsThatListCornersAloneArePaired) {
     Mesh mesh = second_order(to_prisms_and_tetrahedra(unit_box({2, 2, 4}), 2), all_nodes);
     Connection periodic;
     periodic.name = "sides";
-    periodic.periodic = Periodic{{}, {}, {0, 1, 0}, {.translation = {0, 1, 0}}};
+    periodic.periodic = periodic_translation({0, 1, 0});
     for (Index n = 0; n < mesh.n_nodes(); ++n)
       for (Index m = 0; m < mesh.n_nodes(); ++m)
         if (mesh.coordinates[n].y == 0 && distance(mesh.coordinates[n] + Vec3{0, 1, 0}, mesh.coordinates[m]) < 1e-12) {
