@@ -274,7 +274,7 @@ TEST(UnstructuredMorph, PlaneMeshesMoveAlikeAcrossAnyAxis) {
     if (periodic && test::reduced()) continue;
     bool const is_first = way.to({1, 0, 0}).x == 1;
     if (is_first) reference.clear();
-    Mesh const flat = periodic ? test::periodic_flat_box(9, 7, 3) : test::flat_box(9, 7, 3);
+    Mesh const flat = periodic ? test::periodic_flat_box(6, 5, 2) : test::flat_box(6, 5, 2);
     Mesh mesh = flat;
     for (Connection& connection : mesh.connections)
       connection.periodic = periodic_translation(way.to(connection.periodic->declared.translation));
@@ -287,7 +287,7 @@ TEST(UnstructuredMorph, PlaneMeshesMoveAlikeAcrossAnyAxis) {
     auto const bends = [&, &way = way, periodic = periodic](double amount) {
       FunctionRule bent{"bent", [&way, periodic, amount](std::span<Vec3 const> x, std::span<Vec3> u) {
                           for (std::size_t n = 0; n < x.size(); ++n) {
-                            double const s = way.from(x[n]).x / 9, bump = 4 * s * (1 - s);
+                            double const s = way.from(x[n]).x / 6, bump = 4 * s * (1 - s);
                             u[n] = way.to({amount * (periodic ? bump : s * s), amount * bump, 0});
                           }
                         }};
@@ -307,6 +307,7 @@ TEST(UnstructuredMorph, PlaneMeshesMoveAlikeAcrossAnyAxis) {
       else
         ASSERT_LT(distance(x, reference[std::size_t(n)]), 1e-12) << n;
     }
+    if (is_first || (way.to({1, 0, 0}).y == 1) != periodic) continue;
     auto const rate =
         test::rate_error(c, m.prepared.plan, [&](double t) { return evaluate(m.prepared.boundary, bends(0.2 + t)); });
     EXPECT_LT(rate.error, 1e-6 * rate.largest);

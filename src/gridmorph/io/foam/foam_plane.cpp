@@ -75,32 +75,37 @@ class PlaneFinder {
     return dot(face_normal(lists_.faces[f], lists_.points), up) > 0 ? upper : lower;
   }
 
-  /// Normals of the planes are n cos a - m sin a and -n cos a - m sin a, n across the plane between them and m away from the axis.
-  bool find_wedge() {
-    std::array<Vec3, 2> normal{};
-    std::array<double, 2> area{}, offset{};
-    each_face(lists_.boundary, type_, [&](Index f) {
-      normal[side_of(f, first_) == upper ? 0 : 1] += face_normal(lists_.faces[f], lists_.points);
-    });
-    for (Vec3& n : normal) {
-      if (!(norm(n) > 0)) return no_wedge("one plane of type wedge");
+  /// Normals of the two planes of a wedge, and how far these are from the origin; the one that looks along an axis first.
+  bool measure_planes() {
+    auto const plane_of = [&](Index f) { return std::size_t(side_of(f, first_) == upper ? 0 : 1); };
+    each_face(lists_.boundary, type_,
+              [&](Index f) { normal_[plane_of(f)] += face_normal(lists_.faces[f], lists_.points); });
+    for (Vec3& n : normal_) {
+      if (!(norm(n) > 0)) return false;
       n = (1 / norm(n)) * n;
     }
+    std::array<double, 2> nodes{};
     each_face(lists_.boundary, type_, [&](Index f) {
-      std::size_t const k = side_of(f, first_) == upper ? 0 : 1;
+      std::size_t const k = plane_of(f);
       for (Index32 const v : lists_.faces[f]) {
-        offset[k] += dot(normal[k], lists_.points[v]);
-        area[k] += 1;
+        offset_[k] += dot(normal_[k], lists_.points[v]);
+        nodes[k] += 1;
       }
     });
-    for (std::size_t k = 0; k < 2; ++k) offset[k] /= area[k];
-    Vec3 const across = normal[0] - normal[1], inwards = normal[0] + normal[1];
-    Vec3 n = snapped((1 / norm(across)) * across);
-    if (component(n, main_axis(n)) < 0) {
-      std::swap(normal[0], normal[1]);
-      std::swap(offset[0], offset[1]);
-      n = -n;
+    for (std::size_t k = 0; k < 2; ++k) offset_[k] /= nodes[k];
+    Vec3 const across = normal_[0] - normal_[1];
+    if (component(across, main_axis(across)) < 0) {
+      std::swap(normal_[0], normal_[1]);
+      std::swap(offset_[0], offset_[1]);
     }
+    return true;
+  }
+
+  /// Normals of the planes are n cos a - m sin a and -n cos a - m sin a, n across the plane between them and m away from the axis.
+  bool find_wedge() {
+    if (!measure_planes()) return no_wedge("one plane of type wedge");
+    Vec3 const across = normal_[0] - normal_[1], inwards = normal_[0] + normal_[1];
+    Vec3 const n = snapped((1 / norm(across)) * across);
     if (!(norm(inwards) > along_an_axis) || component(n, main_axis(n)) != 1)
       return no_wedge("planes of type wedge whose middle does not lie across x, y or z");
     Vec3 const away = inwards - dot(inwards, n) * n;
@@ -111,8 +116,8 @@ class PlaneFinder {
     double const half = std::atan2(norm(inwards), norm(across));
     wedge.cosine = std::cos(half);
     wedge.sine = std::sin(half);
-    Vec3 const origin = (-(offset[0] + offset[1]) / (2 * wedge.sine)) * wedge.radial +
-                        ((offset[0] - offset[1]) / (2 * wedge.cosine)) * n;
+    Vec3 const origin = (-(offset_[0] + offset_[1]) / (2 * wedge.sine)) * wedge.radial +
+                        ((offset_[0] - offset_[1]) / (2 * wedge.cosine)) * n;
     auto const rounded = [&](double v) { return std::abs(v) <= wedge_like * size_ ? 0.0 : v; };
     wedge.origin = {rounded(origin.x), rounded(origin.y), rounded(origin.z)};
     out_.wedge = wedge;
@@ -188,6 +193,8 @@ class PlaneFinder {
   std::vector<char> side_;
   std::string_view type_;
   Vec3 first_, up_;
+  std::array<Vec3, 2> normal_{};  ///< of the planes of a wedge
+  std::array<double, 2> offset_{};
   Planes out_;
 };
 
