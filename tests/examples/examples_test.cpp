@@ -593,7 +593,14 @@ TEST_F(Example, EveryCaseFindsItsMeshInTheProjectOrMakesIt) {
     std::string const text = contents(entry.path());
     auto const begin = text.find("input  = \"") + 10;
     auto const mesh = text.substr(begin, text.find('"', begin) - begin);
-    bool const made = text.find("# mesh: gridmorph demo ") != std::string::npos;
+    std::string const geometry = "# mesh: gmsh ";
+    auto const of_gmsh = text.find(geometry);
+    if (of_gmsh != std::string::npos) {
+      auto const name = of_gmsh + geometry.size();
+      EXPECT_TRUE(
+          std::filesystem::exists(entry.path().parent_path() / text.substr(name, text.find('\n', name) - name)));
+    }
+    bool const made = of_gmsh != std::string::npos || text.find("# mesh: gridmorph demo ") != std::string::npos;
     EXPECT_NE(made, std::filesystem::exists(entry.path().parent_path() / mesh)) << entry.path() << " needs " << mesh;
   }
 }

@@ -102,6 +102,7 @@ class SinglePrecisionExample : public Example, public ::testing::WithParamInterf
 };
 
 TEST_P(SinglePrecisionExample, Passes) {
+  if (GetParam() == "aircraft" && !test::everything()) GTEST_SKIP() << "half a minute, and other wings have it";
   if (!found_in(text_of_case(), "# mesh: gmsh (.*)").empty() && !has_gmsh())
     GTEST_SKIP() << "Gmsh, which makes the mesh, is not there";
   ASSERT_NO_FATAL_FAILURE(run());

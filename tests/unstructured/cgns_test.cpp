@@ -360,15 +360,19 @@ TEST(UnstructuredBoundary, NamesThatAFamilyGivesItselfAreFamiliesOfThePatch) {
     HandMadeFile file(path);
     file.family("S_1", CGNS_ENUMV(BCInflow), "left side");
     file.family("S_2", CGNS_ENUMV(BCOutflow), "right side");
+    file.family("S_3", CGNS_ENUMV(BCWall), "S_1");  // a family above it
     file.bc("one", CGNS_ENUMV(PointList), {3}, CGNS_ENUMV(FaceCenter));
     file.family_of(1, "S_1");
     file.bc("other", CGNS_ENUMV(PointList), {4}, CGNS_ENUMV(FaceCenter));
     file.family_of(2, "S_2");
+    file.bc("third", CGNS_ENUMV(PointList), {3, 4}, CGNS_ENUMV(FaceCenter));
+    file.family_of(3, "S_3");
   }
   auto const mesh = read_mesh(path);
-  ASSERT_EQ(mesh.patches.size(), 2u);
-  EXPECT_EQ(mesh.patches[0].families, (std::vector<std::string>{"S_1", "left side"}));
-  EXPECT_EQ(mesh.patches[1].families, (std::vector<std::string>{"S_2", "right side"}));
+  ASSERT_EQ(mesh.patches.size(), 3u);
+  EXPECT_EQ(mesh.patches[2].families, (std::vector<std::string>{"S_3", "S_1"}));
+  EXPECT_EQ(mesh.patches[0].families, (std::vector<std::string>{"left side", "S_1"}));
+  EXPECT_EQ(mesh.patches[1].families, (std::vector<std::string>{"right side", "S_2"}));
   EXPECT_EQ(select_patches(mesh, {"right side"}), std::vector<int>{1});
 }
 
@@ -523,6 +527,7 @@ TEST(UnstructuredFiles, MiddleNodesOfConnectionsThatListCornersAloneArePaired) {
     Mesh mesh = second_order(to_prisms_and_tetrahedra(unit_box({2, 2, 4}), 2), all_nodes);
     Connection periodic;
     periodic.name = "sides";
+    periodic.zone = periodic.donor_zone = 0;
     periodic.periodic = periodic_translation({0, 1, 0});
     for (Index n = 0; n < mesh.n_nodes(); ++n)
       for (Index m = 0; m < mesh.n_nodes(); ++m)

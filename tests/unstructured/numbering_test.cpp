@@ -111,7 +111,7 @@ constexpr double rounded_weights = 1e-8;
 class Numbering : public testing::TestWithParam<Bent (*)()> {
  protected:
   void SetUp() override {
-    if (reduced() && GetParam() == coil) GTEST_SKIP() << "minutes, and the others are numbered anew as well";
+    if (!everything() && GetParam() == coil) GTEST_SKIP() << "half a minute, and the others are numbered anew as well";
   }
 };
 std::string name_of(testing::TestParamInfo<Bent (*)()> const& info) {
