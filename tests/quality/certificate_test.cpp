@@ -1,6 +1,7 @@
 // The certificate against J sampled densely, by formulas of its own.
 #include "quality/reference_cell.hpp"
 #include "quality/test_meshes.hpp"
+#include "support/reduced.hpp"
 
 #include <gridmorph/kernels/element_map.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
@@ -67,7 +68,8 @@ void expect_consistent(JacobianSign sign, Sampled const& samples) {
 TEST(JacobianBounds, OfHexahedraAgreeWithSamples) {
   std::mt19937 random(1);
   int positive = 0, negative = 0, between_corners = 0;
-  for (int n = 0; n < 1500; ++n) {
+  int const cells = reduced() ? 300 : 1500;
+  for (int n = 0; n < cells; ++n) {
     kernels::HexCell const cell = random_cell(random, 0.15 + 0.45 * (n % 7) / 6);
     JacobianSign const sign = kernels::jacobian_sign(cell, 1);
     Sampled const samples = sampled(cell, 12);
@@ -76,8 +78,8 @@ TEST(JacobianBounds, OfHexahedraAgreeWithSamples) {
     negative += sign == JacobianSign::negative ? 1 : 0;
     between_corners += sign == JacobianSign::negative && samples.least_corner > 0 ? 1 : 0;
   }
-  EXPECT_GT(positive, 200);
-  EXPECT_GT(negative, 300);
+  EXPECT_GT(positive, cells / 10);
+  EXPECT_GT(negative, cells / 5);
   EXPECT_GT(between_corners, 0) << "cells that are sound at all corners and not inside";
 }
 
@@ -132,7 +134,8 @@ TEST(JacobianBounds, OfPrismsAndPyramidsAgreeWithSamples) {
   std::mt19937 random(4);
   for (ElementType const type : {ElementType::prism, ElementType::pyramid, ElementType::tetrahedron}) {
     int seen[4] = {};
-    for (int n = 0; n < 2000; ++n) {
+    int const elements = reduced() ? 400 : 2000;
+    for (int n = 0; n < elements; ++n) {
       double const amplitude = 0.1 + 0.5 * (n % 5) / 4;
       std::uniform_real_distribution<double> off(-amplitude, amplitude);
       kernels::ElementCorners c;
@@ -155,8 +158,8 @@ TEST(JacobianBounds, OfPrismsAndPyramidsAgreeWithSamples) {
       expect_consistent(sign, samples);
       ++seen[int(sign)];
     }
-    EXPECT_GT(seen[int(JacobianSign::positive)], 100) << to_string(type);
-    EXPECT_GT(seen[int(JacobianSign::negative)], 50) << to_string(type);
+    EXPECT_GT(seen[int(JacobianSign::positive)], elements / 20) << to_string(type);
+    EXPECT_GT(seen[int(JacobianSign::negative)], elements / 40) << to_string(type);
   }
 }
 
@@ -173,7 +176,8 @@ TEST(JacobianBounds, CollapsedCellsAreZeroAndNotNegative) {
 TEST(JacobianBounds, TheFloorLiesBelowAllSamplesAndOnThemInParallelepipeds) {
   std::mt19937 random(6);
   int told = 0;
-  for (int n = 0; n < 1200; ++n) {
+  int const cells = reduced() ? 240 : 1200;
+  for (int n = 0; n < cells; ++n) {
     double const amplitude = 0.3 * (n % 6) / 5;
     kernels::HexCell const cell = random_cell(random, amplitude, {1, n % 3 == 0 ? 1e-4 : 0.7, n % 2 == 0 ? 30.0 : 2.0});
     auto const edges = kernels::cell_edges<double>([&](int i, int j, int k) {
@@ -198,7 +202,7 @@ TEST(JacobianBounds, TheFloorLiesBelowAllSamplesAndOnThemInParallelepipeds) {
       EXPECT_EQ(kernels::jacobian_sign(cell, handedness), JacobianSign::positive);
     }
   }
-  EXPECT_GT(told, 300);
+  EXPECT_GT(told, cells / 4);
 }
 
 TEST(JacobianBounds, RowsMarkTheCellsWhoseCoefficientsAreNotAllPositive) {

@@ -6,8 +6,6 @@ namespace {
 
 using BadInput = CommandTest;
 
-std::string const still = "[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n";
-
 TEST_F(BadInput, MissingFiles) {
   expect_bad_input(gridmorph("morph nowhere.toml"), {"nowhere.toml", "does not exist"});
   expect_bad_input(gridmorph("inspect nowhere.cgns"), {"nowhere.cgns"});

@@ -34,6 +34,9 @@ inline std::string contents(std::filesystem::path const& path) {
   return text.str();
 }
 
+/// Every patch stays where it is.
+inline std::string const still = "[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n";
+
 /// A folder of its own for every test, with a small passage mesh beside it that is made once.
 class CommandTest : public ::testing::Test {
  protected:

@@ -8,8 +8,6 @@
 namespace gridmorph::testing {
 namespace {
 
-std::string const still = "[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n";
-
 class RunFiles : public CommandTest {
  protected:
   /// Bad input that names what is wrong, and leaves every file of the folder as it was.

@@ -1,6 +1,7 @@
 // Points in unstructured meshes: against brute force over all elements, at all kinds of places, in broken meshes, with any
 // number of threads.
 #include "support/random.hpp"
+#include "support/reduced.hpp"
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
@@ -166,7 +167,7 @@ TEST(ElementLocator, NodesAndPointsOfElementsAreFoundAndLieWhereTheyAre) {
     std::vector<Vec3> points;
     for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
     for (Index e = 0; e < mesh.n_elements(); ++e)
-      for (int k = 0; k < 10; ++k) points.push_back(random_mean(mesh, e, random));
+      for (int k = 0; k < (reduced() ? 2 : 10); ++k) points.push_back(random_mean(mesh, e, random));
     auto const found = locate(mesh, points);
     double const size = mesh.size();
     Index outside = 0;
@@ -243,7 +244,7 @@ TEST(ElementLocator, OrderOfCandidatesAndOfPointsAndTheBackendChangeNothing) {
     SCOPED_TRACE(name);
     std::vector<Vec3> points;
     double const size = mesh.size();
-    for (int n = 0; n < 3000; ++n)
+    for (int n = 0; n < (reduced() ? 600 : 3000); ++n)
       points.push_back(random_mean(mesh, random.below(int(mesh.n_elements())), random) +
                        random.vector(n % 3 == 0 ? size : 1e-3));
     std::vector<Index32> candidates = all_of(mesh);
