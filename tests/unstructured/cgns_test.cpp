@@ -524,14 +524,14 @@ TEST(UnstructuredFiles, SecondOrderElementsKeepAllTheirNodes) {
 TEST(UnstructuredFiles, MiddleNodesOfConnectionsThatListCornersAloneArePaired) {
   for (bool const all_nodes : {false, true}) {
     TemporaryFolder const folder;
-    Mesh mesh = second_order(to_prisms_and_tetrahedra(unit_box({2, 2, 4}), 2), all_nodes);
+    Mesh mesh = second_order(to_hexahedra(unit_box({2, 2, 3})), all_nodes);
     Connection periodic;
     periodic.name = "sides";
     periodic.zone = periodic.donor_zone = 0;
-    periodic.periodic = periodic_translation({0, 1, 0});
+    periodic.periodic = periodic_translation({0, 2, 0});
     for (Index n = 0; n < mesh.n_nodes(); ++n)
       for (Index m = 0; m < mesh.n_nodes(); ++m)
-        if (mesh.coordinates[n].y == 0 && distance(mesh.coordinates[n] + Vec3{0, 1, 0}, mesh.coordinates[m]) < 1e-12) {
+        if (mesh.coordinates[n].y == 0 && distance(mesh.coordinates[n] + Vec3{0, 2, 0}, mesh.coordinates[m]) < 1e-12) {
           periodic.nodes.push_back(Index32(n));
           periodic.donor_nodes.push_back(Index32(m));
         }
