@@ -26,18 +26,8 @@ void read_block_boundary(File const& file, Node const& tree, Layout const& layou
       patch.name = bc->name;
       patch.zone = z;
       patch.families = families_of(file, *zone.base, *bc);
-      patch.bc_type = file.text(*bc);
-      if (patch.bc_type == "FamilySpecified") {
-        auto const type = family_bc_type(file, tree, *zone.base, patch.families);
-        if (type)
-          patch.bc_type = *type;
-        else
-          mesh.notes.push_back(where + ": is FamilySpecified, but " +
-                               (patch.families.empty() ? "names no family"
-                                                       : "family '" + patch.families.front() + "' has no FamilyBC_t") +
-                               "; its kind is not known");
-      }
-      patch.kind = patch_kind(patch.bc_type);
+      if (std::string const unknown = take_bc_type(file, tree, *zone.base, *bc, patch); !unknown.empty())
+        mesh.notes.push_back(where + ": " + unknown);
 
       std::string why;
       auto const set = read_point_set(file, zone, *bc, why);

@@ -86,6 +86,18 @@ std::optional<std::string> family_bc_type(File const& file, Node const& tree, No
   return std::nullopt;
 }
 
+std::string take_bc_type(File const& file, Node const& tree, Node const& base, Node const& bc, Patch& patch) {
+  patch.bc_type = file.text(bc);
+  auto const type = patch.bc_type == "FamilySpecified" ? family_bc_type(file, tree, base, patch.families)
+                                                       : std::optional(patch.bc_type);
+  patch.bc_type = type.value_or(patch.bc_type);
+  patch.kind = patch_kind(patch.bc_type);
+  if (type) return {};
+  return "is FamilySpecified, but " +
+         (patch.families.empty() ? "names no family" : "family '" + patch.families.front() + "' has no FamilyBC_t") +
+         "; its kind is not known";
+}
+
 PatchKind patch_kind(std::string_view bc_type) {
   if (bc_type.starts_with("BCWall")) return PatchKind::wall;
   if (bc_type.starts_with("BCInflow") || bc_type == "BCTunnelInflow") return PatchKind::inflow;

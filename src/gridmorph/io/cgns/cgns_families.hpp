@@ -27,4 +27,7 @@ std::optional<std::string> family_bc_type(File const& file, Node const& tree, No
 /// The group a CGNS BCType_t name belongs to.
 PatchKind patch_kind(std::string_view bc_type);
 
+/// Type and kind of a patch by its BC_t node, or by its families where that says so; what there is to say where these do not know it, else empty.
+std::string take_bc_type(File const& file, Node const& tree, Node const& base, Node const& bc, Patch& patch);
+
 }  // namespace gridmorph::cgns

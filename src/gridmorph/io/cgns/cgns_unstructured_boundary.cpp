@@ -42,23 +42,11 @@ class BoundaryReader {
     patch.name = bc.name;
     patch.zone = z;
     patch.families = families_of(file_, *zone.base, bc);
-    patch.bc_type = file_.text(bc);
     // Meshers that call condition and family alike may leave out the name of the family.
     bool const alike = patch.families.empty() &&
                        std::find(mesh_.families.begin(), mesh_.families.end(), bc.name) != mesh_.families.end();
     if (alike) patch.families.push_back(bc.name);
-    std::string unknown;
-    if (patch.bc_type == "FamilySpecified") {
-      auto const type = family_bc_type(file_, tree_, *zone.base, patch.families);
-      if (type)
-        patch.bc_type = *type;
-      else
-        unknown =
-            "is FamilySpecified, but " +
-            (patch.families.empty() ? "names no family" : "family '" + patch.families.front() + "' has no FamilyBC_t") +
-            "; its kind is not known";
-    }
-    patch.kind = patch_kind(patch.bc_type);
+    std::string const unknown = take_bc_type(file_, tree_, *zone.base, bc, patch);
     std::string why;
     auto const set = read_number_set(file_, bc, largest, why);
     if (!set) {

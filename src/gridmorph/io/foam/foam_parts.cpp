@@ -1,3 +1,4 @@
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/io/foam/foam_parts.hpp>
@@ -78,8 +79,7 @@ class Joiner {
 
   JoinedLists run() {
     for (std::size_t p = 0; p < parts_.size(); ++p) names_of_patches(p);
-    join_nodes();
-    number_nodes();
+    number_nodes(numbers_of_joined_nodes());
     number_cells();
     for (std::size_t p = 0; p < parts_.size(); ++p) add_faces(p);
     take_faces();
@@ -178,34 +178,22 @@ class Joiner {
                     "); morph all parts of one mesh together, or decompose it again (decomposePar)");
   }
 
-  void join_nodes() {
-    same_.resize(std::size_t(first_node_.back()));
-    std::iota(same_.begin(), same_.end(), Index(0));
+  /// Of the nodes of all parts, one after another: nodes at the same place have one number.
+  [[nodiscard]] std::vector<Index> numbers_of_joined_nodes() const {
+    DisjointSets<Index> same(std::size_t(first_node_.back()));
     for (std::size_t p = 0; p < parts_.size(); ++p)
       each_shared_face(p, [&](BoundaryEntry const& entry, Index f, std::size_t q, Index g) {
         auto const own = lists_[p].faces[f];
         auto const there = reversed(lists_[q].faces[g], start_of(entry, p, f, q, g));
-        for (std::size_t v = 0; v < own.size(); ++v) {
-          Index const a = root(first_node_[p] + own[v]), b = root(first_node_[q] + there[v]);
-          same_[std::size_t(std::max(a, b))] = std::min(a, b);
-        }
+        for (std::size_t v = 0; v < own.size(); ++v) same.join(first_node_[p] + own[v], first_node_[q] + there[v]);
       });
-  }
-  Index root(Index n) {
-    while (same_[std::size_t(n)] != n) n = same_[std::size_t(n)] = same_[std::size_t(same_[std::size_t(n)])];
-    return n;
+    return same.set_numbers();
   }
 
-  void number_nodes() {
-    out_.nodes.resize(parts_.size());
-    std::vector<Index32> number(same_.size(), -1);
-    Index32 n_nodes = 0;
+  void number_nodes(std::vector<Index> const& number) {
     for (std::size_t p = 0; p < parts_.size(); ++p)
-      for (Index n = 0; n < lists_[p].points.size(); ++n) {
-        Index32& own = number[std::size_t(root(first_node_[p] + n))];
-        if (own < 0) own = n_nodes++;
-        out_.nodes[p].push_back(own);
-      }
+      out_.nodes.emplace_back(number.begin() + first_node_[p], number.begin() + first_node_[p + 1]);
+    Index32 const n_nodes = number.empty() ? 0 : Index32(1 + *std::max_element(number.begin(), number.end()));
     if (!addressing_.empty() && follows_addressing(n_nodes))
       for (std::size_t p = 0; p < parts_.size(); ++p) out_.nodes[p] = addressing_[p].points;
     else
@@ -347,7 +335,6 @@ class Joiner {
   std::vector<Index> first_node_{0}, first_cell_{0};
   double allowed_ = 0;
   std::map<std::string, int, std::less<>> patch_;
-  std::vector<Index> same_;  ///< nodes of all parts, one after another -> a node before them at the same place
   std::vector<std::vector<Index32>> cell_, face_;  ///< of parts -> of the joined mesh
   std::vector<Face> faces_;
   JoinedLists out_;

@@ -71,17 +71,19 @@ bool holds_same_faces(fs::path const& folder, fs::path const& other) {
 /// The points of a mesh, a file for each of its parts.
 class PointFiles {
  public:
-  PointFiles(std::string const& input, Mesh const& mesh) : input_(input), mesh_(mesh), parts_(parts_of(input)) {
+  PointFiles(std::string const& input, Mesh const& mesh)
+      : input_(input), n_nodes_(mesh.n_nodes()), parts_(parts_of(input)) {
     if (parts_.empty()) throw IoError(input + ": holds no mesh of OpenFOAM any more");
     for (Part const& part : parts_) files_.emplace_back((part.folders.points / "points").string(), vectors);
     if (parts_.front().number >= 0) joined_ = join(parts_, input);
+    if (mesh.dimension == 2) find_both_planes();
   }
 
   [[nodiscard]] std::vector<Part> const& parts() const { return parts_; }
   [[nodiscard]] std::string name(std::size_t part) const { return fs::path(files_[part].path()).filename().string(); }
   /// All points, where the nodes of the mesh are `morphed`.
   [[nodiscard]] Coordinates all(Coordinates const& morphed) const {
-    return mesh_.dimension == 2 ? of_both_planes(morphed) : morphed;
+    return planes_ ? both_planes(on_planes_, *planes_, morphed) : morphed;
   }
   /// Of one part, of `all`.
   std::string text(std::size_t part, Coordinates const& all) {
@@ -97,20 +99,21 @@ class PointFiles {
   [[noreturn]] void refuse() const {
     throw IoError(input_ + ": holds another mesh than the one that was read; give the folder of that one");
   }
-  /// All points of a plane mesh.
-  [[nodiscard]] Coordinates of_both_planes(Coordinates const& morphed) const {
+  void find_both_planes() {
     Lists const lists = joined_ ? joined_->lists : read_lists(parts_.front().folders);
     std::string why_not;
-    auto const planes = find_planes(lists, why_not);
-    if (!planes || Index(planes->pairs.size()) != mesh_.n_nodes()) refuse();
-    return both_planes(lists.points, *planes, morphed);
+    planes_ = find_planes(lists, why_not);
+    if (!planes_ || Index(planes_->pairs.size()) != n_nodes_) refuse();
+    on_planes_ = lists.points;
   }
 
   std::string input_;
-  Mesh const& mesh_;
+  Index n_nodes_;
   std::vector<Part> parts_;
   std::vector<FoamFile> files_;
   std::optional<JoinedLists> joined_;
+  std::optional<Planes> planes_;  ///< of a plane mesh
+  Coordinates on_planes_;         ///< all points that it lies between
 };
 
 /// Where a mesh lies below the folder by which it is named.
